@@ -1,0 +1,33 @@
+# kds_add_layer(NAME [LINK target...]): the library of one layer, from the files of its folder.
+# A folder without .cpp files gives an INTERFACE library, so that a layer may begin as headers and grow sources.
+function(kds_add_layer name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "LINK")
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.hpp")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
+
+  set(target kds_${name})
+  if(name STREQUAL "kds")
+    set(target kds)
+  endif()
+
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    set(scope PUBLIC)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:kds_warnings>)
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(kds::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+
+  target_sources(${target} ${scope}
+    FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${headers})
+  target_link_libraries(${target} ${scope} ${ARG_LINK})
+  set_property(GLOBAL APPEND PROPERTY KDS_LAYER_TARGETS ${target})
+endfunction()
+
+# Our warnings, for our own files only: users of the library do not inherit them.
+add_library(kds_warnings INTERFACE)
+target_compile_options(kds_warnings INTERFACE
+  $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wpedantic>)
