@@ -1,0 +1,116 @@
+// Certificates: polynomials of time that are >= 0 while a fact holds, and their exact signs.
+#pragma once
+
+#include "kds/ball.hpp"
+#include "kds/exact.hpp"
+#include "kds/motion.hpp"
+#include "kds/polynomial.hpp"
+
+#include <concepts>
+#include <cstdint>
+
+namespace kds {
+
+/// A fact about motions: f(t) >= 0 while it holds.
+///
+/// A certificate names its degree and gives f as a polynomial in (t - epoch), for any epoch, in any number type:
+/// the same formula runs in doubles with an error bound, in double-doubles with an error bound, and exactly. A new
+/// certificate is therefore a few lines:
+///
+///     struct Above {                                    // x stays above the line y = 3
+///       static constexpr int degree = 2;
+///       Motion<2> x;
+///       template <class Number> auto polynomial(double epoch) const { return about<Number>(x, epoch) - constant<Number>(3); }
+///     };
+///
+/// Semantic laws: (1) f uses only ring operations on doubles, so that it is exact over Exact; (2) polynomial(e) and
+/// polynomial(e') are the same function of t.
+template <class C>
+concept Certificate = requires(const C& certificate, double epoch) {
+  { C::degree } -> std::convertible_to<int>;
+  { certificate.template polynomial<Exact>(epoch) } -> std::same_as<Polynomial<C::degree, Exact>>;
+  { certificate.template polynomial<Ball<double>>(epoch) } -> std::same_as<Polynomial<C::degree, Ball<double>>>;
+  {
+    certificate.template polynomial<Ball<DoubleDouble>>(epoch)
+  } -> std::same_as<Polynomial<C::degree, Ball<DoubleDouble>>>;
+};
+
+/// A constant as a polynomial of degree 0, for use in certificate formulas.
+template <class Number>
+Polynomial<0, Number> constant(double value) {
+  Polynomial<0, Number> result;
+  result.c[0] = Number(value);
+  return result;
+}
+
+/// How often the cheaper rungs of the sign ladder did not decide. One set a thread; reset by assigning {}.
+struct SignCounters {
+  std::uint64_t extended = 0;  ///< signs that asked for double-doubles
+  std::uint64_t exact = 0;     ///< signs that asked for exact arithmetic
+};
+inline thread_local SignCounters sign_counters;
+
+/// Sign of f (or its derivative number `derivative`) at t+, the instant after t: the sign of the first of f(t),
+/// f'(t), f''(t)... that is not zero, and 0 only if all vanish. Exact.
+///
+/// The ladder: doubles with an error bound, double-doubles with an error bound, exact integers. f is written about t
+/// itself, so its coefficients are its derivatives up to positive factors.
+template <Certificate C>
+int sign_after(const C& certificate, double t, int derivative = 0);
+
+/// A certificate whose polynomial is given by doubles about an epoch of its own, taken as exact.
+template <int Degree>
+struct PolynomialCertificate {
+  static constexpr int degree = Degree;
+  Motion<Degree> value;
+
+  template <class Number>
+  Polynomial<Degree, Number> polynomial(double epoch) const {
+    return about<Number>(value, epoch);
+  }
+};
+
+/// f' as a certificate: holds while f does not decrease.
+template <Certificate C>
+  requires(C::degree >= 1)
+struct DerivativeCertificate {
+  static constexpr int degree = C::degree - 1;
+  C certificate;
+
+  template <class Number>
+  Polynomial<degree, Number> polynomial(double epoch) const {
+    return derivative(certificate.template polynomial<Number>(epoch));
+  }
+};
+
+namespace detail {
+
+template <class C>
+int exact_sign_after(const C& certificate, double t, int derivative) {
+  ++sign_counters.exact;
+  const auto f = certificate.template polynomial<Exact>(t);
+  for (std::size_t i = static_cast<std::size_t>(derivative); i <= C::degree; ++i) {
+    if (const int s = f.c[i].sign()) return s;
+  }
+  return 0;
+}
+
+/// Skips the rung of doubles: for times that are roots up to rounding, where it cannot decide.
+template <class C>
+int extended_sign_after(const C& certificate, double t, int derivative) {
+  ++sign_counters.extended;
+  const auto f = certificate.template polynomial<Ball<DoubleDouble>>(t);
+  if (const int s = certain_sign(f.c[static_cast<std::size_t>(derivative)])) return s;
+  return exact_sign_after(certificate, t, derivative);
+}
+
+}  // namespace detail
+
+template <Certificate C>
+int sign_after(const C& certificate, double t, int derivative) {
+  const auto f = certificate.template polynomial<Ball<double>>(t);
+  if (const int s = certain_sign(f.c[static_cast<std::size_t>(derivative)])) return s;
+  return detail::extended_sign_after(certificate, t, derivative);
+}
+
+}  // namespace kds

@@ -1,0 +1,325 @@
+// Failure times: when a certificate first ceases to hold.
+#pragma once
+
+#include "kds/certificate.hpp"
+#include "kds/lattice.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace kds {
+
+/// The failure time of a certificate that does not fail within the horizon.
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
+/// The first double t in [now, horizon] with sign_after(certificate, t) < 0, or `never`.
+///
+/// This is the library's definition of an event time. It has three consequences. It is within one ulp above the true
+/// root, and the enclosure is (previous double, t]. It is a function of the certificate alone: every solver, queue,
+/// broad phase and compiler gives the same bits. And when the clock stands at t the certificate *has* failed,
+/// exactly, so an event never proves early.
+///
+/// Method: closed forms in double-double for degrees 1 and 2, verified by exact signs on both sides; for higher
+/// degrees the sign changes of the derivatives, from the linear one up, cut [now, horizon] into intervals on which
+/// f is monotone, and in each a safeguarded Newton iteration finds the double at which the exact sign turns. Nothing
+/// is assumed about the roots: double and clustered ones cost more, never an error.
+///
+/// Cost: O(degree^2) sign evaluations; most certificates are decided by signs alone. `horizon` may be infinite.
+template <Certificate C>
+double failure_time(const C& certificate, double now, double horizon = never);
+
+/// f with its sign turned: "fails" when f turns positive.
+template <Certificate C>
+struct Negated {
+  static constexpr int degree = C::degree;
+  const C& certificate;
+
+  template <class Number>
+  Polynomial<degree, Number> polynomial(double epoch) const {
+    return -certificate.template polynomial<Number>(epoch);
+  }
+};
+
+/// The first double t in [now, horizon] with sign_after(certificate, t) > 0, or `never`.
+template <Certificate C>
+double recovery_time(const C& certificate, double now, double horizon = never) {
+  return failure_time(Negated<C>{certificate}, now, horizon);
+}
+
+// ---------------------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+/// Middle of the coefficients about an epoch, for guesses.
+template <class C>
+Polynomial<C::degree> middle(const Polynomial<C::degree, Ball<double>>& p) {
+  Polynomial<C::degree> result;
+  for (std::size_t i = 0; i <= C::degree; ++i) result.c[i] = p.c[i].middle;
+  return result;
+}
+
+/// f certainly > 0 at now, linear and falling: the first double not before the root.
+template <class C>
+double linear_failure_time(const C& certificate, const Polynomial<1, Ball<double>>& p, double now, double horizon) {
+  // Cheap and safe rejection: the root is not before now + lower.
+  const double lower = (p.c[0].middle - p.c[0].radius) / (std::abs(p.c[1].middle) + p.c[1].radius);
+  if (now + lower * (1 - 0x1p-40) > horizon) return never;
+  ++sign_counters.extended;
+  const auto f = certificate.template polynomial<Ball<DoubleDouble>>(now);
+  const DoubleDouble delay = -f.c[0].middle / f.c[1].middle;
+  const DoubleDouble root = delay + now;
+  if (!(root.high <= horizon)) return never;
+  // Error of the quotient and of the sum; 2^-98 covers the operations' relative errors of 2^-102 with room.
+  const double error =
+      2 * (f.c[0].radius + std::abs(delay.high) * f.c[1].radius) / std::abs(f.c[1].middle.high) +
+      0x1p-98 * (std::abs(delay.high) + std::abs(root.high)) + Ball<double>::underflow;
+  double t = root.high;
+  if (root.low > error) {
+    t = next_up(t);
+  } else if (!(root.low < -error) && exact_sign_after(certificate, t, 0) >= 0) {
+    t = next_up(t);
+  }
+  return t <= horizon ? t : never;
+}
+
+/// Finds where derivative number `order` of f changes sign, on a stretch with exactly one change.
+template <class C>
+class LatticeCrossing {
+ public:
+  LatticeCrossing(const C& certificate, int order) : certificate_(certificate), order_(static_cast<std::size_t>(order)) {}
+
+  /// The first double in (below, above] whose sign is that of `above`. Precondition: the sign at `below` differs, and
+  /// there is one change between. `guess` may be anything.
+  double operator()(double below, double above, int sign_above, double guess) const {
+    int without_progress = 0;
+    double candidate = guess;
+    while (next_up(below) < above) {
+      const std::uint64_t width = lattice_distance(below, above);
+      if (!(candidate > below)) candidate = next_up(below);
+      if (!(candidate < above)) candidate = next_down(above);
+      if (without_progress > 2) {
+        candidate = lattice_middle(below, above);
+        without_progress = 0;
+      }
+      const Step step = evaluate(candidate);
+      if (step.sign == sign_above) {
+        above = candidate;
+      } else {
+        below = candidate;
+      }
+      if (lattice_distance(below, above) > width / 2) ++without_progress;
+      // The first double not before Newton's root; once that is known to be past the root, the one before it.
+      candidate = step.newton;
+      if (candidate == above) candidate = next_down(above);
+    }
+    return above;
+  }
+
+ private:
+  struct Step {
+    int sign;
+    double newton;
+  };
+
+  Step evaluate(double t) const {
+    ++sign_counters.extended;
+    const auto f = certificate_.template polynomial<Ball<DoubleDouble>>(t);
+    const auto& value = f.c[order_];
+    int s = certain_sign(value);
+    if (s == 0) s = exact_sign_after(certificate_, t, static_cast<int>(order_));
+    const DoubleDouble slope = f.c[order_ + 1].middle * static_cast<double>(order_ + 1);
+    const DoubleDouble root = -value.middle / slope + t;
+    return {s, root.low > 0 ? next_up(root.high) : root.high};
+  }
+
+  const C& certificate_;
+  std::size_t order_;
+};
+
+/// A root of p between lower and upper (one sign change), to a few ulps: bisection with Newton steps in doubles.
+template <int Degree>
+double approximate_root(const Polynomial<Degree>& p, double lower, double upper, bool rising) {
+  const auto slope = derivative(p);
+  double x = 0.5 * lower + 0.5 * upper;
+  for (int i = 0; i < 100 && lower < upper; ++i) {
+    const double value = p(x);
+    ((value > 0) == rising ? upper : lower) = x;
+    double next = x - value / slope(x);
+    if (!(next > lower && next < upper)) next = 0.5 * lower + 0.5 * upper;
+    if (std::abs(next - x) <= 0x1p-50 * std::abs(next)) return next;
+    x = next;
+  }
+  return x;
+}
+
+/// Derivative number `order` of the polynomial, up to the factor order!.
+template <int Order, int Degree>
+Polynomial<Degree - Order> scaled_derivative(const Polynomial<Degree>& p) {
+  Polynomial<Degree - Order> result;
+  for (std::size_t i = Order; i <= Degree; ++i) {
+    double binomial = 1;
+    for (std::size_t j = 1; j <= Order; ++j) binomial = binomial * static_cast<double>(i - Order + j) / static_cast<double>(j);
+    result.c[i - Order] = p.c[i] * binomial;
+  }
+  return result;
+}
+
+/// Sign changes on the lattice of doubles, by derivatives.
+template <class C>
+class DerivativeIntervals {
+ public:
+  DerivativeIntervals(const C& certificate, const Polynomial<C::degree>& guide, double now, double horizon)
+      : certificate_(certificate), guide_(guide), now_(now), horizon_(horizon) {}
+
+  /// First double in [now, horizon] with f < 0 just after.
+  double first_negative() {
+    Breaks breaks;
+    return descend<C::degree - 1>(breaks);
+  }
+
+ private:
+  // Doubles at which the sign of a derivative is new, in order, and how many.
+  struct Breaks {
+    std::array<double, C::degree + 1> at{};
+    int count = 0;
+  };
+
+  /// Sign at the end of the horizon: the leading term decides at infinity.
+  int sign_at_end(int order) const {
+    if (horizon_ < never) return sign_after(certificate_, horizon_, order);
+    for (int i = C::degree; i >= order; --i) {
+      if (const int s = sign_after(certificate_, now_, i)) return s;
+    }
+    return 0;
+  }
+
+  template <int Order>
+  double crossing(double below, double above, int sign_above) const {
+    double guess = below;
+    const auto p = scaled_derivative<Order>(guide_);
+    const bool rising = sign_above > 0;
+    double lower = below - now_;
+    double upper = above - now_;
+    if (!(upper < 0x1p1000)) {  // Unbounded: double the step until the sign turns.
+      double step = 1;
+      while (step < 0x1p900 && (p(lower + step) > 0) != rising) step *= 2;
+      upper = lower + step;
+    }
+    guess = now_ + approximate_root(p, lower, upper, rising);
+    return LatticeCrossing<C>(certificate_, Order)(below, above, sign_above, guess);
+  }
+
+  /// Given the sign changes of derivative Order + 1, finds those of derivative Order, and so on down to f itself.
+  template <int Order>
+  double descend(const Breaks& steeper) const {
+    Breaks breaks;
+    double start = now_;
+    int start_sign = sign_after(certificate_, start, Order);
+    if (Order == 0 && start_sign < 0) return start;
+    for (int i = 0; i <= steeper.count; ++i) {
+      const bool last = i == steeper.count;
+      const double stop = last ? horizon_ : next_down(steeper.at[static_cast<std::size_t>(i)]);
+      // Derivative Order is monotone on [start, stop].
+      const int stop_sign = last ? sign_at_end(Order) : (stop > start ? sign_after(certificate_, stop, Order) : start_sign);
+      if (stop_sign != start_sign && stop_sign != 0 && start_sign != 0) {
+        const double end = last && horizon_ == never ? std::numeric_limits<double>::max() : stop;
+        const double t = crossing<Order>(start, end, stop_sign);
+        if (Order == 0 && stop_sign < 0) return t;
+        breaks.at[static_cast<std::size_t>(breaks.count++)] = t;
+      }
+      if (!last) {
+        start = steeper.at[static_cast<std::size_t>(i)];
+        start_sign = sign_after(certificate_, start, Order);
+        if (start_sign != stop_sign && start_sign != 0 && stop_sign != 0) {
+          if (Order == 0 && start_sign < 0) return start;
+          breaks.at[static_cast<std::size_t>(breaks.count++)] = start;
+        }
+      }
+    }
+    if constexpr (Order > 0) {
+      return descend<Order - 1>(breaks);
+    } else {
+      return never;
+    }
+  }
+
+  const C& certificate_;
+  const Polynomial<C::degree>& guide_;
+  double now_;
+  double horizon_;
+};
+
+/// Precondition: f > 0 just after now.
+template <class C>
+double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<double>>& p, double now, double horizon) {
+  const int bend = certain_sign(p.c[2]);
+  const int rate = certain_sign(p.c[1]);
+  if (bend > 0 && rate > 0) return never;
+  const Ball<double> discriminant = p.c[1] * p.c[1] - p.c[0] * p.c[2] * 4.0;
+  const int real = certain_sign(discriminant);
+  if (bend > 0 && real < 0) return never;
+  if (bend == 0 || (bend > 0 && (rate == 0 || real == 0)) || !(discriminant.middle < never)) {
+    const auto guide = middle<C>(p);
+    return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+  }
+  const double c0 = p.c[0].middle;
+  const double c1 = p.c[1].middle;
+  const double c2 = p.c[2].middle;
+  const double root = std::sqrt(discriminant.middle > 0 ? discriminant.middle : 0.0);
+  if (bend > 0) {  // Falls, then rises: the smaller root, which lies before the vertex.
+    const double guess = now + 2 * c0 / (root - c1);
+    double above = now - c1 / (2 * c2);
+    if (above > horizon) {
+      if (guess * (1 - 0x1p-30) > horizon && now + (guess - now) * (1 - 0x1p-30) > horizon && sign_after(certificate, horizon) > 0) {
+        return never;
+      }
+      above = horizon;
+    }
+    if (above < never && sign_after(certificate, above) < 0) {
+      return LatticeCrossing<C>(certificate, 0)(now, above, -1, guess);
+    }
+    if (above == horizon) {
+      // Positive at the horizon, which is before the vertex: falling all the way, so positive throughout.
+      if (sign_after(certificate, horizon, 1) < 0) return never;
+    }
+    const auto guide = middle<C>(p);
+    return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+  }
+  // Concave and positive now: one crossing ahead.
+  const double tau = c1 >= 0 ? (c1 + root) / (-2 * c2) : 2 * c0 / (root - c1);
+  if (horizon < never && sign_after(certificate, horizon) > 0) return never;
+  const double above = horizon < never ? horizon : std::numeric_limits<double>::max();
+  return LatticeCrossing<C>(certificate, 0)(now, above, -1, now + tau);
+}
+
+}  // namespace detail
+
+template <Certificate C>
+double failure_time(const C& certificate, double now, double horizon) {
+  if (!(now <= horizon)) return never;
+  const auto p = certificate.template polynomial<Ball<double>>(now);
+  int value = certain_sign(p.c[0]);
+  if (value == 0) value = detail::extended_sign_after(certificate, now, 0);
+  if (value < 0) return now;
+  if (value == 0) return never;  // f vanishes identically
+  if constexpr (C::degree == 0) {
+    return never;
+  } else {
+    int slowest = C::degree;  // All higher coefficients certainly >= 0: never falls.
+    while (slowest > 0 && certain_sign(p.c[static_cast<std::size_t>(slowest)]) > 0) --slowest;
+    if (slowest == 0) return never;
+    if constexpr (C::degree == 1) {
+      const int rate = certain_sign(p.c[1]);
+      if (rate == 0 && detail::extended_sign_after(certificate, now, 1) >= 0) return never;
+      return detail::linear_failure_time(certificate, p, now, horizon);
+    } else if constexpr (C::degree == 2) {
+      return detail::quadratic_failure_time(certificate, p, now, horizon);
+    } else {
+      const auto guide = detail::middle<C>(p);
+      return detail::DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+    }
+  }
+}
+
+}  // namespace kds
