@@ -1,0 +1,103 @@
+// What an event queue is: numbered slots, each with at most one time, and the least of them.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace kds {
+
+/// Number of a certificate's place in its structure: adjacent pair i of a list, match i of a tournament...
+using Slot = std::uint32_t;
+
+/// The time that stands for "no event".
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
+/// What a queue gives at its top.
+struct QueuedEvent {
+  double time = never;
+  Slot slot = 0;
+
+  friend bool operator==(const QueuedEvent&, const QueuedEvent&) = default;
+};
+
+/// The default rank among events of one time: the slot's own number.
+struct SlotRank {
+  constexpr std::uint64_t operator()(Slot slot) const noexcept { return slot; }
+};
+
+/// Who goes first among events of one time.
+template <class R>
+concept QueueRank = std::copyable<R> && requires(const R& rank, Slot slot) {
+  { rank(slot) } -> std::convertible_to<std::uint64_t>;
+};
+
+/// A map from slots to times whose least entry is at hand.
+///
+/// Laws, for a queue q that has been given resize(n), with slots s < n:
+///  1. Order. Entries are ordered by (time, rank, slot). top() is the least. Since no two are equal, the sequence of
+///     tops is a function of the entries alone: every queue gives the same one, bit for bit.
+///  2. Map. After set(s, t), contains(s) and time(s) == t, whether s was there before or not; nothing else changes.
+///     After clear(s), which may be said of an empty slot too, not contains(s) and time(s) == never.
+///  3. set(s, never) is clear(s). Any other time is finite: a NaN or -infinity is a broken precondition (asserted).
+///  4. Rank. rank(s) is read by set(s, t) and kept: a slot whose rank changes takes its place when it is set again,
+///     and the queue is in order at all times, also while ranks are being changed.
+///  5. No clock. set may give a time before earlier tops; the order holds all the same.
+///  6. pop() is clear(top().slot). top() and pop() need a queue that is not empty. top() may rearrange what it finds,
+///     hence it is not const.
+///  7. resize(m) keeps the entries of slots below m and drops the rest; a new queue has no slots.
+///  8. operations() counts the calls of set, clear and pop that found or left an entry.
+template <class Q>
+concept EventQueue = std::movable<Q> && requires(Q q, const Q& c, Slot slot, double time, std::size_t n) {
+  q.resize(n);
+  q.set(slot, time);
+  q.clear(slot);
+  q.pop();
+  { q.top() } -> std::same_as<QueuedEvent>;
+  { c.contains(slot) } -> std::same_as<bool>;
+  { c.time(slot) } -> std::same_as<double>;
+  { c.empty() } -> std::same_as<bool>;
+  { c.size() } -> std::same_as<std::size_t>;
+  { c.slots() } -> std::same_as<std::size_t>;
+  { c.operations() } -> std::same_as<std::uint64_t>;
+};
+
+namespace detail {
+
+/// An entry with its place in the order. The rank is kept only where it is not the slot's own number.
+template <class Rank>
+struct QueueKey {
+  double time;
+  std::uint64_t rank;
+  Slot slot;
+
+  static QueueKey make(double time, Slot slot, const Rank& rank) { return {time, rank(slot), slot}; }
+
+  friend bool operator<(const QueueKey& a, const QueueKey& b) {
+    if (a.time != b.time) return a.time < b.time;
+    if (a.rank != b.rank) return a.rank < b.rank;
+    return a.slot < b.slot;
+  }
+};
+
+template <>
+struct QueueKey<SlotRank> {
+  double time;
+  Slot slot;
+
+  static QueueKey make(double time, Slot slot, const SlotRank&) { return {time, slot}; }
+
+  friend bool operator<(const QueueKey& a, const QueueKey& b) {
+    return a.time != b.time ? a.time < b.time : a.slot < b.slot;
+  }
+};
+
+/// Boost's heaps hold the greatest at the top.
+template <class Key>
+struct LaterKey {
+  bool operator()(const Key& a, const Key& b) const { return b < a; }
+};
+
+}  // namespace detail
+}  // namespace kds
