@@ -13,7 +13,7 @@ namespace kds {
 
 /// An implicit heap whose nodes have Arity children; O(log n) for set, clear and pop.
 ///
-/// A cleared slot is not taken out of the heap but parked in it at the time `never`, so that after resize() no
+/// A cleared slot is not taken out of the heap but parked in it at the time +infinity, so that after resize() no
 /// operation allocates. Four children suit a cache line and were the quickest of 2, 4 and 8.
 template <QueueRank Rank = SlotRank, unsigned Arity = 4>
 class DaryQueue {
@@ -35,8 +35,8 @@ class DaryQueue {
   }
 
   void set(Slot slot, double time) {
-    assert(slot < handles_.size() && time > -never);
-    if (time == never) return clear(slot);
+    assert(slot < handles_.size() && time > -detail::no_event);
+    if (time == detail::no_event) return clear(slot);
     size_ += !contains(slot);
     ++operations_;
     heap_.update(handles_[slot], Key::make(time, slot, rank_));
@@ -59,7 +59,7 @@ class DaryQueue {
     return {heap_.top().time, heap_.top().slot};
   }
 
-  bool contains(Slot slot) const { return time(slot) != never; }
+  bool contains(Slot slot) const { return time(slot) != detail::no_event; }
   double time(Slot slot) const { return (*handles_[slot]).time; }
   bool empty() const { return size_ == 0; }
   std::size_t size() const { return size_; }
@@ -71,7 +71,7 @@ class DaryQueue {
   using Heap = boost::heap::d_ary_heap<Key, boost::heap::arity<Arity>, boost::heap::mutable_<true>,
                                        boost::heap::compare<detail::LaterKey<Key>>>;
 
-  Key parked(Slot slot) const { return Key::make(never, slot, rank_); }
+  Key parked(Slot slot) const { return Key::make(detail::no_event, slot, rank_); }
 
   Heap heap_;
   std::vector<typename Heap::handle_type> handles_;  // by slot

@@ -11,12 +11,14 @@ namespace kds {
 /// Number of a certificate's place in its structure: adjacent pair i of a list, match i of a tournament...
 using Slot = std::uint32_t;
 
-/// The time that stands for "no event".
-inline constexpr double never = std::numeric_limits<double>::infinity();
+namespace detail {
+/// The time of a slot without event: what failure_time() gives for a certificate that never fails.
+inline constexpr double no_event = std::numeric_limits<double>::infinity();
+}  // namespace detail
 
 /// What a queue gives at its top.
 struct QueuedEvent {
-  double time = never;
+  double time = detail::no_event;
   Slot slot = 0;
 
   friend bool operator==(const QueuedEvent&, const QueuedEvent&) = default;
@@ -39,13 +41,13 @@ concept QueueRank = std::copyable<R> && requires(const R& rank, Slot slot) {
 ///  1. Order. Entries are ordered by (time, rank, slot). top() is the least. Since no two are equal, the sequence of
 ///     tops is a function of the entries alone: every queue gives the same one, bit for bit.
 ///  2. Map. After set(s, t), contains(s) and time(s) == t, whether s was there before or not; nothing else changes.
-///     After clear(s), which may be said of an empty slot too, not contains(s) and time(s) == never.
-///  3. set(s, never) is clear(s). Any other time is finite: a NaN or -infinity is a broken precondition (asserted).
+///     After clear(s), which may be said of an empty slot too, not contains(s) and time(s) is +infinity.
+///  3. set(s, +infinity) is clear(s). Any other time is finite: a NaN or -infinity breaks the precondition (asserted).
 ///  4. Rank. rank(s) is read by set(s, t) and kept: a slot whose rank changes takes its place when it is set again,
 ///     and the queue is in order at all times, also while ranks are being changed.
 ///  5. No clock. set may give a time before earlier tops; the order holds all the same.
-///  6. pop() is clear(top().slot). top() and pop() need a queue that is not empty. top() may rearrange what it finds,
-///     hence it is not const.
+///  6. pop() is clear(top().slot). top() and pop() need a queue that is not empty. Though const, top() may rearrange
+///     what it finds: threads that share a queue must take turns even to look.
 ///  7. resize(m) keeps the entries of slots below m and drops the rest; a new queue has no slots.
 ///  8. operations() counts the calls of set, clear and pop that found or left an entry.
 template <class Q>
@@ -54,7 +56,7 @@ concept EventQueue = std::movable<Q> && requires(Q q, const Q& c, Slot slot, dou
   q.set(slot, time);
   q.clear(slot);
   q.pop();
-  { q.top() } -> std::same_as<QueuedEvent>;
+  { c.top() } -> std::same_as<QueuedEvent>;
   { c.contains(slot) } -> std::same_as<bool>;
   { c.time(slot) } -> std::same_as<double>;
   { c.empty() } -> std::same_as<bool>;

@@ -36,12 +36,12 @@ class PairingQueue {
   }
 
   void set(Slot slot, double time) {
-    assert(slot < entries_.size() && time > -never);
-    if (time == never) return clear(slot);
+    assert(slot < entries_.size() && time > -detail::no_event);
+    if (time == detail::no_event) return clear(slot);
     ++operations_;
     Entry& entry = entries_[slot];
     const Key key = Key::make(time, slot, rank_);
-    if (entry.time == never) {
+    if (entry.time == detail::no_event) {
       entry.handle = heap_.push(key);
     } else {
       heap_.update(entry.handle, key);
@@ -53,7 +53,7 @@ class PairingQueue {
     if (!contains(slot)) return;
     ++operations_;
     heap_.erase(entries_[slot].handle);
-    entries_[slot].time = never;
+    entries_[slot].time = detail::no_event;
   }
 
   void pop() {
@@ -66,7 +66,7 @@ class PairingQueue {
     return {heap_.top().time, heap_.top().slot};
   }
 
-  bool contains(Slot slot) const { return time(slot) != never; }
+  bool contains(Slot slot) const { return time(slot) != detail::no_event; }
   double time(Slot slot) const { return entries_[slot].time; }
   bool empty() const { return heap_.empty(); }
   std::size_t size() const { return heap_.size(); }
@@ -77,7 +77,7 @@ class PairingQueue {
   using Key = detail::QueueKey<Rank>;
   using Heap = boost::heap::pairing_heap<Key, boost::heap::compare<detail::LaterKey<Key>>>;
   struct Entry {
-    double time = never;
+    double time = detail::no_event;
     typename Heap::handle_type handle{};
   };
 
