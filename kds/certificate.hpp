@@ -24,7 +24,8 @@ namespace kds {
 ///     };
 ///
 /// Semantic laws: (1) f uses only ring operations on doubles, so that it is exact over Exact; (2) polynomial(e) and
-/// polynomial(e') are the same function of t.
+/// polynomial(e') are the same function of t. A certificate may offer `bool vanishes() const`, a cheap and sufficient
+/// test that f is zero throughout, which spares such pairs (things that move together) the exact rung.
 template <class C>
 concept Certificate = requires(const C& certificate, double epoch) {
   { C::degree } -> std::convertible_to<int>;
@@ -68,6 +69,7 @@ struct PolynomialCertificate {
   Polynomial<Degree, Number> polynomial(double epoch) const {
     return about<Number>(value, epoch);
   }
+  bool vanishes() const { return value.position == Polynomial<Degree>{}; }
 };
 
 /// f' as a certificate: holds while f does not decrease.
@@ -85,6 +87,16 @@ struct DerivativeCertificate {
 
 namespace detail {
 
+/// Whether the certificate knows at once that f is zero throughout.
+template <class C>
+bool known_to_vanish(const C& certificate) {
+  if constexpr (requires { certificate.vanishes(); }) {
+    return certificate.vanishes();
+  } else {
+    return false;
+  }
+}
+
 template <class C>
 int exact_sign_after(const C& certificate, double t, int derivative) {
   ++sign_counters.exact;
@@ -98,6 +110,7 @@ int exact_sign_after(const C& certificate, double t, int derivative) {
 /// Skips the rung of doubles: for times that are roots up to rounding, where it cannot decide.
 template <class C>
 int extended_sign_after(const C& certificate, double t, int derivative) {
+  if (known_to_vanish(certificate)) return 0;
   ++sign_counters.extended;
   const auto f = certificate.template polynomial<Ball<DoubleDouble>>(t);
   if (const int s = certain_sign(f.c[static_cast<std::size_t>(derivative)])) return s;

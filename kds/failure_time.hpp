@@ -29,6 +29,11 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 template <Certificate C>
 double failure_time(const C& certificate, double now, double horizon = never);
 
+/// The same where f has just turned from - to + at now (two elements that have just swapped): its sign there, which
+/// is zero up to rounding and would ask for the expensive rungs, is known. A line has no second failure.
+template <Certificate C>
+double failure_time_after_turn(const C& certificate, double now, double horizon = never);
+
 /// f with its sign turned: "fails" when f turns positive.
 template <Certificate C>
 struct Negated {
@@ -39,6 +44,7 @@ struct Negated {
   Polynomial<degree, Number> polynomial(double epoch) const {
     return -certificate.template polynomial<Number>(epoch);
   }
+  bool vanishes() const { return detail::known_to_vanish(certificate); }
 };
 
 /// The first double t in [now, horizon] with sign_after(certificate, t) > 0, or `never`.
@@ -293,6 +299,28 @@ double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<dou
   return LatticeCrossing<C>(certificate, 0)(now, above, -1, now + tau);
 }
 
+/// p is f about now. Precondition: f > 0 just after now.
+template <class C>
+double failure_time_while_positive(const C& certificate, const Polynomial<C::degree, Ball<double>>& p, double now,
+                                   double horizon) {
+  if constexpr (C::degree == 0) {
+    return never;
+  } else {
+    int slowest = C::degree;  // Where all higher coefficients are certainly positive, f never falls.
+    while (slowest > 0 && certain_sign(p.c[static_cast<std::size_t>(slowest)]) > 0) --slowest;
+    if (slowest == 0) return never;
+    if constexpr (C::degree == 1) {
+      if (certain_sign(p.c[1]) == 0 && extended_sign_after(certificate, now, 1) >= 0) return never;
+      return linear_failure_time(certificate, p, now, horizon);
+    } else if constexpr (C::degree == 2) {
+      return quadratic_failure_time(certificate, p, now, horizon);
+    } else {
+      const auto guide = middle<C>(p);
+      return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+    }
+  }
+}
+
 }  // namespace detail
 
 template <Certificate C>
@@ -303,22 +331,17 @@ double failure_time(const C& certificate, double now, double horizon) {
   if (value == 0) value = detail::extended_sign_after(certificate, now, 0);
   if (value < 0) return now;
   if (value == 0) return never;  // f vanishes identically
-  if constexpr (C::degree == 0) {
-    return never;
+  return detail::failure_time_while_positive(certificate, p, now, horizon);
+}
+
+template <Certificate C>
+double failure_time_after_turn(const C& certificate, double now, double horizon) {
+  if (!(now <= horizon)) return never;
+  if constexpr (C::degree <= 1) {
+    return never;  // A line that is positive just after a zero has risen through it.
   } else {
-    int slowest = C::degree;  // All higher coefficients certainly >= 0: never falls.
-    while (slowest > 0 && certain_sign(p.c[static_cast<std::size_t>(slowest)]) > 0) --slowest;
-    if (slowest == 0) return never;
-    if constexpr (C::degree == 1) {
-      const int rate = certain_sign(p.c[1]);
-      if (rate == 0 && detail::extended_sign_after(certificate, now, 1) >= 0) return never;
-      return detail::linear_failure_time(certificate, p, now, horizon);
-    } else if constexpr (C::degree == 2) {
-      return detail::quadratic_failure_time(certificate, p, now, horizon);
-    } else {
-      const auto guide = detail::middle<C>(p);
-      return detail::DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
-    }
+    return detail::failure_time_while_positive(certificate, certificate.template polynomial<Ball<double>>(now), now,
+                                               horizon);
   }
 }
 

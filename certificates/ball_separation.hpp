@@ -1,0 +1,28 @@
+// Two balls apart.
+#pragma once
+
+#include "certificates/point_motion.hpp"
+#include "kds/certificate.hpp"
+
+namespace kds::certificates {
+
+/// |b(t) - a(t)|^2 >= (radius_a + radius_b)^2: two balls do not penetrate. Degree 2 for linear, 4 for quadratic paths.
+template <int PathDegree>
+struct BallSeparation {
+  static constexpr int degree = 2 * PathDegree;
+  const PointMotion<PathDegree>& a;
+  const PointMotion<PathDegree>& b;
+  double radius_a;
+  double radius_b;
+
+  template <class Number>
+  Polynomial<degree, Number> polynomial(double epoch) const {
+    const auto r = relative_motion<Number>(a, b, epoch);
+    const Number reach = Number(radius_a) + radius_b;
+    auto f = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+    f.c[0] = f.c[0] - reach * reach;
+    return f;
+  }
+};
+
+}  // namespace kds::certificates

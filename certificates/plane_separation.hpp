@@ -1,0 +1,56 @@
+// Two convex bodies apart along a direction.
+#pragma once
+
+#include "certificates/point_motion.hpp"
+#include "kds/certificate.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace kds::certificates {
+
+/// |x| in any of the library's number types.
+inline Exact absolute(const Exact& x) { return x.sign() < 0 ? -x : x; }
+template <class T>
+Ball<T> absolute(const Ball<T>& x) {
+  // | |x| - |middle| | <= radius, so the radius stays whether or not the sign is certain.
+  return static_cast<double>(x.middle) < 0 ? -x : x;
+}
+
+/// a . b for vectors of doubles.
+template <class Number>
+Number dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return Number(a[0]) * b[0] + Number(a[1]) * b[1] + Number(a[2]) * b[2];
+}
+
+/// sign * axis . (b(t) - a(t)) >= reach, where reach = sum |axis . half_axis| + margin * 1: the convex bodies centred
+/// at a and b, each the sum of the segments +-half_axis, lie apart on one side of a plane normal to `axis`.
+///
+/// Any double vector is a valid axis: what is certified is the separation along exactly that direction.
+/// Degree: that of the paths.
+template <int PathDegree>
+struct PlaneSeparation {
+  static constexpr int degree = PathDegree;
+  static constexpr std::size_t most_half_axes = 6;
+
+  const PointMotion<PathDegree>& a;
+  const PointMotion<PathDegree>& b;
+  Eigen::Vector3d axis;
+  double side;                                               ///< +1 or -1
+  std::array<const Eigen::Vector3d*, most_half_axes> extents{};  ///< half axes of either body, null when unused
+  double margin = 0;                                         ///< added to the reach (a ball's radius)
+
+  template <class Number>
+  Polynomial<PathDegree, Number> polynomial(double epoch) const {
+    const auto r = relative_motion<Number>(a, b, epoch);
+    Polynomial<PathDegree, Number> f = (r[0] * axis[0] + r[1] * axis[1] + r[2] * axis[2]) * side;
+    Number reach(margin);
+    for (const Eigen::Vector3d* half_axis : extents) {
+      if (half_axis) reach = reach + absolute(dot<Number>(axis, *half_axis));
+    }
+    f.c[0] = f.c[0] - reach;
+    return f;
+  }
+};
+
+}  // namespace kds::certificates

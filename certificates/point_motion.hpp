@@ -1,0 +1,85 @@
+// Motion of a point in space: a vector polynomial in the time since its own start.
+#pragma once
+
+#include "kds/motion.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+
+namespace kds::certificates {
+
+/// x(t) = c[0] + c[1] (t - start) + c[2] (t - start)^2: position, velocity, *half* the acceleration.
+template <int Degree>
+struct PointMotion {
+  static constexpr int degree = Degree;
+
+  std::array<Eigen::Vector3d, Degree + 1> coefficients;
+  double start = 0;
+
+  /// Motion of one coordinate.
+  Motion<Degree> axis(int d) const {
+    Motion<Degree> motion;
+    for (std::size_t i = 0; i <= Degree; ++i) motion.position.c[i] = coefficients[i][d];
+    motion.start = start;
+    return motion;
+  }
+
+  Eigen::Vector3d position(double t) const {
+    const double elapsed = t - start;
+    Eigen::Vector3d x = coefficients[Degree];
+    for (std::size_t i = Degree; i-- > 0;) x = x * elapsed + coefficients[i];
+    return x;
+  }
+
+  Eigen::Vector3d velocity(double t) const {
+    const double elapsed = t - start;
+    Eigen::Vector3d v = coefficients[Degree] * Degree;
+    for (std::size_t i = Degree; i-- > 1;) v = v * elapsed + coefficients[i] * static_cast<double>(i);
+    return v;
+  }
+
+  /// Second derivative.
+  Eigen::Vector3d acceleration(double t) const {
+    Eigen::Vector3d a = Eigen::Vector3d::Zero();
+    const double elapsed = t - start;
+    for (std::size_t i = Degree; i >= 2; --i) a = a * elapsed + coefficients[i] * static_cast<double>(i * (i - 1));
+    return a;
+  }
+
+  /// The same motion restarted at t, equal up to the rounding of its new coefficients.
+  PointMotion restarted(double t) const {
+    PointMotion result;
+    for (int d = 0; d < 3; ++d) {
+      const auto shifted = kds::restarted(axis(d), t);
+      for (std::size_t i = 0; i <= Degree; ++i) result.coefficients[i][d] = shifted.position.c[i];
+    }
+    result.start = t;
+    return result;
+  }
+
+  bool finite() const {
+    for (const auto& c : coefficients) {
+      if (!c.allFinite()) return false;
+    }
+    return std::isfinite(start);
+  }
+
+  friend bool operator==(const PointMotion& a, const PointMotion& b) {
+    return a.start == b.start && a.coefficients == b.coefficients;
+  }
+};
+
+/// b - a, coordinate by coordinate, as polynomials in (t - epoch) in the arithmetic of Number.
+template <class Number, int Degree>
+std::array<Polynomial<Degree, Number>, 3> relative_motion(const PointMotion<Degree>& a, const PointMotion<Degree>& b,
+                                                          double epoch) {
+  std::array<Polynomial<Degree, Number>, 3> r;
+  for (int d = 0; d < 3; ++d) {
+    r[static_cast<std::size_t>(d)] = about<Number>(b.axis(d), epoch) - about<Number>(a.axis(d), epoch);
+  }
+  return r;
+}
+
+}  // namespace kds::certificates

@@ -1,0 +1,128 @@
+// The clock: runs kinetic structures in the order of time.
+#pragma once
+
+#include "kds/failure_time.hpp"
+#include "kds/statistics.hpp"
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace kds {
+
+/// A structure that keeps certificates true.
+///
+/// Semantic laws: (1) next_time() is the least failure time among its certificates that is not beyond its horizon,
+/// `never` if there is none; (2) process() repairs what failed at next_time() and certifies the new neighbours, with
+/// failure times not before it; (3) between events the state is exactly that of its motions at t+; (4) audit(t)
+/// checks law 3 against the motions with exact signs and throws AuditFailure; (5) extend_horizon(now, horizon) makes
+/// law 1 hold for a later horizon.
+template <class S>
+concept KineticStructure = requires(S& structure, const S& observed, double t) {
+  { observed.next_time() } -> std::convertible_to<double>;
+  structure.process();
+  structure.extend_horizon(t, t);
+  observed.audit(t);
+  { observed.counters() } -> std::convertible_to<Counters>;
+};
+
+/// Runs structures side by side: events in (time, structure, slot) order, structures in the order of the arguments.
+///
+/// The structures are referred to, not owned. No virtual call, no allocation: a step costs a comparison a structure
+/// on top of the structure's own work.
+template <KineticStructure... Structures>
+class Simulator {
+ public:
+  static_assert(sizeof...(Structures) > 0);
+
+  /// The clock starts at `now`. Events later than `horizon` never enter a queue until the clock comes near it.
+  explicit Simulator(double now, Structures&... structures) : structures_(structures...), now_(now) {}
+
+  double now() const { return now_; }
+  double horizon() const { return horizon_; }
+
+  /// Time of the next event within the horizon, `never` if there is none.
+  double next_time() const { return next().first; }
+
+  /// Keeps only events up to `window` seconds ahead. Whenever the clock is asked beyond, the structures certify
+  /// again for another window. Infinite (the default) predicts everything.
+  void set_window(double window) {
+    if (!(window > 0)) throw std::invalid_argument("Simulator::set_window: the window must be > 0");
+    window_ = window;
+    set_horizon(now_ + window);
+  }
+
+  /// Processes the next event if it is not later than `limit`; the clock moves to it. False if there is none.
+  bool step(double limit = never) {
+    if (limit > horizon_) reach(limit);
+    const auto [time, index] = next();
+    if (!(time <= limit) || time == never) return false;
+    now_ = time;
+    process(index, std::index_sequence_for<Structures...>{});
+    return true;
+  }
+
+  /// Processes all events up to and including t and sets the clock to t.
+  void advance_to(double t) {
+    if (t < now_) {
+      throw std::invalid_argument("Simulator::advance_to: the clock stands at " + std::to_string(now_) +
+                                  " and cannot go back to " + std::to_string(t));
+    }
+    while (step(t)) {}
+    now_ = t;
+  }
+
+  /// Moves the clock to t without looking for events. Precondition: now() <= t and none is due before t.
+  void set_clock(double t) { now_ = t; }
+
+  /// Checks every structure at the clock; throws AuditFailure.
+  void audit() const {
+    std::apply([&](const auto&... s) { (s.audit(now_), ...); }, structures_);
+  }
+
+  Counters counters() const {
+    return std::apply([](const auto&... s) { return (Counters{} + ... + s.counters()); }, structures_);
+  }
+
+ private:
+  std::pair<double, std::size_t> next() const {
+    std::pair<double, std::size_t> first{never, 0};
+    std::size_t index = 0;
+    std::apply(
+        [&](const auto&... s) {
+          ((s.next_time() < first.first ? void(first = {s.next_time(), index}) : void(), ++index), ...);
+        },
+        structures_);
+    return first;
+  }
+
+  template <std::size_t... I>
+  void process(std::size_t index, std::index_sequence<I...>) {
+    ((I == index ? std::get<I>(structures_).process() : void()), ...);
+  }
+
+  /// Certifies window by window until an event is known or the horizon covers the limit.
+  void reach(double limit) {
+    if (limit == never) return set_horizon(never);
+    // The windows grow while nothing happens, so that an idle stretch costs a logarithmic number of them.
+    for (double ahead = window_; horizon_ < limit && next_time() == never; ahead *= 2) {
+      set_horizon(std::min(limit, std::max(horizon_ + ahead, next_up(horizon_))));
+    }
+  }
+
+  void set_horizon(double horizon) {
+    horizon_ = horizon;
+    std::apply([&](auto&... s) { (s.extend_horizon(now_, horizon), ...); }, structures_);
+  }
+
+  std::tuple<Structures&...> structures_;
+  double now_;
+  double horizon_ = never;
+  double window_ = never;
+};
+
+}  // namespace kds

@@ -1,0 +1,277 @@
+// Kinetic sorted list: moving values kept in order.
+#pragma once
+
+#include "certificates/order.hpp"
+#include "kds/audit.hpp"
+#include "kds/default_event_queue.hpp"
+#include "kds/failure_time.hpp"
+#include "kds/motion.hpp"
+#include "kds/statistics.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kds::structures {
+
+/// What a kinetic sorted list tells about its swaps, and how it breaks eternal ties. This one is told nothing.
+struct NoSwapListener {
+  /// `left` and `right` have just come into this order at time t. The list must not be changed from here.
+  void swapped(std::uint32_t /*left*/, std::uint32_t /*right*/, double /*t*/) {}
+
+  /// Values that are equal for good stand in ascending rank, then in ascending id.
+  static std::uint32_t rank(std::uint32_t /*id*/) { return 0; }
+};
+
+/// Keeps moving values sorted, swap by swap.
+///
+/// One certificate for each adjacent pair; when it fails, the two swap and up to three pairs are certified again.
+/// Paper: [Paper] sections 4.1-4.3 and Figures 3-5; [Basch99] section 2.
+///
+/// Elements are known by ids chosen by the caller, small integers used once each. They are stored in list order
+/// (motion and id side by side), so a swap touches one or two cache lines; a queue slot belongs to the left element
+/// of a pair and stays put when others come and go.
+///
+/// Cost: a swap O(1) and one pop and up to two pushes of the queue; a motion change the same plus the swaps that a
+/// jump needs; insertion and removal O(n) moves of memory and O(log n) comparisons; `assign` O(n log n). At most one
+/// event for each adjacent pair is scheduled: the structure is compact and, with two events an element, local.
+///
+/// All orders are decided by exact signs at t+, so the state between events is exactly that of the motions.
+template <int Degree, class Listener = NoSwapListener, EventQueue Queue = DefaultEventQueue>
+class SortedList {
+ public:
+  using Id = std::uint32_t;
+  using Element = Motion<Degree>;
+
+  struct Entry {
+    Motion<Degree> motion;
+    Id id;
+  };
+
+  explicit SortedList(Listener listener = {}) : listener_(listener) {}
+
+  std::size_t size() const { return order_.size(); }
+  bool contains(Id id) const { return id < position_.size() && position_[id] != absent; }
+
+  /// Elements in ascending order.
+  std::span<const Entry> entries() const { return order_; }
+
+  /// Place of an element in the order, from 0. Precondition: contains(id).
+  std::uint32_t position(Id id) const { return position_[id]; }
+  const Motion<Degree>& motion(Id id) const { return order_[position_[id]].motion; }
+
+  Listener& listener() { return listener_; }
+
+  /// Replaces the content. Swaps are not reported. Throws std::invalid_argument for an id used twice.
+  void assign(std::span<const Entry> entries, double now);
+
+  /// Inserts an element; its neighbours are found by binary search. No swap is reported.
+  void insert(Id id, const Motion<Degree>& motion, double now);
+
+  /// Removes an element. No swap is reported.
+  void remove(Id id, double now);
+
+  /// Changes the motion of an element, continuously or with a jump. The swaps of a jump are reported in turn.
+  void update(Id id, const Motion<Degree>& motion, double now);
+
+  /// Time of the next swap, `never` if there is none within the horizon.
+  double next_time() const { return queue_.empty() ? never : queue_.top().time; }
+
+  /// Makes the swap due at next_time(). Precondition: there is one.
+  void process();
+
+  void extend_horizon(double now, double horizon);
+
+  /// Checks order, positions and failure times against the motions, exactly.
+  void audit(double now) const;
+
+  const Counters& counters() const { return counters_; }
+  const Queue& queue() const { return queue_; }
+
+ private:
+  static constexpr std::uint32_t absent = std::numeric_limits<std::uint32_t>::max();
+
+  /// Whether a may stand before b at t+.
+  bool in_order(const Entry& a, const Entry& b, double t) const {
+    const int s = sign_after(certificates::Order<Degree>{a.motion, b.motion}, t);
+    if (s != 0) return s > 0;
+    const auto rank_a = listener_.rank(a.id);
+    const auto rank_b = listener_.rank(b.id);
+    return rank_a != rank_b ? rank_a < rank_b : a.id < b.id;
+  }
+
+  /// Certifies the pair whose left element stands at `left`.
+  void certify(std::size_t left, double now) {
+    const Id slot = order_[left].id;
+    if (left + 1 == order_.size()) return queue_.clear(slot);
+    ++counters_.certificates;
+    schedule(slot, failure_time(pair(left), now, horizon_));
+  }
+
+  certificates::Order<Degree> pair(std::size_t left) const { return {order_[left].motion, order_[left + 1].motion}; }
+
+  void schedule(Id slot, double t) {
+    if (t == never) {
+      queue_.clear(slot);
+    } else {
+      queue_.set(slot, t);
+    }
+  }
+
+  void exchange(std::size_t left) {
+    std::swap(order_[left], order_[left + 1]);
+    position_[order_[left].id] = static_cast<std::uint32_t>(left);
+    position_[order_[left + 1].id] = static_cast<std::uint32_t>(left + 1);
+  }
+
+  void renumber(std::size_t first) {
+    for (std::size_t i = first; i < order_.size(); ++i) position_[order_[i].id] = static_cast<std::uint32_t>(i);
+  }
+
+  void reserve_id(Id id) {
+    if (id == absent) throw std::invalid_argument("SortedList: id " + std::to_string(id) + " is reserved");
+    if (contains(id)) throw std::invalid_argument("SortedList: id " + std::to_string(id) + " is used twice");
+    if (id >= position_.size()) {
+      position_.resize(std::max<std::size_t>(id + 1, 2 * position_.size()), absent);
+      queue_.resize(position_.size());
+    }
+  }
+
+  void require(Id id) const {
+    if (!contains(id)) throw std::out_of_range("SortedList: no element with id " + std::to_string(id));
+  }
+
+  static void require_finite(Id id, const Motion<Degree>& motion) {
+    if (!is_finite(motion)) {
+      throw std::invalid_argument("SortedList: the motion of id " + std::to_string(id) + " is not finite");
+    }
+  }
+
+  std::vector<Entry> order_;
+  std::vector<std::uint32_t> position_;
+  Queue queue_;
+  Listener listener_;
+  Counters counters_;
+  double horizon_ = never;
+};
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <int Degree, class Listener, EventQueue Queue>
+void SortedList<Degree, Listener, Queue>::assign(std::span<const Entry> entries, double now) {
+  order_.clear();
+  position_.assign(position_.size(), absent);
+  queue_ = Queue{};
+  queue_.resize(position_.size());
+  for (const Entry& entry : entries) {
+    require_finite(entry.id, entry.motion);
+    reserve_id(entry.id);
+    position_[entry.id] = 0;
+  }
+  order_.assign(entries.begin(), entries.end());
+  std::sort(order_.begin(), order_.end(), [&](const Entry& a, const Entry& b) { return a.id != b.id && in_order(a, b, now); });
+  renumber(0);
+  for (std::size_t i = 0; i < order_.size(); ++i) certify(i, now);
+}
+
+template <int Degree, class Listener, EventQueue Queue>
+void SortedList<Degree, Listener, Queue>::insert(Id id, const Motion<Degree>& motion, double now) {
+  require_finite(id, motion);
+  reserve_id(id);
+  const Entry entry{motion, id};
+  const auto place = std::partition_point(order_.begin(), order_.end(),
+                                          [&](const Entry& other) { return in_order(other, entry, now); });
+  const auto index = static_cast<std::size_t>(place - order_.begin());
+  order_.insert(place, entry);
+  renumber(index);
+  if (index > 0) certify(index - 1, now);
+  certify(index, now);
+}
+
+template <int Degree, class Listener, EventQueue Queue>
+void SortedList<Degree, Listener, Queue>::remove(Id id, double now) {
+  require(id);
+  const std::size_t index = position_[id];
+  queue_.clear(id);
+  order_.erase(order_.begin() + static_cast<std::ptrdiff_t>(index));
+  position_[id] = absent;
+  renumber(index);
+  if (index > 0) certify(index - 1, now);
+}
+
+template <int Degree, class Listener, EventQueue Queue>
+void SortedList<Degree, Listener, Queue>::update(Id id, const Motion<Degree>& motion, double now) {
+  require(id);
+  require_finite(id, motion);
+  const std::size_t before = position_[id];
+  std::size_t index = before;
+  order_[index].motion = motion;
+  while (index > 0 && !in_order(order_[index - 1], order_[index], now)) {
+    exchange(--index);
+    listener_.swapped(order_[index].id, order_[index + 1].id, now);
+  }
+  while (index + 1 < order_.size() && !in_order(order_[index], order_[index + 1], now)) {
+    exchange(index++);
+    listener_.swapped(order_[index - 1].id, order_[index].id, now);
+  }
+  // The pairs on both sides of the element, and the pair that closed up where it left. Elements it has passed keep
+  // their neighbours, and a slot is the left element's, so nothing else changes.
+  if (index > 0) certify(index - 1, now);
+  certify(index, now);
+  if (index < before) {
+    certify(before, now);
+  } else if (index > before && before > 0) {
+    certify(before - 1, now);
+  }
+}
+
+template <int Degree, class Listener, EventQueue Queue>
+void SortedList<Degree, Listener, Queue>::process() {
+  const auto [time, slot] = queue_.top();
+  const std::size_t left = position_[slot];
+  ++counters_.events;
+  exchange(left);
+  listener_.swapped(order_[left].id, order_[left + 1].id, time);
+  // Certified anew: the pair itself, whose sign has just turned, and the two pairs around it.
+  ++counters_.certificates;
+  schedule(order_[left].id, failure_time_after_turn(pair(left), time, horizon_));
+  if (left > 0) certify(left - 1, time);
+  certify(left + 1, time);
+}
+
+template <int Degree, class Listener, EventQueue Queue>
+void SortedList<Degree, Listener, Queue>::extend_horizon(double now, double horizon) {
+  const bool farther = horizon > horizon_;
+  horizon_ = horizon;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const Id slot = order_[i].id;
+    // What is scheduled stays right when the horizon grows; what lies beyond a shrunken one goes.
+    if (farther ? !queue_.contains(slot) : queue_.contains(slot) && queue_.time(slot) > horizon) certify(i, now);
+  }
+}
+
+template <int Degree, class Listener, EventQueue Queue>
+void SortedList<Degree, Listener, Queue>::audit(double now) const {
+  const auto fail = [](std::size_t i, const char* what) {
+    throw AuditFailure("SortedList: place " + std::to_string(i) + ": " + what);
+  };
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const Id id = order_[i].id;
+    if (position_[id] != i) fail(i, "the element's recorded position is another");
+    double t = never;
+    if (i + 1 < order_.size()) {
+      if (!queue_.contains(id) || queue_.time(id) > now) {
+        if (sign_after(pair(i), now) < 0) fail(i, "greater than its right neighbour");
+      }
+      t = failure_time(pair(i), now, horizon_);
+    }
+    if (queue_.contains(id) != (t != never)) fail(i, "an event is missing or stands without cause");
+    if (queue_.contains(id) && queue_.time(id) != t) fail(i, "the scheduled swap has the wrong time");
+  }
+}
+
+}  // namespace kds::structures
