@@ -1,0 +1,45 @@
+// The part of a shape that takes part in a contact.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <ostream>
+#include <string>
+
+namespace kds::collision {
+
+/// A vertex, an edge or a face of a shape. Indices count from 0; an edge is named by its two vertices, lower first.
+struct Feature {
+  enum class Kind : std::uint8_t { none, vertex, edge, face };
+
+  Kind kind = Kind::none;
+  std::uint32_t first = 0;   ///< the vertex or face; of an edge its lower vertex
+  std::uint32_t second = 0;  ///< of an edge its higher vertex, else 0
+
+  static constexpr Feature vertex(std::uint32_t index) { return {Kind::vertex, index, 0}; }
+  static constexpr Feature edge(std::uint32_t a, std::uint32_t b) {
+    return a < b ? Feature{Kind::edge, a, b} : Feature{Kind::edge, b, a};
+  }
+  static constexpr Feature face(std::uint32_t index) { return {Kind::face, index, 0}; }
+
+  friend constexpr auto operator<=>(const Feature&, const Feature&) = default;
+};
+
+/// "-" for none, else "v12", "e3-17", "f40".
+inline std::string to_string(const Feature& feature) {
+  switch (feature.kind) {
+    case Feature::Kind::vertex:
+      return "v" + std::to_string(feature.first);
+    case Feature::Kind::edge:
+      return "e" + std::to_string(feature.first) + "-" + std::to_string(feature.second);
+    case Feature::Kind::face:
+      return "f" + std::to_string(feature.first);
+    case Feature::Kind::none:
+      break;
+  }
+  return "-";
+}
+
+inline std::ostream& operator<<(std::ostream& out, const Feature& feature) { return out << to_string(feature); }
+
+}  // namespace kds::collision
