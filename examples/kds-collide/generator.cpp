@@ -1,0 +1,327 @@
+#include "examples/kds-collide/generator.hpp"
+
+#include "examples/kds-collide/number_text.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <unordered_map>
+
+namespace kds_collide {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Random numbers made with nothing but the engine, whose sequence the standard fixes, and operations that IEEE 754
+/// rounds correctly: std::uniform_real_distribution, sin and cos differ from one library to the next.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// Uniform in [0, 1): the upper 53 bits.
+  double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+  double uniform(double low, double high) { return low + (high - low) * unit(); }
+
+  /// [Marsaglia72], Choosing a point from the surface of a sphere, Ann. Math. Stat. 43.
+  Vector3d direction() {
+    const auto [x, y, s] = disc();
+    const double root = std::sqrt(1 - s);
+    return {2 * x * root, 2 * y * root, 1 - 2 * s};
+  }
+
+  /// Uniform over rotations; the same paper, in four dimensions.
+  Eigen::Quaterniond rotation() {
+    const auto [x, y, s] = disc();
+    const auto [z, w, t] = disc();
+    const double root = std::sqrt((1 - s) / t);
+    return {x, y, z * root, w * root};
+  }
+
+ private:
+  /// A point of the unit disc other than its centre, and its squared distance from it.
+  std::array<double, 3> disc() {
+    for (;;) {
+      const double x = uniform(-1, 1);
+      const double y = uniform(-1, 1);
+      const double s = x * x + y * y;
+      if (s > 0 && s < 1) return {x, y, s};
+    }
+  }
+
+  std::mt19937_64 engine_;
+};
+
+/// Bounding balls placed so far, in a grid of cells as wide as the largest ball.
+class Placement {
+ public:
+  Placement(double side, double largest_radius) : cell_(2 * largest_radius) {
+    cells_a_side_ = static_cast<std::int64_t>(side / cell_) + 1;
+  }
+
+  bool is_free(const Vector3d& at, double radius) const {
+    const auto home = cell_of(at);
+    for (std::int64_t x = home[0] - 1; x <= home[0] + 1; ++x) {
+      for (std::int64_t y = home[1] - 1; y <= home[1] + 1; ++y) {
+        for (std::int64_t z = home[2] - 1; z <= home[2] + 1; ++z) {
+          const auto found = cells_.find(key(x, y, z));
+          if (found == cells_.end()) continue;
+          for (const Ball& ball : found->second) {
+            const double reach = ball.radius + radius;
+            if ((ball.centre - at).squaredNorm() <= reach * reach) return false;
+          }
+        }
+      }
+    }
+    return true;
+  }
+
+  void add(const Vector3d& at, double radius) {
+    const auto home = cell_of(at);
+    cells_[key(home[0], home[1], home[2])].push_back({at, radius});
+  }
+
+ private:
+  struct Ball {
+    Vector3d centre;
+    double radius;
+  };
+
+  std::array<std::int64_t, 3> cell_of(const Vector3d& at) const {
+    return {static_cast<std::int64_t>(at[0] / cell_), static_cast<std::int64_t>(at[1] / cell_),
+            static_cast<std::int64_t>(at[2] / cell_)};
+  }
+  std::int64_t key(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    return ((z + 1) * (cells_a_side_ + 2) + (y + 1)) * (cells_a_side_ + 2) + (x + 1);
+  }
+
+  double cell_;
+  std::int64_t cells_a_side_;
+  std::unordered_map<std::int64_t, std::vector<Ball>> cells_;
+};
+
+/// Coordinates of models are written with nine digits after the point: sin and cos may differ in their last bit
+/// between machines, the rounded values do not.
+constexpr double model_digits = 1e9;
+
+/// A surface closed in both directions, from a function of two angles; scaled to a bounding radius of 1.
+MeshData closed_surface(std::uint32_t around, std::uint32_t across,
+                        const std::function<Vector3d(double, double)>& point) {
+  constexpr double turn = 2 * std::numbers::pi;
+  MeshData mesh;
+  double radius = 0;
+  for (std::uint32_t i = 0; i < around; ++i) {
+    for (std::uint32_t j = 0; j < across; ++j) {
+      mesh.vertices.push_back(point(turn * i / around, turn * j / across));
+      radius = std::max(radius, mesh.vertices.back().norm());
+    }
+  }
+  for (Vector3d& v : mesh.vertices) {
+    v /= radius;
+    for (int d = 0; d < 3; ++d) v[d] = std::round(v[d] * model_digits) / model_digits;
+  }
+  for (std::uint32_t i = 0; i < around; ++i) {
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const std::uint32_t next_i = (i + 1) % around;
+      const std::uint32_t next_j = (j + 1) % across;
+      const std::array<std::uint32_t, 4> quad{i * across + j, next_i * across + j, next_i * across + next_j,
+                                              i * across + next_j};
+      mesh.triangles.push_back({quad[0], quad[1], quad[2]});
+      mesh.triangles.push_back({quad[0], quad[2], quad[3]});
+    }
+  }
+  return mesh;
+}
+
+/// A tube about the (2, 3) torus knot.
+MeshData knot_mesh() {
+  const auto centre = [](double u) {
+    const double r = 2 + std::cos(3 * u);
+    return Vector3d(r * std::cos(2 * u), r * std::sin(2 * u), -std::sin(3 * u));
+  };
+  return closed_surface(200, 16, [&](double u, double v) {
+    const Vector3d forward = (centre(u + 1e-4) - centre(u - 1e-4)).normalized();
+    // The torus that carries the knot gives a frame that closes on itself.
+    const Vector3d core(2 * std::cos(2 * u), 2 * std::sin(2 * u), 0);
+    const Vector3d outward = centre(u) - core;
+    const Vector3d side = (outward - forward * forward.dot(outward)).normalized();
+    return Vector3d(centre(u) + 0.42 * (side * std::cos(v) + forward.cross(side) * std::sin(v)));
+  });
+}
+
+/// A torus with waves in both directions.
+MeshData bumpy_torus_mesh() {
+  return closed_surface(96, 34, [](double u, double v) {
+    const double tube = 0.42 + 0.07 * std::sin(7 * u) * std::cos(3 * v);
+    const double r = 1 + tube * std::cos(v);
+    return Vector3d(r * std::cos(u), r * std::sin(u), tube * std::sin(v));
+  });
+}
+
+void append_vector(std::string& text, const Vector3d& v) {
+  for (int d = 0; d < 3; ++d) {
+    text += d == 0 ? '[' : ',';
+    append_number(text, v[d]);
+  }
+  text += ']';
+}
+
+/// Inscribed in the bounding radius, with edges in random proportions.
+std::string box_shape(double radius, Random& random) {
+  Vector3d half;
+  for (int d = 0; d < 3; ++d) half[d] = random.uniform(0.5, 1);
+  std::string text = "{\"box\": {\"half_extents\": ";
+  append_vector(text, half * (radius / half.norm()));
+  return text + "}}";
+}
+
+std::string sphere_shape(double radius) {
+  std::string text = "{\"sphere\": {\"radius\": ";
+  append_number(text, radius);
+  return text + "}}";
+}
+
+std::string mesh_shape(const std::string& mesh, double scale) {
+  std::string text = "{\"mesh\": \"" + mesh + "\", \"scale\": ";
+  append_number(text, scale);
+  return text + '}';
+}
+
+double bounding_radius(const MeshData& mesh) {
+  double radius = 0;
+  for (const Vector3d& v : mesh.vertices) radius = std::max(radius, v.norm());
+  return radius;
+}
+
+void check(const GeneratorOptions& options) {
+  const auto kinds = generator_kinds();
+  if (std::find(kinds.begin(), kinds.end(), options.kind) == kinds.end()) {
+    throw std::invalid_argument("--generate: there is no \"" + options.kind + "\"; use rings, models, spheres or boxes");
+  }
+  if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
+  if (!(options.density > 0 && options.density <= 0.3)) {
+    throw std::invalid_argument("--density: must be > 0 and at most 0.3");
+  }
+}
+
+struct NamedMesh {
+  std::string name;
+  double radius;
+};
+
+}  // namespace
+
+std::vector<std::string_view> generator_kinds() { return {"rings", "models", "spheres", "boxes"}; }
+
+MeshData ring_mesh() {
+  // Eight sections of four corners: cosines of 45 degrees only, so that every machine has the same bits.
+  const double r = std::sqrt(0.5);
+  const std::array<std::array<double, 2>, 8> circle{
+      {{1, 0}, {r, r}, {0, 1}, {-r, r}, {-1, 0}, {-r, -r}, {0, -1}, {r, -r}}};
+  constexpr double ring = 0.75;
+  constexpr double tube = 0.25;
+  MeshData mesh;
+  for (const auto& [c, s] : circle) {
+    for (std::size_t corner = 0; corner < 8; corner += 2) {
+      const double away = ring + tube * circle[corner][0];
+      mesh.vertices.emplace_back(away * c, away * s, tube * circle[corner][1]);
+    }
+  }
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    for (std::uint32_t j = 0; j < 4; ++j) {
+      const std::uint32_t next_i = (i + 1) % 8;
+      const std::uint32_t next_j = (j + 1) % 4;
+      mesh.triangles.push_back({4 * i + j, 4 * next_i + j, 4 * next_i + next_j});
+      mesh.triangles.push_back({4 * i + j, 4 * next_i + next_j, 4 * i + next_j});
+    }
+  }
+  return mesh;
+}
+
+GeneratedScene generate_scene(const GeneratorOptions& options) {
+  check(options);
+  GeneratedScene scene;
+  std::vector<NamedMesh> meshes;
+  const auto add_mesh = [&](const std::string& name, const MeshData& mesh) {
+    meshes.push_back({name, bounding_radius(mesh)});
+    scene.meshes.push_back({name + ".obj", to_obj(mesh)});
+  };
+  if (options.kind == "rings") add_mesh("ring", ring_mesh());
+  if (options.kind == "models") {
+    add_mesh("knot", knot_mesh());
+    add_mesh("bumpy-torus", bumpy_torus_mesh());
+  }
+
+  Random random(options.seed);
+  std::vector<double> radii(options.bodies);
+  double volume = 0;
+  double mean_radius = 0;
+  for (double& r : radii) {
+    r = random.uniform(0.5, 1.5);
+    volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    mean_radius += r / static_cast<double>(options.bodies);
+  }
+  const double largest = *std::max_element(radii.begin(), radii.end());
+  // cbrt is not rounded alike everywhere; six digits of it are. One body alone may need more room than its density.
+  constexpr double side_grid = 1e-6;
+  const double side = std::max(std::ceil(std::cbrt(volume / options.density) / side_grid) * side_grid, 2.125 * largest);
+
+  std::string& json = scene.json;
+  json = "{\n\"scene\": 1,\n\"end_time\": ";
+  append_number(json, options.end_time);
+  json += ",\n\"response\": \"elastic\",\n\"domain\": {\"min\": [0,0,0], \"max\": ";
+  append_vector(json, Vector3d::Constant(side));
+  json += ", \"walls\": \"reflect\"},\n\"meshes\": {";
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    json += (i == 0 ? "\"" : ", \"") + meshes[i].name + "\": {\"file\": \"" + meshes[i].name + ".obj\"}";
+  }
+  json += "},\n\"bodies\": [\n";
+
+  Placement placement(side, largest);
+  // A ball of the largest radius finds room in one of about 20 tries at a density of 0.3.
+  constexpr int most_tries = 100'000;
+  // Walls and neighbours are kept from by a little more than the radius, whose rounding depends on the reader.
+  constexpr double margin = 1 + 1e-6;
+  for (std::size_t i = 0; i < options.bodies; ++i) {
+    const double r = radii[i] * margin;
+    Vector3d at;
+    int tries = 0;
+    do {
+      if (++tries > most_tries) {
+        throw std::invalid_argument("--density: found no room for body " + std::to_string(i) + "; use a lower density");
+      }
+      for (int d = 0; d < 3; ++d) at[d] = random.uniform(r, side - r);
+    } while (!placement.is_free(at, r));
+    placement.add(at, r);
+    const Vector3d velocity = random.direction() * (random.uniform(0.5, 1.5) * mean_radius);
+    const Eigen::Quaterniond q = random.rotation();
+
+    json += "{\"name\": \"" + options.kind.substr(0, 1) + std::to_string(i) + "\", \"shape\": ";
+    if (!meshes.empty()) {
+      const NamedMesh& mesh = meshes[i % meshes.size()];
+      json += mesh_shape(mesh.name, radii[i] / mesh.radius);
+    } else {
+      json += options.kind == "boxes" ? box_shape(radii[i], random) : sphere_shape(radii[i]);
+    }
+    json += ", \"orientation\": [";
+    for (const double part : {q.w(), q.x(), q.y(), q.z()}) {
+      append_number(json, part);
+      json += ',';
+    }
+    json.back() = ']';
+    json += ", \"motion\": [{\"start\": 0, \"position\": [";
+    append_vector(json, at);
+    json += ',';
+    append_vector(json, velocity);
+    json += i + 1 < options.bodies ? "]}]},\n" : "]}]}\n";
+  }
+  json += "]\n}\n";
+  return scene;
+}
+
+}  // namespace kds_collide

@@ -1,0 +1,46 @@
+// Scenes of many bodies from a seed.
+#pragma once
+
+#include "examples/kds-collide/mesh_file.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kds_collide {
+
+struct GeneratorOptions {
+  std::string kind = "rings";  ///< see generator_kinds()
+  std::size_t bodies = 1000;   ///< > 0
+  double density = 0.01;       ///< volume of all bounding balls over the volume of the domain, in (0, 0.3]
+  std::uint64_t seed = 1;
+  double end_time = 1;  ///< s
+};
+
+/// A scene and the mesh files it names, as the text to be written.
+struct GeneratedScene {
+  struct File {
+    std::string name;
+    std::string text;
+  };
+  std::string json;
+  std::vector<File> meshes;
+};
+
+/// rings: [Paper] section 5, tori of 64 triangles. models: [Paper] Figure 6, closed models of over 6 000 triangles.
+/// spheres; boxes.
+std::vector<std::string_view> generator_kinds();
+
+/// The scene of [Paper] section 5 with any shape: bounding radii uniform in 0.5-1.5, speeds uniform in 0.5-1.5 times
+/// their mean in random directions, random orientations, positions uniform where bounding balls do not overlap, in a
+/// cube with reflecting walls. One seed gives one text, on every compiler and machine.
+/// Throws std::invalid_argument for options out of range, and where no room is left for a body.
+GeneratedScene generate_scene(const GeneratorOptions& options);
+
+/// The torus of 64 triangles, of bounding radius 1.
+MeshData ring_mesh();
+
+}  // namespace kds_collide

@@ -1,0 +1,32 @@
+// Triangle meshes from OBJ and STL files.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+namespace kds_collide {
+
+struct MeshData {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// What is wrong with a mesh file; the message does not name the file.
+struct MeshFileError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads .obj (tinyobjloader) or .stl (assimp). Vertices of an OBJ file keep its order and its numbers to the last
+/// bit, polygons are cut into triangles; equal vertices of an STL file, which repeats them for every triangle, become
+/// one. Throws MeshFileError; whether the triangles make a sound mesh is not looked at here.
+MeshData read_mesh_file(const std::filesystem::path& file);
+
+/// Writes an OBJ file that read_mesh_file gives back bit for bit.
+std::string to_obj(const MeshData& mesh);
+
+}  // namespace kds_collide

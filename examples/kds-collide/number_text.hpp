@@ -1,0 +1,16 @@
+// Numbers as text: the shortest that reads back to the same double, in every locale.
+#pragma once
+
+#include <charconv>
+#include <string>
+
+namespace kds_collide {
+
+template <class Number>
+void append_number(std::string& text, Number value) {
+  char digits[32];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+  text.append(digits, end);
+}
+
+}  // namespace kds_collide

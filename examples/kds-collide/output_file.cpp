@@ -1,0 +1,108 @@
+#include "examples/kds-collide/output_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+
+namespace kds_collide {
+namespace {
+
+/// Names of the temporary files now open, where a signal handler can read them: it may neither lock nor allocate.
+constexpr std::size_t most_files = 8;
+std::array<std::atomic<char*>, most_files> open_temporaries{};
+
+extern "C" void remove_temporaries(int signal) {
+  for (const auto& name : open_temporaries) {
+    if (const char* file = name.load()) unlink(file);
+  }
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+}
+
+int remember(const std::string& name) {
+  [[maybe_unused]] static const bool installed = [] {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, remove_temporaries);
+    return true;
+  }();
+  for (std::size_t slot = 0; slot < most_files; ++slot) {
+    if (open_temporaries[slot].load()) continue;
+    open_temporaries[slot] = strdup(name.c_str());
+    return static_cast<int>(slot);
+  }
+  return -1;
+}
+
+void forget(int slot) {
+  if (slot >= 0) std::free(open_temporaries[static_cast<std::size_t>(slot)].exchange(nullptr));
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
+  if (path_ == "-") {
+    file_ = stdout;
+    return;
+  }
+  std::error_code error;
+  const auto kind = std::filesystem::status(target_, error).type();
+  if (kind == std::filesystem::file_type::directory) fail(EISDIR, true);
+  if (kind != std::filesystem::file_type::regular && kind != std::filesystem::file_type::not_found) {
+    file_ = std::fopen(path_.c_str(), "wb");
+    if (!file_) fail(errno, true);
+    return;
+  }
+  if (kind == std::filesystem::file_type::regular) {
+    if (access(path_.c_str(), W_OK) != 0) fail(errno, true);
+    target_ = std::filesystem::canonical(target_, error);
+    if (error) fail(error.value(), true);
+  }
+  temporary_ = target_;
+  temporary_ += ".part-" + std::to_string(getpid());
+  const int descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    const int reason = errno;
+    temporary_.clear();
+    fail(reason, true);
+  }
+  slot_ = remember(temporary_.string());
+  file_ = fdopen(descriptor, "wb");
+}
+
+OutputFile::~OutputFile() {
+  if (file_ && file_ != stdout) std::fclose(file_);
+  if (!temporary_.empty()) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+  }
+  forget(slot_);
+}
+
+void OutputFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno);
+}
+
+void OutputFile::commit() {
+  if (std::fflush(file_) != 0) fail(errno);
+  if (file_ == stdout) return;
+  std::FILE* file = file_;
+  file_ = nullptr;
+  if (std::fclose(file) != 0) fail(errno);
+  if (temporary_.empty()) return;
+  std::error_code error;
+  std::filesystem::rename(temporary_, target_, error);
+  if (error) fail(error.value());
+  temporary_.clear();
+}
+
+void OutputFile::fail(int error, bool on_opening) const {
+  throw OutputError(path_ + ": file: cannot be written: " + std::strerror(error), on_opening);
+}
+
+}  // namespace kds_collide

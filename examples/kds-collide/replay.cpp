@@ -1,0 +1,192 @@
+#include "examples/kds-collide/replay.hpp"
+
+#include "examples/kds-collide/number_text.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string_view>
+
+namespace kds_collide {
+namespace {
+
+/// The viewer's page, from replay.html.
+constexpr std::string_view page_template =
+#include "replay_template.inc"
+    ;
+
+/// A picture needs no more than the seven digits of a float.
+void append_short(std::string& text, double value) { append_number(text, static_cast<float>(value)); }
+
+/// JSON that may stand inside a <script> element, whose end no string may spell.
+std::string quoted(const std::string& name) {
+  std::string text = nlohmann::json(name).dump();
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  return text;
+}
+
+void append_list(std::string& text, std::initializer_list<double> values) {
+  char separator = '[';
+  for (const double value : values) {
+    text += separator;
+    append_short(text, value);
+    separator = ',';
+  }
+  text += ']';
+}
+
+void append_vector(std::string& text, const Eigen::Vector3d& v) { append_list(text, {v[0], v[1], v[2]}); }
+
+void append_mesh(std::string& text, const kds::collision::Mesh& mesh) {
+  text += "{\"vertices\":[";
+  for (const Eigen::Vector3d& v : mesh.vertices()) {
+    for (int d = 0; d < 3; ++d) {
+      append_short(text, v[d]);
+      text += ',';
+    }
+  }
+  text.back() = ']';
+  text += ",\"triangles\":[";
+  for (const auto& triangle : mesh.triangles()) {
+    for (const std::uint32_t i : triangle) {
+      append_number(text, i);
+      text += ',';
+    }
+  }
+  text.back() = ']';
+  text += '}';
+}
+
+/// Coefficients without the zeros at the end: a body at rest needs one, one on a straight path two.
+void append_piece(std::string& text, const MotionPiece& piece, double begin) {
+  std::size_t used = piece.coefficients.size();
+  while (used > 1 && piece.coefficients[used - 1].isZero(0)) --used;
+  text += '[';
+  append_number(text, piece.start - begin);
+  for (std::size_t i = 0; i < used; ++i) {
+    for (int d = 0; d < 3; ++d) {
+      text += ',';
+      append_short(text, piece.coefficients[i][d]);
+    }
+  }
+  text += ']';
+}
+
+void append_shape(std::string& text, const kds::collision::Shape& shape,
+                  const std::map<const kds::collision::Mesh*, std::size_t>& mesh_numbers) {
+  if (const auto* sphere = std::get_if<kds::collision::Sphere>(&shape)) {
+    text += "\"sphere\",\"size\":";
+    append_list(text, {sphere->radius, sphere->radius, sphere->radius});
+  } else if (const auto* box = std::get_if<kds::collision::Box>(&shape)) {
+    text += "\"box\",\"size\":";
+    append_vector(text, box->half_extents);
+  } else {
+    const auto& instance = std::get<kds::collision::MeshShape>(shape);
+    append_number(text, mesh_numbers.at(instance.mesh.get()));
+    text += ",\"size\":";
+    append_list(text, {instance.scale, instance.scale, instance.scale});
+  }
+}
+
+std::string read_script(const std::filesystem::path& folder, const char* name) {
+  const std::filesystem::path file = folder / name;
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (folder.empty() || !in || !(text << in.rdbuf())) {
+    throw ReplayError("--view: three.js: " + (folder.empty() ? std::string(name) : file.string()) +
+                      " is not there; install it (Debian and Ubuntu: the package libjs-three) and configure again");
+  }
+  return std::move(text).str();
+}
+
+}  // namespace
+
+ReplayRecorder::ReplayRecorder(const Scene& scene) : scene_(scene) {
+  for (const SceneBody& body : scene.bodies) motion_.push_back(body.motion);
+}
+
+void ReplayRecorder::on_event(const Event& event) {
+  if (event.kind == EventKind::wall || event.is_about_volumes()) return;
+  touches_.push_back(event);
+}
+
+void ReplayRecorder::on_motion(std::uint32_t body, const MotionPiece& piece) {
+  auto& pieces = motion_[body];
+  // Several changes at one instant: the last one is what happens.
+  if (pieces.back().start == piece.start) pieces.pop_back();
+  pieces.push_back(piece);
+}
+
+std::string ReplayRecorder::to_json(const std::string& title) const {
+  std::string text = "{\"title\":" + quoted(title) + ",\"begin\":";
+  append_number(text, scene_.begin_time);
+  text += ",\"duration\":";
+  append_number(text, scene_.end_time - scene_.begin_time);
+  text += ",\"response\":";
+  text += scene_.response == Response::elastic ? "\"elastic\"" : "\"none\"";
+  if (scene_.domain) {
+    text += ",\"domain\":{\"min\":";
+    append_vector(text, scene_.domain->min);
+    text += ",\"max\":";
+    append_vector(text, scene_.domain->max);
+    text += scene_.domain->walls == Walls::reflect ? ",\"walls\":true}" : ",\"walls\":false}";
+  }
+  text += ",\n\"meshes\":[";
+  std::map<const kds::collision::Mesh*, std::size_t> mesh_numbers;
+  for (const SceneMesh& mesh : scene_.meshes) {
+    if (!mesh_numbers.empty()) text += ",\n";
+    mesh_numbers.try_emplace(mesh.mesh.get(), mesh_numbers.size());
+    append_mesh(text, *mesh.mesh);
+  }
+  text += "],\n\"bodies\":[\n";
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    const SceneBody& body = scene_.bodies[i];
+    if (i > 0) text += ",\n";
+    text += "{\"name\":" + quoted(body.name) + ",\"shape\":";
+    append_shape(text, body.shape, mesh_numbers);
+    const Eigen::Quaterniond& q = body.orientation;
+    text += ",\"turn\":";
+    append_list(text, {q.x(), q.y(), q.z(), q.w()});
+    text += ",\"motion\":[";
+    for (std::size_t p = 0; p < motion_[i].size(); ++p) {
+      if (p > 0) text += ',';
+      append_piece(text, motion_[i][p], scene_.begin_time);
+    }
+    text += "]}";
+  }
+  text += "],\n\"touches\":[";
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    const Event& touch = touches_[i];
+    text += i > 0 ? ",[" : "[";
+    append_number(text, touch.time - scene_.begin_time);
+    for (const std::uint32_t value : {static_cast<std::uint32_t>(touch.kind), touch.a, touch.b}) {
+      text += ',';
+      append_number(text, value);
+    }
+    text += ']';
+  }
+  text += "]}";
+  return text;
+}
+
+std::string replay_page(const std::string& data, const std::filesystem::path& three_folder) {
+  const std::string three = read_script(three_folder, "build/three.min.js");
+  const std::string controls = read_script(three_folder, "examples/js/controls/OrbitControls.js");
+  const std::array<std::pair<std::string_view, const std::string*>, 3> parts{
+      {{"/*{THREE}*/", &three}, {"/*{CONTROLS}*/", &controls}, {"/*{DATA}*/", &data}}};
+  std::string page;
+  std::string_view rest = page_template;
+  for (const auto& [mark, part] : parts) {
+    const std::size_t at = rest.find(mark);
+    page.append(rest.substr(0, at)).append(*part);
+    rest.remove_prefix(at + mark.size());
+  }
+  return page.append(rest);
+}
+
+std::filesystem::path default_three_folder() { return KDS_THREE_FOLDER; }
+
+}  // namespace kds_collide

@@ -1,0 +1,199 @@
+#include "examples/kds-collide/run.hpp"
+
+#include "collision/world.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <ctime>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace kds_collide {
+namespace {
+
+using kds::collision::BodyId;
+using kds::collision::BroadPhaseKind;
+using kds::collision::Contact;
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::uint64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+struct Choice {
+  BroadPhaseName name;
+  BroadPhaseKind kind;
+};
+
+const std::vector<Choice>& choices() {
+  static const std::vector<Choice> all{
+      {{"kinetic-sap", "kinetic sweep and prune: event-driven, exact"}, BroadPhaseKind::kinetic_sap},
+      {{"sap", "sweep and prune over arrays with swept boxes, at --rate"}, BroadPhaseKind::sap},
+      {{"all-pairs", "every pair tested once and its result kept, no pruning"}, BroadPhaseKind::all_pairs}};
+  return all;
+}
+
+Choice choose(const RunOptions& options) {
+  // Swaps of the kinetic lists grow faster than the number of bodies; it is still the best there is.
+  const std::string name = options.broad_phase == "auto" ? "kinetic-sap" : options.broad_phase;
+  for (const Choice& choice : choices()) {
+    if (choice.name.name == name) return choice;
+  }
+  throw std::invalid_argument("--broad-phase: there is no \"" + name + "\"; --broad-phase list names them");
+}
+
+template <int Degree>
+kds::certificates::PointMotion<Degree> to_degree(const MotionPiece& piece) {
+  kds::certificates::PointMotion<Degree> motion;
+  std::copy_n(piece.coefficients.begin(), motion.coefficients.size(), motion.coefficients.begin());
+  motion.start = piece.start;
+  return motion;
+}
+
+/// Hands on what the world tells.
+template <int Degree>
+class Teller final : public kds::collision::WorldListener<Degree> {
+ public:
+  using World = kds::collision::World<Degree>;
+  using PairEvent = kds::collision::PairEvent;
+
+  Teller(EventSink& sink, Response response) : sink_(sink), response_(response) {}
+
+  void contact(World& world, const PairEvent& event) override {
+    tell(EventKind::contact, event);
+    tell_motions(world, event);
+  }
+  void separation(World&, const PairEvent& event) override { tell(EventKind::separation, event); }
+  void overlap(World&, const PairEvent& event) override { tell(EventKind::overlap, event); }
+  void held(World& world, const PairEvent& event) override { tell_motions(world, event); }
+
+  void wall(World& world, const kds::collision::WallEvent& event) override {
+    const Contact& c = event.contact;
+    sink_.on_event({c.time, EventKind::wall, event.body, static_cast<std::uint32_t>(event.wall), c.point, c.normal, {}, {}});
+    tell_motion(world, event.body);
+  }
+  void pair_began(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_begin, a, b, t); }
+  void pair_ended(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_end, a, b, t); }
+
+ private:
+  void tell(EventKind kind, const PairEvent& event) {
+    const Contact& c = event.contact;
+    sink_.on_event({c.time, kind, event.a, event.b, c.point, c.normal, c.feature_a, c.feature_b});
+  }
+  void tell_volumes(EventKind kind, BodyId a, BodyId b, double t) {
+    sink_.on_event({t, kind, a, b, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}});
+  }
+  void tell_motions(const World& world, const PairEvent& event) {
+    if (response_ == Response::none) return;
+    tell_motion(world, event.a);
+    tell_motion(world, event.b);
+  }
+  void tell_motion(const World& world, BodyId id) {
+    if (!world.contains(id)) return;
+    const auto& motion = world.motion(id);
+    MotionPiece piece;
+    piece.coefficients.fill(Eigen::Vector3d::Zero());
+    std::copy(motion.coefficients.begin(), motion.coefficients.end(), piece.coefficients.begin());
+    piece.start = motion.start;
+    sink_.on_motion(id, piece);
+  }
+
+  EventSink& sink_;
+  Response response_;
+};
+
+template <int Degree>
+RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink& sink) {
+  const Choice choice = choose(options);
+  if (choice.kind == BroadPhaseKind::sap && !(options.rate > 0)) {
+    throw std::invalid_argument("--rate: must be > 0 for the broad phase \"sap\"");
+  }
+  kds::collision::WorldOptions world_options;
+  world_options.start_time = scene.begin_time;
+  world_options.response = scene.response == Response::elastic ? kds::collision::Response::elastic
+                                                               : kds::collision::Response::none;
+  world_options.broad_phase = choice.kind;
+  world_options.rate = options.rate;
+  world_options.report_pairs = options.pairs;
+  if (scene.domain && scene.domain->walls == Walls::reflect) {
+    world_options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max};
+  }
+
+  RunResult result;
+  const double begin = scene.begin_time;
+  const double end = scene.end_time;
+  const double setup_start = cpu_seconds();
+  Teller<Degree> teller(sink, scene.response);
+  kds::collision::World<Degree> world(world_options, &teller);
+  for (const SceneBody& body : scene.bodies) {
+    kds::collision::BodyDescription<Degree> description;
+    description.shape = body.shape;
+    description.orientation = body.orientation;
+    description.mass = body.mass;
+    description.fixed = body.fixed;
+    for (const MotionPiece& piece : body.motion) description.motion.push_back(to_degree<Degree>(piece));
+    world.add_body(description);
+  }
+  world.advance_to(begin);
+  const double run_start = cpu_seconds();
+
+  double rate = options.rate;
+  if (options.steady_progress && end > begin) rate = std::max(rate, 100 / (end - begin));
+  if (rate > 0) {
+    for (std::uint64_t frame = 1;; ++frame) {
+      const double t = begin + static_cast<double>(frame) / rate;
+      if (!(t < end)) break;
+      world.advance_to(t);
+      sink.on_time(t);
+    }
+  }
+  world.advance_to(end);
+  sink.on_time(end);
+  const double run_end = cpu_seconds();
+
+  const kds::collision::WorldCounters counters = world.counters();
+  result.broad_phase = choice.name.name;
+  result.setup_cpu_seconds = run_start - setup_start;
+  result.run_cpu_seconds = run_end - run_start;
+  result.sim_seconds = end - begin;
+  result.bodies = scene.bodies.size();
+  result.swaps = counters.broad_phase.swaps;
+  result.certificates = counters.broad_phase.certificates;
+  result.box_updates = counters.broad_phase.box_updates;
+  result.pairs_begun = counters.pairs_begun;
+  result.pair_tests = counters.pair_tests;
+  result.contacts = counters.contacts;
+  result.separations = counters.separations;
+  result.overlaps = counters.overlaps;
+  result.wall_contacts = counters.wall_contacts;
+  result.motion_updates = counters.motion_updates;
+  result.held = counters.held;
+  result.peak_memory_bytes = peak_memory();
+  return result;
+}
+
+}  // namespace
+
+const std::vector<BroadPhaseName>& broad_phases() {
+  static const std::vector<BroadPhaseName> names = [] {
+    std::vector<BroadPhaseName> all{{"auto", "the one that suits the scene"}};
+    for (const Choice& choice : choices()) all.push_back(choice.name);
+    return all;
+  }();
+  return names;
+}
+
+RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
+  return scene.degree() == 2 ? run_at_degree<2>(scene, options, sink) : run_at_degree<1>(scene, options, sink);
+}
+
+}  // namespace kds_collide

@@ -1,0 +1,53 @@
+// Runs a scene.
+#pragma once
+
+#include "examples/kds-collide/events.hpp"
+#include "examples/kds-collide/scene.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kds_collide {
+
+struct RunOptions {
+  std::string broad_phase = "auto";  ///< one of broad_phases()
+  double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
+  bool pairs = false;                ///< tell of bounding volumes too
+  bool steady_progress = false;      ///< call on_time at least a hundred times
+};
+
+/// What a run took and did.
+struct RunResult {
+  std::string broad_phase;         ///< the one used; never "auto"
+  double setup_cpu_seconds = 0;    ///< from the scene to the first instant
+  double run_cpu_seconds = 0;      ///< from there on
+  double sim_seconds = 0;          ///< simulated time
+  std::uint64_t bodies = 0;
+  std::uint64_t swaps = 0;         ///< exchanges of neighbours in the sorted lists
+  std::uint64_t certificates = 0;  ///< failure times computed by the broad phase
+  std::uint64_t box_updates = 0;   ///< bounding volumes computed or changed
+  std::uint64_t pairs_begun = 0;   ///< pairs handed on by the broad phase
+  std::uint64_t pair_tests = 0;    ///< dynamic intersection tests
+  std::uint64_t contacts = 0;
+  std::uint64_t separations = 0;
+  std::uint64_t overlaps = 0;
+  std::uint64_t wall_contacts = 0;
+  std::uint64_t motion_updates = 0;
+  std::uint64_t held = 0;          ///< times the policy for endless bounces acted
+  std::uint64_t peak_memory_bytes = 0;
+};
+
+struct BroadPhaseName {
+  std::string_view name;
+  std::string_view what;
+};
+
+/// The names that --broad-phase takes, and what each is.
+const std::vector<BroadPhaseName>& broad_phases();
+
+/// Runs the scene from its begin_time to its end_time. Throws std::invalid_argument for options it cannot follow.
+RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink);
+
+}  // namespace kds_collide

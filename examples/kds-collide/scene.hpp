@@ -1,0 +1,66 @@
+// A scene: bodies, how they move, and the space they move in.
+#pragma once
+
+#include "certificates/point_motion.hpp"
+#include "collision/mesh.hpp"
+#include "collision/shape.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kds_collide {
+
+/// A piece of a body's motion, linear or quadratic. It holds until the next piece's start.
+using MotionPiece = kds::certificates::PointMotion<2>;
+
+struct SceneBody {
+  std::string name;
+  kds::collision::Shape shape;
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit
+  double mass = 1;
+  bool fixed = false;               ///< infinite mass
+  std::vector<MotionPiece> motion;  ///< not empty; starts ascend
+};
+
+struct SceneMesh {
+  std::string name;
+  std::string file;  ///< as written in the scene
+  std::shared_ptr<const kds::collision::Mesh> mesh;
+};
+
+enum class Response { none, elastic };
+enum class Walls { open, reflect };
+
+struct Domain {
+  Eigen::Vector3d min;
+  Eigen::Vector3d max;
+  Walls walls = Walls::open;
+};
+
+/// What a scene file says, checked.
+struct Scene {
+  /// The earliest start of a first piece. A body whose first piece starts later enters then.
+  double begin_time = 0;
+  double end_time = 0;
+  Response response = Response::none;
+  std::optional<Domain> domain;
+  std::vector<SceneMesh> meshes;
+  std::vector<SceneBody> bodies;
+
+  /// 2 where any piece accelerates, else 1.
+  int degree() const;
+};
+
+/// What is wrong with a scene, as one line `FILE: WHERE: what is wrong`.
+class SceneError : public std::runtime_error {
+ public:
+  SceneError(const std::string& file, const std::string& where, const std::string& what);
+};
+
+}  // namespace kds_collide
