@@ -23,8 +23,8 @@ Number dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return Number(a[0]) * b[0] + Number(a[1]) * b[1] + Number(a[2]) * b[2];
 }
 
-/// sign * axis . (b(t) - a(t)) >= reach, where reach = sum |axis . half_axis| + margin * 1: the convex bodies centred
-/// at a and b, each the sum of the segments +-half_axis, lie apart on one side of a plane normal to `axis`.
+/// side * axis . (b(t) - a(t)) >= reach, where reach = sum |axis . extents[i]| + sum margins[i]: the convex bodies
+/// centred at a and b, sums of the segments +-extents[i] and of balls, lie apart on one side of a plane across `axis`.
 ///
 /// Any double vector is a valid axis: what is certified is the separation along exactly that direction.
 /// Degree: that of the paths.
@@ -36,15 +36,15 @@ struct PlaneSeparation {
   const PointMotion<PathDegree>& a;
   const PointMotion<PathDegree>& b;
   Eigen::Vector3d axis;
-  double side;                                               ///< +1 or -1
+  double side;                                                   ///< +1 or -1
   std::array<const Eigen::Vector3d*, most_half_axes> extents{};  ///< half axes of either body, null when unused
-  double margin = 0;                                         ///< added to the reach (a ball's radius)
+  std::array<double, 2> margins{};                               ///< added to the reach as they are
 
   template <class Number>
   Polynomial<PathDegree, Number> polynomial(double epoch) const {
     const auto r = relative_motion<Number>(a, b, epoch);
     Polynomial<PathDegree, Number> f = (r[0] * axis[0] + r[1] * axis[1] + r[2] * axis[2]) * side;
-    Number reach(margin);
+    Number reach = Number(margins[0]) + margins[1];
     for (const Eigen::Vector3d* half_axis : extents) {
       if (half_axis) reach = reach + absolute(dot<Number>(axis, *half_axis));
     }

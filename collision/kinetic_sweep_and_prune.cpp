@@ -23,7 +23,8 @@ void KineticSweepAndPrune<Degree>::ends_swapped(std::uint32_t left, std::uint32_
   const BodyId left_body = left / 2;
   const BodyId right_body = right / 2;
   if (left_body == right_body) return;
-  const auto [a, b] = std::minmax(left_body, right_body);
+  const BodyId a = std::min(left_body, right_body);
+  const BodyId b = std::max(left_body, right_body);
   if (updating_) {
     changes_.push_back({a, b, false});
     return;

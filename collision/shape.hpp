@@ -1,0 +1,48 @@
+// Shapes of bodies, and what the rest of the module needs to know of any shape.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <memory>
+#include <variant>
+
+namespace kds::collision {
+
+class Mesh;
+
+/// A ball about the body's centre. Radius > 0, in units of length.
+struct Sphere {
+  double radius;
+};
+
+/// A solid box about the body's centre. Half extents > 0, in units of length.
+struct Box {
+  Eigen::Vector3d half_extents;
+};
+
+/// A triangle surface shared by any number of bodies, scaled by `scale` > 0.
+struct MeshShape {
+  std::shared_ptr<const Mesh> mesh;
+  double scale = 1;
+};
+
+using Shape = std::variant<Sphere, Box, MeshShape>;
+
+/// A shape turned into the orientation it keeps: bodies translate and do not rotate.
+struct PlacedShape {
+  Shape shape;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  /// Half edges of a box in world orientation, rounded; these doubles *are* the box from here on.
+  std::array<Eigen::Vector3d, 3> half_axes{};
+  Eigen::Vector3d low = Eigen::Vector3d::Zero();   ///< corner of the bounding box about the centre, rounded outward
+  Eigen::Vector3d high = Eigen::Vector3d::Zero();  ///< the other
+  double bounding_radius = 0;                      ///< of the ball about the centre that holds the shape
+};
+
+/// Validates and places a shape. Throws std::invalid_argument naming the member that is wrong: sizes must be finite
+/// and > 0, a mesh must be there, the orientation must be a unit quaternion to 1e-6 (it is normalised).
+PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation);
+
+}  // namespace kds::collision

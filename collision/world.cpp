@@ -1,0 +1,259 @@
+// The clock of the world: which event is next, and what the callers of the engine see.
+#include "collision/world.hpp"
+
+#include "collision/all_pairs.hpp"
+#include "collision/kinetic_sweep_and_prune.hpp"
+#include "collision/stopwatch.hpp"
+#include "collision/swept_sweep_and_prune.hpp"
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace kds::collision {
+namespace {
+
+template <int Degree>
+std::unique_ptr<BroadPhase<Degree>> make_broad_phase(const WorldOptions& options, Profile* profile) {
+  switch (options.broad_phase) {
+    case BroadPhaseKind::kinetic_sap:
+      return std::make_unique<KineticSweepAndPrune<Degree>>(options.start_time);
+    case BroadPhaseKind::sap:
+      if (!(options.rate > 0) || !std::isfinite(options.rate)) {
+        throw std::invalid_argument("WorldOptions.rate: sweep and prune with swept boxes needs a rate > 0");
+      }
+      return std::make_unique<SweptSweepAndPrune<Degree>>(options.start_time, options.rate, profile);
+    case BroadPhaseKind::all_pairs:
+      return std::make_unique<AllPairs<Degree>>();
+  }
+  throw std::invalid_argument("WorldOptions.broad_phase: unknown");
+}
+
+void validate(const WorldOptions& options) {
+  if (!std::isfinite(options.start_time)) throw std::invalid_argument("WorldOptions.start_time: must be finite");
+  if (!(options.window > 0)) throw std::invalid_argument("WorldOptions.window: must be > 0");
+  if (!(options.zeno.interval >= 0)) throw std::invalid_argument("WorldOptions.zeno.interval: must be >= 0");
+  if (options.walls) {
+    const Walls& walls = *options.walls;
+    if (!walls.min.allFinite() || !walls.max.allFinite()) {
+      throw std::invalid_argument("WorldOptions.walls: must be finite");
+    }
+    if (!(walls.min.array() < walls.max.array()).all()) {
+      throw std::invalid_argument("WorldOptions.walls: min must be below max");
+    }
+  }
+}
+
+}  // namespace
+
+template <int Degree>
+World<Degree>::World(const WorldOptions& options, Listener* listener)
+    : options_(options),
+      listener_(listener ? listener : &silent_),
+      contacts_(PairRank{&pairs_}),
+      boxes_(PairRank{&pairs_}),
+      now_(options.start_time),
+      horizon_(options.start_time + options.window) {
+  validate(options);
+  broad_phase_ = make_broad_phase<Degree>(options, options.profile ? &profile_ : nullptr);
+  broad_phase_->extend_horizon(now_, horizon_);
+}
+
+template <int Degree>
+World<Degree>::~World() = default;
+
+template <int Degree>
+void World<Degree>::reach(double limit) {
+  if (!(limit > horizon_)) return;
+  horizon_ = std::max(limit, horizon_ + options_.window);
+  broad_phase_->extend_horizon(now_, horizon_);
+  for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
+    if (pairs_[slot].alive && !contacts_.contains(slot)) mark_dirty(slot);
+  }
+  for (BodyId id = 0; id < bodies_.size(); ++id) {
+    if (bodies_[id].entered) schedule_wall(id);
+  }
+}
+
+template <int Degree>
+bool World<Degree>::step(double limit) {
+  if (std::isnan(limit)) throw std::invalid_argument("World::step: the limit is not a number");
+  if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
+    throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
+  }
+  for (;;) {
+    if (!entering_.empty()) enter_new_bodies();
+    if (!dirty_.empty()) test_dirty_pairs();
+    if (!pending_.empty()) {
+      emit_pending();
+      return true;
+    }
+    const auto time_of = [](const auto& queue) { return queue.empty() ? never : queue.top().time; };
+    const double piece = time_of(pieces_);
+    const double boxes = time_of(boxes_);
+    const double volume = time_of(volumes_);
+    const double wall = time_of(walls_);
+    const double contact = time_of(contacts_);
+    // Nothing is known beyond the horizon: look that far, then farther.
+    const double next = std::min({limit, horizon_, piece, boxes, volume, wall, contact});
+    // A piece that starts now is the motion at t+, so the broad phase may not run past it under the old one.
+    const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
+    if (until == never) return false;
+    {
+      const Stopwatch watch(options_.profile ? &profile_.sort : nullptr);
+      if (broad_phase_->advance(until, *this) || next == never) continue;
+    }
+    if (piece == next) {
+      now_ = next;
+      start_piece(pieces_.top().slot);
+      return true;
+    }
+    now_ = std::max(now_, next);
+    if (boxes == next) {
+      process_boxes(boxes_.top().slot, next);
+    } else if (volume == next) {
+      renew_volume(volumes_.top().slot);
+      return true;
+    } else if (wall == next) {
+      process_wall(walls_.top().slot, next);
+      return true;
+    } else if (contact == next) {
+      process_contact(contacts_.top().slot, next);
+      return true;
+    } else if (next < limit) {
+      reach(limit == never ? horizon_ + options_.window : limit);
+    } else {
+      return false;
+    }
+  }
+}
+
+template <int Degree>
+void World<Degree>::advance_to(double t) {
+  if (!(t >= now_) || t == never) {
+    throw std::invalid_argument("World::advance_to: " + std::to_string(t) + " is not a finite time from now on (" +
+                                std::to_string(now_) + ")");
+  }
+  while (step(t)) {}
+}
+
+template <int Degree>
+bool World<Degree>::advance_for(double budget_seconds, double t) {
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + std::chrono::duration<double>(budget_seconds);
+  while (step(t)) {
+    if (Clock::now() >= deadline) return false;
+  }
+  return true;
+}
+
+template <int Degree>
+void World<Degree>::enter_new_bodies() {
+  std::vector<BodyId> entering;
+  entering.swap(entering_);
+  std::vector<typename BroadPhase<Degree>::Entry> entries;
+  for (const BodyId id : entering) {
+    Body& b = bodies_[id];
+    if (!b.alive || b.entered) continue;
+    b.entered = true;
+    b.box = bounding_box(b);
+    entries.push_back({id, &b.box});
+  }
+  inserting_ = true;
+  {
+    const Stopwatch watch(options_.profile ? &profile_.update : nullptr);
+    broad_phase_->insert(entries, now_, *this);
+  }
+  inserting_ = false;
+  for (const auto& entry : entries) {
+    schedule_wall(entry.id);
+    schedule_volume(entry.id);
+  }
+}
+
+template <int Degree>
+void World<Degree>::start_piece(BodyId id) {
+  Body& b = bodies_[id];
+  const Motion piece = b.script.back();
+  b.script.pop_back();
+  if (b.script.empty()) {
+    pieces_.clear(id);
+  } else {
+    pieces_.set(id, b.script.back().start);
+  }
+  if (b.entered) {
+    ++counters_.motion_updates;
+    set_motion(id, piece, false);
+  } else {
+    b.motion = piece;
+    entering_.push_back(id);
+  }
+}
+
+template <int Degree>
+void World<Degree>::renew_volume(BodyId id) {
+  Body& b = bodies_[id];
+  b.box = bounding_box(b);
+  broad_phase_->update(id, b.box, now_, *this);
+  schedule_volume(id);
+}
+
+template <int Degree>
+void World<Degree>::emit_pending() {
+  const Pending event = pending_.front();
+  pending_.pop_front();
+  const PairEvent pair{event.a, event.b, event.contact};
+  switch (event.kind) {
+    case Pending::Kind::overlap:
+      if (!contains(event.a) || !contains(event.b)) return;
+      ++counters_.overlaps;
+      return listener_->overlap(*this, pair);
+    case Pending::Kind::separation:
+      ++counters_.separations;
+      return listener_->separation(*this, pair);
+    case Pending::Kind::pair_began:
+      return listener_->pair_began(*this, event.a, event.b, event.contact.time);
+    case Pending::Kind::pair_ended:
+      return listener_->pair_ended(*this, event.a, event.b, event.contact.time);
+  }
+}
+
+template <int Degree>
+WorldCounters World<Degree>::counters() const {
+  WorldCounters counters = counters_;
+  counters.broad_phase = broad_phase_->counters();
+  return counters;
+}
+
+template <int Degree>
+void World<Degree>::audit() const {
+  broad_phase_->audit(now_);
+  const auto fail = [](BodyId a, BodyId b, const char* what) {
+    throw AuditFailure("World: bodies " + std::to_string(a) + " and " + std::to_string(b) + ": " + what);
+  };
+  if (!entering_.empty() || !dirty_.empty()) return;  // Work of this instant is still to be done.
+  for (BodyId a = 0; a < bodies_.size(); ++a) {
+    for (BodyId b = a + 1; b < bodies_.size(); ++b) {
+      if (!bodies_[a].entered || !bodies_[b].entered) continue;
+      const PairSlot slot = find_pair(a, b);
+      if (slot != no_pair) continue;
+      if ((bodies_[a].category & bodies_[b].collides_with) == 0 || (bodies_[b].category & bodies_[a].collides_with) == 0) {
+        continue;
+      }
+      if (broad_phase_->next_time() <= now_) continue;
+      const BoxOverlap<Degree> boxes(bodies_[a].box, bodies_[b].box);
+      const auto apart = boxes.separations();
+      bool overlap = true;
+      for (const auto& side : apart) overlap = overlap && sign_after(side, now_) < 0;
+      if (overlap) fail(a, b, "the bounding volumes overlap and the pair is not active");
+    }
+  }
+}
+
+template class World<1>;
+template class World<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,264 @@
+// Bodies and pairs of the world.
+#include "collision/stopwatch.hpp"
+#include "collision/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace kds::collision {
+namespace {
+
+/// A new motion whose position differs from the old one's by more than this, relative to the coordinates and the
+/// body's size, is a jump: far above what restarting a motion rounds, far below what a caller would mean as one.
+constexpr double jump_tolerance = 0x1p-40;
+
+template <int Degree>
+void validate(const BodyDescription<Degree>& description) {
+  const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
+  if (description.motion.empty()) fail("motion: has no piece");
+  for (std::size_t i = 0; i < description.motion.size(); ++i) {
+    const auto& piece = description.motion[i];
+    if (!piece.finite()) fail("motion[" + std::to_string(i) + "]: must be finite");
+    if (i > 0 && !(piece.start > description.motion[i - 1].start)) {
+      fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
+    }
+  }
+  if (!description.fixed && (!std::isfinite(description.mass) || !(description.mass > 0))) {
+    fail("mass: must be finite and > 0");
+  }
+}
+
+/// The queues grow by doubling, as vectors do.
+template <class Queue>
+void make_room(Queue& queue, std::size_t slots) {
+  if (queue.slots() < slots) queue.resize(std::max(slots, 2 * queue.slots()));
+}
+
+}  // namespace
+
+template <int Degree>
+const typename World<Degree>::Body& World<Degree>::body(BodyId id) const {
+  if (!contains(id)) throw std::out_of_range("World: there is no body " + std::to_string(id));
+  return bodies_[id];
+}
+
+template <int Degree>
+typename World<Degree>::Body& World<Degree>::body(BodyId id) {
+  return const_cast<Body&>(static_cast<const World&>(*this).body(id));
+}
+
+template <int Degree>
+BodyId World<Degree>::add_body(const Description& description) {
+  validate(description);
+  Body added;
+  added.shape = place(description.shape, description.orientation);
+  added.mass = description.mass;
+  added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
+  added.category = description.category;
+  added.collides_with = description.collides_with;
+  added.volume = description.volume;
+  added.box_function = description.box;
+  added.alive = true;
+  // Pieces that are over are skipped; the rest is a script, next piece last.
+  added.script.assign(description.motion.rbegin(), description.motion.rend());
+  while (added.script.size() >= 2 && added.script[added.script.size() - 2].start <= now_) added.script.pop_back();
+  const bool enters_now = added.script.back().start <= now_;
+  added.motion = added.script.back();
+  if (enters_now) added.script.pop_back();
+
+  BodyId id;
+  if (free_bodies_.empty()) {
+    id = static_cast<BodyId>(bodies_.size());
+    bodies_.emplace_back();
+    make_room(pieces_, bodies_.size());
+    make_room(volumes_, bodies_.size());
+    make_room(walls_, bodies_.size());
+  } else {
+    id = free_bodies_.back();
+    free_bodies_.pop_back();
+  }
+  bodies_[id] = std::move(added);
+  ++alive_;
+  if (!bodies_[id].script.empty()) pieces_.set(id, bodies_[id].script.back().start);
+  if (enters_now) entering_.push_back(id);
+  return id;
+}
+
+template <int Degree>
+void World<Degree>::remove_body(BodyId id) {
+  Body& removed = body(id);
+  removed.alive = false;
+  pieces_.clear(id);
+  volumes_.clear(id);
+  walls_.clear(id);
+  if (removed.entered) broad_phase_->remove(id, now_, *this);
+  // Pairs the broad phase does not know of any more.
+  while (!removed.pairs.empty()) release_pair(removed.pairs.back());
+  removed = Body{};
+  free_bodies_.push_back(id);
+  --alive_;
+}
+
+template <int Degree>
+void World<Degree>::update_motion(BodyId id, const Motion& motion) {
+  Body& b = body(id);
+  if (!motion.finite()) throw std::invalid_argument("World::update_motion: the motion is not finite");
+  b.script.clear();
+  pieces_.clear(id);
+  ++counters_.motion_updates;
+  if (!b.entered) {
+    b.motion = motion;
+    if (std::find(entering_.begin(), entering_.end(), id) == entering_.end()) entering_.push_back(id);
+    return;
+  }
+  const Eigen::Vector3d before = b.motion.position(now_);
+  const Eigen::Vector3d after = motion.position(now_);
+  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + b.shape.bounding_radius;
+  set_motion(id, motion, (after - before).cwiseAbs().maxCoeff() > jump_tolerance * scale);
+}
+
+template <int Degree>
+void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
+  const Stopwatch watch(options_.profile ? &profile_.update : nullptr);
+  Body& b = bodies_[id];
+  b.motion = motion;
+  b.box = bounding_box(b);
+  inserting_ = jumped && mode() == ContactMode::resolved;
+  broad_phase_->update(id, b.box, now_, *this);
+  for (const PairSlot slot : b.pairs) {
+    mark_dirty(slot);
+    pairs_[slot].fresh = pairs_[slot].fresh || inserting_;
+  }
+  inserting_ = false;
+  schedule_wall(id);
+  schedule_volume(id);
+}
+
+template <int Degree>
+KineticBox<Degree> World<Degree>::bounding_box(const Body& body) const {
+  if (body.box_function) {
+    KineticBox<Degree> box = body.box_function(now_, body.motion);
+    if (!box.min.finite() || !box.max.finite()) {
+      throw std::invalid_argument("BodyDescription.box: returned a box that is not finite");
+    }
+    if (!(box.valid_until > now_)) {
+      throw std::invalid_argument("BodyDescription.box: returned a box whose validity has ended");
+    }
+    return box;
+  }
+  if (body.volume == BoundingVolume::sphere) {
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(body.shape.bounding_radius);
+    return box_around(body.motion, -reach, reach);
+  }
+  return box_around(body.motion, body.shape.low, body.shape.high);
+}
+
+template <int Degree>
+void World<Degree>::schedule_volume(BodyId id) {
+  if (bodies_[id].box.valid_until <= horizon_) {
+    volumes_.set(id, bodies_[id].box.valid_until);
+  } else {
+    volumes_.clear(id);
+  }
+}
+
+template <int Degree>
+void World<Degree>::schedule_wall(BodyId id) {
+  if (!options_.walls) return;
+  double first = never;
+  for (int wall = 0; wall < 6; ++wall) first = std::min(first, next_wall_time(bodies_[id], wall));
+  walls_.set(id, first);
+}
+
+template <int Degree>
+void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
+  now_ = t;
+  Body& body_a = bodies_[a];
+  Body& body_b = bodies_[b];
+  if ((body_a.category & body_b.collides_with) == 0 || (body_b.category & body_a.collides_with) == 0) return;
+  PairSlot slot;
+  if (free_pairs_.empty()) {
+    slot = static_cast<PairSlot>(pairs_.size());
+    pairs_.emplace_back();
+    make_room(contacts_, pairs_.size());
+    if (options_.report_pairs && !broad_phase_->exact()) make_room(boxes_, pairs_.size());
+  } else {
+    slot = free_pairs_.back();
+    free_pairs_.pop_back();
+  }
+  Pair& pair = pairs_[slot];
+  pair = Pair{};
+  pair.a = a;
+  pair.b = b;
+  pair.place_in_a = static_cast<std::uint32_t>(body_a.pairs.size());
+  pair.place_in_b = static_cast<std::uint32_t>(body_b.pairs.size());
+  pair.alive = true;
+  pair.fresh = inserting_;
+  body_a.pairs.push_back(slot);
+  body_b.pairs.push_back(slot);
+  ++counters_.pairs_begun;
+  mark_dirty(slot);
+  if (options_.report_pairs && broad_phase_->exact()) {
+    pending_.push_back({Pending::Kind::pair_began, a, b, {.time = t}});
+  }
+}
+
+template <int Degree>
+void World<Degree>::pair_ended(BodyId a, BodyId b, double t) {
+  now_ = t;
+  const PairSlot slot = find_pair(a, b);
+  if (slot == no_pair) return;  // filtered
+  release_pair(slot);
+}
+
+template <int Degree>
+typename World<Degree>::PairSlot World<Degree>::find_pair(BodyId a, BodyId b) const {
+  const auto& fewer = bodies_[a].pairs.size() <= bodies_[b].pairs.size() ? bodies_[a].pairs : bodies_[b].pairs;
+  for (const PairSlot slot : fewer) {
+    if (pairs_[slot].a == a && pairs_[slot].b == b) return slot;
+  }
+  return no_pair;
+}
+
+template <int Degree>
+void World<Degree>::release_pair(PairSlot slot) {
+  Pair& pair = pairs_[slot];
+  if (pair.touching) pending_.push_back({Pending::Kind::separation, pair.a, pair.b, {.time = now_}});
+  if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) {
+    pending_.push_back({Pending::Kind::pair_ended, pair.a, pair.b, {.time = now_}});
+  }
+  // Each body's list closes up with its last entry.
+  for (const BodyId id : {pair.a, pair.b}) {
+    auto& list = bodies_[id].pairs;
+    const std::uint32_t place = id == pair.a ? pair.place_in_a : pair.place_in_b;
+    const PairSlot moved = list.back();
+    list[place] = moved;
+    list.pop_back();
+    (pairs_[moved].a == id ? pairs_[moved].place_in_a : pairs_[moved].place_in_b) = place;
+  }
+  contacts_.clear(slot);
+  if (slot < boxes_.slots()) boxes_.clear(slot);
+  pair.alive = false;
+  free_pairs_.push_back(slot);
+}
+
+template <int Degree>
+void World<Degree>::mark_dirty(PairSlot slot) {
+  if (pairs_[slot].dirty) return;
+  pairs_[slot].dirty = true;
+  dirty_.push_back(slot);
+}
+
+template <int Degree>
+bool World<Degree>::touching(BodyId a, BodyId b) const {
+  body(a), body(b);
+  const PairSlot slot = find_pair(std::min(a, b), std::max(a, b));
+  return slot != no_pair && pairs_[slot].touching;
+}
+
+template class World<1>;
+template class World<2>;
+
+}  // namespace kds::collision
