@@ -150,7 +150,7 @@ MeshData knot_mesh() {
     const Vector3d core(2 * std::cos(2 * u), 2 * std::sin(2 * u), 0);
     const Vector3d outward = centre(u) - core;
     const Vector3d side = (outward - forward * forward.dot(outward)).normalized();
-    return Vector3d(centre(u) + 0.42 * (side * std::cos(v) + forward.cross(side) * std::sin(v)));
+    return Vector3d(centre(u) + 0.42 * (side * std::cos(v) + side.cross(forward) * std::sin(v)));
   });
 }
 
