@@ -15,7 +15,7 @@ struct Order {
 
   template <class Number>
   Polynomial<Degree, Number> polynomial(double epoch) const {
-    return about<Number>(upper, epoch) - about<Number>(lower, epoch);
+    return difference_about<Number>(upper, lower, epoch);
   }
 
   /// Cheap and sufficient: values that move together, and values at rest in one place.

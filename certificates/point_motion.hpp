@@ -77,7 +77,7 @@ std::array<Polynomial<Degree, Number>, 3> relative_motion(const PointMotion<Degr
                                                           double epoch) {
   std::array<Polynomial<Degree, Number>, 3> r;
   for (int d = 0; d < 3; ++d) {
-    r[static_cast<std::size_t>(d)] = about<Number>(b.axis(d), epoch) - about<Number>(a.axis(d), epoch);
+    r[static_cast<std::size_t>(d)] = difference_about<Number>(b.axis(d), a.axis(d), epoch);
   }
   return r;
 }

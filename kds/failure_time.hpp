@@ -4,6 +4,7 @@
 #include "kds/certificate.hpp"
 #include "kds/lattice.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -65,30 +66,6 @@ Polynomial<C::degree> middle(const Polynomial<C::degree, Ball<double>>& p) {
   return result;
 }
 
-/// f certainly > 0 at now, linear and falling: the first double not before the root.
-template <class C>
-double linear_failure_time(const C& certificate, const Polynomial<1, Ball<double>>& p, double now, double horizon) {
-  // Cheap and safe rejection: the root is not before now + lower.
-  const double lower = (p.c[0].middle - p.c[0].radius) / (std::abs(p.c[1].middle) + p.c[1].radius);
-  if (now + lower * (1 - 0x1p-40) > horizon) return never;
-  ++sign_counters.extended;
-  const auto f = certificate.template polynomial<Ball<DoubleDouble>>(now);
-  const DoubleDouble delay = -f.c[0].middle / f.c[1].middle;
-  const DoubleDouble root = delay + now;
-  if (!(root.high <= horizon)) return never;
-  // Error of the quotient and of the sum; 2^-98 covers the operations' relative errors of 2^-102 with room.
-  const double error =
-      2 * (f.c[0].radius + std::abs(delay.high) * f.c[1].radius) / std::abs(f.c[1].middle.high) +
-      0x1p-98 * (std::abs(delay.high) + std::abs(root.high)) + Ball<double>::underflow;
-  double t = root.high;
-  if (root.low > error) {
-    t = next_up(t);
-  } else if (!(root.low < -error) && exact_sign_after(certificate, t, 0) >= 0) {
-    t = next_up(t);
-  }
-  return t <= horizon ? t : never;
-}
-
 /// Finds where derivative number `order` of f changes sign, on a stretch with exactly one change.
 template <class C>
 class LatticeCrossing {
@@ -142,6 +119,58 @@ class LatticeCrossing {
   const C& certificate_;
   std::size_t order_;
 };
+
+/// f > 0 just after now, linear and falling. The first double in (now, horizon] not before the root, from a guess that is
+/// usually it or the one before.
+template <class C>
+double first_past_linear_root(const C& certificate, double now, double guess, double horizon) {
+  if (!(guess <= horizon)) guess = horizon < never ? horizon : std::numeric_limits<double>::max();
+  if (extended_sign_after(certificate, guess, 0) < 0) {
+    const double before = next_down(guess);
+    if (!(before > now) || extended_sign_after(certificate, before, 0) >= 0) return guess;
+    return LatticeCrossing<C>(certificate, 0)(now, before, -1, before);
+  }
+  const double after = next_up(guess);
+  if (!(after <= horizon) || after == never) return never;
+  if (extended_sign_after(certificate, after, 0) < 0) return after;
+  const double end = horizon < never ? horizon : std::numeric_limits<double>::max();
+  if (extended_sign_after(certificate, end, 0) >= 0) return never;
+  return LatticeCrossing<C>(certificate, 0)(after, end, -1, after);
+}
+
+/// f > 0 just after now, linear and falling; p is f about now. The first double not before the root.
+///
+/// A root in doubles, then one Newton step from it with f evaluated in double-double: the step is small, so a double
+/// division gives it to a few units of 2^-53, and the root is start + step to well beyond the precision of start.
+template <class C>
+double linear_failure_time(const C& certificate, const Polynomial<1, Ball<double>>& p, double now, double horizon) {
+  const double steepest = std::abs(p.c[1].middle) + p.c[1].radius;
+  // Cheap and safe rejection: the root is not before now + lower.
+  const double lower = (p.c[0].middle - p.c[0].radius) / steepest;
+  if (now + lower * (1 - 0x1p-40) > horizon) return never;
+  const double start = std::max(now, now + p.c[0].middle / -p.c[1].middle);
+  if (!(start < never)) return never;  // beyond all doubles
+  ++sign_counters.extended;
+  const auto f = certificate.template polynomial<Ball<DoubleDouble>>(start);
+  const double value = f.c[0].middle.high;
+  const double slope = f.c[1].middle.high;
+  const double step = value / -slope;
+  const DoubleDouble root = two_sum(start, step);
+  // |step| 2^-50 covers the quotient and the two numbers' low parts; twice the rest is the error of f at start, and
+  // exceeds |step| where the slope is not known to half of itself.
+  const double error =
+      (0x1p-50 * std::abs(value) + 2 * (f.c[0].radius + std::abs(step) * f.c[1].radius)) / std::abs(slope) +
+      Ball<double>::underflow;
+  double t = root.high;
+  if (root.low > error) {
+    t = next_up(t);
+  } else if (!(root.low < -error)) {
+    // The root is t up to rounding, or the numbers are out of the range of these bounds: find it by exact signs.
+    if (!(t > now)) t = next_up(now);
+    return first_past_linear_root(certificate, now, t, horizon);
+  }
+  return t <= horizon ? t : never;
+}
 
 /// A root of p between lower and upper (one sign change), to a few ulps: bisection with Newton steps in doubles.
 template <int Degree>

@@ -35,52 +35,66 @@ bool is_finite(const Motion<Degree>& motion) {
   return std::isfinite(motion.start);
 }
 
-/// later - earlier in the arithmetic of Number: exact in DoubleDouble and Exact, with its error bound in Ball<double>.
+/// a - b in the arithmetic of Number: exact in DoubleDouble and Exact, with its error bound in Ball<double>.
 template <class Number>
-Number difference(double later, double earlier);
+Number difference(double a, double b);
 template <>
-inline Exact difference<Exact>(double later, double earlier) {
-  return Exact(later) - Exact(earlier);
+inline Exact difference<Exact>(double a, double b) {
+  return Exact(a) - Exact(b);
 }
 template <>
-inline double difference<double>(double later, double earlier) {
-  return later - earlier;
+inline double difference<double>(double a, double b) {
+  return a - b;
 }
 template <>
-inline Ball<double> difference<Ball<double>>(double later, double earlier) {
-  const double d = later - earlier;
+inline Ball<double> difference<Ball<double>>(double a, double b) {
+  const double d = a - b;
   return {d, rounding_unit<double> * std::abs(d)};
 }
 template <>
-inline Ball<DoubleDouble> difference<Ball<DoubleDouble>>(double later, double earlier) {
-  return {two_sum(later, -earlier), 0.0};
+inline Ball<DoubleDouble> difference<Ball<DoubleDouble>>(double a, double b) {
+  return {two_sum(a, -b), 0.0};
 }
 
-/// The motion as a polynomial in (t - epoch), in the arithmetic of Number (a Taylor shift by epoch - start).
-template <class Number, int Degree>
-Polynomial<Degree, Number> about(const Motion<Degree>& motion, double epoch) {
+/// p(x + shift) as a polynomial in x. Scalar is double (exact coefficients) or Number itself.
+template <class Number, int Degree, class Scalar>
+Polynomial<Degree, Number> taylor_shift(const Polynomial<Degree, Scalar>& p, const Number& shift) {
   Polynomial<Degree, Number> shifted;
-  for (std::size_t i = 0; i <= Degree; ++i) shifted.c[i] = Number(motion.position.c[i]);
-  if constexpr (Degree >= 1) {
-    const auto& c = motion.position.c;
-    const Number shift = difference<Number>(epoch, motion.start);
-    if constexpr (Degree == 1) {
-      shifted.c[0] = shift * c[1] + c[0];
-    } else if constexpr (Degree == 2) {
-      const Number bend = shift * c[2];
-      shifted.c[1] = bend * 2.0 + c[1];
-      shifted.c[0] = shift * (bend + c[1]) + c[0];
-    } else {
-      // Repeated synthetic division by (x - shift).
-      for (int k = 0; k < Degree; ++k) {
-        for (int i = Degree - 1; i >= k; --i) {
-          const auto j = static_cast<std::size_t>(i);
-          shifted.c[j] = shifted.c[j] + shift * shifted.c[j + 1];
-        }
+  if constexpr (Degree == 1) {
+    shifted.c[1] = Number(p.c[1]);
+    shifted.c[0] = shift * p.c[1] + p.c[0];
+  } else if constexpr (Degree == 2) {
+    const Number bend = shift * p.c[2];
+    shifted.c[2] = Number(p.c[2]);
+    shifted.c[1] = bend * 2.0 + p.c[1];
+    shifted.c[0] = shift * (bend + p.c[1]) + p.c[0];
+  } else {
+    for (std::size_t i = 0; i <= Degree; ++i) shifted.c[i] = Number(p.c[i]);
+    // Repeated synthetic division by (x - shift).
+    for (int k = 0; k < Degree; ++k) {
+      for (int i = Degree - 1; i >= k; --i) {
+        const auto j = static_cast<std::size_t>(i);
+        shifted.c[j] = shifted.c[j] + shift * shifted.c[j + 1];
       }
     }
   }
   return shifted;
+}
+
+/// The motion as a polynomial in (t - epoch), in the arithmetic of Number.
+template <class Number, int Degree>
+Polynomial<Degree, Number> about(const Motion<Degree>& motion, double epoch) {
+  return taylor_shift<Number>(motion.position, difference<Number>(epoch, motion.start));
+}
+
+/// a - b as a polynomial in (t - epoch), in the arithmetic of Number. Motions with a common start, which many have,
+/// are subtracted first and shifted once.
+template <class Number, int Degree>
+Polynomial<Degree, Number> difference_about(const Motion<Degree>& a, const Motion<Degree>& b, double epoch) {
+  if (a.start != b.start) return about<Number>(a, epoch) - about<Number>(b, epoch);
+  Polynomial<Degree, Number> relative;
+  for (std::size_t i = 0; i <= Degree; ++i) relative.c[i] = difference<Number>(a.position.c[i], b.position.c[i]);
+  return taylor_shift<Number>(relative, difference<Number>(epoch, a.start));
 }
 
 /// The same motion restarted at t: equal up to the rounding of its new coefficients.
