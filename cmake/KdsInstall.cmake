@@ -6,9 +6,6 @@ get_property(targets GLOBAL PROPERTY KDS_LAYER_TARGETS)
 install(TARGETS ${targets} EXPORT kdsTargets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kds")
-if(TARGET kds_gsl)
-  install(TARGETS kds_gsl EXPORT kdsTargets)
-endif()
 
 set(config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kds")
 install(EXPORT kdsTargets NAMESPACE kds:: DESTINATION "${config_dir}")

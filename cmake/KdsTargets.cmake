@@ -1,9 +1,15 @@
-# kds_add_layer(NAME [LINK target...]): the library of one layer, from the files of its folder.
+# kds_add_layer(NAME [LINK target...] [EXCLUDE name...]): the library of one layer, from the files of its folder but
+# those of the names to exclude.
 # A folder without .cpp files gives an INTERFACE library, so that a layer may begin as headers and grow sources.
 function(kds_add_layer name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "LINK")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "LINK;EXCLUDE")
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.hpp")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
+
+  foreach(excluded IN LISTS ARG_EXCLUDE)
+    list(FILTER headers EXCLUDE REGEX "/${excluded}\\.hpp$")
+    list(FILTER sources EXCLUDE REGEX "/${excluded}\\.cpp$")
+  endforeach()
 
   set(target kds_${name})
   if(name STREQUAL "kds")
