@@ -10,7 +10,7 @@ namespace kds::collision {
 
 template <int Degree>
 KineticSweepAndPrune<Degree>::KineticSweepAndPrune(double now)
-    : lists_{List(AxisListener{this}), List(AxisListener{this}), List(AxisListener{this})},
+    : lists_{List(AxisListener{this, 0}), List(AxisListener{this, 1}), List(AxisListener{this, 2})},
       simulator_(now, lists_[0], lists_[1], lists_[2]) {}
 
 template <int Degree>
@@ -19,7 +19,7 @@ bool KineticSweepAndPrune<Degree>::overlap(BodyId a, BodyId b) const {
 }
 
 template <int Degree>
-void KineticSweepAndPrune<Degree>::ends_swapped(std::uint32_t left, std::uint32_t right, double) {
+void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::uint32_t left, std::uint32_t right) {
   const BodyId left_body = left / 2;
   const BodyId right_body = right / 2;
   if (left_body == right_body) return;
@@ -32,9 +32,10 @@ void KineticSweepAndPrune<Degree>::ends_swapped(std::uint32_t left, std::uint32_
   // The two intervals met or parted on this axis; it matters if they overlap on the others. After the swap a minimum
   // on the left means that they have met.
   const bool met = (left & 1) == 0;
-  int overlapping = 0;
-  for (const List& list : lists_) overlapping += overlap_on(list, a, b);
-  if (overlapping == (met ? 3 : 2)) changes_.push_back({a, b, met});
+  if (overlap_on(lists_[(axis + 1) % 3], a, b) && overlap_on(lists_[(axis + 2) % 3], a, b) &&
+      overlap_on(lists_[axis], a, b) == met) {
+    changes_.push_back({a, b, met});
+  }
 }
 
 template <int Degree>

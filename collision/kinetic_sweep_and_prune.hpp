@@ -40,10 +40,11 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   /// Learns of the swaps on one axis.
   struct AxisListener {
     KineticSweepAndPrune* owner;
+    std::size_t axis;
 
-    void swapped(std::uint32_t left, std::uint32_t right, double t) {
+    void swapped(std::uint32_t left, std::uint32_t right, double) {
       // An end's id is twice its body's, plus one for a maximum: two ends of a kind never matter.
-      if (((left ^ right) & 1) != 0) owner->ends_swapped(left, right, t);
+      if (((left ^ right) & 1) != 0) owner->ends_swapped(axis, left, right);
     }
     // Maxima before minima: intervals that touch for good are apart.
     static std::uint32_t rank(std::uint32_t id) { return ~id & 1; }
@@ -58,7 +59,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
     return list.position(min_end(a)) < list.position(max_end(b)) &&
            list.position(min_end(b)) < list.position(max_end(a));
   }
-  void ends_swapped(std::uint32_t left, std::uint32_t right, double t);
+  void ends_swapped(std::size_t axis, std::uint32_t left, std::uint32_t right);
   void report_overlaps_by_sweep(double now, PairListener& listener) const;
 
   std::array<List, 3> lists_;

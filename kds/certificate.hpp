@@ -25,7 +25,9 @@ namespace kds {
 ///
 /// Semantic laws: (1) f uses only ring operations on doubles, so that it is exact over Exact; (2) polynomial(e) and
 /// polynomial(e') are the same function of t. A certificate may offer `bool vanishes() const`, a cheap and sufficient
-/// test that f is zero throughout, which spares such pairs (things that move together) the exact rung.
+/// test that f is zero throughout, which spares such pairs (things that move together) the exact rung; and a
+/// `double quick_failure_time(double now, double horizon) const` that gives what failure_time() would, bit for bit,
+/// or a NaN where it does not decide.
 template <class C>
 concept Certificate = requires(const C& certificate, double epoch) {
   { C::degree } -> std::convertible_to<int>;

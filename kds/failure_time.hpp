@@ -355,6 +355,10 @@ double failure_time_while_positive(const C& certificate, const Polynomial<C::deg
 template <Certificate C>
 double failure_time(const C& certificate, double now, double horizon) {
   if (!(now <= horizon)) return never;
+  if constexpr (requires { certificate.quick_failure_time(now, horizon); }) {
+    const double t = certificate.quick_failure_time(now, horizon);
+    if (!std::isnan(t)) return t;
+  }
   const auto p = certificate.template polynomial<Ball<double>>(now);
   int value = certain_sign(p.c[0]);
   if (value == 0) value = detail::extended_sign_after(certificate, now, 0);
