@@ -124,7 +124,7 @@ class CalendarQueue {
 
 template <QueueRank Rank>
 void CalendarQueue<Rank>::resize(std::size_t slots) {
-  assert(slots <= none / days_per_event);
+  assert(slots <= none / (2 * days_per_event));  // the days, rounded up, must be numbered too
   for (std::size_t slot = slots; slot < nodes_.size(); ++slot) clear(static_cast<Slot>(slot));
   nodes_.resize(slots);
   if constexpr (has_ranks) ranks_.resize(slots);
