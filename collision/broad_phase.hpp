@@ -16,14 +16,6 @@ class PairListener {
   virtual void pair_ended(BodyId a, BodyId b, double t) = 0;
 };
 
-/// CPU time by kind of work ([Paper] Figure 8), measured only when asked for.
-struct Profile {
-  double update = 0;  ///< s: recomputing bounding volumes, telling structures of new motions
-  double sort = 0;    ///< s: swaps and sorting
-  double test = 0;    ///< s: dynamic intersection tests
-  double other = 0;   ///< s: response and bookkeeping
-};
-
 /// Work done by a broad phase.
 struct BroadPhaseCounters {
   std::uint64_t swaps = 0;         ///< exchanges of adjacent interval ends

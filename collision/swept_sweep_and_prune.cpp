@@ -1,6 +1,6 @@
 #include "collision/swept_sweep_and_prune.hpp"
 
-#include "collision/stopwatch.hpp"
+#include "collision/profile.hpp"
 #include "kds/audit.hpp"
 
 #include <algorithm>
@@ -109,7 +109,7 @@ void SweptSweepAndPrune<Degree>::frame(double now, PairListener& listener) {
   ++frames_;
   frame_end_ = start_ + static_cast<double>(frames_) / rate_;
   {
-    const Stopwatch watch(profile_ ? &profile_->update : nullptr);
+    const Stopwatch watch(profile_, Work::update);
     for (const BodyId id : bodies_) sweep(id, now);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (End& end : ends_[axis]) end.value = value(end.id, axis);
@@ -122,10 +122,7 @@ template <int Degree>
 bool SweptSweepAndPrune<Degree>::advance(double limit, PairListener& listener) {
   while (frame_end_ <= limit) {
     reported_ = false;
-    const double before_update = profile_ ? profile_->update : 0;
     frame(frame_end_, listener);
-    // The caller times this whole call as sorting; what was updating is not.
-    if (profile_) profile_->sort -= profile_->update - before_update;
     if (reported_) return true;
   }
   return false;

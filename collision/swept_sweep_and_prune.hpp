@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase.hpp"
+#include "collision/profile.hpp"
 
 #include <array>
 #include <cstdint>

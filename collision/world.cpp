@@ -3,7 +3,7 @@
 
 #include "collision/all_pairs.hpp"
 #include "collision/kinetic_sweep_and_prune.hpp"
-#include "collision/stopwatch.hpp"
+#include "collision/profile.hpp"
 #include "collision/swept_sweep_and_prune.hpp"
 #include "kds/audit.hpp"
 
@@ -58,7 +58,7 @@ World<Degree>::World(const WorldOptions& options, Listener* listener)
       now_(options.start_time),
       horizon_(options.start_time + options.window) {
   validate(options);
-  broad_phase_ = make_broad_phase<Degree>(options, options.profile ? &profile_ : nullptr);
+  broad_phase_ = make_broad_phase<Degree>(options, profile());
   broad_phase_->extend_horizon(now_, horizon_);
 }
 
@@ -103,7 +103,7 @@ bool World<Degree>::step(double limit) {
     const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
     if (until == never) return false;
     {
-      const Stopwatch watch(options_.profile ? &profile_.sort : nullptr);
+      const Stopwatch watch(profile(), Work::sort);
       if (broad_phase_->advance(until, *this) || next == never) continue;
     }
     if (piece == next) {
@@ -164,7 +164,7 @@ void World<Degree>::enter_new_bodies() {
   }
   inserting_ = true;
   {
-    const Stopwatch watch(options_.profile ? &profile_.update : nullptr);
+    const Stopwatch watch(profile(), Work::update);
     broad_phase_->insert(entries, now_, *this);
   }
   inserting_ = false;

@@ -4,6 +4,7 @@
 #include "collision/broad_phase.hpp"
 #include "collision/contact.hpp"
 #include "collision/narrow_phase.hpp"
+#include "collision/profile.hpp"
 #include "collision/shape.hpp"
 #include "kds/dary_queue.hpp"
 
@@ -179,7 +180,8 @@ class World final : private PairListener {
   bool touching(BodyId a, BodyId b) const;
 
   WorldCounters counters() const;
-  const Profile& profile() const { return profile_; }
+  /// All zero but for `other` unless WorldOptions.profile is set.
+  const Profile& work_profile() const { return profile_; }
 
   /// Checks the broad phase against the motions, exactly, and the pairs against brute force; throws AuditFailure.
   void audit() const;
@@ -239,6 +241,8 @@ class World final : private PairListener {
   void renew_volume(BodyId id);
   void emit_pending();
 
+  Profile* profile() { return options_.profile ? &profile_ : nullptr; }
+
   // world_bodies.cpp: bodies and pairs
   const Body& body(BodyId id) const;
   Body& body(BodyId id);
@@ -283,7 +287,7 @@ class World final : private PairListener {
   DaryQueue<PairRank> contacts_;  // slots are pairs
   DaryQueue<PairRank> boxes_;     // slots are pairs; used where the broad phase is not exact
   WorldCounters counters_;
-  mutable Profile profile_;
+  Profile profile_;
   double now_;
   double horizon_;
   std::size_t alive_ = 0;

@@ -1,5 +1,5 @@
 // Bodies and pairs of the world.
-#include "collision/stopwatch.hpp"
+#include "collision/profile.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -121,7 +121,7 @@ void World<Degree>::update_motion(BodyId id, const Motion& motion) {
 
 template <int Degree>
 void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
-  const Stopwatch watch(options_.profile ? &profile_.update : nullptr);
+  const Stopwatch watch(profile(), Work::update);
   Body& b = bodies_[id];
   b.motion = motion;
   b.box = bounding_box(b);
@@ -174,6 +174,7 @@ void World<Degree>::schedule_wall(BodyId id) {
 
 template <int Degree>
 void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
+  const Stopwatch watch(profile(), Work::prune);
   now_ = t;
   Body& body_a = bodies_[a];
   Body& body_b = bodies_[b];
@@ -207,6 +208,7 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
 
 template <int Degree>
 void World<Degree>::pair_ended(BodyId a, BodyId b, double t) {
+  const Stopwatch watch(profile(), Work::prune);
   now_ = t;
   const PairSlot slot = find_pair(a, b);
   if (slot == no_pair) return;  // filtered

@@ -1,7 +1,7 @@
 // Contacts of the world: dynamic tests, response, walls.
 #include "certificates/conjunction.hpp"
 #include "certificates/wall_separation.hpp"
-#include "collision/stopwatch.hpp"
+#include "collision/profile.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ bool at_rest(const certificates::PointMotion<Degree>& motion) {
 
 template <int Degree>
 void World<Degree>::test_dirty_pairs() {
-  const Stopwatch watch(options_.profile ? &profile_.test : nullptr);
+  const Stopwatch watch(profile(), Work::test);
   // In the order of the bodies, whatever the broad phase, so that overlaps are reported in one order.
   std::sort(dirty_.begin(), dirty_.end(), [&](PairSlot x, PairSlot y) {
     return std::pair(pairs_[x].a, pairs_[x].b) < std::pair(pairs_[y].a, pairs_[y].b);

@@ -124,6 +124,8 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   world_options.broad_phase = choice.kind;
   world_options.rate = options.rate;
   world_options.report_pairs = options.pairs;
+  world_options.profile = options.profile;
+  if (scene.end_time > scene.begin_time) world_options.window = scene.end_time - scene.begin_time;
   if (scene.domain && scene.domain->walls == Walls::reflect) {
     world_options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max};
   }
@@ -178,6 +180,7 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   result.motion_updates = counters.motion_updates;
   result.held = counters.held;
   result.peak_memory_bytes = peak_memory();
+  result.profile = world.work_profile();
   return result;
 }
 

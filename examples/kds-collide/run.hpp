@@ -1,6 +1,7 @@
 // Runs a scene.
 #pragma once
 
+#include "collision/profile.hpp"
 #include "examples/kds-collide/events.hpp"
 #include "examples/kds-collide/scene.hpp"
 
@@ -16,6 +17,7 @@ struct RunOptions {
   double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
   bool pairs = false;                ///< tell of bounding volumes too
   bool steady_progress = false;      ///< call on_time at least a hundred times
+  bool profile = false;              ///< measure where the time goes
 };
 
 /// What a run took and did.
@@ -37,6 +39,7 @@ struct RunResult {
   std::uint64_t motion_updates = 0;
   std::uint64_t held = 0;          ///< times the policy for endless bounces acted
   std::uint64_t peak_memory_bytes = 0;
+  kds::collision::Profile profile;  ///< where the time went, if asked for
 };
 
 struct BroadPhaseName {
