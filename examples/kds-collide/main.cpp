@@ -209,7 +209,7 @@ int simulate(Arguments arguments) {
   progress.reset();
   if (events) events->commit();
   if (view) {
-    view->write(replay_page(recorder->to_json(arguments.scene), default_three_folder()));
+    view->write(replay_page(recorder->to_json(std::filesystem::path(arguments.scene).filename().string()), default_three_folder()));
     view->commit();
   }
   if (stats) {

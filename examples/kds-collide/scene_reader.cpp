@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -24,6 +25,13 @@ std::string text(double value) {
   std::string digits;
   append_number(digits, value);
   return digits;
+}
+
+/// For numbers that were computed and not given: six digits.
+std::string about(double value) {
+  char digits[32];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 6);
+  return {digits, end};
 }
 
 /// A value of the document and its path. Every look at it either gives what was asked for or throws JsonError.
@@ -166,7 +174,7 @@ Eigen::Quaterniond read_orientation(const Node& node) {
   const std::vector<Node> parts = node.tuple(4);
   const Eigen::Quaterniond q(parts[0].number(), parts[1].number(), parts[2].number(), parts[3].number());
   const double norm = q.norm();
-  if (!(std::abs(norm - 1) <= orientation_tolerance)) node.fail("must be a unit quaternion; its norm is " + text(norm));
+  if (!(std::abs(norm - 1) <= orientation_tolerance)) node.fail("must be a unit quaternion; its norm is " + about(norm));
   return q.normalized();
 }
 
@@ -238,7 +246,7 @@ void check_inside_walls(const Node& node, const SceneBody& body, const Domain& d
       const bool inside = at[d] - domain.min[d] >= radius && domain.max[d] - at[d] >= radius;
       if (inside) continue;
       pieces[p]["position"].fail(std::string("begins outside the reflecting walls: ") + "xyz"[d] + " = " + text(at[d]) +
-                                 " with a bounding radius of " + text(radius) + ", between " + text(domain.min[d]) +
+                                 " with a bounding radius of " + about(radius) + ", between " + text(domain.min[d]) +
                                  " and " + text(domain.max[d]));
     }
   }
@@ -255,7 +263,7 @@ void check_range(const Node& node, const SceneBody& body, const Scene& scene) {
       const auto& c = piece.coefficients;
       const double reach = std::abs(c[0][d]) + elapsed * (std::abs(c[1][d]) + elapsed * std::abs(c[2][d]));
       if (reach <= largest_number) continue;
-      pieces[p]["position"].fail("may reach a magnitude of " + text(reach) + " before end_time; at most " +
+      pieces[p]["position"].fail("may reach a magnitude of " + about(reach) + " before end_time; at most " +
                                  text(largest_number) + " is supported");
     }
   }

@@ -1,0 +1,185 @@
+#include "tests/examples/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using kds_collide::tests::read_file;
+using kds_collide::tests::TemporaryFolder;
+
+namespace {
+
+struct Outcome {
+  int code;
+  std::string out;
+  std::string err;
+};
+
+/// Runs the tool in the folder.
+Outcome kds_collide_in(const TemporaryFolder& folder, const std::string& arguments) {
+  const TemporaryFolder streams;
+  const std::string out = (streams / "out").string();
+  const std::string err = (streams / "err").string();
+  const std::string command = "cd '" + (folder / "").string() + "' && '" KDS_COLLIDE_PROGRAM "' " + arguments + " >" + out +
+                              " 2>" + err + " </dev/null";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// Two balls that meet at t = 1.
+const char* const head_on = R"({"scene": 1, "end_time": 3, "response": "none", "bodies": [
+  {"name": "a", "shape": {"sphere": {"radius": 1}}, "motion": [{"start": 0, "position": [[0,0,0], [1,0,0]]}]},
+  {"name": "b", "shape": {"sphere": {"radius": 1}}, "motion": [{"start": 0, "position": [[4,0,0], [-1,0,0]]}]}]})";
+
+}  // namespace
+
+TEST_CASE("command line: a scene in, events out") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  const Outcome outcome = kds_collide_in(folder, "scene.json --events - --quiet");
+  CHECK(outcome.code == 0);
+  CHECK(outcome.err.empty());
+  CHECK(outcome.out ==
+        "time,kind,a,b,px,py,pz,nx,ny,nz,feature_a,feature_b\n"
+        "1,contact,a,b,2,0,0,1,0,0,-,-\n"
+        "3,separation,a,b,2,0,0,-1,0,0,-,-\n");
+}
+
+TEST_CASE("command line: --until, --stats and the summary") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  const Outcome outcome = kds_collide_in(folder, "scene.json --events e.csv --stats s.json --until 2 --rate 10");
+  CHECK(outcome.code == 0);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Catch::Contains("2 bodies, 2 s simulated: 1 contacts"));
+  CHECK(lines_of(read_file(folder / "e.csv")).size() == 2);
+  const auto stats = nlohmann::json::parse(read_file(folder / "s.json"));
+  for (const char* key : {"cpu_seconds", "setup_cpu_seconds", "run_cpu_seconds", "sim_seconds", "bodies", "swaps",
+                          "contacts", "pair_tests", "motion_updates", "peak_memory_bytes"}) {
+    INFO(key);
+    CHECK(stats.at(key).is_number());
+  }
+  CHECK(stats["sim_seconds"] == 2);
+  CHECK(stats["contacts"] == 1);
+  CHECK(stats["broad_phase"] == "kinetic-sap");
+  CHECK(stats["peak_memory_bytes"] > 100'000);
+}
+
+TEST_CASE("command line: all broad phases write the same events of generated scenes") {
+  const TemporaryFolder folder;
+  const auto kind = std::string(GENERATE(as<std::string>(), "rings", "spheres", "boxes", "models"));
+  INFO(kind);
+  const std::string size = kind == "models" ? " --bodies 12 --density 0.1" : " --bodies 60 --density 0.2";
+  REQUIRE(kds_collide_in(folder, "--generate " + kind + size + " --seed 5").code == 0);
+  const auto events = [&](const std::string& options) {
+    const Outcome outcome = kds_collide_in(folder, kind + ".json --quiet --events - " + options);
+    CHECK(outcome.code == 0);
+    CHECK(outcome.err.empty());
+    return outcome.out;
+  };
+  const std::string expected = events("");
+  CHECK(lines_of(expected).size() > 2);
+  CHECK(events("--broad-phase kinetic-sap --rate 60") == expected);
+  CHECK(events("--broad-phase sap --rate 60") == expected);
+  CHECK(events("--broad-phase sap --rate 1000") == expected);
+  CHECK(events("--broad-phase all-pairs") == expected);
+}
+
+TEST_CASE("command line: --pairs adds the events of bounding volumes") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  const auto lines = lines_of(kds_collide_in(folder, "scene.json --quiet --events - --pairs").out);
+  REQUIRE(lines.size() == 5);
+  CHECK(lines[1] == "1,pair_begin,a,b,,,,,,,-,-");
+  CHECK(lines[2] == "1,contact,a,b,2,0,0,1,0,0,-,-");
+}
+
+TEST_CASE("command line: --view writes a page that needs nothing else") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  const Outcome outcome = kds_collide_in(folder, "scene.json --view v.html --quiet");
+  if (outcome.err.find("libjs-three") != std::string::npos) return;  // cannot be shown here
+  CHECK(outcome.code == 0);
+  const std::string page = read_file(folder / "v.html");
+  CHECK_THAT(page, Catch::StartsWith("<!DOCTYPE html>") && Catch::Contains("OrbitControls = function"));
+  CHECK_THAT(page, Catch::Contains("\"touches\":[[1,0,0,1],[3,1,0,1]]"));
+}
+
+TEST_CASE("command line: --broad-phase list, --help and --version") {
+  const TemporaryFolder folder;
+  const Outcome list = kds_collide_in(folder, "--broad-phase list");
+  CHECK(list.code == 0);
+  for (const char* name : {"auto", "kinetic-sap", "sap", "all-pairs"}) {
+    const auto lines = lines_of(list.out);
+    CHECK(std::any_of(lines.begin(), lines.end(), [&](const std::string& l) { return l.starts_with(std::string(name) + ' '); }));
+  }
+  CHECK(kds_collide_in(folder, "--help").code == 0);
+  CHECK(kds_collide_in(folder, "--version").code == 0);
+}
+
+TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, and leave nothing behind") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  folder.write("bad.json", "{\"scene\": 1, \"end_time\": NaN}");
+  const auto [arguments, error] = GENERATE(table<std::string, std::string>({
+      {"", "kds-collide: SCENE: is missing"},
+      {"none.json", "none.json: file: cannot be read: No such file or directory"},
+      {"bad.json --events e.csv --stats s.json", "bad.json: end_time: line 1, column 26: "},
+      {"scene.json --frobnicate", "kds-collide: arguments: The following argument was not expected: --frobnicate"},
+      {"scene.json --rate fast", "kds-collide: arguments: Could not convert: --rate = fast"},
+      {"scene.json --rate -1", "kds-collide: --rate: must be finite and >= 0"},
+      {"scene.json --rate nan", "kds-collide: --rate: must be finite and >= 0"},
+      {"scene.json --until inf", "kds-collide: --until: must be finite"},
+      {"scene.json --until -1", "kds-collide: --until: is before the motion begins"},
+      {"scene.json --broad-phase best", "kds-collide: --broad-phase: there is no \"best\"; there are auto, kinetic-sap"},
+      {"scene.json --broad-phase sap", "kds-collide: --rate: must be > 0 for the broad phase \"sap\""},
+      {"scene.json --events none/e.csv", "none/e.csv: file: cannot be written: No such file or directory"},
+      {"scene.json --events e.csv --stats none/s.json", "none/s.json: file: cannot be written: "},
+      {"scene.json --events scene.json", "kds-collide: --events: is the same file as SCENE"},
+      {"scene.json --events x --stats x", "kds-collide: --stats: is the same file as --events"},
+      {"scene.json --generate rings", "kds-collide: SCENE: with --generate nothing is run; give --output"},
+      {"--generate cubes", "kds-collide: --generate: there is no \"cubes\""},
+      {"--generate rings --density 2", "kds-collide: --density: must be > 0 and at most 0.3"},
+      {"--generate rings --bodies 0", "kds-collide: --bodies: must be > 0"},
+      {"scene.json --bodies 5", "kds-collide: arguments: --bodies requires --generate"},
+  }));
+  INFO(arguments);
+  const Outcome outcome = kds_collide_in(folder, arguments);
+  CHECK(outcome.code == 2);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, Catch::StartsWith(error));
+  CHECK(lines_of(outcome.err).size() == 1);
+  CHECK(folder.file_count() == 2);
+}
+
+TEST_CASE("command line: scenes at the edge of what makes sense run") {
+  const TemporaryFolder folder;
+  const std::string ball = R"("shape": {"sphere": {"radius": 1}}, "motion": [{"start": 0, "position": [[1,2,3], [1,0,0]]}]})";
+  const auto run = [&](const std::string& bodies) {
+    folder.write("scene.json", R"({"scene": 1, "end_time": 1, "response": "elastic", "bodies": [)" + bodies + "]}");
+    const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --events -");
+    CHECK(outcome.err.empty());
+    CHECK(outcome.code == 0);
+    return lines_of(outcome.out);
+  };
+  SECTION("no body") { CHECK(run("").size() == 1); }
+  SECTION("one body") { CHECK(run("{\"name\": \"a\", " + ball).size() == 1); }
+  SECTION("two bodies at one place that move alike") {
+    const auto lines = run("{\"name\": \"a\", " + ball + ", {\"name\": \"b\", " + ball);
+    REQUIRE(lines.size() == 2);
+    CHECK_THAT(lines[1], Catch::StartsWith("0,overlap,a,b,"));
+  }
+}

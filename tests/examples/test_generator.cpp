@@ -1,0 +1,121 @@
+#include "examples/kds-collide/generator.hpp"
+#include "examples/kds-collide/scene_reader.hpp"
+#include "tests/examples/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <map>
+#include <numbers>
+#include <string>
+
+using namespace kds_collide;
+using kds_collide::tests::TemporaryFolder;
+
+namespace {
+
+Scene read(const GeneratedScene& generated, const TemporaryFolder& folder) {
+  for (const auto& mesh : generated.meshes) folder.write(mesh.name, mesh.text);
+  return parse_scene(generated.json, folder / "scene.json");
+}
+
+/// FNV-1a.
+std::uint64_t hash(const std::string& text) {
+  std::uint64_t h = 14695981039346656037u;
+  for (const unsigned char c : text) h = (h ^ c) * 1099511628211u;
+  return h;
+}
+
+}  // namespace
+
+TEST_CASE("generator: one seed gives one scene, here as on every machine") {
+  const GeneratorOptions options{.kind = "rings", .bodies = 50, .density = 0.01, .seed = 7};
+  const GeneratedScene scene = generate_scene(options);
+  CHECK(scene.json == generate_scene(options).json);
+  CHECK(hash(scene.json) == 0xb4982a5a283a7789u);
+  CHECK(hash(scene.meshes.at(0).text) == 0x309d873ec6b59b95u);
+  const GeneratedScene models = generate_scene({.kind = "models", .bodies = 2, .density = 0.01, .seed = 7});
+  CHECK(hash(models.meshes.at(0).text) == 0xa9357f6a7985f644u);
+  CHECK(hash(models.meshes.at(1).text) == 0x62e8689fee490e95u);
+  GeneratorOptions other = options;
+  other.seed = 8;
+  CHECK(scene.json != generate_scene(other).json);
+}
+
+TEST_CASE("generator: every kind is as the paper's experiment asks") {
+  const auto kind = std::string(GENERATE(as<std::string>(), "rings", "models", "spheres", "boxes"));
+  const double density = GENERATE(0.01, 0.2);
+  INFO(kind << " at density " << density);
+  const std::size_t bodies = 60;
+  const TemporaryFolder folder;
+  const Scene scene = read(generate_scene({.kind = kind, .bodies = bodies, .density = density, .seed = 3}), folder);
+  REQUIRE(scene.bodies.size() == bodies);
+  CHECK(scene.end_time == 1);
+  CHECK(scene.response == Response::elastic);
+  REQUIRE(scene.domain);
+  CHECK(scene.domain->walls == Walls::reflect);
+
+  double volume = 0;
+  double mean_radius = 0;
+  std::vector<double> radii;
+  for (const SceneBody& body : scene.bodies) {
+    const double r = kds::collision::place(body.shape, body.orientation).bounding_radius;
+    CHECK(r > 0.49);
+    CHECK(r < 1.51);
+    radii.push_back(r);
+    volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    mean_radius += r / static_cast<double>(bodies);
+  }
+  CHECK(volume / std::pow(scene.domain->max[0], 3) == Approx(density).epsilon(1e-4));
+  for (std::size_t i = 0; i < bodies; ++i) {
+    const MotionPiece& motion = scene.bodies[i].motion.front();
+    const double speed = motion.coefficients[1].norm() / mean_radius;
+    CHECK(speed > 0.499);
+    CHECK(speed < 1.501);
+    for (std::size_t j = 0; j < i; ++j) {
+      const Eigen::Vector3d apart = motion.coefficients[0] - scene.bodies[j].motion.front().coefficients[0];
+      CHECK(apart.norm() > radii[i] + radii[j]);
+    }
+  }
+}
+
+TEST_CASE("generator: meshes are closed, wound outward and of bounding radius 1") {
+  const GeneratedScene rings = generate_scene({.kind = "rings", .bodies = 1});
+  const GeneratedScene models = generate_scene({.kind = "models", .bodies = 1});
+  auto files = models.meshes;
+  files.push_back(rings.meshes.at(0));
+  const TemporaryFolder folder;
+  for (const auto& file : files) {
+    INFO(file.name);
+    const MeshData mesh = read_mesh_file(folder.write(file.name, file.text));
+    CHECK((file.name == "ring.obj" ? mesh.triangles.size() == 64 : mesh.triangles.size() > 6000));
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    double volume = 0;
+    double radius = 0;
+    for (const auto& t : mesh.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}];
+      volume += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
+    }
+    for (const auto& v : mesh.vertices) radius = std::max(radius, v.norm());
+    bool closed = true;
+    for (const auto& [edge, count] : edges) closed = closed && count == 1 && edges.count({edge.second, edge.first}) == 1;
+    CHECK(closed);
+    CHECK(volume > 0);
+    CHECK(radius == Approx(1));
+  }
+}
+
+TEST_CASE("generator: options out of range are refused") {
+  const auto error = [](const GeneratorOptions& options) {
+    try {
+      generate_scene(options);
+      return std::string("no error");
+    } catch (const std::invalid_argument& e) {
+      return std::string(e.what());
+    }
+  };
+  CHECK(error({.kind = "cubes"}) == "--generate: there is no \"cubes\"; use rings, models, spheres or boxes");
+  CHECK(error({.bodies = 0}) == "--bodies: must be > 0");
+  CHECK(error({.density = 0}) == "--density: must be > 0 and at most 0.3");
+  CHECK(error({.density = 0.9}) == "--density: must be > 0 and at most 0.3");
+  CHECK(error({.density = NAN}) == "--density: must be > 0 and at most 0.3");
+}

@@ -1,0 +1,58 @@
+#include "examples/kds-collide/output_file.hpp"
+#include "tests/examples/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <string>
+
+using namespace kds_collide;
+using kds_collide::tests::read_file;
+using kds_collide::tests::TemporaryFolder;
+
+TEST_CASE("output file: what was there stays until the new one is whole") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a.txt", "old").string();
+  {
+    OutputFile file(path);
+    file.write("new");
+  }
+  CHECK(read_file(path) == "old");
+  CHECK(folder.file_count() == 1);
+  OutputFile file(path);
+  file.write("new");
+  file.commit();
+  CHECK(read_file(path) == "new");
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("output file: a symbolic link stays one, a device is written as it is") {
+  const TemporaryFolder folder;
+  const auto target = folder.write("a.txt", "old");
+  std::filesystem::create_symlink(target, folder / "link.txt");
+  OutputFile file((folder / "link.txt").string());
+  file.write("new");
+  file.commit();
+  CHECK(std::filesystem::is_symlink(folder / "link.txt"));
+  CHECK(read_file(target) == "new");
+
+  OutputFile null("/dev/null");
+  null.write("gone");
+  null.commit();
+  CHECK(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_CASE("output file: a place that cannot be written is named") {
+  const TemporaryFolder folder;
+  const auto error = [](const std::string& path) {
+    try {
+      OutputFile file(path);
+      return std::string("no error");
+    } catch (const OutputError& e) {
+      CHECK(e.on_opening);
+      return std::string(e.what());
+    }
+  };
+  const std::string missing = (folder / "none/a.txt").string();
+  CHECK(error(missing) == missing + ": file: cannot be written: No such file or directory");
+  CHECK(error((folder / "").string()) == (folder / "").string() + ": file: cannot be written: Is a directory");
+}

@@ -1,0 +1,74 @@
+#include "examples/kds-collide/replay.hpp"
+#include "tests/examples/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace kds_collide;
+using kds_collide::tests::TemporaryFolder;
+using nlohmann::json;
+
+namespace {
+
+Scene scene_of_two() {
+  Scene scene;
+  scene.begin_time = 10;
+  scene.end_time = 12;
+  scene.response = Response::elastic;
+  for (int i = 0; i < 2; ++i) {
+    SceneBody body{.name = i == 0 ? "a</script>" : "b", .shape = kds::collision::Sphere{0.5}, .motion = {MotionPiece{}}};
+    body.motion[0].coefficients.fill(Eigen::Vector3d::Zero());
+    body.motion[0].coefficients[1] = {1.0 - 2 * i, 0, 0};
+    body.motion[0].start = 10;
+    scene.bodies.push_back(body);
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("replay: the record holds pieces of motion and contacts, counted from the beginning") {
+  const Scene scene = scene_of_two();
+  ReplayRecorder recorder(scene);
+  recorder.on_event({11, EventKind::contact, 0, 1, {}, {}, {}, {}});
+  recorder.on_event({11.5, EventKind::wall, 0, 1, {}, {}, {}, {}});
+  MotionPiece piece = scene.bodies[1].motion[0];
+  piece.start = 11;
+  recorder.on_motion(0, piece);
+  piece.coefficients[2] = {0, 0, -5};
+  recorder.on_motion(0, piece);  // at the same instant: takes the other's place
+
+  const std::string text = recorder.to_json("a \"title\"");
+  CHECK(text.find("</script>") == std::string::npos);
+  const json data = json::parse(text);
+  CHECK(data["title"] == "a \"title\"");
+  CHECK(data["begin"] == 10);
+  CHECK(data["duration"] == 2);
+  CHECK(data["bodies"][0]["name"] == "a</script>");
+  CHECK(data["bodies"][0]["shape"] == "sphere");
+  CHECK(data["bodies"][0]["motion"] == json::parse("[[0,0,0,0,1,0,0],[1,0,0,0,-1,0,0,0,0,-5]]"));
+  CHECK(data["bodies"][1]["motion"] == json::parse("[[0,0,0,0,-1,0,0]]"));
+  CHECK(data["touches"] == json::parse("[[1,0,0,1]]"));
+}
+
+TEST_CASE("replay: the page holds viewer, three.js and data") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "build");
+  std::filesystem::create_directories(folder / "examples/js/controls");
+  folder.write("build/three.min.js", "THE LIBRARY");
+  folder.write("examples/js/controls/OrbitControls.js", "THE CONTROLS");
+  const std::string page = replay_page("THE DATA", folder / "");
+  const std::size_t library = page.find("THE LIBRARY");
+  const std::size_t controls = page.find("THE CONTROLS");
+  const std::size_t data = page.find("THE DATA");
+  CHECK(library < controls);
+  CHECK(controls < data);
+  CHECK(data < page.rfind("</html>"));
+  CHECK(page.find("http") == std::string::npos);  // needs no network
+}
+
+TEST_CASE("replay: without three.js the package is named") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH(replay_page("", folder / "none"), Catch::Contains("libjs-three"));
+  CHECK_THROWS_WITH(replay_page("", ""), Catch::Contains("libjs-three"));
+}
