@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.23)
 # The law of the layers: a file includes headers of its own layer and of those above it, never of one below.
 set(layers kds certificates structures collision)
 set(allowed_kds kds)
@@ -20,5 +21,5 @@ foreach(layer IN LISTS layers)
   endforeach()
 endforeach()
 if(wrong)
-  message(FATAL_ERROR "Includes that run downward through the layers:\n${wrong}")
+  message(FATAL_ERROR "Includes of layers that this one must not know:\n${wrong}")
 endif()

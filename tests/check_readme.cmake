@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.23)
 # The example in the README is the one that is compiled and run.
 file(READ "${ROOT}/README.md" readme)
 file(READ "${ROOT}/examples/01_two_balls.cpp" example)
