@@ -71,10 +71,13 @@ void World<Degree>::reach(double limit) {
   horizon_ = std::max(limit, horizon_ + options_.window);
   broad_phase_->extend_horizon(now_, horizon_);
   for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
-    if (pairs_[slot].alive && !contacts_.contains(slot)) mark_dirty(slot);
+    const bool boxes_known = slot >= boxes_.slots() || boxes_.contains(slot);
+    if (pairs_[slot].alive && !(contacts_.contains(slot) && boxes_known)) mark_dirty(slot);
   }
   for (BodyId id = 0; id < bodies_.size(); ++id) {
-    if (bodies_[id].entered) schedule_wall(id);
+    if (!bodies_[id].entered) continue;
+    schedule_wall(id);
+    schedule_volume(id);
   }
 }
 
