@@ -1,8 +1,6 @@
 // Scenes of many bodies from a seed.
 #pragma once
 
-#include "examples/kds-collide/mesh_file.hpp"
-
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -39,8 +37,5 @@ std::vector<std::string_view> generator_kinds();
 /// cube with reflecting walls. One seed gives one text, on every compiler and machine.
 /// Throws std::invalid_argument for options out of range, and where no room is left for a body.
 GeneratedScene generate_scene(const GeneratorOptions& options);
-
-/// The torus of 64 triangles, of bounding radius 1.
-MeshData ring_mesh();
 
 }  // namespace kds_collide

@@ -13,4 +13,10 @@ void append_number(std::string& text, Number value) {
   text.append(digits, end);
 }
 
+inline std::string number_text(double value) {
+  std::string text;
+  append_number(text, value);
+  return text;
+}
+
 }  // namespace kds_collide

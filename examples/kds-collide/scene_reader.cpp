@@ -1,6 +1,6 @@
 #include "examples/kds-collide/scene_reader.hpp"
 
-#include "examples/kds-collide/json_document.hpp"
+#include "examples/kds-collide/json_node.hpp"
 #include "examples/kds-collide/mesh_file.hpp"
 #include "examples/kds-collide/number_text.hpp"
 
@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <initializer_list>
 #include <map>
 #include <sstream>
 #include <system_error>
@@ -21,12 +20,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string text(double value) {
-  std::string digits;
-  append_number(digits, value);
-  return digits;
-}
-
 /// For numbers that were computed and not given: six digits.
 std::string about(double value) {
   char digits[32];
@@ -34,110 +27,7 @@ std::string about(double value) {
   return {digits, end};
 }
 
-/// A value of the document and its path. Every look at it either gives what was asked for or throws JsonError.
-class Node {
- public:
-  Node(const json& value, std::string path) : value_(value), path_(std::move(path)) {}
-
-  const std::string& path() const { return path_; }
-  [[noreturn]] void fail(const std::string& what) const { throw JsonError(path_.empty() ? "document" : path_, what); }
-
-  /// An object with these keys only.
-  const Node& object(std::initializer_list<std::string_view> keys) const {
-    require(value_.is_object(), "must be an object");
-    for (const auto& [key, child] : value_.items()) {
-      if (std::find(keys.begin(), keys.end(), key) == keys.end()) at(key).fail("unknown key");
-    }
-    return *this;
-  }
-
-  bool has(const char* key) const { return value_.contains(key); }
-
-  /// The value of a key that must be there.
-  Node operator[](const std::string& key) const {
-    if (!value_.contains(key)) throw JsonError(child_path(key), "is missing");
-    return at(key);
-  }
-
-  std::vector<Node> elements() const {
-    require(value_.is_array(), "must be an array");
-    std::vector<Node> nodes;
-    for (std::size_t i = 0; i < value_.size(); ++i) nodes.emplace_back(value_[i], path_ + '[' + std::to_string(i) + ']');
-    return nodes;
-  }
-
-  std::vector<std::pair<std::string, Node>> members() const {
-    require(value_.is_object(), "must be an object");
-    std::vector<std::pair<std::string, Node>> nodes;
-    for (const auto& [key, child] : value_.items()) nodes.emplace_back(key, at(key));
-    return nodes;
-  }
-
-  double number() const {
-    require(value_.is_number(), "must be a number");
-    const auto x = value_.get<double>();
-    require(std::abs(x) <= largest_number, "must be at most " + text(largest_number) + " in magnitude");
-    return x;
-  }
-
-  double positive() const {
-    const double x = number();
-    require(x > 0, "must be > 0");
-    require(x >= smallest_size, "must be at least " + text(smallest_size));
-    return x;
-  }
-
-  std::string string() const {
-    require(value_.is_string(), "must be a string");
-    auto s = value_.get<std::string>();
-    require(!s.empty(), "must not be empty");
-    const bool has_control = std::any_of(s.begin(), s.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-    require(!has_control, "must not hold control characters");
-    return s;
-  }
-
-  bool boolean() const {
-    require(value_.is_boolean(), "must be true or false");
-    return value_.get<bool>();
-  }
-
-  Eigen::Vector3d vector() const {
-    const std::vector<Node> parts = tuple(3);
-    return {parts[0].number(), parts[1].number(), parts[2].number()};
-  }
-
-  std::vector<Node> tuple(std::size_t size) const {
-    const bool fits = value_.is_array() && value_.size() == size;
-    require(fits, "must be an array of " + std::to_string(size) + " numbers");
-    return elements();
-  }
-
-  /// One of the choices, by its place among them.
-  std::size_t choice(std::initializer_list<std::string_view> choices) const {
-    const std::string s = value_.is_string() ? value_.get<std::string>() : "";
-    const auto found = std::find(choices.begin(), choices.end(), s);
-    if (found == choices.end()) {
-      std::string list;
-      for (const std::string_view c : choices) list += (list.empty() ? "\"" : " or \"") + std::string(c) + '"';
-      fail("must be " + list);
-    }
-    return static_cast<std::size_t>(found - choices.begin());
-  }
-
-  bool is(int n) const { return value_.is_number() && value_ == n; }
-
- private:
-  void require(bool holds, const std::string& what) const {
-    if (!holds) fail(what);
-  }
-  std::string child_path(const std::string& key) const { return path_.empty() ? key : path_ + '.' + key; }
-  Node at(const std::string& key) const { return {value_.at(key), child_path(key)}; }
-
-  const json& value_;
-  std::string path_;
-};
-
-std::shared_ptr<const kds::collision::Mesh> read_mesh(const Node& node, const std::string& name,
+std::shared_ptr<const kds::collision::Mesh> read_mesh(const JsonNode& node, const std::string& name,
                                                       const std::filesystem::path& folder) {
   try {
     MeshData data = read_mesh_file(folder / name);
@@ -151,7 +41,7 @@ std::shared_ptr<const kds::collision::Mesh> read_mesh(const Node& node, const st
   }
 }
 
-kds::collision::Shape read_shape(const Node& node, const std::vector<SceneMesh>& meshes) {
+kds::collision::Shape read_shape(const JsonNode& node, const std::vector<SceneMesh>& meshes) {
   node.object({"sphere", "box", "mesh", "scale"});
   const int kinds = int{node.has("sphere")} + int{node.has("box")} + int{node.has("mesh")};
   if (kinds != 1) node.fail("must have exactly one of \"sphere\", \"box\" and \"mesh\"");
@@ -160,8 +50,8 @@ kds::collision::Shape read_shape(const Node& node, const std::vector<SceneMesh>&
     return kds::collision::Sphere{node["sphere"].object({"radius"})["radius"].positive()};
   }
   if (node.has("box")) {
-    const Node half = node["box"].object({"half_extents"})["half_extents"];
-    const std::vector<Node> parts = half.tuple(3);
+    const JsonNode half = node["box"].object({"half_extents"})["half_extents"];
+    const std::vector<JsonNode> parts = half.tuple(3);
     return kds::collision::Box{{parts[0].positive(), parts[1].positive(), parts[2].positive()}};
   }
   const std::string name = node["mesh"].string();
@@ -170,20 +60,20 @@ kds::collision::Shape read_shape(const Node& node, const std::vector<SceneMesh>&
   return kds::collision::MeshShape{found->mesh, node.has("scale") ? node["scale"].positive() : 1.0};
 }
 
-Eigen::Quaterniond read_orientation(const Node& node) {
-  const std::vector<Node> parts = node.tuple(4);
+Eigen::Quaterniond read_orientation(const JsonNode& node) {
+  const std::vector<JsonNode> parts = node.tuple(4);
   const Eigen::Quaterniond q(parts[0].number(), parts[1].number(), parts[2].number(), parts[3].number());
   const double norm = q.norm();
   if (!(std::abs(norm - 1) <= orientation_tolerance)) node.fail("must be a unit quaternion; its norm is " + about(norm));
   return q.normalized();
 }
 
-MotionPiece read_piece(const Node& node) {
+MotionPiece read_piece(const JsonNode& node) {
   node.object({"start", "position"});
   MotionPiece piece;
   piece.start = node["start"].number();
-  const Node position = node["position"];
-  const std::vector<Node> coefficients = position.elements();
+  const JsonNode position = node["position"];
+  const std::vector<JsonNode> coefficients = position.elements();
   if (coefficients.empty()) position.fail("must have at least one coefficient");
   if (coefficients.size() > piece.coefficients.size()) {
     position.fail("has " + std::to_string(coefficients.size()) +
@@ -194,14 +84,14 @@ MotionPiece read_piece(const Node& node) {
   return piece;
 }
 
-std::vector<MotionPiece> read_motion(const Node& node, Response response) {
-  const std::vector<Node> pieces = node.elements();
+std::vector<MotionPiece> read_motion(const JsonNode& node, Response response) {
+  const std::vector<JsonNode> pieces = node.elements();
   if (pieces.empty()) node.fail("must have at least one piece");
   std::vector<MotionPiece> motion;
-  for (const Node& piece : pieces) {
+  for (const JsonNode& piece : pieces) {
     motion.push_back(read_piece(piece));
     if (motion.size() > 1 && !(motion[motion.size() - 2].start < motion.back().start)) {
-      piece["start"].fail("must be later than the start of the piece before, " + text(motion[motion.size() - 2].start));
+      piece["start"].fail("must be later than the start of the piece before, " + number_text(motion[motion.size() - 2].start));
     }
   }
   if (motion.size() > 1 && response == Response::elastic) {
@@ -210,7 +100,7 @@ std::vector<MotionPiece> read_motion(const Node& node, Response response) {
   return motion;
 }
 
-SceneBody read_body(const Node& node, const Scene& scene) {
+SceneBody read_body(const JsonNode& node, const Scene& scene) {
   node.object({"name", "shape", "orientation", "mass", "fixed", "motion"});
   SceneBody body;
   body.name = node["name"].string();
@@ -222,12 +112,12 @@ SceneBody read_body(const Node& node, const Scene& scene) {
   return body;
 }
 
-Domain read_domain(const Node& node) {
+Domain read_domain(const JsonNode& node) {
   node.object({"min", "max", "walls"});
   Domain domain;
   domain.min = node["min"].vector();
   domain.max = node["max"].vector();
-  const std::vector<Node> ends = node["max"].elements();
+  const std::vector<JsonNode> ends = node["max"].elements();
   for (std::size_t d = 0; d < 3; ++d) {
     const auto i = static_cast<Eigen::Index>(d);
     if (!(domain.min[i] < domain.max[i])) ends[d].fail("must be > domain.min[" + std::to_string(d) + "]");
@@ -237,24 +127,24 @@ Domain read_domain(const Node& node) {
 }
 
 /// With reflecting walls every piece of motion begins inside them.
-void check_inside_walls(const Node& node, const SceneBody& body, const Domain& domain) {
+void check_inside_walls(const JsonNode& node, const SceneBody& body, const Domain& domain) {
   const double radius = kds::collision::place(body.shape, body.orientation).bounding_radius;
-  const std::vector<Node> pieces = node["motion"].elements();
+  const std::vector<JsonNode> pieces = node["motion"].elements();
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const Eigen::Vector3d& at = body.motion[p].coefficients[0];
     for (int d = 0; d < 3; ++d) {
       const bool inside = at[d] - domain.min[d] >= radius && domain.max[d] - at[d] >= radius;
       if (inside) continue;
-      pieces[p]["position"].fail(std::string("begins outside the reflecting walls: ") + "xyz"[d] + " = " + text(at[d]) +
-                                 " with a bounding radius of " + about(radius) + ", between " + text(domain.min[d]) +
-                                 " and " + text(domain.max[d]));
+      pieces[p]["position"].fail(std::string("begins outside the reflecting walls: ") + "xyz"[d] + " = " + number_text(at[d]) +
+                                 " with a bounding radius of " + about(radius) + ", between " + number_text(domain.min[d]) +
+                                 " and " + number_text(domain.max[d]));
     }
   }
 }
 
 /// Every piece stays within the largest number while it holds, by the sum of its terms.
-void check_range(const Node& node, const SceneBody& body, const Scene& scene) {
-  const std::vector<Node> pieces = node["motion"].elements();
+void check_range(const JsonNode& node, const SceneBody& body, const Scene& scene) {
+  const std::vector<JsonNode> pieces = node["motion"].elements();
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const MotionPiece& piece = body.motion[p];
     const double end = p + 1 < pieces.size() ? std::min(body.motion[p + 1].start, scene.end_time) : scene.end_time;
@@ -264,12 +154,12 @@ void check_range(const Node& node, const SceneBody& body, const Scene& scene) {
       const double reach = std::abs(c[0][d]) + elapsed * (std::abs(c[1][d]) + elapsed * std::abs(c[2][d]));
       if (reach <= largest_number) continue;
       pieces[p]["position"].fail("may reach a magnitude of " + about(reach) + " before end_time; at most " +
-                                 text(largest_number) + " is supported");
+                                 number_text(largest_number) + " is supported");
     }
   }
 }
 
-Scene read_document(const Node& root, const std::filesystem::path& folder) {
+Scene read_document(const JsonNode& root, const std::filesystem::path& folder) {
   root.object({"scene", "end_time", "response", "domain", "meshes", "bodies"});
   if (!root["scene"].is(1)) root["scene"].fail("must be 1, the only format there is");
   Scene scene;
@@ -280,14 +170,14 @@ Scene read_document(const Node& root, const std::filesystem::path& folder) {
   if (root.has("domain")) scene.domain = read_domain(root["domain"]);
   if (root.has("meshes")) {
     for (const auto& [name, node] : root["meshes"].members()) {
-      const Node file = node.object({"file"})["file"];
+      const JsonNode file = node.object({"file"})["file"];
       const std::string file_name = file.string();
       scene.meshes.push_back({name, file_name, read_mesh(file, file_name, folder)});
     }
   }
-  const std::vector<Node> bodies = root["bodies"].elements();
+  const std::vector<JsonNode> bodies = root["bodies"].elements();
   std::map<std::string, std::string> names;
-  for (const Node& node : bodies) {
+  for (const JsonNode& node : bodies) {
     scene.bodies.push_back(read_body(node, scene));
     const auto [entry, is_new] = names.try_emplace(scene.bodies.back().name, node.path());
     if (!is_new) node["name"].fail('"' + entry->first + "\" is the name of " + entry->second + " too");
@@ -296,7 +186,7 @@ Scene read_document(const Node& root, const std::filesystem::path& folder) {
   if (!scene.bodies.empty()) scene.begin_time = scene.bodies.front().motion.front().start;
   for (const SceneBody& body : scene.bodies) scene.begin_time = std::min(scene.begin_time, body.motion.front().start);
   if (scene.end_time < scene.begin_time) {
-    root["end_time"].fail("must be >= " + text(scene.begin_time) + ", where the motion begins");
+    root["end_time"].fail("must be >= " + number_text(scene.begin_time) + ", where the motion begins");
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     check_range(bodies[i], scene.bodies[i], scene);
@@ -312,7 +202,7 @@ Scene read_document(const Node& root, const std::filesystem::path& folder) {
 Scene parse_scene(std::string_view json_text, const std::filesystem::path& file) {
   try {
     const json document = parse_json(json_text);
-    return read_document(Node(document, ""), file.parent_path());
+    return read_document(JsonNode(document, ""), file.parent_path());
   } catch (const JsonError& error) {
     throw SceneError(file.string(), error.where, error.what());
   }

@@ -9,11 +9,6 @@
 
 namespace kds_collide {
 
-/// Largest magnitude of any number of a scene, and smallest of a size, mass or scale: products of four of them, with
-/// room to spare for error bounds, stay normal doubles.
-inline constexpr double largest_number = 1e30;
-inline constexpr double smallest_size = 1e-30;
-
 /// How far from 1 the norm of an orientation may be: files carry few digits. It is normalised.
 inline constexpr double orientation_tolerance = 1e-6;
 

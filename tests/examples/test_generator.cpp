@@ -1,9 +1,11 @@
 #include "examples/kds-collide/generator.hpp"
+#include "examples/kds-collide/mesh_file.hpp"
 #include "examples/kds-collide/scene_reader.hpp"
 #include "tests/examples/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <string>
