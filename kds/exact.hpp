@@ -51,7 +51,8 @@ class Exact {
   }
 
  private:
-  using Integer = boost::multiprecision::cpp_int;
+  // Without expression templates: they would save nothing in operations of one step.
+  using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>, boost::multiprecision::et_off>;
 
   Exact(Integer mantissa, int exponent) : mantissa_(std::move(mantissa)), exponent_(exponent) {
     if (mantissa_.is_zero()) exponent_ = 0;
