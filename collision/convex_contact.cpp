@@ -6,11 +6,12 @@
 #include "certificates/plane_separation.hpp"
 #include "collision/contact_patch.hpp"
 
+#include <boost/container/static_vector.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
-#include <vector>
 
 namespace kds::collision {
 namespace {
@@ -21,26 +22,38 @@ using certificates::PlaneSeparation;
 using certificates::PointMotion;
 using Eigen::Vector3d;
 
-constexpr int most_planes = 30;  // two sides of the fifteen axes of two boxes
-
 /// Cross products of edges shorter than this (relative, squared) come from parallel edges, whose common directions
 /// the face normals cover: leaving one out lets a contact be reported early by at most 2^-40 of the boxes' size.
 constexpr double parallel_edges = 0x1p-80;
 
-/// A convex set of relative positions in which two shapes penetrate.
-template <int Degree, class Curved>
+/// A convex set of relative positions in which two shapes penetrate: all its certificates are broken there.
+template <int Degree, std::size_t MostPlanes, std::size_t MostCurved>
 struct Piece {
-  std::vector<PlaneSeparation<Degree>> planes;
-  std::vector<Curved> curved;
+  using Plane = PlaneSeparation<Degree>;
+  using Curved = FeatureSeparation<Degree>;
+
+  boost::container::static_vector<Plane, MostPlanes> planes;
+  boost::container::static_vector<Curved, MostCurved> curved;
+
+  std::span<const Plane> all_planes() const { return {planes.data(), planes.size()}; }
+  std::span<const Curved> all_curved() const { return {curved.data(), curved.size()}; }
 
   double first_inside(double t0, double horizon) const {
-    return certificates::first_all_broken<PlaneSeparation<Degree>, Curved>(t0, horizon, planes, curved);
+    return certificates::first_all_broken(t0, horizon, all_planes(), all_curved());
   }
-  bool inside(double t) const { return certificates::all_broken<PlaneSeparation<Degree>, Curved>(t, planes, curved); }
+  bool inside(double t) const { return certificates::all_broken(t, all_planes(), all_curved()); }
   double first_outside(double t0, double horizon) const {
-    return certificates::first_any_holds<PlaneSeparation<Degree>, Curved>(t0, horizon, planes, curved);
+    return certificates::first_any_holds(t0, horizon, all_planes(), all_curved());
   }
 };
+
+/// One piece of a box and a ball.
+template <int Degree>
+using BallPiece = Piece<Degree, 6, 1>;
+
+/// The piece of two boxes: both sides of up to fifteen axes.
+template <int Degree>
+using BoxPiece = Piece<Degree, 30, 0>;
 
 template <int Degree>
 bool is_ball(const MovingShape<Degree>& body) {
@@ -57,31 +70,30 @@ const Vector3d& half_extents(const MovingShape<Degree>& body) {
 
 // ---- What is in contact: pieces ----------------------------------------------------------------------------------
 
-template <int Degree>
-using BallPiece = Piece<Degree, FeatureSeparation<Degree>>;
-
 /// Both sides of a slab |axis . r| < sum of the margins.
 template <int Degree>
-void add_slab(std::vector<PlaneSeparation<Degree>>& planes, const MovingShape<Degree>& a, const MovingShape<Degree>& b,
-              const Vector3d& axis, double margin, double margin_too = 0) {
-  for (const double side : {1.0, -1.0}) planes.push_back({a.motion, b.motion, axis, side, {}, {margin, margin_too}});
+void add_slab(BallPiece<Degree>& piece, const MovingShape<Degree>& a, const MovingShape<Degree>& b, const Vector3d& axis,
+              double margin, double margin_too = 0) {
+  for (const double side : {1.0, -1.0}) {
+    piece.planes.push_back({a.motion, b.motion, axis, side, {}, {margin, margin_too}});
+  }
 }
 
-/// The pieces of a box (a) and a ball (b): a box grown by the radius is the union of three slabs, one grown along each
-/// axis, twelve cylinders about the edges and eight balls about the vertices.
-template <int Degree>
-std::vector<BallPiece<Degree>> box_and_ball(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+/// Calls visit(piece) for the pieces of a box (a) and a ball (b), until it returns false. A box grown by the radius is
+/// the union of three slabs, one grown along each axis, twelve cylinders about the edges and eight balls about the
+/// vertices.
+template <int Degree, class Visit>
+void visit_box_and_ball(const MovingShape<Degree>& a, const MovingShape<Degree>& b, const Visit& visit) {
   const Vector3d& h = half_extents(a);
   const double r = radius(b);
   const Eigen::Matrix3d& axes = a.shape.rotation;
   const std::array<Vector3d, 3> frame{axes.col(0), axes.col(1), axes.col(2)};
-  std::vector<BallPiece<Degree>> pieces;
-  pieces.reserve(23);
   for (int grown = 0; grown < 3; ++grown) {
     BallPiece<Degree> slab;
-    for (int d = 0; d < 3; ++d) add_slab(slab.planes, a, b, axes.col(d), h[d], d == grown ? r : 0.0);
-    pieces.push_back(std::move(slab));
+    for (int d = 0; d < 3; ++d) add_slab(slab, a, b, axes.col(d), h[d], d == grown ? r : 0.0);
+    if (!visit(slab)) return;
   }
+  // Where the ball's centre is beyond the faces on two axes, and between them on the third.
   for (int along = 0; along < 3; ++along) {
     std::array<bool, 3> used{true, true, true};
     used[static_cast<std::size_t>(along)] = false;
@@ -90,9 +102,9 @@ std::vector<BallPiece<Degree>> box_and_ball(const MovingShape<Degree>& a, const 
       offset[static_cast<std::size_t>((along + 1) % 3)] = (corner & 1 ? 1 : -1) * h[(along + 1) % 3];
       offset[static_cast<std::size_t>((along + 2) % 3)] = (corner & 2 ? 1 : -1) * h[(along + 2) % 3];
       BallPiece<Degree> edge;
-      add_slab(edge.planes, a, b, axes.col(along), h[along]);
+      add_slab(edge, a, b, axes.col(along), h[along]);
       edge.curved.push_back({a.motion, b.motion, frame, offset, used, r});
-      pieces.push_back(std::move(edge));
+      if (!visit(edge)) return;
     }
   }
   for (int corner = 0; corner < 8; ++corner) {
@@ -100,9 +112,8 @@ std::vector<BallPiece<Degree>> box_and_ball(const MovingShape<Degree>& a, const 
                                        (corner & 4 ? 1 : -1) * h[2]};
     BallPiece<Degree> vertex;
     vertex.curved.push_back({a.motion, b.motion, frame, offset, {true, true, true}, r});
-    pieces.push_back(std::move(vertex));
+    if (!visit(vertex)) return;
   }
-  return pieces;
 }
 
 /// The slab around all pieces of a box and a ball: outside it there is nothing to look for.
@@ -110,16 +121,15 @@ template <int Degree>
 BallPiece<Degree> hull_of_box_and_ball(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
   BallPiece<Degree> hull;
   for (int d = 0; d < 3; ++d) {
-    add_slab(hull.planes, a, b, a.shape.rotation.col(d), half_extents(a)[d], radius(b));
+    add_slab(hull, a, b, a.shape.rotation.col(d), half_extents(a)[d], radius(b));
   }
   return hull;
 }
 
 /// Directions that can separate two boxes: three face normals each, nine products of edges.
 template <int Degree>
-std::vector<Vector3d> separating_axes(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
-  std::vector<Vector3d> axes;
-  axes.reserve(15);
+boost::container::static_vector<Vector3d, 15> separating_axes(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+  boost::container::static_vector<Vector3d, 15> axes;
   for (int d = 0; d < 3; ++d) axes.push_back(a.shape.rotation.col(d));
   if (a.shape.rotation == b.shape.rotation) return axes;
   for (int d = 0; d < 3; ++d) axes.push_back(b.shape.rotation.col(d));
@@ -133,14 +143,10 @@ std::vector<Vector3d> separating_axes(const MovingShape<Degree>& a, const Moving
 }
 
 template <int Degree>
-using BoxPiece = Piece<Degree, FeatureSeparation<Degree>>;
-
-template <int Degree>
 BoxPiece<Degree> box_and_box(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
   const auto& u = a.shape.half_axes;
   const auto& w = b.shape.half_axes;
   BoxPiece<Degree> piece;
-  piece.planes.reserve(most_planes);
   for (const Vector3d& axis : separating_axes(a, b)) {
     for (const double side : {1.0, -1.0}) {
       piece.planes.push_back({a.motion, b.motion, axis, side, {&u[0], &u[1], &u[2], &w[0], &w[1], &w[2]}, {}});
@@ -247,39 +253,21 @@ double first_piece_contact(const P& piece, const MovingShape<Degree>& a, const M
   }
 }
 
-template <class P>
-bool inside_any(const std::vector<P>& pieces, double t) {
-  return std::any_of(pieces.begin(), pieces.end(), [t](const P& piece) { return piece.inside(t); });
-}
-
-template <class P>
-double first_outside_all(const std::vector<P>& pieces, double t, double horizon) {
-  bool moved = true;
-  while (moved && t != never) {
-    moved = false;
-    for (const P& piece : pieces) {
-      if (!piece.inside(t)) continue;
-      t = piece.first_outside(t, horizon);
-      if (t == never) break;
-      moved = true;
-    }
+/// Calls visit(piece) for the pieces of two shapes of which at least one is a box, until it returns false.
+template <int Degree, class Visit>
+void visit_pieces(const MovingShape<Degree>& a, const MovingShape<Degree>& b, const Visit& visit) {
+  if (is_ball(b)) {
+    visit_box_and_ball(a, b, visit);
+  } else if (is_ball(a)) {
+    visit_box_and_ball(b, a, visit);
+  } else {
+    visit(box_and_box(a, b));
   }
-  return t;
 }
 
-/// Calls f with the pieces of any two spheres and boxes (balls of one piece count as a list of one).
 template <int Degree>
 BallSeparation<Degree> balls_apart(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
   return {a.motion, b.motion, radius(a), radius(b)};
-}
-
-template <int Degree>
-std::vector<BallPiece<Degree>> pieces_of(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
-  if (is_ball(b)) return box_and_ball(a, b);
-  if (is_ball(a)) return box_and_ball(b, a);
-  std::vector<BallPiece<Degree>> one;
-  one.push_back(box_and_box(a, b));
-  return one;
 }
 
 }  // namespace
@@ -303,16 +291,19 @@ double ConvexContact<Degree>::first_contact(const Body& a, const Body& b, double
     t0 = hull_of_box_and_ball(a, b).first_inside(t0, horizon);
     if (t0 == never) return never;
   }
-  for (const auto& piece : pieces_of(a, b)) {
+  visit_pieces(a, b, [&](const auto& piece) {
     first = std::min(first, first_piece_contact(piece, a, b, t0, std::min(horizon, first), mode, where));
-  }
+    return first > t0;
+  });
   return first;
 }
 
 template <int Degree>
 bool ConvexContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
   if (is_ball(a) && is_ball(b)) return sign_after(balls_apart(a, b), t) < 0;
-  return inside_any(pieces_of(a, b), t);
+  bool inside = false;
+  visit_pieces(a, b, [&](const auto& piece) { return !(inside = piece.inside(t)); });
+  return inside;
 }
 
 template <int Degree>
@@ -321,7 +312,19 @@ double ConvexContact<Degree>::first_separation(const Body& a, const Body& b, dou
     const auto apart = balls_apart(a, b);
     return sign_after(apart, t0) < 0 ? recovery_time(apart, t0, horizon) : t0;
   }
-  return first_outside_all(pieces_of(a, b), t0, horizon);
+  // Out of one piece may be into another: until no piece holds them.
+  double t = t0;
+  bool moved = true;
+  while (moved && t != never) {
+    moved = false;
+    visit_pieces(a, b, [&](const auto& piece) {
+      if (!piece.inside(t)) return true;
+      t = piece.first_outside(t, horizon);
+      moved = true;
+      return t != never;
+    });
+  }
+  return t;
 }
 
 template <int Degree>

@@ -109,23 +109,38 @@ int exact_sign_after(const C& certificate, double t, int derivative) {
   return 0;
 }
 
+/// Sign of the first coefficient from `derivative` on that is not known to be zero; 0 where it is not decided.
+/// `all_zero` says that all are known to be zero.
+template <int Degree, class T>
+int certain_sign_after(const Polynomial<Degree, Ball<T>>& f, int derivative, bool& all_zero) {
+  all_zero = false;
+  for (std::size_t i = static_cast<std::size_t>(derivative); i <= Degree; ++i) {
+    if (const int s = certain_sign(f.c[i])) return s;
+    if (!f.c[i].is_zero()) return 0;
+  }
+  all_zero = true;
+  return 0;
+}
+
 /// Skips the rung of doubles: for times that are roots up to rounding, where it cannot decide.
 template <class C>
 int extended_sign_after(const C& certificate, double t, int derivative) {
   if (known_to_vanish(certificate)) return 0;
   ++sign_counters.extended;
+  bool zero = false;
   const auto f = certificate.template polynomial<Ball<DoubleDouble>>(t);
-  if (const int s = certain_sign(f.c[static_cast<std::size_t>(derivative)])) return s;
-  return exact_sign_after(certificate, t, derivative);
+  const int s = certain_sign_after(f, derivative, zero);
+  return s != 0 || zero ? s : exact_sign_after(certificate, t, derivative);
 }
 
 }  // namespace detail
 
 template <Certificate C>
 int sign_after(const C& certificate, double t, int derivative) {
+  bool zero = false;
   const auto f = certificate.template polynomial<Ball<double>>(t);
-  if (const int s = certain_sign(f.c[static_cast<std::size_t>(derivative)])) return s;
-  return detail::extended_sign_after(certificate, t, derivative);
+  const int s = detail::certain_sign_after(f, derivative, zero);
+  return s != 0 || zero ? s : detail::extended_sign_after(certificate, t, derivative);
 }
 
 }  // namespace kds

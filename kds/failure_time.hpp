@@ -149,7 +149,8 @@ double linear_failure_time(const C& certificate, const Polynomial<1, Ball<double
   const double lower = (p.c[0].middle - p.c[0].radius) / steepest;
   if (now + lower * (1 - 0x1p-40) > horizon) return never;
   const double start = std::max(now, now + p.c[0].middle / -p.c[1].middle);
-  if (!(start < never)) return never;  // beyond all doubles
+  // A slope that vanishes in doubles may still bring a root among them.
+  if (!(start < never)) return first_past_linear_root(certificate, now, std::numeric_limits<double>::max(), horizon);
   ++sign_counters.extended;
   const auto f = certificate.template polynomial<Ball<DoubleDouble>>(start);
   const double value = f.c[0].middle.high;
@@ -288,6 +289,10 @@ class DerivativeIntervals {
 /// Precondition: f > 0 just after now.
 template <class C>
 double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<double>>& p, double now, double horizon) {
+  const auto by_derivatives = [&] {
+    const auto guide = middle<C>(certificate.template polynomial<Ball<double>>(now));
+    return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+  };
   const int bend = certain_sign(p.c[2]);
   const int rate = certain_sign(p.c[1]);
   if (bend > 0 && rate > 0) return never;
@@ -295,8 +300,7 @@ double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<dou
   const int real = certain_sign(discriminant);
   if (bend > 0 && real < 0) return never;
   if (bend == 0 || (bend > 0 && (rate == 0 || real == 0)) || !(discriminant.middle < never)) {
-    const auto guide = middle<C>(p);
-    return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+    return by_derivatives();
   }
   const double c0 = p.c[0].middle;
   const double c1 = p.c[1].middle;
@@ -314,40 +318,57 @@ double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<dou
     if (above < never && sign_after(certificate, above) < 0) {
       return LatticeCrossing<C>(certificate, 0)(now, above, -1, guess);
     }
-    if (above == horizon) {
+    if (above == horizon && horizon < never) {
       // Positive at the horizon, which is before the vertex: falling all the way, so positive throughout.
       if (sign_after(certificate, horizon, 1) < 0) return never;
     }
-    const auto guide = middle<C>(p);
-    return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+    return by_derivatives();
   }
   // Concave and positive now: one crossing ahead.
   const double tau = c1 >= 0 ? (c1 + root) / (-2 * c2) : 2 * c0 / (root - c1);
   if (horizon < never && sign_after(certificate, horizon) > 0) return never;
   const double above = horizon < never ? horizon : std::numeric_limits<double>::max();
+  if (horizon == never && !(now + tau < 0x1p900) && sign_after(certificate, above) >= 0) return never;
   return LatticeCrossing<C>(certificate, 0)(now, above, -1, now + tau);
+}
+
+/// The first coefficients of a polynomial whose others are zero.
+template <int Lower, int Degree, class Scalar>
+Polynomial<Lower, Scalar> truncated(const Polynomial<Degree, Scalar>& p) {
+  Polynomial<Lower, Scalar> result;
+  for (std::size_t i = 0; i <= Lower; ++i) result.c[i] = p.c[i];
+  return result;
 }
 
 /// p is f about now. Precondition: f > 0 just after now.
 template <class C>
 double failure_time_while_positive(const C& certificate, const Polynomial<C::degree, Ball<double>>& p, double now,
                                    double horizon) {
-  if constexpr (C::degree == 0) {
-    return never;
-  } else {
-    int slowest = C::degree;  // Where all higher coefficients are certainly positive, f never falls.
-    while (slowest > 0 && certain_sign(p.c[static_cast<std::size_t>(slowest)]) > 0) --slowest;
-    if (slowest == 0) return never;
-    if constexpr (C::degree == 1) {
+  // Where all higher coefficients are certainly not negative, f never falls.
+  int falling = C::degree;
+  while (falling > 0) {
+    const auto& c = p.c[static_cast<std::size_t>(falling)];
+    if (!(c.middle >= c.radius * Ball<double>::slack)) break;
+    --falling;
+  }
+  if (falling == 0) return never;
+  // Motions of a formal degree often differ by one of a lower: bodies in a common gravity, say.
+  int degree = C::degree;
+  while (p.c[static_cast<std::size_t>(degree)].is_zero()) --degree;
+  if constexpr (C::degree >= 1) {
+    if (degree == 1) {
       if (certain_sign(p.c[1]) == 0 && extended_sign_after(certificate, now, 1) >= 0) return never;
-      return linear_failure_time(certificate, p, now, horizon);
-    } else if constexpr (C::degree == 2) {
-      return quadratic_failure_time(certificate, p, now, horizon);
-    } else {
-      const auto guide = middle<C>(p);
-      return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+      return linear_failure_time(certificate, truncated<1>(p), now, horizon);
     }
   }
+  if constexpr (C::degree >= 2) {
+    if (degree == 2) return quadratic_failure_time(certificate, truncated<2>(p), now, horizon);
+  }
+  if constexpr (C::degree >= 3) {
+    const auto guide = middle<C>(p);
+    return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+  }
+  return never;
 }
 
 }  // namespace detail
