@@ -33,18 +33,21 @@ struct Order {
     return at_rest || lower.start == upper.start;
   }
 
-  /// What failure_time() gives, bit for bit, or a NaN where it takes more care: for lines with a common start, the
-  /// certificate of a sweep and prune whose bodies have not yet met.
+  /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows motions with a common start
+  /// and common accelerations: those of bodies that have not met yet, or share a gravity.
   double quick_failure_time(double now, double horizon) const
-    requires(Degree == 1);
+    requires(Degree >= 1);
 };
 
 template <int Degree>
 double Order<Degree>::quick_failure_time(double now, double horizon) const
-  requires(Degree == 1)
+  requires(Degree >= 1)
 {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
   if (lower.start != upper.start) return undecided;
+  for (std::size_t i = 2; i <= Degree; ++i) {
+    if (lower.position.c[i] != upper.position.c[i]) return undecided;
+  }
   const double start = upper.start;
   const DoubleDouble gap = two_sum(upper.position.c[0], -lower.position.c[0]);   // exact
   const DoubleDouble rate = two_sum(upper.position.c[1], -lower.position.c[1]);  // exact
