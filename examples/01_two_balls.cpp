@@ -12,7 +12,8 @@ using Eigen::Vector3d;
 struct Teller : WorldListener<1> {
   void contact(World<1>&, const PairEvent& event) override {
     const auto& [time, point, normal, feature_a, feature_b] = event.contact;
-    std::cout << "the balls meet at t = " << time << " in (" << point[0] << ", " << point[1] << ", " << point[2] << ")\n";
+    std::cout << "the balls meet at t = " << time << " in (" << point[0] << ", " << point[1] << ", " << point[2]
+              << ")\n";
   }
 };
 

@@ -8,8 +8,7 @@
 
 namespace kds_collide {
 
-inline constexpr std::string_view event_csv_header =
-    "time,kind,a,b,px,py,pz,nx,ny,nz,feature_a,feature_b\n";
+inline constexpr std::string_view event_csv_header = "time,kind,a,b,px,py,pz,nx,ny,nz,feature_a,feature_b\n";
 
 /// Appends the line of one event. Numbers are the shortest that read back to the same double; names are quoted where
 /// they hold a comma or a quote (RFC 4180). Point and normal of pair_begin and pair_end are empty.

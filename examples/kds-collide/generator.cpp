@@ -143,9 +143,12 @@ double bounding_radius(const MeshData& mesh) {
 void check(const GeneratorOptions& options) {
   const auto kinds = generator_kinds();
   if (std::find(kinds.begin(), kinds.end(), options.kind) == kinds.end()) {
-    throw std::invalid_argument("--generate: there is no \"" + options.kind + "\"; use rings, models, spheres or boxes");
+    throw std::invalid_argument("--generate: there is no \"" + options.kind +
+                                "\"; use rings, models, spheres or boxes");
   }
+  constexpr std::size_t most_bodies = 10'000'000;  // about 3 GB of text
   if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
+  if (options.bodies > most_bodies) throw std::invalid_argument("--bodies: must be at most 10000000");
   if (!(options.density > 0 && options.density <= 0.3)) {
     throw std::invalid_argument("--density: must be > 0 and at most 0.3");
   }

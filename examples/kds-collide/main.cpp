@@ -77,10 +77,12 @@ void describe(CLI::App& app, Arguments& arguments) {
   const auto add = [&](const char* name, auto& value, const char* what) {
     return app.add_option(name, value, what)->needs(kind)->group(group);
   };
-  add("--bodies", arguments.generator.bodies, "How many")->capture_default_str();
+  add("--bodies", arguments.generator.bodies, "How many")->check(CLI::NonNegativeNumber)->capture_default_str();
   add("--density", arguments.generator.density, "Volume of their bounding balls over that of the domain")
       ->capture_default_str();
-  add("--seed", arguments.generator.seed, "One seed, one scene, on every machine")->capture_default_str();
+  add("--seed", arguments.generator.seed, "One seed, one scene, on every machine")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   add("--output", arguments.output, "Scene file to write, meshes beside it (default: KIND.json)")->type_name("FILE");
   app.callback([&arguments, kind] { arguments.generate = kind->count() > 0; });
   app.set_version_flag("--version", "kds-collide " KDS_VERSION);
@@ -209,7 +211,8 @@ int simulate(Arguments arguments) {
   progress.reset();
   if (events) events->commit();
   if (view) {
-    view->write(replay_page(recorder->to_json(std::filesystem::path(arguments.scene).filename().string()), default_three_folder()));
+    view->write(replay_page(recorder->to_json(std::filesystem::path(arguments.scene).filename().string()),
+                            default_three_folder()));
     view->commit();
   }
   if (stats) {

@@ -141,7 +141,8 @@ MeshData read_stl(const std::filesystem::path& file) {
 MeshData read_mesh_file(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw MeshFileError("no such file");
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   if (extension != ".obj" && extension != ".stl") throw MeshFileError("only .obj and .stl files are read");
   MeshData mesh = extension == ".obj" ? read_obj(file) : read_stl(file);
   if (mesh.triangles.empty()) throw MeshFileError("has no triangles");

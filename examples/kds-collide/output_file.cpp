@@ -28,7 +28,10 @@ extern "C" void remove_temporaries(int signal) {
 
 int remember(const std::string& name) {
   [[maybe_unused]] static const bool installed = [] {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, remove_temporaries);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      // What is ignored stays so: nohup.
+      if (std::signal(signal, remove_temporaries) == SIG_IGN) std::signal(signal, SIG_IGN);
+    }
     return true;
   }();
   for (std::size_t slot = 0; slot < most_files; ++slot) {

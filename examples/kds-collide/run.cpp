@@ -78,7 +78,8 @@ class Teller final : public kds::collision::WorldListener<Degree> {
 
   void wall(World& world, const kds::collision::WallEvent& event) override {
     const Contact& c = event.contact;
-    sink_.on_event({c.time, EventKind::wall, event.body, static_cast<std::uint32_t>(event.wall), c.point, c.normal, {}, {}});
+    sink_.on_event(
+        {c.time, EventKind::wall, event.body, static_cast<std::uint32_t>(event.wall), c.point, c.normal, {}, {}});
     tell_motion(world, event.body);
   }
   void pair_began(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_begin, a, b, t); }
@@ -119,8 +120,8 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   }
   kds::collision::WorldOptions world_options;
   world_options.start_time = scene.begin_time;
-  world_options.response = scene.response == Response::elastic ? kds::collision::Response::elastic
-                                                               : kds::collision::Response::none;
+  world_options.response =
+      scene.response == Response::elastic ? kds::collision::Response::elastic : kds::collision::Response::none;
   world_options.broad_phase = choice.kind;
   world_options.rate = options.rate;
   world_options.report_pairs = options.pairs;

@@ -22,10 +22,10 @@ struct RunOptions {
 
 /// What a run took and did.
 struct RunResult {
-  std::string broad_phase;         ///< the one used; never "auto"
-  double setup_cpu_seconds = 0;    ///< from the scene to the first instant
-  double run_cpu_seconds = 0;      ///< from there on
-  double sim_seconds = 0;          ///< simulated time
+  std::string broad_phase;       ///< the one used; never "auto"
+  double setup_cpu_seconds = 0;  ///< from the scene to the first instant
+  double run_cpu_seconds = 0;    ///< from there on
+  double sim_seconds = 0;        ///< simulated time
   std::uint64_t bodies = 0;
   std::uint64_t swaps = 0;         ///< exchanges of neighbours in the sorted lists
   std::uint64_t certificates = 0;  ///< failure times computed by the broad phase
@@ -37,7 +37,7 @@ struct RunResult {
   std::uint64_t overlaps = 0;
   std::uint64_t wall_contacts = 0;
   std::uint64_t motion_updates = 0;
-  std::uint64_t held = 0;          ///< times the policy for endless bounces acted
+  std::uint64_t held = 0;  ///< times the policy for endless bounces acted
   std::uint64_t peak_memory_bytes = 0;
   kds::collision::Profile profile;  ///< where the time went, if asked for
 };

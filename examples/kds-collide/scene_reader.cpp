@@ -64,7 +64,9 @@ Eigen::Quaterniond read_orientation(const JsonNode& node) {
   const std::vector<JsonNode> parts = node.tuple(4);
   const Eigen::Quaterniond q(parts[0].number(), parts[1].number(), parts[2].number(), parts[3].number());
   const double norm = q.norm();
-  if (!(std::abs(norm - 1) <= orientation_tolerance)) node.fail("must be a unit quaternion; its norm is " + about(norm));
+  if (!(std::abs(norm - 1) <= orientation_tolerance)) {
+    node.fail("must be a unit quaternion; its norm is " + about(norm));
+  }
   return q.normalized();
 }
 
@@ -91,7 +93,8 @@ std::vector<MotionPiece> read_motion(const JsonNode& node, Response response) {
   for (const JsonNode& piece : pieces) {
     motion.push_back(read_piece(piece));
     if (motion.size() > 1 && !(motion[motion.size() - 2].start < motion.back().start)) {
-      piece["start"].fail("must be later than the start of the piece before, " + number_text(motion[motion.size() - 2].start));
+      piece["start"].fail("must be later than the start of the piece before, " +
+                          number_text(motion[motion.size() - 2].start));
     }
   }
   if (motion.size() > 1 && response == Response::elastic) {
@@ -135,9 +138,9 @@ void check_inside_walls(const JsonNode& node, const SceneBody& body, const Domai
     for (int d = 0; d < 3; ++d) {
       const bool inside = at[d] - domain.min[d] >= radius && domain.max[d] - at[d] >= radius;
       if (inside) continue;
-      pieces[p]["position"].fail(std::string("begins outside the reflecting walls: ") + "xyz"[d] + " = " + number_text(at[d]) +
-                                 " with a bounding radius of " + about(radius) + ", between " + number_text(domain.min[d]) +
-                                 " and " + number_text(domain.max[d]));
+      pieces[p]["position"].fail(std::string("begins outside the reflecting walls: ") + "xyz"[d] + " = " +
+                                 number_text(at[d]) + " with a bounding radius of " + about(radius) + ", between " +
+                                 number_text(domain.min[d]) + " and " + number_text(domain.max[d]));
     }
   }
 }

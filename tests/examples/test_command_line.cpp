@@ -26,8 +26,8 @@ Outcome kds_collide_in(const TemporaryFolder& folder, const std::string& argumen
   const TemporaryFolder streams;
   const std::string out = (streams / "out").string();
   const std::string err = (streams / "err").string();
-  const std::string command = "cd '" + (folder / "").string() + "' && '" KDS_COLLIDE_PROGRAM "' " + arguments + " >" + out +
-                              " 2>" + err + " </dev/null";
+  const std::string command = "cd '" + (folder / "").string() + "' && '" KDS_COLLIDE_PROGRAM "' " + arguments + " >" +
+                              out + " 2>" + err + " </dev/null";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
 }
@@ -124,7 +124,8 @@ TEST_CASE("command line: --broad-phase list, --help and --version") {
   CHECK(list.code == 0);
   for (const char* name : {"auto", "kinetic-sap", "sap", "all-pairs"}) {
     const auto lines = lines_of(list.out);
-    CHECK(std::any_of(lines.begin(), lines.end(), [&](const std::string& l) { return l.starts_with(std::string(name) + ' '); }));
+    CHECK(std::any_of(lines.begin(), lines.end(),
+                      [&](const std::string& l) { return l.starts_with(std::string(name) + ' '); }));
   }
   CHECK(kds_collide_in(folder, "--help").code == 0);
   CHECK(kds_collide_in(folder, "--version").code == 0);
@@ -144,7 +145,8 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"scene.json --rate nan", "kds-collide: --rate: must be finite and >= 0"},
       {"scene.json --until inf", "kds-collide: --until: must be finite"},
       {"scene.json --until -1", "kds-collide: --until: is before the motion begins"},
-      {"scene.json --broad-phase best", "kds-collide: --broad-phase: there is no \"best\"; there are auto, kinetic-sap"},
+      {"scene.json --broad-phase best",
+       "kds-collide: --broad-phase: there is no \"best\"; there are auto, kinetic-sap"},
       {"scene.json --broad-phase sap", "kds-collide: --rate: must be > 0 for the broad phase \"sap\""},
       {"scene.json --events none/e.csv", "none/e.csv: file: cannot be written: No such file or directory"},
       {"scene.json --events e.csv --stats none/s.json", "none/s.json: file: cannot be written: "},
@@ -154,6 +156,8 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"--generate cubes", "kds-collide: --generate: there is no \"cubes\""},
       {"--generate rings --density 2", "kds-collide: --density: must be > 0 and at most 0.3"},
       {"--generate rings --bodies 0", "kds-collide: --bodies: must be > 0"},
+      {"--generate rings --bodies -5", "kds-collide: arguments: --bodies: "},
+      {"--generate rings --bodies 99999999999", "kds-collide: --bodies: must be at most 10000000"},
       {"scene.json --bodies 5", "kds-collide: arguments: --bodies requires --generate"},
   }));
   INFO(arguments);
@@ -167,7 +171,8 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
 
 TEST_CASE("command line: scenes at the edge of what makes sense run") {
   const TemporaryFolder folder;
-  const std::string ball = R"("shape": {"sphere": {"radius": 1}}, "motion": [{"start": 0, "position": [[1,2,3], [1,0,0]]}]})";
+  const std::string ball =
+      R"("shape": {"sphere": {"radius": 1}}, "motion": [{"start": 0, "position": [[1,2,3], [1,0,0]]}]})";
   const auto run = [&](const std::string& bodies) {
     folder.write("scene.json", R"({"scene": 1, "end_time": 1, "response": "elastic", "bodies": [)" + bodies + "]}");
     const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --events -");

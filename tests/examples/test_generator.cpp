@@ -99,7 +99,8 @@ TEST_CASE("generator: meshes are closed, wound outward and of bounding radius 1"
     }
     for (const auto& v : mesh.vertices) radius = std::max(radius, v.norm());
     bool closed = true;
-    for (const auto& [edge, count] : edges) closed = closed && count == 1 && edges.count({edge.second, edge.first}) == 1;
+    for (const auto& [edge, count] : edges)
+      closed = closed && count == 1 && edges.count({edge.second, edge.first}) == 1;
     CHECK(closed);
     CHECK(volume > 0);
     CHECK(radius == Approx(1));

@@ -69,9 +69,7 @@ TEST_CASE("mesh file: equal vertices of an STL file become one") {
   CHECK(mesh.triangles[1] == std::array<std::uint32_t, 3>{1, 3, 2});
 
   std::string binary(80, ' ');
-  const auto append = [&binary](auto value) {
-    binary.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
+  const auto append = [&binary](auto value) { binary.append(reinterpret_cast<const char*>(&value), sizeof value); };
   append(std::uint32_t{2});
   for (const auto& triangle : mesh.triangles) {
     for (int i = 0; i < 3; ++i) append(0.0F);

@@ -16,7 +16,8 @@ Scene scene_of_two() {
   scene.end_time = 12;
   scene.response = Response::elastic;
   for (int i = 0; i < 2; ++i) {
-    SceneBody body{.name = i == 0 ? "a</script>" : "b", .shape = kds::collision::Sphere{0.5}, .motion = {MotionPiece{}}};
+    SceneBody body{
+        .name = i == 0 ? "a</script>" : "b", .shape = kds::collision::Sphere{0.5}, .motion = {MotionPiece{}}};
     body.motion[0].coefficients.fill(Eigen::Vector3d::Zero());
     body.motion[0].coefficients[1] = {1.0 - 2 * i, 0, 0};
     body.motion[0].start = 10;

@@ -59,8 +59,9 @@ struct Edit {
 
 std::string edited(const Edit& edit) {
   const json base = json::parse(valid_scene);
-  const json patch = edit.value.empty() ? json{{"op", "remove"}, {"path", edit.pointer}}
-                                        : json{{"op", "add"}, {"path", edit.pointer}, {"value", json::parse(edit.value)}};
+  const json patch = edit.value.empty()
+                         ? json{{"op", "remove"}, {"path", edit.pointer}}
+                         : json{{"op", "add"}, {"path", edit.pointer}, {"value", json::parse(edit.value)}};
   // "add" to an object replaces what is there, to an array it inserts: put the new element in, then drop the old one.
   json result = base.patch(json::array({patch}));
   const json::json_pointer pointer(edit.pointer);
@@ -140,7 +141,8 @@ TEST_CASE("scene reader: each bad value is named with its place") {
       {"/end_time", "-1", "end_time: must be >= 0, where the motion begins"},
       {"/end_time", "\"soon\"", "end_time: must be a number"},
       {"/response", "\"bouncy\"", "response: must be \"none\" or \"elastic\""},
-      {"/response", "\"elastic\"", "bodies[2].motion[1]: with \"response\": \"elastic\" a body has only one piece of motion"},
+      {"/response", "\"elastic\"",
+       "bodies[2].motion[1]: with \"response\": \"elastic\" a body has only one piece of motion"},
       {"/domain", "[]", "domain: must be an object"},
       {"/domain/min", "", "domain.min: is missing"},
       {"/domain/min", "[0,0]", "domain.min: must be an array of 3 numbers"},
@@ -178,8 +180,7 @@ TEST_CASE("scene reader: each bad value is named with its place") {
       {"/bodies/1/shape/box/half_extents/2", "0", "bodies[1].shape.box.half_extents[2]: must be > 0"},
       {"/bodies/2/shape/mesh", "\"rang\"", "bodies[2].shape.mesh: there is no mesh \"rang\" in \"meshes\""},
       {"/bodies/2/shape/scale", "0", "bodies[2].shape.scale: must be > 0"},
-      {"/bodies/2/orientation", "[1,1,0,0]",
-       "bodies[2].orientation: must be a unit quaternion; its norm is 1.41421"},
+      {"/bodies/2/orientation", "[1,1,0,0]", "bodies[2].orientation: must be a unit quaternion; its norm is 1.41421"},
       {"/bodies/2/orientation", "[0,0,0,0]", "bodies[2].orientation: must be a unit quaternion; its norm is 0"},
       {"/bodies/2/orientation", "[1,0,0]", "bodies[2].orientation: must be an array of 4 numbers"},
       {"/bodies/1/mass", "0", "bodies[1].mass: must be > 0"},
@@ -196,8 +197,9 @@ TEST_CASE("scene reader: each bad value is named with its place") {
        "supported"},
       {"/bodies/0/motion/0/position/1", "[0,0,1e31]",
        "bodies[0].motion[0].position[1][2]: must be at most 1e+30 in magnitude"},
-      {"/bodies/0/motion/0/start", "-1e29", "bodies[0].motion[0].position: may reach a magnitude of 4.9e+58 "
-                                            "before end_time; at most 1e+30 is supported"},
+      {"/bodies/0/motion/0/start", "-1e29",
+       "bodies[0].motion[0].position: may reach a magnitude of 4.9e+58 "
+       "before end_time; at most 1e+30 is supported"},
       {"/bodies/2/motion/1/start", "0",
        "bodies[2].motion[1].start: must be later than the start of the piece before, 0"},
       {"/bodies/2/motion/1/position/0/0", "79",
@@ -210,8 +212,9 @@ TEST_CASE("scene reader: each bad value is named with its place") {
 
 TEST_CASE("scene reader: what is not JSON is named with path, line and column") {
   const auto [text, error] = GENERATE(table<std::string, std::string>({
-      {"", "scene.json: document: line 1, column 1: syntax error while parsing value - unexpected end of input; "
-           "expected '[', '{', or a literal"},
+      {"",
+       "scene.json: document: line 1, column 1: syntax error while parsing value - unexpected end of input; "
+       "expected '[', '{', or a literal"},
       {"{\"scene\": 1,\n \"end_time\": NaN}",
        "scene.json: end_time: line 2, column 14: syntax error while parsing value - invalid literal; last read: "
        "'\"end_time\": N'"},
@@ -273,8 +276,8 @@ TEST_CASE("scene reader: no mutation of a valid scene breaks it") {
   const auto seed = static_cast<std::uint64_t>(GENERATE(range(1, 9)));
   INFO("seed " << seed);
   std::mt19937_64 random(seed);
-  const std::vector<std::string> pieces{"0",  "-1",   "1e400", "NaN",    "null", "[",  "]",    "{",       "}",
-                                        ",",  "\"",   ":",     "[[[]]]", "1e-5", "{}", "true", "\xff",    "\"a\"",
+  const std::vector<std::string> pieces{"0",  "-1",   "1e400", "NaN",    "null", "[",  "]",    "{",        "}",
+                                        ",",  "\"",   ":",     "[[[]]]", "1e-5", "{}", "true", "\xff",     "\"a\"",
                                         "\\", "1e30", "-1e30", "\n",     "0.5",  "//", "-0",   "\"mesh\"", "\xf0\x9f"};
   int scenes = 0;
   int errors = 0;
@@ -285,10 +288,17 @@ TEST_CASE("scene reader: no mutation of a valid scene breaks it") {
       const std::size_t at = random() % text.size();
       const std::size_t length = std::min<std::size_t>(random() % 8, text.size() - at);
       switch (random() % 4) {
-        case 0: text.erase(at, length); break;
-        case 1: text.replace(at, length, pieces[random() % pieces.size()]); break;
-        case 2: text.insert(at, text.substr(random() % text.size(), random() % 40)); break;
-        default: text[at] = static_cast<char>(random());
+        case 0:
+          text.erase(at, length);
+          break;
+        case 1:
+          text.replace(at, length, pieces[random() % pieces.size()]);
+          break;
+        case 2:
+          text.insert(at, text.substr(random() % text.size(), random() % 40));
+          break;
+        default:
+          text[at] = static_cast<char>(random());
       }
     }
     try {
