@@ -16,16 +16,23 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Boxes grow by this part of the largest coordinate in them. Axes are orthonormal to about 10 roundings, and the
-/// projections, the centre and its coordinates add about 10 more, each of the size of the coordinates: 2^-47 is 64
-/// roundings. Smaller and audit() could fail; larger costs nothing before 2^-30.
-constexpr double growth = 0x1p-47;
+/// Boxes grow by this part of the unit: 32 roundings of a float. Centres and extents are rounded to floats once each
+/// (2 roundings of numbers up to sqrt 3), and what is computed in doubles counts for nothing.
+constexpr float growth = 32 * 0x1p-24F;
 
 /// A box with at most this many triangles also tries the directions of their edges.
 constexpr std::uint32_t few_triangles = 4;
 
 /// A split must leave at least one triangle in so many on either side.
 constexpr std::uint32_t worst_split = 8;
+
+Vector3d coordinates(Lanes x) { return {x[0], x[1], x[2]}; }
+
+Matrix3d rounded_axes(const ObbNode& node) {
+  Matrix3d axes;
+  for (int k = 0; k < 3; ++k) axes.row(k) = coordinates(node.axes[static_cast<std::size_t>(k)]).transpose();
+  return axes;
+}
 
 struct Item {
   LeafTriangle triangle;
@@ -45,8 +52,8 @@ struct Fit {
 
 class Builder {
  public:
-  Builder(std::span<const Vector3d> vertices, std::vector<Item>& items, std::vector<ObbNode>& nodes)
-      : vertices_(vertices), items_(items), nodes_(nodes) {}
+  Builder(std::span<const Vector3d> vertices, double unit, std::vector<Item>& items, std::vector<ObbNode>& nodes)
+      : vertices_(vertices), unit_(unit), items_(items), nodes_(nodes) {}
 
   void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
     const Fit fit = best_fit(begin, end);
@@ -132,16 +139,21 @@ class Builder {
     return axes;
   }
 
+  /// The box is that of the axes and the centre as rounded to floats.
   void set_box(ObbNode& node, const Fit& fit, std::uint32_t begin, std::uint32_t end) const {
-    node.axes = fit.axes;
-    const Vector3d middle = 0.5 * fit.low + 0.5 * fit.high;
-    node.centre = fit.axes * middle;
-    double reach = 0;
+    const Vector3d middle = fit.axes * (0.5 * fit.low + 0.5 * fit.high);
+    for (int k = 0; k < 3; ++k) node.axes[static_cast<std::size_t>(k)] = lanes(fit.axes.row(k));
+    node.centre = lanes(middle / unit_);
+    const Vector3d centre = unit_ * coordinates(node.centre);
+    const Matrix3d axes = rounded_axes(node);
+    Vector3d reach = Vector3d::Zero();
     for (std::uint32_t i = begin; i < end; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) reach = std::max(reach, corner(items_[i], k).cwiseAbs().maxCoeff());
+      for (std::size_t k = 0; k < 3; ++k) {
+        reach = reach.cwiseMax((axes.transpose() * (corner(items_[i], k) - centre)).cwiseAbs());
+      }
     }
-    node.half_extents = 0.5 * (fit.high - fit.low) + Vector3d::Constant(growth * reach);
-    node.radius = node.half_extents.stableNorm() * (1 + growth);
+    node.half_extents = lanes(reach / unit_ + Vector3d::Constant(growth));
+    node.radius = static_cast<float>(coordinates(node.half_extents).norm()) + growth;
   }
 
   /// Reorders [begin, end) into two parts and returns where the second begins.
@@ -176,6 +188,7 @@ class Builder {
   }
 
   std::span<const Vector3d> vertices_;
+  double unit_;
   std::vector<Item>& items_;
   std::vector<ObbNode>& nodes_;
 };
@@ -189,10 +202,15 @@ ObbTree::ObbTree(std::span<const Vector3d> vertices, std::span<const std::array<
     const auto& [a, b, c] = triangles[i];
     items.push_back({{triangles[i], i}, (vertices[a] + vertices[b] + vertices[c]) / 3});
   }
+  double largest = 0;
+  for (const Vector3d& v : vertices) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  unit_ = std::ldexp(1.0, exponent);  // a power of two above: scaling by it is exact
   const auto n = static_cast<std::uint32_t>(items.size());
   nodes_.reserve(2 * n);
   nodes_.resize(1);
-  Builder(vertices, items, nodes_).build(0, 0, n);
+  Builder(vertices, unit_, items, nodes_).build(0, 0, n);
   nodes_.shrink_to_fit();
   leaf_triangles_.reserve(n);
   for (const Item& item : items) leaf_triangles_.push_back(item.triangle);
@@ -219,8 +237,8 @@ void ObbTree::audit(std::span<const Vector3d> vertices) const {
       for (std::uint32_t node = leaf;; node = parent[node]) {
         const ObbNode& box = nodes_[node];
         for (const std::uint32_t v : triangle.vertices) {
-          const Vector3d x = box.axes.transpose() * (vertices[v] - box.centre);
-          if (!(x.cwiseAbs().array() <= box.half_extents.array()).all()) {
+          const Vector3d x = rounded_axes(box).transpose() * (vertices[v] / unit_ - coordinates(box.centre));
+          if (!(x.cwiseAbs().array() <= coordinates(box.half_extents).array()).all()) {
             fail(node, "triangle " + std::to_string(triangle.index) + " sticks out");
           }
         }

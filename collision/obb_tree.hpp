@@ -1,6 +1,8 @@
 // Trees of oriented bounding boxes around the triangles of a mesh.
 #pragma once
 
+#include "collision/lanes.hpp"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -10,14 +12,15 @@
 
 namespace kds::collision {
 
-/// A box turned in any direction, and what is in it.
+/// A box turned in any direction, and what is in it. In floats, lengths in the tree's unit(): what is wanted of a box
+/// is to hold its triangles for certain, not to be tight to the last bit, and four floats are handled at a time.
 struct ObbNode {
-  Eigen::Matrix3d axes;          ///< columns: directions of the box's edges, orthonormal up to rounding
-  Eigen::Vector3d centre;        ///< in the model's coordinates
-  Eigen::Vector3d half_extents;  ///< along `axes`; grown so that it holds its triangles in spite of rounding
-  double radius;                 ///< of the ball about the centre around the box, rounded up
-  std::uint32_t first;           ///< of a leaf: its first place in leaf_triangles(); else the first of two children
-  std::uint32_t count;           ///< of a leaf: its number of triangles; else 0
+  std::array<Lanes, 3> axes;  ///< row k: coordinate k of the directions of the three edges, orthonormal up to rounding
+  Lanes centre;               ///< in the model's coordinates
+  Lanes half_extents;         ///< along the axes; grown so that the box holds its triangles in spite of rounding
+  float radius;               ///< of the ball about the centre around the box, rounded up
+  std::uint32_t first;        ///< of a leaf: its first place in leaf_triangles(); else the first of two children
+  std::uint32_t count;        ///< of a leaf: its number of triangles; else 0
 
   bool is_leaf() const { return count != 0; }
 };
@@ -41,6 +44,8 @@ class ObbTree {
   /// Precondition: valid triangles (Mesh checks them).
   ObbTree(std::span<const Eigen::Vector3d> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
 
+  /// The length in which the boxes are measured: all coordinates of the model lie in [-1, 1].
+  double unit() const { return unit_; }
   std::span<const ObbNode> nodes() const { return nodes_; }  ///< the root first; children stand side by side
   std::span<const LeafTriangle> leaf_triangles() const { return leaf_triangles_; }
 
@@ -52,6 +57,7 @@ class ObbTree {
   static constexpr std::uint32_t leaf_size = 1;
 
  private:
+  double unit_ = 1;
   std::vector<ObbNode> nodes_;
   std::vector<LeafTriangle> leaf_triangles_;
 };
