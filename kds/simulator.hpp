@@ -5,6 +5,7 @@
 #include "kds/statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <stdexcept>
@@ -39,7 +40,7 @@ class Simulator {
  public:
   static_assert(sizeof...(Structures) > 0);
 
-  /// The clock starts at `now`. Events later than `horizon` never enter a queue until the clock comes near it.
+  /// The clock starts at `now`.
   explicit Simulator(double now, Structures&... structures) : structures_(structures...), now_(now) {}
 
   double now() const { return now_; }
@@ -66,8 +67,10 @@ class Simulator {
     return true;
   }
 
-  /// Processes all events up to and including t and sets the clock to t.
+  /// Processes all events up to and including t and sets the clock to t. Throws std::invalid_argument for a t before
+  /// the clock, or one that is not finite (to run while there are events, call step() until it is false).
   void advance_to(double t) {
+    if (!std::isfinite(t)) throw std::invalid_argument("Simulator::advance_to: the time must be finite");
     if (t < now_) {
       throw std::invalid_argument("Simulator::advance_to: the clock stands at " + std::to_string(now_) +
                                   " and cannot go back to " + std::to_string(t));
