@@ -227,7 +227,9 @@ typename World<Degree>::PairSlot World<Degree>::find_pair(BodyId a, BodyId b) co
 template <int Degree>
 void World<Degree>::release_pair(PairSlot slot) {
   Pair& pair = pairs_[slot];
-  if (pair.touching) pending_.push_back({Pending::Kind::separation, pair.a, pair.b, {.time = now_}});
+  if (pair.touching) {
+    pending_.push_back({Pending::Kind::separation, pair.a, pair.b, contact_at(moving(pair.a), moving(pair.b), now_)});
+  }
   if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) {
     pending_.push_back({Pending::Kind::pair_ended, pair.a, pair.b, {.time = now_}});
   }
