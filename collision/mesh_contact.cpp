@@ -155,7 +155,8 @@ class Query {
              if (best && (best->tau < window.begin || (best->tau == window.begin && !lower))) return;
              if (!may_touch(triangle, part, motion_, margin_, window)) return;
              const double tau = first_time(touching_of(triangle, part, window), tau0, window.end, mode);
-             if (tau == infinity || (best && tau == best->tau && !lower)) return;
+             // The window reaches a little past the best hit.
+             if (tau == infinity || (best && (tau > best->tau || (tau == best->tau && !lower)))) return;
              best = Result{tau, i, j};
              goal.best = std::min(goal.best, in_steps(slice, tau));
            });
