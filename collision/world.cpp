@@ -111,7 +111,8 @@ bool World<Degree>::step(double limit) {
     }
     if (piece == next) {
       now_ = next;
-      start_piece(pieces_.top().slot);
+      // All at once: bodies that jump together are not apart in between.
+      while (!pieces_.empty() && pieces_.top().time == next) start_piece(pieces_.top().slot);
       return true;
     }
     now_ = std::max(now_, next);

@@ -31,10 +31,14 @@ enum class BroadPhaseKind {
   all_pairs,    ///< no pruning: every pair tested once and its result kept
 };
 
-/// Bounces that pile up in time. A pair (or a body and a wall) that meets more than `contacts` times within
-/// `interval`, or meets without speed and is pressed together, is *held*: the relative normal velocity and
-/// acceleration are taken out (momentum is kept, energy is not) and, should rounding leave a rest of them, the pair
-/// is let pass until it has separated. Holds are counted and reported, and a run always ends.
+/// Bounces that pile up in time. Two bodies that have both met others more than `contacts` times within `interval`
+/// (fixed bodies and walls do not count), or that meet without speed and are pressed together, are *held*: the relative
+/// normal velocity and acceleration are taken out (momentum is kept, energy is not) and, should rounding leave a rest of
+/// them, the pair is let pass until it has separated. After twice as many, which happens where a body is crushed, pairs
+/// are let pass at once. Holds are counted and reported, and a run always ends.
+///
+/// Differs: meetings are counted for bodies, not for pairs. A pair is forgotten when its bounding volumes part, which
+/// boxes do at each bounce, and when that is depends on the broad phase.
 struct ZenoPolicy {
   std::uint32_t contacts = 100;  ///< more makes longer cascades exact and collapses slower
   double interval = 1e-9;        ///< s
@@ -204,8 +208,8 @@ class World final : private PairListener {
     BoundingVolume volume = BoundingVolume::shape;
     bool alive = false;
     bool entered = false;  ///< is in the broad phase
-    std::uint32_t wall_burst = 0;
-    double wall_burst_start = -never;
+    std::uint64_t meetings = 0;  ///< contacts since burst_start (Zeno)
+    double burst_start = -never;
   };
 
   struct Pair {
@@ -217,8 +221,6 @@ class World final : private PairListener {
     bool touching = false;    ///< mode none: in contact
     bool ignored = false;     ///< resolved: overlaps and passes through until separated
     bool boxes_overlap = false;
-    std::uint32_t burst = 0;  ///< contacts since burst_start (Zeno)
-    double burst_start = -never;
   };
 
   struct PairRank {
@@ -249,6 +251,7 @@ class World final : private PairListener {
   void pair_began(BodyId a, BodyId b, double t) override;
   void pair_ended(BodyId a, BodyId b, double t) override;
   PairSlot find_pair(BodyId a, BodyId b) const;
+  bool take_back(typename Pending::Kind kind, BodyId a, BodyId b, double t);
   void release_pair(PairSlot slot);
   void mark_dirty(PairSlot slot);
   void set_motion(BodyId id, const Motion& motion, bool jumped);
@@ -268,7 +271,7 @@ class World final : private PairListener {
   bool respond(PairSlot slot, const Contact& contact);
   void hold(const Contact& contact, BodyId a, BodyId b);
   double next_wall_time(const Body& body, int wall) const;
-  bool bursting(std::uint32_t& burst, double& start, double t) const;
+  std::uint64_t count_meeting(Body& body, double t) const;
 
   WorldOptions options_;
   Listener* listener_;

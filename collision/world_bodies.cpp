@@ -197,11 +197,13 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   pair.place_in_b = static_cast<std::uint32_t>(body_b.pairs.size());
   pair.alive = true;
   pair.fresh = inserting_;
+  // A jump may part two bodies and another one bring them together at the same instant.
+  pair.touching = take_back(Pending::Kind::separation, a, b, t);
   body_a.pairs.push_back(slot);
   body_b.pairs.push_back(slot);
   ++counters_.pairs_begun;
   mark_dirty(slot);
-  if (options_.report_pairs && broad_phase_->exact()) {
+  if (options_.report_pairs && broad_phase_->exact() && !take_back(Pending::Kind::pair_ended, a, b, t)) {
     pending_.push_back({Pending::Kind::pair_began, a, b, {.time = t}});
   }
 }
@@ -222,6 +224,19 @@ typename World<Degree>::PairSlot World<Degree>::find_pair(BodyId a, BodyId b) co
     if (pairs_[slot].a == a && pairs_[slot].b == b) return slot;
   }
   return no_pair;
+}
+
+/// Forgets a report that has been undone before it was made; false if there is none. Bodies that enter, perhaps under
+/// the id of one that has been removed, undo nothing.
+template <int Degree>
+bool World<Degree>::take_back(typename Pending::Kind kind, BodyId a, BodyId b, double t) {
+  if (inserting_) return false;
+  const auto it = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& event) {
+    return event.kind == kind && event.a == a && event.b == b && event.contact.time == t;
+  });
+  if (it == pending_.end()) return false;
+  pending_.erase(it);
+  return true;
 }
 
 template <int Degree>

@@ -5,6 +5,7 @@
 #include "collision/world.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace kds::collision {
@@ -112,12 +113,12 @@ void World<Degree>::process_contact(PairSlot slot, double t) {
 }
 
 template <int Degree>
-bool World<Degree>::bursting(std::uint32_t& burst, double& start, double t) const {
-  if (t - start > options_.zeno.interval) {
-    burst = 0;
-    start = t;
+std::uint64_t World<Degree>::count_meeting(Body& body, double t) const {
+  if (t - body.burst_start > options_.zeno.interval) {
+    body.meetings = 0;
+    body.burst_start = t;
   }
-  return ++burst > options_.zeno.contacts;
+  return ++body.meetings;
 }
 
 template <int Degree>
@@ -133,7 +134,16 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
   Motion motion_b = bodies_[b].motion.restarted(t);
   const Vector3d& n = contact.normal;
   const double approach = n.dot(motion_b.coefficients[1] - motion_a.coefficients[1]);
-  const bool held = bursting(pairs_[slot].burst, pairs_[slot].burst_start, t) || !(approach < 0);
+  const auto meetings = [&](BodyId id) {
+    return bodies_[id].inverse_mass == 0 ? std::numeric_limits<std::uint64_t>::max() : count_meeting(bodies_[id], t);
+  };
+  const std::uint64_t burst = std::min(meetings(a), meetings(b));
+  const std::uint64_t patience = options_.zeno.contacts;
+  const bool held = burst > patience || !(approach < 0);
+  if (burst > 2 * patience) {  // Holding does not help: the pair is left as it is, and so passes through.
+    ++counters_.held;
+    return true;
+  }
   // Elastic: the relative normal velocity turns round. Held: it goes, and the relative normal acceleration with it.
   const auto exchange = [&](std::size_t order, double restitution) {
     const double relative = n.dot(motion_b.coefficients[order] - motion_a.coefficients[order]);
@@ -206,7 +216,7 @@ void World<Degree>::process_wall(BodyId id, double t) {
   const int axis = wall / 2;
   const double out = wall % 2 != 0 ? 1 : -1;
   Motion motion = body.motion.restarted(t);
-  const bool held = bursting(body.wall_burst, body.wall_burst_start, t) || motion.coefficients[1][axis] * out <= 0;
+  const bool held = count_meeting(body, t) > options_.zeno.contacts || motion.coefficients[1][axis] * out <= 0;
   motion.coefficients[1][axis] = held ? 0 : -motion.coefficients[1][axis];
   if constexpr (Degree >= 2) {
     if (held) motion.coefficients[2][axis] = 0;
