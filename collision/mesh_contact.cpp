@@ -231,7 +231,7 @@ class Query {
       while (begin <= end) {
         const TimeSlice slice{begin, slice_end(begin, end)};
         if (run(slice)) return;
-        if (slice.end >= end) break;
+        if (slice.end >= end || !(slice.end > begin)) break;
         begin = slice.end;
       }
     }

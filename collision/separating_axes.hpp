@@ -231,21 +231,32 @@ class ConvexTouch {
     return direction(tau).approaching;
   }
 
-  /// The direction, from a to b, along which they overlap least just after tau; of those that tie within rounding
-  /// the one that decides whether they approach.
+  /// The direction, from a to b, along which they overlap least just after tau.
+  ///
+  /// Of directions that tie within rounding one that falls is taken if none rises: then they approach. (A rising one
+  /// will be the greatest and they part along it.) Faces in one plane tie with both directions of their normal, and do
+  /// not say on which side the bodies are: the centres do.
   TouchDirection direction(double tau) const {
     const Conditions conditions(*this);
     const auto speeds = smallest_speeds(motion_);
+    const Eigen::Vector3d offset = motion_.position(tau);
     const double rounding = gap_(tau) / tie;
     double most = -TimeSpans::infinity;
     for (const Condition& each : conditions) most = std::max(most, each(tau));
     TouchDirection chosen{Eigen::Vector3d::Zero(), -TimeSpans::infinity, false};
+    int chosen_trend = 0;
     for (const Condition& each : conditions) {
       const double separation = each(tau);
       if (separation < most - rounding) continue;
-      const bool approaches = each.falls(tau, speeds);
-      if (approaches == chosen.approaching ? separation > chosen.separation : approaches) {
-        chosen = {each.normal, separation, approaches};
+      if (opposite_of(conditions, each)(tau) >= most - rounding && dot(each.normal, offset) < 0) continue;
+      const int trend = each.trend(tau, speeds);
+      // Rising before falling before neither; then the greatest.
+      const auto weight = [](int t) { return t > 0 ? 2 : (t < 0 ? 1 : 0); };
+      const bool better =
+          weight(trend) == weight(chosen_trend) ? separation > chosen.separation : weight(trend) > weight(chosen_trend);
+      if (better) {
+        chosen = {each.normal, separation, trend < 0};
+        chosen_trend = trend;
       }
     }
     return chosen;
@@ -288,13 +299,14 @@ class ConvexTouch {
       }
     }
 
-    bool falls(double tau, const std::array<double, 2>& speeds) const {
+    /// 1 if it rises just after tau, -1 if it falls, 0 if it does neither but for rounding.
+    int trend(double tau, const std::array<double, 2>& speeds) const {
+      const auto sign = [](double x, double rounding) { return x > rounding ? 1 : (x < -rounding ? -1 : 0); };
       if constexpr (Degree == 1) {
-        return separation[1] < -speeds[0];
+        return sign(separation[1], speeds[0]);
       } else {
-        const double rate = separation[1] + 2 * tau * separation[2];
-        const double rounding = speeds[0] + tau * speeds[1];
-        return std::abs(rate) > rounding ? rate < 0 : separation[2] < -0.5 * speeds[1];
+        const int now = sign(separation[1] + 2 * tau * separation[2], speeds[0] + tau * speeds[1]);
+        return now != 0 ? now : sign(separation[2], 0.5 * speeds[1]);
       }
     }
   };
@@ -331,6 +343,11 @@ class ConvexTouch {
     std::array<Condition, capacity> items_;
     std::size_t size_ = 0;
   };
+
+  /// The conditions of the two sides of an axis stand side by side.
+  static const Condition& opposite_of(const Conditions& conditions, const Condition& condition) {
+    return (&condition - conditions.begin()) % 2 == 0 ? *(&condition + 1) : *(&condition - 1);
+  }
 
   std::span<const TimeSpans> near() const { return {near_.data(), size_}; }
 
