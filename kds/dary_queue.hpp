@@ -71,7 +71,7 @@ class DaryQueue {
   using Heap = boost::heap::d_ary_heap<Key, boost::heap::arity<Arity>, boost::heap::mutable_<true>,
                                        boost::heap::compare<detail::LaterKey<Key>>>;
 
-  Key parked(Slot slot) const { return Key::make(detail::no_event, slot, rank_); }
+  static Key parked(Slot slot) { return Key::without_event(slot); }
 
   Heap heap_;
   std::vector<typename Heap::handle_type> handles_;  // by slot

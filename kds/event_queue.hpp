@@ -75,6 +75,8 @@ struct QueueKey {
   Slot slot;
 
   static QueueKey make(double time, Slot slot, const Rank& rank) { return {time, rank(slot), slot}; }
+  /// Of a slot without event, whose rank need not be known yet.
+  static QueueKey without_event(Slot slot) { return {no_event, 0, slot}; }
 
   friend bool operator<(const QueueKey& a, const QueueKey& b) {
     if (a.time != b.time) return a.time < b.time;
@@ -89,6 +91,7 @@ struct QueueKey<SlotRank> {
   Slot slot;
 
   static QueueKey make(double time, Slot slot, const SlotRank&) { return {time, slot}; }
+  static QueueKey without_event(Slot slot) { return {no_event, slot}; }
 
   friend bool operator<(const QueueKey& a, const QueueKey& b) {
     return a.time != b.time ? a.time < b.time : a.slot < b.slot;
