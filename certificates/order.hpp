@@ -76,6 +76,7 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 2; i <= Degree; ++i) {
     if (lower.position.c[i] != upper.position.c[i]) return undecided;
+    if (i > 2 && lower.position.c[i] != 0 && lower.start != upper.start) return undecided;  // differ by a parabola
   }
   // In doubles: on which side of now, and of the horizon, is the root? Where that is certain it needs no better.
   const Line<double> rough = line<double>();

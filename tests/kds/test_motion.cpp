@@ -2,6 +2,7 @@
 #include "kds/motion.hpp"
 #include "tests/support/exact_rational.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/same_number.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -33,19 +34,6 @@ Rational value(const Motion<Degree>& motion, const Rational& t) {
   return sum;
 }
 
-/// Whether an exact number and a rational are the same, told by doubles only: neither lends the other its digits.
-bool same(Exact a, Rational b) {
-  for (int i = 0; i < 200; ++i) {
-    if (a.sign() != b.sign()) return false;
-    if (a.sign() == 0) return true;
-    const double part = a.approximate();
-    if (part == 0) return true;  // equal down to the least double
-    a = a - Exact(part);
-    b = b - rational(part);
-  }
-  return true;
-}
-
 }  // namespace
 
 #define FOR_EACH_DEGREE ((int Degree), Degree), 0, 1, 2, 3, 4, 6
@@ -62,7 +50,7 @@ TEMPLATE_TEST_CASE_SIG("a motion about any epoch is the same function, exactly",
     for (int i = 0; i < Degree + 2; ++i) {
       const double x = random.integer(-9, 9) * 0.37;
       CAPTURE(round, epoch, x, motion.start);
-      REQUIRE(same(shifted(Exact(x)), value(motion, rational(epoch) + rational(x))));
+      REQUIRE(oracle::same(shifted(Exact(x)), value(motion, rational(epoch) + rational(x))));
     }
   }
 }

@@ -242,7 +242,19 @@ Instant::Instant(Integers polynomial, Rational low, Rational high)
 
 void Instant::halve() const {
   if (is_rational()) return;
-  compare((low_ + high_) / 2);
+  const Rational middle = (low_ + high_) / 2;
+  if (middle.odd_denominator() == 1) {
+    compare(middle);
+    return;
+  }
+  // Ends with different denominators would multiply them at every step: take a number with none, near the middle.
+  const Rational width = high_ - low_;
+  const int scale = width.exponent() + static_cast<int>(msb(width.odd_numerator())) -
+                    static_cast<int>(msb(width.odd_denominator())) - 3;  // 2^scale <= width / 4
+  const int shift = middle.exponent() - scale;
+  const Integer& n = middle.odd_numerator();
+  const Integer& d = middle.odd_denominator();
+  compare(Rational(shift >= 0 ? Integer((n << shift) / d) : Integer(n / (d << -shift))) * power_of_two(scale));
 }
 
 int Instant::compare(const Rational& t) const {

@@ -1,0 +1,98 @@
+#include "certificates/ball_separation.hpp"
+#include "tests/certificates/check_certificate.hpp"
+#include "tests/support/exact_oracle.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace {
+
+using namespace kds;
+using namespace kds::tests;
+using certificates::BallSeparation;
+using certificates::PointMotion;
+using Eigen::Vector3d;
+
+template <int PathDegree>
+oracle::Polynomial expected(const BallSeparation<PathDegree>& balls) {
+  const auto a = exact(balls.a);
+  const auto b = exact(balls.b);
+  const auto reach = exact(balls.radius_a) + exact(balls.radius_b);
+  oracle::Polynomial f = oracle::Polynomial() - reach * reach;
+  for (std::size_t d = 0; d < 3; ++d) f = f + (b[d] - a[d]) * (b[d] - a[d]);
+  return f;
+}
+
+template <int PathDegree>
+oracle::Body body(const PointMotion<PathDegree>& path, double radius) {
+  oracle::Piece piece{path.start, {}};
+  for (const auto& c : path.coefficients) piece.coefficients.push_back({c[0], c[1], c[2]});
+  return {oracle::Sphere{radius}, {piece}};
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE_SIG("balls are apart while their centres are farther than the radii", "[ball_separation]",
+                       ((int PathDegree), PathDegree), 1, 2) {
+  const std::uint64_t seed = 100;
+  CAPTURE(PathDegree, seed);
+  Random random(seed);
+  for (int round = 0; round < 150; ++round) {
+    const bool coarse = random.one_in(2);
+    const double start = random_start(random, coarse);
+    const auto a = random_path<PathDegree>(random, coarse, start);
+    const auto b = random_path<PathDegree>(random, coarse, random.one_in(2) ? start : random_start(random, coarse));
+    const double radius_a = coarse ? random.integer(1, 4) / 4.0 : random.between(0.01, 1);
+    const double radius_b = coarse ? random.integer(1, 4) / 4.0 : random.between(0.01, 1);
+    const BallSeparation<PathDegree> balls{a, b, radius_a, radius_b};
+    CAPTURE(round);
+    CHECK(mistakes(balls, expected(balls), random) == 0);
+  }
+}
+
+TEMPLATE_TEST_CASE_SIG("balls begin to penetrate when the oracle's spheres do", "[ball_separation]",
+                       ((int PathDegree), PathDegree), 1, 2) {
+  const std::uint64_t seed = 101;
+  CAPTURE(PathDegree, seed);
+  Random random(seed);
+  int met = 0;
+  for (int round = 0; round < 100; ++round) {
+    const auto a = random_path<PathDegree>(random, false, 0);
+    auto b = random_path<PathDegree>(random, false, 0);
+    b.coefficients[0] *= 4;
+    b.coefficients[1] = a.coefficients[1] + (a.coefficients[0] - b.coefficients[0]) / 2 + random_vector(random, false) / 4;
+    if constexpr (PathDegree == 2) b.coefficients[2] = a.coefficients[2] + random_vector(random, false) / 8;
+    const BallSeparation<PathDegree> balls{a, b, 0.5, 0.75};
+    const auto contact = oracle::first_contact(body(a, 0.5), body(b, 0.75), 0, 4);
+    const double t = failure_time(balls, 0, 4);
+    CAPTURE(round);
+    REQUIRE(contact.has_value() == (t != never));
+    if (contact) CHECK(t == contact->ceiling());
+    met += contact && t > 0;
+  }
+  CHECK(met > 10);
+}
+
+TEST_CASE("balls that graze do not penetrate", "[ball_separation]") {
+  const PointMotion<1> rest{{Vector3d(0, 2, 0), Vector3d::Zero()}, 0};
+  const PointMotion<1> passing{{Vector3d(-3, 0, 0), Vector3d(1, 0, 0)}, 0};
+  CHECK(failure_time(BallSeparation<1>{rest, passing, 1, 1}, 0) == never);
+  CHECK(failure_time(BallSeparation<1>{rest, passing, 1, next_up(1)}, 0) < 3);
+  CHECK(failure_time(BallSeparation<1>{rest, passing, 1, next_down(1)}, 0) == never);
+}
+
+TEST_CASE("balls head on meet where they must", "[ball_separation]") {
+  const PointMotion<1> rest{{Vector3d(5, 0, 0), Vector3d::Zero()}, 0};
+  const PointMotion<1> coming{{Vector3d(0, 0, 0), Vector3d(1, 0, 0)}, 0};
+  CHECK(failure_time(BallSeparation<1>{rest, coming, 1, 2}, 0) == 2);
+  CHECK(failure_time(BallSeparation<1>{rest, coming, 1, 2}, 2) == 2);
+  CHECK(failure_time(BallSeparation<1>{rest, coming, 1, 2}, 8) == never);  // touching, and leaving
+  CHECK(recovery_time(BallSeparation<1>{rest, coming, 1, 2}, 3) == 8);
+}
+
+TEST_CASE("balls that move together and touch never penetrate", "[ball_separation]") {
+  const PointMotion<2> a{{Vector3d(0, 0, 0), Vector3d(1, 2, 3), Vector3d(0, 0, -5)}, 0};
+  const PointMotion<2> b{{Vector3d(0, 0, 2), Vector3d(1, 2, 3), Vector3d(0, 0, -5)}, 0};
+  CHECK(sign_after(BallSeparation<2>{a, b, 1, 1}, 3) == 0);
+  CHECK(failure_time(BallSeparation<2>{a, b, 1, 1}, 0) == never);
+  CHECK(failure_time(BallSeparation<2>{a, b, 1, next_up(1)}, 0) == 0);
+}
