@@ -111,8 +111,7 @@ bool World<Degree>::step(double limit) {
     }
     if (piece == next) {
       now_ = next;
-      // All at once: bodies that jump together are not apart in between.
-      while (!pieces_.empty() && pieces_.top().time == next) start_piece(pieces_.top().slot);
+      start_pieces();
       return true;
     }
     now_ = std::max(now_, next);
@@ -178,22 +177,29 @@ void World<Degree>::enter_new_bodies() {
   }
 }
 
+/// All that are due at once: bodies that jump together are not apart in between.
 template <int Degree>
-void World<Degree>::start_piece(BodyId id) {
-  Body& b = bodies_[id];
-  const Motion piece = b.script.back();
-  b.script.pop_back();
-  if (b.script.empty()) {
-    pieces_.clear(id);
-  } else {
-    pieces_.set(id, b.script.back().start);
+void World<Degree>::start_pieces() {
+  std::vector<BodyId> due;
+  while (!pieces_.empty() && pieces_.top().time == now_) {
+    const BodyId id = pieces_.top().slot;
+    Body& b = bodies_[id];
+    b.motion = b.script.back();
+    b.script.pop_back();
+    if (b.script.empty()) {
+      pieces_.clear(id);
+    } else {
+      pieces_.set(id, b.script.back().start);
+    }
+    due.push_back(id);
   }
-  if (b.entered) {
-    ++counters_.motion_updates;
-    set_motion(id, piece, false);
-  } else {
-    b.motion = piece;
-    entering_.push_back(id);
+  for (const BodyId id : due) {
+    if (bodies_[id].entered) {
+      ++counters_.motion_updates;
+      set_motion(id, Motion(bodies_[id].motion), false);
+    } else {
+      entering_.push_back(id);
+    }
   }
 }
 

@@ -239,7 +239,7 @@ class World final : private PairListener {
   // world.cpp: the clock
   void reach(double limit);
   void enter_new_bodies();
-  void start_piece(BodyId id);
+  void start_pieces();
   void renew_volume(BodyId id);
   void emit_pending();
 
