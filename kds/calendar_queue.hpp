@@ -137,6 +137,7 @@ void CalendarQueue<Rank>::resize(std::size_t slots) {
   days_.resize(days + 1, none);
   busy_.resize(days / 64 + 1, 0);
   link_all(waiting, year_);
+  tomorrow_ = year_end_ = -detail::no_event;  // nor may what is set before the next year begins stand before them
 }
 
 template <QueueRank Rank>

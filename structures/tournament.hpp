@@ -43,6 +43,7 @@ class Tournament {
   const Motion<Degree>& motion(Id id) const { return *entrants_[id]; }
 
   void insert(Id id, const Motion<Degree>& motion, double now) {
+    if (id == nobody) throw std::invalid_argument("Tournament: id " + std::to_string(id) + " is reserved");
     if (contains(id)) throw std::invalid_argument("Tournament: id " + std::to_string(id) + " is used twice");
     require_finite(id, motion);
     if (id >= capacity_) grow(id, now);

@@ -267,6 +267,34 @@ TEMPLATE_TEST_CASE("resizing keeps what is below and drops what is above", "[eve
   drain(queue, model);
 }
 
+TEMPLATE_TEST_CASE("a queue that grows by and by, between events, stays in order", "[event_queue]",
+                   kds::PairingQueue<>, kds::DaryQueue<>, kds::CalendarQueue<>) {
+  for (std::uint64_t seed = 8; seed < 28; ++seed) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    TestType queue;
+    Model<kds::SlotRank> model;
+    double now = 0;
+    for (std::size_t slots = 1; slots < 3000; slots += 1 + slots / 3) {
+      queue.resize(slots);
+      model.resize(slots);
+      for (std::size_t i = 0; i < 2 * slots; ++i) {
+        const auto slot = static_cast<Slot>(random() % slots);
+        const double time = now + unit(random);
+        queue.set(slot, time);
+        model.set(slot, time);
+        if (random() % 4 == 0) {
+          require_equal(queue, model);
+          now = model.top().time;
+          queue.pop();
+          model.pop();
+        }
+      }
+    }
+    drain(queue, model);
+  }
+}
+
 TEMPLATE_TEST_CASE("a queue can be moved and begun again", "[event_queue]", kds::PairingQueue<>, kds::DaryQueue<>,
                    kds::CalendarQueue<>) {
   TestType queue;
