@@ -64,7 +64,9 @@ void World<Degree>::test(PairSlot slot) {
       pair.touching = true;
       report_overlap();
     }
-    if (!(at_rest(a.motion) && at_rest(b.motion))) {
+    if (at_rest(a.motion) && at_rest(b.motion)) {  // Nothing will happen, but a jump may have happened.
+      next = in_contact(a, b, now_) == pair.touching ? never : now_;
+    } else {
       next = pair.touching ? first_separation(a, b, now_, horizon_)
                            : first_contact(a, b, now_, horizon_, ContactMode::transparent);
     }
