@@ -60,22 +60,28 @@ struct EventLog final : WorldListener<Degree> {
   void contact(W& w, const PairEvent& e) override { note(w, {Kind::contact, e.a, e.b, e.contact}); }
   void separation(W& w, const PairEvent& e) override { note(w, {Kind::separation, e.a, e.b, e.contact}); }
   void overlap(W& w, const PairEvent& e) override { note(w, {Kind::overlap, e.a, e.b, e.contact}); }
-  void wall(W& w, const WallEvent& e) override { note(w, {Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact}); }
+  void wall(W& w, const WallEvent& e) override {
+    note(w, {Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
+  }
   void pair_began(W& w, BodyId a, BodyId b, double t) override { note(w, {Kind::pair_began, a, b, {.time = t}}); }
   void pair_ended(W& w, BodyId a, BodyId b, double t) override { note(w, {Kind::pair_ended, a, b, {.time = t}}); }
   void held(W& w, const PairEvent& e) override { note(w, {Kind::held, e.a, e.b, e.contact}); }
 
   std::vector<Event> of(Kind kind) const {
     std::vector<Event> result;
-    std::copy_if(events.begin(), events.end(), std::back_inserter(result), [&](const Event& e) { return e.kind == kind; });
+    for (const Event& e : events) {
+      if (e.kind == kind) result.push_back(e);
+    }
     return result;
   }
   std::size_t count(Kind kind) const { return of(kind).size(); }
 
-  bool in_order_of_time() const {
-    return std::is_sorted(events.begin(), events.end(), [](const Event& x, const Event& y) { return x.time() < y.time(); });
-  }
 };
+
+inline bool in_order_of_time(const std::vector<Event>& events) {
+  const auto earlier = [](const Event& x, const Event& y) { return x.time() < y.time(); };
+  return std::is_sorted(events.begin(), events.end(), earlier);
+}
 
 inline bool is_pair_event(const Event& e) { return e.kind == Kind::pair_began || e.kind == Kind::pair_ended; }
 
@@ -106,6 +112,8 @@ inline std::vector<Event> lasting_pairs(const std::vector<Event>& events) {
   }
   return lasting;
 }
+
+inline const Vector3d zero = Vector3d::Zero();
 
 /// `c0 + c1 t + c2 t^2`, the last only where the degree has it.
 template <int Degree>

@@ -79,7 +79,8 @@ class SceneMaker {
   Eigen::Quaterniond orientation() {
     const bool aligned = options_.shapes == Shapes::boxes || (options_.shapes == Shapes::mixture && random_.one_in(2));
     if (aligned) return Eigen::Quaterniond::Identity();
-    if (options_.numbers == Numbers::coarse && random_.one_in(2)) return {0.5, 0.5, 0.5, random_.one_in(2) ? 0.5 : -0.5};
+    const bool turns_axes_to_axes = options_.numbers == Numbers::coarse && random_.one_in(2);
+    if (turns_axes_to_axes) return {0.5, 0.5, 0.5, random_.one_in(2) ? 0.5 : -0.5};
     return Eigen::Quaterniond(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1),
                               random_.between(0.1, 1))
         .normalized();

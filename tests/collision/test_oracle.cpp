@@ -217,8 +217,10 @@ TEMPLATE_TEST_CASE_SIG("Contacts and separations of small scenes are those of ex
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       INFO("degree " << Degree << (numbers == Numbers::fine ? ", fine" : ", coarse") << " numbers, seed " << seed);
       Random random(seed);
-      SceneMaker boxes(random, {.shapes = Shapes::boxes, .numbers = numbers, .bodies = 5, .side = 4, .scripts = true});
-      SceneMaker spheres(random, {.shapes = Shapes::spheres, .numbers = numbers, .bodies = 5, .side = 4, .scripts = true});
+      SceneOptions five{.shapes = Shapes::boxes, .numbers = numbers, .bodies = 5, .side = 4, .scripts = true};
+      SceneMaker boxes(random, five);
+      five.shapes = Shapes::spheres;
+      SceneMaker spheres(random, five);
       auto scene = boxes.template scene<Degree>();
       const auto more = spheres.template scene<Degree>();
       scene.bodies.insert(scene.bodies.end(), more.bodies.begin(), more.bodies.end());
