@@ -47,8 +47,8 @@ std::vector<double> real_parts(std::span<const double> c) {
     const double leading = c.size() == 3 ? c[2] : 0.0;
     x.resize(static_cast<std::size_t>(gsl_poly_solve_quadratic(leading, c[1], c[0], &x[0], &x[1])));
   } else if (c.size() == 4) {
-    x.resize(static_cast<std::size_t>(
-        gsl_poly_solve_cubic(c[2] / c[3], c[1] / c[3], c[0] / c[3], &x[0], &x[1], &x[2])));
+    x.resize(
+        static_cast<std::size_t>(gsl_poly_solve_cubic(c[2] / c[3], c[1] / c[3], c[0] / c[3], &x[0], &x[1], &x[2])));
   } else {
     const NoErrorHandler quiet;
     std::vector<double> z(2 * (c.size() - 1));

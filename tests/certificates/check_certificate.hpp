@@ -51,7 +51,9 @@ inline Eigen::Vector3d random_vector(Random& random, bool coarse) {
 }
 
 /// A time of the kind at which things happen: coarse, or with all its bits.
-inline double random_time(Random& random) { return random.one_in(2) ? random.integer(-8, 8) / 4.0 : random.between(-2, 2); }
+inline double random_time(Random& random) {
+  return random.one_in(2) ? random.integer(-8, 8) / 4.0 : random.between(-2, 2);
+}
 
 /// Compares a certificate with the polynomial of the clock that it should be; the number of things that were wrong.
 template <Certificate C>

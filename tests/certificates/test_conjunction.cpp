@@ -91,9 +91,8 @@ TEST_CASE("whether all are broken at t+ is what the signs say", "[conjunction]")
   for (int round = 0; round < 600; ++round) {
     const Problem problem = random_problem(random);
     const double t = random_time(random);
-    const bool expected = std::all_of(problem.polynomials.begin(), problem.polynomials.end(), [&](const auto& p) {
-      return p.sign_after(oracle::rational(t)) < 0;
-    });
+    const bool expected = std::all_of(problem.polynomials.begin(), problem.polynomials.end(),
+                                      [&](const auto& p) { return p.sign_after(oracle::rational(t)) < 0; });
     CAPTURE(round, t);
     CHECK(all_broken(t, problem.line_span(), problem.parabola_span()) == expected);
     broken += expected;

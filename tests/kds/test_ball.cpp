@@ -41,13 +41,20 @@ Known<T> random_step(Random& random, const std::vector<Known<T>>& numbers, doubl
   const auto& a = numbers[random.below(numbers.size())];
   const auto& b = numbers[random.below(numbers.size())];
   switch (random.below(7)) {
-    case 0: return {a.ball + b.ball, a.value + b.value};
-    case 1: return {a.ball - b.ball, a.value - b.value};
-    case 2: return {a.ball * b.ball, a.value * b.value};
-    case 3: return {-a.ball, -a.value};
-    case 4: return {a.ball + x, a.value + rational(x)};
-    case 5: return {a.ball - x, a.value - rational(x)};
-    default: return {a.ball * x, a.value * rational(x)};
+    case 0:
+      return {a.ball + b.ball, a.value + b.value};
+    case 1:
+      return {a.ball - b.ball, a.value - b.value};
+    case 2:
+      return {a.ball * b.ball, a.value * b.value};
+    case 3:
+      return {-a.ball, -a.value};
+    case 4:
+      return {a.ball + x, a.value + rational(x)};
+    case 5:
+      return {a.ball - x, a.value - rational(x)};
+    default:
+      return {a.ball * x, a.value * rational(x)};
   }
 }
 
@@ -102,9 +109,8 @@ TEMPLATE_TEST_CASE("a ball contains the exact value of its expression", "[ball]"
     CHECK(tally.overflown == 0);
   }
   SECTION("numbers that cancel") {
-    const Tally tally = check_containment<TestType>(31, 800, [](Random& r) {
-      return (r.one_in(2) ? 1 : -1) * (1 + r.integer(-3, 3) * 0x1p-52);
-    });
+    const Tally tally = check_containment<TestType>(
+        31, 800, [](Random& r) { return (r.one_in(2) ? 1 : -1) * (1 + r.integer(-3, 3) * 0x1p-52); });
     CHECK(tally.decided > 2000);
   }
   SECTION("numbers of few bits, many of them zero") {
@@ -121,7 +127,8 @@ TEMPLATE_TEST_CASE("a ball contains the exact value of its expression", "[ball]"
     CHECK(tally.undecided > 300);
   }
   SECTION("numbers between which two parts of a product part from the range") {
-    check_containment<TestType>(35, 400, [](Random& r) { return r.one_in(2) ? r.scaled(-1000, -900) : r.scaled(-10, 60); });
+    check_containment<TestType>(35, 400,
+                                [](Random& r) { return r.one_in(2) ? r.scaled(-1000, -900) : r.scaled(-10, 60); });
   }
   SECTION("numbers near the largest") {
     const Tally tally = check_containment<TestType>(36, 400, [](Random& r) { return r.scaled(900, 1022); });

@@ -72,9 +72,9 @@ TEST_CASE("the sign just after t is that of the first derivative that is not zer
   CHECK(sign_after(Value<1>{{{{1, -1}}, 0}}, 0) == 1);
   CHECK(sign_after(Value<1>{{{{1, -1}}, 0}}, 1) == -1);
   CHECK(sign_after(Value<1>{{{{-1, 1}}, 0}}, 1) == 1);
-  CHECK(sign_after(Value<2>{{{{1, -2, 1}}, 0}}, 1) == 1);          // (t - 1)^2: a touch from above
-  CHECK(sign_after(Value<2>{{{{-1, 2, -1}}, 0}}, 1) == -1);        // from below
-  CHECK(sign_after(Value<3>{{{{-1, 3, -3, 1}}, 0}}, 1) == 1);      // (t - 1)^3
+  CHECK(sign_after(Value<2>{{{{1, -2, 1}}, 0}}, 1) == 1);      // (t - 1)^2: a touch from above
+  CHECK(sign_after(Value<2>{{{{-1, 2, -1}}, 0}}, 1) == -1);    // from below
+  CHECK(sign_after(Value<3>{{{{-1, 3, -3, 1}}, 0}}, 1) == 1);  // (t - 1)^3
   CHECK(sign_after(Value<3>{{{{1, -3, 3, -1}}, 0}}, 1) == -1);
   CHECK(sign_after(Value<4>{{{{0, 0, 0, 0, -1e-300}}, 7}}, 7) == -1);
   CHECK(sign_after(Value<0>{{{{-2}}, 0}}, 5) == -1);

@@ -30,10 +30,17 @@ struct Pair {
 Pair random_pair(Random& random, int low, int high) {
   Pair pair{random.scaled(low, high), 0};
   switch (random.below(4)) {
-    case 0: pair.b = random.scaled(low, high); break;
-    case 1: pair.b = std::ldexp(pair.a, random.integer(-60, 0)) * random.between(-1, 1); break;
-    case 2: pair.b = -pair.a * (1 + random.integer(-4, 4) * 0x1p-52); break;
-    default: pair.b = random.coarse();
+    case 0:
+      pair.b = random.scaled(low, high);
+      break;
+    case 1:
+      pair.b = std::ldexp(pair.a, random.integer(-60, 0)) * random.between(-1, 1);
+      break;
+    case 2:
+      pair.b = -pair.a * (1 + random.integer(-4, 4) * 0x1p-52);
+      break;
+    default:
+      pair.b = random.coarse();
   }
   return pair;
 }

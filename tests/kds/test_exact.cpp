@@ -61,10 +61,17 @@ TEST_CASE("exact numbers have the signs that rationals have", "[exact]") {
       const Twin& b = numbers[random.below(numbers.size())];
       Twin c;
       switch (random.below(4)) {
-        case 0: c = a + b; break;
-        case 1: c = a - b; break;
-        case 2: c = -a; break;
-        default: c = step < 6 ? a * b : b - a;
+        case 0:
+          c = a + b;
+          break;
+        case 1:
+          c = a - b;
+          break;
+        case 2:
+          c = -a;
+          break;
+        default:
+          c = step < 6 ? a * b : b - a;
       }
       zeros += c.fraction.is_zero();
       if (c.exact.sign() != c.fraction.sign()) {
@@ -89,9 +96,9 @@ TEST_CASE("nothing is lost between the ends of the range", "[exact]") {
   CHECK((big + small - big).sign() == 1);
   CHECK(((big + small) - big).approximate() == 1e-300);
   CHECK((big * big * small * small).approximate() == Approx(1));
-  CHECK((Exact(least) * Exact(least)).sign() == 1);           // far below all doubles
+  CHECK((Exact(least) * Exact(least)).sign() == 1);            // far below all doubles
   CHECK((Exact(largest) * Exact(largest) - big).sign() == 1);  // and above
-  CHECK((Exact(0.1) + Exact(0.2) - Exact(0.3)).sign() == 1);  // as the doubles nearest to them have it
+  CHECK((Exact(0.1) + Exact(0.2) - Exact(0.3)).sign() == 1);   // as the doubles nearest to them have it
 }
 
 TEST_CASE("approximations are the nearest double or its neighbour", "[exact]") {

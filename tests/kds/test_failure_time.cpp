@@ -113,13 +113,12 @@ void run(std::uint64_t seed, int rounds, Family&& family) {
 
 }  // namespace
 
-#define FOR_EACH_DEGREE \
-  ((int Degree), Degree), 1, 2, 3, 4, 5, 6, 7, 8
+#define FOR_EACH_DEGREE ((int Degree), Degree), 1, 2, 3, 4, 5, 6, 7, 8
 
 // --- by hand
 
 TEST_CASE("the failure time of a line is the first double not before its root", "[failure_time]") {
-  CHECK(failure_time(Value<1>{{{{1, -1}}, 0}}, 0) == 1);          // a root that is a double: fails there
+  CHECK(failure_time(Value<1>{{{{1, -1}}, 0}}, 0) == 1);                    // a root that is a double: fails there
   CHECK(failure_time(Value<1>{{{{1, -3}}, 0}}, 0) == 1.0 / 3.0 + 0x1p-54);  // 1/3 lies above its nearest double
   CHECK(failure_time(Value<1>{{{{1, 1}}, 0}}, 0) == never);
   CHECK(failure_time(Value<1>{{{{1, 0}}, 0}}, 0) == never);
@@ -131,11 +130,11 @@ TEST_CASE("the failure time of a line is the first double not before its root", 
 }
 
 TEST_CASE("a touch is no failure, a crossing of odd order is one", "[failure_time]") {
-  CHECK(failure_time(Value<2>{{{{1, -2, 1}}, 0}}, 0) == never);      // (t - 1)^2
-  CHECK(failure_time(Value<3>{{{{1, -3, 3, -1}}, 0}}, 0) == 1);      // -(t - 1)^3
+  CHECK(failure_time(Value<2>{{{{1, -2, 1}}, 0}}, 0) == never);  // (t - 1)^2
+  CHECK(failure_time(Value<3>{{{{1, -3, 3, -1}}, 0}}, 0) == 1);  // -(t - 1)^3
   CHECK(failure_time(Value<4>{{{{1, -4, 6, -4, 1}}, 0}}, 0) == never);
-  CHECK(failure_time(Value<3>{{{{2, -5, 4, -1}}, 0}}, 0) == 2);      // -(t - 1)^2 (t - 2): touches at 1, falls at 2
-  CHECK(failure_time(Value<2>{{{{-1, 2, -1}}, 0}}, 1) == 1);         // -(t - 1)^2, asked at the touch
+  CHECK(failure_time(Value<3>{{{{2, -5, 4, -1}}, 0}}, 0) == 2);  // -(t - 1)^2 (t - 2): touches at 1, falls at 2
+  CHECK(failure_time(Value<2>{{{{-1, 2, -1}}, 0}}, 1) == 1);     // -(t - 1)^2, asked at the touch
 }
 
 TEST_CASE("zero for ever is no failure, at any degree", "[failure_time]") {
@@ -243,7 +242,8 @@ TEMPLATE_TEST_CASE_SIG("failure times of huge, tiny and mixed numbers", "[failur
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times of numbers from the whole range of doubles", "[failure_time][!mayfail]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times of numbers from the whole range of doubles", "[failure_time][!mayfail]",
+                       FOR_EACH_DEGREE) {
   run<Degree>(650, Degree < 4 ? 60 : 12, [](Random& random) {
     Motion<Degree> f;
     for (double& c : f.position.c) c = random.scaled(-1000, 1000);
@@ -331,7 +331,8 @@ TEST_CASE("a dip that starts between two doubles is seen at the next one", "[fai
   }
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times of roots a few steps of the lattice apart", "[failure_time][!mayfail]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times of roots a few steps of the lattice apart", "[failure_time][!mayfail]",
+                       FOR_EACH_DEGREE) {
   run<Degree>(1100, 60, [](Random& random) {
     const double u = 0x1p-52;
     std::array<double, Degree> roots;
@@ -404,8 +405,8 @@ TEST_CASE("failure times of a slope that cancels in doubles and in double-double
     const double t = failure_time(f, now);
     const double expected = oracle::failure_time(exact(f), now);
     if (t != expected) {
-      INFO("round " << round << std::hexfloat << ": value " << f.value.c[0] << ' ' << f.value.c[1] << ", x "
-                    << f.x.c[0] << ' ' << f.x.c[1] << ", y " << f.y << ", now " << now);
+      INFO("round " << round << std::hexfloat << ": value " << f.value.c[0] << ' ' << f.value.c[1] << ", x " << f.x.c[0]
+                    << ' ' << f.x.c[1] << ", y " << f.y << ", now " << now);
       CHECK(t == expected);
     }
   }
@@ -450,8 +451,7 @@ TEMPLATE_TEST_CASE_SIG("after a turn from - to + the next failure is found witho
     if (turn == never || turn == -3) return;
     INFO(describe(f, turn, never));
     CHECK(failure_time_after_turn(Value<Degree>{f}, turn) == expected_failure_time(f, turn));
-    CHECK(failure_time_after_turn(Value<Degree>{f}, turn, turn + 0.5) ==
-          expected_failure_time(f, turn, turn + 0.5));
+    CHECK(failure_time_after_turn(Value<Degree>{f}, turn, turn + 0.5) == expected_failure_time(f, turn, turn + 0.5));
   });
 }
 

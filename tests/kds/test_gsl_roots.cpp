@@ -29,13 +29,13 @@ TEST_CASE("through the GSL: the first crossing downward, at any degree", "[gsl]"
   CHECK(first_negative({1, -1}) == Approx(1));
   CHECK(first_negative({1, 1}) == never);
   CHECK(first_negative({2, -3, 1}) == Approx(1));
-  CHECK(first_negative({-2, 3, -1}) == 0);           // negative already
+  CHECK(first_negative({-2, 3, -1}) == 0);  // negative already
   CHECK(first_negative({2, 1, -1}) == Approx(2));
   CHECK(first_negative({1, 0, 1}) == never);
-  CHECK(first_negative({6, -11, 6, -1}) == Approx(1));   // -(x - 1)(x - 2)(x - 3)
+  CHECK(first_negative({6, -11, 6, -1}) == Approx(1));  // -(x - 1)(x - 2)(x - 3)
   CHECK(first_negative({-6, 11, -6, 1}) == 0);
   CHECK(first_negative({24, -50, 35, -10, 1}) == Approx(1));
-  CHECK(first_negative({0, 0, 1, -1}) == Approx(1));     // zero at the start, and rising
+  CHECK(first_negative({0, 0, 1, -1}) == Approx(1));  // zero at the start, and rising
   CHECK(first_negative({0, 0, -1, 1}) == 0);
   CHECK(first_negative({0, 2, -3, 1}) == Approx(1));
 }

@@ -44,9 +44,7 @@ struct Script {
   double broken_at = never;
   Script* other = nullptr;  // gets an event of the same time for each of ours, once
 
-  double next_time() const {
-    return events.empty() || events.begin()->first > horizon ? never : events.begin()->first;
-  }
+  double next_time() const { return events.empty() || events.begin()->first > horizon ? never : events.begin()->first; }
   void process() {
     const auto [time, slot] = *events.begin();
     events.erase(events.begin());
@@ -135,7 +133,8 @@ TEST_CASE("events come in the order of time, then structure, then slot", "[simul
   Simulator simulator(0, a, b);
   CHECK(simulator.next_time() == 0.5);
   simulator.advance_to(10);
-  CHECK(log == Log{{0.5, 'b', 2}, {1.0, 'a', 7}, {2.0, 'a', 1}, {2.0, 'a', 3}, {2.0, 'b', 0}, {3.0, 'b', 9}, {4.0, 'a', 0}});
+  CHECK(log ==
+        Log{{0.5, 'b', 2}, {1.0, 'a', 7}, {2.0, 'a', 1}, {2.0, 'a', 3}, {2.0, 'b', 0}, {3.0, 'b', 9}, {4.0, 'a', 0}});
   CHECK(simulator.now() == 10);
   CHECK(simulator.next_time() == never);
 }

@@ -23,7 +23,6 @@ int sign_after(const std::vector<Rational>& c, const Rational& start, double t);
 ///
 /// It isolates all stretches in which the condition holds and takes the first one that owns a double: a stretch that
 /// ends before the next double is never seen by a clock made of doubles.
-double first_double(const Condition& condition, double now,
-                    double horizon = std::numeric_limits<double>::infinity());
+double first_double(const Condition& condition, double now, double horizon = std::numeric_limits<double>::infinity());
 
 }  // namespace oracle
