@@ -165,7 +165,7 @@ Contact box_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>
   const Vector3d x = a.shape.rotation.transpose() * (b.motion.position(t) - centre_a);
   const Vector3d nearest = x.cwiseMax(-h).cwiseMin(h);
   Vector3d normal = x - nearest;
-  BoxSide touched;
+  BoxSide touched = BoxSide::Zero();
   if (normal.squaredNorm() > 0) {
     for (int d = 0; d < 3; ++d) touched[d] = normal[d] > 0 ? 1 : (normal[d] < 0 ? -1 : 0);
     normal.normalize();
