@@ -2,8 +2,8 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <utility>
 
 namespace kds::collision {
@@ -17,25 +17,30 @@ enum class Work : std::size_t {
   other,   ///< response, callbacks, the clock
 };
 
-/// Seconds by kind of work. Each instant is charged to one kind: the innermost that is being done.
+/// CPU seconds of this thread by kind of work. Each instant is charged to one kind: the innermost that is being done.
+/// Asking for the time costs some 0.3 us.
 class Profile {
  public:
-  using Clock = std::chrono::steady_clock;
-
   double seconds(Work work) const { return seconds_[static_cast<std::size_t>(work)]; }
 
   /// Begins other work and says what was being done.
   Work change_to(Work work) {
-    const Clock::time_point now = Clock::now();
-    seconds_[static_cast<std::size_t>(current_)] += std::chrono::duration<double>(now - since_).count();
+    const double now = cpu_seconds();
+    seconds_[static_cast<std::size_t>(current_)] += now - since_;
     since_ = now;
     return std::exchange(current_, work);
   }
 
  private:
+  static double cpu_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+
   std::array<double, 5> seconds_{};
   Work current_ = Work::other;
-  Clock::time_point since_ = Clock::now();
+  double since_ = cpu_seconds();
 };
 
 /// Charges the rest of a scope to one kind of work. Without a profile it costs nothing.
