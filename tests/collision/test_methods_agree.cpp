@@ -17,7 +17,9 @@ constexpr std::array all_shapes{Shapes::spheres,    Shapes::boxes, Shapes::turne
 /// Everything but the pairs of bounding volumes.
 std::vector<Event> contacts(const std::vector<Event>& events) {
   std::vector<Event> result;
-  std::copy_if(events.begin(), events.end(), std::back_inserter(result), [](const Event& e) { return !is_pair_event(e); });
+  for (const Event& e : events) {
+    if (!is_pair_event(e)) result.push_back(e);
+  }
   return sorted(std::move(result));
 }
 
@@ -106,7 +108,8 @@ void for_scenes(const SceneOptions& base, int seeds, F&& f) {
   }
 }
 
-TEMPLATE_TEST_CASE_SIG("Methods agree where bodies pass through each other", "[methods]", ((int Degree), Degree), 1, 2) {
+TEMPLATE_TEST_CASE_SIG("Methods agree where bodies pass through each other", "[methods]", ((int Degree), Degree), 1,
+                       2) {
   Compared compared;
   for_scenes<Degree>({.scripts = true}, 12, [&](const Scene<Degree>& scene, Numbers numbers) {
     // On a lattice a jump may leave two boxes touching for good while other swaps of that instant are still due; when
@@ -143,7 +146,8 @@ TEMPLATE_TEST_CASE_SIG("It does not matter how often the world is asked, nor how
                        ((int Degree), Degree), 1, 2) {
   Compared compared;
   SECTION("passing through") {
-    for_scenes<Degree>({.scripts = true}, 2, [&](const Scene<Degree>& scene, Numbers) { compare_drives(scene, {}, compared); });
+    for_scenes<Degree>({.scripts = true}, 2,
+                       [&](const Scene<Degree>& scene, Numbers) { compare_drives(scene, {}, compared); });
   }
   SECTION("bouncing") {
     for_scenes<Degree>({.heterogeneous = true}, 2, [&](const Scene<Degree>& scene, Numbers) {
