@@ -1,6 +1,8 @@
 // A moving ball and a triangle.
 #pragma once
 
+#include "collision/convex_touch.hpp"
+#include "collision/near_spans.hpp"
 #include "collision/relative_motion.hpp"
 #include "collision/separating_axes.hpp"
 #include "collision/time_spans.hpp"
@@ -20,14 +22,6 @@ struct NearestPoint {
   std::size_t index;  ///< of the vertex or edge; edge i leads from vertex i to vertex i + 1 (mod 3)
 };
 NearestPoint nearest_point(const PlacedTriangle& triangle, const Eigen::Vector3d& to);
-
-/// When |s0 + s1 tau| < g0 + g1 tau, for all tau. From the nearest approach, whose distance is computed from the place
-/// itself.
-TimeSpans near_spans(const std::array<Eigen::Vector3d, 2>& s, const std::array<double, 2>& g, double horizon);
-
-/// The same for a quadratic path and reach, from tau = 0 to the horizon: the sign changes of a quartic, bracketed
-/// between those of its derivatives.
-TimeSpans near_spans(const std::array<Eigen::Vector3d, 3>& s, const std::array<double, 3>& g, double horizon);
 
 /// When a ball touches a triangle: their distance is below radius + contact gap. The set of such places of the ball's
 /// centre is the union of seven convex pieces: a prism over the face, three cylinders about the edges, three balls

@@ -12,12 +12,28 @@
 
 namespace kds::collision {
 
+/// A contact of a mesh (a) with another shape (b).
+struct MeshTouch {
+  double tau;  ///< s, from the motion's epoch
+  std::uint32_t triangle_a;
+  std::uint32_t triangle_b;  ///< 0 unless b is a mesh
+};
+
+/// Where and how they touch.
+struct MeshTouchPlace {
+  Eigen::Vector3d point;   ///< from the centre of a
+  Eigen::Vector3d normal;  ///< unit, from a to b
+  Feature feature_a;
+  Feature feature_b;
+};
+
 /// A mesh (a) and any other shape (b), and the motion of b seen from a. Times are tau >= 0, from the motion's epoch.
 ///
 /// A mesh is its surface: a body wholly inside another touches nothing. Boxes and balls are solid.
 ///
 /// Laws. (1) Never late, never missed: contact is reported while surfaces are nearer than the contact gap (see
 /// ContactGap for its size and derivation), and so no vertex or edge slips between two triangles that share an edge.
+/// (Predictions end where the gap has grown to a sixteenth of the shapes: see `widest_gap` in mesh_query.hpp.)
 /// (2) Early by the gap at most, measured along each separating axis. (3) The times are closed forms of the shapes and
 /// the motion polynomial: they do not depend on the window asked about, on the order of the walk through the trees or
 /// on who asks. (4) Contact holds from its beginning until just before its end: at the time that first_free_time
@@ -31,16 +47,10 @@ class MeshPair {
   /// Keeps references to the shapes. Precondition: the shape of a is a mesh.
   MeshPair(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion);
 
-  struct Touch {
-    double tau;
-    std::uint32_t triangle_a;
-    std::uint32_t triangle_b;  ///< 0 unless b is a mesh
-  };
-
   /// The first contact in [tau0, tau1]. Mode `transparent`: tau0 itself if they touch there. Mode `resolved`: a pair of
   /// triangles that touches at tau0 counts only if it approaches along its axis of least penetration, else when it
   /// turns to approach, or touches anew.
-  std::optional<Touch> first_contact(double tau0, double tau1, ContactMode mode) const;
+  std::optional<MeshTouch> first_contact(double tau0, double tau1, ContactMode mode) const;
 
   /// Whether they touch at tau.
   bool touching(double tau) const;
@@ -50,13 +60,7 @@ class MeshPair {
 
   /// How they touch at tau. Of several touching pairs of triangles: one that approaches, the earliest to touch, the
   /// lowest. At a time when they have just ceased to touch: the pair that was last.
-  struct Where {
-    Eigen::Vector3d point;   ///< from the centre of a
-    Eigen::Vector3d normal;  ///< unit, from a to b
-    Feature feature_a;
-    Feature feature_b;
-  };
-  Where where(double tau) const;
+  MeshTouchPlace where(double tau) const;
 
  private:
   template <class Question>

@@ -1,4 +1,5 @@
 // Times of the tests of meshes: one box test, one pair of triangles, whole queries, building of trees.
+#include "collision/convex_touch.hpp"
 #include "collision/mesh_contact.hpp"
 #include "collision/obb_descent.hpp"
 #include "collision/separating_axes.hpp"
@@ -37,8 +38,10 @@ void queries(const char* what, const std::shared_ptr<const Mesh>& mesh, int n, d
   std::vector<PlacedShape> shapes;
   std::vector<RelativeMotion<Degree>> motions;
   for (int i = 0; i < n; ++i) {
-    shapes.push_back(placed(mesh, random.uniform(0.8, 1.2), random.orientation()));
-    shapes.push_back(placed(mesh, random.uniform(0.8, 1.2), random.orientation()));
+    for (int side = 0; side < 2; ++side) {
+      const double scale = random.uniform(0.8, 1.2);
+      shapes.push_back(placed(mesh, scale, random.orientation()));
+    }
     motions.push_back(encounter<Degree>(random, 4, miss));
   }
   int hits = 0;
@@ -69,7 +72,8 @@ void ball_queries(const char* what, const std::shared_ptr<const Mesh>& mesh, int
   std::vector<PlacedShape> shapes;
   std::vector<RelativeMotion<Degree>> motions;
   for (int i = 0; i < n; ++i) {
-    shapes.push_back(placed(mesh, random.uniform(0.8, 1.2), random.orientation()));
+    const double scale = random.uniform(0.8, 1.2);
+    shapes.push_back(placed(mesh, scale, random.orientation()));
     motions.push_back(encounter<Degree>(random, 4, 1));
   }
   int hits = 0;

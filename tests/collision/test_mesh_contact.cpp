@@ -1,6 +1,7 @@
 // Meshes against meshes, boxes and balls: against brute force, and against static distances that share no code with
 // the tests over time.
 #include "collision/ball_touch.hpp"
+#include "collision/convex_touch.hpp"
 #include "collision/mesh_contact.hpp"
 #include "collision/separating_axes.hpp"
 #include "tests/collision/sample_meshes.hpp"
@@ -141,10 +142,9 @@ void every_touch(const PlacedShape& a, const PlacedShape& b, const RelativeMotio
 
 /// The first contact at or after tau0 by looking at every pair.
 template <int Degree>
-std::optional<typename MeshPair<Degree>::Touch> brute_force(const PlacedShape& a, const PlacedShape& b,
-                                                            const RelativeMotion<Degree>& motion, double tau0,
-                                                            ContactMode mode) {
-  std::optional<typename MeshPair<Degree>::Touch> best;
+std::optional<MeshTouch> brute_force(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion,
+                                     double tau0, ContactMode mode) {
+  std::optional<MeshTouch> best;
   every_touch(a, b, motion, [&](std::uint32_t i, std::uint32_t j, const auto& touch) {
     double tau = touch.first_inside(tau0);
     while (mode == ContactMode::resolved && tau < infinity && !touch.approaching(tau)) {
@@ -293,15 +293,17 @@ std::shared_ptr<const Mesh> needle() {
       std::vector<Mesh::Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
 }
 
+template <int Degree>
 struct Shot {
   PlacedShape target;
   PlacedShape bullet;
-  RelativeMotion<1> motion;
+  RelativeMotion<Degree> motion;
   double arrival;  ///< when the bullet's tip or edge is at the place aimed at
 };
 
-void check(const Shot& shot) {
-  const MeshPair<1> pair(shot.target, shot.bullet, shot.motion);
+template <int Degree>
+void check(const Shot<Degree>& shot) {
+  const MeshPair<Degree> pair(shot.target, shot.bullet, shot.motion);
   const auto found = pair.first_contact(0, infinity, ContactMode::resolved);
   REQUIRE(found);
   // The place aimed at is a point of the surface, up to a few roundings.
@@ -336,7 +338,7 @@ TEST_CASE("No vertex slips between triangles that share an edge or a vertex, at 
       const std::array meshes{ball_mesh(2), cuboid(), torus(8, 4)};
       for (int trial = 0; trial < 60; ++trial) {
         INFO("trial " << trial);
-        Shot shot;
+        Shot<1> shot;
         shot.target = placed(meshes[static_cast<std::size_t>(trial % 3)], scale, random.orientation());
         const Vector3d place = aim(random, shot.target);
         // From outside, along a direction that meets the surface.
@@ -362,9 +364,10 @@ TEST_CASE("No edge slips between triangles that share an edge or a vertex") {
   const std::array meshes{ball_mesh(2), cuboid(), torus(8, 4)};
   for (int trial = 0; trial < 300; ++trial) {
     INFO("trial " << trial);
-    Shot shot;
+    Shot<1> shot;
     shot.target = placed(meshes[static_cast<std::size_t>(trial % 3)], 1, random.orientation());
-    shot.bullet = placed(cuboid(), random.uniform(0.1, 2), random.orientation());
+    const double size = random.uniform(0.1, 2);
+    shot.bullet = placed(cuboid(), size, random.orientation());
     const Vector3d there = aim(random, shot.target);
     const Vector3d on_bullet = aim(random, shot.bullet);
     const Vector3d direction = random.direction();
@@ -382,13 +385,83 @@ TEST_CASE("A ball does not slip through a shared edge or vertex, however small")
   const std::array meshes{ball_mesh(2), cuboid(), torus(8, 4)};
   for (int trial = 0; trial < 300; ++trial) {
     INFO("trial " << trial);
-    Shot shot;
+    Shot<1> shot;
     shot.target = placed(meshes[static_cast<std::size_t>(trial % 3)], 1, random.orientation());
     shot.bullet = place(Sphere{std::array{1e-9, 1e-3, 1.0}[random.below(3)]}, Eigen::Quaterniond::Identity());
     const Vector3d direction = random.direction();
     shot.arrival = 10;
     shot.motion.coefficients = {aim(random, shot.target) - 10 * direction, direction};
     check(shot);
+  }
+}
+
+TEST_CASE("Nothing slips through on a curved path") {
+  const std::uint64_t seed = 103;
+  INFO("seed " << seed);
+  Random random(seed);
+  const std::array meshes{ball_mesh(2), cuboid(), torus(8, 4)};
+  for (int trial = 0; trial < 300; ++trial) {
+    INFO("trial " << trial);
+    Shot<2> shot;
+    shot.target = placed(meshes[static_cast<std::size_t>(trial % 3)], 1, random.orientation());
+    Vector3d on_bullet = Vector3d::Zero();
+    if (trial % 2 == 0) {
+      shot.bullet = placed(cuboid(), 0.7, random.orientation());
+      on_bullet = aim(random, shot.bullet);
+    } else {
+      shot.bullet = place(Sphere{std::array{1e-6, 1e-3, 0.5}[random.below(3)]}, Eigen::Quaterniond::Identity());
+    }
+    // Through the place aimed at when tau = arrival, from far away.
+    shot.arrival = 2;
+    const Vector3d velocity = 5 * random.direction();
+    const Vector3d bend = std::array{1e-6, 1e-2, 1.0}[random.below(3)] * random.direction();
+    shot.motion.coefficients = {aim(random, shot.target) - on_bullet - 2 * velocity + 4 * bend, velocity - 4 * bend,
+                                bend};
+    check(shot);
+  }
+}
+
+TEST_CASE("Sizes of 1e-6 next to 1e6") {
+  const std::uint64_t seed = 104;
+  INFO("seed " << seed);
+  Random random(seed);
+  const auto sphere = ball_mesh(2);
+  for (int trial = 0; trial < 100; ++trial) {
+    INFO("trial " << trial);
+    Shot<1> shot;
+    shot.target = placed(sphere, 1e6, random.orientation());
+    const Vector3d there = aim(random, shot.target);
+    const Vector3d direction = -there.normalized();
+    shot.bullet = trial % 2 == 0 ? placed(torus(8, 4), 1e-6, random.orientation())
+                                 : place(Sphere{1e-6}, Eigen::Quaterniond::Identity());
+    const double distance = std::array{1e-5, 1.0, 1e6}[random.below(3)];
+    shot.arrival = distance;
+    shot.motion.coefficients = {there - distance * direction, direction};
+    // The bullet's centre is on the surface at its arrival; half of the ring is beyond it by then.
+    const MeshPair<1> pair(shot.target, shot.bullet, shot.motion);
+    const auto found = pair.first_contact(0, infinity, ContactMode::resolved);
+    REQUIRE(found);
+    REQUIRE(found->tau <= distance);
+    REQUIRE(found->tau >= distance - 1.1e-6 - 1e-8);
+  }
+}
+
+TEST_CASE("Bodies that hardly move against each other are decided at once") {
+  const PlacedShape ring = placed(torus(30, 20));
+  const PlacedShape ball = place(Sphere{0.5}, Eigen::Quaterniond::Identity());
+  for (const PlacedShape& other : {ring, ball}) {
+    for (const double speed : {0.0, 1e-300, 1e-17}) {
+      for (const double bend : {0.0, 1e-17}) {
+        // Speeds that are nothing but the rounding of the bodies' own.
+        const MeshPair<2> pair(
+            ring, other,
+            {{Vector3d{1.1, 1.2, 1.3}, speed * Vector3d::UnitX(), bend * Vector3d::UnitY()}, {0, 1e-16, 1e-17}});
+        const auto soon = pair.first_contact(0, 1e6, ContactMode::resolved);
+        CHECK_FALSE(soon);
+        CHECK_NOTHROW(pair.first_contact(0, infinity, ContactMode::resolved));
+        CHECK(pair.first_free_time(0, infinity) == 0);
+      }
+    }
   }
 }
 
