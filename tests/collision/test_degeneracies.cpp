@@ -317,7 +317,7 @@ TEST_CASE("Clock at 1e9: bounces go on and the run ends", "[degenerate]") {
   }
 }
 
-TEST_CASE("Sizes of 1e-6 next to 1e6", "[degenerate]") {
+TEST_CASE("Bodies of size 1e-6 next to bodies of size 1e6", "[degenerate]") {
   for (const auto method : all_methods) {
     for (const Shape& large : {Shape(Box{{1e6, 1e6, 1e6}}), Shape(Sphere{1e6})}) {
       for (const Shape& small : {Shape(Box{{1e-6, 1e-6, 1e-6}}), Shape(Sphere{1e-6})}) {
@@ -400,6 +400,25 @@ TEST_CASE("A ball pressed on the floor by its weight is held, which is reported,
       CHECK(log.count(Kind::held) == 1);
       CHECK(world.counters().held == 1);
       CHECK(world.motion(1).position(5) == Vector3d(5, 0, 1));
+    }
+  }
+}
+
+TEST_CASE("Bounces that pile up are held at the contact that the policy names", "[degenerate]") {
+  for (const auto method : all_methods) {
+    for (const Shape& shape : {Shape(Sphere{1}), Shape(Box{{1, 1, 1}})}) {
+      EventLog<1> log;
+      WorldOptions options = with(Response::elastic, method);
+      options.zeno = {.contacts = 10, .interval = 100};
+      World<1> world(options, &log);
+      world.add_body(fixed_body<1>(Box{{1, 5, 5}}, motion<1>({-3, 0, 0})));
+      world.add_body(fixed_body<1>(Box{{1, 5, 5}}, motion<1>({3, 0, 0})));
+      world.add_body(body<1>(shape, motion<1>({0, 0, 0}, {2, 1, 0})));  // to and fro in a second
+      world.advance_to(50);
+      CHECK(log.count(Kind::contact) == 11);
+      REQUIRE(log.count(Kind::held) == 1);
+      CHECK(log.of(Kind::held)[0].time() == 10.5);
+      CHECK(world.motion(2).velocity(50) == Vector3d(0, 1, 0));
     }
   }
 }

@@ -421,7 +421,7 @@ TEST_CASE("Nothing slips through on a curved path") {
   }
 }
 
-TEST_CASE("Sizes of 1e-6 next to 1e6") {
+TEST_CASE("Mesh sizes of 1e-6 next to 1e6") {
   const std::uint64_t seed = 104;
   INFO("seed " << seed);
   Random random(seed);
