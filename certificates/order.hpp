@@ -5,7 +5,9 @@
 #include "kds/failure_time.hpp"
 #include "kds/motion.hpp"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace kds::certificates {
@@ -47,6 +49,11 @@ struct Order {
     double epoch;
   };
 
+  /// The number cut off after 26 significant bits.
+  static double leading_bits(double x) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & ~((std::uint64_t{1} << 27) - 1));
+  }
+
   /// The later of the starts is the epoch; the motion that started earlier is shifted to it. Differences of motions
   /// that start together are exact in double-double.
   template <class T>
@@ -78,7 +85,6 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
     if (lower.position.c[i] != upper.position.c[i]) return undecided;
     if (i > 2 && lower.position.c[i] != 0 && lower.start != upper.start) return undecided;  // differ by a parabola
   }
-  // In doubles: on which side of now, and of the horizon, is the root? Where that is certain it needs no better.
   const Line<double> rough = line<double>();
   const double gap = rough.gap.middle;
   const double rate = rough.rate.middle;
@@ -86,38 +92,52 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
     const int s = certain_sign(rough.gap);
     return s > 0 ? never : (s < 0 ? now : undecided);
   }
-  const double inverse = 1 / rate;
-  const double root = -gap * inverse;  // from the epoch on
+  // The bounds below hold while nothing over- or underflows; other numbers are left to the general method.
+  const double steepness = std::abs(rate);
+  if (!(steepness > 0x1p-450 && steepness < 0x1p450 && std::abs(gap) < 0x1p450)) return undecided;
+
+  // In doubles: on which side of now, and of the horizon, is the root? Where that is certain it needs no better.
+  double inverse = 1 / rate;
+  double root = -gap * inverse;  // from the epoch on
   const double elapsed = now - rough.epoch;
-  // Roundings of the quotient (three) and of the elapsed time; twice the errors of gap and rate, which bounds their
-  // effect where the rate is known to half of itself and makes the margin too large to decide where it is not.
+  // Roundings of the quotient (two), of gap and rate (one each) and of the elapsed time, 2^-53 each; twice the
+  // errors of gap and rate, which bounds their effect where the rate is known to half of itself and makes the margin
+  // too large to decide where it is not.
   const double margin = 0x1p-49 * (std::abs(root) + std::abs(elapsed)) +
                         2 * (rough.gap.radius + std::abs(root) * rough.rate.radius) * std::abs(inverse);
   const double side = root - elapsed;
-  if (!(std::abs(side) > margin && std::abs(rate) > 2 * rough.rate.radius)) return undecided;
+  if (!(std::abs(side) > margin && steepness > 2 * rough.rate.radius)) return undecided;
   const bool ahead = side > 0;
   if (rate > 0) return ahead ? now : never;
   if (!ahead) return now;
   const double remaining = horizon - rough.epoch;
   if (root - remaining > margin + 0x1p-49 * std::abs(remaining)) return never;
 
-  // In double-doubles: a step of division from the rough quotient. The residual is a sum of roundings of the gap and
-  // of its own error: the quotient's error is below 2^-100 of it, and so is that of the sum with the epoch. Gaps so
-  // small that parts of the product could underflow, and quotients that overflow, are left to the general method.
+  // One step of division with an exact residual. `coarse` is the root to 26 bits, and the rate's high part is split
+  // into 26 and 27, so both products are exact; the first nearly cancels the gap, so that difference is exact as well
+  // [Sterbenz] and below 2^-24 of the gap. What is rounded are sums and a quotient of that size or less: the error
+  // of coarse + correction is below 2^-72 of the root.
   const Line<DoubleDouble> fine = line<DoubleDouble>();
   const DoubleDouble& g = fine.gap.middle;
   const DoubleDouble& r = fine.rate.middle;
-  if (!(std::abs(g.high) > 0x1p-900 && root < 0x1p900)) return undecided;
-  const DoubleDouble product = two_product(root, r.high);
-  const double residual = (two_sum(g.high, product.high).high + two_sum(g.high, product.high).low + product.low) +
-                          (g.low + root * r.low);
-  const DoubleDouble sum = two_sum(fine.epoch, root);
-  const DoubleDouble time = two_sum(sum.high, sum.low - residual / r.high);
-  const double error = 0x1p-98 * (std::abs(time.high) + std::abs(root)) +
-                       0x1p-48 * std::abs(residual * inverse) +
+  if (!(std::abs(g.high) > 0x1p-450)) return undecided;
+  if (lower.start != upper.start) {  // Else it is the same number.
+    inverse = 1 / r.high;
+    root = -g.high * inverse;
+  }
+  const double coarse = leading_bits(root);
+  const double rate_high = leading_bits(r.high);
+  const double residual =
+      (g.high + coarse * rate_high) + coarse * (r.high - rate_high) + (g.low + coarse * r.low);
+  const DoubleDouble sum = two_sum(fine.epoch, coarse);
+  const DoubleDouble time = two_sum(sum.high, sum.low - residual * inverse);
+  // 2^-98 pays for the sum of the two low parts.
+  const double error = 0x1p-72 * std::abs(root) + 0x1p-98 * std::abs(time.high) +
                        2 * (fine.gap.radius + std::abs(root) * fine.rate.radius) * std::abs(inverse);
   if (!(std::abs(time.low) > error)) return undecided;
-  const double t = time.low > 0 ? next_up(time.high) : time.high;
+  // next_up() where the low part is positive, without a branch: it would be mispredicted half the time.
+  const std::int64_t up = time.low > 0;
+  const double t = std::bit_cast<double>(std::bit_cast<std::int64_t>(time.high) + (time.high < 0 ? -up : up));
   return t <= horizon ? t : never;
 }
 

@@ -39,8 +39,10 @@ double gsl_failure_time(const C& certificate, double now, double horizon = never
   return t <= horizon ? t : never;
 }
 
-/// The same as a function object, for code that takes its solver as an argument.
+/// The same as a FailureTimeSolver, for structures: SortedList<1, Listener, DefaultEventQueue, GslSolver>.
 struct GslSolver {
+  static constexpr bool certified = false;
+
   template <Certificate C>
   double operator()(const C& certificate, double now, double horizon = never) const {
     return gsl_failure_time(certificate, now, horizon);

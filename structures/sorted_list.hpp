@@ -3,10 +3,8 @@
 
 #include "certificates/order.hpp"
 #include "kds/audit.hpp"
-#include "kds/default_event_queue.hpp"
-#include "kds/failure_time.hpp"
 #include "kds/motion.hpp"
-#include "kds/statistics.hpp"
+#include "kds/schedule.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -40,8 +38,10 @@ struct NoSwapListener {
 /// jump needs; insertion and removal O(n) moves of memory and O(log n) comparisons; `assign` O(n log n). At most one
 /// event for each adjacent pair is scheduled: the structure is compact and, with two events an element, local.
 ///
-/// All orders are decided by exact signs at t+, so the state between events is exactly that of the motions.
-template <int Degree, class Listener = NoSwapListener, EventQueue Queue = DefaultEventQueue>
+/// All orders are decided by exact signs at t+, so the state between events is exactly that of the motions (with an
+/// uncertified solver: as far as Schedule promises).
+template <int Degree, class Listener = NoSwapListener, EventQueue Queue = DefaultEventQueue,
+          FailureTimeSolver Solver = CertifiedSolver>
 class SortedList {
  public:
   using Id = std::uint32_t;
@@ -66,7 +66,8 @@ class SortedList {
 
   Listener& listener() { return listener_; }
 
-  /// Replaces the content. Swaps are not reported. Throws std::invalid_argument for an id used twice.
+  /// Replaces the content. Swaps are not reported. Throws std::invalid_argument for an id used twice or a motion that
+  /// is not finite, and then changes nothing.
   void assign(std::span<const Entry> entries, double now);
 
   /// Inserts an element; its neighbours are found by binary search. No swap is reported.
@@ -79,7 +80,7 @@ class SortedList {
   void update(Id id, const Motion<Degree>& motion, double now);
 
   /// Time of the next swap, `never` if there is none within the horizon.
-  double next_time() const { return queue_.empty() ? never : queue_.top().time; }
+  double next_time() const { return schedule_.next_time(); }
 
   /// Makes the swap due at next_time(). Precondition: there is one.
   void process();
@@ -89,8 +90,8 @@ class SortedList {
   /// Checks order, positions and failure times against the motions, exactly.
   void audit(double now) const;
 
-  const Counters& counters() const { return counters_; }
-  const Queue& queue() const { return queue_; }
+  const Counters& counters() const { return schedule_.counters(); }
+  const Queue& queue() const { return schedule_.queue(); }
 
  private:
   static constexpr std::uint32_t absent = std::numeric_limits<std::uint32_t>::max();
@@ -104,22 +105,33 @@ class SortedList {
     return rank_a != rank_b ? rank_a < rank_b : a.id < b.id;
   }
 
+  certificates::Order<Degree> pair(std::size_t left) const { return {order_[left].motion, order_[left + 1].motion}; }
+
   /// Certifies the pair whose left element stands at `left`.
   void certify(std::size_t left, double now) {
     const Id slot = order_[left].id;
-    if (left + 1 == order_.size()) return queue_.clear(slot);
-    ++counters_.certificates;
-    schedule(slot, failure_time(pair(left), now, horizon_));
+    if (left + 1 == order_.size()) return schedule_.clear(slot);
+    schedule_.certify(slot, pair(left), now);
+    if (now == disturbed_) settle_tie(left, now);
   }
 
-  certificates::Order<Degree> pair(std::size_t left) const { return {order_[left].motion, order_[left + 1].motion}; }
+  /// The same while an event at `now` is processed.
+  void certify_in_event(std::size_t left, double now) {
+    if (left + 1 < order_.size()) schedule_.look_for_late_events(pair(left), now);
+    certify(left, now);
+  }
 
-  void schedule(Id slot, double t) {
-    if (t == never) {
-      queue_.clear(slot);
-    } else {
-      queue_.set(slot, t);
-    }
+  /// Equal for good and in the wrong order: that is no failure of a certificate, and comes only from changes made
+  /// before all events of their time were processed.
+  void settle_tie(std::size_t left, double now) {
+    const Id slot = order_[left].id;
+    if (!schedule_.contains(slot) && !in_order(order_[left], order_[left + 1], now)) schedule_.set(slot, now);
+  }
+
+  /// To be called before elements are put in place at a time whose events may not all have been processed: until they
+  /// are, the list need not be in order.
+  void expect_disorder(double now) {
+    if (next_time() <= now) disturbed_ = now;
   }
 
   void exchange(std::size_t left) {
@@ -132,13 +144,19 @@ class SortedList {
     for (std::size_t i = first; i < order_.size(); ++i) position_[order_[i].id] = static_cast<std::uint32_t>(i);
   }
 
-  void reserve_id(Id id) {
+  void make_room(Id id) {
+    if (id < position_.size()) return;
+    position_.resize(std::max<std::size_t>(id + 1, 2 * position_.size()), absent);
+    schedule_.resize(position_.size());
+  }
+
+  static void require_legal(Id id, const Motion<Degree>& motion) {
     if (id == absent) throw std::invalid_argument("SortedList: id " + std::to_string(id) + " is reserved");
-    if (contains(id)) throw std::invalid_argument("SortedList: id " + std::to_string(id) + " is used twice");
-    if (id >= position_.size()) {
-      position_.resize(std::max<std::size_t>(id + 1, 2 * position_.size()), absent);
-      queue_.resize(position_.size());
-    }
+    require_finite(id, motion);
+  }
+
+  [[noreturn]] static void refuse_twice(Id id) {
+    throw std::invalid_argument("SortedList: id " + std::to_string(id) + " is used twice");
   }
 
   void require(Id id) const {
@@ -153,35 +171,40 @@ class SortedList {
 
   std::vector<Entry> order_;
   std::vector<std::uint32_t> position_;
-  Queue queue_;
+  Schedule<Queue, Solver> schedule_;
   Listener listener_;
-  Counters counters_;
-  double horizon_ = never;
+  double disturbed_ = -never;  // the last time at which the list was changed amidst its events
 };
 
 // ---------------------------------------------------------------------------------------------------------------
 
-template <int Degree, class Listener, EventQueue Queue>
-void SortedList<Degree, Listener, Queue>::assign(std::span<const Entry> entries, double now) {
-  order_.clear();
-  position_.assign(position_.size(), absent);
-  queue_ = Queue{};
-  queue_.resize(position_.size());
+template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> entries, double now) {
+  std::vector<Id> ids;
+  ids.reserve(entries.size());
   for (const Entry& entry : entries) {
-    require_finite(entry.id, entry.motion);
-    reserve_id(entry.id);
-    position_[entry.id] = 0;
+    require_legal(entry.id, entry.motion);
+    ids.push_back(entry.id);
   }
+  std::sort(ids.begin(), ids.end());
+  if (const auto twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end()) refuse_twice(*twice);
+  for (const Entry& entry : order_) {
+    schedule_.clear(entry.id);
+    position_[entry.id] = absent;
+  }
+  if (!ids.empty()) make_room(ids.back());
   order_.assign(entries.begin(), entries.end());
   std::sort(order_.begin(), order_.end(), [&](const Entry& a, const Entry& b) { return a.id != b.id && in_order(a, b, now); });
   renumber(0);
   for (std::size_t i = 0; i < order_.size(); ++i) certify(i, now);
 }
 
-template <int Degree, class Listener, EventQueue Queue>
-void SortedList<Degree, Listener, Queue>::insert(Id id, const Motion<Degree>& motion, double now) {
-  require_finite(id, motion);
-  reserve_id(id);
+template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Degree>& motion, double now) {
+  require_legal(id, motion);
+  if (contains(id)) refuse_twice(id);
+  make_room(id);
+  expect_disorder(now);
   const Entry entry{motion, id};
   const auto place = std::partition_point(order_.begin(), order_.end(),
                                           [&](const Entry& other) { return in_order(other, entry, now); });
@@ -192,21 +215,23 @@ void SortedList<Degree, Listener, Queue>::insert(Id id, const Motion<Degree>& mo
   certify(index, now);
 }
 
-template <int Degree, class Listener, EventQueue Queue>
-void SortedList<Degree, Listener, Queue>::remove(Id id, double now) {
+template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+void SortedList<Degree, Listener, Queue, Solver>::remove(Id id, double now) {
   require(id);
+  expect_disorder(now);
   const std::size_t index = position_[id];
-  queue_.clear(id);
+  schedule_.clear(id);
   order_.erase(order_.begin() + static_cast<std::ptrdiff_t>(index));
   position_[id] = absent;
   renumber(index);
   if (index > 0) certify(index - 1, now);
 }
 
-template <int Degree, class Listener, EventQueue Queue>
-void SortedList<Degree, Listener, Queue>::update(Id id, const Motion<Degree>& motion, double now) {
+template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Degree>& motion, double now) {
   require(id);
   require_finite(id, motion);
+  expect_disorder(now);
   const std::size_t before = position_[id];
   std::size_t index = before;
   order_[index].motion = motion;
@@ -229,33 +254,33 @@ void SortedList<Degree, Listener, Queue>::update(Id id, const Motion<Degree>& mo
   }
 }
 
-template <int Degree, class Listener, EventQueue Queue>
-void SortedList<Degree, Listener, Queue>::process() {
-  const auto [time, slot] = queue_.top();
+template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+void SortedList<Degree, Listener, Queue, Solver>::process() {
+  const auto [time, slot] = schedule_.next();
   const std::size_t left = position_[slot];
-  ++counters_.events;
+  if (!schedule_.failed(slot, pair(left), time)) return;
   exchange(left);
   listener_.swapped(order_[left].id, order_[left + 1].id, time);
   // Certified anew: the pair itself, whose sign has just turned, and the two pairs around it.
-  ++counters_.certificates;
-  schedule(order_[left].id, failure_time_after_turn(pair(left), time, horizon_));
-  if (left > 0) certify(left - 1, time);
-  certify(left + 1, time);
+  if (time == disturbed_) {  // It may have been a tie.
+    certify(left, time);
+  } else {
+    schedule_.certify_turned(order_[left].id, pair(left), time);
+  }
+  if (left > 0) certify_in_event(left - 1, time);
+  certify_in_event(left + 1, time);
 }
 
-template <int Degree, class Listener, EventQueue Queue>
-void SortedList<Degree, Listener, Queue>::extend_horizon(double now, double horizon) {
-  const bool farther = horizon > horizon_;
-  horizon_ = horizon;
+template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+void SortedList<Degree, Listener, Queue, Solver>::extend_horizon(double now, double horizon) {
+  schedule_.set_horizon(horizon);
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    const Id slot = order_[i].id;
-    // What is scheduled stays right when the horizon grows; what lies beyond a shrunken one goes.
-    if (farther ? !queue_.contains(slot) : queue_.contains(slot) && queue_.time(slot) > horizon) certify(i, now);
+    if (schedule_.concerned(order_[i].id)) certify(i, now);
   }
 }
 
-template <int Degree, class Listener, EventQueue Queue>
-void SortedList<Degree, Listener, Queue>::audit(double now) const {
+template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+void SortedList<Degree, Listener, Queue, Solver>::audit(double now) const {
   const auto fail = [](std::size_t i, const char* what) {
     throw AuditFailure("SortedList: place " + std::to_string(i) + ": " + what);
   };
@@ -264,13 +289,14 @@ void SortedList<Degree, Listener, Queue>::audit(double now) const {
     if (position_[id] != i) fail(i, "the element's recorded position is another");
     double t = never;
     if (i + 1 < order_.size()) {
-      if (!queue_.contains(id) || queue_.time(id) > now) {
-        if (sign_after(pair(i), now) < 0) fail(i, "greater than its right neighbour");
-      }
-      t = failure_time(pair(i), now, horizon_);
+      const bool ordered = in_order(order_[i], order_[i + 1], now);
+      if (!ordered && !(schedule_.contains(id) && schedule_.time(id) <= now)) fail(i, "greater than its right neighbour");
+      t = failure_time(pair(i), now, schedule_.horizon());
+      if (!ordered && now == disturbed_) t = now;  // a tie to be settled, perhaps
     }
-    if (queue_.contains(id) != (t != never)) fail(i, "an event is missing or stands without cause");
-    if (queue_.contains(id) && queue_.time(id) != t) fail(i, "the scheduled swap has the wrong time");
+    if constexpr (!Solver::certified) continue;  // It may be wrong about times.
+    if (schedule_.contains(id) != (t != never)) fail(i, "an event is missing or stands without cause");
+    if (schedule_.contains(id) && schedule_.time(id) != t) fail(i, "the scheduled swap has the wrong time");
   }
 }
 
