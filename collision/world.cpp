@@ -44,8 +44,24 @@ void validate(const WorldOptions& options) {
     if (!(walls.min.array() < walls.max.array()).all()) {
       throw std::invalid_argument("WorldOptions.walls: min must be below max");
     }
+    if (!(walls.restitution >= 0 && walls.restitution <= 1)) {
+      throw std::invalid_argument("WorldOptions.walls.restitution: must be in [0, 1]");
+    }
   }
 }
+
+/// Callbacks are called from step() alone.
+class Stepping {
+ public:
+  explicit Stepping(bool& flag) : flag_(flag), before_(flag) { flag_ = true; }
+  ~Stepping() { flag_ = before_; }
+  Stepping(const Stepping&) = delete;
+  Stepping& operator=(const Stepping&) = delete;
+
+ private:
+  bool& flag_;
+  bool before_;
+};
 
 }  // namespace
 
@@ -53,6 +69,7 @@ template <int Degree>
 World<Degree>::World(const WorldOptions& options, Listener* listener)
     : options_(options),
       listener_(listener ? listener : &silent_),
+      releases_(HoldRank{&holds_}),
       contacts_(PairRank{&pairs_}),
       boxes_(PairRank{&pairs_}),
       now_(options.start_time),
@@ -79,6 +96,9 @@ void World<Degree>::reach(double limit) {
     schedule_wall(id);
     schedule_volume(id);
   }
+  for (HoldSlot slot = 0; slot < holds_.size(); ++slot) {
+    if (holds_[slot].alive && !releases_.contains(slot)) schedule_release(slot);
+  }
 }
 
 template <int Degree>
@@ -87,8 +107,10 @@ bool World<Degree>::step(double limit) {
   if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
     throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
   }
+  const Stepping stepping(stepping_);
   for (;;) {
     if (!entering_.empty()) enter_new_bodies();
+    if (!disturbed_.empty()) settle();
     if (!dirty_.empty()) test_dirty_pairs();
     if (!pending_.empty()) {
       emit_pending();
@@ -99,9 +121,10 @@ bool World<Degree>::step(double limit) {
     const double boxes = time_of(boxes_);
     const double volume = time_of(volumes_);
     const double wall = time_of(walls_);
+    const double let_go = time_of(releases_);
     const double contact = time_of(contacts_);
     // Nothing is known beyond the horizon: look that far, then farther.
-    const double next = std::min({limit, horizon_, piece, boxes, volume, wall, contact});
+    const double next = std::min({limit, horizon_, piece, boxes, volume, wall, let_go, contact});
     // A piece that starts now is the motion at t+, so the broad phase may not run past it under the old one.
     const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
     if (until == never) return false;
@@ -123,6 +146,8 @@ bool World<Degree>::step(double limit) {
     } else if (wall == next) {
       process_wall(walls_.top().slot, next);
       return true;
+    } else if (let_go == next) {
+      release(releases_.top().slot);
     } else if (contact == next) {
       process_contact(contacts_.top().slot, next);
       return true;
@@ -184,7 +209,9 @@ void World<Degree>::start_pieces() {
   while (!pieces_.empty() && pieces_.top().time == now_) {
     const BodyId id = pieces_.top().slot;
     Body& b = bodies_[id];
+    if (b.entered && is_jump(b, b.script.back())) drop_holds(id);
     b.motion = b.script.back();
+    if constexpr (Degree >= 2) b.force = b.motion.coefficients[2];
     b.script.pop_back();
     if (b.script.empty()) {
       pieces_.clear(id);
@@ -197,6 +224,7 @@ void World<Degree>::start_pieces() {
     if (bodies_[id].entered) {
       ++counters_.motion_updates;
       set_motion(id, Motion(bodies_[id].motion), false);
+      disturb(id);
     } else {
       entering_.push_back(id);
     }
@@ -224,6 +252,10 @@ void World<Degree>::emit_pending() {
     case Pending::Kind::separation:
       ++counters_.separations;
       return listener_->separation(*this, pair);
+    case Pending::Kind::held:
+      return listener_->held(*this, pair);
+    case Pending::Kind::moved:
+      return contains(event.a) ? listener_->moved(*this, event.a) : void();
     case Pending::Kind::pair_began:
       return listener_->pair_began(*this, event.a, event.b, event.contact.time);
     case Pending::Kind::pair_ended:

@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase.hpp"
 #include "collision/contact.hpp"
+#include "collision/least_constraint.hpp"
 #include "collision/narrow_phase.hpp"
 #include "collision/profile.hpp"
 #include "collision/shape.hpp"
@@ -20,7 +21,7 @@ namespace kds::collision {
 /// What the engine does about contacts.
 enum class Response {
   none,      ///< reports contacts and separations; bodies pass through each other
-  elastic,   ///< frictionless impulses with restitution 1, no spin; motions change at each contact
+  elastic,   ///< frictionless impulses by the bodies' restitution, no spin; motions change at each contact
   callback,  ///< as elastic, but the listener changes the motions; a pair it leaves approaching passes through
 };
 
@@ -31,14 +32,20 @@ enum class BroadPhaseKind {
   all_pairs,    ///< no pruning: every pair tested once and its result kept
 };
 
-/// Bounces that pile up in time. Two bodies that have both met others more than `contacts` times within `interval`
-/// (fixed bodies and walls do not count), or that meet without speed and are pressed together, are *held*: the relative
-/// normal velocity and acceleration are taken out (momentum is kept, energy is not) and, should rounding leave a rest of
-/// them, the pair is let pass until it has separated. After twice as many, which happens where a body is crushed, pairs
-/// are let pass at once. Holds are counted and reported, and a run always ends.
+/// Bounces that pile up in time (Zeno). A contact is *held* instead of bounced back from, in mode `elastic`, if it
+/// - has no rebound: restitution 0, or no speed of approach;
+/// - would be back within interval / contacts, pressed by the acceleration that it has (a ball coming to rest), or rise
+///   by roundings of the coordinates only;
+/// - is of two bodies that have both met others more than `contacts` times within `interval` (fixed bodies and walls do
+///   not count).
+/// What is held loses its relative normal velocity and from then on moves on along the contact, without friction and at
+/// no cost, by least constraint (least_constraint.hpp): forces pass through stacks. It is let go when it is pulled or
+/// pushed away, pushed together anew (which is a contact), loses its support or slides off. Where bodies cannot be
+/// held (between two fixed ones that close in) the pair is let pass until it has separated. So it is, in mode
+/// `callback` too, after ten times as many meetings. Holds are counted and reported, and a run always ends.
 ///
-/// Differs: meetings are counted for bodies, not for pairs. A pair is forgotten when its bounding volumes part, which
-/// boxes do at each bounce, and when that is depends on the broad phase.
+/// Differs from counting meetings of pairs: a pair is forgotten when its bounding volumes part, which boxes do at each
+/// bounce, and when that is depends on the broad phase.
 struct ZenoPolicy {
   std::uint32_t contacts = 100;  ///< more makes longer cascades exact and collapses slower
   double interval = 1e-9;        ///< s
@@ -48,6 +55,7 @@ struct ZenoPolicy {
 struct Walls {
   Eigen::Vector3d min;
   Eigen::Vector3d max;
+  double restitution = 1;  ///< in [0, 1]; see BodyDescription
 };
 
 struct WorldOptions {
@@ -60,6 +68,10 @@ struct WorldOptions {
   bool report_pairs = false;            ///< tell the listener of bounding volumes that begin and cease to overlap
   bool profile = false;                 ///< measure where the time goes
   ZenoPolicy zeno;
+  /// Bodies added, removed and moved by callbacks within zeno.interval of simulated time, and 64 for each body there
+  /// is: more end the run by std::runtime_error, since callbacks that go on for ever at one time would never let the
+  /// clock move. Without callbacks a run always ends.
+  std::uint64_t most_edits = 1'000'000;
 };
 
 /// The volume that the broad phase sees.
@@ -81,6 +93,8 @@ struct BodyDescription {
   std::vector<Motion> motion;
   double mass = 1;     ///< > 0
   bool fixed = false;  ///< infinite mass
+  /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.
+  double restitution = 1;
   std::uint32_t category = 1;          ///< bits
   std::uint32_t collides_with = ~0u;   ///< a pair is tested if each one's category is in the other's mask
   BoundingVolume volume = BoundingVolume::shape;
@@ -117,6 +131,9 @@ class WorldListener {
   virtual void pair_began(World<Degree>&, BodyId, BodyId, double) {}
   virtual void pair_ended(World<Degree>&, BodyId, BodyId, double) {}
   virtual void held(World<Degree>&, const PairEvent&) {}        ///< the Zeno policy has acted on a pair
+  virtual void held_at_wall(World<Degree>&, const WallEvent&) {}
+  /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
+  virtual void moved(World<Degree>&, BodyId) {}
 };
 
 struct WorldCounters {
@@ -134,7 +151,7 @@ struct WorldCounters {
 /// Runs bodies through time and reports their contacts at exact times.
 ///
 /// [Paper] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
-/// broad phase, bounding volumes that expire, walls, contacts by (a, b). Dynamic test results are kept until a motion
+/// broad phase, bounding volumes that expire, walls, held pairs let go, contacts by (a, b). Dynamic test results are kept until a motion
 /// changes; then only the pairs of that body that are active are tested again.
 ///
 /// Degree 1 (straight paths) never pays for degree 2.
@@ -175,13 +192,20 @@ class World final : private PairListener {
   std::size_t size() const { return alive_; }
   bool contains(BodyId id) const { return id < bodies_.size() && bodies_[id].alive; }
 
+  /// What held contacts do to the acceleration is in it; callers who change a motion begin with free_motion.
   const Motion& motion(BodyId id) const { return body(id).motion; }
+  /// The motion as it would go on without the contacts that hold it: with the acceleration that the caller gave last.
+  Motion free_motion(BodyId id) const;
   const PlacedShape& shape(BodyId id) const { return body(id).shape; }
   double mass(BodyId id) const { return body(id).mass; }
   bool fixed(BodyId id) const { return body(id).inverse_mass == 0; }
 
   /// Whether a and b are in contact (mode `none`).
   bool touching(BodyId a, BodyId b) const;
+
+  /// Whether a and b are held together, or a at the wall (mode `elastic`).
+  bool held(BodyId a, BodyId b) const;
+  bool held_at_wall(BodyId a, int wall) const;
 
   WorldCounters counters() const;
   /// All zero but for `other` unless WorldOptions.profile is set.
@@ -192,7 +216,10 @@ class World final : private PairListener {
 
  private:
   using PairSlot = std::uint32_t;
+  using HoldSlot = std::uint32_t;
   static constexpr PairSlot no_pair = ~PairSlot{0};
+  static constexpr HoldSlot no_hold = ~HoldSlot{0};
+  static constexpr BodyId no_body = ~BodyId{0};
 
   struct Body {
     PlacedShape shape;
@@ -210,6 +237,38 @@ class World final : private PairListener {
     bool entered = false;  ///< is in the broad phase
     std::uint64_t meetings = 0;  ///< contacts since burst_start (Zeno)
     double burst_start = -never;
+    double restitution = 1;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< half the acceleration that callers gave
+    std::vector<HoldSlot> holds;
+    bool disturbed = false;         ///< is in disturbed_
+    std::uint32_t island_place = 0;  ///< scratch
+    std::uint64_t island = 0;        ///< the last it was seen in
+  };
+
+  /// Two bodies, or a body (a) and a wall, that stay in touch.
+  struct Hold {
+    BodyId a = 0;
+    BodyId b = no_body;  ///< of a wall
+    int wall = -1;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
+    double push = 0;     ///< relative acceleration that it gives
+    bool alive = false;
+    bool fresh = false;  ///< its approach is still to be taken out
+  };
+
+  struct HoldRank {
+    const std::vector<Hold>* holds = nullptr;
+    std::uint64_t operator()(std::uint32_t slot) const {
+      return std::uint64_t{(*holds)[slot].a} << 32 | (*holds)[slot].b;
+    }
+  };
+
+  /// Bodies that lean on each other, in the arithmetic of least_constraint.
+  struct Island {
+    std::vector<BodyId> bodies;  ///< fixed ones last
+    std::size_t free = 0;        ///< how many are not fixed
+    std::vector<HoldSlot> holds;
+    std::vector<Touch> touches;  ///< of the holds
   };
 
   struct Pair {
@@ -231,7 +290,7 @@ class World final : private PairListener {
   };
 
   struct Pending {
-    enum class Kind { overlap, separation, pair_began, pair_ended } kind;
+    enum class Kind { overlap, separation, pair_began, pair_ended, held, moved } kind;
     BodyId a, b;
     Contact contact;
   };
@@ -255,6 +314,7 @@ class World final : private PairListener {
   void release_pair(PairSlot slot);
   void mark_dirty(PairSlot slot);
   void set_motion(BodyId id, const Motion& motion, bool jumped);
+  bool is_jump(const Body& body, const Motion& to) const;
   KineticBox<Degree> bounding_box(const Body& body) const;
   void schedule_wall(BodyId id);
   void schedule_volume(BodyId id);
@@ -269,9 +329,28 @@ class World final : private PairListener {
   void process_contact(PairSlot slot, double t);
   void process_wall(BodyId id, double t);
   bool respond(PairSlot slot, const Contact& contact);
-  void hold(const Contact& contact, BodyId a, BodyId b);
+  bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   double next_wall_time(const Body& body, int wall) const;
-  std::uint64_t count_meeting(Body& body, double t) const;
+  std::uint64_t count_meeting(BodyId a, BodyId b);
+  std::uint64_t count_meeting(BodyId id);
+  std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
+
+  // world_resting.cpp: contacts that are held
+  HoldSlot find_hold(BodyId a, BodyId b, int wall = -1) const;
+  void add_hold(const Hold& hold);
+  void drop_hold(HoldSlot slot);
+  void drop_holds(BodyId id);
+  void disturb(BodyId id);
+  void settle();
+  bool settle_island(BodyId id);
+  Island find_island(BodyId id);
+  bool drop_broken(const Island& island);
+  bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
+  bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
+  double next_contact_of_held(const Pair& pair) const;
+  void schedule_release(HoldSlot slot);
+  void release(HoldSlot slot);
+  void count_edit();
 
   WorldOptions options_;
   Listener* listener_;
@@ -283,10 +362,14 @@ class World final : private PairListener {
   std::vector<Pair> pairs_;
   std::vector<PairSlot> free_pairs_;
   std::vector<PairSlot> dirty_;
+  std::vector<Hold> holds_;
+  std::vector<HoldSlot> free_holds_;
+  std::vector<BodyId> disturbed_;
   std::deque<Pending> pending_;
   DaryQueue<> pieces_;    // slots are bodies
   DaryQueue<> volumes_;   // slots are bodies
   DaryQueue<> walls_;     // slots are bodies
+  DaryQueue<HoldRank> releases_;  // slots are holds
   DaryQueue<PairRank> contacts_;  // slots are pairs
   DaryQueue<PairRank> boxes_;     // slots are pairs; used where the broad phase is not exact
   WorldCounters counters_;
@@ -295,6 +378,10 @@ class World final : private PairListener {
   double horizon_;
   std::size_t alive_ = 0;
   bool inserting_ = false;
+  bool stepping_ = false;
+  std::uint64_t islands_ = 0;
+  std::uint64_t edits_ = 0;  ///< by callbacks since edits_start_
+  double edits_start_ = -never;
 };
 
 extern template class World<1>;

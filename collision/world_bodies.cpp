@@ -28,6 +28,7 @@ void validate(const BodyDescription<Degree>& description) {
   if (!description.fixed && (!std::isfinite(description.mass) || !(description.mass > 0))) {
     fail("mass: must be finite and > 0");
   }
+  if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
 }
 
 /// The queues grow by doubling, as vectors do.
@@ -52,10 +53,12 @@ typename World<Degree>::Body& World<Degree>::body(BodyId id) {
 template <int Degree>
 BodyId World<Degree>::add_body(const Description& description) {
   validate(description);
+  count_edit();
   Body added;
   added.shape = place(description.shape, description.orientation);
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
+  added.restitution = description.restitution;
   added.category = description.category;
   added.collides_with = description.collides_with;
   added.volume = description.volume;
@@ -66,6 +69,7 @@ BodyId World<Degree>::add_body(const Description& description) {
   while (added.script.size() >= 2 && added.script[added.script.size() - 2].start <= now_) added.script.pop_back();
   const bool enters_now = added.script.back().start <= now_;
   added.motion = added.script.back();
+  if constexpr (Degree >= 2) added.force = added.motion.coefficients[2];
   if (enters_now) added.script.pop_back();
 
   BodyId id;
@@ -89,6 +93,8 @@ BodyId World<Degree>::add_body(const Description& description) {
 template <int Degree>
 void World<Degree>::remove_body(BodyId id) {
   Body& removed = body(id);
+  count_edit();
+  drop_holds(id);
   removed.alive = false;
   pieces_.clear(id);
   volumes_.clear(id);
@@ -105,18 +111,28 @@ template <int Degree>
 void World<Degree>::update_motion(BodyId id, const Motion& motion) {
   Body& b = body(id);
   if (!motion.finite()) throw std::invalid_argument("World::update_motion: the motion is not finite");
+  count_edit();
   b.script.clear();
   pieces_.clear(id);
   ++counters_.motion_updates;
+  if constexpr (Degree >= 2) b.force = motion.coefficients[2];
   if (!b.entered) {
     b.motion = motion;
     if (std::find(entering_.begin(), entering_.end(), id) == entering_.end()) entering_.push_back(id);
     return;
   }
-  const Eigen::Vector3d before = b.motion.position(now_);
-  const Eigen::Vector3d after = motion.position(now_);
-  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + b.shape.bounding_radius;
-  set_motion(id, motion, (after - before).cwiseAbs().maxCoeff() > jump_tolerance * scale);
+  const bool jumped = is_jump(b, motion);
+  if (jumped) drop_holds(id);
+  set_motion(id, motion, jumped);
+  disturb(id);
+}
+
+template <int Degree>
+bool World<Degree>::is_jump(const Body& body, const Motion& to) const {
+  const Eigen::Vector3d before = body.motion.position(now_);
+  const Eigen::Vector3d after = to.position(now_);
+  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + body.shape.bounding_radius;
+  return (after - before).cwiseAbs().maxCoeff() > jump_tolerance * scale;
 }
 
 template <int Degree>

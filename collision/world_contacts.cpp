@@ -75,7 +75,9 @@ void World<Degree>::test(PairSlot slot) {
       pair.ignored = in_contact(a, b, now_);
       if (pair.fresh && pair.ignored) report_overlap();
     }
-    if (!(at_rest(a.motion) && at_rest(b.motion))) {
+    if (find_hold(pair.a, pair.b) != no_hold) {
+      next = next_contact_of_held(pair);
+    } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
       const double from = pair.ignored ? first_separation(a, b, now_, horizon_) : now_;
       if (from != never) next = first_contact(a, b, from, horizon_, ContactMode::resolved);
     }
@@ -102,70 +104,100 @@ void World<Degree>::process_contact(PairSlot slot, double t) {
   pair.ignored = false;
   mark_dirty(slot);
   bool held = false;
-  if (options_.response == Response::elastic) held = respond(slot, event.contact);
+  bool passes = false;
+  if (options_.response == Response::elastic) {
+    held = respond(slot, event.contact);
+  } else {
+    held = passes = count_meeting(event.a, event.b) > patience();
+    counters_.held += held;
+  }
   listener_->contact(*this, event);
   if (held) listener_->held(*this, event);
   // A pair that is still pressed together (nobody can or will move it) passes through.
-  if (pairs_[slot].alive && pairs_[slot].a == event.a && pairs_[slot].b == event.b) {
-    if (parting(event.contact, bodies_[event.a].motion, bodies_[event.b].motion) < 0) {
-      pairs_[slot].ignored = true;
-      mark_dirty(slot);
-    }
+  if (!pairs_[slot].alive || pairs_[slot].a != event.a || pairs_[slot].b != event.b) return;
+  if (find_hold(event.a, event.b) != no_hold) return;
+  if (passes || parting(event.contact, bodies_[event.a].motion, bodies_[event.b].motion) < 0) {
+    pairs_[slot].ignored = true;
+    mark_dirty(slot);
   }
 }
 
+/// Both have met others so often; a fixed body's meetings count only with another fixed one.
 template <int Degree>
-std::uint64_t World<Degree>::count_meeting(Body& body, double t) const {
-  if (t - body.burst_start > options_.zeno.interval) {
+std::uint64_t World<Degree>::count_meeting(BodyId a, BodyId b) {
+  const bool a_fixed = bodies_[a].inverse_mass == 0;
+  const bool b_fixed = bodies_[b].inverse_mass == 0;
+  if (a_fixed != b_fixed) return count_meeting(a_fixed ? b : a);
+  const std::uint64_t of_a = count_meeting(a);
+  return std::min(of_a, count_meeting(b));
+}
+
+template <int Degree>
+std::uint64_t World<Degree>::count_meeting(BodyId id) {
+  Body& body = bodies_[id];
+  if (now_ - body.burst_start > options_.zeno.interval) {
     body.meetings = 0;
-    body.burst_start = t;
+    body.burst_start = now_;
   }
   return ++body.meetings;
 }
 
+/// Whether what meets is held: see ZenoPolicy. `pressed`: relative acceleration towards each other; `size`: of the
+/// coordinates.
+template <int Degree>
+bool World<Degree>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
+  if (!(rebound > 0) || burst > options_.zeno.contacts) return true;
+  if (!(pressed > 0)) return false;
+  // Near a large clock doubles are sparse: a flight lasts some of them at least. And it rises by some roundings of the
+  // coordinates: bodies with a light one between them bounce for ever where positions cannot come nearer.
+  const double spacing = next_up(std::abs(now_)) - std::abs(now_);
+  const double shortest = std::max(options_.zeno.interval / std::max(options_.zeno.contacts, 1u), 16 * spacing);
+  const double lowest = 0x1p-48 * size;
+  return 2 * rebound < shortest * pressed || rebound * rebound < 2 * pressed * lowest;
+}
+
 template <int Degree>
 bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
-  const Pair& pair = pairs_[slot];
-  const BodyId a = pair.a;
-  const BodyId b = pair.b;
+  const BodyId a = pairs_[slot].a;
+  const BodyId b = pairs_[slot].b;
   const double inverse_a = bodies_[a].inverse_mass;
   const double inverse_b = bodies_[b].inverse_mass;
   if (inverse_a + inverse_b == 0) return false;
-  const double t = contact.time;
-  Motion motion_a = bodies_[a].motion.restarted(t);
-  Motion motion_b = bodies_[b].motion.restarted(t);
+  Motion motion_a = bodies_[a].motion.restarted(contact.time);
+  Motion motion_b = bodies_[b].motion.restarted(contact.time);
   const Vector3d& n = contact.normal;
-  const double approach = n.dot(motion_b.coefficients[1] - motion_a.coefficients[1]);
-  const auto meetings = [&](BodyId id) {
-    return bodies_[id].inverse_mass == 0 ? std::numeric_limits<std::uint64_t>::max() : count_meeting(bodies_[id], t);
+  const auto relative = [&](std::size_t order) {
+    return n.dot(motion_b.coefficients[order] - motion_a.coefficients[order]);
   };
-  const std::uint64_t burst = std::min(meetings(a), meetings(b));
-  const std::uint64_t patience = options_.zeno.contacts;
-  const bool held = burst > patience || !(approach < 0);
-  if (burst > 2 * patience) {  // Holding does not help: the pair is left as it is, and so passes through.
-    ++counters_.held;
-    return true;
-  }
-  // Elastic: the relative normal velocity turns round. Held: it goes, and the relative normal acceleration with it.
-  const auto exchange = [&](std::size_t order, double restitution) {
-    const double relative = n.dot(motion_b.coefficients[order] - motion_a.coefficients[order]);
-    const double impulse = -(1 + restitution) * relative / (inverse_a + inverse_b);
-    motion_a.coefficients[order] -= impulse * inverse_a * n;
-    motion_b.coefficients[order] += impulse * inverse_b * n;
-  };
-  exchange(1, held ? 0 : 1);
-  if constexpr (Degree >= 2) {
-    if (held) exchange(2, 0);
-  }
-  if (held) {
+  const double approach = -relative(1);
+  const double restitution = std::min(bodies_[a].restitution, bodies_[b].restitution);
+  double pressed = 0;
+  if constexpr (Degree >= 2) pressed = -2 * relative(2);
+  const std::uint64_t burst = count_meeting(a, b);
+  if (burst > patience()) {  // Holding does not help: the pair is left as it is, and so passes through.
     ++counters_.held;
     pairs_[slot].ignored = true;
+    return true;
   }
-  for (const auto& [id, motion] : {std::pair<BodyId, const Motion&>{a, motion_a}, {b, motion_b}}) {
-    if (bodies_[id].inverse_mass == 0) continue;
-    ++counters_.motion_updates;
-    set_motion(id, motion, false);
+  const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
+                      bodies_[a].shape.bounding_radius + bodies_[b].shape.bounding_radius;
+  const bool held = stays(restitution * approach, pressed, size, burst);
+  if (held) {
+    ++counters_.held;
+    add_hold({.a = a, .b = b, .normal = n});
+    disturb(a), disturb(b);
+  } else {
+    const double impulse = (1 + restitution) * approach / (inverse_a + inverse_b);
+    motion_a.coefficients[1] -= impulse * inverse_a * n;
+    motion_b.coefficients[1] += impulse * inverse_b * n;
+    for (const auto& [id, motion] : {std::pair<BodyId, const Motion&>{a, motion_a}, {b, motion_b}}) {
+      if (bodies_[id].inverse_mass == 0) continue;
+      ++counters_.motion_updates;
+      set_motion(id, motion, false);
+      disturb(id);
+    }
   }
+  settle();
   return held;
 }
 
@@ -212,26 +244,35 @@ double World<Degree>::next_wall_time(const Body& body, int wall) const {
 
 template <int Degree>
 void World<Degree>::process_wall(BodyId id, double t) {
-  Body& body = bodies_[id];
+  const Body& body = bodies_[id];
   int wall = 0;
   while (wall < 6 && next_wall_time(body, wall) != t) ++wall;
   const int axis = wall / 2;
   const double out = wall % 2 != 0 ? 1 : -1;
   Motion motion = body.motion.restarted(t);
-  const bool held = count_meeting(body, t) > options_.zeno.contacts || motion.coefficients[1][axis] * out <= 0;
-  motion.coefficients[1][axis] = held ? 0 : -motion.coefficients[1][axis];
-  if constexpr (Degree >= 2) {
-    if (held) motion.coefficients[2][axis] = 0;
-  }
+  const double approach = motion.coefficients[1][axis] * out;
+  double pressed = 0;
+  if constexpr (Degree >= 2) pressed = 2 * motion.coefficients[2][axis] * out;
+  const double rebound = std::min(body.restitution, options_.walls->restitution) * approach;
   WallEvent event{id, wall, {.time = t}};
   event.contact.normal = Vector3d::Unit(axis) * out;
   event.contact.point = motion.coefficients[0];
   event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
   ++counters_.wall_contacts;
-  ++counters_.motion_updates;
-  counters_.held += held;
-  set_motion(id, motion, false);
+  const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.shape.bounding_radius;
+  const bool held = stays(rebound, pressed, size, count_meeting(id));
+  if (held) {
+    ++counters_.held;
+    add_hold({.a = id, .wall = wall, .normal = event.contact.normal});
+  } else {
+    motion.coefficients[1][axis] = -rebound * out;
+    ++counters_.motion_updates;
+    set_motion(id, motion, false);
+  }
+  disturb(id);
+  settle();
   listener_->wall(*this, event);
+  if (held) listener_->held_at_wall(*this, event);
 }
 
 template class World<1>;

@@ -56,6 +56,12 @@ double JsonNode::positive() const {
   return x;
 }
 
+double JsonNode::fraction() const {
+  const double x = number();
+  require(x >= 0 && x <= 1, "must be in [0, 1]");
+  return x;
+}
+
 Eigen::Vector3d JsonNode::vector() const {
   const std::vector<JsonNode> parts = tuple(3);
   return {parts[0].number(), parts[1].number(), parts[2].number()};

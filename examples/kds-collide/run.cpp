@@ -75,6 +75,7 @@ class Teller final : public kds::collision::WorldListener<Degree> {
   void separation(World&, const PairEvent& event) override { tell(EventKind::separation, event); }
   void overlap(World&, const PairEvent& event) override { tell(EventKind::overlap, event); }
   void held(World& world, const PairEvent& event) override { tell_motions(world, event); }
+  void moved(World& world, BodyId id) override { tell_motion(world, id); }
 
   void wall(World& world, const kds::collision::WallEvent& event) override {
     const Contact& c = event.contact;
@@ -128,7 +129,7 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   world_options.profile = options.profile;
   if (scene.end_time > scene.begin_time) world_options.window = scene.end_time - scene.begin_time;
   if (scene.domain && scene.domain->walls == Walls::reflect) {
-    world_options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max};
+    world_options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
 
   RunResult result;
@@ -143,6 +144,7 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
     description.orientation = body.orientation;
     description.mass = body.mass;
     description.fixed = body.fixed;
+    description.restitution = body.restitution;
     for (const MotionPiece& piece : body.motion) description.motion.push_back(to_degree<Degree>(piece));
     world.add_body(description);
   }

@@ -25,6 +25,7 @@ struct SceneBody {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit
   double mass = 1;
   bool fixed = false;               ///< infinite mass
+  double restitution = 1;           ///< in [0, 1]; of two bodies the lower counts
   std::vector<MotionPiece> motion;  ///< not empty; starts ascend
 };
 
@@ -41,6 +42,7 @@ struct Domain {
   Eigen::Vector3d min;
   Eigen::Vector3d max;
   Walls walls = Walls::open;
+  double restitution = 1;  ///< of the walls
 };
 
 /// What a scene file says, checked.

@@ -103,20 +103,26 @@ std::vector<MotionPiece> read_motion(const JsonNode& node, Response response) {
   return motion;
 }
 
-SceneBody read_body(const JsonNode& node, const Scene& scene) {
-  node.object({"name", "shape", "orientation", "mass", "fixed", "motion"});
+/// Its own, or that of the scene.
+double read_restitution(const JsonNode& node, double of_scene) {
+  return node.has("restitution") ? node["restitution"].fraction() : of_scene;
+}
+
+SceneBody read_body(const JsonNode& node, const Scene& scene, double restitution) {
+  node.object({"name", "shape", "orientation", "mass", "fixed", "restitution", "motion"});
   SceneBody body;
   body.name = node["name"].string();
   body.shape = read_shape(node["shape"], scene.meshes);
   if (node.has("orientation")) body.orientation = read_orientation(node["orientation"]);
   if (node.has("mass")) body.mass = node["mass"].positive();
   if (node.has("fixed")) body.fixed = node["fixed"].boolean();
+  body.restitution = read_restitution(node, restitution);
   body.motion = read_motion(node["motion"], scene.response);
   return body;
 }
 
-Domain read_domain(const JsonNode& node) {
-  node.object({"min", "max", "walls"});
+Domain read_domain(const JsonNode& node, double restitution) {
+  node.object({"min", "max", "walls", "restitution"});
   Domain domain;
   domain.min = node["min"].vector();
   domain.max = node["max"].vector();
@@ -126,6 +132,7 @@ Domain read_domain(const JsonNode& node) {
     if (!(domain.min[i] < domain.max[i])) ends[d].fail("must be > domain.min[" + std::to_string(d) + "]");
   }
   domain.walls = node["walls"].choice({"open", "reflect"}) == 1 ? Walls::reflect : Walls::open;
+  domain.restitution = read_restitution(node, restitution);
   return domain;
 }
 
@@ -163,14 +170,15 @@ void check_range(const JsonNode& node, const SceneBody& body, const Scene& scene
 }
 
 Scene read_document(const JsonNode& root, const std::filesystem::path& folder) {
-  root.object({"scene", "end_time", "response", "domain", "meshes", "bodies"});
+  root.object({"scene", "end_time", "response", "restitution", "domain", "meshes", "bodies"});
   if (!root["scene"].is(1)) root["scene"].fail("must be 1, the only format there is");
   Scene scene;
   scene.end_time = root["end_time"].number();
   if (root.has("response")) {
     scene.response = root["response"].choice({"none", "elastic"}) == 1 ? Response::elastic : Response::none;
   }
-  if (root.has("domain")) scene.domain = read_domain(root["domain"]);
+  const double restitution = read_restitution(root, 1);
+  if (root.has("domain")) scene.domain = read_domain(root["domain"], restitution);
   if (root.has("meshes")) {
     for (const auto& [name, node] : root["meshes"].members()) {
       const JsonNode file = node.object({"file"})["file"];
@@ -181,7 +189,7 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder) {
   const std::vector<JsonNode> bodies = root["bodies"].elements();
   std::map<std::string, std::string> names;
   for (const JsonNode& node : bodies) {
-    scene.bodies.push_back(read_body(node, scene));
+    scene.bodies.push_back(read_body(node, scene, restitution));
     const auto [entry, is_new] = names.try_emplace(scene.bodies.back().name, node.path());
     if (!is_new) node["name"].fail('"' + entry->first + "\" is the name of " + entry->second + " too");
   }

@@ -119,6 +119,25 @@ TEST_CASE("scene reader: keys that may be left out") {
   CHECK(scene.begin_time == 0);
 }
 
+TEST_CASE("scene reader: restitution is the scene's where a body or the walls have none of their own") {
+  const auto read = [](const std::string& of_scene, const std::string& of_domain, const std::string& of_body) {
+    return parse_scene(R"({"scene": 1, "end_time": 2, )" + of_scene +
+                           R"("domain": {"min": [-9,-9,-9], "max": [9,9,9])" + of_domain + R"(}, "bodies": [{)" +
+                           of_body + R"("name": "a", "shape": {"sphere": {"radius": 1}},
+                                        "motion": [{"start": 0, "position": [[0,0,0]]}]}]})",
+                       "scene.json");
+  };
+  const Scene none = read("", "", "");
+  CHECK(none.bodies[0].restitution == 1);
+  CHECK(none.domain->restitution == 1);
+  const Scene whole = read(R"("restitution": 0.5, )", "", "");
+  CHECK(whole.bodies[0].restitution == 0.5);
+  CHECK(whole.domain->restitution == 0.5);
+  const Scene own = read(R"("restitution": 0.5, )", R"(, "restitution": 0)", R"("restitution": 0.75, )");
+  CHECK(own.bodies[0].restitution == 0.75);
+  CHECK(own.domain->restitution == 0);
+}
+
 TEST_CASE("scene reader: the run begins with the earliest motion, and its degree is the highest used") {
   const Scene scene = parse_scene(R"({"scene": 1, "end_time": 1000000001, "response": "none", "bodies": [
     {"name": "a", "shape": {"sphere": {"radius": 1}}, "motion": [{"start": 1e9, "position": [[0,0,0], [1,0,0], [0,0,0]]}]},
@@ -186,6 +205,11 @@ TEST_CASE("scene reader: each bad value is named with its place") {
       {"/bodies/1/mass", "0", "bodies[1].mass: must be > 0"},
       {"/bodies/1/mass", "\"2\"", "bodies[1].mass: must be a number"},
       {"/bodies/1/fixed", "1", "bodies[1].fixed: must be true or false"},
+      {"/restitution", "1.5", "restitution: must be in [0, 1]"},
+      {"/restitution", "\"high\"", "restitution: must be a number"},
+      {"/domain/restitution", "-0.1", "domain.restitution: must be in [0, 1]"},
+      {"/bodies/1/restitution", "-1", "bodies[1].restitution: must be in [0, 1]"},
+      {"/bodies/1/restitution", "null", "bodies[1].restitution: must be a number"},
       {"/bodies/0/motion", "", "bodies[0].motion: is missing"},
       {"/bodies/0/motion", "[]", "bodies[0].motion: must have at least one piece"},
       {"/bodies/0/motion/0/start", "", "bodies[0].motion[0].start: is missing"},
