@@ -81,9 +81,12 @@ class SceneMaker {
     if (aligned) return Eigen::Quaterniond::Identity();
     const bool turns_axes_to_axes = options_.numbers == Numbers::coarse && random_.one_in(2);
     if (turns_axes_to_axes) return {0.5, 0.5, 0.5, random_.one_in(2) ? 0.5 : -0.5};
-    return Eigen::Quaterniond(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1),
-                              random_.between(0.1, 1))
-        .normalized();
+    // One by one: the order in which arguments are evaluated is the compiler's choice.
+    const double z = random_.between(0.1, 1);
+    const double y = random_.between(-1, 1);
+    const double x = random_.between(-1, 1);
+    const double w = random_.between(-1, 1);
+    return Eigen::Quaterniond(w, x, y, z).normalized();
   }
 
   template <int Degree>
@@ -91,14 +94,15 @@ class SceneMaker {
     Scene<Degree> result;
     result.end_time = options_.end_time;
     for (std::size_t i = 0; i < options_.bodies; ++i) {
-      auto description = body<Degree>(shape(), path<Degree>(0));
+      const auto motion = path<Degree>(0);
+      auto description = body<Degree>(shape(), motion);
       if (options_.shapes != Shapes::spheres) description.orientation = orientation();
       if (options_.scripts) add_script(description);
       if (options_.heterogeneous) {
         description.mass = random_.one_in(2) ? 1 : random_.between(0.1, 10);
         description.fixed = random_.one_in(5);
         // Fixed bodies that move would press others against walls and make them faster without end.
-        if (description.fixed) description.motion = {motion<Degree>(description.motion[0].coefficients[0])};
+        if (description.fixed) description.motion = {tests::motion<Degree>(motion.coefficients[0])};
       }
       result.bodies.push_back(std::move(description));
     }

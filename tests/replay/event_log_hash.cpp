@@ -1,0 +1,197 @@
+// Hashes the event logs of fixed scenes, and compares them with what they shall be.
+//
+// event_log_hash                prints a line `NAME RECORDS HASH` for each scene
+// event_log_hash GOLDEN         compares these lines with a file, says what differs, and exits 1 where something does
+// event_log_hash --log NAME     prints the events of one scene, numbers in hexadecimal, for diff
+//
+// The file in the repository is made by the first form: event_log_hash > tests/replay/golden.txt
+#include "kds/calendar_queue.hpp"
+#include "kds/dary_queue.hpp"
+#include "kds/pairing_queue.hpp"
+#include "kds/simulator.hpp"
+#include "structures/sorted_list.hpp"
+#include "tests/replay/event_hash.hpp"
+#include "tests/replay/scenes.hpp"
+#include "tests/structures/random_values.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cinttypes>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace kds::replay {
+namespace {
+
+struct Replay {
+  std::string name;
+  std::function<void(EventHash&)> run;
+};
+
+// --- sorted lists
+
+struct Recorder {
+  EventHash* hash;
+  void swapped(std::uint32_t left, std::uint32_t right, double t) {
+    hash->integer(left);
+    hash->integer(right);
+    hash->number(t);
+    hash->end_record();
+  }
+  static std::uint32_t rank(std::uint32_t id) { return id % 3; }
+};
+
+/// Random motions, insertions, removals and jumps.
+template <int Degree, class Queue>
+void run_list(kds::tests::Kind kind, EventHash& hash) {
+  kds::tests::Random random(17);
+  kds::tests::Model<Degree> model;
+  structures::SortedList<Degree, Recorder, Queue> list(Recorder{&hash});
+  double now = kds::tests::beginning(kind);
+  Simulator simulator(now, list);
+  for (int step = 0; step < 150; ++step) {
+    kds::tests::apply(kds::tests::random_change(random, kind, now, 30, model), list, now);
+    now += kds::tests::random_delay(random, kind);
+    simulator.advance_to(now);
+  }
+}
+
+template <int Degree>
+void add_lists(std::vector<Replay>& replays) {
+  constexpr std::array kinds{"generic", "lattice", "mixed", "resting", "scales", "late"};
+  for (const kds::tests::Kind kind : kds::tests::all_kinds) {
+    const std::string name = "list/" + std::to_string(Degree) + '/' + kinds[static_cast<std::size_t>(kind)];
+    replays.push_back({name, [=](EventHash& hash) {
+      run_list<Degree, CalendarQueue<>>(kind, hash);
+      for (const auto run : {run_list<Degree, DaryQueue<>>, run_list<Degree, PairingQueue<>>}) {
+        EventHash other(false);
+        run(kind, other);
+        if (other.value() != hash.value()) throw std::runtime_error(name + ": the queues disagree");
+      }
+    }});
+  }
+}
+
+// --- worlds
+
+template <int Degree>
+void hash_run(const Scene<Degree>& scene, const WorldOptions& options, EventHash& hash) {
+  for (const Event& e : run(scene, options)) hash.event(e);
+}
+
+constexpr std::array methods{std::pair{BroadPhaseKind::kinetic_sap, "kinetic-sap"}, std::pair{BroadPhaseKind::sap, "sap"},
+                             std::pair{BroadPhaseKind::all_pairs, "all-pairs"}};
+
+/// Names are words, so that lines are easily taken apart.
+std::string word(std::string name) {
+  std::replace(name.begin(), name.end(), ' ', '-');
+  return name;
+}
+
+template <int Degree>
+void add_worlds(std::vector<Replay>& replays) {
+  constexpr std::array all_shapes{Shapes::spheres,    Shapes::boxes, Shapes::turned_boxes, Shapes::tetrahedra,
+                                  Shapes::cubes, Shapes::rings, Shapes::mixture};
+  for (const Shapes shapes : all_shapes) {
+    for (const Numbers numbers : {Numbers::fine, Numbers::coarse}) {
+      for (const Response response : {Response::none, Response::elastic}) {
+        for (const auto& [method, method_name] : methods) {
+          const bool elastic = response == Response::elastic;
+          const std::string name = "world/" + std::to_string(Degree) + '/' + word(collision::tests::name(shapes)) + '/' +
+                                   (numbers == Numbers::fine ? "fine/" : "coarse/") + (elastic ? "elastic/" : "none/") +
+                                   method_name;
+          replays.push_back({name, [=, method = method](EventHash& hash) {
+            WorldOptions options;
+            options.response = response;
+            options.broad_phase = method;
+            options.rate = method == BroadPhaseKind::sap ? 30 : 0;
+            options.report_pairs = true;
+            if (elastic) options.walls = Walls{Vector3d::Constant(-2), Vector3d::Constant(8)};
+            const SceneOptions scene{.shapes = shapes, .numbers = numbers, .scripts = !elastic, .heterogeneous = elastic};
+            hash_run(random_scene<Degree>(scene, 5), options, hash);
+          }});
+        }
+      }
+    }
+  }
+}
+
+void add_bounces(std::vector<Replay>& replays) {
+  for (const auto& [method, method_name] : methods) {
+    replays.push_back({std::string("bounces/") + method_name, [method = method](EventHash& hash) {
+      WorldOptions options;
+      options.response = Response::elastic;
+      options.broad_phase = method;
+      options.rate = method == BroadPhaseKind::sap ? 30 : 0;
+      hash_run(bouncing_scene(), options, hash);
+    }});
+  }
+}
+
+std::vector<Replay> all_replays() {
+  std::vector<Replay> replays;
+  add_lists<1>(replays);
+  add_lists<2>(replays);
+  add_worlds<1>(replays);
+  add_worlds<2>(replays);
+  add_bounces(replays);
+  return replays;
+}
+
+std::string line_of(const Replay& replay) {
+  EventHash hash(false);
+  replay.run(hash);
+  char text[64];
+  std::snprintf(text, sizeof text, " %" PRIu64 " %016" PRIx64, hash.records(), hash.value());
+  return replay.name + text;
+}
+
+int compare(const char* file) {
+  std::ifstream golden(file);
+  if (!golden) throw std::runtime_error(std::string(file) + " cannot be read");
+  std::string expected;
+  int differences = 0;
+  for (const Replay& replay : all_replays()) {
+    const std::string found = line_of(replay);
+    if (!std::getline(golden, expected)) expected = "(nothing)";
+    if (found == expected) continue;
+    ++differences;
+    std::printf("differs: %s\n  golden: %s\n", found.c_str(), expected.c_str());
+  }
+  for (; std::getline(golden, expected); ++differences) std::printf("not run: %s\n", expected.c_str());
+  std::printf("%d differences from %s\n", differences, file);
+  return differences == 0 ? 0 : 1;
+}
+
+int print_log(const std::string_view name) {
+  for (const Replay& replay : all_replays()) {
+    if (replay.name != name) continue;
+    EventHash hash(true);
+    replay.run(hash);
+    return 0;
+  }
+  throw std::runtime_error("there is no scene of this name");
+}
+
+}  // namespace
+}  // namespace kds::replay
+
+int main(int argc, char** argv) {
+  try {
+    if (argc == 2) return kds::replay::compare(argv[1]);
+    if (argc == 3 && std::string_view(argv[1]) == "--log") return kds::replay::print_log(argv[2]);
+    if (argc != 1) throw std::runtime_error("usage: event_log_hash [GOLDEN | --log NAME]");
+    for (const auto& replay : kds::replay::all_replays()) std::printf("%s\n", kds::replay::line_of(replay).c_str());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "event_log_hash: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,85 @@
+// The scenes whose event logs are hashed. Made of +, -, *, / and sqrt alone, which every machine rounds alike; what
+// sin and cos give depends on the C library, and with it on the processor.
+#pragma once
+
+#include "collision/world.hpp"
+#include "tests/collision/random_scenes.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace kds::replay {
+
+using namespace collision;
+using namespace collision::tests;
+
+/// A torus of radii 0.75 and 0.25 about z, its points on circles by ((1 - u^2) / (1 + u^2), 2 u / (1 + u^2)).
+inline std::shared_ptr<const Mesh> rational_torus() {
+  constexpr std::array<std::array<double, 2>, 8> circle{
+      {{1, 0}, {0.6, 0.8}, {0, 1}, {-0.6, 0.8}, {-1, 0}, {-0.6, -0.8}, {0, -1}, {0.6, -0.8}}};
+  constexpr std::uint32_t across = 4;
+  std::vector<Vector3d> vertices;
+  std::vector<Mesh::Triangle> triangles;
+  for (std::uint32_t i = 0; i < circle.size(); ++i) {
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const double r = 0.75 + 0.25 * circle[2 * j][0];
+      vertices.emplace_back(r * circle[i][0], r * circle[i][1], 0.25 * circle[2 * j][1]);
+      const auto at = [&](std::uint32_t p, std::uint32_t q) { return (p % 8) * across + q % across; };
+      triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return std::make_shared<const Mesh>(std::move(vertices), std::move(triangles));
+}
+
+/// Random bodies of one kind, or every other one a ring.
+template <int Degree>
+Scene<Degree> random_scene(const SceneOptions& options, std::uint64_t seed) {
+  Random random(seed);
+  SceneOptions chosen = options;
+  const bool rings = options.shapes == Shapes::rings || options.shapes == Shapes::mixture;
+  if (rings) chosen.shapes = options.shapes == Shapes::rings ? Shapes::cubes : Shapes::spheres;
+  Scene<Degree> scene = SceneMaker(random, chosen).template scene<Degree>();
+  if (!rings) return scene;
+  const auto ring = rational_torus();
+  const bool mixed = options.shapes == Shapes::mixture;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    switch (mixed ? i % 4 : 0) {
+      case 0:
+        scene.bodies[i].shape = MeshShape{ring, 0.75};
+        break;
+      case 1:
+        scene.bodies[i].shape = Box{{0.5, 0.4, 0.3}};
+        scene.bodies[i].orientation = Eigen::Quaterniond(0.5, 0.1, 0.7, -0.5).normalized();
+        break;
+      case 2:
+        scene.bodies[i].shape = MeshShape{tetrahedron(), 0.6};
+        break;
+      default:  // stays a sphere
+        break;
+    }
+  }
+  return scene;
+}
+
+/// A ball and a box dropped on a floor, over and over: gravity, many bounces, and the policy for those without end.
+inline Scene<2> bouncing_scene() {
+  Scene<2> scene;
+  scene.end_time = 6;
+  scene.bodies.push_back(fixed_body<2>(Box{{5, 5, 1}}, motion<2>({0, 0, -1})));
+  const Vector3d gravity(0, 0, -4.905);
+  scene.bodies.push_back(ball<2>(0.5, {0, 0, 3}, zero, gravity));
+  scene.bodies.push_back(ball<2>(0.25, {0.01, 0.02, 5}, zero, gravity));
+  auto turned = box<2>({0.5, 0.4, 0.3}, {2, 2, 2}, {0, 0.125, 0}, gravity);
+  turned.orientation = Eigen::Quaterniond(0.9, 0.1, 0.3, -0.3).normalized();
+  scene.bodies.push_back(turned);
+  auto ring = body<2>(MeshShape{rational_torus(), 1}, motion<2>({-2, -2, 2}, {0.125, 0, 0}, gravity));
+  ring.orientation = Eigen::Quaterniond(0.9, -0.4, 0.1, 0.1).normalized();
+  scene.bodies.push_back(ring);
+  return scene;
+}
+
+}  // namespace kds::replay
