@@ -1,0 +1,211 @@
+#include "certificates/features/feature_contact.hpp"
+
+#include "certificates/features/closest_point.hpp"
+#include "certificates/features/crossing.hpp"
+#include "certificates/features/fixed_axis.hpp"
+#include "certificates/features/patch_paths.hpp"
+#include "certificates/features/turning_axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kds::certificates {
+
+namespace {
+
+/// After so many steps with fixed axes the axes turn as well: most queries end before.
+constexpr int fixed_steps = 5;
+/// A query that has not ended after so many is undecided. Far above what has ever been seen (docs/features.md).
+constexpr int most_steps = 256;
+/// Least tolerance, as a part of the size: hundreds of margins (fixed_axis.hpp).
+constexpr double least_tolerance = 0x1p-38;
+/// Products of up to eight coordinates must neither overflow nor underflow: other sizes are scaled.
+constexpr double least_size = 0x1p-100;
+constexpr double greatest_size = 0x1p100;
+
+/// A direction that separates the corners from the origin, from one that does not quite: [Gilbert66], the closest point
+/// on the way to the corner that lies deepest. Needed where patches are so flat that their closest point is inexact.
+Eigen::Vector3d better_axis(const Corners& q, const Eigen::Vector3d& axis) {
+  const Lanes heights = detail::dot(axis, q);
+  std::size_t k = 0;
+  for (std::size_t j = 1; j < 4; ++j) k = heights[j] < heights[k] ? j : k;
+  const Eigen::Vector3d way = detail::corner(q, k) - axis;
+  const double squared = way.squaredNorm();
+  return squared > 0 ? axis + way * std::clamp(-axis.dot(way) / squared, 0.0, 1.0) : axis;
+}
+
+template <Patch kind, int Degree>
+class Search {
+ public:
+  Search(const PatchPaths<Degree>& paths, const ContactTolerance& tolerance, double t0, double t1)
+      : paths_(paths), t0_(t0), t1_(t1) {
+    if (paths.size > 0 && !(paths.size > least_size && paths.size < greatest_size)) rescale();
+    margin_ = axis_margin(paths_);
+    tolerance_ = std::max(std::min(tolerance.absolute * scale_, tolerance.relative * paths_.size),
+                          least_tolerance * paths_.size);
+    // The points of the patch meant are within sqrt(3) paths.error of those computed, up to a few roundings.
+    const double inner = tolerance_ - 5 * margin_;
+    inner2_ = inner * inner;
+  }
+
+  FeatureContact run() {
+    result_.tolerance = tolerance_ / scale_;
+    if (boxes_apart(paths_, margin_)) return result_;
+    double s = 0;
+    for (;; ++result_.steps) {
+      const PlacedPatch<kind> patch(paths_.at(s));
+      const PatchPoint point = patch.closest();
+      if (!(point.squared_distance > inner2_) && touches(patch, point, s)) return result_;
+      const double until = free_until(patch, point, s);
+      if (until >= 1) return result_;
+      if (!(until > s) || result_.steps == most_steps) {
+        describe(patch, point, s, FeatureContactStatus::undecided);
+        return result_;
+      }
+      axis_ = point.position;
+      s = until;
+    }
+  }
+
+ private:
+  double free_until(const PlacedPatch<kind>& patch, const PatchPoint& point, double s) const {
+    double until = separated_until(paths_, margin_, point.position, s);
+    if (until >= 1) return until;
+    if (result_.steps >= fixed_steps) {
+      until = std::max(until, TurningAxis<kind, Degree>(paths_).separated_until(point, s));
+    }
+    Eigen::Vector3d axis = point.position;
+    for (int i = 0; i < 64 && !(until > s); ++i) {
+      axis = better_axis(patch.corners(), axis);
+      until = separated_until(paths_, margin_, axis, s);
+    }
+    return until;
+  }
+
+  bool touches(const PlacedPatch<kind>& patch, const PatchPoint& point, double s) {
+    const auto w = patch.weights(point);
+    const Eigen::Vector3d p = at(patch.corners(), w);
+    if (p.squaredNorm() > inner2_) return false;
+    if (s == 0) {
+      describe(patch, point, s, FeatureContactStatus::at_start);
+      return true;
+    }
+    describe(patch, point, s, FeatureContactStatus::undecided);
+    if (point.part == PatchPart::interior) {
+      if (const auto end = Crossing<kind, Degree>(paths_, patch.corners(), s).until(w)) {
+        result_.status = FeatureContactStatus::contact;
+        result_.latest = std::min(clock(*end, 1), t1_);
+      }
+    }
+    return true;
+  }
+
+  static Eigen::Vector3d at(const Corners& q, const std::array<double, 4>& w) {
+    const Lanes weights(w[0], w[1], w[2], w[3]);
+    Eigen::Vector3d p;
+    for (int d = 0; d < 3; ++d) {
+      const Lanes x = q[static_cast<std::size_t>(d)] * weights;
+      p[d] = (x[0] + x[1]) + (x[2] + x[3]);
+    }
+    return p;
+  }
+
+  void describe(const PlacedPatch<kind>& patch, const PatchPoint& point, double s, FeatureContactStatus status) {
+    const auto w = patch.weights(point);
+    const Eigen::Vector3d p = at(patch.corners(), w);
+    result_.status = status;
+    result_.time = s > 0 ? std::max(clock(s, -1), t0_) : t0_;
+    // While the clock is rounded (see clock()) a corner moves on: by sqrt(3) 2 size a unit of s at most.
+    const double rounding = s > 0 ? 0x1p-50 * (std::abs(result_.time) / (t1_ - t0_) + s) : 0;
+    result_.distance = (p.norm() + 3 * margin_ + 4 * paths_.size * rounding) / scale_;
+    if constexpr (kind == Patch::triangle) {
+      result_.weights = {1, w[0] + w[3], w[1], w[2]};
+    } else {
+      result_.weights = {w[0] + w[3], w[1] + w[2], w[0] + w[1], w[2] + w[3]};
+    }
+    result_.normal = normal(patch, p, s);
+  }
+
+  /// The way from the one feature to the other, where it is longer than its error; else the last axis that separated
+  /// them; else, at the start, the normal of the patch, against its motion; else any.
+  Eigen::Vector3d normal(const PlacedPatch<kind>& patch, const Eigen::Vector3d& p, double s) const {
+    if (p.norm() > 64 * margin_) return p.normalized();
+    if (axis_.squaredNorm() > 0) return axis_.normalized();
+    Eigen::Vector3d n = patch.plane_normal();
+    const Corners v = paths_.velocity(s);
+    const Eigen::Vector3d velocity = at(v, {0.25, 0.25, 0.25, 0.25});
+    if (!(n.squaredNorm() > 0)) n = -velocity;
+    if (!(n.squaredNorm() > 0)) return Eigen::Vector3d::UnitZ();
+    return (n.dot(velocity) > 0 ? -n : n).normalized();
+  }
+
+  /// The time at s, rounded down or up by more than all its roundings: those of the duration, the product and the sum.
+  double clock(double s, double direction) const {
+    const double elapsed = s * (t1_ - t0_);
+    const double t = t0_ + elapsed;
+    return t + direction * 0x1p-51 * (std::abs(t) + elapsed);
+  }
+
+  void rescale() {
+    const int exponent = -std::ilogb(paths_.size);
+    scale_ = std::ldexp(1.0, std::clamp(exponent, -1000, 1000));
+    for (auto& c : paths_.c) {
+      for (auto& lanes : c) lanes = lanes * Lanes(scale_);
+    }
+    paths_.size *= scale_;
+    paths_.error *= scale_;
+  }
+
+  PatchPaths<Degree> paths_;
+  double t0_;
+  double t1_;
+  double scale_ = 1;
+  double margin_;
+  double tolerance_;
+  double inner2_;
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
+  FeatureContact result_;
+};
+
+template <Patch kind, int Degree>
+FeatureContact search(const std::array<const PointMotion<Degree>*, 4>& points, double t0, double t1,
+                      const ContactTolerance& tolerance) {
+  return Search<kind, Degree>(patch_paths<kind, Degree>(points, t0, t1), tolerance, t0, t1).run();
+}
+
+}  // namespace
+
+template <int Degree>
+FeatureContact vertex_face_contact(const PointMotion<Degree>& vertex, const PointMotion<Degree>& a,
+                                   const PointMotion<Degree>& b, const PointMotion<Degree>& c, double t0, double t1,
+                                   const ContactTolerance& tolerance) {
+  return search<Patch::triangle, Degree>({&vertex, &a, &b, &c}, t0, t1, tolerance);
+}
+
+template <int Degree>
+FeatureContact edge_edge_contact(const PointMotion<Degree>& a, const PointMotion<Degree>& b,
+                                 const PointMotion<Degree>& c, const PointMotion<Degree>& d, double t0, double t1,
+                                 const ContactTolerance& tolerance) {
+  return search<Patch::parallelogram, Degree>({&a, &b, &c, &d}, t0, t1, tolerance);
+}
+
+FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
+                                   const ContactTolerance& tolerance) {
+  return Search<Patch::triangle, 1>(patch_paths<Patch::triangle>(begin, end), tolerance, 0, 1).run();
+}
+
+FeatureContact edge_edge_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
+                                 const ContactTolerance& tolerance) {
+  return Search<Patch::parallelogram, 1>(patch_paths<Patch::parallelogram>(begin, end), tolerance, 0, 1).run();
+}
+
+template FeatureContact vertex_face_contact(const PointMotion<1>&, const PointMotion<1>&, const PointMotion<1>&,
+                                            const PointMotion<1>&, double, double, const ContactTolerance&);
+template FeatureContact vertex_face_contact(const PointMotion<2>&, const PointMotion<2>&, const PointMotion<2>&,
+                                            const PointMotion<2>&, double, double, const ContactTolerance&);
+template FeatureContact edge_edge_contact(const PointMotion<1>&, const PointMotion<1>&, const PointMotion<1>&,
+                                          const PointMotion<1>&, double, double, const ContactTolerance&);
+template FeatureContact edge_edge_contact(const PointMotion<2>&, const PointMotion<2>&, const PointMotion<2>&,
+                                          const PointMotion<2>&, double, double, const ContactTolerance&);
+
+}  // namespace kds::certificates
