@@ -24,16 +24,27 @@ struct PatchPoint {
   double along;         ///< 0 ... 1 on an edge
 };
 
-/// Interior points are found by the normal only where the squared sine of the angle between the two sides is above
-/// this; flatter patches are taken for their edges, which is off by less than 2^-20 of a side. Nothing wrong follows
-/// (any direction is a valid axis to try, any point of the patch a valid bound on the distance): only steps.
-inline constexpr double flattest_patch = 0x1p-40;
+/// Squared sines of the angle between two sides of a patch. Above the first the place of a foot follows from squared
+/// lengths (to 2^-32 of a side); above the second from the normal (to 2^-8); flatter patches are taken for their edges,
+/// which is off by 2^-45 of a side. Nothing wrong follows from a bad foot (any direction is a valid axis to try, any point
+/// of the patch a valid bound on the distance): only more steps.
+inline constexpr double flat_patch = 0x1p-20;
+inline constexpr double flattest_patch = 0x1p-90;
 
 namespace detail {
 
 inline Lanes dot(const Corners& a, const Corners& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 inline Lanes dot(const Eigen::Vector3d& a, const Corners& b) {
   return Lanes(a[0]) * b[0] + Lanes(a[1]) * b[1] + Lanes(a[2]) * b[2];
+}
+inline Eigen::Vector3d weighted(const Corners& q, const std::array<double, 4>& w) {
+  const Lanes weights(w[0], w[1], w[2], w[3]);
+  Eigen::Vector3d p;
+  for (int d = 0; d < 3; ++d) {
+    const Lanes x = q[static_cast<std::size_t>(d)] * weights;
+    p[d] = (x[0] + x[1]) + (x[2] + x[3]);
+  }
+  return p;
 }
 inline Eigen::Vector3d corner(const Corners& q, std::size_t k) { return {q[0][k], q[1][k], q[2][k]}; }
 
@@ -57,17 +68,17 @@ class PlacedPatch {
     const double n2 = n.dot(n);
     const double uu = squared_[0];
     const double vv = squared_[last];
-    if (n2 > flattest_patch * uu * vv) {
+    if (n2 > flat_patch * uu * vv) {
       const Eigen::Vector3d q0 = detail::corner(q_, 0);
       const double uv = u.dot(v);
       const double fu = falling_[0];
       const double fv = -v.dot(q0);
-      const double x = vv * fu - uv * fv;
-      const double y = uu * fv - uv * fu;
-      if (x >= 0 && y >= 0 && (kind == Patch::triangle ? x + y <= n2 : std::max(x, y) <= n2)) {
+      if (inside(vv * fu - uv * fv, uu * fv - uv * fu, n2)) {
         const double height = n.dot(q0);
         return {n * (height / n2), height * height / n2, PatchPart::interior, 0, 0};
       }
+    } else if (n2 > flattest_patch * uu * vv) {
+      return closest_of_flat(n, uu > vv ? u : v);
     }
     return closest_on_edges();
   }
@@ -81,28 +92,93 @@ class PlacedPatch {
       w[p.corner] = 1 - p.along;
       w[(p.corner + 1U) % 4] = p.along;
     } else {
-      const Eigen::Vector3d u = detail::corner(e_, 0);
-      const Eigen::Vector3d v = -detail::corner(e_, last);
-      const Eigen::Vector3d n = u.cross(v);
-      const Eigen::Vector3d q0 = detail::corner(q_, 0);
-      const double n2 = n.dot(n);
-      const double x = std::clamp(n.dot(v.cross(q0)) / n2, 0.0, 1.0);
-      const double y = std::clamp(-n.dot(u.cross(q0)) / n2, 0.0, kind == Patch::triangle ? 1 - x : 1.0);
-      if (kind == Patch::triangle) {
-        w = {1 - x - y, x, y, 0};
-      } else {
-        w = {(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y};
-      }
+      return corner_weights(interior_place());
     }
     return w;
   }
 
+  /// The point of the patch with these weights.
+  Eigen::Vector3d position(const std::array<double, 4>& w) const { return detail::weighted(q_, w); }
+
   const Corners& corners() const { return q_; }
+
+  /// The closest directions of all parts of the patch, each made perpendicular to the edge it belongs to once more.
+  ///
+  /// A closest point is computed to some roundings of the size, and as a direction it is off by as much over the
+  /// distance: below a distance of 2^-26 sizes that can be too much for an axis across an edge as long as the size.
+  /// What is left of the product with the edge after it has been taken off is a rounding of the axis itself.
+  std::array<Eigen::Vector3d, 9> careful_axes() const {
+    std::array<Eigen::Vector3d, 9> axes;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Eigen::Vector3d e = detail::corner(e_, k);
+      axes[k] = detail::corner(q_, k);
+      axes[4 + k] = across(across(axes[k], e), e);
+    }
+    axes[8] = across(plane_normal(), detail::corner(e_, squared_[0] > squared_[last] ? 0 : last));
+    if (axes[8].dot(axes[0]) < 0) axes[8] = -axes[8];
+    return axes;
+  }
+
   Eigen::Vector3d plane_normal() const { return detail::corner(e_, 0).cross(-detail::corner(e_, last)); }
 
  private:
   // The edge that ends in corner 0.
   static constexpr std::size_t last = kind == Patch::triangle ? 2 : 3;
+
+  static std::array<double, 4> corner_weights(const std::array<double, 2>& place) {
+    const auto [x, y] = place;
+    if (kind == Patch::triangle) return {1 - x - y, x, y, 0};
+    return {(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y};
+  }
+
+  /// n less its part along e.
+  static Eigen::Vector3d across(const Eigen::Vector3d& n, const Eigen::Vector3d& e) {
+    const double squared = e.dot(e);
+    return squared > 0 ? n - e * (n.dot(e) / squared) : n;
+  }
+
+  /// For the foot q0 + x u + y v of the origin: x and y, times |n|^2.
+  std::array<double, 2> foot(const Eigen::Vector3d& u, const Eigen::Vector3d& v, const Eigen::Vector3d& n) const {
+    const Eigen::Vector3d q0 = detail::corner(q_, 0);
+    return {n.dot(v.cross(q0)), -n.dot(u.cross(q0))};
+  }
+  static bool inside(double x, double y, double n2) {
+    return x >= 0 && y >= 0 && (kind == Patch::triangle ? x + y <= n2 : std::max(x, y) <= n2);
+  }
+
+  /// x and y of the foot, inside. In flat patches its error is along the sides, and a step along the longer one
+  /// takes that out.
+  std::array<double, 2> interior_place() const {
+    const Eigen::Vector3d u = detail::corner(e_, 0);
+    const Eigen::Vector3d v = -detail::corner(e_, last);
+    const Eigen::Vector3d n = u.cross(v);
+    auto [x, y] = foot(u, v, n);
+    const double n2 = n.dot(n);
+    x /= n2;
+    y /= n2;
+    const Eigen::Vector3d p = detail::corner(q_, 0) + x * u + y * v;
+    if (squared_[0] > squared_[last]) {
+      x -= p.dot(u) / squared_[0];
+    } else {
+      y -= p.dot(v) / squared_[last];
+    }
+    x = std::clamp(x, 0.0, 1.0);
+    y = std::clamp(y, 0.0, kind == Patch::triangle ? 1 - x : 1.0);
+    return {x, y};
+  }
+
+  /// The interior counts only as far as a point of the patch is really closer than the edges.
+  PatchPoint closest_of_flat(const Eigen::Vector3d& n, const Eigen::Vector3d& longer) const {
+    const PatchPoint on_edges = closest_on_edges();
+    const double n2 = n.dot(n);
+    const auto [x, y] = foot(detail::corner(e_, 0), -detail::corner(e_, last), n);
+    if (!inside(x, y, n2)) return on_edges;
+    PatchPoint point{across(n, longer) * (n.dot(detail::corner(q_, 0)) / n2), 0, PatchPart::interior, 0, 0};
+    const double distance = position(corner_weights(interior_place())).squaredNorm();
+    if (!(distance < on_edges.squared_distance)) return on_edges;
+    point.squared_distance = distance;
+    return point;
+  }
 
   PatchPoint closest_on_edges() const {
     const Lanes zero(0.0);

@@ -23,17 +23,6 @@ constexpr double least_tolerance = 0x1p-38;
 constexpr double least_size = 0x1p-100;
 constexpr double greatest_size = 0x1p100;
 
-/// A direction that separates the corners from the origin, from one that does not quite: [Gilbert66], the closest point
-/// on the way to the corner that lies deepest. Needed where patches are so flat that their closest point is inexact.
-Eigen::Vector3d better_axis(const Corners& q, const Eigen::Vector3d& axis) {
-  const Lanes heights = detail::dot(axis, q);
-  std::size_t k = 0;
-  for (std::size_t j = 1; j < 4; ++j) k = heights[j] < heights[k] ? j : k;
-  const Eigen::Vector3d way = detail::corner(q, k) - axis;
-  const double squared = way.squaredNorm();
-  return squared > 0 ? axis + way * std::clamp(-axis.dot(way) / squared, 0.0, 1.0) : axis;
-}
-
 template <Patch kind, int Degree>
 class Search {
  public:
@@ -74,17 +63,15 @@ class Search {
     if (result_.steps >= fixed_steps) {
       until = std::max(until, TurningAxis<kind, Degree>(paths_).separated_until(point, s));
     }
-    Eigen::Vector3d axis = point.position;
-    for (int i = 0; i < 64 && !(until > s); ++i) {
-      axis = better_axis(patch.corners(), axis);
-      until = separated_until(paths_, margin_, axis, s);
+    if (!(until > s)) {
+      for (const auto& axis : patch.careful_axes()) until = std::max(until, separated_until(paths_, margin_, axis, s));
     }
     return until;
   }
 
   bool touches(const PlacedPatch<kind>& patch, const PatchPoint& point, double s) {
     const auto w = patch.weights(point);
-    const Eigen::Vector3d p = at(patch.corners(), w);
+    const Eigen::Vector3d p = patch.position(w);
     if (p.squaredNorm() > inner2_) return false;
     if (s == 0) {
       describe(patch, point, s, FeatureContactStatus::at_start);
@@ -100,19 +87,9 @@ class Search {
     return true;
   }
 
-  static Eigen::Vector3d at(const Corners& q, const std::array<double, 4>& w) {
-    const Lanes weights(w[0], w[1], w[2], w[3]);
-    Eigen::Vector3d p;
-    for (int d = 0; d < 3; ++d) {
-      const Lanes x = q[static_cast<std::size_t>(d)] * weights;
-      p[d] = (x[0] + x[1]) + (x[2] + x[3]);
-    }
-    return p;
-  }
-
   void describe(const PlacedPatch<kind>& patch, const PatchPoint& point, double s, FeatureContactStatus status) {
     const auto w = patch.weights(point);
-    const Eigen::Vector3d p = at(patch.corners(), w);
+    const Eigen::Vector3d p = patch.position(w);
     result_.status = status;
     result_.time = s > 0 ? std::max(clock(s, -1), t0_) : t0_;
     // While the clock is rounded (see clock()) a corner moves on: by sqrt(3) 2 size a unit of s at most.
@@ -133,7 +110,7 @@ class Search {
     if (axis_.squaredNorm() > 0) return axis_.normalized();
     Eigen::Vector3d n = patch.plane_normal();
     const Corners v = paths_.velocity(s);
-    const Eigen::Vector3d velocity = at(v, {0.25, 0.25, 0.25, 0.25});
+    const Eigen::Vector3d velocity = detail::weighted(v, {0.25, 0.25, 0.25, 0.25});
     if (!(n.squaredNorm() > 0)) n = -velocity;
     if (!(n.squaredNorm() > 0)) return Eigen::Vector3d::UnitZ();
     return (n.dot(velocity) > 0 ? -n : n).normalized();
