@@ -2,12 +2,14 @@
 #pragma once
 
 #include "kds/ball.hpp"
+#include "kds/compensated.hpp"
 #include "kds/exact.hpp"
 #include "kds/motion.hpp"
 #include "kds/polynomial.hpp"
 
 #include <concepts>
 #include <cstdint>
+#include <limits>
 
 namespace kds {
 
@@ -27,7 +29,9 @@ namespace kds {
 /// polynomial(e') are the same function of t. A certificate may offer `bool vanishes() const`, a cheap and sufficient
 /// test that f is zero throughout, which spares such pairs (things that move together) the exact rung; and a
 /// `double quick_failure_time(double now, double horizon) const` that gives what failure_time() would, bit for bit,
-/// or a NaN where it does not decide.
+/// or a NaN where it does not decide; and a
+/// `Ball<DoubleDouble> extended_value(double t) const` that gives f(t) alone for less than polynomial() costs, with an
+/// error bound of its own (see compensated_value()), for it is f(t) that places a root among the doubles.
 template <class C>
 concept Certificate = requires(const C& certificate, double epoch) {
   { C::degree } -> std::convertible_to<int>;
@@ -50,6 +54,7 @@ Polynomial<0, Number> constant(double value) {
 struct SignCounters {
   std::uint64_t extended = 0;  ///< signs that asked for double-doubles
   std::uint64_t exact = 0;     ///< signs that asked for exact arithmetic
+  std::uint64_t searches = 0;  ///< failure times that were found by signs alone, the quick methods being at a loss
 };
 inline thread_local SignCounters sign_counters;
 
@@ -70,6 +75,9 @@ struct PolynomialCertificate {
   template <class Number>
   Polynomial<Degree, Number> polynomial(double epoch) const {
     return about<Number>(value, epoch);
+  }
+  Ball<DoubleDouble> extended_value(double t) const {
+    return compensated_value(value.position, two_sum(t, -value.start));
   }
   bool vanishes() const { return value.position == Polynomial<Degree>{}; }
 };
@@ -97,6 +105,16 @@ bool known_to_vanish(const C& certificate) {
   } else {
     return false;
   }
+}
+
+/// f(t) in double-doubles, with its error bound.
+template <class C>
+Ball<DoubleDouble> extended_value(const C& certificate, double t) {
+  if constexpr (requires { certificate.extended_value(t); }) {
+    const Ball<DoubleDouble> value = certificate.extended_value(t);
+    if (value.radius < std::numeric_limits<double>::infinity()) return value;  // else out of its range
+  }
+  return certificate.template polynomial<Ball<DoubleDouble>>(t).c[0];
 }
 
 template <class C>
