@@ -1,6 +1,7 @@
 // Contacts of the world: dynamic tests, response, walls.
 #include "certificates/conjunction.hpp"
 #include "certificates/wall_separation.hpp"
+#include "collision/impulse.hpp"
 #include "collision/profile.hpp"
 #include "collision/world.hpp"
 
@@ -187,9 +188,8 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
     add_hold({.a = a, .b = b, .normal = n});
     disturb(a), disturb(b);
   } else {
-    const double impulse = (1 + restitution) * approach / (inverse_a + inverse_b);
-    motion_a.coefficients[1] -= impulse * inverse_a * n;
-    motion_b.coefficients[1] += impulse * inverse_b * n;
+    change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,
+                             inverse_a, inverse_b);
     for (const auto& [id, motion] : {std::pair<BodyId, const Motion&>{a, motion_a}, {b, motion_b}}) {
       if (bodies_[id].inverse_mass == 0) continue;
       ++counters_.motion_updates;
