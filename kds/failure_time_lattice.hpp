@@ -73,7 +73,7 @@ class LatticeCrossing {
 /// usually it or the one before.
 template <class C>
 double first_past_linear_root(const C& certificate, double now, double guess, double horizon) {
-  if (!(guess <= horizon)) guess = horizon < never ? horizon : std::numeric_limits<double>::max();
+  if (!(guess <= horizon) || guess == never) guess = horizon < never ? horizon : std::numeric_limits<double>::max();
   if (extended_sign_after(certificate, guess, 0) < 0) {
     const double before = next_down(guess);
     if (!(before > now) || extended_sign_after(certificate, before, 0) >= 0) return guess;
