@@ -153,8 +153,8 @@ int main(int argc, char** argv) {
     };
     measure(generated<1>("spheres-1", "balls, 1 %", make("spheres", 0.01)), rounds, csv);
     measure(generated<1>("spheres-10", "balls, 10 %", make("spheres", 0.1)), rounds, csv);
-    measure(generated<1>("boxes-1", "turned boxes, 1 %", make("boxes", 0.01)), rounds, csv);
-    measure(generated<1>("rings-1", "rings of 64 triangles, 1 %", make("rings", 0.01)), rounds, csv);
+    measure(generated<1>("boxes-10", "turned boxes, 10 %", make("boxes", 0.1)), rounds, csv);
+    measure(generated<1>("rings-10", "rings of 64 triangles, 10 %", make("rings", 0.1)), rounds, csv);
     measure(bullets(bodies, 1), rounds, csv);
     measure(curved(bodies, 0.01, 1), rounds, csv);
     return 0;

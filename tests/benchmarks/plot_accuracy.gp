@@ -7,8 +7,8 @@ set logscale xy
 set format x "10^{%L}"
 set format y "10^{%L}"
 set xlabel "CPU s / simulated s" offset 0,0.5
-scenes = "spheres-1 spheres-10 boxes-1 rings-1 bullets curved"
-titles = "'balls, 1 %' 'balls, 10 %' 'turned boxes, 1 %' 'rings of 64 triangles, 1 %' \
+scenes = "spheres-1 spheres-10 boxes-10 rings-10 bullets curved"
+titles = "'balls, 1 %' 'balls, 10 %' 'turned boxes, 10 %' 'rings of 64 triangles, 10 %' \
           'small fast balls among large slow ones' 'balls on parabolas, 1 %'"
 of(scene, method) = sprintf("< grep '^%s,%s,' %s/accuracy.csv", scene, method, folder)
 
