@@ -17,7 +17,7 @@ namespace {
 using namespace collision;
 using namespace collision::tests;
 
-constexpr int most_operations = 24;
+constexpr int most_operations = 40;
 constexpr std::size_t most_bodies = 8;
 /// A scenario is given up behind so many events.
 constexpr std::size_t most_events = 300;
@@ -48,6 +48,7 @@ class Scenario {
 
   /// Pairs of bounding volumes are not among the events.
   std::vector<Event> run() {
+    for (std::size_t n = 2 + bytes_.below(most_bodies - 1); n > 0; --n) world_.add_body(description());
     for (int i = 0; i < most_operations && !bytes_.empty() && !too_long(); ++i) operation();
     return sorted(log_.events);
   }
@@ -66,7 +67,7 @@ class Scenario {
   Vector3d vector() { return {bytes_.number(), bytes_.number(), bytes_.number()}; }
 
   certificates::PointMotion<Degree> path() {
-    const Vector3d c0 = vector();
+    const Vector3d c0 = 0.5 * vector();  // near each other
     const Vector3d c1 = vector();
     return motion<Degree>(c0, c1, bytes_.one_in(2) ? vector() : zero, world_.now());
   }
