@@ -9,21 +9,24 @@
 
 namespace kds::detail {
 
-/// A root of p in (lower, upper), where p falls, to most of its digits: Newton's method in doubles, kept in bounds by
+/// A root of p in (lower, upper), where p falls, to most of its digits: Halley's method in doubles, kept in bounds by
 /// bisection. Only a guess: nothing rests on it.
 template <int Degree>
 double refined_root(const Polynomial<Degree, Ball<double>>& p, double x, double lower, double upper) {
   for (int i = 0; i < 60; ++i) {
     double value = p.c[Degree].middle;
     double slope = 0;
+    double bend = 0;  // half of f''
     for (std::size_t k = Degree; k-- > 0;) {
+      bend = bend * x + slope;
       slope = slope * x + value;
       value = value * x + p.c[k].middle;
     }
     (value > 0 ? lower : upper) = x;
-    const double next = x - value / slope;
-    // From here one more step would give all the digits there are, and this is it.
-    if (std::abs(next - x) <= 0x1p-26 * x) return next;
+    const double step = value * slope / (slope * slope - value * bend);
+    const double next = x - step;
+    // The error is cubed: from here one more step would give all the digits there are, and this is it.
+    if (std::abs(step) <= 0x1p-17 * x) return next;
     x = next > lower && next < upper ? next : (upper < never ? 0.5 * (lower + upper) : 2 * x);
   }
   return x;

@@ -3,6 +3,7 @@
 
 #include "kds/ball.hpp"
 #include "kds/polynomial.hpp"
+#include "kds/unrolled.hpp"
 
 #include <algorithm>
 #include <array>
@@ -43,13 +44,14 @@ Crossing first_crossing(const Polynomial<Degree, Ball<double>>& p, double end);
 
 namespace detail {
 
-/// Binomial coefficients of Degree.
+/// 1 / binomial(Degree, i), rounded.
 template <int Degree>
-constexpr std::array<double, Degree + 1> binomials() {
+constexpr std::array<double, Degree + 1> inverse_binomials() {
   std::array<double, Degree + 1> result{};
-  result[0] = 1;
-  for (std::size_t i = 1; i <= Degree; ++i) {
-    result[i] = result[i - 1] * static_cast<double>(Degree + 1 - i) / static_cast<double>(i);
+  double binomial = 1;
+  for (std::size_t i = 0; i <= Degree; ++i) {
+    result[i] = 1 / binomial;
+    binomial = binomial * static_cast<double>(Degree - i) / static_cast<double>(i + 1);
   }
   return result;
 }
@@ -61,6 +63,29 @@ struct ProjectivePoint {
   double v;
 };
 
+enum class Pattern { positive, falls_once, other };
+
+/// The signs of a row of coefficients as bits: signs of random polynomials are what processors cannot foresee.
+struct SignMasks {
+  unsigned positive = 0;
+  unsigned negative = 0;
+
+  void set(std::size_t i, double value, double error) {
+    positive |= static_cast<unsigned>(value > error) << i;
+    negative |= static_cast<unsigned>(value < -error) << i;
+  }
+
+  /// Numbers 0 ... last: all positive; or positive ones, then undecided ones, then negative ones to the end.
+  Pattern pattern(int last) const {
+    const unsigned all = (2u << last) - 1;
+    if (positive == all) return Pattern::positive;
+    const unsigned not_negative = all & ~negative;
+    const bool falls_once = (positive & 1u) != 0 && (positive & (positive + 1)) == 0 &&
+                            (not_negative & (not_negative + 1)) == 0 && not_negative != all;
+    return falls_once ? Pattern::falls_once : Pattern::other;
+  }
+};
+
 /// A polynomial over an interval, by its Bernstein coefficients, each known to +-error.
 template <int Degree>
 struct BernsteinPiece {
@@ -69,68 +94,75 @@ struct BernsteinPiece {
   ProjectivePoint begin;
   ProjectivePoint end;
 
-  /// The sign pattern: how the coefficients, from the first on, turn.
-  enum class Pattern { positive, falls_once, other };
-
-  /// The first coefficient counts as positive where it may be zero, by `begins_positive`.
-  Pattern pattern(bool begins_positive) const {
-    std::size_t i = 0;
-    if (begins_positive && !(b[0] > error)) i = 1;
-    while (i <= Degree && b[i] > error) ++i;
-    if (i > Degree) return Pattern::positive;
-    // From here on: undecided ones, then negative ones to the end.
-    if (i == 0) return Pattern::other;
-    while (i <= Degree && !(b[i] < -error)) {
-      if (b[i] > error) return Pattern::other;
-      ++i;
-    }
-    if (i > Degree) return Pattern::other;
-    while (i <= Degree && b[i] < -error) ++i;
-    return i > Degree ? Pattern::falls_once : Pattern::other;
+  /// What the signs of the coefficients, in order, say.
+  Pattern pattern() const {
+    SignMasks signs;
+    unrolled<Degree + 1>([&](auto i) { signs.set(i, b[i], error); });
+    // The first one is the value at the beginning: at now, where it may be zero, the function is known not to fall.
+    if (begin.w == 0) signs.positive |= 1;
+    return signs.pattern(Degree);
   }
 
-  /// Middle of the first stretch where the control polygon is negative, as a fraction of the interval in 2^-10 ... 1 - 2^-10.
-  double lowest() const {
-    constexpr double n = Degree;
-    std::size_t i = 1;
-    while (i < Degree && b[i] > 0) ++i;
-    const double falls = crossing(i);
-    std::size_t j = i + 1;
-    while (j <= Degree && b[j] <= 0) ++j;
-    const double rises = j > Degree ? n : crossing(j);
-    return std::clamp((falls + rises) / (2 * n), 0x1p-10, 1 - 0x1p-10);
+  /// Where the control polygon first falls through zero: between this coefficient and the one before.
+  std::size_t fall() const {
+    return std::min(static_cast<std::size_t>(std::countr_one(positive() | 1u)), std::size_t{Degree});
   }
 
-  /// Where the control polygon crosses zero between coefficients i - 1 and i, in units of 1 / n.
-  double crossing(std::size_t i) const {
-    const double step = b[i - 1] / (b[i - 1] - b[i]);
-    return static_cast<double>(i - 1) + (step >= 0 && step <= 1 ? step : 0.5);
+  /// Middle of the first stretch where the control polygon is negative, as a fraction of the interval.
+  double dip() const {
+    const std::size_t i = fall();
+    const unsigned later = positive() >> i;
+    const double rises = later == 0 ? Degree : crossing(i + static_cast<std::size_t>(std::countr_zero(later)));
+    return (crossing(i) + rises) * (0.5 / Degree);
   }
 
-  ProjectivePoint at(double fraction) const {
-    return {(1 - fraction) * begin.w + fraction * end.w, (1 - fraction) * begin.v + fraction * end.v};
+  /// A guess of the root where the polygon falls.
+  ProjectivePoint fall_point() const {
+    // As in crossing(), but for one division less: the numbers w and v may be multiplied by anything.
+    const std::size_t i = fall();
+    const double step = std::max(b[i - 1], 0.0) + error;
+    const double whole = step + std::max(-b[i], 0.0) + error;
+    const double along = static_cast<double>(static_cast<int>(i) - 1) * whole + step;
+    const double rest = static_cast<double>(static_cast<int>(Degree - i)) * whole + (whole - step);
+    return {rest * begin.w + along * end.w, rest * begin.v + along * end.v};
   }
 
-  /// Cuts off the part before `fraction` and returns it; what is left is the part after.
+  /// Cuts off the part before `fraction`, which becomes `left`; what is left is the part after.
   ///
   /// Each of the n stages of de Casteljau's rule is a convex combination, mu a + lambda b with mu + lambda = 1 exactly
   /// (the smaller one is 1 minus the larger one, which is a multiple of 2^-53): it passes on the errors without
   /// enlarging them and adds at most 2 u M, M being the largest coefficient. So the error grows by 2 n u M (1 + 2 n u),
   /// here 2.1 n u M, and not at all with the depth.
-  BernsteinPiece cut(double fraction) {
+  void cut(double fraction, BernsteinPiece& left) {
     double lambda = fraction;
     double mu = 1 - fraction;
     if (lambda < mu) lambda = 1 - mu;
     double largest = 0;
-    for (const double x : b) largest = std::max(largest, std::abs(x));
+    unrolled<Degree + 1>([&](auto i) { largest = std::max(largest, std::abs(b[i])); });
     error += 2.1 * Degree * 0x1p-53 * largest;
-    BernsteinPiece left{b, error, begin, at(lambda)};
-    for (std::size_t k = 1; k <= Degree; ++k) {
-      for (std::size_t i = 0; i <= Degree - k; ++i) b[i] = mu * b[i] + lambda * b[i + 1];
-      left.b[k] = b[0];
-    }
-    begin = left.end;
-    return left;
+    auto row = b;
+    left.b[0] = row[0];
+    unrolled<Degree>([&](auto k) {
+      unrolled<Degree - k>([&](auto i) { row[i] = mu * row[i] + lambda * row[i + 1]; });
+      left.b[k + 1] = row[0];
+    });
+    b = row;
+    left.error = error;
+    left.begin = begin;
+    left.end = begin = {mu * begin.w + lambda * end.w, mu * begin.v + lambda * end.v};
+  }
+
+ private:
+  unsigned positive() const {
+    unsigned bits = 0;
+    unrolled<Degree + 1>([&](auto i) { bits |= static_cast<unsigned>(b[i] > 0) << i; });
+    return bits;
+  }
+
+  /// Where the control polygon crosses zero between coefficients i - 1 and i, in units of 1 / Degree.
+  double crossing(std::size_t i) const {
+    const double step = b[i - 1] / (b[i - 1] - b[i]);
+    return static_cast<double>(static_cast<int>(i) - 1) + (step >= 0 && step <= 1 ? step : 0.5);
   }
 };
 
@@ -141,90 +173,85 @@ inline int exponent_of(double x) {
 /// 2^e for -1022 <= e <= 1023.
 inline double power_of_two(int e) { return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52); }
 
-/// A power of two near the least x at which a negative term comes up to the constant one: the first root is at least
-/// about half of that.
+/// A power of two near the least x at which a negative term comes up to the constant one, or near the end if that is
+/// earlier. A guess of where things happen; nothing rests on it.
 template <int Degree>
 int scale_exponent(const Polynomial<Degree, Ball<double>>& p, double end) {
-  int scale = end < 0x1p200 ? std::max(exponent_of(end) + 1, -200) : 200;
+  constexpr int most = 100;  // so that no power up to the eighth overflows
+  int scale = end < 0x1p100 ? exponent_of(end) + 1 : most;
   const int constant = exponent_of(p.c[0].middle);
-  for (std::size_t i = 1; i <= Degree; ++i) {
-    if (p.c[i].middle < 0) {
-      const int reach = static_cast<int>(std::floor((constant - exponent_of(p.c[i].middle)) / static_cast<double>(i)));
-      scale = std::min(scale, reach);
-    }
-  }
-  return std::max(scale, -200);
+  unrolled<Degree>([&](auto below) {
+    constexpr int i = static_cast<int>(below) + 1;
+    const int reach = ((constant - exponent_of(p.c[i].middle)) * (65536 / i)) >> 16;
+    scale = std::min(scale, p.c[i].middle < 0 ? reach : most);
+  });
+  return std::clamp(scale, -most, most);
 }
 
 template <int Degree>
 class CrossingSearch {
  public:
-  using Piece = BernsteinPiece<Degree>;
-
-  CrossingSearch(const Polynomial<Degree, Ball<double>>& p, double end) : end_(end) {
-    const int exponent = scale_exponent(p, end);
-    scale_ = power_of_two(exponent);
-    static constexpr auto binomial = binomials<Degree>();
+  CrossingSearch(const Polynomial<Degree, Ball<double>>& p, double end) {
+    scale_ = power_of_two(scale_exponent(p, end));
+    constexpr auto factor = inverse_binomials<Degree>();
+    auto& b = pieces_[0].b;
     double power = 1;
     double largest = 0;
     double radius = 0;
-    for (std::size_t i = 0; i <= Degree; ++i) {
+    double sum = 0;  // not a number if anything is not
+    unrolled<Degree + 1>([&](auto i) {
       // Multiplications by powers of two are exact but for underflow, which is charged below.
-      all_.b[i] = p.c[i].middle * power / binomial[i];
-      radius = std::max(radius, p.c[i].radius * power / binomial[i]);
-      largest = std::max(largest, std::abs(all_.b[i]));
+      const double weight = std::get<i>(factor) * power;
+      b[i] = p.c[i].middle * weight;
+      const double r = p.c[i].radius * weight;
+      radius = std::max(radius, r);
+      largest = std::max(largest, std::abs(b[i]));
+      sum += std::abs(b[i]) + r;
       power *= scale_;
+    });
+    // Two roundings, of the factor and of the product; cuts and this may lose 2^-1074 by underflow a hundred times.
+    pieces_[0].error = radius * Ball<double>::slack + 0x1p-52 * largest + 0x1p-1060;
+    pieces_[0].begin = {0, 1};
+    pieces_[0].end = {1, 0};
+    finite_ = sum < 0x1p1000;
+    if (end < std::numeric_limits<double>::infinity()) {
+      const double y = end / scale_ * (1 + 0x1p-48);
+      const double fraction = y / (1 + y) * (1 + 0x1p-48) + 0x1p-52;  // 2^-52 pays for its rounding in cut()
+      if (fraction < 1 - 0x1p-40) {
+        pieces_[0].cut(fraction, pieces_[1]);
+        first_ = last_ = 1;
+      }
     }
-    all_.error = radius * Ball<double>::slack + 0x1p-53 * largest + 0x1p-1060;
-    all_.begin = {0, 1};
-    all_.end = {1, 0};
-    finite_ = largest < 0x1p1000;
   }
 
+  /// The pieces between first_ and last_ are those not yet decided, later ones first.
   Crossing run() {
     if (!finite_) return {Crossing::Status::undecided};
-    Piece rest = all_;
-    if (end_ < std::numeric_limits<double>::infinity()) {
-      const double y = end_ / scale_ * (1 + 0x1p-48);
-      const double fraction = y / (1 + y) * (1 + 0x1p-48);
-      if (fraction < 1 - 0x1p-40) rest = all_.cut(fraction);
+    for (int cuts = 0;;) {
+      BernsteinPiece<Degree>& piece = pieces_[last_];
+      const Pattern pattern = piece.pattern();
+      if (pattern == Pattern::falls_once) {
+        return {Crossing::Status::isolated, x(piece.begin), x(piece.end), x(piece.fall_point())};
+      }
+      if (pattern == Pattern::positive) {
+        if (last_ == first_) return {Crossing::Status::none};
+        --last_;
+        continue;
+      }
+      if (++cuts > most_cuts) return {Crossing::Status::undecided};
+      piece.cut(std::clamp(piece.dip(), nearest_cut, 1 - nearest_cut), pieces_[++last_]);
     }
-    return first_in(rest);
   }
 
  private:
   static constexpr int most_cuts = 12;
-  static constexpr int most_pieces = 12;
+  static constexpr double nearest_cut = 0x1p-10;  // to an end of the interval, as a fraction of it
 
-  Crossing isolated(const Piece& piece) const {
-    std::size_t i = 1;
-    while (i < Degree && piece.b[i] > 0) ++i;
-    const ProjectivePoint guess = piece.at(piece.crossing(i) / Degree);
-    return {Crossing::Status::isolated, x(piece.begin), x(piece.end), x(guess)};
-  }
   double x(const ProjectivePoint& point) const { return scale_ * (point.w / point.v); }
 
-  /// Earlier pieces first. The pieces on the stack are later than `piece`, the top one first.
-  Crossing first_in(Piece piece) {
-    std::array<Piece, most_pieces> later;
-    int count = 0;
-    for (int cuts = 0;; ++cuts) {
-      using Pattern = typename Piece::Pattern;
-      Pattern pattern;
-      while ((pattern = piece.pattern(piece.begin.w == 0)) == Pattern::positive) {
-        if (count == 0) return {Crossing::Status::none};
-        piece = later[static_cast<std::size_t>(--count)];
-      }
-      if (pattern == Pattern::falls_once) return isolated(piece);
-      if (cuts == most_cuts || count == most_pieces) return {Crossing::Status::undecided};
-      const Piece left = piece.cut(piece.lowest());
-      later[static_cast<std::size_t>(count++)] = piece;
-      piece = left;
-    }
-  }
-
-  Piece all_;
-  double end_;
+  std::array<BernsteinPiece<Degree>, most_cuts + 2> pieces_;
+  std::size_t first_ = 0;
+  std::size_t last_ = 0;
   double scale_;
   bool finite_;
 };

@@ -4,8 +4,12 @@
 #include "kds/ball.hpp"
 #include "kds/exact.hpp"
 #include "kds/polynomial.hpp"
+#include "kds/unrolled.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <type_traits>
 
 namespace kds {
 
@@ -56,6 +60,45 @@ inline Ball<DoubleDouble> difference<Ball<DoubleDouble>>(double a, double b) {
   return {two_sum(a, -b), 0.0};
 }
 
+namespace detail {
+
+/// p(x + shift) in balls, for degrees where the running bound of Ball's own operations would cost more than the numbers:
+/// the errors e_i of the coefficients go through the same shift as the coefficients, by |shift|.
+///
+/// Error bound, with u = 2^-53 and n the degree. Repeated synthetic division gives c'_j as a sum of binomial(i, j) c_i
+/// shift^(i-j); each share goes through at most 2 n roundings where its index falls and n where it stays, and the shift
+/// itself is known to 2 u, which counts another 2 n: at most 5 n u |c_i|, besides the radius r_i that it came with. So
+/// e_i = r_i + 5.1 n u |c_i| does. Underflow loses 2^-1075 a step, for which each e_i has 2^-1010. What nothing is added to
+/// keeps its radius: it may be exact.
+template <int Degree, class Scalar>
+Polynomial<Degree, Ball<double>> shifted_balls(const Polynomial<Degree, Scalar>& p, double shift) {
+  std::array<double, Degree + 1> c;
+  std::array<double, Degree + 1> e;
+  std::array<double, Degree + 1> kept;
+  double added = 0;
+  unrolled<Degree + 1>([&](auto k) {
+    constexpr std::size_t i = Degree - k;
+    const Ball<double> ball(p.c[i]);
+    c[i] = ball.middle;
+    e[i] = ball.radius + 5.1 * Degree * 0x1p-53 * std::abs(ball.middle) + 0x1p-1010;
+    kept[i] = added == 0 ? ball.radius : -1.0;
+    added += std::abs(ball.middle) + ball.radius;
+  });
+  const double distance = std::abs(shift);
+  unrolled<Degree>([&](auto k) {
+    unrolled<Degree - k>([&](auto steps) {
+      constexpr std::size_t i = Degree - 1 - steps;
+      c[i] += shift * c[i + 1];
+      e[i] += distance * e[i + 1];
+    });
+  });
+  Polynomial<Degree, Ball<double>> result;
+  unrolled<Degree + 1>([&](auto i) { result.c[i] = {c[i], kept[i] < 0 ? e[i] : kept[i]}; });
+  return result;
+}
+
+}  // namespace detail
+
 /// p(x + shift) as a polynomial in x. Scalar is double (exact coefficients) or Number itself.
 template <class Number, int Degree, class Scalar>
 Polynomial<Degree, Number> taylor_shift(const Polynomial<Degree, Scalar>& p, const Number& shift) {
@@ -70,6 +113,10 @@ Polynomial<Degree, Number> taylor_shift(const Polynomial<Degree, Scalar>& p, con
     shifted.c[0] = shift * (bend + p.c[1]) + p.c[0];
   } else {
     for (std::size_t i = 0; i <= Degree; ++i) shifted.c[i] = Number(p.c[i]);
+    if constexpr (std::is_same_v<Number, Ball<double>>) {
+      if (shift.is_zero()) return shifted;
+      if (shift.radius <= 0x1p-52 * std::abs(shift.middle)) return detail::shifted_balls(p, shift.middle);
+    }
     // Repeated synthetic division by (x - shift).
     for (int k = 0; k < Degree; ++k) {
       for (int i = Degree - 1; i >= k; --i) {
