@@ -44,6 +44,18 @@ std::vector<std::string> solver_names(const std::vector<Cell>& cells) {
   return names;
 }
 
+void mark_front(std::vector<Summary>& rows) {
+  const auto dominates = [](const Summary& a, const Summary& b) {
+    const bool no_worse = a.ordinary_ns <= b.ordinary_ns && a.tally.wrong() <= b.tally.wrong();
+    return no_worse && (a.ordinary_ns < b.ordinary_ns || a.tally.wrong() < b.tally.wrong());
+  };
+  for (Summary& row : rows) {
+    row.front = std::none_of(rows.begin(), rows.end(), [&](const Summary& other) {
+      return other.degree == row.degree && dominates(other, row);
+    });
+  }
+}
+
 }  // namespace
 
 std::vector<Summary> summarise(const std::vector<Cell>& cells) {
@@ -71,6 +83,7 @@ std::vector<Summary> summarise(const std::vector<Cell>& cells) {
     int& n = cell.family->ordinary ? count.ordinary : count.hostile;
     mean += (cell.nanoseconds - mean) / ++n;
   }
+  mark_front(rows);
   return rows;
 }
 
@@ -90,12 +103,12 @@ void write_cells(const std::filesystem::path& file, const std::vector<Cell>& cel
 
 void write_summary(const std::filesystem::path& file, const std::vector<Summary>& rows) {
   std::ofstream out = opened(file);
-  out << "degree,solver,certified,ordinary_ns,hostile_ns,slowest_ns,polynomials,wrong,missed,phantom,wrong_crossing,"
+  out << "degree,solver,certified,front,ordinary_ns,hostile_ns,slowest_ns,polynomials,wrong,missed,phantom,wrong_crossing,"
          "ulps_max,ulps_999,early,crossings,edge_polynomials,edge_wrong\n";
   for (const Summary& r : rows) {
     const Tally& t = r.tally;
-    out << text("%d,%s,%d,%.2f,%.2f,%.2f,%zu,%zu,%zu,%zu,%zu,%.4g,%.4g,%zu,%zu,%zu,%zu\n", r.degree, r.solver.c_str(),
-                r.certified ? 1 : 0, r.ordinary_ns, r.hostile_ns, r.slowest_ns, t.count, t.wrong(), t.missed, t.phantom,
+    out << text("%d,%s,%d,%d,%.2f,%.2f,%.2f,%zu,%zu,%zu,%zu,%zu,%.4g,%.4g,%zu,%zu,%zu,%zu\n", r.degree, r.solver.c_str(),
+                r.certified ? 1 : 0, r.front ? 1 : 0, r.ordinary_ns, r.hostile_ns, r.slowest_ns, t.count, t.wrong(), t.missed, t.phantom,
                 t.wrong_crossing, t.ulps_max(), t.ulps_999(), t.early, t.crossings, r.edge.count, r.edge.wrong());
   }
   finish(out, file);
@@ -119,8 +132,9 @@ void write_tables(const std::filesystem::path& file, const std::vector<Summary>&
       const Tally& t = r.tally;
       const auto ratio = [&](double Summary::*ns) { return reference ? text("%.2f", r.*ns / (reference->*ns)) : "-"; };
       const char* bold = r.certified ? "**" : "";
-      out << text("| %s%s%s | %s | %s | %s | %s | %zu | %zu, %zu, %zu | %s | %s | %.0f %% | %zu |\n", bold,
-                  r.solver.c_str(), bold, short_number(r.ordinary_ns).c_str(), ratio(&Summary::ordinary_ns).c_str(),
+      const char* front = r.front ? " *" : "";
+      out << text("| %s%s%s%s | %s | %s | %s | %s | %zu | %zu, %zu, %zu | %s | %s | %.0f %% | %zu |\n", bold,
+                  r.solver.c_str(), bold, front, short_number(r.ordinary_ns).c_str(), ratio(&Summary::ordinary_ns).c_str(),
                   short_number(r.hostile_ns).c_str(), ratio(&Summary::hostile_ns).c_str(), t.wrong(), t.missed,
                   t.phantom, t.wrong_crossing, short_number(t.ulps_999()).c_str(), short_number(t.ulps_max()).c_str(),
                   t.crossings ? 100.0 * static_cast<double>(t.early) / static_cast<double>(t.crossings) : 0.0,

@@ -85,8 +85,8 @@ double ExactRoot::ceiling() const { return low > 0 ? std::nextafter(high, infini
 double ExactRoot::distance_to(double t) const { return (t - high) - low; }
 
 double ExactRoot::spacing() const {
-  if (high == 0) return std::numeric_limits<double>::denorm_min();
-  return high - std::nextafter(high, 0);
+  const double next = std::nextafter(high, low < 0 ? 0 : infinity);
+  return next < infinity ? std::abs(next - high) : high - std::nextafter(high, 0);
 }
 
 bool Truth::seen(std::size_t i) const {

@@ -22,7 +22,7 @@ struct ExactRoot {
   double ceiling() const;
   /// t - root.
   double distance_to(double t) const;
-  /// Distance of the doubles at the root.
+  /// Distance of the two doubles around the root; from it to the next, if it is one.
   double spacing() const;
 };
 

@@ -21,7 +21,7 @@ struct Bernstein {
   }
 
  private:
-  static constexpr int deepest = 52;  ///< halvings: then the interval is no wider than the rounding of its end
+  static constexpr int deepest = 100;  ///< halvings: 52 for the digits of the root, and some to come down from a bound far out
 
   template <int Degree>
   struct Piece {

@@ -24,7 +24,7 @@ struct ClosedForm {
     return solve(p, horizon);
   }
 
-  /// All real roots of a cubic whose leading coefficient is not 0.
+  /// All real roots of a cubic whose leading coefficient is not 0; or the one, and the real part of the other two.
   static RealRoots<3> roots(const kds::Polynomial<3>& p);
   /// All real roots, or the real parts of pairs that are complex up to rounding, of a quartic likewise.
   static RealRoots<4> roots(const kds::Polynomial<4>& p);
@@ -64,8 +64,7 @@ inline RealRoots<3> ClosedForm::roots(const kds::Polynomial<3>& p) {
     const double u = -std::copysign(std::cbrt(std::abs(r) + std::sqrt(r * r - q * q * q)), r);
     const double v = u == 0 ? 0 : q / u;
     found.add(u + v - a / 3);
-    // Real part of the other two, which are one double root where u = v.
-    found.add(-0.5 * (u + v) - a / 3);
+    found.add(-0.5 * (u + v) - a / 3);  // a double root where u = v
   }
   return found;
 }
@@ -82,7 +81,8 @@ inline RealRoots<4> ClosedForm::roots(const kds::Polynomial<4>& p) {
   const double g = d - c * shift + b * square - 3 * square * square;
   // = (y^2 + h y + j) (y^2 - h y + k) with h^2 a positive root of the resolvent.
   const RealRoots<3> resolvent = roots(kds::Polynomial<3>{{-f * f, e * e - 4 * g, 2 * e, 1}});
-  const double z = *std::max_element(resolvent.x.begin(), resolvent.x.begin() + static_cast<long>(resolvent.count));
+  // The product of its roots is f^2: where only the first is real, that one is positive.
+  const double z = resolvent.count < 3 ? resolvent.x[0] : *std::max_element(resolvent.x.begin(), resolvent.x.end());
   RealRoots<4> found;
   double h = 0;
   double j;

@@ -70,7 +70,7 @@ double first_falling(RealRoots<Degree> roots, const kds::Polynomial<Degree>& p, 
 }
 
 /// An upper bound on the roots' sizes, a power of two: 2 max |c_i / c_n|^(1 / (n - i)) [Fujiwara16], by exponents alone.
-/// Precondition: the leading coefficient is not 0.
+/// No more than 2^(1000 / n), so that its powers stay finite. Precondition: the leading coefficient is not 0.
 template <int Degree>
 double root_bound(const kds::Polynomial<Degree>& p) {
   const int leading = std::ilogb(p.c[Degree]);
@@ -82,7 +82,7 @@ double root_bound(const kds::Polynomial<Degree>& p) {
     const int steps = Degree - i;
     bound = std::max(bound, (ratio >= 0 ? (ratio + steps - 1) / steps : -(-ratio / steps)) + 1);
   }
-  return std::ldexp(1.0, std::min(bound, 1000));
+  return std::ldexp(1.0, std::min(bound, 1000 / Degree));
 }
 
 /// The root between lower and upper, where p falls through zero once: Newton's method, halving where it leaves the
