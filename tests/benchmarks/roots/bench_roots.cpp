@@ -3,8 +3,8 @@
 //     bench_roots [DIRECTORY [POLYNOMIALS [ROUNDS [SEED]]]]     -> roots.csv, roots-summary.csv, roots.md, ...
 //
 // Degrees 1 to 8, every family of families.hpp, every contender of contenders.hpp, horizons infinite, finite and at the
-// crossing. The truth comes from exact arithmetic (truth.hpp), the verdicts from judge.hpp, the times from the CPU clock
-// of the thread. About two minutes.
+// crossing. The truth comes from exact arithmetic (truth.hpp), the verdicts from judge.hpp, the times from the CPU
+// clock of the thread. About two minutes.
 
 #include "tests/benchmarks/roots/measure.hpp"
 #include "tests/benchmarks/roots/report.hpp"
@@ -42,9 +42,8 @@ int main(int argc, char** argv) try {
   std::filesystem::create_directories(folder);
 
   std::vector<Cell> cells;
-  [&]<int... Less>(std::integer_sequence<int, Less...>) {
-    (measure_degree<Less + 1>(cells, options), ...);
-  }(std::make_integer_sequence<int, greatest_degree>{});
+  [&]<int... Less>(std::integer_sequence<int, Less...>) { (measure_degree<Less + 1>(cells, options), ...); }
+  (std::make_integer_sequence<int, greatest_degree>{});
 
   const std::vector<Summary> rows = summarise(cells);
   write_cells(folder / "roots.csv", cells);

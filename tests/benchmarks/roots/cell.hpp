@@ -9,8 +9,8 @@
 
 namespace bench_roots {
 
-/// Where the horizon is: nowhere; at some time of the polynomial's scale; at the first double not before the crossing or
-/// one of its neighbours, so that the last bit of a root decides between an answer and none.
+/// Where the horizon is: nowhere; at some time of the polynomial's scale; at the first double not before the crossing
+/// or one of its neighbours, so that the last bit of a root decides between an answer and none.
 enum class Horizon { infinite, finite, edge };
 inline constexpr std::array horizon_names{"infinite", "finite", "edge"};
 

@@ -12,8 +12,8 @@ namespace bench_roots {
 /// made, the truth is that of the doubles.
 using Coefficients = std::vector<double>;
 
-/// A way to draw polynomials. Most are positive just after 0, so that there is something to look for; about one in eight
-/// is left as it came, which may be negative at once.
+/// A way to draw polynomials. Most are positive just after 0, so that there is something to look for; about one in
+/// eight is left as it came, which may be negative at once.
 struct Family {
   const char* name;
   const char* what;  ///< half a line for the report

@@ -44,7 +44,8 @@ Judgement judge(const Truth& truth, double horizon, double answer) {
   }
   const std::size_t nearest = nearest_root(truth, answer);
   const ExactRoot& root = truth.roots[nearest];
-  const bool unseen_dip = root.falling() && !truth.seen(nearest) && truth.sign_after_now > 0 && root.compare(horizon) <= 0;
+  const bool unseen_dip =
+      root.falling() && !truth.seen(nearest) && truth.sign_after_now > 0 && root.compare(horizon) <= 0;
   if (static_cast<int>(nearest) != expected && !unseen_dip) return {wrong};
   return near(root, answer) ? at(root, answer) : Judgement{wrong};
 }

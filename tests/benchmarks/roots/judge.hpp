@@ -26,8 +26,8 @@ struct Judgement {
 /// cannot place a triple root better than to 1e-5 or so, and that counts as error, in ulps, not as wrong.
 inline constexpr double astray = 0x1p-10;
 
-/// Judges the answer to "when, in [0, horizon], is the polynomial first negative just after?"; infinity is "never", as is
-/// what lies beyond the horizon. NaN and times before now are answers to nothing: missed or phantom.
+/// Judges the answer to "when, in [0, horizon], is the polynomial first negative just after?"; infinity is "never", as
+/// is what lies beyond the horizon. NaN and times before now are answers to nothing: missed or phantom.
 ///
 /// Right is what is nearer to the true crossing than to any other real root, and not astray; or within one spacing of
 /// the doubles, which no solver in doubles can be asked to do better. Polynomials whose dip no double sees may be

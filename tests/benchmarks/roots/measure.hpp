@@ -51,7 +51,8 @@ struct Questions {
 /// Nanoseconds a call of each entry: rounds in which all take their turn, so that a change of the machine's pace meets
 /// all alike; the median of the rounds. Each turn is repeated until it is long against the resolution of the clock.
 template <int Degree>
-std::vector<double> time_calls(const std::vector<Entry<Degree>>& entries, const Questions<Degree>& questions, int rounds) {
+std::vector<double> time_calls(const std::vector<Entry<Degree>>& entries, const Questions<Degree>& questions,
+                               int rounds) {
   constexpr double least_seconds = 1e-4;
   volatile double sink = 0;
   std::vector<int> repeats;

@@ -27,6 +27,8 @@ do for [degree = 1:8] {
 }
 set logscale xy
 
+named = 'with labels left rotate by 45 offset 0.4,0.4 font "sans,10"'
+
 # The share of wrong answers; those that had none stand on the lowest line.
 none = 1e-5
 share(x) = column("wrong") > 0 ? column("wrong") / column("polynomials") : none
@@ -42,7 +44,7 @@ do for [d in degrees] {
   set ylabel "wrong answers, all families"
   plot file using (of(degree)):(share(0)):(shape(column("front"))):(colour(column("certified"))) \
          with points pt variable lc rgb variable ps 0.9, \
-       file using (of(degree)):(share(0)):(strcol("solver")) with labels left rotate by 45 offset 0.4,0.4 font "sans,10"
+       file using (of(degree)):(share(0)):(strcol("solver")) @named
 }
 unset multiplot
 
@@ -59,6 +61,6 @@ do for [d in degrees] {
   set ylabel "largest error, ulps, all families"
   plot file using (of(degree)):(column("ulps_max")):(shape(column("front"))):(colour(column("certified"))) \
          with points pt variable lc rgb variable ps 0.9, \
-       file using (of(degree)):(column("ulps_max")):(strcol("solver")) with labels left rotate by 45 offset 0.4,0.4 font "sans,10"
+       file using (of(degree)):(column("ulps_max")):(strcol("solver")) @named
 }
 unset multiplot

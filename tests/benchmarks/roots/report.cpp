@@ -50,9 +50,8 @@ void mark_front(std::vector<Summary>& rows) {
     return no_worse && (a.ordinary_ns < b.ordinary_ns || a.tally.wrong() < b.tally.wrong());
   };
   for (Summary& row : rows) {
-    row.front = std::none_of(rows.begin(), rows.end(), [&](const Summary& other) {
-      return other.degree == row.degree && dominates(other, row);
-    });
+    row.front = std::none_of(rows.begin(), rows.end(),
+                             [&](const Summary& other) { return other.degree == row.degree && dominates(other, row); });
   }
 }
 
@@ -103,13 +102,15 @@ void write_cells(const std::filesystem::path& file, const std::vector<Cell>& cel
 
 void write_summary(const std::filesystem::path& file, const std::vector<Summary>& rows) {
   std::ofstream out = opened(file);
-  out << "degree,solver,certified,front,ordinary_ns,hostile_ns,slowest_ns,polynomials,wrong,missed,phantom,wrong_crossing,"
+  out << "degree,solver,certified,front,ordinary_ns,hostile_ns,slowest_ns,polynomials,wrong,missed,phantom,wrong_"
+         "crossing,"
          "ulps_max,ulps_999,early,crossings,edge_polynomials,edge_wrong\n";
   for (const Summary& r : rows) {
     const Tally& t = r.tally;
-    out << text("%d,%s,%d,%d,%.2f,%.2f,%.2f,%zu,%zu,%zu,%zu,%zu,%.4g,%.4g,%zu,%zu,%zu,%zu\n", r.degree, r.solver.c_str(),
-                r.certified ? 1 : 0, r.front ? 1 : 0, r.ordinary_ns, r.hostile_ns, r.slowest_ns, t.count, t.wrong(), t.missed, t.phantom,
-                t.wrong_crossing, t.ulps_max(), t.ulps_999(), t.early, t.crossings, r.edge.count, r.edge.wrong());
+    out << text("%d,%s,%d,%d,%.2f,%.2f,%.2f,%zu,%zu,%zu,%zu,%zu,%.4g,%.4g,%zu,%zu,%zu,%zu\n", r.degree,
+                r.solver.c_str(), r.certified ? 1 : 0, r.front ? 1 : 0, r.ordinary_ns, r.hostile_ns, r.slowest_ns,
+                t.count, t.wrong(), t.missed, t.phantom, t.wrong_crossing, t.ulps_max(), t.ulps_999(), t.early,
+                t.crossings, r.edge.count, r.edge.wrong());
   }
   finish(out, file);
 }
@@ -125,7 +126,8 @@ void write_tables(const std::filesystem::path& file, const std::vector<Summary>&
     }
     out << text("\n**Degree %d**: %zu questions, and %zu with the horizon at the crossing\n\n", degree,
                 rows[first].tally.count, rows[first].edge.count);
-    out << "| solver | ns | to GSL | ns, hostile | to GSL | wrong | missed, phantom, other | ulps 99.9 % | max | early | "
+    out << "| solver | ns | to GSL | ns, hostile | to GSL | wrong | missed, phantom, other | ulps 99.9 % | max | early "
+           "| "
            "wrong at the edge |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
     for (std::size_t i = first; i < last; ++i) {
       const Summary& r = rows[i];
@@ -133,12 +135,12 @@ void write_tables(const std::filesystem::path& file, const std::vector<Summary>&
       const auto ratio = [&](double Summary::*ns) { return reference ? text("%.2f", r.*ns / (reference->*ns)) : "-"; };
       const char* bold = r.certified ? "**" : "";
       const char* front = r.front ? " *" : "";
-      out << text("| %s%s%s%s | %s | %s | %s | %s | %zu | %zu, %zu, %zu | %s | %s | %.0f %% | %zu |\n", bold,
-                  r.solver.c_str(), bold, front, short_number(r.ordinary_ns).c_str(), ratio(&Summary::ordinary_ns).c_str(),
-                  short_number(r.hostile_ns).c_str(), ratio(&Summary::hostile_ns).c_str(), t.wrong(), t.missed,
-                  t.phantom, t.wrong_crossing, short_number(t.ulps_999()).c_str(), short_number(t.ulps_max()).c_str(),
-                  t.crossings ? 100.0 * static_cast<double>(t.early) / static_cast<double>(t.crossings) : 0.0,
-                  r.edge.wrong());
+      out << text(
+          "| %s%s%s%s | %s | %s | %s | %s | %zu | %zu, %zu, %zu | %s | %s | %.0f %% | %zu |\n", bold, r.solver.c_str(),
+          bold, front, short_number(r.ordinary_ns).c_str(), ratio(&Summary::ordinary_ns).c_str(),
+          short_number(r.hostile_ns).c_str(), ratio(&Summary::hostile_ns).c_str(), t.wrong(), t.missed, t.phantom,
+          t.wrong_crossing, short_number(t.ulps_999()).c_str(), short_number(t.ulps_max()).c_str(),
+          t.crossings ? 100.0 * static_cast<double>(t.early) / static_cast<double>(t.crossings) : 0.0, r.edge.wrong());
     }
     first = last;
   }
@@ -163,7 +165,8 @@ void write_families(const std::filesystem::path& file, const std::vector<Cell>& 
         wrong += cell.tally.wrong();
         count += cell.tally.count;
       }
-      out << (count == 0 ? " - |" : text(" %.3g %% |", 100.0 * static_cast<double>(wrong) / static_cast<double>(count)));
+      out << (count == 0 ? " - |"
+                         : text(" %.3g %% |", 100.0 * static_cast<double>(wrong) / static_cast<double>(count)));
     }
     out << '\n';
   }

@@ -19,7 +19,8 @@ struct Summary {
   double slowest_ns = 0;   ///< of any family
   Tally tally;             ///< horizons infinite and finite
   Tally edge;              ///< horizons at the crossing
-  bool front = true;       ///< no other contender is at least as fast on ordinary families and as often right, and better at one
+  bool front =
+      true;  ///< no other contender is at least as fast on ordinary families and as often right, and better at one
 };
 
 /// In the order in which contenders appear.

@@ -22,9 +22,9 @@ Verdict verdict(const Coefficients& c, double answer, double horizon = never) {
   return judge(exact_truth(c), horizon, answer).verdict;
 }
 
-const Coefficients one_two_three{6, -11, 6, -1};       // -(t - 1)(t - 2)(t - 3): falls at 1 and 3
-const Coefficients touch_then_fall{2, -5, 4, -1};      // -(t - 1)^2 (t - 2)
-const Coefficients negative_at_once{-2, 3, -1};        // -(t - 1)(t - 2)
+const Coefficients one_two_three{6, -11, 6, -1};   // -(t - 1)(t - 2)(t - 3): falls at 1 and 3
+const Coefficients touch_then_fall{2, -5, 4, -1};  // -(t - 1)^2 (t - 2)
+const Coefficients negative_at_once{-2, 3, -1};    // -(t - 1)(t - 2)
 const Coefficients no_root{1, 0, 1};
 
 /// What a solver's mistakes come to over a few polynomials of every family.
@@ -130,9 +130,8 @@ TEST_CASE("judge: an honest solver has no mistakes, wrong ones are found out", "
   });
   CHECK(last_root.wrong_crossing > 0);
 
-  const Tally inaccurate = tally_of([](const Coefficients& c, const Truth& truth) {
-    return honest(c, truth) * (1 - 0x1p-40);
-  });
+  const Tally inaccurate =
+      tally_of([](const Coefficients& c, const Truth& truth) { return honest(c, truth) * (1 - 0x1p-40); });
   CHECK(inaccurate.ulps_max() > 4000);
   CHECK(inaccurate.early > right.crossings / 2);
 }
@@ -190,6 +189,7 @@ TEST_CASE("contenders: all are right where it is easy", "[roots]") {
   [&]<int... Less>(std::integer_sequence<int, Less...>) {
     (check_contenders_on_simple_roots<Less + 1>(complaints), ...);
     (check_contenders_on_separated_roots<Less + 1>(complaints), ...);
-  }(std::make_integer_sequence<int, greatest_degree>{});
+  }
+  (std::make_integer_sequence<int, greatest_degree>{});
   CHECK(complaints == "");
 }

@@ -42,8 +42,9 @@ struct Truth {
   static constexpr int root_at_now = -2;
 };
 
-/// Method: isolating intervals by the rule of Descartes over integers of any length, halved until they are narrow enough
-/// (tests/support/exact_algebra), between them exact signs. Throws std::invalid_argument if a coefficient is not finite.
+/// Method: isolating intervals by the rule of Descartes over integers of any length, halved until they are narrow
+/// enough (tests/support/exact_algebra), between them exact signs. Throws std::invalid_argument if a coefficient is not
+/// finite.
 ///
 /// Cost: 0.1 to some milliseconds.
 Truth exact_truth(std::span<const double> c);

@@ -5,9 +5,9 @@
 
 namespace bench_roots {
 
-/// In the Bernstein form on an interval the coefficients change sign at least as often as the polynomial has roots there
-/// (the rule of Descartes): no change, no root; one change, one root. What has more is halved by de Casteljau's rule, the
-/// earlier half first [Lane81]. [0, infinity) is cut off at a bound of the roots.
+/// In the Bernstein form on an interval the coefficients change sign at least as often as the polynomial has roots
+/// there (the rule of Descartes): no change, no root; one change, one root. What has more is halved by de Casteljau's
+/// rule, the earlier half first [Lane81]. [0, infinity) is cut off at a bound of the roots.
 struct Bernstein {
   static constexpr const char* name = "Bernstein";
   static constexpr bool certified = false;
@@ -21,7 +21,8 @@ struct Bernstein {
   }
 
  private:
-  static constexpr int deepest = 100;  ///< halvings: 52 for the digits of the root, and some to come down from a bound far out
+  static constexpr int deepest =
+      100;  ///< halvings: 52 for the digits of the root, and some to come down from a bound far out
 
   template <int Degree>
   struct Piece {

@@ -5,9 +5,9 @@
 
 namespace bench_roots {
 
-/// Between two neighbouring roots of its derivative a polynomial is monotone: a change of sign between them brackets one
-/// root, which Newton's method finds, guarded by halving [Yuksel22]. The last polynomial stops at the first root at which
-/// it falls.
+/// Between two neighbouring roots of its derivative a polynomial is monotone: a change of sign between them brackets
+/// one root, which Newton's method finds, guarded by halving [Yuksel22]. The last polynomial stops at the first root at
+/// which it falls.
 struct DerivativeIntervals {
   static constexpr const char* name = "derivative intervals";
   static constexpr bool certified = false;

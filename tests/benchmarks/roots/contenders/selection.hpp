@@ -69,8 +69,8 @@ double first_falling(RealRoots<Degree> roots, const kds::Polynomial<Degree>& p, 
   return never;
 }
 
-/// An upper bound on the roots' sizes, a power of two: 2 max |c_i / c_n|^(1 / (n - i)) [Fujiwara16], by exponents alone.
-/// No more than 2^(1000 / n), so that its powers stay finite. Precondition: the leading coefficient is not 0.
+/// An upper bound on the roots' sizes, a power of two: 2 max |c_i / c_n|^(1 / (n - i)) [Fujiwara16], by exponents
+/// alone. No more than 2^(1000 / n), so that its powers stay finite. Precondition: the leading coefficient is not 0.
 template <int Degree>
 double root_bound(const kds::Polynomial<Degree>& p) {
   const int leading = std::ilogb(p.c[Degree]);
