@@ -60,7 +60,7 @@ class Search {
   double free_until(const PlacedPatch<kind>& patch, const PatchPoint& point, double s) const {
     double until = separated_until(paths_, margin_, point.position, s);
     if (until >= 1) return until;
-    if (result_.steps >= fixed_steps) {
+    if (point.part == PatchPart::interior || result_.steps >= fixed_steps) {
       until = std::max(until, TurningAxis<kind, Degree>(paths_).separated_until(point, s));
     }
     if (!(until > s)) {

@@ -35,31 +35,59 @@ constexpr auto bernstein_table() {
   return table;
 }
 
-/// Bernstein coefficients of p on [s, s + width].
+/// Bernstein coefficients on [0, width].
 template <int Degree>
-std::array<double, Degree + 1> bernstein(const Polynomial<Degree>& p, double s, double width) {
+std::array<double, Degree + 1> bernstein(Polynomial<Degree> p, double width) {
   static constexpr auto table = bernstein_table<Degree>();
-  auto local = taylor_shift<double>(p, s);
   double factor = width;
   for (std::size_t j = 1; j <= Degree; ++j) {
-    local.c[j] *= factor;
+    p.c[j] *= factor;
     factor *= width;
   }
   std::array<double, Degree + 1> b;
   for (std::size_t i = 0; i <= Degree; ++i) {
-    b[i] = local.c[0];
-    for (std::size_t j = 1; j <= i; ++j) b[i] += table[i][j] * local.c[j];
+    b[i] = p.c[0];
+    for (std::size_t j = 1; j <= i; ++j) b[i] += table[i][j] * p.c[j];
   }
   return b;
+}
+
+template <std::size_t Count>
+bool all_above(const std::array<double, Count>& b, double level) {
+  double least = b[0];
+  for (std::size_t j = 1; j < Count; ++j) least = std::min(least, b[j]);
+  return least > level;
+}
+
+/// A guess of the last x in (0, width) before p comes down to the level, by Newton's method from 0; 0 if p turns up first.
+template <int Degree>
+double newton_guess(const Polynomial<Degree>& p, double width, double level) {
+  const double close = 0x1p-26 * (p.c[0] - level);
+  double x = 0;
+  for (int i = 0; i < 8; ++i) {
+    double value = p.c[Degree];
+    double slope = 0;
+    for (std::size_t j = Degree; j-- > 0;) {
+      slope = slope * x + value;
+      value = value * x + p.c[j];
+    }
+    if (!(slope < 0)) return 0;
+    const double excess = value - level;
+    if (std::abs(excess) < close) return x - 2 * (close + level) / -slope;
+    x -= excess / slope;
+    if (!(x < width)) return 0;
+  }
+  return 0;
 }
 
 }  // namespace detail
 
 /// An r in [s, 1] such that p > margin on all of [s, r]; near the first time at which it is not, or 1.
 ///
-/// Where the Bernstein coefficients of a stretch are all above the margin, p is; where they are not, the part of the
-/// stretch before a line below the control polygon comes down to the margin is still free, and a shorter stretch
-/// is tried from there. Gains quadratically on a simple root, by halves on a double one.
+/// Where the Bernstein coefficients of a stretch are all above the margin, p is. If those of [s, 1] are not, those of the
+/// stretch up to Newton's guess of the root usually are, which ends it. If not, the part of a stretch before a line
+/// below the control polygon comes down to the margin is still free, and a shorter stretch is tried from there: this
+/// gains quadratically on a simple root, by halves on a double one.
 ///
 /// Rounding: shift, scaling and change of basis take at most 5 Degree + 8 roundings of parts whose absolute values sum
 /// to at most norm(p); 64 x 2^-53 norm(p) is added to the margin, which covers degree 8.
@@ -71,25 +99,28 @@ double positive_until(const Polynomial<Degree>& p, double s, double margin) {
   double width = 1 - s;
   double start = 0;
   for (int i = 0; i < most_stretches && s < 1; ++i) {
-    const auto b = detail::bernstein(p, s, width);
+    const auto local = taylor_shift<double>(p, s);
+    const auto b = detail::bernstein(local, width);
     if (!(b[0] > level)) return s;
-    // Near the root: what is left of it is for whoever asked to see to.
-    if (i == 0) start = b[0] - level;
-    // The steepest line from the first control point down to another one lies below all of them.
-    double steepest = 0;
-    bool all_above = true;
-    for (std::size_t j = 1; j <= Degree; ++j) {
-      all_above = all_above && b[j] > level;
-      steepest = std::max(steepest, (b[0] - b[j]) * Degree / static_cast<double>(j));
+    if (i == 0) {
+      start = b[0] - level;
+      if (detail::all_above(b, level)) return 1;
+      const double guess = detail::newton_guess(local, width, level);
+      if (guess > 0 && detail::all_above(detail::bernstein(local, guess), level)) return s + guess * (1 - 0x1p-50);
     }
-    if (all_above) {
+    if (detail::all_above(b, level)) {
       s += width;
       width = std::min(1 - s, 4 * width);
-    } else {
-      s += (b[0] - level) / steepest * (1 - 0x1p-40) * width;
-      if (b[0] - level < 0x1p-10 * start) return s;
-      width = std::min(1 - s, 0.5 * width);
+      continue;
     }
+    // The steepest line from the first control point down to another one lies below all of them.
+    double steepest = 0;
+    for (std::size_t j = 1; j <= Degree; ++j) {
+      steepest = std::max(steepest, (b[0] - b[j]) * Degree / static_cast<double>(j));
+    }
+    s += (b[0] - level) / steepest * (1 - 0x1p-40) * width;
+    if (b[0] - level < 0x1p-10 * start) return s;  // near the root: what is left is for whoever asked to see to
+    width = std::min(1 - s, 0.5 * width);
   }
   return std::min(s, 1.0);
 }

@@ -21,13 +21,7 @@ namespace kds::certificates {
 template <Patch kind, int Degree>
 class TurningAxis {
  public:
-  explicit TurningAxis(const PatchPaths<Degree>& paths) : error_(paths.error * 1.01) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t d = 0; d < 3; ++d) {
-        for (std::size_t i = 0; i <= Degree; ++i) q_[k][d].c[i] = paths.c[i][d][k];
-      }
-    }
-  }
+  explicit TurningAxis(const PatchPaths<Degree>& paths) : paths_(paths) {}
 
   /// As separated_until() in fixed_axis.hpp, with the axis that belongs to the part of the patch on which `point` lies;
   /// 1 where that is all the time there is.
@@ -68,11 +62,21 @@ class TurningAxis {
     double error;
   };
 
-  Bounded<Degree> corner(std::size_t k) const { return {q_[k], norm(q_[k]), error_}; }
+  Vector path(std::size_t k) const {
+    Vector q;
+    for (std::size_t d = 0; d < 3; ++d) {
+      for (std::size_t i = 0; i <= Degree; ++i) q[d].c[i] = paths_.c[i][d][k];
+    }
+    return q;
+  }
+  Bounded<Degree> corner(std::size_t k) const {
+    const Vector q = path(k);
+    return {q, norm(q), paths_.error};
+  }
   Bounded<Degree> side(std::size_t from, std::size_t to) const {
-    const Vector e = minus(q_[to], q_[from]);
+    const Vector e = minus(path(to), path(from));
     const double size = norm(e);
-    return {e, size, 2 * error_ + half_ulp * size};
+    return {e, size, 2 * paths_.error + half_ulp * size};
   }
 
   // Errors, with a the sizes and e the errors of the factors: a product of coordinates is off by a e' + a' e + e e' and
@@ -121,8 +125,7 @@ class TurningAxis {
     return until;
   }
 
-  std::array<Vector, 4> q_;
-  double error_;
+  const PatchPaths<Degree>& paths_;
 };
 
 }  // namespace kds::certificates
