@@ -9,29 +9,36 @@
 
 namespace kds::certificates {
 
-/// How long the closest direction *of the same part of the patch* separates the patch from the origin.
+/// How long a direction that turns with a part of the patch separates the patch from the origin.
 ///
 /// A fixed direction loses a patch that turns around a point close by: it is good for a time in proportion to the gap.
-/// The exact closest direction of a part (the normal of the interior, the perpendicular on an edge, the way to a
-/// corner) is itself a polynomial of time, n(s), so n(s) . corner(s) > 0 for all corners is a certificate too, of
-/// degree 3 (interior: the coplanarity cubic), 4 (edge: the squared distance from its line, times a square) or 2
-/// (corner) for linear paths, and twice that for quadratic ones. It fails only when the origin really comes to the
-/// plane, line or point of the part, or when another part is in the way; each such failure uses up a root, so a
-/// query takes a bounded number of these steps whatever the gap (docs/features.md, "Steps").
+/// These directions are polynomials of time, n(s), and n(s) . corner(s) > 0 for all corners is a certificate as well:
+///
+/// - the normal of the patch, n = u x v: the coplanarity of the four points, of degree 3 for linear paths (degree 6 for
+///   quadratic ones); all corners have the same height over it;
+/// - for an edge e and a fixed direction m, what is left of m across the edge, n = m |e|^2 - e (e . m), so that
+///   n . x = (e x m) . (e x x): of degree 3 (6) as well, and both ends of the edge have the same height. With m the
+///   closest direction now it holds while the edge turns as it likes and the origin stays within a quarter turn of m
+///   around it. (The closest direction itself, with the moving corner in place of m, would square the gap, and so lose
+///   half of the digits.)
+///
+/// A corner is approached with the axes of its two edges, an edge also with the normal. Each failure of such a certificate uses up a root, or a
+/// quarter turn: a query takes few of these steps, whatever the gap (docs/features.md, "Steps").
 template <Patch kind, int Degree>
 class TurningAxis {
  public:
   explicit TurningAxis(const PatchPaths<Degree>& paths) : paths_(paths) {}
 
-  /// As separated_until() in fixed_axis.hpp, with the axis that belongs to the part of the patch on which `point` lies;
-  /// 1 where that is all the time there is.
+  /// As separated_until() in fixed_axis.hpp, with the axes that belong to the part of the patch on which `point` lies, and
+  /// to the larger parts next to it, which are at most a little worse now and may be much better soon; 1 where that is
+  /// all the time there is.
   double separated_until(const PatchPoint& point, double s) const {
-    switch (point.part) {
-      case PatchPart::interior: return over_interior(s);
-      case PatchPart::edge: return beside_edge(point.corner, s);
-      case PatchPart::corner: return before_corner(point.corner, s);
-    }
-    return s;
+    double until = over_interior(s);
+    if (point.part == PatchPart::interior || until >= 1) return until;
+    until = std::max(until, beside_edge(point.corner, point.position, s));
+    if (point.part == PatchPart::edge || until >= 1) return until;
+    const std::size_t before = point.corner > 0 ? point.corner - 1U : (kind == Patch::triangle ? 2U : 3U);
+    return std::max(until, beside_edge(before, point.position, s));
   }
 
  private:
@@ -108,21 +115,15 @@ class TurningAxis {
     return positive_until(height, s, dot_error(n, q0));
   }
 
-  // n = (e x q) x e, so n . x = (e x q) . (e x x): the ends of the edge both at |e x q|^2, and the others of a patch
-  // of four at one height as well, since n . e = 0.
-  double beside_edge(std::size_t k, double s) const {
+  // The two corners that are not of the edge are as high as each other, if there are two.
+  double beside_edge(std::size_t k, const Eigen::Vector3d& direction, double s) const {
+    if (kind == Patch::triangle && k == 3) k = 0;  // the corner that a triangle repeats
+    const Bounded<0> m{{{{{direction[0]}}, {{direction[1]}}, {{direction[2]}}}}, direction.lpNorm<Eigen::Infinity>(), 0};
     const auto e = side(k, (k + 1) % 4);
-    const auto moment = cross(e, corner(k));
-    const double own = positive(moment, moment, s);
+    const auto across = cross(e, m);
+    const double own = positive(across, cross(e, corner(k)), s);
     if (!(own > s)) return s;
-    return std::min(own, positive(moment, cross(e, corner(kind == Patch::triangle ? (k + 2) % 3 : (k + 3) % 4)), s));
-  }
-
-  double before_corner(std::size_t k, double s) const {
-    const auto q = corner(k);
-    double until = 1;
-    for (std::size_t j = 0; j < 4 && until > s; ++j) until = std::min(until, positive(q, corner(j), s));
-    return until;
+    return std::min(own, positive(across, cross(e, corner(kind == Patch::triangle ? (k + 2) % 3 : (k + 3) % 4)), s));
   }
 
   const PatchPaths<Degree>& paths_;
