@@ -42,10 +42,8 @@ class ContactList final : public kds::collision::WorldListener<Degree> {
 
   std::vector<TrueContact> contacts;
 
-  void contact(World&, const PairEvent& e) override {
-    contacts.push_back({e.a, e.b, e.contact.time, std::numeric_limits<double>::infinity(), e.contact.normal});
-    open_[{e.a, e.b}] = contacts.size() - 1;
-  }
+  void contact(World&, const PairEvent& e) override { begin(e); }
+  void overlap(World&, const PairEvent& e) override { begin(e); }  // at the start
   void separation(World&, const PairEvent& e) override {
     const auto it = open_.find({e.a, e.b});
     contacts[it->second].end = e.contact.time;
@@ -53,6 +51,11 @@ class ContactList final : public kds::collision::WorldListener<Degree> {
   }
 
  private:
+  void begin(const PairEvent& e) {
+    contacts.push_back({e.a, e.b, e.contact.time, std::numeric_limits<double>::infinity(), e.contact.normal});
+    open_[{e.a, e.b}] = contacts.size() - 1;
+  }
+
   std::map<std::pair<BodyId, BodyId>, std::size_t> open_;
 };
 

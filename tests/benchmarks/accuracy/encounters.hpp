@@ -42,13 +42,13 @@ inline std::vector<Setting> settings() {
   return {{.name = "near"},
           {.name = "clock 1e9", .clock = 1e9},
           {.name = "coordinates 1e8", .coordinates = 1e8},
-          {.name = "clock 1e9, coordinates 1e8", .clock = 1e9, .coordinates = 1e8},
+          {.name = "clock 1e9 and coordinates 1e8", .clock = 1e9, .coordinates = 1e8},
           {.name = "speeds 1e-9", .speed_a = 1e-9, .speed_b = 1e-9},
           {.name = "speeds 1e-3", .speed_a = 1e-3, .speed_b = 1e-3},
           {.name = "speeds 1e3", .speed_a = 1e3, .speed_b = 1e3},
           {.name = "speeds 1e9", .speed_a = 1e9, .speed_b = 1e9},
           {.name = "speeds 1e-9 and 1e9", .speed_a = 1e-9, .speed_b = 1e9},
-          {.name = "sizes 1e-6 and 1e6", .size_a = 1e6, .size_b = 1e-6}};
+          {.name = "sizes 1e6 and 1e-6", .size_a = 1e6, .size_b = 1e-6}};
 }
 
 template <int Degree>
