@@ -75,7 +75,7 @@ Sums elastic_impulses(double mass_a, double mass_b, const Normal& normal) {
 }
 
 TEST_CASE("Rounding of elastic impulses neither gains nor loses energy in the mean", "[impulse]") {
-  // Sums of unbiased errors stay within 5 standard errors; the biases that were here once made 40 to 300 of them.
+  // Sums of unbiased errors stay within 5 standard errors; the biases that were here once made 23 to 40 of them.
   const auto any = [](Random& random) -> Vector3d { return vector(random).normalized(); };
   // As far from the origin: differences of coordinates are multiples of 2^-26.
   const auto coarse = [](Random& random) -> Vector3d {
