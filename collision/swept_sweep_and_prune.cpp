@@ -130,9 +130,10 @@ bool SweptSweepAndPrune<Degree>::advance(double limit, PairListener& listener) {
 
 template <int Degree>
 void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
-  if (frame_end_ <= now) {
-    frames_ = static_cast<std::uint64_t>(std::floor((now - start_) * rate_)) + 1;
-    frame_end_ = start_ + static_cast<double>(frames_) / rate_;
+  // A frame that is due now comes after this: until then boxes reach up to now, those of the others as well.
+  if (frame_end_ < now) {
+    frames_ = static_cast<std::uint64_t>(std::floor((now - start_) * rate_));
+    frame_end_ = now;
   }
   std::vector<BodyId> added;
   for (const Entry& body : bodies) {
