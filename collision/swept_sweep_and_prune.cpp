@@ -130,10 +130,9 @@ bool SweptSweepAndPrune<Degree>::advance(double limit, PairListener& listener) {
 
 template <int Degree>
 void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
-  // A frame that is due now comes after this: until then boxes reach up to now, those of the others as well.
-  if (frame_end_ < now) {
+  if (frame_end_ <= now) {  // the others' boxes reach no farther
     frames_ = static_cast<std::uint64_t>(std::floor((now - start_) * rate_));
-    frame_end_ = now;
+    frame(now, listener);
   }
   std::vector<BodyId> added;
   for (const Entry& body : bodies) {
