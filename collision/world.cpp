@@ -243,8 +243,9 @@ void World<Degree>::renew_volume(BodyId id) {
 
 template <int Degree>
 void World<Degree>::emit_pending() {
-  const Pending event = pending_.front();
+  Pending event = pending_.front();
   pending_.pop_front();
+  fill_in(event);
   const PairEvent pair{event.a, event.b, event.contact};
   switch (event.kind) {
     case Pending::Kind::overlap:
@@ -263,6 +264,15 @@ void World<Degree>::emit_pending() {
     case Pending::Kind::pair_ended:
       return listener_->pair_ended(*this, event.a, event.b, event.contact.time);
   }
+}
+
+/// A caller who moves two bodies in turn parts them with the first move, but they separate where the second leaves them:
+/// so whether the broad phase told of it at once makes no difference.
+template <int Degree>
+void World<Degree>::fill_in(Pending& separation) const {
+  if (separation.placed) return;
+  separation.contact = contact_at(moving(separation.a), moving(separation.b), separation.contact.time);
+  separation.placed = true;
 }
 
 template <int Degree>

@@ -293,6 +293,7 @@ class World final : private PairListener {
     enum class Kind { overlap, separation, pair_began, pair_ended, held, moved } kind;
     BodyId a, b;
     Contact contact;
+    bool placed = true;  ///< the contact is filled in; else that is done when it is reported, or a body removed
   };
 
   // world.cpp: the clock
@@ -301,6 +302,7 @@ class World final : private PairListener {
   void start_pieces();
   void renew_volume(BodyId id);
   void emit_pending();
+  void fill_in(Pending& separation) const;
 
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }
 

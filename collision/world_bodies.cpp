@@ -102,6 +102,9 @@ void World<Degree>::remove_body(BodyId id) {
   if (removed.entered) broad_phase_->remove(id, now_, *this);
   // Pairs the broad phase does not know of any more.
   while (!removed.pairs.empty()) release_pair(removed.pairs.back());
+  for (Pending& event : pending_) {
+    if (event.a == id || event.b == id) fill_in(event);
+  }
   removed = Body{};
   free_bodies_.push_back(id);
   --alive_;
@@ -259,7 +262,7 @@ template <int Degree>
 void World<Degree>::release_pair(PairSlot slot) {
   Pair& pair = pairs_[slot];
   if (pair.touching) {
-    pending_.push_back({Pending::Kind::separation, pair.a, pair.b, contact_at(moving(pair.a), moving(pair.b), now_)});
+    pending_.push_back({Pending::Kind::separation, pair.a, pair.b, {.time = now_}, false});
   }
   if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) {
     pending_.push_back({Pending::Kind::pair_ended, pair.a, pair.b, {.time = now_}});
