@@ -31,6 +31,23 @@ bool at_rest(const certificates::PointMotion<Degree>& motion) {
   return true;
 }
 
+/// Bodies that have been put so near that nothing but rounding is between them, this times their coordinates: they
+/// touch, and so meet if they approach, and rest if they are pressed together. Larger takes more for a touch.
+constexpr double touch_rounding = 0x1p-40;
+
+/// Whether bodies in contact at t only touch: at rest in their places, and a rounding farther apart, they are free.
+template <int Degree>
+bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+  const Contact contact = contact_at(a, b, t);
+  certificates::PointMotion<Degree> place_a = a.motion.restarted(t);
+  certificates::PointMotion<Degree> place_b = b.motion.restarted(t);
+  for (std::size_t i = 1; i <= Degree; ++i) place_a.coefficients[i] = place_b.coefficients[i] = Vector3d::Zero();
+  const double size = place_a.coefficients[0].cwiseAbs().maxCoeff() + place_b.coefficients[0].cwiseAbs().maxCoeff() +
+                      std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+  place_b.coefficients[0] += touch_rounding * size * contact.normal;
+  return !in_contact(MovingShape<Degree>{a.shape, place_a}, MovingShape<Degree>{b.shape, place_b}, t);
+}
+
 }  // namespace
 
 template <int Degree>
@@ -73,7 +90,7 @@ void World<Degree>::test(PairSlot slot) {
     }
   } else {
     if (pair.fresh || pair.ignored) {
-      pair.ignored = in_contact(a, b, now_);
+      pair.ignored = in_contact(a, b, now_) && !(pair.fresh && only_touching(a, b, now_));
       if (pair.fresh && pair.ignored) report_overlap();
     }
     if (find_hold(pair.a, pair.b) != no_hold) {

@@ -122,7 +122,7 @@ TEST_CASE("scene reader: keys that may be left out") {
 TEST_CASE("scene reader: restitution is the scene's where a body or the walls have none of their own") {
   const auto read = [](const std::string& of_scene, const std::string& of_domain, const std::string& of_body) {
     return parse_scene(R"({"scene": 1, "end_time": 2, )" + of_scene +
-                           R"("domain": {"min": [-9,-9,-9], "max": [9,9,9])" + of_domain + R"(}, "bodies": [{)" +
+                           R"("domain": {"walls": "reflect", "min": [-9,-9,-9], "max": [9,9,9])" + of_domain + R"(}, "bodies": [{)" +
                            of_body + R"("name": "a", "shape": {"sphere": {"radius": 1}},
                                         "motion": [{"start": 0, "position": [[0,0,0]]}]}]})",
                        "scene.json");
