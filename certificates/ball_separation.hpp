@@ -23,6 +23,16 @@ struct BallSeparation {
     f.c[0] = f.c[0] - reach * reach;
     return f;
   }
+
+  Ball<DoubleDouble> extended_value(double t) const {
+    const Ball<DoubleDouble> reach = Ball<DoubleDouble>(radius_a) + radius_b;
+    Ball<DoubleDouble> f = -(reach * reach);
+    for (int d = 0; d < 3; ++d) {
+      const Ball<DoubleDouble> r = extended_difference(b.axis(d), a.axis(d), t);
+      f = f + r * r;
+    }
+    return f;
+  }
 };
 
 }  // namespace kds::certificates

@@ -24,6 +24,8 @@ struct Order {
     return difference_about<Number>(upper, lower, epoch);
   }
 
+  Ball<DoubleDouble> extended_value(double t) const { return extended_difference(upper, lower, t); }
+
   /// Cheap and sufficient: values that move together, and values at rest in one place.
   bool vanishes() const {
     if (lower.position.c[0] != upper.position.c[0]) return false;

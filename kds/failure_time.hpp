@@ -6,6 +6,7 @@
 #include "kds/failure_time_lattice.hpp"
 #include "kds/failure_time_linear.hpp"
 #include "kds/failure_time_quadratic.hpp"
+#include "kds/unrolled.hpp"
 
 #include <cmath>
 
@@ -42,6 +43,7 @@ struct Negated {
   Polynomial<degree, Number> polynomial(double epoch) const {
     return -certificate.template polynomial<Number>(epoch);
   }
+  Ball<DoubleDouble> extended_value(double t) const { return -detail::extended_value(certificate, t); }
   bool vanishes() const { return detail::known_to_vanish(certificate); }
 };
 
@@ -55,42 +57,41 @@ double recovery_time(const C& certificate, double now, double horizon = never) {
 
 namespace detail {
 
-/// The first coefficients of a polynomial whose others are zero.
-template <int Lower, int Degree, class Scalar>
-Polynomial<Lower, Scalar> truncated(const Polynomial<Degree, Scalar>& p) {
-  Polynomial<Lower, Scalar> result;
-  for (std::size_t i = 0; i <= Lower; ++i) result.c[i] = p.c[i];
-  return result;
+/// Whether all coefficients but the first are certainly not negative: f never falls.
+template <int Degree>
+bool never_falls(const Polynomial<Degree, Ball<double>>& p) {
+  bool rises = true;
+  unrolled<Degree>([&](auto i) { rises = rises && p.c[i + 1].middle >= p.c[i + 1].radius * Ball<double>::slack; });
+  return rises;
 }
 
-/// p is f about now. Precondition: f > 0 just after now.
-template <class C>
-double failure_time_while_positive(const C& certificate, const Polynomial<C::degree, Ball<double>>& p, double now,
+/// p without its last coefficient, for polynomials of which that is zero.
+template <int Degree>
+Polynomial<Degree - 1, Ball<double>> without_last(const Polynomial<Degree, Ball<double>>& p) {
+  Polynomial<Degree - 1, Ball<double>> shorter;
+  unrolled<Degree>([&](auto i) { shorter.c[i] = p.c[i]; });
+  return shorter;
+}
+
+/// p is f about now, without its leading zeros as far as they have been looked at. Precondition: f > 0 just after now.
+template <class C, int Degree>
+double failure_time_while_positive(const C& certificate, const Polynomial<Degree, Ball<double>>& p, double now,
                                    double horizon) {
-  // Where all higher coefficients are certainly not negative, f never falls.
-  int falling = C::degree;
-  while (falling > 0) {
-    const auto& c = p.c[static_cast<std::size_t>(falling)];
-    if (!(c.middle >= c.radius * Ball<double>::slack)) break;
-    --falling;
-  }
-  if (falling == 0) return never;
-  // Motions of a formal degree often differ by one of a lower: bodies in a common gravity, say.
-  int degree = C::degree;
-  while (p.c[static_cast<std::size_t>(degree)].is_zero()) --degree;
-  if constexpr (C::degree >= 1) {
-    if (degree == 1) {
+  if constexpr (Degree == 0) {
+    return never;
+  } else {
+    // Motions of a formal degree often differ by one of a lower: bodies in a common gravity, say.
+    if (p.c[Degree].is_zero()) return failure_time_while_positive(certificate, without_last(p), now, horizon);
+    if (never_falls(p)) return never;
+    if constexpr (Degree == 1) {
       if (certain_sign(p.c[1]) == 0 && extended_sign_after(certificate, now, 1) >= 0) return never;
-      return linear_failure_time(certificate, truncated<1>(p), now, horizon);
+      return linear_failure_time(certificate, p, now, horizon);
+    } else if constexpr (Degree == 2) {
+      return quadratic_failure_time(certificate, p, now, horizon);
+    } else {
+      return isolated_failure_time(certificate, p, now, horizon);
     }
   }
-  if constexpr (C::degree >= 2) {
-    if (degree == 2) return quadratic_failure_time(certificate, truncated<2>(p), now, horizon);
-  }
-  if constexpr (C::degree >= 3) {
-    return isolated_failure_time(certificate, p, now, horizon);
-  }
-  return never;
 }
 
 }  // namespace detail

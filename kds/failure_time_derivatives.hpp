@@ -6,129 +6,163 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace kds::detail {
 
-/// Middle of the coefficients about an epoch, for guesses.
-template <class C>
-Polynomial<C::degree> middle(const Polynomial<C::degree, Ball<double>>& p) {
-  Polynomial<C::degree> result;
-  for (std::size_t i = 0; i <= C::degree; ++i) result.c[i] = p.c[i].middle;
-  return result;
-}
-
-/// A root of p between lower and upper (one sign change), to a few ulps: bisection with Newton steps in doubles.
-template <int Degree>
-double approximate_root(const Polynomial<Degree>& p, double lower, double upper, bool rising) {
-  const auto slope = derivative(p);
-  double x = 0.5 * lower + 0.5 * upper;
-  for (int i = 0; i < 100 && lower < upper; ++i) {
-    const double value = p(x);
-    ((value > 0) == rising ? upper : lower) = x;
-    double next = x - value / slope(x);
-    if (!(next > lower && next < upper)) next = 0.5 * lower + 0.5 * upper;
-    if (std::abs(next - x) <= 0x1p-50 * std::abs(next)) return next;
-    x = next;
-  }
-  return x;
-}
-
-/// Derivative number `order` of the polynomial, up to the factor order!.
-template <int Order, int Degree>
-Polynomial<Degree - Order> scaled_derivative(const Polynomial<Degree>& p) {
-  Polynomial<Degree - Order> result;
-  for (std::size_t i = Order; i <= Degree; ++i) {
-    double binomial = 1;
-    for (std::size_t j = 1; j <= Order; ++j) binomial = binomial * static_cast<double>(i - Order + j) / static_cast<double>(j);
-    result.c[i - Order] = p.c[i] * binomial;
-  }
-  return result;
-}
-
-/// Sign changes on the lattice of doubles, by derivatives.
+/// Sign changes on the lattice of doubles, by derivatives, with exact signs only: right for every polynomial, whatever
+/// its roots.
+///
+/// A cell is a pair of neighbouring doubles. Call a set of cells *complete* for a function if the function has no sign
+/// change outside them. The empty set is complete for the highest derivative, which is constant. Given a complete set
+/// for f^(k+1), f^(k) is monotone between its cells, so between two of them it changes its sign where exact signs at the
+/// ends differ, and once: a search finds that cell. The old cells stay in the set, for the sign of f^(k) may change in
+/// one of them, and twice, unseen from its ends, as f^(k+1) does; but one in which f^(k) certainly does not change its
+/// sign is dropped. In the end, the first double just after which f < 0 is one where f turns between two cells, or the
+/// end of a cell.
+///
+/// Cost: O(degree^2) searches of a few values in double-double each, 2 to 40 us.
 template <class C>
 class DerivativeIntervals {
  public:
-  DerivativeIntervals(const C& certificate, const Polynomial<C::degree>& guide, double now, double horizon)
-      : certificate_(certificate), guide_(guide), now_(now), horizon_(horizon) {}
+  DerivativeIntervals(const C& certificate, double now, double horizon)
+      : certificate_(certificate), now_(now), horizon_(horizon) {
+    const auto p = certificate.template polynomial<Ball<double>>(now);
+    for (std::size_t i = 0; i <= C::degree; ++i) guide_.c[i] = p.c[i].middle;
+  }
 
-  /// First double in [now, horizon] with f < 0 just after.
+  /// First double in [now, horizon] with f < 0 just after, or `never`.
   double first_negative() {
-    Breaks breaks;
-    return descend<C::degree - 1>(breaks);
+    for (int order = C::degree - 1; order > 0; --order) refine(order);
+    return first_negative_between_cells();
   }
 
  private:
-  // Doubles at which the sign of a derivative is new, in order, and how many.
-  struct Breaks {
-    std::array<double, C::degree + 1> at{};
-    int count = 0;
+  static constexpr std::size_t most_cells = C::degree * (C::degree + 1) / 2;
+
+  /// The doubles `before` and `at` are neighbours.
+  struct Cell {
+    double before;
+    double at;
+    Polynomial<C::degree, Ball<double>> f;  ///< about `before`
   };
 
-  /// Sign at the end of the horizon: the leading term decides at infinity.
-  int sign_at_end(int order) const {
-    if (horizon_ < never) return sign_after(certificate_, horizon_, order);
+  /// From a set complete for f^(order+1) to one complete for f^(order).
+  void refine(int order) {
+    std::array<Cell, most_cells> old;
+    const std::size_t count = count_;
+    std::copy_n(cells_.begin(), count, old.begin());
+    count_ = 0;
+    double start = now_;
+    for (std::size_t i = 0; i <= count; ++i) {
+      const double stop = i < count ? old[i].before : horizon_;
+      const double t = crossing(order, start, stop);
+      if (t != never) add(t);
+      if (i == count) break;
+      if (!keeps_its_sign(old[i], order)) cells_[count_++] = old[i];
+      start = old[i].at;
+    }
+  }
+
+  double first_negative_between_cells() const {
+    if (sign_after(certificate_, now_) < 0) return now_;
+    double start = now_;
+    for (std::size_t i = 0; i <= count_; ++i) {
+      const double t = crossing(0, start, i < count_ ? cells_[i].before : horizon_);
+      if (t != never) return t;  // f was not negative before, so it is from here on
+      if (i == count_) return never;
+      start = cells_[i].at;
+      if (sign_after(certificate_, start) < 0) return start;
+    }
+    return never;
+  }
+
+  void add(double t) {
+    const double before = next_down(t);
+    cells_[count_++] = {before, t, certificate_.template polynomial<Ball<double>>(before)};
+  }
+
+  /// Whether f^(order), up to a factor the sum of binomial(i, order) c_i x^(i-order), is certainly not zero in the cell.
+  static bool keeps_its_sign(const Cell& cell, int order) {
+    const double width = cell.at - cell.before;
+    double change = 0;
+    double binomial = 1;
+    double power = 1;
+    for (int i = order + 1; i <= C::degree; ++i) {
+      binomial = binomial * i / (i - order);
+      power *= width;
+      const Ball<double>& c = cell.f.c[static_cast<std::size_t>(i)];
+      change += binomial * power * (std::abs(c.middle) + c.radius);
+    }
+    const Ball<double>& value = cell.f.c[static_cast<std::size_t>(order)];
+    // Roundings, a few dozen, and underflow, some 2^-1074 for each of them.
+    return std::abs(value.middle) > (value.radius + change) * Ball<double>::slack + Ball<double>::underflow;
+  }
+
+  /// f^(order) is monotone on [start, stop]. The first double in (start, stop] just after which its sign is new, or
+  /// `never` if the sign does not change.
+  double crossing(int order, double start, double stop) const {
+    if (!(start < stop)) return never;
+    const int before = sign_after(certificate_, start, order);
+    const int after = stop < never ? sign_after(certificate_, stop, order) : sign_at_infinity(order);
+    if (before == after || before == 0 || after == 0) return never;
+    double above = stop;
+    if (stop == never) {
+      above = std::numeric_limits<double>::max();
+      if (!(start < above)) return never;
+    }
+    const double guess = now_ + approximate_root(scaled_derivative(order), start - now_, above - now_, after > 0);
+    const double t = LatticeCrossing<C>(certificate_, order)(start, above, after, guess);
+    // It may be beyond all doubles.
+    return stop == never && t == above && sign_after(certificate_, t, order) != after ? never : t;
+  }
+
+  /// The leading term decides.
+  int sign_at_infinity(int order) const {
     for (int i = C::degree; i >= order; --i) {
       if (const int s = sign_after(certificate_, now_, i)) return s;
     }
     return 0;
   }
 
-  template <int Order>
-  double crossing(double below, double above, int sign_above) const {
-    double guess = below;
-    const auto p = scaled_derivative<Order>(guide_);
-    const bool rising = sign_above > 0;
-    double lower = below - now_;
-    double upper = above - now_;
+  /// f^(order) about now in doubles, up to a factor.
+  Polynomial<C::degree> scaled_derivative(int order) const {
+    Polynomial<C::degree> result;
+    double binomial = 1;
+    for (int i = order; i <= C::degree; ++i) {
+      if (i > order) binomial = binomial * i / (i - order);
+      result.c[static_cast<std::size_t>(i - order)] = guide_.c[static_cast<std::size_t>(i)] * binomial;
+    }
+    return result;
+  }
+
+  /// A root of p between lower and upper, to a few ulps: Newton's method and bisection. A guess.
+  static double approximate_root(const Polynomial<C::degree>& p, double lower, double upper, bool rising) {
+    const auto slope = derivative(p);
     if (!(upper < 0x1p1000)) {  // Unbounded: double the step until the sign turns.
       double step = 1;
       while (step < 0x1p900 && (p(lower + step) > 0) != rising) step *= 2;
       upper = lower + step;
     }
-    guess = now_ + approximate_root(p, lower, upper, rising);
-    return LatticeCrossing<C>(certificate_, Order)(below, above, sign_above, guess);
-  }
-
-  /// Given the sign changes of derivative Order + 1, finds those of derivative Order, and so on down to f itself.
-  template <int Order>
-  double descend(const Breaks& steeper) const {
-    Breaks breaks;
-    double start = now_;
-    int start_sign = sign_after(certificate_, start, Order);
-    if (Order == 0 && start_sign < 0) return start;
-    for (int i = 0; i <= steeper.count; ++i) {
-      const bool last = i == steeper.count;
-      const double stop = last ? horizon_ : next_down(steeper.at[static_cast<std::size_t>(i)]);
-      // Derivative Order is monotone on [start, stop].
-      const int stop_sign = last ? sign_at_end(Order) : (stop > start ? sign_after(certificate_, stop, Order) : start_sign);
-      if (stop_sign != start_sign && stop_sign != 0 && start_sign != 0) {
-        const double end = last && horizon_ == never ? std::numeric_limits<double>::max() : stop;
-        const double t = crossing<Order>(start, end, stop_sign);
-        if (Order == 0 && stop_sign < 0) return t;
-        breaks.at[static_cast<std::size_t>(breaks.count++)] = t;
-      }
-      if (!last) {
-        start = steeper.at[static_cast<std::size_t>(i)];
-        start_sign = sign_after(certificate_, start, Order);
-        if (start_sign != stop_sign && start_sign != 0 && stop_sign != 0) {
-          if (Order == 0 && start_sign < 0) return start;
-          breaks.at[static_cast<std::size_t>(breaks.count++)] = start;
-        }
-      }
+    double x = 0.5 * lower + 0.5 * upper;
+    for (int i = 0; i < 100 && lower < upper; ++i) {
+      const double value = p(x);
+      ((value > 0) == rising ? upper : lower) = x;
+      double next = x - value / slope(x);
+      if (!(next > lower && next < upper)) next = 0.5 * lower + 0.5 * upper;
+      if (std::abs(next - x) <= 0x1p-50 * std::abs(next)) return next;
+      x = next;
     }
-    if constexpr (Order > 0) {
-      return descend<Order - 1>(breaks);
-    } else {
-      return never;
-    }
+    return x;
   }
 
   const C& certificate_;
-  const Polynomial<C::degree>& guide_;
+  Polynomial<C::degree> guide_;  ///< f about now, rounded
   double now_;
   double horizon_;
+  std::array<Cell, most_cells> cells_;  ///< in order of time
+  std::size_t count_ = 0;
 };
 
 }  // namespace kds::detail

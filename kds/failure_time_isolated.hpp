@@ -32,9 +32,9 @@ double refined_root(const Polynomial<Degree, Ball<double>>& p, double x, double 
   return x;
 }
 
-/// p is f about now. Precondition: f > 0 just after now.
-template <class C>
-double isolated_failure_time(const C& certificate, const Polynomial<C::degree, Ball<double>>& p, double now,
+/// p is f about now, without its leading zeros. Precondition: f > 0 just after now.
+template <class C, int Degree>
+double isolated_failure_time(const C& certificate, const Polynomial<Degree, Ball<double>>& p, double now,
                              double horizon) {
   const Crossing crossing = first_crossing(p, (horizon - now) * (1 + 0x1p-50));
   if (crossing.status == Crossing::Status::none) return never;
@@ -45,8 +45,7 @@ double isolated_failure_time(const C& certificate, const Polynomial<C::degree, B
     if (t > horizon) return never;
   }
   ++sign_counters.searches;
-  const auto guide = middle<C>(p);
-  return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
+  return DerivativeIntervals<C>(certificate, now, horizon).first_negative();
 }
 
 }  // namespace kds::detail

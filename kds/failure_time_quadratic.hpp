@@ -12,10 +12,7 @@ namespace kds::detail {
 /// By exact signs. Precondition: f > 0 just after now.
 template <class C>
 double quadratic_failure_time_by_signs(const C& certificate, const Polynomial<2, Ball<double>>& p, double now, double horizon) {
-  const auto by_derivatives = [&] {
-    const auto guide = middle<C>(certificate.template polynomial<Ball<double>>(now));
-    return DerivativeIntervals<C>(certificate, guide, now, horizon).first_negative();
-  };
+  const auto by_derivatives = [&] { return DerivativeIntervals<C>(certificate, now, horizon).first_negative(); };
   const int bend = certain_sign(p.c[2]);
   const int rate = certain_sign(p.c[1]);
   if (bend > 0 && rate > 0) return never;

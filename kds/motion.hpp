@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/ball.hpp"
+#include "kds/compensated.hpp"
 #include "kds/exact.hpp"
 #include "kds/polynomial.hpp"
 #include "kds/unrolled.hpp"
@@ -142,6 +143,17 @@ Polynomial<Degree, Number> difference_about(const Motion<Degree>& a, const Motio
   Polynomial<Degree, Number> relative;
   for (std::size_t i = 0; i <= Degree; ++i) relative.c[i] = difference<Number>(a.position.c[i], b.position.c[i]);
   return taylor_shift<Number>(relative, difference<Number>(epoch, a.start));
+}
+
+/// a - b at t alone, in double-doubles: what difference_about() has as its first coefficient, for less.
+template <int Degree>
+Ball<DoubleDouble> extended_difference(const Motion<Degree>& a, const Motion<Degree>& b, double t) {
+  if (a.start != b.start) {
+    return compensated_value(a.position, two_sum(t, -a.start)) - compensated_value(b.position, two_sum(t, -b.start));
+  }
+  Polynomial<Degree, DoubleDouble> relative;
+  for (std::size_t i = 0; i <= Degree; ++i) relative.c[i] = two_sum(a.position.c[i], -b.position.c[i]);
+  return compensated_value(relative, two_sum(t, -a.start));
 }
 
 /// The same motion restarted at t: equal up to the rounding of its new coefficients.

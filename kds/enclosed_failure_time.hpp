@@ -1,0 +1,121 @@
+// Failure times with what is known of them: a guaranteed enclosure and a status.
+#pragma once
+
+#include "kds/failure_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kds {
+
+/// How a failure time was got.
+enum class FailureStatus {
+  holds,          ///< certified: the certificate does not fail within the horizon
+  fails_at_once,  ///< certified: it has failed just after `now`
+  root,           ///< certified: it fails at a root within the enclosure
+  estimated       ///< a time from a solver that certifies nothing; the enclosure is all of [now, horizon]
+};
+
+/// A failure time and its guaranteed enclosure, in seconds.
+struct FailureTime {
+  double time = never;   ///< `never` if the certificate holds
+  double lower = never;  ///< lower <= true root <= upper where it fails; `never` where it holds
+  double upper = never;
+  FailureStatus status = FailureStatus::holds;
+};
+
+/// failure_time() with its enclosure, which is the double before it and itself.
+template <Certificate C>
+FailureTime certified_failure_time(const C& certificate, double now, double horizon = never);
+
+/// Whether and at which root the certificate fails is decided exactly, as by failure_time(), but the time is only near
+/// that root: for who needs no canonical double.
+///
+/// The result is `holds` or `fails_at_once` exactly when failure_time() gives `never` or `now`; where it is `root`, the
+/// time and failure_time() both lie in [lower, next double above upper], and
+///     upper - lower <= 2^-45 (upper - now) + 4 ulp(upper),
+/// usually a tenth of that. Roots too ill conditioned for it are left to failure_time(), and so are degrees above 2, for
+/// which the canonical double is a small part of the cost.
+template <Certificate C>
+FailureTime enclosed_failure_time(const C& certificate, double now, double horizon = never);
+
+// ---------------------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+/// The root of a falling line, as that of a parabola in quadratic_root(): 3 u for two roundings.
+inline QuadraticRoot linear_root(const Polynomial<1, Ball<double>>& p) {
+  const double x = p.c[0].middle / -p.c[1].middle;
+  const double error =
+      1.01 * (p.c[0].radius / std::abs(p.c[0].middle) + p.c[1].radius / std::abs(p.c[1].middle) + 3 * 0x1p-53);
+  const bool in_range = x > 0x1p-900 && x < 0x1p900 && p.c[0].middle > 0x1p-900;
+  return {x, error <= 0x1p-10 && in_range ? error : undecided};
+}
+
+/// The root that failure_time() would look for, of a line or a parabola, from doubles alone; undecided where these do not
+/// do. `holds` is set where there is certainly none. Precondition: f > 0 just after now.
+template <int Degree>
+QuadraticRoot enclosed_root(const Polynomial<Degree, Ball<double>>& p, bool& holds) {
+  if constexpr (Degree == 0) {
+    holds = true;
+  } else {
+    if (p.c[Degree].is_zero()) return enclosed_root(without_last(p), holds);
+    holds = never_falls(p);
+    if (holds) return {never, undecided};
+    if constexpr (Degree == 1) {
+      if (certain_sign(p.c[1]) < 0) return linear_root(p);
+    } else if constexpr (Degree == 2) {
+      const Ball<double> discriminant = p.c[1] * p.c[1] - p.c[0] * p.c[2] * 4.0;
+      const int bend = certain_sign(p.c[2]);
+      const int real = certain_sign(discriminant);
+      holds = bend > 0 && real < 0;
+      if (bend != 0 && real > 0) return quadratic_root(p, discriminant);
+    }
+  }
+  return {never, undecided};
+}
+
+}  // namespace detail
+
+template <Certificate C>
+FailureTime certified_failure_time(const C& certificate, double now, double horizon) {
+  const double t = failure_time(certificate, now, horizon);
+  if (t == never) return {};
+  if (t == now) return {t, t, t, FailureStatus::fails_at_once};
+  return {t, next_down(t), t, FailureStatus::root};
+}
+
+template <Certificate C>
+FailureTime enclosed_failure_time(const C& certificate, double now, double horizon) {
+  // Worst relative error of the time from now to the root.
+  constexpr double enough = 0x1p-47;
+  if (!(now <= horizon)) return {};
+  if constexpr (C::degree > 2) return certified_failure_time(certificate, now, horizon);
+  if constexpr (requires { certificate.quick_failure_time(now, horizon); }) {
+    if (!std::isnan(certificate.quick_failure_time(now, horizon))) {
+      return certified_failure_time(certificate, now, horizon);
+    }
+  }
+  const auto p = certificate.template polynomial<Ball<double>>(now);
+  const int value = certain_sign(p.c[0]);
+  if (value < 0) return {now, now, now, FailureStatus::fails_at_once};
+  if (value > 0) {
+    bool holds = false;
+    const detail::QuadraticRoot root = detail::enclosed_root(p, holds);
+    if (holds || root.x * (1 - root.error) > (horizon - now) * (1 + 0x1p-50)) return {};
+    const double time = now + root.x;
+    // Roundings of the sum, of the radius and of the difference below: within one and a half units of 2^-52 |time|.
+    const double radius = root.x * root.error + 0x1.8p-52 * std::abs(time);
+    const double upper = time + radius;
+    // The next double above must be within the horizon too, and f < 0 there: of course for a line. The root of a parabola
+    // is known to 2^-47 only if its discriminant is at least (c1 / 128)^2, as that has a radius of 2^-52 c1^2; so the
+    // second root is x / 64 farther, which is four doubles by the second condition.
+    if (root.error <= enough && std::abs(time) * 0x1p-44 <= root.x && next_up(upper) <= horizon && upper < never) {
+      return {time, std::max(now, time - radius), upper, FailureStatus::root};
+    }
+  }
+  return certified_failure_time(certificate, now, horizon);
+}
+
+}  // namespace kds
