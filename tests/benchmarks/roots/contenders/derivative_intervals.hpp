@@ -33,7 +33,7 @@ struct DerivativeIntervals {
       for (std::size_t i = 0; i <= turns.count; ++i) {
         const double stop = i < turns.count ? turns.x[i] : end;
         // p > 0 at the start of every stretch that is reached.
-        if (p(stop) < 0) return falling_root(p, start, stop);
+        if (p(stop) < 0) return falling_root(p, start, stop, 0.5 * (start + stop));
         start = stop;
       }
       return never;
@@ -66,8 +66,8 @@ struct DerivativeIntervals {
       for (std::size_t i = 0; i <= turns.count; ++i) {
         const double stop = i < turns.count ? turns.x[i] : end;
         const double at_stop = p(stop);
-        if (at_start > 0 && at_stop < 0) keep(falling_root(p, start, stop));
-        if (at_start < 0 && at_stop > 0) keep(falling_root(-p, start, stop));
+        if (at_start > 0 && at_stop < 0) keep(falling_root(p, start, stop, 0.5 * (start + stop)));
+        if (at_start < 0 && at_stop > 0) keep(falling_root(-p, start, stop, 0.5 * (start + stop)));
         start = stop;
         at_start = at_stop;
       }

@@ -85,17 +85,16 @@ double root_bound(const kds::Polynomial<Degree>& p) {
   return std::ldexp(1.0, std::min(bound, 1000 / Degree));
 }
 
-/// The root between lower and upper, where p falls through zero once: Newton's method, halving where it leaves the
-/// interval or stalls.
+/// The root between lower and upper, where p falls through zero once: Newton's method from x, halving where it leaves
+/// the interval (doubling, where that has no upper end).
 template <int Degree>
-double falling_root(const kds::Polynomial<Degree>& p, double lower, double upper) {
+double falling_root(const kds::Polynomial<Degree>& p, double lower, double upper, double x) {
   const auto slope = kds::derivative(p);
-  double x = 0.5 * (lower + upper);
   for (int i = 0; i < 200; ++i) {
     const double value = p(x);
     (value < 0 ? upper : lower) = x;
     double next = x - value / slope(x);
-    if (!(next > lower && next < upper)) next = 0.5 * (lower + upper);
+    if (!(next > lower && next < upper)) next = upper < never ? 0.5 * (lower + upper) : 2 * lower;
     if (std::abs(next - x) <= 0x1p-52 * std::abs(next)) return next;
     x = next;
   }
