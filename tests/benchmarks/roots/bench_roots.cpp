@@ -51,6 +51,18 @@ int main(int argc, char** argv) try {
   write_tables(folder / "roots.md", rows);
   write_families(folder / "roots-families.md", cells);
   std::printf("written: roots.csv roots-summary.csv roots.md roots-families.md in %s\n", folder.c_str());
+
+  bool broken = false;
+  for (const Summary& row : rows) {
+    const std::size_t wrong = row.tally.wrong() + row.edge.wrong();
+    const std::size_t unenclosed = row.tally.unenclosed + row.edge.unenclosed;
+    if (!row.certified || wrong + unenclosed == 0) continue;
+    std::fprintf(stderr,
+                 "bench_roots: %s, degree %d, is certified, and gave %zu wrong answers and %zu wrong enclosures\n",
+                 row.solver.c_str(), row.degree, wrong, unenclosed);
+    broken = true;
+  }
+  return broken ? 1 : 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "bench_roots: %s\n", error.what());
   return 1;

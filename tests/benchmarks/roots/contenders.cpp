@@ -37,7 +37,8 @@ std::vector<Entry<Degree>> entries_of() {
   std::vector<Entry<Degree>> list;
   const auto add = [&]<Contender S>(S) {
     if constexpr (S::least_degree <= Degree && Degree <= S::greatest_degree) {
-      list.push_back({S::name, S::certified, &S::template first_negative<Degree>, &sum_of_answers<S, Degree>});
+      list.push_back({S::name, S::certified, &S::template first_negative<Degree>, &sum_of_answers<S, Degree>, nullptr});
+      if constexpr (S::certified) list.back().enclosure = &S::template enclosure<Degree>;
     }
   };
   (add(Solvers{}), ...);
@@ -58,6 +59,7 @@ std::vector<Entry<Degree>> entries() {
                     Compensated,          //
                     DerivativeIntervals,  //
                     Bernstein,            //
+                    Enclosed,             //
                     Canonical>();
 }
 

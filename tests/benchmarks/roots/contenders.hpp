@@ -7,6 +7,11 @@
 
 namespace bench_roots {
 
+/// lower <= root <= upper, guaranteed; infinite where there is none.
+struct Enclosure {
+  double lower, upper;
+};
+
 /// A solver at one degree. The question: when, in [0, horizon], is the polynomial first negative just after? Infinity
 /// where it is not; `horizon` may be infinite.
 template <int Degree>
@@ -16,6 +21,8 @@ struct Entry {
   double (*answer)(const kds::Polynomial<Degree>&, double horizon);
   /// Sum of the finite answers, so that none can be left out. The solver is inlined into the loop.
   double (*sum)(const std::vector<kds::Polynomial<Degree>>&, const std::vector<double>& horizons);
+  /// The enclosure of the answer, from those that give one; others have none.
+  Enclosure (*enclosure)(const kds::Polynomial<Degree>&, double horizon);
 };
 
 inline constexpr int greatest_degree = 8;

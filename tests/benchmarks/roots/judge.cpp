@@ -50,6 +50,15 @@ Judgement judge(const Truth& truth, double horizon, double answer) {
   return near(root, answer) ? at(root, answer) : Judgement{wrong};
 }
 
+Judgement judge(const Truth& truth, double horizon, double answer, double lower, double upper) {
+  Judgement judgement = judge(truth, horizon, answer);
+  const int i = truth.first_failure(horizon);
+  if (!judgement.crossing || i == -1) return judgement;
+  const ExactRoot root = i == Truth::root_at_now ? ExactRoot{} : truth.roots[static_cast<std::size_t>(i)];
+  judgement.enclosed = root.compare(lower) >= 0 && root.compare(upper) <= 0;
+  return judgement;
+}
+
 void Tally::add(const Judgement& judgement) {
   ++count;
   missed += judgement.verdict == Verdict::missed;
@@ -57,6 +66,7 @@ void Tally::add(const Judgement& judgement) {
   wrong_crossing += judgement.verdict == Verdict::wrong_crossing;
   early += judgement.early;
   crossings += judgement.crossing;
+  unenclosed += !judgement.enclosed;
   if (judgement.crossing) ulps_.push_back(judgement.ulps);
 }
 
@@ -67,6 +77,7 @@ void Tally::add(const Tally& other) {
   wrong_crossing += other.wrong_crossing;
   early += other.early;
   crossings += other.crossings;
+  unenclosed += other.unenclosed;
   ulps_.insert(ulps_.end(), other.ulps_.begin(), other.ulps_.end());
 }
 

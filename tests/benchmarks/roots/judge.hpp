@@ -20,6 +20,7 @@ struct Judgement {
   bool crossing = false;  ///< a crossing was rightly reported, so that the following means something
   double ulps = 0;        ///< |answer - root| in spacings of the doubles at the root
   bool early = false;     ///< before the root, so that the polynomial is not negative yet
+  bool enclosed = true;   ///< false if an enclosure was given and the root is not in it
 };
 
 /// An answer this far from the crossing, relative to the crossing's time, is none to that question. Generous: doubles
@@ -34,6 +35,9 @@ inline constexpr double astray = 0x1p-10;
 /// answered either way.
 Judgement judge(const Truth& truth, double horizon, double answer);
 
+/// The same, with an enclosure to hold the answer to: the true crossing lies in [lower, upper].
+Judgement judge(const Truth& truth, double horizon, double answer, double lower, double upper);
+
 /// Judgements counted.
 class Tally {
  public:
@@ -45,7 +49,8 @@ class Tally {
   std::size_t phantom = 0;
   std::size_t wrong_crossing = 0;
   std::size_t early = 0;
-  std::size_t crossings = 0;  ///< rightly reported
+  std::size_t crossings = 0;   ///< rightly reported
+  std::size_t unenclosed = 0;  ///< of them, outside the enclosure given
 
   std::size_t wrong() const { return missed + phantom + wrong_crossing; }
   /// Largest error of the crossings rightly reported; and what all but one in a thousand of them keep within.

@@ -110,7 +110,14 @@ std::vector<Cell> measure(const Family& family, const Options& options) {
       Cell cell{Degree, &family, kind, contenders[e].name, contenders[e].certified, {}, times[e]};
       for (std::size_t i = 0; i < asked.size(); ++i) {
         const double horizon = questions.horizons[i];
-        cell.tally.add(judge(*asked[i], horizon, contenders[e].answer(questions.polynomials[i], horizon)));
+        const auto& p = questions.polynomials[i];
+        const double answer = contenders[e].answer(p, horizon);
+        if (contenders[e].enclosure) {
+          const Enclosure enclosure = contenders[e].enclosure(p, horizon);
+          cell.tally.add(judge(*asked[i], horizon, answer, enclosure.lower, enclosure.upper));
+        } else {
+          cell.tally.add(judge(*asked[i], horizon, answer));
+        }
       }
       cells.push_back(std::move(cell));
     }

@@ -89,13 +89,13 @@ std::vector<Summary> summarise(const std::vector<Cell>& cells) {
 void write_cells(const std::filesystem::path& file, const std::vector<Cell>& cells) {
   std::ofstream out = opened(file);
   out << "degree,family,horizon,solver,certified,polynomials,crossings,ns,ulps_max,ulps_999,missed,phantom,"
-         "wrong_crossing,early\n";
+         "wrong_crossing,early,unenclosed\n";
   for (const Cell& cell : cells) {
     const Tally& t = cell.tally;
-    out << text("%d,%s,%s,%s,%d,%zu,%zu,%.2f,%.4g,%.4g,%zu,%zu,%zu,%zu\n", cell.degree, cell.family->name,
+    out << text("%d,%s,%s,%s,%d,%zu,%zu,%.2f,%.4g,%.4g,%zu,%zu,%zu,%zu,%zu\n", cell.degree, cell.family->name,
                 horizon_names[static_cast<std::size_t>(cell.horizon)], cell.solver.c_str(), cell.certified ? 1 : 0,
                 t.count, t.crossings, cell.nanoseconds, t.ulps_max(), t.ulps_999(), t.missed, t.phantom,
-                t.wrong_crossing, t.early);
+                t.wrong_crossing, t.early, t.unenclosed);
   }
   finish(out, file);
 }
@@ -104,13 +104,13 @@ void write_summary(const std::filesystem::path& file, const std::vector<Summary>
   std::ofstream out = opened(file);
   out << "degree,solver,certified,front,ordinary_ns,hostile_ns,slowest_ns,polynomials,wrong,missed,phantom,wrong_"
          "crossing,"
-         "ulps_max,ulps_999,early,crossings,edge_polynomials,edge_wrong\n";
+         "ulps_max,ulps_999,early,crossings,edge_polynomials,edge_wrong,unenclosed\n";
   for (const Summary& r : rows) {
     const Tally& t = r.tally;
-    out << text("%d,%s,%d,%d,%.2f,%.2f,%.2f,%zu,%zu,%zu,%zu,%zu,%.4g,%.4g,%zu,%zu,%zu,%zu\n", r.degree,
+    out << text("%d,%s,%d,%d,%.2f,%.2f,%.2f,%zu,%zu,%zu,%zu,%zu,%.4g,%.4g,%zu,%zu,%zu,%zu,%zu\n", r.degree,
                 r.solver.c_str(), r.certified ? 1 : 0, r.front ? 1 : 0, r.ordinary_ns, r.hostile_ns, r.slowest_ns,
                 t.count, t.wrong(), t.missed, t.phantom, t.wrong_crossing, t.ulps_max(), t.ulps_999(), t.early,
-                t.crossings, r.edge.count, r.edge.wrong());
+                t.crossings, r.edge.count, r.edge.wrong(), t.unenclosed + r.edge.unenclosed);
   }
   finish(out, file);
 }

@@ -87,6 +87,11 @@ TEST_CASE("judge: errors in ulps, and whether early", "[roots]") {
   CHECK_FALSE(judge(third, never, std::nextafter(below, 1)).early);
   CHECK(judge(third, never, below * (1 + 0x1p-40)).ulps == Approx(0x1p-40 / 3 / 0x1p-54).epsilon(1e-3));
 
+  CHECK(judge(third, never, below, below, std::nextafter(below, 1)).enclosed);
+  CHECK_FALSE(judge(third, never, below, 0.25, below).enclosed);
+  CHECK_FALSE(judge(third, never, below, std::nextafter(below, 1), 0.5).enclosed);
+  CHECK(judge(third, 0.25, never, never, never).enclosed);  // rightly none: nothing to enclose
+
   // At the last bit of the horizon.
   CHECK(judge(third, below, never).verdict == Verdict::right);
   CHECK(judge(third, below, below).verdict == Verdict::phantom);
@@ -173,9 +178,10 @@ void check_contenders_on_separated_roots(std::string& complaints) {
       const Coefficients c = separated.draw(random, Degree);
       kds::Polynomial<Degree> p;
       std::copy(c.begin(), c.end(), p.c.begin());
-      tally.add(judge(exact_truth(c), never, entry.answer(p, never)));
+      const Enclosure enclosure = entry.enclosure ? entry.enclosure(p, never) : Enclosure{0, never};
+      tally.add(judge(exact_truth(c), never, entry.answer(p, never), enclosure.lower, enclosure.upper));
     }
-    if (tally.wrong() > 0 || (entry.certified && tally.ulps_max() > 1)) {
+    if (tally.wrong() + tally.unenclosed > 0 || tally.count != 40) {
       complaints += std::string(entry.name) + ", degree " + std::to_string(Degree) + ": " +
                     std::to_string(tally.wrong()) + " wrong\n";
     }
