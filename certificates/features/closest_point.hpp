@@ -58,27 +58,25 @@ class PlacedPatch {
     for (std::size_t d = 0; d < 3; ++d) e_[d] = next(q[d]) - q[d];
     squared_ = detail::dot(e_, e_);
     falling_ = -detail::dot(q, e_);
+    u_ = detail::corner(e_, 0);
+    v_ = -detail::corner(e_, last);
+    n_ = u_.cross(v_);
+    n2_ = n_.dot(n_);
   }
 
   PatchPoint closest() const {
-    // The interior, which is q0 + x u + y v: by the normal u x v.
-    const Eigen::Vector3d u = detail::corner(e_, 0);
-    const Eigen::Vector3d v = -detail::corner(e_, last);
-    const Eigen::Vector3d n = u.cross(v);
-    const double n2 = n.dot(n);
     const double uu = squared_[0];
     const double vv = squared_[last];
-    if (n2 > flat_patch * uu * vv) {
-      const Eigen::Vector3d q0 = detail::corner(q_, 0);
-      const double uv = u.dot(v);
+    if (n2_ > flat_patch * uu * vv) {
+      const double uv = u_.dot(v_);
       const double fu = falling_[0];
-      const double fv = -v.dot(q0);
-      if (inside(vv * fu - uv * fv, uu * fv - uv * fu, n2)) {
-        const double height = n.dot(q0);
-        return {n * (height / n2), height * height / n2, PatchPart::interior, 0, 0};
+      const double fv = -v_.dot(detail::corner(q_, 0));
+      if (inside(vv * fu - uv * fv, uu * fv - uv * fu, n2_)) {
+        const double height = volume();
+        return {n_ * (height / n2_), height * height / n2_, PatchPart::interior, 0, 0};
       }
-    } else if (n2 > flattest_patch * uu * vv) {
-      return closest_of_flat(n, uu > vv ? u : v);
+    } else if (n2_ > flattest_patch * uu * vv) {
+      return closest_of_flat();
     }
     return closest_on_edges();
   }
@@ -114,12 +112,23 @@ class PlacedPatch {
       axes[k] = detail::corner(q_, k);
       axes[4 + k] = across(across(axes[k], e), e);
     }
-    axes[8] = across(plane_normal(), detail::corner(e_, squared_[0] > squared_[last] ? 0 : last));
+    axes[8] = across(n_, squared_[0] > squared_[last] ? u_ : v_);
     if (axes[8].dot(axes[0]) < 0) axes[8] = -axes[8];
     return axes;
   }
 
-  Eigen::Vector3d plane_normal() const { return detail::corner(e_, 0).cross(-detail::corner(e_, last)); }
+
+  /// The patch is q0 + x u + y v, with x, y >= 0 and x + y <= 1 or x, y <= 1; this is u x v, of length n.
+  const Eigen::Vector3d& normal() const { return n_; }
+  double squared_normal() const { return n2_; }
+  /// n . q0: six times the volume of the tetrahedron of the four points, up to its sign.
+  double volume() const { return n_.dot(detail::corner(q_, 0)); }
+
+  /// For the foot q0 + x u + y v of the origin: x and y, times |n|^2.
+  std::array<double, 2> foot() const {
+    const Eigen::Vector3d q0 = detail::corner(q_, 0);
+    return {n_.dot(v_.cross(q0)), -n_.dot(u_.cross(q0))};
+  }
 
  private:
   // The edge that ends in corner 0.
@@ -137,11 +146,6 @@ class PlacedPatch {
     return squared > 0 ? n - e * (n.dot(e) / squared) : n;
   }
 
-  /// For the foot q0 + x u + y v of the origin: x and y, times |n|^2.
-  std::array<double, 2> foot(const Eigen::Vector3d& u, const Eigen::Vector3d& v, const Eigen::Vector3d& n) const {
-    const Eigen::Vector3d q0 = detail::corner(q_, 0);
-    return {n.dot(v.cross(q0)), -n.dot(u.cross(q0))};
-  }
   static bool inside(double x, double y, double n2) {
     return x >= 0 && y >= 0 && (kind == Patch::triangle ? x + y <= n2 : std::max(x, y) <= n2);
   }
@@ -149,18 +153,14 @@ class PlacedPatch {
   /// x and y of the foot, inside. In flat patches its error is along the sides, and a step along the longer one
   /// takes that out.
   std::array<double, 2> interior_place() const {
-    const Eigen::Vector3d u = detail::corner(e_, 0);
-    const Eigen::Vector3d v = -detail::corner(e_, last);
-    const Eigen::Vector3d n = u.cross(v);
-    auto [x, y] = foot(u, v, n);
-    const double n2 = n.dot(n);
-    x /= n2;
-    y /= n2;
-    const Eigen::Vector3d p = detail::corner(q_, 0) + x * u + y * v;
+    auto [x, y] = foot();
+    x /= n2_;
+    y /= n2_;
+    const Eigen::Vector3d p = detail::corner(q_, 0) + x * u_ + y * v_;
     if (squared_[0] > squared_[last]) {
-      x -= p.dot(u) / squared_[0];
+      x -= p.dot(u_) / squared_[0];
     } else {
-      y -= p.dot(v) / squared_[last];
+      y -= p.dot(v_) / squared_[last];
     }
     x = std::clamp(x, 0.0, 1.0);
     y = std::clamp(y, 0.0, kind == Patch::triangle ? 1 - x : 1.0);
@@ -168,12 +168,12 @@ class PlacedPatch {
   }
 
   /// The interior counts only as far as a point of the patch is really closer than the edges.
-  PatchPoint closest_of_flat(const Eigen::Vector3d& n, const Eigen::Vector3d& longer) const {
+  PatchPoint closest_of_flat() const {
     const PatchPoint on_edges = closest_on_edges();
-    const double n2 = n.dot(n);
-    const auto [x, y] = foot(detail::corner(e_, 0), -detail::corner(e_, last), n);
-    if (!inside(x, y, n2)) return on_edges;
-    PatchPoint point{across(n, longer) * (n.dot(detail::corner(q_, 0)) / n2), 0, PatchPart::interior, 0, 0};
+    const auto [x, y] = foot();
+    if (!inside(x, y, n2_)) return on_edges;
+    const Eigen::Vector3d& longer = squared_[0] > squared_[last] ? u_ : v_;
+    PatchPoint point{across(n_, longer) * (volume() / n2_), 0, PatchPart::interior, 0, 0};
     const double distance = position(corner_weights(interior_place())).squaredNorm();
     if (!(distance < on_edges.squared_distance)) return on_edges;
     point.squared_distance = distance;
@@ -201,6 +201,8 @@ class PlacedPatch {
   Corners e_;      // edge k leads from corner k to the next
   Lanes squared_;  // |e|^2
   Lanes falling_;  // -q . e
+  Eigen::Vector3d u_, v_, n_;
+  double n2_;
 };
 
 }  // namespace kds::certificates

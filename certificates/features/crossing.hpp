@@ -23,10 +23,8 @@ namespace kds::certificates {
 template <Patch kind, int Degree>
 class Crossing {
  public:
-  Crossing(const PatchPaths<Degree>& paths, const Corners& corners, double s) : paths_(paths), corners_(corners), s_(s) {
-    double r2 = 0;
-    for (std::size_t k = 0; k < 4; ++k) r2 = std::max(r2, detail::corner(corners, k).squaredNorm());
-    radius_ = std::sqrt(r2);
+  Crossing(const PatchPaths<Degree>& paths, const PlacedPatch<kind>& now, double s) : paths_(paths), now_(now), s_(s) {
+    radius_ = std::sqrt(highest(detail::dot(now.corners(), now.corners())));
     Lanes fastest(0.0);
     for (std::size_t d = 0; d < 3; ++d) {
       Lanes v = absolute(paths.c[1][d]);
@@ -37,52 +35,43 @@ class Crossing {
   }
 
   std::optional<double> until(const std::array<double, 4>& weights) const {
-    const Frame now(corners_);
-    const double n1 = now.n.norm();
-    const auto v = paths_.velocity(s_);
-    double closing = 0;
-    for (std::size_t k = 0; k < 4; ++k) closing -= weights[k] * now.n.dot(detail::corner(v, k)) / n1;
-    const double side = now.volume < 0 ? -1 : 1;
-    closing *= side;
+    const double n1 = std::sqrt(now_.squared_normal());
+    const double volume = now_.volume();
+    const Eigen::Vector3d velocity = detail::weighted(paths_.velocity(s_), weights);
+    const double closing = (volume < 0 ? now_.normal().dot(velocity) : -now_.normal().dot(velocity)) / n1;
     const double noise = 64 * radius_ * radius_ * (paths_.error + 0x1p-46 * radius_);
-    const double height = std::abs(now.volume) / n1;
+    const double height = std::abs(volume) / n1;
     const double sure = 2 * noise / n1;
-    if (!(closing > 0)) {
-      if (!(height < sure)) return std::nullopt;
-    }
+    if (!(closing > 0 || height < sure)) return std::nullopt;
     const double rate = std::abs(closing);
     const double begin = std::max(0.0, height > sure ? s_ : s_ - sure / rate);
     const double end = std::min(1.0, s_ + 1.5 * (height + sure) / rate);
-    const double before = Frame(paths_.at(begin)).volume;
-    const double after = Frame(paths_.at(end)).volume;
+    const double before = volume_at(begin);
+    const double after = volume_at(end);
     const bool crosses = (before > noise && after < -noise) || (before < -noise && after > noise);
-    if (!crosses || !inside(now, std::max(end - s_, s_ - begin))) return std::nullopt;
+    if (!crosses || !inside(std::max(end - s_, s_ - begin))) return std::nullopt;
     return end;
   }
 
  private:
-  struct Frame {
-    Eigen::Vector3d u, v, n, q0;
-    double volume;
-    explicit Frame(const Corners& q)
-        : u(detail::corner(q, 1) - detail::corner(q, 0)),
-          v(detail::corner(q, kind == Patch::triangle ? 2 : 3) - detail::corner(q, 0)),
-          n(u.cross(v)),
-          q0(detail::corner(q, 0)),
-          volume(n.dot(q0)) {}
-  };
+  double volume_at(double s) const {
+    const Corners q = paths_.at(s);
+    const Eigen::Vector3d q0 = detail::corner(q, 0);
+    const Eigen::Vector3d u = detail::corner(q, 1) - q0;
+    const Eigen::Vector3d v = detail::corner(q, kind == Patch::triangle ? 2 : 3) - q0;
+    return u.cross(v).dot(q0);
+  }
 
-  bool inside(const Frame& now, double width) const {
+  bool inside(double width) const {
     const double r = radius_ + speed_ * width;
     const double slack = 128 * r * r * r * (speed_ * width + 4 * paths_.error + 0x1p-44 * r);
-    const double n2 = now.n.dot(now.n);
-    const double x = now.n.dot(now.v.cross(now.q0));
-    const double y = -now.n.dot(now.u.cross(now.q0));
+    const double n2 = now_.squared_normal();
+    const auto [x, y] = now_.foot();
     return x > slack && y > slack && (kind == Patch::triangle ? n2 - x - y > slack : n2 - std::max(x, y) > slack);
   }
 
   const PatchPaths<Degree>& paths_;
-  const Corners& corners_;
+  const PlacedPatch<kind>& now_;
   double s_;
   double radius_;
   double speed_;

@@ -48,7 +48,8 @@ class Search {
       const double until = free_until(patch, point, s);
       if (until >= 1) return result_;
       if (!(until > s) || result_.steps == most_steps) {
-        describe(patch, point, s, FeatureContactStatus::undecided);
+        const auto w = patch.weights(point);
+        describe(patch, w, patch.position(w), s, FeatureContactStatus::undecided);
         return result_;
       }
       axis_ = point.position;
@@ -74,12 +75,12 @@ class Search {
     const Eigen::Vector3d p = patch.position(w);
     if (p.squaredNorm() > inner2_) return false;
     if (s == 0) {
-      describe(patch, point, s, FeatureContactStatus::at_start);
+      describe(patch, w, p, s, FeatureContactStatus::at_start);
       return true;
     }
-    describe(patch, point, s, FeatureContactStatus::undecided);
+    describe(patch, w, p, s, FeatureContactStatus::undecided);
     if (point.part == PatchPart::interior) {
-      if (const auto end = Crossing<kind, Degree>(paths_, patch.corners(), s).until(w)) {
+      if (const auto end = Crossing<kind, Degree>(paths_, patch, s).until(w)) {
         result_.status = FeatureContactStatus::contact;
         result_.latest = std::min(clock(*end, 1), t1_);
       }
@@ -87,28 +88,27 @@ class Search {
     return true;
   }
 
-  void describe(const PlacedPatch<kind>& patch, const PatchPoint& point, double s, FeatureContactStatus status) {
-    const auto w = patch.weights(point);
-    const Eigen::Vector3d p = patch.position(w);
+  void describe(const PlacedPatch<kind>& patch, const std::array<double, 4>& w, const Eigen::Vector3d& p, double s,
+                FeatureContactStatus status) {
     result_.status = status;
     result_.time = s > 0 ? std::max(clock(s, -1), t0_) : t0_;
     // While the clock is rounded (see clock()) a corner moves on: by sqrt(3) 2 size a unit of s at most.
     const double rounding = s > 0 ? 0x1p-50 * (std::abs(result_.time) / (t1_ - t0_) + s) : 0;
-    result_.distance = (p.norm() + 3 * margin_ + 4 * paths_.size * rounding) / scale_;
+    const double distance = p.norm();
+    result_.distance = (distance + 3 * margin_ + 4 * paths_.size * rounding) / scale_;
     if constexpr (kind == Patch::triangle) {
       result_.weights = {1, w[0] + w[3], w[1], w[2]};
     } else {
       result_.weights = {w[0] + w[3], w[1] + w[2], w[0] + w[1], w[2] + w[3]};
     }
-    result_.normal = normal(patch, p, s);
+    result_.normal = distance > 64 * margin_ ? Eigen::Vector3d(p / distance) : normal(patch, s);
   }
 
   /// The way from the one feature to the other, where it is longer than its error; else the last axis that separated
   /// them; else, at the start, the normal of the patch, against its motion; else any.
-  Eigen::Vector3d normal(const PlacedPatch<kind>& patch, const Eigen::Vector3d& p, double s) const {
-    if (p.norm() > 64 * margin_) return p.normalized();
+  Eigen::Vector3d normal(const PlacedPatch<kind>& patch, double s) const {
     if (axis_.squaredNorm() > 0) return axis_.normalized();
-    Eigen::Vector3d n = patch.plane_normal();
+    Eigen::Vector3d n = patch.normal();
     const Corners v = paths_.velocity(s);
     const Eigen::Vector3d velocity = detail::weighted(v, {0.25, 0.25, 0.25, 0.25});
     if (!(n.squaredNorm() > 0)) n = -velocity;
