@@ -8,9 +8,8 @@ namespace kds::certificates {
 
 /// side * det(b - a, c - a, d - a) >= 0: six times the signed volume of the tetrahedron a, b, c, d keeps its sign.
 ///
-/// It fails when d crosses the plane through a, b, c, and equally when the line through a, b crosses the one through
-/// c, d; positive where d sees a, b, c turn clockwise (d above the counter-clockwise side has a negative sign only for
-/// side -1). Degree 3 for linear paths: the cubic of the literature on continuous collision [Provot97]; degree 6 for
+/// With side +1 it is positive while a, b, c turn counter-clockwise seen from d. It fails when d crosses the plane
+/// through a, b, c, and equally when the line through a, b crosses that through c, d. Degree 3 for linear paths: the cubic of the literature on continuous collision [Provot97]; degree 6 for
 /// quadratic ones. Its failure times are exact where four points become coplanar; whether the features meet there or
 /// only their plane and line is another question, which features/feature_contact.hpp answers.
 template <int PathDegree>
