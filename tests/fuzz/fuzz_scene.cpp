@@ -52,8 +52,8 @@ void check_message(const std::string_view message) {
   const auto control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
   require(std::none_of(message.begin(), message.end(), control), "the error is not one line");
   const std::string_view rest = message.substr(std::string_view(file).size() + 2);
-  const auto colon = rest.find(": ");
-  require(colon != std::string_view::npos && colon > 0 && colon + 2 < rest.size(), "the error says no WHERE or what");
+  const auto colon = rest.find(": ", 1);  // WHERE holds keys as they are, and one may begin with a colon
+  require(colon != std::string_view::npos && colon + 2 < rest.size(), "the error says no WHERE or what");
 }
 
 }  // namespace
