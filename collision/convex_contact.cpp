@@ -249,7 +249,7 @@ double first_piece_contact(const P& piece, const MovingShape<Degree>& a, const M
     if (approaching(contact, a, b)) return t;
     // Overlapping by rounding and moving apart: next when they have parted, or turn before they have.
     t = std::min(piece.first_outside(t, horizon), turning_time(contact, a, b));
-    if (t > horizon) return never;
+    if (t == never || t > horizon) return never;
   }
 }
 
