@@ -19,7 +19,7 @@ struct BallSeparation {
   Polynomial<degree, Number> polynomial(double epoch) const {
     const auto r = relative_motion<Number>(a, b, epoch);
     const Number reach = Number(radius_a) + radius_b;
-    auto f = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+    auto f = square(r[0]) + square(r[1]) + square(r[2]);
     f.c[0] = f.c[0] - reach * reach;
     return f;
   }

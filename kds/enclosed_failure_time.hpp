@@ -44,19 +44,10 @@ FailureTime enclosed_failure_time(const C& certificate, double now, double horiz
 
 namespace detail {
 
-/// The root of a falling line, as that of a parabola in quadratic_root(): 3 u for two roundings.
-inline QuadraticRoot linear_root(const Polynomial<1, Ball<double>>& p) {
-  const double x = p.c[0].middle / -p.c[1].middle;
-  const double error =
-      1.01 * (p.c[0].radius / std::abs(p.c[0].middle) + p.c[1].radius / std::abs(p.c[1].middle) + 3 * 0x1p-53);
-  const bool in_range = x > 0x1p-900 && x < 0x1p900 && p.c[0].middle > 0x1p-900;
-  return {x, error <= 0x1p-10 && in_range ? error : undecided};
-}
-
 /// The root that failure_time() would look for, of a line or a parabola, from doubles alone; undecided where these do not
 /// do. `holds` is set where there is certainly none. Precondition: f > 0 just after now.
 template <int Degree>
-QuadraticRoot enclosed_root(const Polynomial<Degree, Ball<double>>& p, bool& holds) {
+ApproximateRoot enclosed_root(const Polynomial<Degree, Ball<double>>& p, bool& holds) {
   if constexpr (Degree == 0) {
     holds = true;
   } else {
@@ -64,13 +55,15 @@ QuadraticRoot enclosed_root(const Polynomial<Degree, Ball<double>>& p, bool& hol
     holds = never_falls(p);
     if (holds) return {never, undecided};
     if constexpr (Degree == 1) {
-      if (certain_sign(p.c[1]) < 0) return linear_root(p);
+      if (certain_sign(p.c[1]) < 0) {
+        return bounded_quotient(p.c[0].middle, p.c[0].radius, -p.c[1].middle, p.c[1].radius);
+      }
     } else if constexpr (Degree == 2) {
-      const Ball<double> discriminant = p.c[1] * p.c[1] - p.c[0] * p.c[2] * 4.0;
+      const Ball<double> d = discriminant(p);
       const int bend = certain_sign(p.c[2]);
-      const int real = certain_sign(discriminant);
+      const int real = certain_sign(d);
       holds = bend > 0 && real < 0;
-      if (bend != 0 && real > 0) return quadratic_root(p, discriminant);
+      if (bend != 0 && real > 0) return quadratic_root(p, d);
     }
   }
   return {never, undecided};
@@ -102,16 +95,16 @@ FailureTime enclosed_failure_time(const C& certificate, double now, double horiz
   if (value < 0) return {now, now, now, FailureStatus::fails_at_once};
   if (value > 0) {
     bool holds = false;
-    const detail::QuadraticRoot root = detail::enclosed_root(p, holds);
-    if (holds || root.x * (1 - root.error) > (horizon - now) * (1 + 0x1p-50)) return {};
+    const detail::ApproximateRoot root = detail::enclosed_root(p, holds);
+    if (holds || root.x - root.error > (horizon - now) * (1 + 0x1p-50)) return {};
     const double time = now + root.x;
     // Roundings of the sum, of the radius and of the difference below: within one and a half units of 2^-52 |time|.
-    const double radius = root.x * root.error + 0x1.8p-52 * std::abs(time);
+    const double radius = root.error + 0x1.8p-52 * std::abs(time);
     const double upper = time + radius;
     // The next double above must be within the horizon too, and f < 0 there: of course for a line. The root of a parabola
     // is known to 2^-47 only if its discriminant is at least (c1 / 128)^2, as that has a radius of 2^-52 c1^2; so the
     // second root is x / 64 farther, which is four doubles by the second condition.
-    if (root.error <= enough && std::abs(time) * 0x1p-44 <= root.x && next_up(upper) <= horizon && upper < never) {
+    if (root.error <= enough * root.x && std::abs(time) * 0x1p-44 <= root.x && next_up(upper) <= horizon && upper < never) {
       return {time, std::max(now, time - radius), upper, FailureStatus::root};
     }
   }

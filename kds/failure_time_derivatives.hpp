@@ -22,6 +22,9 @@ namespace kds::detail {
 /// sign is dropped. In the end, the first double just after which f < 0 is one where f turns between two cells, or the
 /// end of a cell.
 ///
+/// Without a horizon the last stretch reaches to infinity, where the leading coefficient tells the sign, which is cheaper
+/// than the sign at the largest double; but only as long as no higher derivative turns beyond all doubles.
+///
 /// Cost: O(degree^2) searches of a few values in double-double each, 2 to 40 us.
 template <class C>
 class DerivativeIntervals {
@@ -65,7 +68,7 @@ class DerivativeIntervals {
     }
   }
 
-  double first_negative_between_cells() const {
+  double first_negative_between_cells() {
     if (sign_after(certificate_, now_) < 0) return now_;
     double start = now_;
     for (std::size_t i = 0; i <= count_; ++i) {
@@ -102,7 +105,7 @@ class DerivativeIntervals {
 
   /// f^(order) is monotone on [start, stop]. The first double in (start, stop] just after which its sign is new, or
   /// `never` if the sign does not change.
-  double crossing(int order, double start, double stop) const {
+  double crossing(int order, double start, double stop) {
     if (!(start < stop)) return never;
     const int before = sign_after(certificate_, start, order);
     const int after = stop < never ? sign_after(certificate_, stop, order) : sign_at_infinity(order);
@@ -114,8 +117,11 @@ class DerivativeIntervals {
     }
     const double guess = now_ + approximate_root(scaled_derivative(order), start - now_, above - now_, after > 0);
     const double t = LatticeCrossing<C>(certificate_, order)(start, above, after, guess);
-    // It may be beyond all doubles.
-    return stop == never && t == above && sign_after(certificate_, t, order) != after ? never : t;
+    if (stop == never && t == above && sign_after(certificate_, t, order) != after) {
+      horizon_ = above;  // It is beyond all doubles.
+      return never;
+    }
+    return t;
   }
 
   /// The leading term decides.

@@ -52,32 +52,48 @@ double quadratic_failure_time_by_signs(const C& certificate, const Polynomial<2,
   return LatticeCrossing<C>(certificate, 0)(now, above, -1, now + tau);
 }
 
-/// A root of a parabola in doubles, and a bound on its relative error (2^-10 at most); a NaN where there is no such bound.
-struct QuadraticRoot {
+/// c1^2 - 4 c0 c2. Error bound, with u = 2^-53: the two products and the difference are known to u of themselves, together
+/// at most 2 u (|c1^2| + |4 c0 c2|), and to what the radii make of them; underflow takes less than 2^-1020.
+inline Ball<double> discriminant(const Polynomial<2, Ball<double>>& p) {
+  const auto& [c0, c1, c2] = p.c;
+  const double square = c1.middle * c1.middle;
+  const double product = 4 * (c0.middle * c2.middle);
+  const double radius = (2 * std::abs(c1.middle) + c1.radius) * c1.radius +
+                        4 * (std::abs(c0.middle) * c2.radius + (std::abs(c2.middle) + c2.radius) * c0.radius);
+  return {square - product, radius + 0x1p-52 * (square + std::abs(product)) + 0x1p-1020};
+}
+
+/// A root in doubles, and a bound on its error; a NaN where there is no good bound.
+struct ApproximateRoot {
   double x;
   double error;
 };
 
+/// N / M with N known to +-n and M to +-m. With m / M <= 2^-8 the error is at most (n + |x| m) / (M - m), plus the
+/// roundings of the inverse and of the product, 2^-52 |x|; the factor 1.01 covers M - m in place of M and what the bound
+/// itself loses. Out of 2^+-900 nothing is said, so that underflow plays no part.
+inline ApproximateRoot bounded_quotient(double numerator, double n, double denominator, double m) {
+  const double inverse = 1 / denominator;
+  const double x = numerator * inverse;
+  const double error = 1.01 * (n + x * m) * std::abs(inverse) + 0x1p-51 * x;
+  const bool good = m * std::abs(inverse) <= 0x1p-8 && error <= 0x1p-10 * x && x > 0x1p-900 && x < 0x1p900 &&
+                    std::abs(inverse) < 0x1p900 && std::abs(numerator) > 0x1p-900;
+  return {x, good ? error : undecided};
+}
+
 /// Where a parabola that is positive just after 0 turns from + to -: 2 c0 / (sqrt(D) - c1), or, to the same effect,
 /// (c1 + sqrt(D)) / (-2 c2), of which one is free of cancellation. D is certainly positive, so that is the only such turn.
 ///
-/// Error bound, with u = 2^-53. Let D be known to +-d with d <= 2^-12 D; its root is then known to 0.51 d / sqrt(D) + u
-/// sqrt(D). The sum S of that and |c1| (known to +-r1) has no cancellation, so its relative error is at most
-/// (0.51 d / sqrt(D) + r1) / S + 3 u; the quotient adds the relative error of c0 (or c2) and 2 u. Each part is at most
-/// 2^-11 or so, which the factor 1.01 turns from a bound on S and on c0 into one on the quotient.
-inline QuadraticRoot quadratic_root(const Polynomial<2, Ball<double>>& p, const Ball<double>& discriminant) {
+/// Error bound. Let D be known to +-d with d <= D / 8; its root is known to 0.52 d / sqrt(D), and 2^-53 for its rounding.
+/// The sum S of that and |c1| (known to +-r1) has no cancellation: it is known to 0.52 d / sqrt(D) + r1 + 2^-52 S.
+inline ApproximateRoot quadratic_root(const Polynomial<2, Ball<double>>& p, const Ball<double>& discriminant) {
+  if (!(discriminant.radius <= 0.125 * discriminant.middle)) return {never, undecided};
+  const auto& [c0, c1, c2] = p.c;
   const double root = std::sqrt(discriminant.middle);
-  const bool rising = p.c[1].middle > 0;
-  const double sum = std::abs(p.c[1].middle) + root;
-  const Ball<double>& other = rising ? p.c[2] : p.c[0];
-  const double x = rising ? sum / (-2 * other.middle) : 2 * other.middle / sum;
-  const double inaccuracy = discriminant.radius / discriminant.middle;
-  const double error = 1.01 * ((0.51 * inaccuracy * root + p.c[1].radius) / sum +
-                               other.radius / std::abs(other.middle) + 6 * 0x1p-53);
-  // Below 2^-900 underflow could add to the errors.
-  const bool in_range = x > 0x1p-900 && x < 0x1p900 && std::abs(other.middle) > 0x1p-900 && sum > 0x1p-900;
-  if (!(inaccuracy <= 0x1p-12 && error <= 0x1p-10 && in_range)) return {x, undecided};
-  return {x, error};
+  const double sum = std::abs(c1.middle) + root;
+  const double error = (0.52 * discriminant.radius / root + c1.radius) * Ball<double>::slack + 0x1p-52 * sum;
+  if (c1.middle > 0) return bounded_quotient(sum, error, -2 * c2.middle, 2 * c2.radius);
+  return bounded_quotient(2 * c0.middle, 2 * c0.radius, sum, error);
 }
 
 /// p is f about now. Precondition: f > 0 just after now.
@@ -88,13 +104,13 @@ template <class C>
 double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<double>>& p, double now, double horizon) {
   const int bend = certain_sign(p.c[2]);
   if (bend > 0 && certain_sign(p.c[1]) > 0) return never;
-  const Ball<double> discriminant = p.c[1] * p.c[1] - p.c[0] * p.c[2] * 4.0;
-  const int real = certain_sign(discriminant);
+  const Ball<double> d = discriminant(p);
+  const int real = certain_sign(d);
   if (bend > 0 && real < 0) return never;
   if (bend != 0 && real > 0) {
-    const QuadraticRoot root = quadratic_root(p, discriminant);
-    if (root.error < 1) {
-      if (root.x * (1 - root.error) > (horizon - now) * (1 + 0x1p-50)) return never;
+    const ApproximateRoot root = quadratic_root(p, d);
+    if (root.error < never) {
+      if (root.x - root.error > (horizon - now) * (1 + 0x1p-50)) return never;
       const double t = RootRounding<C>(certificate, now)(p, root.x, 0.0, never);
       if (t <= horizon) return t;
       if (t > horizon) return never;

@@ -188,7 +188,7 @@ int scale_exponent(const Polynomial<Degree, Ball<double>>& p, double end) {
     const int reach = ((constant - exponent_of(p.c[i].middle)) * (65536 / i)) >> 16;
     scale = std::min(scale, p.c[i].middle < 0 ? reach : most);
   });
-  return std::clamp(scale, -most, most);
+  return scale == most ? 0 : std::max(scale, -most);
 }
 
 template <int Degree>

@@ -1,6 +1,8 @@
 // Polynomials in one variable with a degree known at compile time.
 #pragma once
 
+#include "kds/unrolled.hpp"
+
 #include <array>
 #include <cstddef>
 
@@ -80,6 +82,23 @@ constexpr Polynomial<DegreeA + DegreeB, Scalar> operator*(const Polynomial<Degre
     for (std::size_t j = 0; j <= DegreeB; ++j) product.c[i + j] = product.c[i + j] + a.c[i] * b.c[j];
   }
   return product;
+}
+
+/// p^2, with each product of two different coefficients computed once.
+template <int Degree, class Scalar>
+constexpr Polynomial<2 * Degree, Scalar> square(const Polynomial<Degree, Scalar>& p) {
+  Polynomial<2 * Degree, Scalar> result;
+  unrolled<2 * Degree + 1>([&](auto number) {
+    constexpr std::size_t k = number;
+    constexpr std::size_t first = k > Degree ? k - Degree : 0;
+    constexpr bool even = k % 2 == 0;
+    Scalar sum = even ? p.c[k / 2] * p.c[k / 2] : p.c[first] * p.c[k - first] * 2.0;
+    unrolled<(k + 1) / 2 - first>([&](auto i) {
+      if constexpr (even || i > 0) sum = sum + p.c[first + i] * p.c[k - first - i] * 2.0;
+    });
+    result.c[k] = sum;
+  });
+  return result;
 }
 
 /// Every coefficient times a double, which is taken as exact.

@@ -1,95 +1,131 @@
-// Isolation in doubles: what is claimed holds for every polynomial within the balls.
+// Isolation in doubles: what it says of a polynomial must hold for every polynomial within the balls, exactly.
 #include "kds/first_crossing.hpp"
-#include "tests/support/random_numbers.hpp"
+#include "tests/kds/polynomial_families.hpp"
+#include "tests/support/exact_algebra.hpp"
 
 #include <catch2/catch.hpp>
 
-#include <array>
 #include <cmath>
-#include <cstdint>
+#include <limits>
+#include <string>
 #include <vector>
 
-namespace kds::tests {
 namespace {
 
-constexpr std::array<double, 6> binomials{1, 5, 10, 10, 5, 1};
+using namespace kds;
+using namespace kds::tests;
+using Status = Crossing::Status;
 
-/// The polynomial whose Bernstein coefficients over all x >= 0 (see first_crossing) are these.
-Polynomial<5, Ball<double>> from_bernstein(const std::array<double, 6>& b, double radius) {
-  Polynomial<5, Ball<double>> p;
-  for (std::size_t i = 0; i < 6; ++i) p.c[i] = {b[i] * binomials[i], radius * binomials[i]};
-  return p;
-}
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <int Degree>
-double value(const std::array<double, Degree + 1>& c, double x) {
-  double sum = 0;
-  for (std::size_t i = Degree + 1; i-- > 0;) sum = sum * x + c[i];
-  return sum;
+Polynomial<Degree, Ball<double>> balls(const Polynomial<Degree>& p) {
+  Polynomial<Degree, Ball<double>> result;
+  for (std::size_t i = 0; i <= Degree; ++i) result.c[i] = p.c[i];
+  return result;
+}
+
+/// Whether the claim holds for p, by all its roots over the rationals.
+template <int Degree>
+bool holds(const Crossing& crossing, const Polynomial<Degree>& p, double end) {
+  if (crossing.status == Status::undecided) return true;
+  const oracle::Polynomial q = oracle::Polynomial::motion({p.c.begin(), p.c.end()}, 0);
+  if (q.sign_after(0) < 0) return true;  // not what the function is for
+  const auto fall = oracle::first_negative(q, 0, oracle::time_end(end));
+  if (crossing.status == Status::none) return !fall;
+  const auto first = oracle::first_negative(q, 0);
+  if (!first) return false;
+  // The ends are known to 2^-44.
+  const double after = crossing.after * (1 + 0x1p-44);
+  const double before = crossing.before * (1 - 0x1p-44);
+  if (!(crossing.after < crossing.guess && crossing.guess < crossing.before)) return false;
+  if (first->compare(oracle::rational(after)) < 0) return false;
+  if (before == infinity) return oracle::roots(q, oracle::rational(after), std::nullopt).size() == 1;
+  const auto inside = oracle::roots(q, oracle::rational(crossing.after * (1 - 0x1p-44)), oracle::rational(before));
+  return inside.size() == 1 && first->compare(oracle::rational(crossing.before * (1 + 0x1p-44))) <= 0;
 }
 
 }  // namespace
 
-TEST_CASE("several coefficients that may have either sign isolate nothing", "[first_crossing]") {
-  // Within the radius lies one with the signs + - - + + -, which turns three times.
-  const auto p = from_bernstein({2, 0, 0, 0, 0, -2}, 0.99);
-  std::array<double, 6> hidden{1.01, -0.99, -0.99, 0.99, 0.99, -1.01};
-  for (std::size_t i = 0; i < 6; ++i) hidden[i] *= binomials[i];
-  REQUIRE(value<5>(hidden, 1.0 / 3) < 0);
-  REQUIRE(value<5>(hidden, 3) > 0);
-  CHECK(first_crossing(p, INFINITY).status != Crossing::Status::isolated);
+TEST_CASE("sign patterns decide at once", "[first_crossing]") {
+  CHECK(first_crossing(balls<3>({{1, 2, 3, 4}}), infinity).status == Status::none);
+  CHECK(first_crossing(balls<3>({{1, 2, 3, -4}}), infinity).status == Status::isolated);
+  CHECK(first_crossing(balls<3>({{1, -2, -3, -4}}), infinity).status == Status::isolated);
+  CHECK(first_crossing(balls<3>({{1, -2, -3, -4}}), 0.1).status == Status::none);
+  CHECK(first_crossing(balls<4>({{1, -1, 1, -1, 1}}), infinity).status == Status::none);  // (x^5 + 1) / (x + 1)
 }
 
-TEST_CASE("one coefficient that may have either sign does no harm", "[first_crossing]") {
-  const auto p = from_bernstein({2, 2, 0, -2, -2, -2}, 0.01);
-  CHECK(first_crossing(p, INFINITY).status == Crossing::Status::isolated);
+TEST_CASE("the first of several crossings is isolated", "[first_crossing]") {
+  // (x - 1)(x - 2)(x - 3), turned.
+  const Crossing crossing = first_crossing(balls<3>({{6, -11, 6, -1}}), infinity);
+  REQUIRE(crossing.status == Status::isolated);
+  CHECK(crossing.after < 1);
+  CHECK(crossing.before > 1);
+  CHECK(crossing.before <= 2);
+  CHECK(first_crossing(balls<3>({{6, -11, 6, -1}}), 0.99).status == Status::none);
 }
 
-TEST_CASE("what first_crossing says of balls is true of polynomials within them", "[first_crossing]") {
-  const std::uint64_t seed = 800;
-  CAPTURE(seed);
-  Random random(seed);
-  std::array<int, 3> met{};
-  for (int round = 0; round < 20000; ++round) {
-    Polynomial<4, Ball<double>> p;
-    const double radius = std::ldexp(1.0, random.integer(-12, -1));
-    for (auto& c : p.c) c = {random.between(-1, 1), radius};
-    p.c[0].middle = radius * (1 + random.unit() * 8);
-    const double end = random.one_in(2) ? INFINITY : random.between(0, 3);
-    const Crossing crossing = first_crossing(p, end);
-    ++met[static_cast<std::size_t>(crossing.status)];
-    if (crossing.status == Crossing::Status::undecided) continue;
-    bool right = true;
-    for (int sample = 0; sample < 8; ++sample) {
-      std::array<double, 5> c;
-      for (std::size_t i = 0; i < 5; ++i) {
-        c[i] = p.c[i].middle + radius * (random.one_in(2) ? random.between(-1, 1) : (random.one_in(2) ? 1 : -1));
-      }
-      // On a grid of x = w / (1 - w): signs far from zero must be as claimed.
-      int turns = 0;
-      int sign = 1;
-      for (double w = 1.0 / 256; w < 1; w += 1.0 / 256) {
-        const double x = w / (1 - w);
-        if (x > end) break;
-        const double f = value<4>(c, x);
-        if (std::abs(f) < 1e-9 * (1 + x * x * x * x)) continue;
-        const int now = f > 0 ? 1 : -1;
-        if (crossing.status == Crossing::Status::none) right = right && now > 0;
-        if (crossing.status == Crossing::Status::isolated) {
-          if (x <= crossing.after * (1 - 1e-12)) right = right && now > 0;
-          if (x < crossing.before * (1 - 1e-12)) {
-            turns += now != sign;
-            sign = now;
-          }
-        }
-      }
-      right = right && turns <= 1;
+TEST_CASE("what doubles cannot tell is not told", "[first_crossing]") {
+  CHECK(first_crossing(balls<4>({{1, -4, 6, -4, 1}}), infinity).status == Status::undecided);  // (x - 1)^4
+  const double nan = std::nan("");
+  CHECK(first_crossing(balls<3>({{1, nan, 1, -1}}), infinity).status == Status::undecided);
+  CHECK(first_crossing(balls<3>({{1, -infinity, 1, 1}}), infinity).status == Status::undecided);
+  auto wide = balls<3>({{1, -1, 1, 1}});
+  wide.c[1].radius = infinity;
+  CHECK(first_crossing(wide, infinity).status == Status::undecided);
+  wide.c[1].radius = nan;
+  CHECK(first_crossing(wide, infinity).status == Status::undecided);
+}
+
+#define FOR_EACH_DEGREE ((int Degree), Degree), 2, 3, 4, 5, 6, 8
+
+TEMPLATE_TEST_CASE_SIG("what isolation says holds exactly, on every family", "[first_crossing]", FOR_EACH_DEGREE) {
+  const std::uint64_t seed = 3000;
+  for (int number = 0; number < static_cast<int>(Family::count); ++number) {
+    const auto family = static_cast<Family>(number);
+    Random random(seed + static_cast<std::uint64_t>(100 * number + Degree));
+    int wrong = 0;
+    for (int round = 0; round < 12; ++round) {
+      auto x = next_case<Degree>(family, random);
+      if (sign_after(PolynomialCertificate<Degree>{x.value}, x.value.start) < 0) x.value.position = -x.value.position;
+      wrong += !holds(first_crossing(balls(x.value.position), x.horizon), x.value.position, x.horizon);
     }
-    CAPTURE(round);
-    REQUIRE(right);
+    CAPTURE(Degree, seed, name(family));
+    CHECK(wrong == 0);
   }
-  CHECK(met[0] > 1000);
-  CHECK(met[1] > 300);
 }
 
-}  // namespace kds::tests
+TEMPLATE_TEST_CASE_SIG("what isolation says of balls holds for all they contain", "[first_crossing]", FOR_EACH_DEGREE) {
+  const std::uint64_t seed = 3100;
+  Random random(seed + Degree);
+  int wrong = 0;
+  int decided = 0;
+  for (int round = 0; round < 60; ++round) {
+    const auto x = next_case<Degree>(Family::from_roots, random);
+    auto p = balls(x.value.position);
+    for (auto& c : p.c) c.radius = std::abs(c.middle) * std::ldexp(1.0, random.integer(-40, -4));
+    const Crossing crossing = first_crossing(p, x.horizon);
+    decided += crossing.status != Status::undecided;
+    for (int sample = 0; sample < 3; ++sample) {
+      Polynomial<Degree> inside;
+      for (std::size_t i = 0; i <= Degree; ++i) inside.c[i] = p.c[i].middle + p.c[i].radius * random.between(-1, 1);
+      wrong += !holds(crossing, inside, x.horizon);
+    }
+  }
+  CAPTURE(Degree, seed);
+  CHECK(wrong == 0);
+  CHECK(decided > 20);
+}
+
+TEMPLATE_TEST_CASE_SIG("ordinary polynomials are decided", "[first_crossing]", FOR_EACH_DEGREE) {
+  const std::uint64_t seed = 3200;
+  Random random(seed + Degree);
+  int undecided = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const auto x = next_case<Degree>(round % 2 == 0 ? Family::random : Family::common_scale, random);
+    if (x.value.position.c[0] < 0) continue;
+    undecided += first_crossing(balls(x.value.position), x.horizon).status == Status::undecided;
+  }
+  CAPTURE(Degree, seed);
+  CHECK(undecided <= 10);
+}
