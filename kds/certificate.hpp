@@ -22,7 +22,8 @@ namespace kds {
 ///     struct Above {                                    // x stays above the line y = 3
 ///       static constexpr int degree = 2;
 ///       Motion<2> x;
-///       template <class Number> auto polynomial(double epoch) const { return about<Number>(x, epoch) - constant<Number>(3); }
+///       template <class Number>
+///       auto polynomial(double epoch) const { return about<Number>(x, epoch) - constant<Number>(3); }
 ///     };
 ///
 /// Semantic laws: (1) f uses only ring operations on doubles, so that it is exact over Exact; (2) polynomial(e) and

@@ -24,9 +24,9 @@ namespace kds {
 /// error of at most (3 n + 4) u on a sum of magnitudes of at most (4 n + 1) u m_0, since m_i |h|^i <= m_0. That is
 ///     |error| <= (3 n + 4) (4 n + 1) u^2 m_0 <= 20 n (n + 1) u^2 m_0,
 /// and the difference (at least 5 u^2 m_0) pays for the powers of 1 + u that were left out.
-/// Underflow may cost 2^-1072 a step, and |h|^n times that in the end: below 2^-745 for |h| <= 2^40 and degrees up to 8,
-/// which is within the bound if m_0 >= 2^-600. Beyond these limits, and where something overflows, nothing is decided:
-/// the result is 0 with an infinite radius, or not a number.
+/// Underflow may cost 2^-1072 a step, and |h|^n times that in the end: below 2^-745 for |h| <= 2^40 and degrees up to
+/// 8, which is within the bound if m_0 >= 2^-600. Beyond these limits, and where something overflows, nothing is
+/// decided: the result is 0 with an infinite radius, or not a number.
 template <int Degree, class Coefficient>
 Ball<DoubleDouble> compensated_value(const Polynomial<Degree, Coefficient>& p, const DoubleDouble& x);
 

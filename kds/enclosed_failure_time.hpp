@@ -35,8 +35,8 @@ FailureTime certified_failure_time(const C& certificate, double now, double hori
 /// The result is `holds` or `fails_at_once` exactly when failure_time() gives `never` or `now`; where it is `root`, the
 /// time and failure_time() both lie in [lower, next double above upper], and
 ///     upper - lower <= 2^-45 (upper - now) + 4 ulp(upper),
-/// usually a tenth of that. Roots too ill conditioned for it are left to failure_time(), and so are degrees above 2, for
-/// which the canonical double is a small part of the cost.
+/// usually a tenth of that. Roots too ill conditioned for it are left to failure_time(), and so are degrees above 2,
+/// for which the canonical double is a small part of the cost.
 template <Certificate C>
 FailureTime enclosed_failure_time(const C& certificate, double now, double horizon = never);
 
@@ -44,8 +44,8 @@ FailureTime enclosed_failure_time(const C& certificate, double now, double horiz
 
 namespace detail {
 
-/// The root that failure_time() would look for, of a line or a parabola, from doubles alone; undecided where these do not
-/// do. `holds` is set where there is certainly none. Precondition: f > 0 just after now.
+/// The root that failure_time() would look for, of a line or a parabola, from doubles alone; undecided where these do
+/// not do. `holds` is set where there is certainly none. Precondition: f > 0 just after now.
 template <int Degree>
 ApproximateRoot enclosed_root(const Polynomial<Degree, Ball<double>>& p, bool& holds) {
   if constexpr (Degree == 0) {
@@ -101,10 +101,11 @@ FailureTime enclosed_failure_time(const C& certificate, double now, double horiz
     // Roundings of the sum, of the radius and of the difference below: within one and a half units of 2^-52 |time|.
     const double radius = root.error + 0x1.8p-52 * std::abs(time);
     const double upper = time + radius;
-    // The next double above must be within the horizon too, and f < 0 there: of course for a line. The root of a parabola
-    // is known to 2^-47 only if its discriminant is at least (c1 / 128)^2, as that has a radius of 2^-52 c1^2; so the
-    // second root is x / 64 farther, which is four doubles by the second condition.
-    if (root.error <= enough * root.x && std::abs(time) * 0x1p-44 <= root.x && next_up(upper) <= horizon && upper < never) {
+    // The next double above must be within the horizon too, and f < 0 there: of course for a line. The root of a
+    // parabola is known to 2^-47 only if its discriminant is at least (c1 / 128)^2, as that has a radius of 2^-52 c1^2;
+    // so the second root is x / 64 farther, which is four doubles by the second condition.
+    const bool fine = root.error <= enough * root.x && std::abs(time) * 0x1p-44 <= root.x;
+    if (fine && upper < never && next_up(upper) <= horizon) {
       return {time, std::max(now, time - radius), upper, FailureStatus::root};
     }
   }

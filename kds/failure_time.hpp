@@ -19,12 +19,19 @@ namespace kds {
 /// broad phase and compiler gives the same bits. And when the clock stands at t the certificate *has* failed,
 /// exactly, so an event never proves early.
 ///
-/// Method: closed forms in double-double for degrees 1 and 2, verified by exact signs on both sides; for higher
-/// degrees the sign changes of the derivatives, from the linear one up, cut [now, horizon] into intervals on which
-/// f is monotone, and in each a safeguarded Newton iteration finds the double at which the exact sign turns. Nothing
-/// is assumed about the roots: double and clustered ones cost more, never an error.
+/// Method, in three steps; where a step does not decide, the next one that can does.
+/// (1) Which root: signs of the coefficients about `now` alone; for a parabola that of the discriminant; above that the
+///     rule of Descartes in Bernstein form (first_crossing()). In doubles, with error bounds.
+/// (2) Which double: a closed form or a few steps of Halley's method in doubles, and there one value of f in
+///     double-double, which places the root among the doubles (RootRounding). A root that is a double itself, or as
+///     near to one as makes no difference to that value, asks for one exact sign.
+/// (3) For certificates that touch zero, or nearly: exact signs of f and its derivatives (DerivativeIntervals).
+///     Nothing is assumed about the roots: double and clustered ones cost more, never an error. sign_counters.searches
+///     counts these.
 ///
-/// Cost: O(degree^2) sign evaluations; most certificates are decided by signs alone. `horizon` may be infinite.
+/// Cost: from 10 ns (decided by signs) through 40 (degree 2) and 120 to 300 (degree 4 to 8) for an ordinary root, up to
+/// 40 us for the third step. `horizon` may be infinite. enclosed_failure_time.hpp has results with enclosure and
+/// status.
 template <Certificate C>
 double failure_time(const C& certificate, double now, double horizon = never);
 

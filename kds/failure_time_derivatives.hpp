@@ -16,14 +16,14 @@ namespace kds::detail {
 ///
 /// A cell is a pair of neighbouring doubles. Call a set of cells *complete* for a function if the function has no sign
 /// change outside them. The empty set is complete for the highest derivative, which is constant. Given a complete set
-/// for f^(k+1), f^(k) is monotone between its cells, so between two of them it changes its sign where exact signs at the
-/// ends differ, and once: a search finds that cell. The old cells stay in the set, for the sign of f^(k) may change in
-/// one of them, and twice, unseen from its ends, as f^(k+1) does; but one in which f^(k) certainly does not change its
-/// sign is dropped. In the end, the first double just after which f < 0 is one where f turns between two cells, or the
-/// end of a cell.
+/// for f^(k+1), f^(k) is monotone between its cells, so between two of them it changes its sign where exact signs at
+/// the ends differ, and once: a search finds that cell. The old cells stay in the set, for the sign of f^(k) may change
+/// in one of them, and twice, unseen from its ends, as f^(k+1) does; but one in which f^(k) certainly does not change
+/// its sign is dropped. In the end, the first double just after which f < 0 is one where f turns between two cells, or
+/// the end of a cell.
 ///
-/// Without a horizon the last stretch reaches to infinity, where the leading coefficient tells the sign, which is cheaper
-/// than the sign at the largest double; but only as long as no higher derivative turns beyond all doubles.
+/// Without a horizon the last stretch reaches to infinity, where the leading coefficient tells the sign, which is
+/// cheaper than the sign at the largest double; but only as long as no higher derivative turns beyond all doubles.
 ///
 /// Cost: O(degree^2) searches of a few values in double-double each, 2 to 40 us.
 template <class C>
@@ -86,7 +86,8 @@ class DerivativeIntervals {
     cells_[count_++] = {before, t, certificate_.template polynomial<Ball<double>>(before)};
   }
 
-  /// Whether f^(order), up to a factor the sum of binomial(i, order) c_i x^(i-order), is certainly not zero in the cell.
+  /// Whether f^(order), up to a factor the sum of binomial(i, order) c_i x^(i-order), is certainly not zero in the
+  /// cell.
   static bool keeps_its_sign(const Cell& cell, int order) {
     const double width = cell.at - cell.before;
     double change = 0;

@@ -19,7 +19,8 @@ namespace detail {
 template <class C>
 class LatticeCrossing {
  public:
-  LatticeCrossing(const C& certificate, int order) : certificate_(certificate), order_(static_cast<std::size_t>(order)) {}
+  LatticeCrossing(const C& certificate, int order)
+      : certificate_(certificate), order_(static_cast<std::size_t>(order)) {}
 
   /// The first double in (below, above] whose sign is that of `above`. Precondition: the sign at `below` differs, and
   /// there is one change between. `guess` may be anything.
@@ -69,8 +70,8 @@ class LatticeCrossing {
   std::size_t order_;
 };
 
-/// f > 0 just after now, linear and falling. The first double in (now, horizon] not before the root, from a guess that is
-/// usually it or the one before.
+/// f > 0 just after now, linear and falling. The first double in (now, horizon] not before the root, from a guess that
+/// is usually it or the one before.
 template <class C>
 double first_past_linear_root(const C& certificate, double now, double guess, double horizon) {
   if (!(guess <= horizon) || guess == never) guess = horizon < never ? horizon : std::numeric_limits<double>::max();

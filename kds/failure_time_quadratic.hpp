@@ -11,7 +11,8 @@ namespace kds::detail {
 
 /// By exact signs. Precondition: f > 0 just after now.
 template <class C>
-double quadratic_failure_time_by_signs(const C& certificate, const Polynomial<2, Ball<double>>& p, double now, double horizon) {
+double quadratic_failure_time_by_signs(const C& certificate, const Polynomial<2, Ball<double>>& p, double now,
+                                       double horizon) {
   const auto by_derivatives = [&] { return DerivativeIntervals<C>(certificate, now, horizon).first_negative(); };
   const int bend = certain_sign(p.c[2]);
   const int rate = certain_sign(p.c[1]);
@@ -30,7 +31,8 @@ double quadratic_failure_time_by_signs(const C& certificate, const Polynomial<2,
     const double guess = now + 2 * c0 / (root - c1);
     double above = now - c1 / (2 * c2);
     if (above > horizon) {
-      if (guess * (1 - 0x1p-30) > horizon && now + (guess - now) * (1 - 0x1p-30) > horizon && sign_after(certificate, horizon) > 0) {
+      if (guess * (1 - 0x1p-30) > horizon && now + (guess - now) * (1 - 0x1p-30) > horizon &&
+          sign_after(certificate, horizon) > 0) {
         return never;
       }
       above = horizon;
@@ -52,8 +54,8 @@ double quadratic_failure_time_by_signs(const C& certificate, const Polynomial<2,
   return LatticeCrossing<C>(certificate, 0)(now, above, -1, now + tau);
 }
 
-/// c1^2 - 4 c0 c2. Error bound, with u = 2^-53: the two products and the difference are known to u of themselves, together
-/// at most 2 u (|c1^2| + |4 c0 c2|), and to what the radii make of them; underflow takes less than 2^-1020.
+/// c1^2 - 4 c0 c2. Error bound, with u = 2^-53: the two products and the difference are known to u of themselves,
+/// together at most 2 u (|c1^2| + |4 c0 c2|), and to what the radii make of them; underflow takes less than 2^-1020.
 inline Ball<double> discriminant(const Polynomial<2, Ball<double>>& p) {
   const auto& [c0, c1, c2] = p.c;
   const double square = c1.middle * c1.middle;
@@ -70,8 +72,8 @@ struct ApproximateRoot {
 };
 
 /// N / M with N known to +-n and M to +-m. With m / M <= 2^-8 the error is at most (n + |x| m) / (M - m), plus the
-/// roundings of the inverse and of the product, 2^-52 |x|; the factor 1.01 covers M - m in place of M and what the bound
-/// itself loses. Out of 2^+-900 nothing is said, so that underflow plays no part.
+/// roundings of the inverse and of the product, 2^-52 |x|; the factor 1.01 covers M - m in place of M and what the
+/// bound itself loses. Out of 2^+-900 nothing is said, so that underflow plays no part.
 inline ApproximateRoot bounded_quotient(double numerator, double n, double denominator, double m) {
   const double inverse = 1 / denominator;
   const double x = numerator * inverse;
@@ -82,10 +84,12 @@ inline ApproximateRoot bounded_quotient(double numerator, double n, double denom
 }
 
 /// Where a parabola that is positive just after 0 turns from + to -: 2 c0 / (sqrt(D) - c1), or, to the same effect,
-/// (c1 + sqrt(D)) / (-2 c2), of which one is free of cancellation. D is certainly positive, so that is the only such turn.
+/// (c1 + sqrt(D)) / (-2 c2), of which one is free of cancellation. D is certainly positive, so that is the only such
+/// turn.
 ///
-/// Error bound. Let D be known to +-d with d <= D / 8; its root is known to 0.52 d / sqrt(D), and 2^-53 for its rounding.
-/// The sum S of that and |c1| (known to +-r1) has no cancellation: it is known to 0.52 d / sqrt(D) + r1 + 2^-52 S.
+/// Error bound. Let D be known to +-d with d <= D / 8; its root is known to 0.52 d / sqrt(D), and 2^-53 for its
+/// rounding. The sum S of that and |c1| (known to +-r1) has no cancellation: it is known to 0.52 d / sqrt(D) + r1 +
+/// 2^-52 S.
 inline ApproximateRoot quadratic_root(const Polynomial<2, Ball<double>>& p, const Ball<double>& discriminant) {
   if (!(discriminant.radius <= 0.125 * discriminant.middle)) return {never, undecided};
   const auto& [c0, c1, c2] = p.c;

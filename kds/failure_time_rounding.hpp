@@ -21,11 +21,11 @@ struct Slope {
 };
 
 /// Error of the slope: with u = 2^-53, n the degree and Q = sum of i |c_i| x^(i-1), the radii of the coefficients give
-/// R = sum of i r_i x^(i-1), and Horner's rule and the factors i give (2 n + 1) u Q. x itself is a rounded difference of
-/// times, which moves the slope by u x |f''| <= u (n - 1) Q. Charged are 4 n u Q, which also covers the roundings of Q.
-/// The bend: |f''(y)| <= sum of i (i-1) |c_i| y^(i-2) <= (n - 1) Q / x (y / x)^(n-2), and (1 + 1/(16 n))^n < 1.07; with
-/// the radii added to Q, the factor 1.25 covers that. Underflow costs 2^-1074 a step times x^n in the end, which the same
-/// reserve covers for x <= 2^40 and Q >= 2^-600; beyond these limits the error is infinite.
+/// R = sum of i r_i x^(i-1), and Horner's rule and the factors i give (2 n + 1) u Q. x itself is a rounded difference
+/// of times, which moves the slope by u x |f''| <= u (n - 1) Q. Charged are 4 n u Q, which also covers the roundings of
+/// Q. The bend: |f''(y)| <= sum of i (i-1) |c_i| y^(i-2) <= (n - 1) Q / x (y / x)^(n-2), and (1 + 1/(16 n))^n < 1.07;
+/// with the radii added to Q, the factor 1.25 covers that. Underflow costs 2^-1074 a step times x^n in the end, which
+/// the same reserve covers for x <= 2^40 and Q >= 2^-600; beyond these limits the error is infinite.
 template <int Degree>
 Slope slope_at(const Polynomial<Degree, Ball<double>>& p, double x) {
   double slope = Degree * p.c[Degree].middle;
@@ -46,17 +46,17 @@ Slope slope_at(const Polynomial<Degree, Ball<double>>& p, double x) {
 /// The first double not before the one root of f near now + x, where f falls; p is f about now. A NaN where the numbers
 /// do not decide.
 ///
-/// Preconditions: f > 0 in (0, after], written in times since now; in (after, before) f changes its sign once, from + to -,
-/// or `before` is infinite and f turns from + to - only once. Both ends are known up to 2^-40 of their sizes. x may be any
-/// number: it is a guess.
+/// Preconditions: f > 0 in (0, after], written in times since now; in (after, before) f changes its sign once, from +
+/// to -, or `before` is infinite and f turns from + to - only once. Both ends are known up to 2^-40 of their sizes. x
+/// may be any number: it is a guess.
 ///
 /// One step of Newton's method from t0 with f(t0) = v in double-double and the slope s in doubles; the root is t0 + d*,
 /// the step d = -v / s. Let J be t0 +- D with D = 4 |d| + 4 spacings of t0. By slope_at(), f' is s up to a relative
 /// error e = (error + D bend) / |s| throughout J; it is required that e <= 1/4 and that J lies after now.
 /// (1) f' < 0 on J, so there is at most one root in J. f falls by 3/4 |s| D >= 3 |v| + 3 |s| spacing on either side,
 ///     which is more than |v| and its error; so there is one.
-/// (2) It is *the* root. f > 0 up to `after`. Beyond `before` f would have to rise first, between `before` and that root;
-///     but t0 is earlier, so that would be in J.
+/// (2) It is *the* root. f > 0 up to `after`. Beyond `before` f would have to rise first, between `before` and that
+///     root; but t0 is earlier, so that would be in J.
 /// (3) With v = -f'(y) d* for some y in J and v known to +-r, |d - d*| <= |d| (e / (1 - e) + 4 u) + r / ((1 - e) |s|)
 ///     <= 2 (|d| (e + 2^-51) + r / |s|).
 /// The failure time is then t0 + d rounded up unless that is within the error of a double; there one exact sign tells,

@@ -63,14 +63,14 @@ inline Ball<DoubleDouble> difference<Ball<DoubleDouble>>(double a, double b) {
 
 namespace detail {
 
-/// p(x + shift) in balls, for degrees where the running bound of Ball's own operations would cost more than the numbers:
-/// the errors e_i of the coefficients go through the same shift as the coefficients, by |shift|.
+/// p(x + shift) in balls, for degrees where the running bound of Ball's own operations would cost more than the
+/// numbers: the errors e_i of the coefficients go through the same shift as the coefficients, by |shift|.
 ///
 /// Error bound, with u = 2^-53 and n the degree. Repeated synthetic division gives c'_j as a sum of binomial(i, j) c_i
 /// shift^(i-j); each share goes through at most 2 n roundings where its index falls and n where it stays, and the shift
 /// itself is known to 2 u, which counts another 2 n: at most 5 n u |c_i|, besides the radius r_i that it came with. So
-/// e_i = r_i + 5.1 n u |c_i| does. Underflow loses 2^-1075 a step, for which each e_i has 2^-1010. What nothing is added to
-/// keeps its radius: it may be exact.
+/// e_i = r_i + 5.1 n u |c_i| does. Underflow loses 2^-1075 a step, for which each e_i has 2^-1010. What nothing is
+/// added to keeps its radius: it may be exact.
 template <int Degree, class Scalar>
 Polynomial<Degree, Ball<double>> shifted_balls(const Polynomial<Degree, Scalar>& p, double shift) {
   std::array<double, Degree + 1> c;

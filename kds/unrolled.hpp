@@ -7,8 +7,8 @@
 
 namespace kds {
 
-/// step(i) for i = 0 ... Count - 1, with i a constant: short rows of coefficients then live in registers, which loops that
-/// the compiler leaves rolled (as g++ -O2 does) cannot. Two to four times faster for the small polynomials here.
+/// step(i) for i = 0 ... Count - 1, with i a constant: short rows of coefficients then live in registers, which loops
+/// that the compiler leaves rolled (as g++ -O2 does) cannot. Two to four times faster for the small polynomials here.
 template <std::size_t Count, class Step>
 constexpr void unrolled(Step&& step) {
   [&]<std::size_t... i>(std::index_sequence<i...>) {

@@ -128,7 +128,8 @@ TEMPLATE_TEST_CASE_SIG("the root lies in the enclosure, to the last bit", "[fail
     const auto p = oracle::Polynomial::motion(c, x.value.start);
     // A crossing that no double sees may come before.
     const auto root = oracle::first_negative(p, oracle::rational(std::max(x.now, next_down(found.lower))));
-    return root && root->compare(oracle::rational(found.lower)) >= 0 && root->compare(oracle::rational(found.upper)) <= 0;
+    return root && root->compare(oracle::rational(found.lower)) >= 0 &&
+           root->compare(oracle::rational(found.upper)) <= 0;
   });
 }
 
@@ -204,8 +205,9 @@ TEST_CASE("certificates that touch zero are left to exact signs", "[failure_time
 }
 
 TEST_CASE("signs alone decide where nothing fails", "[failure_time]") {
-  for (const SignCounters& counted : {asked(Value<4>{{{{1, 2, 0, 3, 4}}, 0}}), asked(Value<2>{{{{1, -1, 1}}, 0}}),
-                                      asked(Value<4>{{{{1, -1, 0, 0, 1}}, 0}}), asked(Value<6>{{{{1, 0, -1, 0, 0, 0, 1}}, 0}})}) {
+  for (const SignCounters& counted :
+       {asked(Value<4>{{{{1, 2, 0, 3, 4}}, 0}}), asked(Value<2>{{{{1, -1, 1}}, 0}}),
+        asked(Value<4>{{{{1, -1, 0, 0, 1}}, 0}}), asked(Value<6>{{{{1, 0, -1, 0, 0, 0, 1}}, 0}})}) {
     CHECK(counted.extended == 0);
     CHECK(counted.exact == 0);
     CHECK(counted.searches == 0);
