@@ -8,7 +8,7 @@ namespace bench_roots {
 
 /// Degree 2: the discriminant by error-free products [Kahan04], and of the two forms of the root the one that does not
 /// cancel. Degree 3 and 4: the roots of ClosedForm, then two steps of Newton's method with the polynomial evaluated by
-/// the compensated rule of Horner [Graillat05].
+/// the compensated rule of Horner [Graillat09].
 struct Compensated {
   static constexpr const char* name = "compensated";
   static constexpr bool certified = false;
