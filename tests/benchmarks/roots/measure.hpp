@@ -59,7 +59,7 @@ std::vector<double> time_calls(const std::vector<Entry<Degree>>& entries, const 
   for (const auto& entry : entries) {
     const double start = thread_seconds();
     sink = sink + entry.sum(questions.polynomials, questions.horizons);
-    repeats.push_back(std::clamp(static_cast<int>(least_seconds / (thread_seconds() - start)) + 1, 1, 1000));
+    repeats.push_back(1 + static_cast<int>(std::min(least_seconds / (thread_seconds() - start), 999.0)));
   }
   std::vector<std::vector<double>> seconds(entries.size());
   for (int round = 0; round < rounds; ++round) {
