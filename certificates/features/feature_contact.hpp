@@ -32,7 +32,8 @@ struct ContactTolerance {
 /// Laws. (1) Nothing is missed: if the features touch at any time in [t0, t1], ends included, the status is not `none`.
 /// (2) Never late: the first touch is not before `time`. (3) No false alarm beyond the tolerance: at `time` the distance
 /// of the features is at most `distance`, and that at most the tolerance (and what they move while the clock goes on by
-/// two ulps: at t = 1e9 s it cannot tell times 1e-7 s apart). (4) Where the status is `contact` they do touch, not
+/// a few ulps: at t = 1e9 s it cannot tell times 1e-7 s apart). With tolerances below 1e-8 size a rare degenerate query
+/// runs out of steps before that, and `distance` says so. (4) Where the status is `contact` they do touch, not
 /// after `latest`. All of this is about the exact motion of the exact points given: roundings are included.
 struct FeatureContact {
   FeatureContactStatus status = FeatureContactStatus::none;
