@@ -1,6 +1,6 @@
 // Error against run time: the event-driven engine and sampling at 30 ... 16 000 Hz.
 //
-//     bench_accuracy [DIRECTORY [ROUNDS [BODIES]]]      -> DIRECTORY/accuracy.csv; 5 rounds, 1 000 bodies
+//     bench_accuracy [DIRECTORY [ROUNDS [BODIES]]]      -> DIRECTORY/accuracy.csv; 3 rounds, 1 000 bodies
 //
 // Bodies pass through each other in open space, so the truth is one list of contacts: the engine's, which is accepted
 // only if testing all pairs gives the same bits, and if each contact looked at is that of exact rational arithmetic.
@@ -87,7 +87,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-constexpr double long_run = 2;  // CPU s; runs that take longer are made once
+constexpr double long_run = 1;  // CPU s; runs that take longer are made once
 
 struct Times {
   std::vector<double> setup, run;
@@ -145,7 +145,7 @@ void measure(const Scene<Degree>& scene, int rounds, std::ofstream& csv) {
 
 int main(int argc, char** argv) {
   const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
-  const int rounds = argc > 2 ? std::atoi(argv[2]) : 5;
+  const int rounds = argc > 2 ? std::atoi(argv[2]) : 3;
   const auto bodies = static_cast<std::size_t>(argc > 3 ? std::atoi(argv[3]) : 1000);
   try {
     if (rounds < 1 || bodies < 10) throw std::runtime_error("usage: bench_accuracy [DIRECTORY [ROUNDS [BODIES]]]");

@@ -7,8 +7,8 @@
 #include "tests/benchmarks/accuracy/static_tests.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -72,70 +72,114 @@ class PollingSampler final : private kds::collision::PairListener {
   std::unordered_map<std::uint64_t, std::size_t> places_;
 };
 
-/// Sweep and prune over samples: all boxes are computed anew, sorted along x by insertion (they hardly move from one
-/// sample to the next), and swept once.
+/// Sweep and prune over samples, [Cohen95]: three arrays of interval ends, put in order anew at each sample by insertion
+/// (they hardly move in between); an exchange of a minimum with a maximum adds or drops a pair.
 template <int Degree>
 class DiscreteSampler {
  public:
   using Motion = kds::certificates::PointMotion<Degree>;
 
   DiscreteSampler(const std::vector<PlacedShape>& shapes, const std::vector<Motion>& motions)
-      : shapes_(shapes), motions_(motions), places_(shapes.size()), boxes_(shapes.size()), order_(shapes.size()) {
-    std::iota(order_.begin(), order_.end(), BodyId{0});
-    place_all(0);
-    std::sort(order_.begin(), order_.end(), [&](BodyId x, BodyId y) { return min_x(x) < min_x(y); });
+      : shapes_(shapes), motions_(motions), places_(shapes.size()) {
+    for (std::size_t i = 0; i < motions.size(); ++i) places_[i] = motions[i].position(0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto d = static_cast<Eigen::Index>(axis);
+      for (BodyId id = 0; id < shapes.size(); ++id) {
+        reach_[axis].push_back(shapes[id].low[d]);
+        reach_[axis].push_back(shapes[id].high[d]);
+        ends_[axis].push_back({places_[id][d] + shapes[id].low[d], 2 * id});
+        ends_[axis].push_back({places_[id][d] + shapes[id].high[d], 2 * id + 1});
+      }
+      std::sort(ends_[axis].begin(), ends_[axis].end(), before);
+    }
+    std::vector<BodyId> open;
+    for (const End& end : ends_[0]) {
+      const BodyId id = end.id / 2;
+      if ((end.id & 1) != 0) {
+        open.erase(std::find(open.begin(), open.end(), id));
+        continue;
+      }
+      for (const BodyId other : open) add_if_overlap(id, other);
+      open.push_back(id);
+    }
   }
 
   void sample(double t, std::vector<Report>& reports) {
-    ++samples_;
-    place_all(t);
-    for (std::size_t i = 1; i < order_.size(); ++i) {
-      const BodyId id = order_[i];
-      std::size_t j = i;
-      for (; j > 0 && min_x(id) < min_x(order_[j - 1]); --j) order_[j] = order_[j - 1];
-      order_[j] = id;
-    }
-    for (std::size_t i = 0; i < order_.size(); ++i) {
-      const BodyId id = order_[i];
-      const Vector3d& at = places_[id];
-      boxes_[i] = {at[0] + shapes_[id].low[0], at[0] + shapes_[id].high[0], at[1] + shapes_[id].low[1],
-                   at[1] + shapes_[id].high[1], at[2] + shapes_[id].low[2], at[2] + shapes_[id].high[2]};
-    }
-    for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      const Bounds x = boxes_[i];
-      for (std::size_t j = i + 1; j < boxes_.size() && boxes_[j].min_x < x.max_x; ++j) {
-        const Bounds& y = boxes_[j];
-        // One condition without branches: which of them fails is anyone's guess.
-        const bool near = (y.min_y < x.max_y) & (x.min_y < y.max_y) & (y.min_z < x.max_z) & (x.min_z < y.max_z);
-        if (near) test(order_[i], order_[j], t, reports);
-      }
+    for (std::size_t i = 0; i < motions_.size(); ++i) places_[i] = motions_[i].position(t);
+    for (std::size_t axis = 0; axis < 3; ++axis) sort(axis);
+    for (Pair& pair : pairs_) {
+      const bool now = overlap(shapes_[pair.a], shapes_[pair.b], places_[pair.b] - places_[pair.a]);
+      if (now && !pair.overlaps) reports.push_back({pair.a, pair.b, t});
+      pair.overlaps = now;
     }
   }
 
  private:
-  struct Bounds {
-    double min_x, max_x, min_y, max_y, min_z, max_z;
+  /// One interval end: twice the body's id, plus one for a maximum.
+  struct End {
+    double value;
+    std::uint32_t id;
+  };
+  struct Pair {
+    BodyId a, b;
+    bool overlaps;
   };
 
-  double min_x(BodyId id) const { return places_[id][0] + shapes_[id].low[0]; }
-  void place_all(double t) {
-    for (std::size_t i = 0; i < motions_.size(); ++i) places_[i] = motions_[i].position(t);
+  static bool before(const End& a, const End& b) {
+    return a.value < b.value || (a.value == b.value && (a.id & 1) > (b.id & 1));
   }
-  void test(BodyId x, BodyId y, double t, std::vector<Report>& reports) {
+
+  /// New values and their order in one pass.
+  void sort(std::size_t axis) {
+    auto& ends = ends_[axis];
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      End end = ends[i];
+      end.value = places_[end.id / 2][static_cast<Eigen::Index>(axis)] + reach_[axis][end.id];
+      std::size_t j = i;
+      for (; j > 0 && before(end, ends[j - 1]); --j) {
+        ends[j] = ends[j - 1];
+        passed(end.id, ends[j].id);
+      }
+      ends[j] = end;
+    }
+  }
+
+  /// The end `left` has moved left of `right`.
+  void passed(std::uint32_t left, std::uint32_t right) {
+    if (((left ^ right) & 1) == 0 || left / 2 == right / 2) return;
+    if ((left & 1) != 0) {
+      drop(left / 2, right / 2);  // a maximum has moved left of a minimum
+    } else {
+      add_if_overlap(left / 2, right / 2);
+    }
+  }
+
+  void add_if_overlap(BodyId x, BodyId y) {
+    // The very sums that are sorted.
+    for (int d = 0; d < 3; ++d) {
+      if (!(places_[x][d] + shapes_[x].low[d] < places_[y][d] + shapes_[y].high[d])) return;
+      if (!(places_[y][d] + shapes_[y].low[d] < places_[x][d] + shapes_[x].high[d])) return;
+    }
     const auto [a, b] = std::minmax(x, y);
-    if (!overlap(shapes_[a], shapes_[b], places_[b] - places_[a])) return;
-    std::uint64_t& last = last_overlap_[pair_key(a, b)];
-    if (last == 0 || last != samples_ - 1) reports.push_back({a, b, t});
-    last = samples_;
+    if (places_of_pairs_.emplace(pair_key(a, b), pairs_.size()).second) pairs_.push_back({a, b, false});
+  }
+  void drop(BodyId x, BodyId y) {
+    const auto it = places_of_pairs_.find(pair_key(std::min(x, y), std::max(x, y)));
+    if (it == places_of_pairs_.end()) return;
+    const Pair last = pairs_.back();
+    places_of_pairs_[pair_key(last.a, last.b)] = it->second;
+    pairs_[it->second] = last;
+    pairs_.pop_back();
+    places_of_pairs_.erase(it);
   }
 
   const std::vector<PlacedShape>& shapes_;
   const std::vector<Motion>& motions_;
   std::vector<Vector3d> places_;
-  std::vector<Bounds> boxes_;  // in the order of the sweep
-  std::vector<BodyId> order_;
-  std::uint64_t samples_ = 0;
-  std::unordered_map<std::uint64_t, std::uint64_t> last_overlap_;  // number of the last sample with an overlap
+  std::array<std::vector<double>, 3> reach_;  // of ends beyond the body's place
+  std::array<std::vector<End>, 3> ends_;
+  std::vector<Pair> pairs_;
+  std::unordered_map<std::uint64_t, std::size_t> places_of_pairs_;
 };
 
 }  // namespace accuracy
