@@ -50,18 +50,19 @@ void measure(const Case& c, std::uint64_t contacts, std::ofstream& csv) {
   }
 }
 
-void bounces() {
-  const Bounces found(1e6);
-  const auto exact = exact_bounces(1e6);
+void bounces(double mass_ratio) {
+  const Bounces found(mass_ratio);
+  const auto exact = exact_bounces(mass_ratio);
   double worst = 0;
   for (std::size_t i = 0; i < std::min(found.times().size(), exact.size()); ++i) {
     worst = std::max(worst, std::abs(found.times()[i] - exact[i]) / exact[i]);
   }
-  const double energy = 0.5e6;
-  const double now = 0.5 * (1e6 * found.heavy_speed() * found.heavy_speed() + found.light_speed() * found.light_speed());
-  std::printf("bounces at mass ratio 1e6: %zu, with a hundred digits %zu; times differ by %.2g at most (relative), energy "
-              "by %.2g, held %llu\n",
-              found.times().size(), exact.size(), worst, (now - energy) / energy,
+  const double energy = mass_ratio / 2;
+  const double now =
+      0.5 * (mass_ratio * found.heavy_speed() * found.heavy_speed() + found.light_speed() * found.light_speed());
+  std::printf("bounces at mass ratio %g: %zu, with a hundred digits %zu; times differ by %.2g at most (relative), energy by "
+              "%.2g, held %llu\n",
+              mass_ratio, found.times().size(), exact.size(), worst, (now - energy) / energy,
               static_cast<unsigned long long>(found.held()));
 }
 
@@ -73,7 +74,7 @@ int main(int argc, char** argv) {
   const int seeds = argc > 3 ? std::atoi(argv[3]) : 1;
   try {
     if (contacts < 100 || seeds < 1) throw std::runtime_error("usage: bench_drift [DIRECTORY [CONTACTS [SEEDS]]]");
-    bounces();
+    for (const double ratio : {1e2, 1e4, 1e6, 1e8}) bounces(ratio);
     std::filesystem::create_directories(folder);
     std::ofstream csv(folder / "drift.csv");
     if (!csv) throw std::runtime_error("cannot write " + (folder / "drift.csv").string());

@@ -37,6 +37,7 @@ set format x "%g"
 set xrange [25:20000]
 set ylabel "share missed"
 set yrange [1e-4:1]
+set key default
 set key top right
 array colour[6] = ["#2471a3", "#16a085", "#8e44ad", "#7f8c8d", "#c0392b", "#e67e22"]
 set title "by rate"
@@ -51,7 +52,7 @@ plot for [i = 1:words(scenes)] of(word(scenes, i), "discrete") using 3:13 with l
 unset multiplot
 
 # Energy over many contacts, and what unbiased roundings would make of it.
-set terminal svg size 760,480 font "sans,13" background "white"
+set terminal svg size 860,480 font "sans,13" background "white"
 set output folder . "/drift.svg"
 set title "Energy of 64 elastic balls: relative error after so many contacts"
 set xlabel "contacts"
@@ -66,4 +67,4 @@ row(name) = sprintf("< grep '^%s,' %s/drift.csv", name, folder)
 plot for [i = 1:words(cases)] row(word(cases, i)) using 4:(abs($5)) with linespoints pt 7 ps 0.5 lc rgb shade[i] \
        title word(cases, i), \
      row("near") using 4:6 with lines lw 2 dt 2 lc rgb "black" title "unbiased roundings, near", \
-     2e-17 * x with lines lw 1 dt 3 lc rgb "black" title "2e-17 a contact, for ever"
+     2.5e-18 * x with lines lw 1 dt 3 lc rgb "black" title "2.5e-18 a contact, all one way"
