@@ -111,7 +111,7 @@ bool World<Degree>::step(double limit) {
   for (;;) {
     if (!entering_.empty()) enter_new_bodies();
     if (!disturbed_.empty()) settle();
-    if (!dirty_.empty()) test_dirty_pairs();
+    if (!dirty_.empty() || !passing_.empty()) test_dirty_pairs();
     if (!pending_.empty()) {
       emit_pending();
       return true;

@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -364,6 +365,9 @@ class World final : private PairListener {
   std::vector<Pair> pairs_;
   std::vector<PairSlot> free_pairs_;
   std::vector<PairSlot> dirty_;
+  /// Pairs that were to pass through and have ended since the last tests: motions that change in turn at one instant may
+  /// part boxes that touch and bring them together again.
+  std::vector<std::pair<BodyId, BodyId>> passing_;
   std::vector<Hold> holds_;
   std::vector<HoldSlot> free_holds_;
   std::vector<BodyId> disturbed_;

@@ -216,6 +216,11 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   pair.place_in_b = static_cast<std::uint32_t>(body_b.pairs.size());
   pair.alive = true;
   pair.fresh = inserting_;
+  const auto passing = std::find(passing_.begin(), passing_.end(), std::pair(a, b));
+  if (passing != passing_.end()) {
+    pair.ignored = true;
+    passing_.erase(passing);
+  }
   // A jump may part two bodies and another one bring them together at the same instant.
   pair.touching = take_back(Pending::Kind::separation, a, b, t);
   body_a.pairs.push_back(slot);
@@ -276,6 +281,7 @@ void World<Degree>::release_pair(PairSlot slot) {
     list.pop_back();
     (pairs_[moved].a == id ? pairs_[moved].place_in_a : pairs_[moved].place_in_b) = place;
   }
+  if (pair.ignored) passing_.emplace_back(pair.a, pair.b);
   contacts_.clear(slot);
   if (slot < boxes_.slots()) boxes_.clear(slot);
   pair.alive = false;

@@ -65,6 +65,7 @@ void World<Degree>::test_dirty_pairs() {
     pairs_[slot].fresh = false;
   }
   dirty_.clear();
+  passing_.clear();
 }
 
 template <int Degree>
