@@ -14,7 +14,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -280,7 +279,14 @@ class World final : private PairListener {
     bool fresh = false;       ///< one of the bodies has entered or jumped at this instant
     bool touching = false;    ///< mode none: in contact
     bool ignored = false;     ///< resolved: overlaps and passes through until separated
+    double let_pass = -never;  ///< resolved: at this time decided to be ignored, whatever else happens at it
     bool boxes_overlap = false;
+  };
+
+  struct Passing {
+    BodyId a, b;
+    double at;      ///< when its pair ended
+    bool let_pass;  ///< at that time; else only until the next tests
   };
 
   struct PairRank {
@@ -316,6 +322,7 @@ class World final : private PairListener {
   bool take_back(typename Pending::Kind kind, BodyId a, BodyId b, double t);
   void release_pair(PairSlot slot);
   void mark_dirty(PairSlot slot);
+  void let_pass(BodyId a, BodyId b);
   void set_motion(BodyId id, const Motion& motion, bool jumped);
   bool is_jump(const Body& body, const Motion& to) const;
   KineticBox<Degree> bounding_box(const Body& body) const;
@@ -365,9 +372,9 @@ class World final : private PairListener {
   std::vector<Pair> pairs_;
   std::vector<PairSlot> free_pairs_;
   std::vector<PairSlot> dirty_;
-  /// Pairs that were to pass through and have ended since the last tests: motions that change in turn at one instant may
-  /// part boxes that touch and bring them together again.
-  std::vector<std::pair<BodyId, BodyId>> passing_;
+  /// Ignored pairs that have ended at this instant: motions that change in turn may part boxes that touch and bring them
+  /// together again.
+  std::vector<Passing> passing_;
   std::vector<Hold> holds_;
   std::vector<HoldSlot> free_holds_;
   std::vector<BodyId> disturbed_;

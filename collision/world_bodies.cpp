@@ -216,10 +216,10 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   pair.place_in_b = static_cast<std::uint32_t>(body_b.pairs.size());
   pair.alive = true;
   pair.fresh = inserting_;
-  const auto passing = std::find(passing_.begin(), passing_.end(), std::pair(a, b));
-  if (passing != passing_.end()) {
+  for (const Passing& passing : passing_) {
+    if (passing.a != a || passing.b != b || passing.at != t) continue;
     pair.ignored = true;
-    passing_.erase(passing);
+    if (passing.let_pass) pair.let_pass = t;
   }
   // A jump may part two bodies and another one bring them together at the same instant.
   pair.touching = take_back(Pending::Kind::separation, a, b, t);
@@ -281,11 +281,22 @@ void World<Degree>::release_pair(PairSlot slot) {
     list.pop_back();
     (pairs_[moved].a == id ? pairs_[moved].place_in_a : pairs_[moved].place_in_b) = place;
   }
-  if (pair.ignored) passing_.emplace_back(pair.a, pair.b);
+  if (pair.ignored) passing_.push_back({pair.a, pair.b, now_, pair.let_pass == now_});
   contacts_.clear(slot);
   if (slot < boxes_.slots()) boxes_.clear(slot);
   pair.alive = false;
   free_pairs_.push_back(slot);
+}
+
+/// Ignores a pair until it has separated, and at this time whatever else happens, even if its boxes do not overlap just
+/// now.
+template <int Degree>
+void World<Degree>::let_pass(BodyId a, BodyId b) {
+  const PairSlot slot = find_pair(a, b);
+  if (slot == no_pair) return passing_.push_back({a, b, now_, true});
+  pairs_[slot].ignored = true;
+  pairs_[slot].let_pass = now_;
+  mark_dirty(slot);
 }
 
 template <int Degree>

@@ -65,7 +65,7 @@ void World<Degree>::test_dirty_pairs() {
     pairs_[slot].fresh = false;
   }
   dirty_.clear();
-  passing_.clear();
+  std::erase_if(passing_, [&](const Passing& passing) { return !passing.let_pass || passing.at != now_; });
 }
 
 template <int Degree>
@@ -90,15 +90,17 @@ void World<Degree>::test(PairSlot slot) {
                            : first_contact(a, b, now_, horizon_, ContactMode::transparent);
     }
   } else {
-    if (pair.fresh || pair.ignored) {
+    const bool passes = pair.let_pass == now_ && !pair.fresh;
+    if ((pair.fresh || pair.ignored) && !passes) {
       pair.ignored = in_contact(a, b, now_) && !(pair.fresh && only_touching(a, b, now_));
       if (pair.fresh && pair.ignored) report_overlap();
     }
     if (find_hold(pair.a, pair.b) != no_hold) {
       next = next_contact_of_held(pair);
     } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
-      const double from = pair.ignored ? first_separation(a, b, now_, horizon_) : now_;
-      if (from != never) next = first_contact(a, b, from, horizon_, ContactMode::resolved);
+      const double start = passes ? next_up(now_) : now_;
+      const double from = pair.ignored && start <= horizon_ ? first_separation(a, b, start, horizon_) : start;
+      if (from <= horizon_) next = first_contact(a, b, from, horizon_, ContactMode::resolved);
     }
   }
   contacts_.set(slot, next);
@@ -133,11 +135,10 @@ void World<Degree>::process_contact(PairSlot slot, double t) {
   listener_->contact(*this, event);
   if (held) listener_->held(*this, event);
   // A pair that is still pressed together (nobody can or will move it) passes through.
-  if (!pairs_[slot].alive || pairs_[slot].a != event.a || pairs_[slot].b != event.b) return;
-  if (find_hold(event.a, event.b) != no_hold) return;
-  if (passes || parting(event.contact, bodies_[event.a].motion, bodies_[event.b].motion) < 0) {
-    pairs_[slot].ignored = true;
-    mark_dirty(slot);
+  if (!contains(event.a) || !contains(event.b) || find_hold(event.a, event.b) != no_hold) return;
+  const bool known = pairs_[slot].alive && pairs_[slot].a == event.a && pairs_[slot].b == event.b;
+  if (passes || (known && parting(event.contact, bodies_[event.a].motion, bodies_[event.b].motion) < 0)) {
+    let_pass(event.a, event.b);
   }
 }
 
@@ -195,7 +196,7 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
   const std::uint64_t burst = count_meeting(a, b);
   if (burst > patience()) {  // Holding does not help: the pair is left as it is, and so passes through.
     ++counters_.held;
-    pairs_[slot].ignored = true;
+    let_pass(a, b);
     return true;
   }
   const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +

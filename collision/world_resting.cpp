@@ -255,12 +255,7 @@ bool World<Degree>::let_pass_worst(const Island& island, const std::vector<Vecto
   }
   if (worst == no_hold) return false;
   const Hold hold = holds_[worst];
-  const PairSlot pair = find_pair(hold.a, hold.b);
-  if (pair != no_pair) {
-    pairs_[pair].ignored = true;
-  } else {
-    passing_.emplace_back(hold.a, hold.b);
-  }
+  let_pass(hold.a, hold.b);
   drop_hold(worst);
   if (!hold.fresh) {  // else the event that made it is about to be reported
     ++counters_.held;
