@@ -13,8 +13,8 @@ struct Touch {
   std::uint32_t a;         ///< place among the rates
   std::uint32_t b;
   Eigen::Vector3d normal;  ///< unit, from a to b
-  double share_a;          ///< 1/mass of a over the sum of both; 0: a is fixed
-  double share_b;          ///< 1 - share_a
+  double inverse_mass_a;   ///< 0: a is fixed; not both
+  double inverse_mass_b;
   double push = 0;         ///< what the touch adds to the relative rate, >= 0; in: a guess
 };
 
@@ -22,14 +22,16 @@ struct Touch {
 /// touch normal . (rate_b - rate_a) >= 0. Pushes are frictionless, along the normals, equal and opposite.
 /// Returns whether that was possible; if not (a body between two that close in), some touches are left violated.
 ///
-/// Paper: [Gauss1829]; the sign conditions make it the linear complementarity problem of [Baraff94], solved here by
-/// projected successive over-relaxation [Cryer71], which needs no touch to be independent of the others.
+/// Paper: [Gauss1829]; the sign conditions make it the linear complementarity problem of [Baraff94]. Up to 64 touches it is
+/// solved by active sets [Lawson74], above that by projected successive over-relaxation [Cryer71]; neither needs touches
+/// to be independent of each other.
 ///
 /// Rounding: along the axes (all normals are unit vectors of an axis) bodies at rest come out at rest, exactly.
 /// Elsewhere the relative rate is up to some 2^-48 of the largest rate above zero, so that what is held parts,
 /// very slowly, rather than sinks in.
 ///
-/// Cost: touches x sweeps; a chain of n equal masses takes about 6 n sweeps. The number of sweeps is bounded.
+/// Cost: a linear solve or a few where the guesses push where the solution does, up to some n of them else. Above 64
+/// touches, touches x sweeps; a chain of n equal masses takes about 6 n sweeps. Both are bounded.
 bool least_constraint(std::span<Eigen::Vector3d> rates, std::span<Touch> touches);
 
 /// The relative normal rate of a touch: positive where the bodies part.

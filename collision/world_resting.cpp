@@ -195,7 +195,7 @@ typename World<Degree>::Island World<Degree>::find_island(BodyId id) {
     const double b = at_wall ? 0 : bodies_[hold.b].inverse_mass;
     // The walls come after the bodies.
     const auto place_b = at_wall ? static_cast<std::uint32_t>(island.bodies.size()) : bodies_[hold.b].island_place;
-    island.touches.push_back({bodies_[hold.a].island_place, place_b, hold.normal, a / (a + b), b / (a + b)});
+    island.touches.push_back({bodies_[hold.a].island_place, place_b, hold.normal, a, b});
   }
   return island;
 }
