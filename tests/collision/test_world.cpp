@@ -501,6 +501,9 @@ TEST_CASE("Options that make no sense are refused by name", "[world]") {
   }
   refuse([](WorldOptions& o) { o.walls = Walls{{0, 0, 0}, {1, 0, 1}}; }, "walls");
   refuse([](WorldOptions& o) { o.walls = Walls{{0, 0, 0}, {1, nan, 1}}; }, "walls");
+  for (const double bad : {-0.1, 1.1, nan}) {
+    refuse([&](WorldOptions& o) { o.walls = Walls{{0, 0, 0}, {1, 1, 1}, bad}; }, "walls.restitution");
+  }
   refuse([](WorldOptions& o) { o.broad_phase = static_cast<BroadPhaseKind>(77); }, "broad_phase");
 }
 
@@ -521,6 +524,7 @@ TEST_CASE("Bodies that make no sense are refused by name, and the world goes on"
     refuse([&](D& d) { d.shape = MeshShape{tetrahedron(), bad}; }, "scale");
     refuse([&](D& d) { d.mass = bad; }, "mass");
   }
+  for (const double bad : {-0.1, 1.1, nan}) refuse([&](D& d) { d.restitution = bad; }, "restitution");
   refuse([](D& d) { d.shape = MeshShape{}; }, "mesh");
   for (const double bad : {nan, never}) {
     for (int i = 0; i < 3; ++i) {

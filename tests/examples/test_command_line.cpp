@@ -78,6 +78,25 @@ TEST_CASE("command line: --until, --stats and the summary") {
   CHECK(stats["peak_memory_bytes"] > 100'000);
 }
 
+TEST_CASE("command line: a ball that bounces ever lower comes to rest, which the statistics and the summary tell") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", R"({"scene": 1, "end_time": 100, "response": "elastic", "restitution": 0.5, "bodies": [
+    {"name": "floor", "fixed": true, "shape": {"box": {"half_extents": [9,9,1]}},
+     "motion": [{"start": 0, "position": [[0,0,-1]]}]},
+    {"name": "ball", "shape": {"sphere": {"radius": 1}},
+     "motion": [{"start": 0, "position": [[0,0,4], [0,0,0], [0,0,-5]]}]}]})");
+  const Outcome outcome = kds_collide_in(folder, "scene.json --events e.csv --stats s.json");
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.err, Catch::Contains("held together 1 times"));
+  const auto stats = nlohmann::json::parse(read_file(folder / "s.json"));
+  CHECK(stats["held"] == 1);
+  const auto events = lines_of(read_file(folder / "e.csv"));
+  CHECK(events.size() == stats["contacts"].get<std::size_t>() + 1);
+  CHECK(events.size() < 100);
+  // Flights that shrink by a half: at rest three times as late as it first lands.
+  CHECK(std::stod(events.back()) == Approx(3 * std::stod(events[1])).epsilon(1e-9));
+}
+
 TEST_CASE("command line: all broad phases write the same events of generated scenes") {
   const TemporaryFolder folder;
   const auto kind = std::string(GENERATE(as<std::string>(), "rings", "spheres", "boxes", "models"));
