@@ -99,7 +99,11 @@ void World<Degree>::remove_body(BodyId id) {
   pieces_.clear(id);
   volumes_.clear(id);
   walls_.clear(id);
-  if (removed.entered) broad_phase_->remove(id, now_, *this);
+  if (removed.entered) {
+    broad_phase_->remove(id, now_, *this);
+  } else {
+    std::erase(entering_, id);  // or the next of this id would enter in its stead
+  }
   // Pairs the broad phase does not know of any more.
   while (!removed.pairs.empty()) release_pair(removed.pairs.back());
   for (Pending& event : pending_) {

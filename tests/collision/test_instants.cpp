@@ -77,5 +77,22 @@ TEST_CASE("A body that is removed separates where it was", "[instants]") {
   CHECK(logs[2] == logs[0]);
 }
 
+TEST_CASE("A body does not enter for one of its id that was removed before it did", "[instants]") {
+  const auto logs = with_each_broad_phase([](World<1>& world) {
+    world.add_body(ball<1>(1, {5, 0, 0}));
+    world.add_body(ball<1>(1, {0, 0, 0}));
+    world.remove_body(0);
+    auto later = ball<1>(1, {1, 0, 0});
+    later.motion[0].start = 0.25;
+    REQUIRE(world.add_body(later) == 0);
+    world.advance_to(1);
+  });
+  REQUIRE(logs[0].size() == 1);
+  CHECK(logs[0][0].kind == Kind::overlap);
+  CHECK(logs[0][0].time() == 0.25);
+  CHECK(logs[1] == logs[0]);
+  CHECK(logs[2] == logs[0]);
+}
+
 }  // namespace
 }  // namespace kds::collision
