@@ -3,8 +3,9 @@
 // fuzz_NAME [--runs N] [--seed FIRST] [FILE or FOLDER]...
 //
 // All files first, then N inputs from the seeds FIRST, FIRST + 1 ... (default 1). The environment variable
-// KDS_FUZZ_RUNS, if set, is instead of --runs. A failure, whatever its kind, is reported with its file or seed, and
-// exit 1 (a crash: as the system has it); `--runs 1 --seed S` with the same files makes it again.
+// KDS_FUZZ_RUNS, if set, is instead of --runs. A failure, whatever its kind, is reported with its file or seed, and the
+// program exits with 1, or as crashes do; `--runs 1 --seed S` with the same files makes the input again. What has failed
+// without a crash is written to the file `failed-input`.
 #include "tests/fuzz/check.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -12,13 +13,13 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// Set in sanitized programs alone.
@@ -46,6 +47,8 @@ bool passes(const std::string& name, const Input& input) {
     return true;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
+    std::ofstream("failed-input", std::ios::binary).write(reinterpret_cast<const char*>(input.data()),
+                                                         static_cast<std::streamsize>(input.size()));
     return false;
   }
 }
