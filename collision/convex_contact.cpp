@@ -5,6 +5,7 @@
 #include "certificates/feature_separation.hpp"
 #include "certificates/plane_separation.hpp"
 #include "collision/contact_patch.hpp"
+#include "collision/rotation.hpp"
 
 #include <boost/container/static_vector.hpp>
 
@@ -162,7 +163,7 @@ template <int Degree>
 Contact box_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
   const Vector3d& h = half_extents(a);
   const Vector3d centre_a = a.motion.position(t);
-  const Vector3d x = a.shape.rotation.transpose() * (b.motion.position(t) - centre_a);
+  const Vector3d x = rotated_back(a.shape.rotation, b.motion.position(t) - centre_a);
   const Vector3d nearest = x.cwiseMax(-h).cwiseMin(h);
   Vector3d normal = x - nearest;
   BoxSide touched = BoxSide::Zero();
@@ -177,8 +178,8 @@ Contact box_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>
   }
   Contact contact;
   contact.time = t;
-  contact.normal = a.shape.rotation * normal;
-  contact.point = centre_a + a.shape.rotation * nearest;
+  contact.normal = rotated(a.shape.rotation, normal);
+  contact.point = centre_a + rotated(a.shape.rotation, nearest);
   contact.feature_a = box_feature(touched);
   return contact;
 }
