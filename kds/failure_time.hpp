@@ -68,7 +68,8 @@ namespace detail {
 template <int Degree>
 bool never_falls(const Polynomial<Degree, Ball<double>>& p) {
   bool rises = true;
-  unrolled<Degree>([&](auto i) { rises = rises && p.c[i + 1].middle >= p.c[i + 1].radius * Ball<double>::slack; });
+  // An infinity less an infinite radius is no number, and so not certain.
+  unrolled<Degree>([&](auto i) { rises = rises && p.c[i + 1].middle - p.c[i + 1].radius * Ball<double>::slack >= 0; });
   return rises;
 }
 

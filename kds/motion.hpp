@@ -94,7 +94,8 @@ Polynomial<Degree, Ball<double>> shifted_balls(const Polynomial<Degree, Scalar>&
     });
   });
   Polynomial<Degree, Ball<double>> result;
-  unrolled<Degree + 1>([&](auto i) { result.c[i] = {c[i], kept[i] < 0 ? e[i] : kept[i]}; });
+  // The last summand is nothing to a finite number, and makes the radius infinite where the number overflows.
+  unrolled<Degree + 1>([&](auto i) { result.c[i] = {c[i], kept[i] < 0 ? e[i] + 0x1p-80 * std::abs(c[i]) : kept[i]}; });
   return result;
 }
 

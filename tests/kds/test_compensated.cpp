@@ -98,6 +98,14 @@ TEMPLATE_TEST_CASE_SIG("differences of motions come out the same as by polynomia
   CHECK(wrong == 0);
 }
 
+TEST_CASE("a shift that overflows decides nothing", "[compensated]") {
+  const auto p = about<Ball<double>>(Motion<3>{{{1, 0x1p716, 0, 0}}, 0}, 0x1p318);
+  CHECK(certain_sign(p.c[0]) == 0);
+  CHECK(certain_sign(p.c[1]) == 1);
+  const auto q = about<Ball<double>>(Motion<4>{{{1, 0, 0, 0x1p500, -0x1p700}}, 0}, 0x1p200);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(certain_sign(q.c[i]) == 0);
+}
+
 TEMPLATE_TEST_CASE_SIG("shifted balls contain the shifted polynomial", "[compensated]", FOR_EACH_DEGREE) {
   const std::uint64_t seed = 4200;
   Random random(seed + Degree);

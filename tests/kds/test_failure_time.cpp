@@ -360,6 +360,8 @@ TEST_CASE("failure times at the far end of the doubles", "[failure_time]") {
   CHECK(check(Motion<3>{{{1e300, 0, 1e-310, -least}}, 0}, 0) < never);
   CHECK(check(Motion<4>{{{1e300, -1e-8, 0, 0, 0}}, 0}, 0) == Approx(1e308));
   CHECK(check(Motion<4>{{{1e300, -1e-9, 0, 0, 0}}, 0}, 0) == never);
+  CHECK(check(Motion<3>{{{1, -0x1p716, 0, 0}}, 0}, -0x1p318) == 0x1p-716);  // beyond all doubles at now
+  CHECK(check(Motion<4>{{{1, -0x1p716, 0, 0, 0}}, 0}, -0x1p318, 1) == 0x1p-716);
   CHECK(check(Motion<1>{{{largest, -1}}, 0}, 0) == largest);
   CHECK(check(Motion<1>{{{largest, -1}}, 0}, 0, next_down(largest)) == never);
   CHECK(check(Motion<1>{{{-largest, -1}}, 0}, -largest) == -largest);
