@@ -15,6 +15,8 @@ namespace {
 
 /// After so many steps with fixed axes the axes turn as well: most queries end before.
 constexpr int fixed_steps = 5;
+/// After so many the direction is extrapolated as well, from the last two steps.
+constexpr int extrapolated_steps = 10;
 /// A query that has not ended after so many is undecided. Twelve have been seen at the default tolerance.
 constexpr int most_steps = 256;
 /// Least tolerance, as a part of the size: hundreds of margins (fixed_axis.hpp).
@@ -53,6 +55,7 @@ class Search {
         return result_;
       }
       axis_ = point.position;
+      axis_time_ = s;
       s = until;
     }
   }
@@ -63,6 +66,10 @@ class Search {
     if (until >= 1) return until;
     if (point.part == PatchPart::interior || result_.steps >= fixed_steps) {
       until = std::max(until, TurningAxis<kind, Degree>(paths_).separated_until(point, s));
+    }
+    if (result_.steps >= extrapolated_steps && until < 1) {
+      until = std::max(until, TurningAxis<kind, Degree>(paths_).separated_turning_on(axis_.normalized(), axis_time_,
+                                                                                     point.position.normalized(), s));
     }
     if (!(until > s)) {
       for (const auto& axis : patch.careful_axes()) until = std::max(until, separated_until(paths_, margin_, axis, s));
@@ -140,7 +147,8 @@ class Search {
   double margin_;
   double tolerance_;
   double inner2_;
-  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();  // the last one that separated, and when it was taken
+  double axis_time_ = 0;
   FeatureContact result_;
 };
 

@@ -41,6 +41,18 @@ class TurningAxis {
     return std::max(until, beside_edge(before, point.position, s));
   }
 
+  /// The same with the axis that turns on as from `before` at time s0 to `now` at s, both of length 1. For parts that
+  /// vanish just when they touch, so that the others are lost in their margins.
+  double separated_turning_on(const Eigen::Vector3d& before, double s0, const Eigen::Vector3d& now, double s) const {
+    const Eigen::Vector3d rate = (now - before) / (s - s0);
+    std::array<Polynomial<1>, 3> axis;
+    for (int d = 0; d < 3; ++d) axis[static_cast<std::size_t>(d)] = {{now[d] - s * rate[d], rate[d]}};
+    const Bounded<1> n{axis, norm(axis), 0};
+    double until = 1;
+    for (std::size_t k = 0; k < 4 && until > s; ++k) until = std::min(until, positive(n, corner(k), s));
+    return until;
+  }
+
  private:
   using Scalar = Polynomial<Degree>;
   using Vector = std::array<Scalar, 3>;
