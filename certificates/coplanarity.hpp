@@ -9,9 +9,10 @@ namespace kds::certificates {
 /// side * det(b - a, c - a, d - a) >= 0: six times the signed volume of the tetrahedron a, b, c, d keeps its sign.
 ///
 /// With side +1 it is positive while a, b, c turn counter-clockwise seen from d. It fails when d crosses the plane
-/// through a, b, c, and equally when the line through a, b crosses that through c, d. Degree 3 for linear paths: the cubic of the literature on continuous collision [Provot97]; degree 6 for
-/// quadratic ones. Its failure times are exact where four points become coplanar; whether the features meet there or
-/// only their plane and line is another question, which features/feature_contact.hpp answers.
+/// through a, b, c, and equally when the line through a, b crosses that through c, d. Degree 3 for linear paths: the
+/// cubic of the literature on continuous collision [Provot97]; degree 6 for quadratic ones. Its failure times are exact
+/// where four points become coplanar; whether the features meet there or only their plane and line is another question,
+/// which features/feature_contact.hpp answers.
 template <int PathDegree>
 struct Coplanarity {
   static constexpr int degree = 3 * PathDegree;
@@ -26,8 +27,8 @@ struct Coplanarity {
     const auto x = relative_motion<Number>(a, b, epoch);
     const auto y = relative_motion<Number>(a, c, epoch);
     const auto z = relative_motion<Number>(a, d, epoch);
-    const auto volume = (x[1] * y[2] - x[2] * y[1]) * z[0] + (x[2] * y[0] - x[0] * y[2]) * z[1] +
-                        (x[0] * y[1] - x[1] * y[0]) * z[2];
+    const auto volume =
+        (x[1] * y[2] - x[2] * y[1]) * z[0] + (x[2] * y[0] - x[0] * y[2]) * z[1] + (x[0] * y[1] - x[1] * y[0]) * z[2];
     return volume * side;
   }
 };

@@ -26,8 +26,8 @@ struct PatchPoint {
 
 /// Squared sines of the angle between two sides of a patch. Above the first the place of a foot follows from squared
 /// lengths (to 2^-32 of a side); above the second from the normal (to 2^-8); flatter patches are taken for their edges,
-/// which is off by 2^-45 of a side. Nothing wrong follows from a bad foot (any direction is a valid axis to try, any point
-/// of the patch a valid bound on the distance): only more steps.
+/// which is off by 2^-45 of a side. Nothing wrong follows from a bad foot (any direction is a valid axis to try, any
+/// point of the patch a valid bound on the distance): only more steps.
 inline constexpr double flat_patch = 0x1p-20;
 inline constexpr double flattest_patch = 0x1p-90;
 
@@ -116,7 +116,6 @@ class PlacedPatch {
     if (axes[8].dot(axes[0]) < 0) axes[8] = -axes[8];
     return axes;
   }
-
 
   /// The patch is q0 + x u + y v, with x, y >= 0 and x + y <= 1 or x, y <= 1; this is u x v, of length n.
   const Eigen::Vector3d& normal() const { return n_; }

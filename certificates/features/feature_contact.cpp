@@ -174,8 +174,8 @@ FeatureContact edge_edge_contact(const PointMotion<Degree>& a, const PointMotion
   return search<Patch::parallelogram, Degree>({&a, &b, &c, &d}, t0, t1, tolerance);
 }
 
-FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
-                                   const ContactTolerance& tolerance) {
+FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin,
+                                   const std::array<Eigen::Vector3d, 4>& end, const ContactTolerance& tolerance) {
   return Search<Patch::triangle, 1>(patch_paths<Patch::triangle>(begin, end), tolerance, 0, 1).run();
 }
 

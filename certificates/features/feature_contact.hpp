@@ -18,10 +18,10 @@ enum class FeatureContactStatus : std::uint8_t {
 
 /// How near two features count as touching.
 ///
-/// The distance is min(absolute, relative * size), but at least 2^-38 size (4e-12), which leaves the margins of rounding
-/// far behind; size is the greatest coordinate, in absolute value, of a difference between a point of one feature and
-/// one of the other at t0, plus what that coordinate changes until t1. It scales with the query, and does not know where
-/// in the world it is. Larger is faster by little; smaller reports fewer near misses.
+/// The distance is min(absolute, relative * size), but at least 2^-38 size (4e-12), which leaves the margins of
+/// rounding far behind; size is the greatest coordinate, in absolute value, of a difference between a point of one
+/// feature and one of the other at t0, plus what that coordinate changes until t1. It scales with the query, and does
+/// not know where in the world it is. Larger is faster by little; smaller reports fewer near misses.
 struct ContactTolerance {
   double relative = 1e-6;
   double absolute = std::numeric_limits<double>::infinity();  ///< in units of length
@@ -30,11 +30,11 @@ struct ContactTolerance {
 /// The answer to a query.
 ///
 /// Laws. (1) Nothing is missed: if the features touch at any time in [t0, t1], ends included, the status is not `none`.
-/// (2) Never late: the first touch is not before `time`. (3) No false alarm beyond the tolerance: at `time` the distance
-/// of the features is at most `distance`, and that at most the tolerance (and what they move while the clock goes on by
-/// a few ulps: at t = 1e9 s it cannot tell times 1e-7 s apart). With tolerances below 1e-8 size a rare degenerate query
-/// runs out of steps before that, and `distance` says so. (4) Where the status is `contact` they do touch, not
-/// after `latest`. All of this is about the exact motion of the exact points given: roundings are included.
+/// (2) Never late: the first touch is not before `time`. (3) No false alarm beyond the tolerance: at `time` the
+/// distance of the features is at most `distance`, and that at most the tolerance (and what they move while the clock
+/// goes on by a few ulps: at t = 1e9 s it cannot tell times 1e-7 s apart). With tolerances below 1e-8 size a rare
+/// degenerate query runs out of steps before that, and `distance` says so. (4) Where the status is `contact` they do
+/// touch, not after `latest`. All of this is about the exact motion of the exact points given: roundings are included.
 struct FeatureContact {
   FeatureContactStatus status = FeatureContactStatus::none;
   double time = std::numeric_limits<double>::infinity();    ///< s; infinity if none
@@ -44,7 +44,7 @@ struct FeatureContact {
   /// Where: weights of the four points in the order of the arguments. A vertex has weight 1 and the points of its face
   /// sum to 1; the two points of each edge sum to 1.
   std::array<double, 4> weights{};
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit; from the face to the vertex, the second edge to the first
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit; from face to vertex, from second edge to first
   int steps = 0;                                     ///< how many times the axis was changed
 
   explicit operator bool() const { return status != FeatureContactStatus::none; }
@@ -55,11 +55,11 @@ struct FeatureContact {
 /// Method: the kinetic separating axis. Take the direction between the closest points; as a certificate ("all corners
 /// of the one lie beyond all corners of the other along it") it fails at a closed-form root; jump there, take the new
 /// direction, until the features are within the tolerance or nothing fails any more. After a few steps (grazing,
-/// turning close by) the axis turns with its features, which bounds the steps. Derivations, margins and figures:
+/// turning close by) the axis turns with its features, which keeps the steps few. Derivations, margins and figures:
 /// docs/features.md. Faces without area and edges without length are segments and points, and are welcome.
 ///
-/// Cost: for linear paths 0.06 - 0.1 us without a contact, 0.35 us with one, 1.6 us at worst seen; half as much again for
-/// quadratic ones. Paths that do not start at t0 cost 0.2 - 0.5 us more (they are moved there in double-double).
+/// Cost: for linear paths 0.06 - 0.1 us without a contact, 0.35 us with one, 1.6 us at worst seen; half as much again
+/// for quadratic ones. Paths that do not start at t0 cost 0.2 - 0.5 us more (they are moved there in double-double).
 /// Precondition: t0 <= t1, both finite. Throws std::invalid_argument if a number is not finite.
 template <int Degree>
 FeatureContact vertex_face_contact(const PointMotion<Degree>& vertex, const PointMotion<Degree>& a,
@@ -72,8 +72,8 @@ FeatureContact edge_edge_contact(const PointMotion<Degree>& a, const PointMotion
 
 /// Four points on straight paths, from begin[k] at time 0 to end[k] at time 1, both exact: the form of the published
 /// benchmarks and of simulators with deforming meshes. Vertex, then face; or edge, then edge.
-FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
-                                   const ContactTolerance& tolerance = {});
+FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin,
+                                   const std::array<Eigen::Vector3d, 4>& end, const ContactTolerance& tolerance = {});
 FeatureContact edge_edge_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
                                  const ContactTolerance& tolerance = {});
 

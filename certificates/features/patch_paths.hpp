@@ -4,6 +4,7 @@
 #include "certificates/features/lanes.hpp"
 #include "certificates/point_motion.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>

@@ -59,7 +59,8 @@ bool all_above(const std::array<double, Count>& b, double level) {
   return least > level;
 }
 
-/// A guess of the last x in (0, width) before p comes down to the level, by Newton's method from 0; 0 if p turns up first.
+/// A guess of the last x in (0, width) before p comes down to the level, by Newton's method from 0; 0 if p turns up
+/// first.
 template <int Degree>
 double newton_guess(const Polynomial<Degree>& p, double width, double level) {
   const double close = 0x1p-26 * (p.c[0] - level);
@@ -84,8 +85,8 @@ double newton_guess(const Polynomial<Degree>& p, double width, double level) {
 
 /// An r in [s, 1] such that p > margin on all of [s, r]; near the first time at which it is not, or 1.
 ///
-/// Where the Bernstein coefficients of a stretch are all above the margin, p is. If those of [s, 1] are not, those of the
-/// stretch up to Newton's guess of the root usually are, which ends it. If not, the part of a stretch before a line
+/// Where the Bernstein coefficients of a stretch are all above the margin, p is. If those of [s, 1] are not, those of
+/// the stretch up to Newton's guess of the root usually are, which ends it. If not, the part of a stretch before a line
 /// below the control polygon comes down to the margin is still free, and a shorter stretch is tried from there: this
 /// gains quadratically on a simple root, by halves on a double one.
 ///

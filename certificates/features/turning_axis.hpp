@@ -22,16 +22,17 @@ namespace kds::certificates {
 ///   around it. (The closest direction itself, with the moving corner in place of m, would square the gap, and so lose
 ///   half of the digits.)
 ///
-/// A corner is approached with the axes of its two edges, an edge also with the normal. Each failure of such a certificate uses up a root, or a
-/// quarter turn: a query takes few of these steps, whatever the gap (docs/features.md, "Steps").
+/// A corner is approached with the axes of its two edges, an edge also with the normal. Each failure of such a
+/// certificate uses up a root, or a quarter turn: a query takes few of these steps, whatever the gap (docs/features.md,
+/// "Steps").
 template <Patch kind, int Degree>
 class TurningAxis {
  public:
   explicit TurningAxis(const PatchPaths<Degree>& paths) : paths_(paths) {}
 
-  /// As separated_until() in fixed_axis.hpp, with the axes that belong to the part of the patch on which `point` lies, and
-  /// to the larger parts next to it, which are at most a little worse now and may be much better soon; 1 where that is
-  /// all the time there is.
+  /// As separated_until() in fixed_axis.hpp, with the axes that belong to the part of the patch on which `point` lies,
+  /// and to the larger parts next to it, which are at most a little worse now and may be much better soon; 1 where that
+  /// is all the time there is.
   double separated_until(const PatchPoint& point, double s) const {
     double until = over_interior(s);
     if (point.part == PatchPart::interior || until >= 1) return until;
@@ -130,7 +131,8 @@ class TurningAxis {
   // The two corners that are not of the edge are as high as each other, if there are two.
   double beside_edge(std::size_t k, const Eigen::Vector3d& direction, double s) const {
     if (kind == Patch::triangle && k == 3) k = 0;  // the corner that a triangle repeats
-    const Bounded<0> m{{{{{direction[0]}}, {{direction[1]}}, {{direction[2]}}}}, direction.lpNorm<Eigen::Infinity>(), 0};
+    const Bounded<0> m{
+        {{{{direction[0]}}, {{direction[1]}}, {{direction[2]}}}}, direction.lpNorm<Eigen::Infinity>(), 0};
     const auto e = side(k, (k + 1) % 4);
     const auto across = cross(e, m);
     const double own = positive(across, cross(e, corner(k)), s);

@@ -143,7 +143,8 @@ std::vector<double> single_times(const std::vector<const StepQuery*>& queries, c
   double overhead = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 1000; ++i) overhead = std::min(overhead, time([] {}));
   std::vector<double> times;
-  for (const auto* q : queries) times.push_back(std::max(0.0, time([&] { sink = contender.answer(*q).hit; }) - overhead));
+  for (const auto* q : queries)
+    times.push_back(std::max(0.0, time([&] { sink = contender.answer(*q).hit; }) - overhead));
   std::sort(times.begin(), times.end());
   return times;
 }
@@ -180,7 +181,9 @@ void report(const char* title, const std::vector<StepQuery>& queries, const std:
   const auto means = mean_times(chosen);
   for (std::size_t c = 0; c < contenders().size(); ++c) {
     const auto times = single_times(chosen, contenders()[c]);
-    const auto at = [&](double share) { return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))]; };
+    const auto at = [&](double share) {
+      return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
+    };
     std::printf("%-28s %9.1f %7.2f %9.0f %9.0f %9.0f %9.0f %8d %8d %8d\n", contenders()[c].name, means[c],
                 means[c] / means[0], at(0.5), at(0.99), at(0.999), times.back(), errors[c].missed, errors[c].false_hits,
                 errors[c].late);

@@ -46,9 +46,8 @@ inline FeatureContact ask(Features kind, const Ends& ends, const ContactToleranc
 template <int Degree>
 FeatureContact ask(Features kind, const std::array<PointMotion<Degree>, 4>& p, double t0, double t1,
                    const ContactTolerance& tolerance = {}) {
-  return kind == Features::vertex_face
-             ? certificates::vertex_face_contact(p[0], p[1], p[2], p[3], t0, t1, tolerance)
-             : certificates::edge_edge_contact(p[0], p[1], p[2], p[3], t0, t1, tolerance);
+  return kind == Features::vertex_face ? certificates::vertex_face_contact(p[0], p[1], p[2], p[3], t0, t1, tolerance)
+                                       : certificates::edge_edge_contact(p[0], p[1], p[2], p[3], t0, t1, tolerance);
 }
 
 /// The size by which tolerances are measured, from the numbers as they are.
@@ -76,8 +75,9 @@ inline double size_of(Features kind, const std::array<Path, 4>& paths, double t0
 }
 
 /// Every law of FeatureContact, against exact numbers: what is wrong, or nothing.
-inline std::string complaint(Features kind, const FeatureContact& r, const std::array<Path, 4>& paths, double t0, double t1,
-                      const ContactTolerance& tolerance, const std::optional<oracle::Instant>& truth) {
+inline std::string complaint(Features kind, const FeatureContact& r, const std::array<Path, 4>& paths, double t0,
+                             double t1, const ContactTolerance& tolerance,
+                             const std::optional<oracle::Instant>& truth) {
   if (!r) return truth ? "missed" : "";
   const auto now = oracle::rational(r.time);
   if (!(r.time >= t0 && r.time <= t1)) return "time outside the interval";
@@ -111,7 +111,8 @@ inline std::string complaint(Features kind, const FeatureContact& r, const std::
   for (std::size_t k = firsts; k < 4; ++k) sum += w[k];
   if (*std::min_element(w.begin(), w.end()) < 0 || std::abs(sum - 1) > 1e-15 * 4) return "weights";
   if (kind == Features::edge_edge && std::abs(w[0] + w[1] - 1) > 1e-15 * 4) return "weights of the first edge";
-  if (approximate(squared_length(difference)) > std::pow(r.distance + 1e-14 * size, 2)) return "the points named are apart";
+  if (approximate(squared_length(difference)) > std::pow(r.distance + 1e-14 * size, 2))
+    return "the points named are apart";
   if (!(std::abs(r.normal.norm() - 1) < 1e-12)) return "normal";
   return "";
 }
@@ -119,7 +120,8 @@ inline std::string complaint(Features kind, const FeatureContact& r, const std::
 /// The same of a whole query: asks, finds the truth, and compares.
 inline std::string complaint(Features kind, const Ends& ends, const ContactTolerance& tolerance = {}) {
   const auto paths = exact_paths(ends);
-  return complaint(kind, ask(kind, ends, tolerance), paths, 0, 1, tolerance, ExactFeatures(kind, paths).first_touch(0, 1));
+  return complaint(kind, ask(kind, ends, tolerance), paths, 0, 1, tolerance,
+                   ExactFeatures(kind, paths).first_touch(0, 1));
 }
 template <int Degree>
 std::string complaint(Features kind, const std::array<PointMotion<Degree>, 4>& points, double t0, double t1,

@@ -14,17 +14,17 @@ namespace kds::tests {
 
 /// How the features meet, or miss, at a time in [0, 1].
 enum class Encounter {
-  random,        ///< anything in a cube: a few touch
-  inside,        ///< inside both features
-  rim,           ///< on a rim or a corner of one of them or of both
-  near_rim,      ///< next to a rim, on either side of it
-  at_end,        ///< at time 0 or 1 exactly, or next to it
-  grazing,       ///< the velocity at the time of least distance is along the features; a tiny gap, or none
-  turning,       ///< a face or an edge that turns beside the other feature at a small distance, without meeting it
-  coplanar,      ///< all in one plane all the time
-  degenerate,    ///< a face without area, an edge without length, parallel edges, points that coincide
-  resting,       ///< no relative motion, touching or a tiny gap apart
-  near_parallel, ///< motion along each other, but for a little
+  random,         ///< anything in a cube: a few touch
+  inside,         ///< inside both features
+  rim,            ///< on a rim or a corner of one of them or of both
+  near_rim,       ///< next to a rim, on either side of it
+  at_end,         ///< at time 0 or 1 exactly, or next to it
+  grazing,        ///< the velocity at the time of least distance is along the features; a tiny gap, or none
+  turning,        ///< a face or an edge that turns beside the other feature at a small distance, without meeting it
+  coplanar,       ///< all in one plane all the time
+  degenerate,     ///< a face without area, an edge without length, parallel edges, points that coincide
+  resting,        ///< no relative motion, touching or a tiny gap apart
+  near_parallel,  ///< motion along each other, but for a little
 };
 inline constexpr int encounters = 11;
 
@@ -74,12 +74,15 @@ class FeatureQueries {
         v[0] += vector() * tiny;
         v[2] += vector() * tiny;
         break;
-      case Encounter::turning: turn(kind, x, v, w, std::max(tiny, 1e-6)); break;
+      case Encounter::turning:
+        turn(kind, x, v, w, std::max(tiny, 1e-6));
+        break;
       case Encounter::resting:
         v = {v[0], v[0], v[0], v[0]};
         if (!random_.one_in(3)) meet(kind, x, w, tiny);
         break;
-      default: break;
+      default:
+        break;
     }
     return placed(kind, x, v, time, encounter == Encounter::coplanar, encounter == Encounter::resting);
   }

@@ -34,8 +34,8 @@ std::vector<Known> known_queries() {
   const auto vertex = [&](const char* name, const Vector3d& from, const Vector3d& to, bool touches, double time) {
     all.push_back({name, vf, {from, o, x, y}, {to, o, x, y}, touches, time});
   };
-  const auto edge = [&](const char* name, const Vector3d& a0, const Vector3d& b0, const Vector3d& a1, const Vector3d& b1,
-                        bool touches, double time) {
+  const auto edge = [&](const char* name, const Vector3d& a0, const Vector3d& b0, const Vector3d& a1,
+                        const Vector3d& b1, bool touches, double time) {
     all.push_back({name, ee, {a0, b0, -x, x}, {a1, b1, -x, x}, touches, time});
   };
   vertex("through the face", in + z, in - z, true, 0.5);
@@ -63,7 +63,8 @@ std::vector<Known> known_queries() {
   edge("parallel, side on, slanted approach", -3 * x + y, -x + y, -x, x, true, 1);
   edge("parallel, in a line", -5 * x, -4 * x, -2 * x, -x, true, 1);
   edge("parallel, in a line, apart", -5 * x, -4 * x, -3 * x, -2 * x, false, 0);
-  edge("parallel, along each other", -9 * x + 1e-3 * y, -8 * x + 1e-3 * y, 8 * x + 1e-3 * y, 9 * x + 1e-3 * y, false, 0);
+  edge("parallel, along each other", -9 * x + 1e-3 * y, -8 * x + 1e-3 * y, 8 * x + 1e-3 * y, 9 * x + 1e-3 * y, false,
+       0);
   edge("equal edges at rest", -x, x, -x, x, true, 0);
   edge("in one plane, turning into it", 2 * y, 2 * y + x, 2 * y, -x - y, true, 2.0 / 3);
   // A line that turns over a point at a distance of 0: they share it all the time.
@@ -122,7 +123,8 @@ TEST_CASE("far from the origin differences alone count", "[feature_contact]") {
       CHECK(complaint(query.kind, ends) == "");
       bool exact = true;
       for (std::size_t i = 0; i < 2; ++i) {
-        for (std::size_t k = 0; k < 4; ++k) exact = exact && (ends[i][k] - offset) / scale == (i ? query.end : query.begin)[k];
+        for (std::size_t k = 0; k < 4; ++k)
+          exact = exact && (ends[i][k] - offset) / scale == (i ? query.end : query.begin)[k];
       }
       // Where the sums are exact the answer is the same, bit for bit.
       if (!exact) continue;
@@ -213,15 +215,17 @@ TEST_CASE("a vertex that hovers over a turning face takes few steps", "[feature_
     CHECK(r.status == none);
     CHECK(r.steps <= 4);
   }
-  const Ends tilt{{{Vector3d(0.3, 0.3, 1e-5), o, x, y}, {Vector3d(0.3, 0.3, 1e-5), -z, x + z * 1.3333, y + z * 0.9999}}};
+  const Ends tilt{
+      {{Vector3d(0.3, 0.3, 1e-5), o, x, y}, {Vector3d(0.3, 0.3, 1e-5), -z, x + z * 1.3333, y + z * 0.9999}}};
   CHECK(complaint(vf, tilt) == "");
   CHECK(ask(vf, tilt).steps < 16);
 }
 
 TEST_CASE("an interval that is an instant, and numbers that are none", "[feature_contact]") {
   const auto still = [](double height) {
-    return std::array<PointMotion<1>, 4>{PointMotion<1>{{Vector3d(0.25, 0.25, height), -z}, 0}, PointMotion<1>{{o, o}, 0},
-                                         PointMotion<1>{{x, o}, 0}, PointMotion<1>{{y, o}, 0}};
+    return std::array<PointMotion<1>, 4>{PointMotion<1>{{Vector3d(0.25, 0.25, height), -z}, 0},
+                                         PointMotion<1>{{o, o}, 0}, PointMotion<1>{{x, o}, 0},
+                                         PointMotion<1>{{y, o}, 0}};
   };
   CHECK(ask(vf, still(1), 1, 1).status == at_start);
   CHECK(ask(vf, still(1), 0.5, 0.5).status == none);
