@@ -60,8 +60,8 @@ void bounces(double mass_ratio) {
   const double energy = mass_ratio / 2;
   const double now =
       0.5 * (mass_ratio * found.heavy_speed() * found.heavy_speed() + found.light_speed() * found.light_speed());
-  std::printf("bounces at mass ratio %g: %zu, with a hundred digits %zu; times differ by %.2g at most (relative), energy by "
-              "%.2g, held %llu\n",
+  std::printf("bounces at mass ratio %g: %zu, with a hundred digits %zu; times differ by %.2g at most (relative), "
+              "energy by %.2g, held %llu\n",
               mass_ratio, found.times().size(), exact.size(), worst, (now - energy) / energy,
               static_cast<unsigned long long>(found.held()));
 }

@@ -2,9 +2,9 @@
 //
 //     bench_far [DIRECTORY [PAIRS]]      -> far.csv (spheres and boxes), meshes.csv; 300 pairs a row
 //
-// Spheres and boxes: the error must lie in [0, 1) spacings of the doubles at that time: the first double at or after the
-// true instant (turned boxes are rounded shapes: of them the error of the place is told, in 2^-53 of the size). Meshes:
-// how early they are, against the contact gap that the library states. Exits with 1 where a law is broken.
+// Spheres and boxes: the error must lie in [0, 1) spacings of the doubles at that time: the first double at or after
+// the true instant (turned boxes are rounded shapes: of them the error of the place is told, in 2^-53 of the size).
+// Meshes: how early they are, against the contact gap that the library states. Exits with 1 where a law is broken.
 
 #include "tests/benchmarks/accuracy/encounters.hpp"
 #include "tests/benchmarks/accuracy/mesh_bounds.hpp"
@@ -37,6 +37,12 @@ std::ofstream open_csv(const std::filesystem::path& folder, const char* name) {
   return file;
 }
 
+Eigen::Quaterniond random_orientation(Random& random) {
+  const double z = random.between(0.1, 1);
+  const Vector3d rest = random_vector(random, 1);
+  return Eigen::Quaterniond(rest[0], rest[1], rest[2], z).normalized();
+}
+
 enum class Kind { balls, box_and_ball, boxes, turned_boxes };
 
 const char* name(Kind kind) {
@@ -65,8 +71,7 @@ bool measure(Kind kind, const Setting& setting, int pairs, std::ofstream& csv) {
     auto e = encounter<Degree>(random, setting, a, b);
     if (kind == Kind::turned_boxes) {
       for (auto* body : {&e.a, &e.b}) {
-        Eigen::Quaterniond q(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(0.1, 1));
-        body->orientation = q.normalized();
+        body->orientation = random_orientation(random);
       }
     }
     compare(e, setting, errors);
@@ -85,8 +90,7 @@ bool measure_meshes(const char* what, const std::shared_ptr<const kds::collision
     auto e = encounter<Degree>(random, setting, MeshShape{mesh, setting.size_a * random.between(0.4, 0.8)},
                                MeshShape{mesh, setting.size_b * random.between(0.4, 0.8)});
     for (auto* body : {&e.a, &e.b}) {
-      Eigen::Quaterniond q(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(0.1, 1));
-      body->orientation = q.normalized();
+      body->orientation = random_orientation(random);
     }
     compare(e, setting, errors);
   }
@@ -105,7 +109,8 @@ int main(int argc, char** argv) {
     if (pairs < 10) throw std::runtime_error("usage: bench_far [DIRECTORY [PAIRS]], at least 10 pairs");
     bool right = true;
     auto far = open_csv(folder, "far.csv");
-    tell(far, "shapes,degree,setting,contacts,wrong,not_first_double,least_ulps,most_ulps,most_seconds,most_roundings\n");
+    tell(far, "shapes,degree,setting,contacts,wrong,not_first_double,least_ulps,most_ulps,most_seconds,"
+              "most_roundings\n");
     for (const Setting& setting : settings()) {
       for (const Kind kind : {Kind::balls, Kind::box_and_ball, Kind::boxes}) {
         right &= measure<1>(kind, setting, pairs, far);

@@ -87,8 +87,8 @@ TEST_CASE("Rounding of elastic impulses neither gains nor loses energy in the me
     for (const Sums& sums : {elastic_impulses(mass, 1, any), elastic_impulses(1, mass, coarse)}) {
       INFO("mass ratio " << mass);
       CHECK(std::abs(sums.energy) < 5 * std::sqrt(sums.energy_square));
-      // Each component of the change is rounded some 12 times, so energy by 24 + 2 roundings of 2^-53, for velocities of
-      // which the relative one is the greatest part; see docs/accuracy.md.
+      // Each component of the change is rounded some 12 times, so energy by 24 + 2 roundings of 2^-53, for velocities
+      // of which the relative one is the greatest part; see docs/accuracy.md.
       CHECK(sums.worst_energy < 32 * 0x1p-53);
       CHECK(sums.worst_momentum < 8 * 0x1p-53);
     }

@@ -59,8 +59,9 @@ inline std::vector<double> exact_bounces(double mass_ratio) {
   Number now = 0, light = 3, heavy = 10, light_speed = 0, heavy_speed = -1;
   std::vector<double> times;
   for (;;) {
-    const Number to_fixed = light_speed < 0 ? Number((light - 2) / -light_speed) : Number(-1);
-    const Number to_heavy = light_speed > heavy_speed ? Number((heavy - light - 2) / (light_speed - heavy_speed)) : Number(-1);
+    Number to_fixed = -1, to_heavy = -1;
+    if (light_speed < 0) to_fixed = (light - 2) / -light_speed;
+    if (light_speed > heavy_speed) to_heavy = (heavy - light - 2) / (light_speed - heavy_speed);
     if (to_fixed < 0 && to_heavy < 0) return times;
     const bool fixed = to_heavy < 0 || (to_fixed >= 0 && to_fixed < to_heavy);
     const Number wait = fixed ? to_fixed : to_heavy;

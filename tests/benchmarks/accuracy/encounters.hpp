@@ -59,7 +59,9 @@ struct Encounter {
 };
 
 inline Vector3d random_vector(Random& random, double size) {
-  return Vector3d(random.between(-size, size), random.between(-size, size), random.between(-size, size));
+  Vector3d v;
+  for (int d = 3; d-- > 0;) v[d] = random.between(-size, size);
+  return v;
 }
 
 /// b passes a's centre by less than the sum of the sizes, most of the time within a second at speed 1.

@@ -72,8 +72,8 @@ class PollingSampler final : private kds::collision::PairListener {
   std::unordered_map<std::uint64_t, std::size_t> places_;
 };
 
-/// Sweep and prune over samples, [Cohen95]: three arrays of interval ends, put in order anew at each sample by insertion
-/// (they hardly move in between); an exchange of a minimum with a maximum adds or drops a pair.
+/// Sweep and prune over samples, [Cohen95]: three arrays of interval ends, put in order anew at each sample by
+/// insertion (they hardly move in between); an exchange of a minimum with a maximum adds or drops a pair.
 template <int Degree>
 class DiscreteSampler {
  public:

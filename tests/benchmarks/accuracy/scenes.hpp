@@ -34,7 +34,8 @@ struct Scene {
 
 /// The tool's generator, without its walls: spheres, boxes or rings.
 template <int Degree>
-Scene<Degree> generated(const std::string& name, const std::string& what, const kds_collide::GeneratorOptions& options) {
+Scene<Degree> generated(const std::string& name, const std::string& what,
+                        const kds_collide::GeneratorOptions& options) {
   const auto text = kds_collide::generate_scene(options);
   const auto folder = std::filesystem::temp_directory_path() / ("kds-accuracy-" + name);
   std::filesystem::create_directories(folder);
@@ -55,7 +56,8 @@ Scene<Degree> generated(const std::string& name, const std::string& what, const 
 
 inline Vector3d direction(Random& random) {
   for (;;) {
-    const Vector3d v(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+    Vector3d v;
+    for (int d = 3; d-- > 0;) v[d] = random.between(-1, 1);
     const double square = v.squaredNorm();
     if (square > 0.01 && square < 1) return v / std::sqrt(square);
   }
@@ -66,7 +68,10 @@ inline Scene<2> curved(std::size_t bodies, double density, std::uint64_t seed) {
   auto scene = generated<2>("curved", "balls on parabolas, 1 %",
                             {.kind = "spheres", .bodies = bodies, .density = density, .seed = seed, .end_time = 2});
   Random random(seed);
-  for (auto& body : scene.bodies) body.motion[0].coefficients[2] = direction(random) * random.between(0, 1);
+  for (auto& body : scene.bodies) {
+    const double size = random.between(0, 1);
+    body.motion[0].coefficients[2] = direction(random) * size;
+  }
   return scene;
 }
 
@@ -80,7 +85,8 @@ inline Scene<1> bullets(std::size_t bodies, std::uint64_t seed) {
   while (scene.bodies.size() < bodies) {
     const bool is_large = scene.bodies.size() < large;
     const double radius = is_large ? random.between(1, 2) : random.between(0.02, 0.05);
-    const Vector3d at(random.between(0, side), random.between(0, side), random.between(0, side));
+    Vector3d at;
+    for (int d = 3; d-- > 0;) at[d] = random.between(0, side);
     bool free = true;
     for (const auto& other : scene.bodies) {
       const double reach = radius + std::get<Sphere>(other.shape).radius;
@@ -89,7 +95,8 @@ inline Scene<1> bullets(std::size_t bodies, std::uint64_t seed) {
     if (!free) continue;
     BodyDescription<1> body;
     body.shape = Sphere{radius};
-    body.motion = {{{at, direction(random) * (is_large ? 0.5 : random.between(100, 300))}, 0}};
+    const double speed = is_large ? 0.5 : random.between(100, 300);
+    body.motion = {{{at, direction(random) * speed}, 0}};
     scene.bodies.push_back(std::move(body));
   }
   return scene;
