@@ -63,7 +63,7 @@ void bounces(double mass_ratio) {
   std::printf("bounces at mass ratio %g: %zu, with a hundred digits %zu; times differ by %.2g at most (relative), "
               "energy by %.2g, held %llu\n",
               mass_ratio, found.times().size(), exact.size(), worst, (now - energy) / energy,
-              static_cast<unsigned long long>(found.held()));
+              static_cast<unsigned long long>(found.times_held()));
 }
 
 }  // namespace

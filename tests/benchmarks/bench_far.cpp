@@ -109,8 +109,8 @@ int main(int argc, char** argv) {
     if (pairs < 10) throw std::runtime_error("usage: bench_far [DIRECTORY [PAIRS]], at least 10 pairs");
     bool right = true;
     auto far = open_csv(folder, "far.csv");
-    tell(far, "shapes,degree,setting,contacts,wrong,not_first_double,least_ulps,most_ulps,most_seconds,"
-              "most_roundings\n");
+    tell(far, "%s", "shapes,degree,setting,contacts,wrong,not_first_double,least_ulps,most_ulps,most_seconds,"
+                    "most_roundings\n");
     for (const Setting& setting : settings()) {
       for (const Kind kind : {Kind::balls, Kind::box_and_ball, Kind::boxes}) {
         right &= measure<1>(kind, setting, pairs, far);
@@ -119,8 +119,8 @@ int main(int argc, char** argv) {
       right &= measure<1>(Kind::turned_boxes, setting, pairs / 10, far);
     }
     auto meshes = open_csv(folder, "meshes.csv");
-    tell(meshes, "mesh,degree,setting,contacts,missed,near_misses,late,most_of_gap,gap_over_size,most_seconds_early,"
-                 "most_of_bound\n");
+    tell(meshes, "%s", "mesh,degree,setting,contacts,missed,near_misses,late,most_of_gap,gap_over_size,"
+                       "most_seconds_early,most_of_bound\n");
     const auto cube = kds::collision::samples::cuboid();
     const auto ring = kds::collision::samples::torus(8, 4);
     for (const Setting& setting : settings()) {

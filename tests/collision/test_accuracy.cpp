@@ -121,7 +121,7 @@ TEST_CASE("Bounces between masses of ratio 100^k count the digits of pi", "[accu
     const auto exact = exact_bounces(ratio);
     REQUIRE(exact.size() == static_cast<std::size_t>(digits));
     REQUIRE(found.times().size() == exact.size());
-    CHECK(found.held() == 0);
+    CHECK(found.times_held() == 0);
     double worst = 0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
       worst = std::max(worst, std::abs(found.times()[i] - exact[i]) / exact[i]);
