@@ -21,11 +21,11 @@ inline double excess_of_unit(const Eigen::Vector3d& v) {
 /// not both. Precondition: the normal is a unit vector but for rounding.
 ///
 /// Energy must not drift faster than rounding at random makes it, by a root of the number of contacts. Two errors would
-/// be the same at each contact and add up, some 1e-16 of the pair's energy each: that of the quotient of the masses,
-/// which for bodies of two masses is one number, so the lighter body takes what the heavier leaves of the change and
-/// the sum is right whatever the quotient's error; and that of the normal's length, which far from the origin is not random
-/// (the coordinates have few bits, and sums of their squares fall midway between doubles), so it is divided out. See
-/// docs/accuracy.md.
+/// be the same at each contact and add up, by as much as 1e-16 of the pair's energy each: that of the quotient of the
+/// masses, which for bodies of two masses is one number, so the lighter body takes what the heavier leaves of the
+/// change and the sum is right whatever the quotient's error; and that of the normal's length, which far from the
+/// origin is not random (the coordinates have few bits, and sums of their squares fall midway between doubles), so it
+/// is divided out. See docs/accuracy.md.
 inline void change_relative_velocity(Eigen::Vector3d& velocity_a, Eigen::Vector3d& velocity_b,
                                      const Eigen::Vector3d& normal, double change, double inverse_mass_a,
                                      double inverse_mass_b) {

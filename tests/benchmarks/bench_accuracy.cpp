@@ -102,7 +102,8 @@ void measure(const Scene<Degree>& scene, int rounds, std::ofstream& csv) {
   }
   const bool mesh = std::holds_alternative<kds::collision::MeshShape>(scene.bodies[0].shape);
   const ExactCheck exact = mesh ? check_meshes_exactly(scene, truth) : check_exactly(scene, truth);
-  std::printf("\n%s: %s; %zu bodies, %g s, %zu contacts; engine's time error: mean %.2g s, max %.2g s (%zu looked at)\n",
+  std::printf("\n%s: %s; %zu bodies, %g s, %zu contacts; the engine's error of time: mean %.2g s, max %.2g s "
+              "(%zu looked at)\n",
               scene.name.c_str(), scene.what.c_str(), scene.bodies.size(), scene.end_time, truth.size(), exact.mean,
               exact.max, exact.looked_at);
 
