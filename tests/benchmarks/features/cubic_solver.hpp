@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace kds::benchmarks {
 
@@ -26,11 +28,13 @@ class CubicSolver {
     const Eigen::Vector3d u = step[1] - step[0], v = step[2] - step[0], w = step[3] - step[0];
     const Eigen::Vector3d ab = a.cross(b), uv = u.cross(v), mixed = a.cross(v) + u.cross(b);
     const std::array<double, 4> cubic{ab.dot(c), ab.dot(w) + mixed.dot(c), mixed.dot(w) + uv.dot(c), uv.dot(w)};
-    std::array<double, 3> roots{};
-    const int n = solve(cubic, roots);
-    std::sort(roots.begin(), roots.begin() + n);
-    for (int i = 0; i < n; ++i) {
-      const double t = roots[static_cast<std::size_t>(i)];
+    std::array<double, 3> roots;
+    roots.fill(std::numeric_limits<double>::infinity());
+    solve(cubic, roots);
+    if (roots[1] < roots[0]) std::swap(roots[0], roots[1]);
+    if (roots[2] < roots[1]) std::swap(roots[1], roots[2]);
+    if (roots[1] < roots[0]) std::swap(roots[0], roots[1]);
+    for (const double t : roots) {
       if (!(t >= 0 && t <= 1)) continue;
       std::array<Eigen::Vector3d, 4> x;
       for (std::size_t k = 0; k < 4; ++k) x[k] = begin[k] + t * step[k];
@@ -42,7 +46,7 @@ class CubicSolver {
  private:
   static constexpr double tolerance = 1e-6;  // of barycentric coordinates and edge parameters
 
-  static int solve(const std::array<double, 4>& p, std::array<double, 3>& roots) {
+  static void solve(const std::array<double, 4>& p, std::array<double, 3>& roots) {
     const auto& [d, c, b, a] = p;
     const double size = std::abs(a) + std::abs(b) + std::abs(c) + std::abs(d);
     if (std::abs(a) > 1e-14 * size) {
@@ -55,25 +59,23 @@ class CubicSolver {
           roots[static_cast<std::size_t>(i)] =
               -2 * std::sqrt(q) * std::cos((angle + 2 * std::numbers::pi * i) / 3) - p1 / 3;
         }
-        return 3;
+        return;
       }
       const double e = -std::copysign(std::cbrt(std::abs(r) + std::sqrt(r * r - q * q * q)), r);
       roots[0] = e + (e != 0 ? q / e : 0) - p1 / 3;
-      return 1;
+      return;
     }
     if (std::abs(b) > 1e-14 * size) {
       const double discriminant = c * c - 4 * b * d;
-      if (discriminant < 0) return 0;
+      if (discriminant < 0) return;
       const double s = -0.5 * (c + std::copysign(std::sqrt(discriminant), c));
       roots[0] = s / b;
       roots[1] = s != 0 ? d / s : roots[0];
-      return 2;
+      return;
     }
     if (std::abs(c) > 1e-14 * size) {
       roots[0] = -d / c;
-      return 1;
     }
-    return 0;
   }
 
   static bool in_face(const std::array<Eigen::Vector3d, 4>& x) {
