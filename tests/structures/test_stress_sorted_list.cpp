@@ -273,13 +273,13 @@ TEMPLATE_TEST_CASE_SIG("stress: numbers all subnormal, huge, equal, or of all si
     }
     swaps += run_checked<Degree>(motions, end).size();
   };
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < 1; ++round) {
     check("subnormal", subnormal, 100);
     check("huge", huge, 1e3);
     check("equal", equal, 1e3);
     check("any size", any_size, 1e300);
   }
-  CHECK(swaps > 80);
+  CHECK(swaps > 20);
   // Starts, too.
   std::vector<Motion<Degree>> motions(24);
   for (auto& m : motions) {
