@@ -31,7 +31,7 @@ TEST_CASE("The excess of a unit vector is that of long doubles", "[impulse]") {
   CHECK(kds::collision::excess_of_unit(Vector3d::UnitY()) == 0);
 }
 
-TEST_CASE("Equal balls exchange velocities; a fixed body keeps its own", "[impulse]") {
+TEST_CASE("Equal balls exchange velocities, a fixed body keeps its own", "[impulse]") {
   Vector3d a(2, 1, 0), b(-1, 0, 3);
   change_relative_velocity(a, b, Vector3d::UnitX(), 6, 1, 1);
   CHECK(a == Vector3d(-1, 1, 0));

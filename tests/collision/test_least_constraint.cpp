@@ -58,7 +58,7 @@ TEST_CASE("least constraint: what parts is left alone, and what is pulled off a 
   CHECK(p.touches[0].push == 0);
 }
 
-TEST_CASE("least constraint: stacks rest exactly; pushes carry what is above", "[resting]") {
+TEST_CASE("least constraint: stacks rest exactly, pushes carry what is above", "[resting]") {
   for (const std::size_t height : {2u, 3u, 10u, 100u}) {
     Problem p;
     p.body(Vector3d::Zero(), 0);

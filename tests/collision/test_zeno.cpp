@@ -195,7 +195,7 @@ TEST_CASE("Resting: a box slides off the edge and falls, from the instant at whi
   });
 }
 
-TEST_CASE("Resting: the support goes away, comes back, lifts; the body falls, lands, is lifted", "[zeno]") {
+TEST_CASE("Resting: the support goes away, comes back, lifts, the body falls, lands, is lifted", "[zeno]") {
   const auto scene = [&](World<2>& world) {
     world.add_body(floor_box());
     world.add_body(bouncy(ball<2>(1, {0, 0, 1}, zero, weight), 0.5));
@@ -224,7 +224,7 @@ TEST_CASE("Resting: the support goes away, comes back, lifts; the body falls, la
   with_all_methods(elastic(), scene, [](World<2>&, EventLog<2>&) {});
 }
 
-TEST_CASE("Resting: a floor that sinks with less than gravity carries on; with more it lets go", "[zeno]") {
+TEST_CASE("Resting: a floor that sinks with less than gravity carries on, with more it lets go", "[zeno]") {
   for (const double half : {4.0, 6.0}) {
     const auto scene = [&](World<2>& world) {
       world.add_body(floor_box());
@@ -397,7 +397,7 @@ TEST_CASE("Resting: meshes rest on meshes and slide into what stands in the way"
   }
 }
 
-TEST_CASE("Zeno: a body between fixed ones that close in cannot be held; that is reported and the run ends", "[zeno]") {
+TEST_CASE("Zeno: a body between fixed ones that close in cannot be held, that is reported and the run ends", "[zeno]") {
   for (const double e : {0.0, 0.5, 1.0}) {
     const auto scene = [&](World<2>& world) {
       world.add_body(fixed_body<2>(Box{{50, 50, 1}}, motion<2>({0, 0, -1})));

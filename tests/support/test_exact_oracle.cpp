@@ -71,7 +71,7 @@ TEST_CASE("the end of the time looked at belongs to it", "[oracle]") {
   CHECK(contacts(a, b, 12).empty());
 }
 
-TEST_CASE("spheres that graze do not meet; an ulp nearer they do", "[oracle]") {
+TEST_CASE("spheres that graze do not meet, an ulp nearer they do", "[oracle]") {
   const Body a = ball(1, {{0, 0, 0}});
   CHECK(contacts(a, ball(1, {{10, 2, 0}, {-1, 0, 0}}), 0).empty());
   CHECK(contacts(a, ball(1, {{10, std::nextafter(2.0, 3.0), 0}, {-1, 0, 0}}), 0).empty());
@@ -170,7 +170,7 @@ TEST_CASE("a sphere meets a corner", "[oracle]") {
   require_root(*found[0].end, [](const Rational& t) { return Rational(3 * (t - 6) * (t - 6) - 1); });
 }
 
-TEST_CASE("a sphere that grazes a corner does not meet it; an ulp larger it does", "[oracle]") {
+TEST_CASE("a sphere that grazes a corner does not meet it, an ulp larger it does", "[oracle]") {
   // Past the corner (1, 1, 1) at the distance |(2, 2, 1)| = 3, along (1, -1, 0).
   const Coefficients past{{1 + 2 - 8, 1 + 2 + 8, 2}, {1, -1, 0}};
   CHECK(contacts(cube({{0, 0, 0}}), ball(3, past), 0).empty());
