@@ -221,9 +221,10 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   pair.alive = true;
   pair.fresh = inserting_;
   for (const Passing& passing : passing_) {
-    if (passing.a != a || passing.b != b || passing.at != t) continue;
-    pair.ignored = true;
-    if (passing.let_pass) pair.let_pass = t;
+    if (passing.a != a || passing.b != b) continue;
+    // What is let pass is ignored from the next instant on; its boxes may begin to overlap then.
+    pair.ignored = pair.ignored || passing.at == t || (passing.let_pass && next_up(passing.at) == t);
+    if (passing.let_pass && passing.at == t) pair.let_pass = t;
   }
   // A jump may part two bodies and another one bring them together at the same instant.
   pair.touching = take_back(Pending::Kind::separation, a, b, t);
