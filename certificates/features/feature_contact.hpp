@@ -23,7 +23,7 @@ enum class FeatureContactStatus : std::uint8_t {
 /// feature and one of the other at t0, plus what that coordinate changes until t1. It scales with the query, and does
 /// not know where in the world it is. Larger is faster by little; smaller reports fewer near misses.
 struct ContactTolerance {
-  double relative = 1e-6;
+  double relative = 1e-6;  ///< of the size, as in most published comparisons of such tests
   double absolute = std::numeric_limits<double>::infinity();  ///< in units of length
 };
 

@@ -8,7 +8,7 @@
 // would show. Methods are measured in turn, on this thread's clock; the median of the rounds is told. Columns: times in
 // s, depths in units of length (bounding radii are 0.5-1.5, but in `bullets`).
 
-#include "tests/benchmarks/accuracy/exact_bodies.hpp"
+#include "tests/support/exact_bodies.hpp"
 #include "tests/benchmarks/accuracy/exact_mesh.hpp"
 #include "tests/benchmarks/accuracy/methods.hpp"
 
@@ -46,7 +46,7 @@ ExactCheck check_exactly(const Scene<Degree>& scene, const std::vector<TrueConta
   ExactCheck check;
   for (std::size_t i = 0; i < truth.size(); i += step) {
     const TrueContact& c = truth[i];
-    const auto root = oracle::first_contact(exact_body(scene.bodies[c.a]), exact_body(scene.bodies[c.b]), 0);
+    const auto root = oracle::first_contact(oracle::exact_body(scene.bodies[c.a]), oracle::exact_body(scene.bodies[c.b]), 0);
     if (!root) throw std::runtime_error(scene.name + ": exact arithmetic knows no such contact");
     if (balls && root->ceiling() != c.begin) throw std::runtime_error(scene.name + ": not the first double");
     root->narrow(120);

@@ -10,10 +10,10 @@
 #include "tests/benchmarks/features/query_files.hpp"
 #include "tests/certificates/exact_features.hpp"
 #include "tests/certificates/feature_queries.hpp"
+#include "tests/benchmarks/thread_time.hpp"
 
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <limits>
 #include <map>
@@ -95,12 +95,6 @@ std::array<Path, 4> exact_paths(const StepQuery& q) {
     }
   }
   return paths;
-}
-
-double thread_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 volatile int sink;

@@ -8,6 +8,7 @@
 
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
+#include "tests/benchmarks/thread_time.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <algorithm>
@@ -15,7 +16,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <vector>
 
 namespace {
@@ -91,12 +91,6 @@ Scene<Degree> make_scene(std::uint64_t seed, std::uint32_t bodies) {
   return scene;
 }
 
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 struct Result {
   double seconds = 0;
   Counters counters;
@@ -114,9 +108,9 @@ Result run(const Scene<Degree>& scene) {
     lists[d].assign(entries, 0);
   }
   Simulator simulator(0, lists[0], lists[1], lists[2]);
-  const double start = cpu_seconds();
+  const double start = kds::benchmarks::thread_seconds();
   simulator.advance_to(1);
-  result.seconds = cpu_seconds() - start;
+  result.seconds = kds::benchmarks::thread_seconds() - start;
   result.counters = simulator.counters();
   return result;
 }

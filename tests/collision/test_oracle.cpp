@@ -1,6 +1,7 @@
 // Spheres and boxes against exact rational arithmetic: no contact missed, none invented, every time the right double.
 #include "collision/narrow_phase.hpp"
 #include "tests/collision/random_scenes.hpp"
+#include "tests/support/exact_bodies.hpp"
 #include "tests/support/exact_failure_time.hpp"
 #include "tests/support/exact_models.hpp"
 #include "tests/support/exact_oracle.hpp"
@@ -23,24 +24,6 @@ const std::vector<Eigen::Quaterniond>& exact_orientations() {
   static const std::vector<Eigen::Quaterniond> all{{1, 0, 0, 0},         {0, 1, 0, 0},          {0.5, 0.5, 0.5, 0.5},
                                                    {0.5, -0.5, 0.5, 0.5}, {0.5, 0.5, 0.5, -0.5}, {0, 0, 0, 1}};
   return all;
-}
-
-template <int Degree>
-oracle::Body exact(const BodyDescription<Degree>& body) {
-  oracle::Body result;
-  if (const auto* sphere = std::get_if<Sphere>(&body.shape)) {
-    result.shape = oracle::Sphere{sphere->radius};
-  } else {
-    const auto& h = std::get<Box>(body.shape).half_extents;
-    const auto& q = body.orientation;
-    result.shape = oracle::Box{{h[0], h[1], h[2]}, oracle::rotation({q.w(), q.x(), q.y(), q.z()})};
-  }
-  for (const auto& piece : body.motion) {
-    oracle::Piece exact_piece{piece.start, {}};
-    for (const auto& c : piece.coefficients) exact_piece.coefficients.push_back({c[0], c[1], c[2]});
-    result.motion.push_back(exact_piece);
-  }
-  return result;
 }
 
 /// One stretch of contact as a clock made of doubles sees it; an end at infinity is none.
@@ -107,7 +90,7 @@ void compare_pair(const BodyDescription<Degree>& a, const BodyDescription<Degree
   const PlacedShape shape_b = place(b.shape, b.orientation);
   const MovingShape<Degree> moving_a{shape_a, a.motion[0]};
   const MovingShape<Degree> moving_b{shape_b, b.motion[0]};
-  const auto expected = on_the_clock(oracle::contacts(exact(a), exact(b), 0, limit), limit);
+  const auto expected = on_the_clock(oracle::contacts(oracle::exact_body(a), oracle::exact_body(b), 0, limit), limit);
   REQUIRE(ask(moving_a, moving_b, 0, limit) == expected);
   // The order of the two bodies does not matter.
   REQUIRE(first_contact(moving_b, moving_a, 0, limit, ContactMode::transparent) ==
@@ -196,7 +179,7 @@ TEST_CASE("Turned boxes: the shapes are rounded, so that times are near the exac
       Eigen::Quaterniond q(random.integer(1, 5), random.integer(-5, 5), random.integer(-5, 5), random.integer(-5, 5));
       each->orientation = q;
     }
-    const auto exact_contact = oracle::first_contact(exact(a), exact(b), 0, 5);
+    const auto exact_contact = oracle::first_contact(oracle::exact_body(a), oracle::exact_body(b), 0, 5);
     const PlacedShape shape_a = place(a.shape, a.orientation.normalized());
     const PlacedShape shape_b = place(b.shape, b.orientation.normalized());
     const double t = first_contact<1>({shape_a, a.motion[0]}, {shape_b, b.motion[0]}, 0, 5, ContactMode::transparent);
@@ -228,7 +211,8 @@ TEMPLATE_TEST_CASE_SIG("Contacts and separations of small scenes are those of ex
       std::vector<Event> expected;
       for (BodyId a = 0; a < scene.bodies.size(); ++a) {
         for (BodyId b = a + 1; b < scene.bodies.size(); ++b) {
-          const auto stretches = oracle::contacts(exact(scene.bodies[a]), exact(scene.bodies[b]), 0, scene.end_time);
+          const auto stretches = oracle::contacts(oracle::exact_body(scene.bodies[a]),
+                                                  oracle::exact_body(scene.bodies[b]), 0, scene.end_time);
           for (const Stretch& s : on_the_clock(stretches, scene.end_time)) {
             expected.push_back({s.at_start ? Kind::overlap : Kind::contact, a, b, {.time = s.begin}});
             if (s.end != never) expected.push_back({Kind::separation, a, b, {.time = s.end}});

@@ -1,6 +1,7 @@
 // Failure times against their definition: the first double just after which the exact sign is negative. The answer is
 // found again by isolating all roots over the rationals, so that a missed crossing shows as surely as a wrong one.
 #include "kds/failure_time.hpp"
+#include "tests/kds/polynomial_families.hpp"
 #include "tests/support/exact_failure_time.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -17,6 +18,7 @@
 namespace {
 
 using namespace kds;
+using kds::tests::polynomial_from_roots;
 using kds::tests::Random;
 
 constexpr double largest = std::numeric_limits<double>::max();
@@ -77,20 +79,6 @@ void check_around(const Motion<Degree>& f, double now) {
       check(f, near, next_up(near));
     }
   }
-}
-
-/// (x - roots[0]) (x - roots[1]) ... leading, about `start`, its coefficients rounded as they come.
-template <int Degree>
-Motion<Degree> from_roots(const std::array<double, Degree>& roots, double leading, double start) {
-  Motion<Degree> f;
-  f.start = start;
-  f.position.c[0] = leading;
-  for (std::size_t n = 0; n < Degree; ++n) {
-    const double root = roots[n] - start;
-    for (std::size_t i = n + 1; i > 0; --i) f.position.c[i] = f.position.c[i - 1] - root * f.position.c[i];
-    f.position.c[0] *= -root;
-  }
-  return f;
 }
 
 template <int Degree>
@@ -177,7 +165,7 @@ TEMPLATE_TEST_CASE_SIG("failure times where few bits make roots doubles and sign
     } else {
       std::array<double, Degree> roots;
       for (double& root : roots) root = random.integer(-2, 2);
-      f = from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, 0);
+      f = polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, 0);
     }
     f.start = random.integer(-2, 2);
     check_around(f, random.integer(-3, 3));
@@ -191,7 +179,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of clustered roots", "[failure_time]", FOR
     std::array<double, Degree> roots;
     for (double& root : roots) root = middle + spread * random.between(-1, 1);
     const double start = random.one_in(2) ? middle : random.between(-2, 2);
-    const auto f = from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, start);
+    const auto f = polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, start);
     check(f, middle - 2 * spread);
     check(f, middle);
     check(f, -4);
@@ -204,7 +192,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of double, nearly double and triple roots"
     for (double& root : roots) root = random.integer(-16, 16) / 8.0;
     const std::size_t multiplicity = std::min<std::size_t>(Degree, 2 + random.below(2));
     for (std::size_t i = 1; i < multiplicity; ++i) roots[i] = roots[0];
-    auto f = from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, random.one_in(2) ? 0 : 0.5);
+    auto f = polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, random.one_in(2) ? 0 : 0.5);
     if (random.one_in(2)) {
       double& c = f.position.c[random.below(Degree + 1)];
       c = random.one_in(2) ? next_up(c) : next_down(c);
@@ -299,7 +287,7 @@ TEST_CASE("failure times of Wilkinson's polynomials", "[failure_time]") {
       std::array<double, 8> roots;
       for (std::size_t i = 0; i < roots.size(); ++i) roots[i] = static_cast<double>(i + 1) * scale;
       for (const double start : {0.0, 4.5 * scale, -1.0 * scale}) {
-        const auto f = from_roots<8>(roots, sign, start);
+        const auto f = polynomial_from_roots<8>(roots, sign, start);
         for (int i = 0; i <= 9; ++i) check_around(f, i * scale);
       }
     }
@@ -337,7 +325,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of roots a few steps of the lattice apart"
     const double u = 0x1p-52;
     std::array<double, Degree> roots;
     for (double& root : roots) root = 1 + random.integer(-3, 3) * u;
-    auto f = from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, 1);
+    auto f = polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, 1);
     for (std::size_t i = 0; i <= Degree; ++i) f.position.c[i] += random.between(-1, 1) * 0x1p-3 * f.position.c[i];
     check(f, 1 - 5 * u);
     check(f, 1);
@@ -447,7 +435,7 @@ TEMPLATE_TEST_CASE_SIG("after a turn from - to + the next failure is found witho
     } else {
       std::array<double, Degree> roots;
       for (double& root : roots) root = random.integer(-2, 2);
-      f = from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, 0);
+      f = polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, 0);
     }
     const double turn = expected_failure_time(Motion<Degree>{-f.position, f.start}, -3);
     if (turn == never || turn == -3) return;

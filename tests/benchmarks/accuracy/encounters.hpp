@@ -4,7 +4,7 @@
 #include "collision/narrow_phase.hpp"
 #include "collision/world.hpp"
 #include "kds/lattice.hpp"
-#include "tests/benchmarks/accuracy/exact_bodies.hpp"
+#include "tests/support/exact_bodies.hpp"
 #include "tests/support/exact_oracle.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -125,7 +125,7 @@ void compare(const Encounter<Degree>& e, const Setting& s, TimeErrors& errors) {
   const double limit = s.clock + 4 * e.duration;
   const double t =
       first_contact<Degree>({a, e.a.motion[0]}, {b, e.b.motion[0]}, s.clock, limit, ContactMode::transparent);
-  const auto root = oracle::first_contact(exact_body(e.a), exact_body(e.b), s.clock, limit);
+  const auto root = oracle::first_contact(oracle::exact_body(e.a), oracle::exact_body(e.b), s.clock, limit);
   const bool seen = root && root->ceiling() <= limit;
   if (seen != (t != kds::never)) {
     ++errors.wrong;

@@ -4,13 +4,15 @@
 #include "tests/benchmarks/accuracy/contacts.hpp"
 #include "tests/benchmarks/accuracy/samplers.hpp"
 #include "tests/benchmarks/accuracy/scenes.hpp"
+#include "tests/benchmarks/thread_time.hpp"
 
 #include <cmath>
-#include <ctime>
 #include <string>
 #include <vector>
 
 namespace accuracy {
+
+using kds::benchmarks::thread_seconds;
 
 enum class Method {
   event_driven,  ///< the engine: kinetic sweep and prune, exact contacts
@@ -27,12 +29,6 @@ inline const char* name(Method method) {
     case Method::discrete: return "discrete";
   }
   return "?";
-}
-
-inline double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 struct Outcome {

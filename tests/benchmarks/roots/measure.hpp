@@ -3,7 +3,7 @@
 
 #include "tests/benchmarks/roots/cell.hpp"
 #include "tests/benchmarks/roots/contenders.hpp"
-#include "tests/benchmarks/roots/thread_time.hpp"
+#include "tests/benchmarks/thread_time.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +14,8 @@
 #include <vector>
 
 namespace bench_roots {
+
+using kds::benchmarks::thread_seconds;
 
 struct Options {
   int polynomials = 300;  ///< a family and degree

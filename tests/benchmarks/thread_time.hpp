@@ -3,7 +3,7 @@
 
 #include <ctime>
 
-namespace bench_roots {
+namespace kds::benchmarks {
 
 /// Seconds of CPU time that the calling thread has used.
 inline double thread_seconds() {
@@ -12,4 +12,4 @@ inline double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-}  // namespace bench_roots
+}  // namespace kds::benchmarks
