@@ -1,8 +1,16 @@
 // Two balls apart.
 #pragma once
 
+#include "certificates/conjunction.hpp"
 #include "certificates/point_motion.hpp"
 #include "kds/certificate.hpp"
+#include "kds/failure_time.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace kds::certificates {
 
@@ -33,6 +41,153 @@ struct BallSeparation {
     }
     return f;
   }
+
+  /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows balls one of which moves along
+  /// a line as seen from the other: straight paths, and those that share their acceleration.
+  double quick_failure_time(double now, double horizon) const;
+
+  /// The first double t in [now, horizon] just after which the balls penetrate and approach, or `never`.
+  double first_approach(double now, double horizon) const;
+
+  /// The same, or for less a time that is not later.
+  struct Estimate {
+    double time;
+    bool exact;
+  };
+  Estimate estimated_first_approach(double now, double horizon) const;
+
+ private:
+  struct RelativeLine;
+  bool relative_path_is_line() const;
+  double quick_root(const Polynomial<2, Ball<double>>& f, double now, double horizon) const;
 };
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <int PathDegree>
+bool BallSeparation<PathDegree>::relative_path_is_line() const {
+  if constexpr (PathDegree == 1) {
+    return true;
+  } else {
+    static_assert(PathDegree == 2);
+    return a.coefficients[2] == b.coefficients[2];
+  }
+}
+
+/// The path of b as seen from a, about now, if that is a line: r + v (t - now).
+///
+/// Error bounds, with u = 2^-53. A coordinate at `now` is evaluated by Horner's rule with an elapsed time known to u: at
+/// most 6 u of the sum of its terms' magnitudes, and the difference of two adds u; so r is known to 8 u m, where m is
+/// that sum for both bodies. Likewise the rate v to 8 u w. Then r . v is known to (8 + 8 + 4) u m . w, r . r to
+/// (16 + 4) u m . m plus products of errors, v . v likewise, and the square of the reach to 6 u of itself. All are below
+/// 2^-48 (32 u) of the sum of magnitudes, with room for the rounding of the bound. Underflow loses less than 2^-1000.
+template <int PathDegree>
+struct BallSeparation<PathDegree>::RelativeLine {
+  Eigen::Array3d r, v, m, w;
+  double reach;
+  static constexpr double unit = 0x1p-48;
+  static constexpr double lost = 0x1p-1000;
+  static constexpr double range = 0x1p1000;  ///< beyond, sums of opposite infinities might look like a number
+
+  RelativeLine(const BallSeparation& balls, double now) : reach(balls.radius_a + balls.radius_b) {
+    using Eigen::Array3d;
+    const auto& [a0, a1] = std::pair(balls.a.coefficients[0].array(), balls.a.coefficients[1].array());
+    const auto& [b0, b1] = std::pair(balls.b.coefficients[0].array(), balls.b.coefficients[1].array());
+    const double elapsed_a = now - balls.a.start;
+    const double elapsed_b = now - balls.b.start;
+    Array3d moved_a = a1 * elapsed_a;
+    Array3d moved_b = b1 * elapsed_b;
+    m = a0.abs() + b0.abs() + moved_a.abs() + moved_b.abs();
+    v = b1 - a1;
+    w = v.abs();
+    if constexpr (PathDegree == 2) {
+      const Array3d bend = balls.a.coefficients[2].array();
+      moved_a = (a1 + bend * elapsed_a) * elapsed_a;
+      moved_b = (b1 + bend * elapsed_b) * elapsed_b;
+      m += bend.abs() * (elapsed_a * elapsed_a + elapsed_b * elapsed_b);
+      v = (b1 + 2 * bend * elapsed_b) - (a1 + 2 * bend * elapsed_a);
+      w = b1.abs() + a1.abs() + 2 * bend.abs() * (std::abs(elapsed_a) + std::abs(elapsed_b));
+    }
+    r = (b0 + moved_b) - (a0 + moved_a);
+  }
+
+  /// f' now.
+  Ball<double> rate() const { return bounded(2 * (r * v).sum(), 2 * (m * w).sum()); }
+
+  Polynomial<2, Ball<double>> polynomial() const {
+    Polynomial<2, Ball<double>> f;
+    f.c[0] = bounded((r * r).sum() - reach * reach, (m * m).sum() + reach * reach);
+    f.c[1] = rate();
+    f.c[2] = bounded((v * v).sum(), (w * w).sum());
+    return f;
+  }
+
+ private:
+  static Ball<double> bounded(double value, double magnitude) {
+    return {value, magnitude < range ? unit * magnitude + lost : never};
+  }
+};
+
+/// f > 0 now, and falls: when it reaches zero.
+template <int PathDegree>
+double BallSeparation<PathDegree>::quick_root(const Polynomial<2, Ball<double>>& f, double now, double horizon) const {
+  const int real = certain_sign(detail::discriminant(f));
+  if (real < 0) return never;
+  return real > 0 ? detail::quadratic_failure_time(*this, f, now, horizon) : detail::undecided;
+}
+
+template <int PathDegree>
+double BallSeparation<PathDegree>::quick_failure_time(double now, double horizon) const {
+  if (!relative_path_is_line()) return detail::undecided;
+  const auto f = RelativeLine(*this, now).polynomial();
+  const int value = certain_sign(f.c[0]);
+  if (value < 0) return now;
+  const int rate = certain_sign(f.c[1]);
+  if (value == 0 || rate == 0) return detail::undecided;
+  return rate > 0 ? never : quick_root(f, now, horizon);
+}
+
+template <int PathDegree>
+double BallSeparation<PathDegree>::first_approach(double now, double horizon) const {
+  if (!(now <= horizon)) return never;
+  if (relative_path_is_line()) {
+    const RelativeLine line(*this, now);
+    // f is convex along a line, so balls that part will never approach again.
+    const int rate = certain_sign(line.rate());
+    if (rate > 0) return never;
+    const auto f = line.polynomial();
+    const int value = certain_sign(f.c[0]);
+    if (rate < 0 && value < 0) return now;
+    if (rate < 0 && value > 0) {
+      const double t = quick_root(f, now, horizon);
+      if (t == never) return never;
+      // They approach there if the root is farther from that of f' than from the next double: sqrt(D) > 2 c2 spacing.
+      const Ball<double> square = detail::discriminant(f);
+      const double steep = 4 * f.c[2].middle * std::abs(t) * 0x1p-52;
+      if (t > now && square.middle - square.radius > 2 * steep * steep) return t;
+    }
+  }
+  const DerivativeCertificate<BallSeparation> parting{*this};
+  return first_all_broken<BallSeparation, DerivativeCertificate<BallSeparation>>(now, horizon, {this, 1}, {&parting, 1});
+}
+
+template <int PathDegree>
+auto BallSeparation<PathDegree>::estimated_first_approach(double now, double horizon) const -> Estimate {
+  if (now <= horizon && relative_path_is_line()) {
+    const RelativeLine line(*this, now);
+    if (certain_sign(line.rate()) > 0) return {never, true};
+    const auto f = line.polynomial();
+    if (certain_sign(f.c[0]) > 0 && certain_sign(f.c[1]) < 0) {
+      const Ball<double> square = detail::discriminant(f);
+      const int real = certain_sign(square);
+      if (real < 0) return {never, true};
+      if (const auto root = detail::quadratic_root(f, square); real > 0 && root.error < never) {
+        const double t = next_down(now + (root.x - root.error) * (1 - 0x1p-50));
+        return t > horizon ? Estimate{never, true} : Estimate{std::max(t, now), false};
+      }
+    }
+  }
+  return {first_approach(now, horizon), true};
+}
 
 }  // namespace kds::certificates

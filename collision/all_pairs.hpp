@@ -16,6 +16,7 @@ class AllPairs final : public BroadPhase<Degree> {
   using Entry = typename BroadPhase<Degree>::Entry;
 
   bool exact() const override { return false; }
+  std::string_view name() const override { return "all-pairs"; }
 
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override {
     for (const Entry& body : bodies) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace kds::collision {
 
@@ -41,6 +42,9 @@ class BroadPhase {
 
   /// Whether pairs are exactly those whose kinetic boxes overlap.
   virtual bool exact() const = 0;
+
+  /// As in broad_phase_kind.hpp.
+  virtual std::string_view name() const = 0;
 
   /// Adds bodies; cheapest when all come in one call. Pairs that overlap are reported.
   virtual void insert(std::span<const Entry> bodies, double now, PairListener& listener) = 0;

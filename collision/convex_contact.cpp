@@ -277,13 +277,8 @@ template <int Degree>
 double ConvexContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon,
                                             ContactMode mode) {
   if (is_ball(a) && is_ball(b)) {
-    using Apart = BallSeparation<Degree>;
-    const Apart apart = balls_apart(a, b);
-    if (mode == ContactMode::transparent) return failure_time(apart, t0, horizon);
-    // Penetrating and still closing in.
-    const DerivativeCertificate<Apart> parting{apart};
-    return certificates::first_all_broken<Apart, DerivativeCertificate<Apart>>(t0, horizon, {&apart, 1},
-                                                                               {&parting, 1});
+    const auto apart = balls_apart(a, b);
+    return mode == ContactMode::transparent ? failure_time(apart, t0, horizon) : apart.first_approach(t0, horizon);
   }
   if (is_ball(a)) return first_contact(b, a, t0, horizon, mode);
   const auto where = [&](double t) { return contact_at(a, b, t); };

@@ -27,6 +27,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   KineticSweepAndPrune& operator=(const KineticSweepAndPrune&) = delete;
 
   bool exact() const override { return true; }
+  std::string_view name() const override { return "kinetic-sap"; }
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
   void remove(BodyId id, double now, PairListener& listener) override;
   void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;

@@ -9,37 +9,6 @@
 #include <utility>
 
 namespace kds::collision {
-namespace {
-
-/// Extremes of a moving coordinate over [from, to], seconds since its start, rounded outward.
-///
-/// Horner's rule over |elapsed| errs by at most 2 Degree + 1 roundings of the sum of the magnitudes of its terms, and
-/// the elapsed time by one more a factor; 8 units in the last place of that sum cover degrees 1 and 2.
-template <int Degree>
-void extremes(const certificates::PointMotion<Degree>& motion, std::size_t axis, double from, double to, bool greatest,
-              double& result) {
-  const auto d = static_cast<Eigen::Index>(axis);
-  const double c0 = motion.coefficients[0][d];
-  const double c1 = motion.coefficients[1][d];
-  const double longest = std::max(std::abs(from), std::abs(to));
-  double size = std::abs(c0) + std::abs(c1) * longest;
-  double at_from = c0 + c1 * from;
-  double at_to = c0 + c1 * to;
-  double between = at_from;
-  if constexpr (Degree >= 2) {
-    const double c2 = motion.coefficients[2][d];
-    at_from = c0 + (c1 + c2 * from) * from;
-    at_to = c0 + (c1 + c2 * to) * to;
-    between = at_from;
-    const double turn = -c1 / (2 * c2);
-    if (c2 != 0 && turn > from && turn < to) between = c0 + (c1 + c2 * turn) * turn;
-    size += std::abs(c2) * longest * longest;
-  }
-  const double margin = 8 * 0x1p-53 * size;
-  result = greatest ? std::max({at_from, at_to, between}) + margin : std::min({at_from, at_to, between}) - margin;
-}
-
-}  // namespace
 
 template <int Degree>
 SweptSweepAndPrune<Degree>::SweptSweepAndPrune(double start, double rate, Profile* profile)
@@ -47,20 +16,16 @@ SweptSweepAndPrune<Degree>::SweptSweepAndPrune(double start, double rate, Profil
 
 template <int Degree>
 bool SweptSweepAndPrune<Degree>::overlap(BodyId a, BodyId b) const {
-  const SweptBox& x = swept_[a];
-  const SweptBox& y = swept_[b];
+  const StaticBox& x = swept_[a];
+  const StaticBox& y = swept_[b];
   return x.min[0] < y.max[0] && y.min[0] < x.max[0] && x.min[1] < y.max[1] && y.min[1] < x.max[1] &&
          x.min[2] < y.max[2] && y.min[2] < x.max[2];
 }
 
 template <int Degree>
 void SweptSweepAndPrune<Degree>::sweep(BodyId id, double from) {
-  const KineticBox<Degree>& box = boxes_[id];
   ++counters_.box_updates;
-  for (std::size_t d = 0; d < 3; ++d) {
-    extremes(box.min, d, from - box.min.start, frame_end_ - box.min.start, false, swept_[id].min[d]);
-    extremes(box.max, d, from - box.max.start, frame_end_ - box.max.start, true, swept_[id].max[d]);
-  }
+  swept_[id] = swept_box(boxes_[id], from, frame_end_);
 }
 
 template <int Degree>

@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase.hpp"
 #include "collision/profile.hpp"
+#include "collision/swept_box.hpp"
 
 #include <array>
 #include <cstdint>
@@ -26,6 +27,7 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   SweptSweepAndPrune(double start, double rate, Profile* profile);
 
   bool exact() const override { return false; }
+  std::string_view name() const override { return "sap"; }
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
   void remove(BodyId id, double now, PairListener& listener) override;
   void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
@@ -41,11 +43,6 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
     double value;
     std::uint32_t id;
   };
-  struct SweptBox {
-    std::array<double, 3> min;
-    std::array<double, 3> max;
-  };
-
   /// Maxima before minima at one value, so that boxes that merely touch are apart. Swept boxes are rounded outward.
   static bool before(const End& a, const End& b) {
     return a.value < b.value || (a.value == b.value && (a.id & 1) > (b.id & 1));
@@ -53,8 +50,9 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   static std::uint64_t key(BodyId a, BodyId b) { return std::uint64_t{a} << 32 | b; }
 
   double value(std::uint32_t id, std::size_t axis) const {
-    const SweptBox& box = swept_[id / 2];
-    return (id & 1) != 0 ? box.max[axis] : box.min[axis];
+    const StaticBox& box = swept_[id / 2];
+    const auto d = static_cast<Eigen::Index>(axis);
+    return (id & 1) != 0 ? box.max[d] : box.min[d];
   }
   bool overlap(BodyId a, BodyId b) const;
   void sweep(BodyId id, double from);
@@ -71,7 +69,7 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   std::uint64_t frames_ = 0;
   double frame_end_;
   std::vector<KineticBox<Degree>> boxes_;  // by body
-  std::vector<SweptBox> swept_;            // by body
+  std::vector<StaticBox> swept_;           // by body
   std::vector<BodyId> bodies_;
   std::array<std::vector<End>, 3> ends_;
   std::array<std::vector<std::uint32_t>, 3> places_;  // of ends, by end id; right between frames

@@ -1,7 +1,9 @@
 // The clock of the world: which event is next, and what the callers of the engine see.
 #include "collision/world.hpp"
 
+#include "collision/adaptive_broad_phase.hpp"
 #include "collision/all_pairs.hpp"
+#include "collision/kinetic_grid.hpp"
 #include "collision/kinetic_sweep_and_prune.hpp"
 #include "collision/profile.hpp"
 #include "collision/swept_sweep_and_prune.hpp"
@@ -19,6 +21,10 @@ namespace {
 template <int Degree>
 std::unique_ptr<BroadPhase<Degree>> make_broad_phase(const WorldOptions& options, Profile* profile) {
   switch (options.broad_phase) {
+    case BroadPhaseKind::automatic:
+      return std::make_unique<AdaptiveBroadPhase<Degree>>();
+    case BroadPhaseKind::grid:
+      return std::make_unique<KineticGrid<Degree>>();
     case BroadPhaseKind::kinetic_sap:
       return std::make_unique<KineticSweepAndPrune<Degree>>(options.start_time);
     case BroadPhaseKind::sap:
@@ -125,6 +131,7 @@ bool World<Degree>::step(double limit) {
     const double contact = time_of(contacts_);
     // Nothing is known beyond the horizon: look that far, then farther.
     const double next = std::min({limit, horizon_, piece, boxes, volume, wall, let_go, contact});
+    if (next < never && certify_next(contact == next, wall == next)) continue;
     // A piece that starts now is the motion at t+, so the broad phase may not run past it under the old one.
     const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
     if (until == never) return false;
@@ -159,6 +166,20 @@ bool World<Degree>::step(double limit) {
   }
 }
 
+/// Where what comes next is a lower bound only, puts the exact time in its place, which may be later: true if so.
+template <int Degree>
+bool World<Degree>::certify_next(bool contact, bool wall) {
+  if (contact && pairs_[contacts_.top().slot].estimated) {
+    certify_contact(contacts_.top().slot);
+    return true;
+  }
+  if (wall && bodies_[walls_.top().slot].wall_estimated) {
+    certify_wall(walls_.top().slot);
+    return true;
+  }
+  return false;
+}
+
 template <int Degree>
 void World<Degree>::advance_to(double t) {
   if (!(t >= now_) || t == never) {
@@ -185,13 +206,17 @@ void World<Degree>::enter_new_bodies() {
   // What is due now among the others comes first, lest it count as what the new ones bring.
   while (broad_phase_->advance(now_, *this)) {}
   std::vector<typename BroadPhase<Degree>::Entry> entries;
+  std::vector<KineticBox<Degree>> boxes;
+  entries.reserve(entering.size());
+  boxes.reserve(entering.size());
   for (const BodyId id : entering) {
     Body& b = bodies_[id];
     if (!b.alive || b.entered) continue;
     b.entered = true;
-    b.box = bounding_box(b);
-    entries.push_back({id, &b.box});
+    boxes.push_back(renewed_box(id));
+    entries.push_back({id, nullptr});
   }
+  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].box = &boxes[i];
   inserting_ = true;
   {
     const Stopwatch watch(profile(), Work::update);
@@ -211,21 +236,22 @@ void World<Degree>::start_pieces() {
   while (!pieces_.empty() && pieces_.top().time == now_) {
     const BodyId id = pieces_.top().slot;
     Body& b = bodies_[id];
-    if (b.entered && is_jump(b, b.script.back())) drop_holds(id);
-    b.motion = b.script.back();
-    if constexpr (Degree >= 2) b.force = b.motion.coefficients[2];
-    b.script.pop_back();
-    if (b.script.empty()) {
+    auto& script = b.extras->script;
+    if (b.entered && is_jump(id, script.back())) drop_holds(id);
+    movers_[id].motion = script.back();
+    if constexpr (Degree >= 2) b.force = script.back().coefficients[2];
+    script.pop_back();
+    if (script.empty()) {
       pieces_.clear(id);
     } else {
-      pieces_.set(id, b.script.back().start);
+      pieces_.set(id, script.back().start);
     }
     due.push_back(id);
   }
   for (const BodyId id : due) {
     if (bodies_[id].entered) {
       ++counters_.motion_updates;
-      set_motion(id, Motion(bodies_[id].motion), false);
+      set_motion(id, Motion(movers_[id].motion), false);
       disturb(id);
     } else {
       entering_.push_back(id);
@@ -235,9 +261,10 @@ void World<Degree>::start_pieces() {
 
 template <int Degree>
 void World<Degree>::renew_volume(BodyId id) {
-  Body& b = bodies_[id];
-  b.box = bounding_box(b);
-  broad_phase_->update(id, b.box, now_, *this);
+  broad_phase_->update(id, renewed_box(id), now_, *this);
+  if (options_.report_pairs && !broad_phase_->exact()) {  // when its box meets others is to be found anew
+    for (const Link& link : bodies_[id].pairs) mark_dirty(link.slot);
+  }
   schedule_volume(id);
 }
 
@@ -298,7 +325,7 @@ void World<Degree>::audit() const {
         continue;
       }
       if (broad_phase_->next_time() <= now_) continue;
-      const BoxOverlap<Degree> boxes(bodies_[a].box, bodies_[b].box);
+      const BoxOverlap<Degree> boxes(bounding_box(a), bounding_box(b));
       const auto apart = boxes.separations();
       bool overlap = true;
       for (const auto& side : apart) overlap = overlap && sign_after(side, now_) < 0;

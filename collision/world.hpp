@@ -2,11 +2,13 @@
 #pragma once
 
 #include "collision/broad_phase.hpp"
+#include "collision/broad_phase_kind.hpp"
 #include "collision/contact.hpp"
 #include "collision/least_constraint.hpp"
 #include "collision/narrow_phase.hpp"
 #include "collision/profile.hpp"
 #include "collision/shape.hpp"
+#include "kds/calendar_queue.hpp"
 #include "kds/dary_queue.hpp"
 
 #include <cstdint>
@@ -14,6 +16,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace kds::collision {
@@ -23,13 +26,6 @@ enum class Response {
   none,      ///< reports contacts and separations; bodies pass through each other
   elastic,   ///< frictionless impulses by the bodies' restitution, no spin; motions change at each contact
   callback,  ///< as elastic, but the listener changes the motions; a pair it leaves approaching passes through
-};
-
-/// How a broad phase is chosen.
-enum class BroadPhaseKind {
-  kinetic_sap,  ///< kinetic sweep and prune: event-driven, exact
-  sap,          ///< sweep and prune over arrays with swept boxes, frame by frame
-  all_pairs,    ///< no pruning: every pair tested once and its result kept
 };
 
 /// Bounces that pile up in time (Zeno). A contact is *held* instead of bounced back from, in mode `elastic`, if it
@@ -62,7 +58,7 @@ struct WorldOptions {
   double start_time = 0;                ///< s; keep it near 0: events are as fine as doubles near the clock
   double window = never;                ///< s; how far ahead events are predicted at a time
   Response response = Response::none;
-  BroadPhaseKind broad_phase = BroadPhaseKind::kinetic_sap;
+  BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
   double rate = 0;                      ///< Hz; frames of the swept boxes, needed by `sap` alone
   std::optional<Walls> walls;
   bool report_pairs = false;            ///< tell the listener of bounding volumes that begin and cease to overlap
@@ -193,7 +189,7 @@ class World final : private PairListener {
   bool contains(BodyId id) const { return id < bodies_.size() && bodies_[id].alive; }
 
   /// What held contacts do to the acceleration is in it; callers who change a motion begin with free_motion.
-  const Motion& motion(BodyId id) const { return body(id).motion; }
+  const Motion& motion(BodyId id) const { return body(id), movers_[id].motion; }
   /// The motion as it would go on without the contacts that hold it: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
   const PlacedShape& shape(BodyId id) const { return body(id).shape; }
@@ -208,6 +204,8 @@ class World final : private PairListener {
   bool held_at_wall(BodyId a, int wall) const;
 
   WorldCounters counters() const;
+  /// The broad phase in use: a name of broad_phase_kind.hpp, but never "auto".
+  std::string_view broad_phase() const { return broad_phase_->name(); }
   /// All zero but for `other` unless WorldOptions.profile is set.
   const Profile& work_profile() const { return profile_; }
 
@@ -221,13 +219,29 @@ class World final : private PairListener {
   static constexpr HoldSlot no_hold = ~HoldSlot{0};
   static constexpr BodyId no_body = ~BodyId{0};
 
+  /// What the tests of balls read of a body: one cache line at degree 1.
+  struct alignas(64) Mover {
+    Motion motion;
+    double ball_radius = 0;  ///< of a body that is a ball, else 0
+  };
+
+  /// What few bodies have.
+  struct Extras {
+    std::vector<Motion> script;  ///< pieces to come, last first
+    typename Description::BoxFunction box_function;
+    KineticBox<Degree> box;      ///< the last it gave
+  };
+
+  /// A pair as one of its bodies sees it.
+  struct Link {
+    BodyId other;
+    PairSlot slot;
+  };
+
   struct Body {
     PlacedShape shape;
-    Motion motion;
-    KineticBox<Degree> box;
-    std::vector<Motion> script;  ///< pieces to come, last first
-    std::vector<PairSlot> pairs;
-    typename Description::BoxFunction box_function;
+    std::vector<Link> pairs;
+    std::unique_ptr<Extras> extras;
     double mass = 1;
     double inverse_mass = 1;
     std::uint32_t category = 1;
@@ -241,6 +255,7 @@ class World final : private PairListener {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< half the acceleration that callers gave
     std::vector<HoldSlot> holds;
     bool disturbed = false;         ///< is in disturbed_
+    bool wall_estimated = false;    ///< its time in walls_ is a lower bound
     std::uint32_t island_place = 0;  ///< scratch
     std::uint64_t island = 0;        ///< the last it was seen in
   };
@@ -276,11 +291,12 @@ class World final : private PairListener {
     std::uint32_t place_in_a = 0, place_in_b = 0;
     bool alive = false;
     bool dirty = false;
-    bool fresh = false;       ///< one of the bodies has entered or jumped at this instant
-    bool touching = false;    ///< mode none: in contact
-    bool ignored = false;     ///< resolved: overlaps and passes through until separated
-    double let_pass = -never;  ///< resolved: at this time decided to be ignored, whatever else happens at it
+    bool fresh = false;  ///< one of the bodies has entered or jumped at this instant
+    bool touching = false;  ///< mode none: in contact
+    bool ignored = false;   ///< resolved: overlaps and passes through until separated
     bool boxes_overlap = false;
+    bool estimated = false;  ///< its time in contacts_ is a lower bound
+    double let_pass = -never;  ///< resolved: at this time decided to be ignored, whatever else happens at it
   };
 
   struct Passing {
@@ -324,23 +340,30 @@ class World final : private PairListener {
   void mark_dirty(PairSlot slot);
   void let_pass(BodyId a, BodyId b);
   void set_motion(BodyId id, const Motion& motion, bool jumped);
-  bool is_jump(const Body& body, const Motion& to) const;
-  KineticBox<Degree> bounding_box(const Body& body) const;
+  bool is_jump(BodyId id, const Motion& to) const;
+  KineticBox<Degree> bounding_box(BodyId id) const;
+  KineticBox<Degree> renewed_box(BodyId id);
+  double box_valid_until(const Body& body) const { return body.extras ? body.extras->box.valid_until : never; }
   void schedule_wall(BodyId id);
   void schedule_volume(BodyId id);
-  MovingShape<Degree> moving(BodyId id) const { return {bodies_[id].shape, bodies_[id].motion}; }
+  MovingShape<Degree> moving(BodyId id) const { return {bodies_[id].shape, movers_[id].motion}; }
 
   // world_contacts.cpp: tests, contacts, response
   ContactMode mode() const { return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved; }
   void test_dirty_pairs();
   void test(PairSlot slot);
+  void set_contact(PairSlot slot, double time);
+  bool certify_next(bool contact, bool wall);
+  void certify_contact(PairSlot slot);
+  void certify_wall(BodyId id);
   void test_boxes(PairSlot slot);
   void process_boxes(PairSlot slot, double t);
   void process_contact(PairSlot slot, double t);
   void process_wall(BodyId id, double t);
   bool respond(PairSlot slot, const Contact& contact);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
-  double next_wall_time(const Body& body, int wall) const;
+  double earliest_wall_time(BodyId id, int wall) const;
+  double next_wall_time(BodyId id, int wall, double horizon) const;
   std::uint64_t count_meeting(BodyId a, BodyId b);
   std::uint64_t count_meeting(BodyId id);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
@@ -366,6 +389,7 @@ class World final : private PairListener {
   Listener* listener_;
   Listener silent_;
   std::unique_ptr<BroadPhase<Degree>> broad_phase_;
+  std::vector<Mover> movers_;  // by body
   std::vector<Body> bodies_;
   std::vector<BodyId> free_bodies_;
   std::vector<BodyId> entering_;
@@ -379,12 +403,13 @@ class World final : private PairListener {
   std::vector<HoldSlot> free_holds_;
   std::vector<BodyId> disturbed_;
   std::deque<Pending> pending_;
-  DaryQueue<> pieces_;    // slots are bodies
-  DaryQueue<> volumes_;   // slots are bodies
-  DaryQueue<> walls_;     // slots are bodies
-  DaryQueue<HoldRank> releases_;  // slots are holds
-  DaryQueue<PairRank> contacts_;  // slots are pairs
-  DaryQueue<PairRank> boxes_;     // slots are pairs; used where the broad phase is not exact
+  // Queues that a scene does not need have no slots.
+  DaryQueue<> pieces_;                // slots are bodies
+  DaryQueue<> volumes_;               // slots are bodies
+  CalendarQueue<> walls_;             // slots are bodies
+  DaryQueue<HoldRank> releases_;      // slots are holds
+  CalendarQueue<PairRank> contacts_;  // slots are pairs
+  DaryQueue<PairRank> boxes_;         // slots are pairs; used where the broad phase is not exact
   WorldCounters counters_;
   Profile profile_;
   double now_;

@@ -31,6 +31,11 @@ void validate(const BodyDescription<Degree>& description) {
   if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
 }
 
+template <class Queue>
+void clear(Queue& queue, Slot slot) {
+  if (slot < queue.slots()) queue.clear(slot);
+}
+
 /// The queues grow by doubling, as vectors do.
 template <class Queue>
 void make_room(Queue& queue, std::size_t slots) {
@@ -62,30 +67,37 @@ BodyId World<Degree>::add_body(const Description& description) {
   added.category = description.category;
   added.collides_with = description.collides_with;
   added.volume = description.volume;
-  added.box_function = description.box;
   added.alive = true;
   // Pieces that are over are skipped; the rest is a script, next piece last.
-  added.script.assign(description.motion.rbegin(), description.motion.rend());
-  while (added.script.size() >= 2 && added.script[added.script.size() - 2].start <= now_) added.script.pop_back();
-  const bool enters_now = added.script.back().start <= now_;
-  added.motion = added.script.back();
-  if constexpr (Degree >= 2) added.force = added.motion.coefficients[2];
-  if (enters_now) added.script.pop_back();
+  auto piece = description.motion.begin();
+  while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
+  const bool enters_now = piece->start <= now_;
+  Mover mover{*piece, 0};
+  if (const auto* ball = std::get_if<Sphere>(&description.shape)) mover.ball_radius = ball->radius;
+  if constexpr (Degree >= 2) added.force = piece->coefficients[2];
+  if (enters_now) ++piece;
+  std::vector<Motion> script(std::make_reverse_iterator(description.motion.end()), std::make_reverse_iterator(piece));
+  if (description.box || !script.empty()) {
+    added.extras = std::make_unique<Extras>(Extras{std::move(script), description.box, {}});
+  }
 
   BodyId id;
   if (free_bodies_.empty()) {
     id = static_cast<BodyId>(bodies_.size());
     bodies_.emplace_back();
-    make_room(pieces_, bodies_.size());
-    make_room(volumes_, bodies_.size());
-    make_room(walls_, bodies_.size());
+    movers_.emplace_back();
   } else {
     id = free_bodies_.back();
     free_bodies_.pop_back();
   }
   bodies_[id] = std::move(added);
+  movers_[id] = mover;
   ++alive_;
-  if (!bodies_[id].script.empty()) pieces_.set(id, bodies_[id].script.back().start);
+  if (const auto& extras = bodies_[id].extras) {
+    if (extras->box_function) make_room(volumes_, bodies_.size());
+    make_room(pieces_, bodies_.size());
+    if (!extras->script.empty()) pieces_.set(id, extras->script.back().start);
+  }
   if (enters_now) entering_.push_back(id);
   return id;
 }
@@ -96,16 +108,16 @@ void World<Degree>::remove_body(BodyId id) {
   count_edit();
   drop_holds(id);
   removed.alive = false;
-  pieces_.clear(id);
-  volumes_.clear(id);
-  walls_.clear(id);
+  clear(pieces_, id);
+  clear(volumes_, id);
+  clear(walls_, id);
   if (removed.entered) {
     broad_phase_->remove(id, now_, *this);
   } else {
     std::erase(entering_, id);  // or the next of this id would enter in its stead
   }
   // Pairs the broad phase does not know of any more.
-  while (!removed.pairs.empty()) release_pair(removed.pairs.back());
+  while (!removed.pairs.empty()) release_pair(removed.pairs.back().slot);
   for (Pending& event : pending_) {
     if (event.a == id || event.b == id) fill_in(event);
   }
@@ -119,26 +131,26 @@ void World<Degree>::update_motion(BodyId id, const Motion& motion) {
   Body& b = body(id);
   if (!motion.finite()) throw std::invalid_argument("World::update_motion: the motion is not finite");
   count_edit();
-  b.script.clear();
-  pieces_.clear(id);
+  if (b.extras) b.extras->script.clear();
+  clear(pieces_, id);
   ++counters_.motion_updates;
   if constexpr (Degree >= 2) b.force = motion.coefficients[2];
   if (!b.entered) {
-    b.motion = motion;
+    movers_[id].motion = motion;
     if (std::find(entering_.begin(), entering_.end(), id) == entering_.end()) entering_.push_back(id);
     return;
   }
-  const bool jumped = is_jump(b, motion);
+  const bool jumped = is_jump(id, motion);
   if (jumped) drop_holds(id);
   set_motion(id, motion, jumped);
   disturb(id);
 }
 
 template <int Degree>
-bool World<Degree>::is_jump(const Body& body, const Motion& to) const {
-  const Eigen::Vector3d before = body.motion.position(now_);
+bool World<Degree>::is_jump(BodyId id, const Motion& to) const {
+  const Eigen::Vector3d before = movers_[id].motion.position(now_);
   const Eigen::Vector3d after = to.position(now_);
-  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + body.shape.bounding_radius;
+  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + bodies_[id].shape.bounding_radius;
   return (after - before).cwiseAbs().maxCoeff() > jump_tolerance * scale;
 }
 
@@ -146,42 +158,52 @@ template <int Degree>
 void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   Body& b = bodies_[id];
-  b.motion = motion;
-  b.box = bounding_box(b);
+  movers_[id].motion = motion;
   inserting_ = jumped && mode() == ContactMode::resolved;
-  broad_phase_->update(id, b.box, now_, *this);
-  for (const PairSlot slot : b.pairs) {
-    mark_dirty(slot);
-    pairs_[slot].fresh = pairs_[slot].fresh || inserting_;
+  broad_phase_->update(id, renewed_box(id), now_, *this);
+  for (const Link& link : b.pairs) {
+    mark_dirty(link.slot);
+    pairs_[link.slot].fresh = pairs_[link.slot].fresh || inserting_;
   }
   inserting_ = false;
   schedule_wall(id);
   schedule_volume(id);
 }
 
+/// The bounding volume as it is: what the caller's function gave last, or what the motion gives.
 template <int Degree>
-KineticBox<Degree> World<Degree>::bounding_box(const Body& body) const {
-  if (body.box_function) {
-    KineticBox<Degree> box = body.box_function(now_, body.motion);
-    if (!box.min.finite() || !box.max.finite()) {
+KineticBox<Degree> World<Degree>::bounding_box(BodyId id) const {
+  const Body& b = bodies_[id];
+  if (b.extras && b.extras->box_function) return b.extras->box;
+  if (b.volume == BoundingVolume::sphere) {
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.shape.bounding_radius);
+    return box_around(movers_[id].motion, -reach, reach);
+  }
+  return box_around(movers_[id].motion, b.shape.low, b.shape.high);
+}
+
+/// A bounding volume for the present motion.
+template <int Degree>
+KineticBox<Degree> World<Degree>::renewed_box(BodyId id) {
+  Extras* const extras = bodies_[id].extras.get();
+  if (extras && extras->box_function) {
+    extras->box = extras->box_function(now_, movers_[id].motion);
+    if (!extras->box.min.finite() || !extras->box.max.finite()) {
       throw std::invalid_argument("BodyDescription.box: returned a box that is not finite");
     }
-    if (!(box.valid_until > now_)) {
+    if (!(extras->box.valid_until > now_)) {
       throw std::invalid_argument("BodyDescription.box: returned a box whose validity has ended");
     }
-    return box;
   }
-  if (body.volume == BoundingVolume::sphere) {
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(body.shape.bounding_radius);
-    return box_around(body.motion, -reach, reach);
-  }
-  return box_around(body.motion, body.shape.low, body.shape.high);
+  return bounding_box(id);
 }
 
 template <int Degree>
 void World<Degree>::schedule_volume(BodyId id) {
-  if (bodies_[id].box.valid_until <= horizon_) {
-    volumes_.set(id, bodies_[id].box.valid_until);
+  const Extras* const extras = bodies_[id].extras.get();
+  if (!extras || !extras->box_function) return;
+  if (extras->box.valid_until <= horizon_) {
+    volumes_.set(id, extras->box.valid_until);
   } else {
     volumes_.clear(id);
   }
@@ -190,9 +212,11 @@ void World<Degree>::schedule_volume(BodyId id) {
 template <int Degree>
 void World<Degree>::schedule_wall(BodyId id) {
   if (!options_.walls) return;
-  double first = never;
-  for (int wall = 0; wall < 6; ++wall) first = std::min(first, next_wall_time(bodies_[id], wall));
-  walls_.set(id, first);
+  make_room(walls_, bodies_.size());
+  double earliest = never;
+  for (int wall = 0; wall < 6; ++wall) earliest = std::min(earliest, earliest_wall_time(id, wall));
+  bodies_[id].wall_estimated = true;
+  walls_.set(id, earliest <= horizon_ ? std::max(earliest, now_) : never);
 }
 
 template <int Degree>
@@ -228,8 +252,8 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   }
   // A jump may part two bodies and another one bring them together at the same instant.
   pair.touching = take_back(Pending::Kind::separation, a, b, t);
-  body_a.pairs.push_back(slot);
-  body_b.pairs.push_back(slot);
+  body_a.pairs.push_back({b, slot});
+  body_b.pairs.push_back({a, slot});
   ++counters_.pairs_begun;
   mark_dirty(slot);
   if (options_.report_pairs && broad_phase_->exact() && !take_back(Pending::Kind::pair_ended, a, b, t)) {
@@ -248,9 +272,10 @@ void World<Degree>::pair_ended(BodyId a, BodyId b, double t) {
 
 template <int Degree>
 typename World<Degree>::PairSlot World<Degree>::find_pair(BodyId a, BodyId b) const {
-  const auto& fewer = bodies_[a].pairs.size() <= bodies_[b].pairs.size() ? bodies_[a].pairs : bodies_[b].pairs;
-  for (const PairSlot slot : fewer) {
-    if (pairs_[slot].a == a && pairs_[slot].b == b) return slot;
+  const bool from_a = bodies_[a].pairs.size() <= bodies_[b].pairs.size();
+  const BodyId other = from_a ? b : a;
+  for (const Link& link : bodies_[from_a ? a : b].pairs) {
+    if (link.other == other) return link.slot;
   }
   return no_pair;
 }
@@ -281,10 +306,10 @@ void World<Degree>::release_pair(PairSlot slot) {
   for (const BodyId id : {pair.a, pair.b}) {
     auto& list = bodies_[id].pairs;
     const std::uint32_t place = id == pair.a ? pair.place_in_a : pair.place_in_b;
-    const PairSlot moved = list.back();
+    const Link moved = list.back();
     list[place] = moved;
     list.pop_back();
-    (pairs_[moved].a == id ? pairs_[moved].place_in_a : pairs_[moved].place_in_b) = place;
+    (id < moved.other ? pairs_[moved.slot].place_in_a : pairs_[moved.slot].place_in_b) = place;
   }
   if (pair.ignored) passing_.push_back({pair.a, pair.b, now_, pair.let_pass == now_});
   contacts_.clear(slot);

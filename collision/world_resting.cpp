@@ -105,7 +105,7 @@ void World<Degree>::disturb(BodyId id) {
   Body& b = bodies_[id];
   if (b.disturbed || !b.alive || !b.entered) return;
   bool as_given = true;
-  if constexpr (Degree >= 2) as_given = b.inverse_mass == 0 || b.motion.coefficients[2] == b.force;
+  if constexpr (Degree >= 2) as_given = b.inverse_mass == 0 || movers_[id].motion.coefficients[2] == b.force;
   if (b.holds.empty() && as_given) return;
   b.disturbed = true;
   disturbed_.push_back(id);
@@ -132,7 +132,7 @@ bool World<Degree>::settle_island(BodyId id) {
   Island island = find_island(id);
   if (drop_broken(island)) return false;
   std::vector<Motion> motions;
-  for (const BodyId each : island.bodies) motions.push_back(bodies_[each].motion.restarted(now_));
+  for (const BodyId each : island.bodies) motions.push_back(movers_[each].motion.restarted(now_));
   const std::vector<Motion> before = motions;
   if (!constrain(island, 1, motions)) return false;
   if constexpr (Degree >= 2) {
@@ -207,8 +207,8 @@ bool World<Degree>::drop_broken(const Island& island) {
   for (const HoldSlot slot : island.holds) {
     const Hold& hold = holds_[slot];
     if (hold.fresh) continue;
-    const Vector3d a = bodies_[hold.a].motion.velocity(now_);
-    const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_[hold.b].motion.velocity(now_);
+    const Vector3d a = movers_[hold.a].motion.velocity(now_);
+    const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : movers_[hold.b].motion.velocity(now_);
     const double largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
     if (std::abs(hold.normal.dot(b - a)) <= rate_rounding * largest) continue;
     drop_hold(slot);
@@ -324,8 +324,8 @@ bool World<Degree>::held_at_wall(BodyId a, int wall) const {
 template <int Degree>
 typename World<Degree>::Motion World<Degree>::free_motion(BodyId id) const {
   const Body& b = body(id);
-  if (b.holds.empty()) return b.motion;
-  Motion motion = b.motion.restarted(now_);
+  if (b.holds.empty()) return movers_[id].motion;
+  Motion motion = movers_[id].motion.restarted(now_);
   if constexpr (Degree >= 2) motion.coefficients[2] = b.force;
   return motion;
 }

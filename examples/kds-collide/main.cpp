@@ -1,4 +1,5 @@
 // kds-collide: a scene in, events out.
+#include "collision/broad_phase_kind.hpp"
 #include "examples/kds-collide/event_csv.hpp"
 #include "examples/kds-collide/generator.hpp"
 #include "examples/kds-collide/output_file.hpp"
@@ -115,7 +116,7 @@ void check(const Arguments& arguments) {
   const RunOptions& run = arguments.run;
   if (!std::isfinite(run.rate) || run.rate < 0) throw ArgumentError("--rate: must be finite and >= 0");
   if (arguments.until && !std::isfinite(*arguments.until)) throw ArgumentError("--until: must be finite");
-  const auto& known = broad_phases();
+  const auto& known = kds::collision::broad_phases;
   if (std::none_of(known.begin(), known.end(), [&](const auto& b) { return b.name == run.broad_phase; })) {
     std::string names;
     for (const auto& b : known) names += (names.empty() ? "" : ", ") + std::string(b.name);
@@ -126,7 +127,7 @@ void check(const Arguments& arguments) {
 }
 
 int list_broad_phases() {
-  for (const BroadPhaseName& b : broad_phases()) {
+  for (const auto& b : kds::collision::broad_phases) {
     std::printf("%-12.*s %.*s\n", static_cast<int>(b.name.size()), b.name.data(), static_cast<int>(b.what.size()),
                 b.what.data());
   }

@@ -29,24 +29,9 @@ std::uint64_t peak_memory() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-struct Choice {
-  BroadPhaseName name;
-  BroadPhaseKind kind;
-};
-
-const std::vector<Choice>& choices() {
-  static const std::vector<Choice> all{
-      {{"kinetic-sap", "kinetic sweep and prune: event-driven, exact"}, BroadPhaseKind::kinetic_sap},
-      {{"sap", "sweep and prune over arrays with swept boxes, at --rate"}, BroadPhaseKind::sap},
-      {{"all-pairs", "every pair tested once and its result kept, no pruning"}, BroadPhaseKind::all_pairs}};
-  return all;
-}
-
-Choice choose(const RunOptions& options) {
-  // Swaps of the kinetic lists grow faster than the number of bodies; it is still the best there is.
-  const std::string name = options.broad_phase == "auto" ? "kinetic-sap" : options.broad_phase;
-  for (const Choice& choice : choices()) {
-    if (choice.name.name == name) return choice;
+BroadPhaseKind choose(const std::string& name) {
+  for (const auto& broad_phase : kds::collision::broad_phases) {
+    if (broad_phase.name == name) return broad_phase.kind;
   }
   throw std::invalid_argument("--broad-phase: there is no \"" + name + "\"; --broad-phase list names them");
 }
@@ -115,15 +100,15 @@ class Teller final : public kds::collision::WorldListener<Degree> {
 
 template <int Degree>
 RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink& sink) {
-  const Choice choice = choose(options);
-  if (choice.kind == BroadPhaseKind::sap && !(options.rate > 0)) {
+  const BroadPhaseKind broad_phase = choose(options.broad_phase);
+  if (broad_phase == BroadPhaseKind::sap && !(options.rate > 0)) {
     throw std::invalid_argument("--rate: must be > 0 for the broad phase \"sap\"");
   }
   kds::collision::WorldOptions world_options;
   world_options.start_time = scene.begin_time;
   world_options.response =
       scene.response == Response::elastic ? kds::collision::Response::elastic : kds::collision::Response::none;
-  world_options.broad_phase = choice.kind;
+  world_options.broad_phase = broad_phase;
   world_options.rate = options.rate;
   world_options.report_pairs = options.pairs;
   world_options.profile = options.profile;
@@ -166,7 +151,7 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   const double run_end = cpu_seconds();
 
   const kds::collision::WorldCounters counters = world.counters();
-  result.broad_phase = choice.name.name;
+  result.broad_phase = world.broad_phase();
   result.setup_cpu_seconds = run_start - setup_start;
   result.run_cpu_seconds = run_end - run_start;
   result.sim_seconds = end - begin;
@@ -188,15 +173,6 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
 }
 
 }  // namespace
-
-const std::vector<BroadPhaseName>& broad_phases() {
-  static const std::vector<BroadPhaseName> names = [] {
-    std::vector<BroadPhaseName> all{{"auto", "the one that suits the scene"}};
-    for (const Choice& choice : choices()) all.push_back(choice.name);
-    return all;
-  }();
-  return names;
-}
 
 RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
   return scene.degree() == 2 ? run_at_degree<2>(scene, options, sink) : run_at_degree<1>(scene, options, sink);

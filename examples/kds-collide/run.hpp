@@ -7,13 +7,12 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace kds_collide {
 
 struct RunOptions {
-  std::string broad_phase = "auto";  ///< one of broad_phases()
+  std::string broad_phase = "auto";  ///< a name in collision/broad_phase_kind.hpp
   double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
   bool pairs = false;                ///< tell of bounding volumes too
   bool steady_progress = false;      ///< call on_time at least a hundred times
@@ -41,14 +40,6 @@ struct RunResult {
   std::uint64_t peak_memory_bytes = 0;
   kds::collision::Profile profile;  ///< where the time went, if asked for
 };
-
-struct BroadPhaseName {
-  std::string_view name;
-  std::string_view what;
-};
-
-/// The names that --broad-phase takes, and what each is.
-const std::vector<BroadPhaseName>& broad_phases();
 
 /// Runs the scene from its begin_time to its end_time. Throws std::invalid_argument for options it cannot follow.
 RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink);

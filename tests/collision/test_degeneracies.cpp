@@ -25,7 +25,8 @@ WorldOptions with(Response response, BroadPhaseKind broad_phase = BroadPhaseKind
   return options;
 }
 
-constexpr std::array all_methods{BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap, BroadPhaseKind::all_pairs};
+constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap,
+                                 BroadPhaseKind::all_pairs};
 
 std::size_t count(const std::vector<Event>& events, Kind kind) {
   return static_cast<std::size_t>(

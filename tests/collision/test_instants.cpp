@@ -15,7 +15,7 @@ using namespace tests;
 /// The events of a world that `act` uses, with each broad phase; frames of the swept boxes end at eighths.
 std::vector<std::vector<Event>> with_each_broad_phase(const std::function<void(World<1>&)>& act) {
   std::vector<std::vector<Event>> logs;
-  for (const auto kind : {BroadPhaseKind::all_pairs, BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap}) {
+  for (const auto& [kind, name, what] : broad_phases) {
     WorldOptions options;
     options.broad_phase = kind;
     options.rate = 8;

@@ -57,6 +57,10 @@ void compare_methods(const Scene<Degree>& scene, WorldOptions options, Compared&
   WorldOptions other = options;
   other.broad_phase = BroadPhaseKind::all_pairs;
   check("all-pairs", other);
+  other.broad_phase = BroadPhaseKind::grid;
+  check("grid", other);
+  other.broad_phase = BroadPhaseKind::automatic;
+  check("auto", other);
   other.broad_phase = BroadPhaseKind::sap;
   for (const double rate : {3.0, 60.0, 1000.0}) {
     INFO("rate " << rate);

@@ -276,7 +276,7 @@ TEMPLATE_TEST_CASE_SIG("Bounding volumes begin and cease to overlap at exact tim
       }
       began += static_cast<int>(expected.size());
       expected = sorted(expected);
-      for (const auto kind : {BroadPhaseKind::kinetic_sap, BroadPhaseKind::all_pairs}) {
+      for (const auto kind : {BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap, BroadPhaseKind::all_pairs}) {
         INFO("broad phase " << static_cast<int>(kind));
         WorldOptions options;
         options.broad_phase = kind;

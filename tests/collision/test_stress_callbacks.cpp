@@ -13,7 +13,8 @@ namespace {
 
 using namespace tests;
 
-constexpr std::array all_methods{BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap, BroadPhaseKind::all_pairs};
+constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap,
+                                 BroadPhaseKind::all_pairs};
 
 WorldOptions with(Response response, BroadPhaseKind method) {
   WorldOptions options;

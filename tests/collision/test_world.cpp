@@ -125,7 +125,7 @@ TEST_CASE("A motion may change inside a callback", "[world]") {
 }
 
 TEST_CASE("A teleport ends contacts where it leaves and begins them where it arrives", "[world]") {
-  for (const auto kind : {BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap, BroadPhaseKind::all_pairs}) {
+  for (const auto& [kind, name, what] : broad_phases) {
     WorldOptions options;
     options.broad_phase = kind;
     options.rate = 10;
@@ -155,9 +155,11 @@ TEST_CASE("A teleport ends contacts where it leaves and begins them where it arr
 }
 
 TEST_CASE("Two bodies that teleport together at one instant stay in contact", "[world]") {
-  for (const auto kind : {BroadPhaseKind::kinetic_sap, BroadPhaseKind::all_pairs}) {
+  for (const auto& [kind, name, what] : broad_phases) {
+    INFO(name);
     WorldOptions options;
     options.broad_phase = kind;
+    options.rate = 10;
     options.report_pairs = true;
     EventLog<1> log;
     World<1> world(options, &log);
@@ -197,7 +199,7 @@ TEST_CASE("A body that appears inside another overlaps, and does not stop the ru
 }
 
 TEST_CASE("Removing a body ends its pairs and contacts, with reports", "[world]") {
-  for (const auto kind : {BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap, BroadPhaseKind::all_pairs}) {
+  for (const auto& [kind, name, what] : broad_phases) {
     WorldOptions options;
     options.broad_phase = kind;
     options.rate = 10;
@@ -254,33 +256,38 @@ TEST_CASE("Bodies may be removed and added inside their own contact", "[world]")
 }
 
 TEST_CASE("A caller's bounding volumes are renewed when they expire, as events of their own", "[world]") {
-  EventLog<1> log;
-  WorldOptions options;
-  options.report_pairs = true;
-  World<1> world(options, &log);
-  int calls = 0;
-  auto careful = ball<1>(1, {0, 0, 0}, {1, 0, 0});
-  // A box at rest that holds the ball for half a second.
-  careful.box = [&](double t, const certificates::PointMotion<1>& path) {
-    ++calls;
-    const Vector3d from = path.position(t);
-    KineticBox<1> result{motion<1>(from - Vector3d(1, 1, 1), zero, zero, t),
-                         motion<1>(from + Vector3d(1.5, 1, 1), zero, zero, t)};
-    result.valid_until = t + 0.5;
-    return result;
-  };
-  world.add_body(careful);
-  world.add_body(ball<1>(1, {8.25, 0, 0}));
-  world.advance_to(4.25);
-  CHECK(calls == 9);  // at 0, 0.5 ... 4
-  world.audit();
-  world.advance_to(10.25);
-  CHECK(calls == 21);
-  REQUIRE(log.count(Kind::contact) == 1);
-  CHECK(log.of(Kind::contact)[0].time() == 6.25);
-  REQUIRE(log.count(Kind::pair_began) == 1);
-  CHECK(log.of(Kind::pair_began)[0].time() == 6);  // the first of the boxes that reaches 7.25
-  CHECK(log.count(Kind::separation) == 1);
+  for (const auto& [kind, name, what] : broad_phases) {
+    INFO(name);
+    EventLog<1> log;
+    WorldOptions options;
+    options.report_pairs = true;
+    options.broad_phase = kind;
+    options.rate = 10;
+    World<1> world(options, &log);
+    int calls = 0;
+    auto careful = ball<1>(1, {0, 0, 0}, {1, 0, 0});
+    // A box at rest that holds the ball for half a second.
+    careful.box = [&](double t, const certificates::PointMotion<1>& path) {
+      ++calls;
+      const Vector3d from = path.position(t);
+      KineticBox<1> result{motion<1>(from - Vector3d(1, 1, 1), zero, zero, t),
+                           motion<1>(from + Vector3d(1.5, 1, 1), zero, zero, t)};
+      result.valid_until = t + 0.5;
+      return result;
+    };
+    world.add_body(careful);
+    world.add_body(ball<1>(1, {8.25, 0, 0}));
+    world.advance_to(4.25);
+    CHECK(calls == 9);  // at 0, 0.5 ... 4
+    world.audit();
+    world.advance_to(10.25);
+    CHECK(calls == 21);
+    REQUIRE(log.count(Kind::contact) == 1);
+    CHECK(log.of(Kind::contact)[0].time() == 6.25);
+    REQUIRE(log.count(Kind::pair_began) == 1);
+    CHECK(log.of(Kind::pair_began)[0].time() == 6);  // the first of the boxes that reaches 7.25
+    CHECK(log.count(Kind::separation) == 1);
+  }
 }
 
 TEST_CASE("The window does not matter to volumes that expire", "[world]") {
@@ -324,7 +331,7 @@ TEST_CASE("The volume of the bounding sphere holds the shape in any orientation"
 }
 
 TEST_CASE("Filters: a pair is tested if each one's category is in the other's mask", "[world]") {
-  for (const auto kind : {BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap, BroadPhaseKind::all_pairs}) {
+  for (const auto& [kind, name, what] : broad_phases) {
     for (int masks = 0; masks < 4; ++masks) {
       WorldOptions options;
       options.broad_phase = kind;

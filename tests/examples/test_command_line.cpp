@@ -74,7 +74,7 @@ TEST_CASE("command line: --until, --stats and the summary") {
   }
   CHECK(stats["sim_seconds"] == 2);
   CHECK(stats["contacts"] == 1);
-  CHECK(stats["broad_phase"] == "kinetic-sap");
+  CHECK(stats["broad_phase"] == "all-pairs");  // of two bodies
   CHECK(stats["peak_memory_bytes"] > 100'000);
 }
 
@@ -141,7 +141,7 @@ TEST_CASE("command line: --broad-phase list, --help and --version") {
   const TemporaryFolder folder;
   const Outcome list = kds_collide_in(folder, "--broad-phase list");
   CHECK(list.code == 0);
-  for (const char* name : {"auto", "kinetic-sap", "sap", "all-pairs"}) {
+  for (const char* name : {"auto", "grid", "kinetic-sap", "sap", "all-pairs"}) {
     const auto lines = lines_of(list.out);
     CHECK(std::any_of(lines.begin(), lines.end(),
                       [&](const std::string& l) { return l.starts_with(std::string(name) + ' '); }));
@@ -165,7 +165,7 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"scene.json --until inf", "kds-collide: --until: must be finite"},
       {"scene.json --until -1", "kds-collide: --until: is before the motion begins"},
       {"scene.json --broad-phase best",
-       "kds-collide: --broad-phase: there is no \"best\"; there are auto, kinetic-sap"},
+       "kds-collide: --broad-phase: there is no \"best\"; there are auto, grid, kinetic-sap"},
       {"scene.json --broad-phase sap", "kds-collide: --rate: must be > 0 for the broad phase \"sap\""},
       {"scene.json --events none/e.csv", "none/e.csv: file: cannot be written: No such file or directory"},
       {"scene.json --events e.csv --stats none/s.json", "none/s.json: file: cannot be written: "},

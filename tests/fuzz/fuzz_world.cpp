@@ -219,7 +219,8 @@ void compare_broad_phases(const Bytes& bytes, const Options& options) {
   Scenario<Degree> reference(bytes, options, BroadPhaseKind::all_pairs);
   const std::vector<Event> all_expected = reference.run();
   if (reference.too_long()) return;
-  for (const auto kind : {BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap}) {
+  for (const auto& [kind, name, what] : broad_phases) {
+    if (kind == BroadPhaseKind::all_pairs) continue;
     auto found = Scenario<Degree>(bytes, options, kind).run();
     auto expected = all_expected;
     if (options.edits) {
@@ -230,7 +231,7 @@ void compare_broad_phases(const Bytes& bytes, const Options& options) {
     const auto [f, e] = std::mismatch(found.begin(), found.end(), expected.begin(), expected.end());
     if (f == found.end() && e == expected.end()) continue;
     const auto at = static_cast<std::size_t>(f - found.begin());
-    throw Failure(std::string(kind == BroadPhaseKind::sap ? "sap" : "kinetic-sap") + " against all-pairs: event " +
+    throw Failure(std::string(name) + " against all-pairs: event " +
                   std::to_string(at) + ": " + shown(found, at) + "\n  instead of " + shown(expected, at));
   }
 }

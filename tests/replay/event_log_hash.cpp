@@ -87,9 +87,6 @@ void hash_run(const Scene<Degree>& scene, const WorldOptions& options, EventHash
   for (const Event& e : run(scene, options)) hash.event(e);
 }
 
-constexpr std::array methods{std::pair{BroadPhaseKind::kinetic_sap, "kinetic-sap"}, std::pair{BroadPhaseKind::sap, "sap"},
-                             std::pair{BroadPhaseKind::all_pairs, "all-pairs"}};
-
 /// Names are words, so that lines are easily taken apart.
 std::string word(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '-');
@@ -103,11 +100,11 @@ void add_worlds(std::vector<Replay>& replays) {
   for (const Shapes shapes : all_shapes) {
     for (const Numbers numbers : {Numbers::fine, Numbers::coarse}) {
       for (const Response response : {Response::none, Response::elastic}) {
-        for (const auto& [method, method_name] : methods) {
+        for (const auto& [method, method_name, what] : broad_phases) {
           const bool elastic = response == Response::elastic;
           const std::string name = "world/" + std::to_string(Degree) + '/' + word(collision::tests::name(shapes)) + '/' +
                                    (numbers == Numbers::fine ? "fine/" : "coarse/") + (elastic ? "elastic/" : "none/") +
-                                   method_name;
+                                   std::string(method_name);
           replays.push_back({name, [=, method = method](EventHash& hash) {
             WorldOptions options;
             options.response = response;
@@ -125,8 +122,8 @@ void add_worlds(std::vector<Replay>& replays) {
 }
 
 void add_bounces(std::vector<Replay>& replays) {
-  for (const auto& [method, method_name] : methods) {
-    replays.push_back({std::string("bounces/") + method_name, [method = method](EventHash& hash) {
+  for (const auto& [method, method_name, what] : broad_phases) {
+    replays.push_back({"bounces/" + std::string(method_name), [method = method](EventHash& hash) {
       WorldOptions options;
       options.response = Response::elastic;
       options.broad_phase = method;
