@@ -100,10 +100,7 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes) {
   Exponent level = level_for(box.extent());
   // A box that has become a little smaller stays at its level.
   if (from_level != absent && level < from_level && level_for(1.125 * box.extent()) == from_level) level = from_level;
-  if (level != from_level) {
-    item.level = absent;  // it is no guest yet
-    use_level(level);
-  }
+  use_level(level);
   size_ += from_level == absent;
   item.bounds = bounds(box);
   item.level = level;
