@@ -1,6 +1,7 @@
 // Two values in order.
 #pragma once
 
+#include "certificates/order_parabola.hpp"
 #include "kds/certificate.hpp"
 #include "kds/failure_time.hpp"
 #include "kds/motion.hpp"
@@ -37,10 +38,14 @@ struct Order {
     return at_rest || lower.start == upper.start;
   }
 
-  /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows pairs that differ by a line:
-  /// straight motions, and those that share their accelerations.
+  /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows pairs that differ by a line
+  /// (straight motions, and those that share their accelerations) or a parabola.
   double quick_failure_time(double now, double horizon) const
     requires(Degree >= 1);
+
+  /// The same for failure_time_after_turn().
+  double quick_failure_time_after_turn(double now, double horizon) const
+    requires(Degree >= 2);
 
  private:
   /// The difference of two motions: gap + rate (t - epoch), with bounds on the errors of both.
@@ -51,9 +56,18 @@ struct Order {
     double epoch;
   };
 
-  /// The number cut off after 26 significant bits.
-  static double leading_bits(double x) {
-    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & ~((std::uint64_t{1} << 27) - 1));
+  /// Whether the difference is known to be a parabola or less.
+  bool at_most_quadratic() const {
+    for (std::size_t i = 3; i <= Degree; ++i) {
+      if (lower.position.c[i] != upper.position.c[i]) return false;
+      if (lower.position.c[i] != 0 && lower.start != upper.start) return false;
+    }
+    return true;
+  }
+
+  detail::Parabola parabola() const {
+    return lower.start == upper.start ? detail::parabola_between(lower, upper)
+                                      : detail::shifted_parabola_between(lower, upper);
   }
 
   /// The later of the starts is the epoch; the motion that started earlier is shifted to it. Differences of motions
@@ -83,9 +97,11 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
   requires(Degree >= 1)
 {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 2; i <= Degree; ++i) {
-    if (lower.position.c[i] != upper.position.c[i]) return undecided;
-    if (i > 2 && lower.position.c[i] != 0 && lower.start != upper.start) return undecided;  // differ by a parabola
+  if (!at_most_quadratic()) return undecided;
+  if constexpr (Degree >= 2) {
+    if (lower.position.c[2] != upper.position.c[2]) {
+      return detail::quick_parabola_failure_time<false>(parabola(), now, horizon);
+    }
   }
   const Line<double> rough = line<double>();
   const double gap = rough.gap.middle;
@@ -127,8 +143,8 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
     inverse = 1 / r.high;
     root = -g.high * inverse;
   }
-  const double coarse = leading_bits(root);
-  const double rate_high = leading_bits(r.high);
+  const double coarse = detail::leading_bits(root);
+  const double rate_high = detail::leading_bits(r.high);
   const double residual =
       (g.high + coarse * rate_high) + coarse * (r.high - rate_high) + (g.low + coarse * r.low);
   const DoubleDouble sum = two_sum(fine.epoch, coarse);
@@ -141,6 +157,15 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
   const std::int64_t up = time.low > 0;
   const double t = std::bit_cast<double>(std::bit_cast<std::int64_t>(time.high) + (time.high < 0 ? -up : up));
   return t <= horizon ? t : never;
+}
+
+template <int Degree>
+double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) const
+  requires(Degree >= 2)
+{
+  if (!at_most_quadratic()) return std::numeric_limits<double>::quiet_NaN();
+  if (lower.position.c[2] == upper.position.c[2]) return never;  // a line that has risen through zero
+  return detail::quick_parabola_failure_time<true>(parabola(), now, horizon);
 }
 
 }  // namespace kds::certificates

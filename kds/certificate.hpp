@@ -30,7 +30,7 @@ namespace kds {
 /// polynomial(e') are the same function of t. A certificate may offer `bool vanishes() const`, a cheap and sufficient
 /// test that f is zero throughout, which spares such pairs (things that move together) the exact rung; and a
 /// `double quick_failure_time(double now, double horizon) const` that gives what failure_time() would, bit for bit,
-/// or a NaN where it does not decide; and a
+/// or a NaN where it does not decide, and likewise `quick_failure_time_after_turn`; and a
 /// `Ball<DoubleDouble> extended_value(double t) const` that gives f(t) alone for less than polynomial() costs, with an
 /// error bound of its own (see compensated_value()), for it is f(t) that places a root among the doubles.
 template <class C>

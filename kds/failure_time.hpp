@@ -125,6 +125,10 @@ double failure_time_after_turn(const C& certificate, double now, double horizon)
   if constexpr (C::degree <= 1) {
     return never;  // A line that is positive just after a zero has risen through it.
   } else {
+    if constexpr (requires { certificate.quick_failure_time_after_turn(now, horizon); }) {
+      const double t = certificate.quick_failure_time_after_turn(now, horizon);
+      if (!std::isnan(t)) return t;
+    }
     return detail::failure_time_while_positive(certificate, certificate.template polynomial<Ball<double>>(now), now,
                                                horizon);
   }

@@ -1,0 +1,216 @@
+// Values that differ by a parabola: the quick answer is that of the general method, bit for bit, and nearly always there.
+#include "certificates/order.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace {
+
+using namespace kds;
+using namespace kds::tests;
+using kds::certificates::Order;
+
+/// Order without its quick answers.
+template <int Degree>
+struct CarefulOrder {
+  static constexpr int degree = Degree;
+  Order<Degree> order;
+
+  template <class Number>
+  Polynomial<Degree, Number> polynomial(double epoch) const {
+    return order.template polynomial<Number>(epoch);
+  }
+  Ball<DoubleDouble> extended_value(double t) const { return order.extended_value(t); }
+  bool vanishes() const { return order.vanishes(); }
+};
+
+template <int Degree>
+std::string describe(const Motion<Degree>& lower, const Motion<Degree>& upper, double now, double horizon) {
+  std::ostringstream text;
+  text << std::hexfloat;
+  for (const auto* motion : {&lower, &upper}) {
+    for (const double c : motion->position.c) text << c << ' ';
+    text << "from " << motion->start << ", ";
+  }
+  text << "now " << now << ", horizon " << horizon;
+  return text.str();
+}
+
+/// Asks both ways and keeps count.
+struct Comparison {
+  int asked = 0;
+  int undecided = 0;
+  int failures = 0;  ///< failure times found
+  int wrong = 0;
+  std::string example;
+
+  template <int Degree>
+  void ask(const Motion<Degree>& lower, const Motion<Degree>& upper, double now, double horizon, bool turned = false) {
+    if (!(now <= horizon)) return;
+    const Order<Degree> order{lower, upper};
+    const CarefulOrder<Degree> careful{order};
+    const double expected = turned ? failure_time_after_turn(careful, now, horizon) : failure_time(careful, now, horizon);
+    const double quick =
+        turned ? order.quick_failure_time_after_turn(now, horizon) : order.quick_failure_time(now, horizon);
+    const double answer = turned ? failure_time_after_turn(order, now, horizon) : failure_time(order, now, horizon);
+    ++asked;
+    failures += expected < never;
+    undecided += std::isnan(quick);
+    if (answer == expected && (std::isnan(quick) || quick == expected)) return;
+    if (wrong++ == 0) example = describe(lower, upper, now, horizon) + (turned ? ", turned" : "");
+  }
+
+  /// From `now`; with the horizon at the failure and around it; at the failure, when they have swapped.
+  template <int Degree>
+  void ask_around(const Motion<Degree>& lower, const Motion<Degree>& upper, double now, double horizon) {
+    ask(lower, upper, now, horizon);
+    ask(lower, upper, now, never);
+    const double t = failure_time(CarefulOrder<Degree>{{lower, upper}}, now);
+    if (t == never) return;
+    for (const double edge : {next_down(t), t, next_up(t)}) ask(lower, upper, now, edge);
+    if (t == now) return;
+    ask(upper, lower, t, never, true);
+    ask(upper, lower, t, std::max(t, horizon), true);
+    ask(upper, lower, t, never);
+  }
+
+  void report() const {
+    INFO("asked " << asked << ", failures " << failures << ", undecided " << undecided << ", wrong " << wrong << ": "
+                  << example);
+    CHECK(wrong == 0);
+    CHECK(failures > asked / 5);
+  }
+};
+
+enum class Starts { common, different };
+
+template <int Degree>
+Motion<Degree> ordinary_value(Random& random) {
+  Motion<Degree> motion;
+  for (std::size_t i = 0; i <= 2; ++i) motion.position.c[i] = random.between(-2, 2);
+  motion.start = random.between(-2, 2);
+  return motion;
+}
+
+}  // namespace
+
+#define EACH_DEGREE_AND_START ((int Degree, Starts starts), Degree, starts), (2, Starts::common), \
+    (2, Starts::different), (3, Starts::common), (3, Starts::different)
+
+TEMPLATE_TEST_CASE_SIG("ordinary parabolas swap at the quick answer", "[order]", EACH_DEGREE_AND_START) {
+  const std::uint64_t seed = 90;
+  CAPTURE(Degree, int(starts), seed);
+  Random random(seed);
+  Comparison comparison;
+  int first_undecided = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const auto lower = ordinary_value<Degree>(random);
+    auto upper = ordinary_value<Degree>(random);
+    if (starts == Starts::common) upper.start = lower.start;
+    const double now = std::max(lower.start, upper.start) + random.one_in(4) * random.unit();
+    const double horizon = now + random.unit();
+    first_undecided += std::isnan(Order<Degree>{lower, upper}.quick_failure_time(now, horizon));
+    const double t = failure_time(CarefulOrder<Degree>{{lower, upper}}, now);
+    if (t < never && t > now) first_undecided += std::isnan(Order<Degree>{upper, lower}.quick_failure_time_after_turn(t, never));
+    if (round % 4 == 0) comparison.ask_around(lower, upper, now, horizon);
+  }
+  comparison.report();
+  CHECK(first_undecided <= 20);
+}
+
+TEMPLATE_TEST_CASE_SIG("parabolas of all sizes", "[order]", EACH_DEGREE_AND_START) {
+  const std::uint64_t seed = 91;
+  CAPTURE(Degree, int(starts), seed);
+  Random random(seed);
+  Comparison comparison;
+  int moderate_undecided = 0;
+  for (int round = 0; round < 4000; ++round) {
+    // Roots of a size of their own, and a clock of another; beyond the limits of the quick path now and then.
+    const bool moderate = !random.one_in(4);
+    const int range = moderate ? 60 : random.one_in(2) ? 250 : 900;
+    const int time = random.integer(-range / 4, range / 4);
+    const int length = random.integer(-range, range) / 2;
+    const auto draw = [&](int power) { return std::ldexp(random.between(-2, 2), length - power * time); };
+    Motion<Degree> lower;
+    Motion<Degree> upper;
+    for (int i = 0; i <= 2; ++i) {
+      lower.position.c[i] = draw(i);
+      upper.position.c[i] = draw(i);
+      const int nearness = random.integer(1, 52);
+      if (random.one_in(6)) upper.position.c[i] = lower.position.c[i] * (1 + std::ldexp(1.0, -nearness));
+    }
+    lower.start = random.one_in(3) ? 0 : std::ldexp(random.between(-2, 2), time + random.integer(-8, 8));
+    upper.start = starts == Starts::common ? lower.start
+                                           : lower.start + std::ldexp(random.between(-2, 2), time - random.integer(0, 60));
+    const double now = std::max(lower.start, upper.start) + random.one_in(2) * std::ldexp(random.unit(), time);
+    const int before = comparison.undecided;
+    comparison.ask_around(lower, upper, now, now + std::ldexp(random.unit(), time + random.integer(-2, 4)));
+    if (moderate) moderate_undecided += comparison.undecided - before;
+  }
+  comparison.report();
+  CAPTURE(moderate_undecided, comparison.asked);
+  CHECK(moderate_undecided < comparison.asked / 4);  // horizons at the last bit of the root are not for it
+}
+
+TEMPLATE_TEST_CASE_SIG("parabolas that nearly touch", "[order]", EACH_DEGREE_AND_START) {
+  const std::uint64_t seed = 92;
+  CAPTURE(Degree, int(starts), seed);
+  Random random(seed);
+  Comparison comparison;
+  int decided = 0;
+  for (int round = 0; round < 4000; ++round) {
+    // sign (t - x) (t - y) about some start, rounded, between two values that share the rest.
+    const double x = random.between(0.1, 2);
+    const double y = x * (1 + std::ldexp(random.between(-2, 2), -random.integer(0, 52)));
+    const double sign = random.one_in(2) ? 1 : -1;
+    Motion<Degree> lower;
+    if (random.one_in(2)) lower = ordinary_value<Degree>(random);
+    lower.start = random.one_in(2) ? 0 : std::ldexp(random.unit(), random.integer(-4, 30));
+    Motion<Degree> upper = lower;
+    const std::array<double, 3> difference{sign * x * y, -sign * (x + y), sign};
+    for (std::size_t i = 0; i <= 2; ++i) upper.position.c[i] += difference[i];
+    if (starts == Starts::different) upper = restarted(upper, upper.start + random.between(-1, 1));
+    const double now = std::max(lower.start, upper.start);
+    const int before = comparison.undecided;
+    const int asked = comparison.asked;
+    comparison.ask_around(lower, upper, now, now + random.between(0, 3));
+    decided += comparison.asked - asked - (comparison.undecided - before);
+  }
+  comparison.report();
+  CAPTURE(decided, comparison.asked);
+  CHECK(decided > comparison.asked / 4);
+}
+
+TEMPLATE_TEST_CASE_SIG("parabolas through points of the lattice", "[order]", EACH_DEGREE_AND_START) {
+  const std::uint64_t seed = 93;
+  CAPTURE(Degree, int(starts), seed);
+  Random random(seed);
+  Comparison comparison;
+  for (int round = 0; round < 4000; ++round) {
+    // Numbers of a few bits: roots that are doubles, ties at now, touches, lines, equal motions.
+    Motion<Degree> lower;
+    Motion<Degree> upper;
+    for (std::size_t i = 0; i <= 2; ++i) {
+      lower.position.c[i] = random.coarse();
+      upper.position.c[i] = random.coarse();
+    }
+    lower.start = random.integer(-2, 2);
+    upper.start = starts == Starts::common ? lower.start : random.integer(-2, 2);
+    const double now = std::max(lower.start, upper.start) + random.integer(0, 2);
+    comparison.ask_around(lower, upper, now, now + random.integer(0, 4));
+  }
+  comparison.report();
+}
+
+TEST_CASE("cubics that share their leading coefficient are parabolas only from a common start", "[order]") {
+  const Motion<3> lower{{{0, 1, 0.5, -2}}, 1};
+  const Motion<3> upper{{{0.75, -1.25, 0.75, -2}}, 1};
+  CHECK_FALSE(std::isnan(Order<3>{lower, upper}.quick_failure_time(1, never)));
+  const Motion<3> later{{{0.75, -1.25, 0.75, -2}}, 2};
+  CHECK(std::isnan(Order<3>{lower, later}.quick_failure_time(2, never)));
+}
