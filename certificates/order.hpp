@@ -65,9 +65,12 @@ struct Order {
     return true;
   }
 
-  detail::Parabola parabola() const {
-    return lower.start == upper.start ? detail::parabola_between(lower, upper)
-                                      : detail::shifted_parabola_between(lower, upper);
+  template <bool turned>
+  double quick_parabola_failure_time(double now, double horizon) const {
+    if (lower.start == upper.start) {
+      return detail::quick_parabola_failure_time<turned>(detail::parabola_between(lower, upper), now, horizon);
+    }
+    return detail::quick_parabola_failure_time<turned>(detail::shifted_parabola_between(lower, upper), now, horizon);
   }
 
   /// The later of the starts is the epoch; the motion that started earlier is shifted to it. Differences of motions
@@ -99,9 +102,7 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
   if (!at_most_quadratic()) return undecided;
   if constexpr (Degree >= 2) {
-    if (lower.position.c[2] != upper.position.c[2]) {
-      return detail::quick_parabola_failure_time<false>(parabola(), now, horizon);
-    }
+    if (lower.position.c[2] != upper.position.c[2]) return quick_parabola_failure_time<false>(now, horizon);
   }
   const Line<double> rough = line<double>();
   const double gap = rough.gap.middle;
@@ -143,8 +144,8 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
     inverse = 1 / r.high;
     root = -g.high * inverse;
   }
-  const double coarse = detail::leading_bits(root);
-  const double rate_high = detail::leading_bits(r.high);
+  const double coarse = detail::leading_bits<26>(root);
+  const double rate_high = detail::leading_bits<26>(r.high);
   const double residual =
       (g.high + coarse * rate_high) + coarse * (r.high - rate_high) + (g.low + coarse * r.low);
   const DoubleDouble sum = two_sum(fine.epoch, coarse);
@@ -165,7 +166,7 @@ double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) 
 {
   if (!at_most_quadratic()) return std::numeric_limits<double>::quiet_NaN();
   if (lower.position.c[2] == upper.position.c[2]) return never;  // a line that has risen through zero
-  return detail::quick_parabola_failure_time<true>(parabola(), now, horizon);
+  return quick_parabola_failure_time<true>(now, horizon);
 }
 
 }  // namespace kds::certificates

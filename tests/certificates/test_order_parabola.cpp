@@ -1,4 +1,4 @@
-// Values that differ by a parabola: the quick answer is that of the general method, bit for bit, and nearly always there.
+// Values that differ by a parabola: the quick answer is that of the general method, bit for bit.
 #include "certificates/order.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -54,10 +54,16 @@ struct Comparison {
     if (!(now <= horizon)) return;
     const Order<Degree> order{lower, upper};
     const CarefulOrder<Degree> careful{order};
-    const double expected = turned ? failure_time_after_turn(careful, now, horizon) : failure_time(careful, now, horizon);
-    const double quick =
-        turned ? order.quick_failure_time_after_turn(now, horizon) : order.quick_failure_time(now, horizon);
-    const double answer = turned ? failure_time_after_turn(order, now, horizon) : failure_time(order, now, horizon);
+    double expected, quick, answer;
+    if (turned) {
+      expected = failure_time_after_turn(careful, now, horizon);
+      quick = order.quick_failure_time_after_turn(now, horizon);
+      answer = failure_time_after_turn(order, now, horizon);
+    } else {
+      expected = failure_time(careful, now, horizon);
+      quick = order.quick_failure_time(now, horizon);
+      answer = failure_time(order, now, horizon);
+    }
     ++asked;
     failures += expected < never;
     undecided += std::isnan(quick);
@@ -116,11 +122,13 @@ TEMPLATE_TEST_CASE_SIG("ordinary parabolas swap at the quick answer", "[order]",
     const double horizon = now + random.unit();
     first_undecided += std::isnan(Order<Degree>{lower, upper}.quick_failure_time(now, horizon));
     const double t = failure_time(CarefulOrder<Degree>{{lower, upper}}, now);
-    if (t < never && t > now) first_undecided += std::isnan(Order<Degree>{upper, lower}.quick_failure_time_after_turn(t, never));
+    if (t < never && t > now) {
+      first_undecided += std::isnan(Order<Degree>{upper, lower}.quick_failure_time_after_turn(t, never));
+    }
     if (round % 4 == 0) comparison.ask_around(lower, upper, now, horizon);
   }
   comparison.report();
-  CHECK(first_undecided <= 20);
+  CHECK(first_undecided <= 40);
 }
 
 TEMPLATE_TEST_CASE_SIG("parabolas of all sizes", "[order]", EACH_DEGREE_AND_START) {
@@ -145,8 +153,8 @@ TEMPLATE_TEST_CASE_SIG("parabolas of all sizes", "[order]", EACH_DEGREE_AND_STAR
       if (random.one_in(6)) upper.position.c[i] = lower.position.c[i] * (1 + std::ldexp(1.0, -nearness));
     }
     lower.start = random.one_in(3) ? 0 : std::ldexp(random.between(-2, 2), time + random.integer(-8, 8));
-    upper.start = starts == Starts::common ? lower.start
-                                           : lower.start + std::ldexp(random.between(-2, 2), time - random.integer(0, 60));
+    upper.start = lower.start;
+    if (starts == Starts::different) upper.start += std::ldexp(random.between(-2, 2), time - random.integer(0, 60));
     const double now = std::max(lower.start, upper.start) + random.one_in(2) * std::ldexp(random.unit(), time);
     const int before = comparison.undecided;
     comparison.ask_around(lower, upper, now, now + std::ldexp(random.unit(), time + random.integer(-2, 4)));
@@ -166,7 +174,8 @@ TEMPLATE_TEST_CASE_SIG("parabolas that nearly touch", "[order]", EACH_DEGREE_AND
   for (int round = 0; round < 4000; ++round) {
     // sign (t - x) (t - y) about some start, rounded, between two values that share the rest.
     const double x = random.between(0.1, 2);
-    const double y = x * (1 + std::ldexp(random.between(-2, 2), -random.integer(0, 52)));
+    const int nearness = random.one_in(2) ? random.integer(0, 52) : random.integer(48, 53);
+    const double y = x * (1 + std::ldexp(random.between(-2, 2), -nearness));
     const double sign = random.one_in(2) ? 1 : -1;
     Motion<Degree> lower;
     if (random.one_in(2)) lower = ordinary_value<Degree>(random);
@@ -183,7 +192,7 @@ TEMPLATE_TEST_CASE_SIG("parabolas that nearly touch", "[order]", EACH_DEGREE_AND
   }
   comparison.report();
   CAPTURE(decided, comparison.asked);
-  CHECK(decided > comparison.asked / 4);
+  CHECK(decided > comparison.asked / 5);
 }
 
 TEMPLATE_TEST_CASE_SIG("parabolas through points of the lattice", "[order]", EACH_DEGREE_AND_START) {
@@ -203,6 +212,31 @@ TEMPLATE_TEST_CASE_SIG("parabolas through points of the lattice", "[order]", EAC
     upper.start = starts == Starts::common ? lower.start : random.integer(-2, 2);
     const double now = std::max(lower.start, upper.start) + random.integer(0, 2);
     comparison.ask_around(lower, upper, now, now + random.integer(0, 4));
+  }
+  comparison.report();
+}
+
+TEMPLATE_TEST_CASE_SIG("parabolas with a root a hair from a double", "[order]", EACH_DEGREE_AND_START) {
+  const std::uint64_t seed = 94;
+  CAPTURE(Degree, int(starts), seed);
+  Random random(seed);
+  Comparison comparison;
+  for (int round = 0; round < 4000; ++round) {
+    // g + r x + a x^2 with g = -(r x + a x^2), in two doubles, and a hair more or less.
+    const double x = random.between(0.5, 2);
+    const double r = random.between(-2, 2);
+    const double a = random.between(-2, 2);
+    DoubleDouble g = -(DoubleDouble(r) + DoubleDouble(x) * a) * x;
+    g.low += random.between(-2, 2) * std::ldexp(1.0, -random.integer(54, 100));
+    Motion<Degree> lower;
+    Motion<Degree> upper;
+    lower.position.c[0] = -g.low;
+    upper.position.c[0] = g.high;
+    upper.position.c[1] = r;
+    (random.one_in(2) ? upper : lower).position.c[2] = a;
+    if (lower.position.c[2] != 0) lower.position.c[2] = -a;
+    if (starts == Starts::different) lower.start = random.coarse();  // it is at rest, or moves on a coarse lattice
+    comparison.ask_around(lower, upper, std::max(lower.start, 0.0), 2);
   }
   comparison.report();
 }
