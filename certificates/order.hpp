@@ -68,9 +68,9 @@ struct Order {
   template <bool turned>
   double quick_parabola_failure_time(double now, double horizon) const {
     if (lower.start == upper.start) {
-      return detail::quick_parabola_failure_time<turned>(detail::parabola_between(lower, upper), now, horizon);
+      return kds::quick_parabola_failure_time<turned>(detail::parabola_between(lower, upper), now, horizon);
     }
-    return detail::quick_parabola_failure_time<turned>(detail::shifted_parabola_between(lower, upper), now, horizon);
+    return kds::quick_parabola_failure_time<turned>(detail::shifted_parabola_between(lower, upper), now, horizon);
   }
 
   /// The later of the starts is the epoch; the motion that started earlier is shifted to it. Differences of motions
@@ -144,8 +144,8 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
     inverse = 1 / r.high;
     root = -g.high * inverse;
   }
-  const double coarse = detail::leading_bits<26>(root);
-  const double rate_high = detail::leading_bits<26>(r.high);
+  const double coarse = kds::detail::leading_bits<26>(root);
+  const double rate_high = kds::detail::leading_bits<26>(r.high);
   const double residual =
       (g.high + coarse * rate_high) + coarse * (r.high - rate_high) + (g.low + coarse * r.low);
   const DoubleDouble sum = two_sum(fine.epoch, coarse);

@@ -4,6 +4,7 @@
 #include "kds/ball.hpp"
 #include "kds/compensated.hpp"
 #include "kds/exact.hpp"
+#include "kds/failure_time_parabola.hpp"
 #include "kds/motion.hpp"
 #include "kds/polynomial.hpp"
 
@@ -81,6 +82,23 @@ struct PolynomialCertificate {
     return compensated_value(value.position, two_sum(t, -value.start));
   }
   bool vanishes() const { return value.position == Polynomial<Degree>{}; }
+
+  double quick_failure_time(double now, double horizon) const
+    requires(Degree == 2)
+  {
+    return quick_parabola_failure_time<false>(parabola(), now, horizon);
+  }
+  double quick_failure_time_after_turn(double now, double horizon) const
+    requires(Degree == 2)
+  {
+    return quick_parabola_failure_time<true>(parabola(), now, horizon);
+  }
+
+ private:
+  Parabola<false> parabola() const {
+    const auto& [g, r, a] = value.position.c;
+    return {g, r, a, 0, 0, value.start};
+  }
 };
 
 /// f' as a certificate: holds while f does not decrease.

@@ -69,14 +69,18 @@ ApproximateRoot enclosed_root(const Polynomial<Degree, Ball<double>>& p, bool& h
   return {never, undecided};
 }
 
+/// A failure time as failure_time() gives it, with its enclosure.
+inline FailureTime certified(double t, double now) {
+  if (t == never) return {};
+  if (t == now) return {t, t, t, FailureStatus::fails_at_once};
+  return {t, next_down(t), t, FailureStatus::root};
+}
+
 }  // namespace detail
 
 template <Certificate C>
 FailureTime certified_failure_time(const C& certificate, double now, double horizon) {
-  const double t = failure_time(certificate, now, horizon);
-  if (t == never) return {};
-  if (t == now) return {t, t, t, FailureStatus::fails_at_once};
-  return {t, next_down(t), t, FailureStatus::root};
+  return detail::certified(failure_time(certificate, now, horizon), now);
 }
 
 template <Certificate C>
@@ -86,9 +90,8 @@ FailureTime enclosed_failure_time(const C& certificate, double now, double horiz
   if (!(now <= horizon)) return {};
   if constexpr (C::degree > 2) return certified_failure_time(certificate, now, horizon);
   if constexpr (requires { certificate.quick_failure_time(now, horizon); }) {
-    if (!std::isnan(certificate.quick_failure_time(now, horizon))) {
-      return certified_failure_time(certificate, now, horizon);
-    }
+    const double t = certificate.quick_failure_time(now, horizon);
+    if (!std::isnan(t)) return detail::certified(t, now);
   }
   const auto p = certificate.template polynomial<Ball<double>>(now);
   const int value = certain_sign(p.c[0]);

@@ -10,9 +10,6 @@
 
 namespace kds {
 
-/// The failure time of a certificate that does not fail within the horizon.
-inline constexpr double never = std::numeric_limits<double>::infinity();
-
 namespace detail {
 
 /// Finds where derivative number `order` of f changes sign, on a stretch with exactly one change.

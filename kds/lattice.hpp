@@ -7,6 +7,9 @@
 
 namespace kds {
 
+/// The failure time of a certificate that does not fail within the horizon.
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
 /// Position of a double in the order of all doubles: consecutive doubles have consecutive numbers.
 inline std::int64_t lattice_index(double t) {
   const auto bits = std::bit_cast<std::int64_t>(t);
