@@ -25,7 +25,8 @@ namespace kds::detail {
 /// Without a horizon the last stretch reaches to infinity, where the leading coefficient tells the sign, which is
 /// cheaper than the sign at the largest double; but only as long as no higher derivative turns beyond all doubles.
 ///
-/// Cost: O(degree^2) searches of a few values in double-double each, 2 to 40 us.
+/// Cost: O(degree^2) searches of a few values in double-double each: 2 us for a parabola, up to 70 us for clustered
+/// roots of degree 8.
 template <class C>
 class DerivativeIntervals {
  public:

@@ -3,7 +3,7 @@
 
 #include "kds/ball.hpp"
 #include "kds/certificate.hpp"
-#include "kds/failure_time.hpp"
+#include "kds/enclosed_failure_time.hpp"
 
 #include <array>
 #include <span>
@@ -37,6 +37,14 @@ double gsl_failure_time(const C& certificate, double now, double horizon = never
   for (std::size_t i = 0; i <= C::degree; ++i) c[i] = p.c[i].middle;
   const double t = now + gsl_first_negative(c, horizon - now);
   return t <= horizon ? t : never;
+}
+
+/// The same with what is known of it, which is that it has been estimated: the enclosure is [now, horizon], whatever the
+/// time, for a crossing may have been missed or made up. (An empty interval is the exception: there it certainly holds.)
+template <Certificate C>
+FailureTime gsl_estimated_failure_time(const C& certificate, double now, double horizon = never) {
+  if (!(now <= horizon)) return {};
+  return {gsl_failure_time(certificate, now, horizon), now, horizon, FailureStatus::estimated};
 }
 
 /// The same as a FailureTimeSolver, for structures: SortedList<1, Listener, DefaultEventQueue, GslSolver>.

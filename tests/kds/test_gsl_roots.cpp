@@ -58,6 +58,19 @@ TEST_CASE("through the GSL: nothing beyond the end", "[gsl]") {
   CHECK(gsl_failure_time(Value<1>{{{{1, -1}}, 0}}, 0, 0.5) == never);
 }
 
+TEST_CASE("through the GSL: nothing is certified, unless there is nothing to ask", "[gsl]") {
+  const Value<1> falling{{{{1, -1}}, 0}};
+  const FailureTime found = gsl_estimated_failure_time(falling, 0.5, 2);
+  CHECK(found.time == Approx(1));
+  CHECK((found.lower == 0.5 && found.upper == 2));
+  CHECK(found.status == FailureStatus::estimated);
+  const FailureTime none = gsl_estimated_failure_time(falling, 0.25, 0.5);
+  CHECK(none.time == never);
+  CHECK((none.lower == 0.25 && none.upper == 0.5));
+  CHECK(none.status == FailureStatus::estimated);
+  CHECK(gsl_estimated_failure_time(falling, 2, 1).status == FailureStatus::holds);
+}
+
 TEST_CASE("through the GSL: what is not finite is refused", "[gsl]") {
   CHECK_THROWS_AS(first_negative({1, std::nan("")}), std::invalid_argument);
   CHECK_THROWS_AS(first_negative({1, std::numeric_limits<double>::infinity()}), std::invalid_argument);
@@ -91,6 +104,10 @@ TEMPLATE_TEST_CASE_SIG("through the GSL: the certified failure times, where root
     REQUIRE((certified == never) == (compared == never));
     if (certified != never) REQUIRE(compared == Approx(certified).margin(1e-7));
     CHECK(GslSolver{}(Value<Degree>{f}, now, horizon) == compared);
+    const FailureTime estimated = gsl_estimated_failure_time(Value<Degree>{f}, now, horizon);
+    CHECK(estimated.time == compared);
+    CHECK(estimated.status == FailureStatus::estimated);
+    CHECK((certified == never || (estimated.lower <= certified && certified <= estimated.upper)));
     found += certified != never && certified != now;
   }
   CHECK(found > 20);
