@@ -1,4 +1,4 @@
-// The failure time of a parabola whose coefficients are known: the quick answer.
+// The failure time of a parabola, or line, whose coefficients are known: the quick answer.
 #pragma once
 
 #include "kds/double_double.hpp"
@@ -33,6 +33,9 @@ struct Parabola {
 /// cost a sixth more time.)
 template <bool turned, bool shifted>
 double quick_parabola_failure_time(const Parabola<shifted>& p, double now, double horizon);
+
+/// The same for a = 0, unless it has turned: then a line never fails.
+double quick_line_failure_time(const Parabola<false>& p, double now, double horizon);
 
 // ---------------------------------------------------------------------------------------------------------------
 
@@ -160,10 +163,13 @@ template <bool shifted>
   // p falls at x: its slope there is the one computed, between c and x, up to 2^-16 of a x and a few u: q / 8 in all.
   const bool falls = -2 * slope >= q;
   const bool near = std::max(0x1p-12 * size, 0x1p36 * std::abs(a * d)) <= q;
+  // Roots are q / |a| apart: if p rises again, then at least a spacing after t. Else t might be beyond a dip that no
+  // double sees.
+  const bool falls_long = 0x1p-50 * std::abs(a * place.high) <= q;
   // Then c^2 is exact, and other products lose nothing that counts by underflow: |x| size is above 2^-200 q / 4.
   const bool in_range = std::abs(x) > 0x1p-200;
-  if (!(falls & near & in_range & certain & (margin > error))) return std::numeric_limits<double>::quiet_NaN();
-  return t;
+  const bool told = falls & near & falls_long & in_range & certain & (margin > error);
+  return told ? t : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace detail
@@ -197,6 +203,19 @@ template <bool turned, bool shifted>
     if ((remaining < 0x1p200) & positive & (!convex | falling)) return never;
   }
   const double t = detail::first_double_after(p, detail::falling_root(p, discriminant));
+  return t > horizon ? never : t;
+}
+
+inline double quick_line_failure_time(const Parabola<false>& p, double now, double horizon) {
+  constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
+  const double elapsed = now - p.epoch;
+  const double remaining = horizon - p.epoch;
+  if (!(std::abs(elapsed) < 0x1p200)) return undecided;
+  const detail::Estimate value = detail::value_at(p, elapsed);
+  if (!value.positive()) return value.negative() ? now : undecided;
+  const double r = p.r.high;  // has the sign of r
+  if (r >= 0 || (remaining < 0x1p200 && detail::value_at(p, remaining).positive())) return never;
+  const double t = detail::first_double_after(p, {-p.g.high / r, -r, r < -0x1p-380});
   return t > horizon ? never : t;
 }
 

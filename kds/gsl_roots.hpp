@@ -39,8 +39,8 @@ double gsl_failure_time(const C& certificate, double now, double horizon = never
   return t <= horizon ? t : never;
 }
 
-/// The same with what is known of it, which is that it has been estimated: the enclosure is [now, horizon], whatever the
-/// time, for a crossing may have been missed or made up. (An empty interval is the exception: there it certainly holds.)
+/// The same with what is known of it, which is that it has been estimated: the enclosure is [now, horizon], whatever
+/// the time, for a crossing may have been missed or made up. (In an empty interval the certificate certainly holds.)
 template <Certificate C>
 FailureTime gsl_estimated_failure_time(const C& certificate, double now, double horizon = never) {
   if (!(now <= horizon)) return {};

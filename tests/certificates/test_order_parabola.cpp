@@ -216,6 +216,25 @@ TEMPLATE_TEST_CASE_SIG("parabolas through points of the lattice", "[order]", EAC
   comparison.report();
 }
 
+TEMPLATE_TEST_CASE_SIG("parabolas at clocks coarser than their dips", "[order]", EACH_DEGREE_AND_START) {
+  const std::uint64_t seed = 95;
+  CAPTURE(Degree, int(starts), seed);
+  Random random(seed);
+  Comparison comparison;
+  for (int round = 0; round < 8000; ++round) {
+    const auto lower = [&] {
+      auto motion = ordinary_value<Degree>(random);
+      motion.start = std::ldexp(1 + random.unit(), random.integer(40, 60));
+      return motion;
+    }();
+    auto upper = ordinary_value<Degree>(random);
+    upper.start = lower.start;
+    if (starts == Starts::different) upper.start += random.integer(-3, 3) * lower.start * 0x1p-52;
+    comparison.ask_around(lower, upper, std::max(lower.start, upper.start), never);
+  }
+  comparison.report();
+}
+
 TEMPLATE_TEST_CASE_SIG("parabolas with a root a hair from a double", "[order]", EACH_DEGREE_AND_START) {
   const std::uint64_t seed = 94;
   CAPTURE(Degree, int(starts), seed);
