@@ -39,7 +39,8 @@ template <int Degree>
 /// 2^48 35 u^2 is 1.1 u: in all less than 16 u m = 2^-49 m. Products that underflow may cost 2^-1070, and h times that,
 /// which quick_parabola_failure_time() can bear if |h| < 2^200.
 template <int Degree>
-Parabola<true> shifted_parabola_between(const Motion<Degree>& lower, const Motion<Degree>& upper) {
+[[gnu::always_inline]] inline Parabola<true> shifted_parabola_between(const Motion<Degree>& lower,
+                                                                     const Motion<Degree>& upper) {
   const bool upper_later = upper.start >= lower.start;
   const auto& late = upper_later ? upper : lower;
   const auto& early = upper_later ? lower : upper;
