@@ -74,6 +74,13 @@ Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
       tree_(vertices_, triangles_) {
   for (const Vector3d& v : vertices_) bounding_radius_ = std::max(bounding_radius_, v.norm());
   bounding_radius_ *= 1 + 0x1p-50;  // three roundings of the norm, upward
+  std::vector<bool> used(vertices_.size());
+  for (const Triangle& triangle : triangles_) {
+    for (const std::uint32_t index : triangle) {
+      if (!used[index]) used_.push_back(index);
+      used[index] = true;
+    }
+  }
 }
 
 std::vector<Vector3d> Mesh::placed_vertices(const Eigen::Matrix3d& rotation, double scale) const {
@@ -86,12 +93,10 @@ std::vector<Vector3d> Mesh::placed_vertices(const Eigen::Matrix3d& rotation, dou
 void Mesh::extents(const Eigen::Matrix3d& rotation, double scale, Vector3d& low, Vector3d& high) const {
   low.setConstant(std::numeric_limits<double>::infinity());
   high = -low;
-  for (const Triangle& triangle : triangles_) {
-    for (const std::uint32_t index : triangle) {
-      const Vector3d v = placed_vertex(rotation, scale, vertices_[index]);
-      low = low.cwiseMin(v);
-      high = high.cwiseMax(v);
-    }
+  for (const std::uint32_t index : used_) {
+    const Vector3d v = placed_vertex(rotation, scale, vertices_[index]);
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
   }
 }
 

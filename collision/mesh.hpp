@@ -75,6 +75,7 @@ class Mesh {
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<Triangle> triangles_;
   ObbTree tree_;
+  std::vector<std::uint32_t> used_;  // vertices that triangles use, each once
   double bounding_radius_ = 0;
 };
 

@@ -92,7 +92,8 @@ struct Pairs final : PairListener {
 
 template <int Degree>
 struct Stress {
-  Stress(std::uint64_t seed, bool is_coarse) : random(seed), coarse(is_coarse), broad_phase(0) {
+  Stress(std::uint64_t seed, bool is_coarse, ListedAxes listed = ListedAxes::three)
+      : random(seed), coarse(is_coarse), broad_phase(0, listed) {
     broad_phase.extend_horizon(0, never);
   }
 
@@ -170,12 +171,14 @@ struct Stress {
 };
 
 TEMPLATE_TEST_CASE_SIG("Kinetic sweep and prune under stress", "[broad_phase]", ((int Degree), Degree), 1, 2) {
+  const ListedAxes listed = GENERATE(ListedAxes::one, ListedAxes::two, ListedAxes::three);
   std::size_t events = 0;
   std::size_t reports = 0;
   for (const bool coarse : {false, true}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-      INFO("degree " << Degree << (coarse ? ", coarse" : ", fine") << " numbers, seed " << seed);
-      Stress<Degree> stress(seed, coarse);
+      INFO("degree " << Degree << (coarse ? ", coarse" : ", fine") << " numbers, seed " << seed << ", listed axes "
+                     << static_cast<int>(listed));
+      Stress<Degree> stress(seed, coarse, listed);
       stress.insert(20);
       stress.compare_with_brute_force();
       for (int round = 0; round < 60; ++round) {
@@ -199,17 +202,18 @@ TEMPLATE_TEST_CASE_SIG("Kinetic sweep and prune under stress", "[broad_phase]", 
       reports += stress.pairs.reports;
     }
   }
-  CHECK(events > 6000);
+  CHECK(events > 2000);
   CHECK(reports > 1000);
 }
 
 TEMPLATE_TEST_CASE_SIG("Pairs begin and end at the times of exact arithmetic, also of boxes that grow",
                        "[broad_phase]", ((int Degree), Degree), 1, 2) {
+  const ListedAxes listed = GENERATE(ListedAxes::one, ListedAxes::two, ListedAxes::three);
   constexpr double end = 2;
   std::size_t stretches = 0;
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
-    INFO("degree " << Degree << ", seed " << seed);
-    Stress<Degree> stress(seed, false);
+    INFO("degree " << Degree << ", seed " << seed << ", listed axes " << static_cast<int>(listed));
+    Stress<Degree> stress(seed, false, listed);
     stress.side = 8;
     stress.insert(10);
     struct Report {
@@ -259,7 +263,7 @@ TEST_CASE("An audit sees a box that is not where it was said to be", "[broad_pha
 }
 
 TEST_CASE("Removing and inserting again under the same id", "[broad_phase]") {
-  Stress<1> stress(9, false);
+  Stress<1> stress(9, false, GENERATE(ListedAxes::one, ListedAxes::two, ListedAxes::three));
   stress.insert(6);
   for (int round = 0; round < 30; ++round) {
     stress.remove();
