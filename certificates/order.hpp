@@ -5,6 +5,7 @@
 #include "kds/certificate.hpp"
 #include "kds/failure_time.hpp"
 #include "kds/motion.hpp"
+#include "kds/unrolled.hpp"
 
 #include <bit>
 #include <cmath>
@@ -38,6 +39,19 @@ struct Order {
     return at_rest || lower.start == upper.start;
   }
 
+  /// Sign of upper(t) - lower(t) in doubles where that is certain, else 0.
+  ///
+  /// Error bound: each term goes through at most 3 n + 1 roundings (the time since the start counts n times, Horner's rule
+  /// 2 n, the difference once), n the degree; 32 are charged, of the sum of all terms' magnitudes. Underflow is nothing to
+  /// 2^-1000, and an overflow fails both comparisons.
+  int quick_sign(double t) const {
+    static_assert(Degree <= 8);
+    double size = 0;
+    const double gap = value(upper, t, size) - value(lower, t, size);
+    const double margin = 0x1p-48 * size + 0x1p-1000;
+    return gap > margin ? 1 : (-gap > margin ? -1 : 0);
+  }
+
   /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows pairs that differ by a line
   /// (straight motions, and those that share their accelerations) or a parabola.
   double quick_failure_time(double now, double horizon) const
@@ -48,6 +62,15 @@ struct Order {
     requires(Degree >= 2);
 
  private:
+  /// What failure_time() gives for straight motions in order at now, or a NaN where it takes more care.
+  double straight_failure_time(double now, double horizon) const
+    requires(Degree == 1);
+
+  /// The first double not before the root of the line that the difference is and that falls, if not beyond the horizon; a
+  /// NaN where it takes more care.
+  double first_past_root(double horizon) const
+    requires(Degree >= 1);
+
   /// The difference of two motions: gap + rate (t - epoch), with bounds on the errors of both.
   template <class T>
   struct Line {
@@ -71,6 +94,20 @@ struct Order {
       return kds::quick_parabola_failure_time<turned>(detail::parabola_between(lower, upper), now, horizon);
     }
     return kds::quick_parabola_failure_time<turned>(detail::shifted_parabola_between(lower, upper), now, horizon);
+  }
+
+  /// x(t), rounded; the magnitudes of its terms are added to `size`.
+  static double value(const Motion<Degree>& x, double t, double& size) {
+    const double elapsed = t - x.start;
+    double sum = x.position.c[Degree];
+    double magnitudes = std::abs(sum);
+    unrolled<Degree>([&](auto k) {
+      const double c = x.position.c[Degree - 1 - k];
+      sum = sum * elapsed + c;
+      magnitudes = magnitudes * std::abs(elapsed) + std::abs(c);
+    });
+    size += magnitudes;
+    return sum;
   }
 
   /// The later of the starts is the epoch; the motion that started earlier is shifted to it. Differences of motions
@@ -100,6 +137,10 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
   requires(Degree >= 1)
 {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
+  if constexpr (Degree == 1) {
+    const double t = straight_failure_time(now, horizon);
+    if (!std::isnan(t)) return t;
+  }
   if (!at_most_quadratic()) return undecided;
   if constexpr (Degree >= 2) {
     if (lower.position.c[2] != upper.position.c[2]) return quick_parabola_failure_time<false>(now, horizon);
@@ -116,8 +157,8 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
   if (!(steepness > 0x1p-450 && steepness < 0x1p450 && std::abs(gap) < 0x1p450)) return undecided;
 
   // In doubles: on which side of now, and of the horizon, is the root? Where that is certain it needs no better.
-  double inverse = 1 / rate;
-  double root = -gap * inverse;  // from the epoch on
+  const double inverse = 1 / rate;
+  const double root = -gap * inverse;  // from the epoch on
   const double elapsed = now - rough.epoch;
   // Roundings of the quotient (two), of gap and rate (one each) and of the elapsed time, 2^-53 each; twice the
   // errors of gap and rate, which bounds their effect where the rate is known to half of itself and makes the margin
@@ -132,6 +173,14 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
   const double remaining = horizon - rough.epoch;
   if (root - remaining > margin + 0x1p-49 * std::abs(remaining)) return never;
 
+  return first_past_root(horizon);
+}
+
+template <int Degree>
+double Order<Degree>::first_past_root(double horizon) const
+  requires(Degree >= 1)
+{
+  constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
   // One step of division with an exact residual. `coarse` is the root to 26 bits, and the rate's high part is split
   // into 26 and 27, so both products are exact; the first nearly cancels the gap, so that difference is exact as well
   // [Sterbenz] and below 2^-24 of the gap. What is rounded are sums and a quotient of that size or less: the error
@@ -139,11 +188,12 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
   const Line<DoubleDouble> fine = line<DoubleDouble>();
   const DoubleDouble& g = fine.gap.middle;
   const DoubleDouble& r = fine.rate.middle;
-  if (!(std::abs(g.high) > 0x1p-450)) return undecided;
-  if (lower.start != upper.start) {  // Else it is the same number.
-    inverse = 1 / r.high;
-    root = -g.high * inverse;
-  }
+  const double gap = std::abs(g.high);
+  const double steepness = std::abs(r.high);
+  // The bounds hold while nothing over- or underflows.
+  if (!(steepness > 0x1p-450 && steepness < 0x1p450 && gap > 0x1p-450 && gap < 0x1p450)) return undecided;
+  const double inverse = 1 / r.high;
+  const double root = -g.high * inverse;
   const double coarse = kds::detail::leading_bits<26>(root);
   const double rate_high = kds::detail::leading_bits<26>(r.high);
   const double residual =
@@ -167,6 +217,27 @@ double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) 
   if (!at_most_quadratic()) return std::numeric_limits<double>::quiet_NaN();
   if (lower.position.c[2] == upper.position.c[2]) return never;  // a line that has risen through zero
   return quick_parabola_failure_time<true>(now, horizon);
+}
+
+/// Error bound, with u = 2^-53. A position is c0 + c1 (now - start): its run c1 (now - start) goes through two roundings,
+/// then the sum and the difference of the two positions through one each, so the gap is known to 4.1 u size, and `surely`
+/// is below it with room for its own rounding. Underflow is nothing to a gap of 2^-1000; an overflow leaves an infinity or
+/// a NaN, which fails the test. `fall` is a difference of doubles, so its sign is exact; it, its product and the time left
+/// are rounded by u each, for which the last factor is more than enough.
+template <int Degree>
+double Order<Degree>::straight_failure_time(double now, double horizon) const
+  requires(Degree == 1)
+{
+  const double lower_run = lower.position.c[1] * (now - lower.start);
+  const double upper_run = upper.position.c[1] * (now - upper.start);
+  const double gap = (upper.position.c[0] + upper_run) - (lower.position.c[0] + lower_run);
+  const double size = (std::abs(lower.position.c[0]) + std::abs(lower_run)) +
+                      (std::abs(upper.position.c[0]) + std::abs(upper_run));
+  const double surely = gap - 0x1p-50 * size;
+  if (!(surely > 0x1p-1000)) return std::numeric_limits<double>::quiet_NaN();
+  const double fall = lower.position.c[1] - upper.position.c[1];
+  if (fall <= 0 || surely > fall * (horizon - now) * (1 + 0x1p-50)) return never;
+  return first_past_root(horizon);
 }
 
 }  // namespace kds::certificates

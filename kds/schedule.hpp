@@ -4,9 +4,11 @@
 #include "kds/default_event_queue.hpp"
 #include "kds/event_queue.hpp"
 #include "kds/lattice.hpp"
+#include "kds/place_queue.hpp"
 #include "kds/solver.hpp"
 #include "kds/statistics.hpp"
 
+#include <concepts>
 #include <cstddef>
 
 namespace kds {
@@ -26,11 +28,22 @@ namespace kds {
 ///     appear then, and have failed before, fail at once. They are counted.
 /// A failure the solver misses altogether is not found. Counters: `rescheduled` (2), `repaired` (3); both stay zero
 /// with the certified solver.
-template <EventQueue Queue = DefaultEventQueue, FailureTimeSolver Solver = CertifiedSolver>
+/// A queue of places (PlaceQueue) will do as well; then settle() is to be called after changes.
+template <class Queue = DefaultEventQueue, FailureTimeSolver Solver = CertifiedSolver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 class Schedule {
  public:
   void resize(std::size_t slots) { queue_.resize(slots); }
   void clear(Slot slot) { queue_.clear(slot); }
+
+  // See PlaceQueue.
+  void insert_slot(Slot place) { queue_.insert_slot(place); }
+  void erase_slot(Slot place) { queue_.erase_slot(place); }
+  void move_slot(Slot from, Slot to) { queue_.move_slot(from, to); }
+  template <class Rank>
+  void settle(Rank&& rank) {
+    queue_.settle(rank);
+  }
 
   bool empty() const { return queue_.empty(); }
   bool contains(Slot slot) const { return queue_.contains(slot); }

@@ -4,9 +4,11 @@
 #include "certificates/order.hpp"
 #include "kds/audit.hpp"
 #include "kds/motion.hpp"
+#include "kds/place_queue.hpp"
 #include "kds/schedule.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -31,8 +33,9 @@ struct NoSwapListener {
 /// Paper: [Paper] sections 4.1-4.3 and Figures 3-5; [Basch99] section 2.
 ///
 /// Elements are known by ids chosen by the caller, small integers used once each. They are stored in list order
-/// (motion and id side by side), so a swap touches one or two cache lines; a queue slot belongs to the left element
-/// of a pair and stays put when others come and go.
+/// (motion and id side by side), so a swap touches one or two cache lines. The event of a pair is in the slot of its
+/// left element's place, where the queue is one of places (the default), so that a swap changes three neighbouring slots;
+/// else in the slot of that element's id. Swaps of one time come in the order of the left elements' ids either way.
 ///
 /// Cost: a swap O(1) and one pop and up to two pushes of the queue; a motion change the same plus the swaps that a
 /// jump needs; insertion and removal O(n) moves of memory and O(log n) comparisons; `assign` O(n log n). At most one
@@ -40,8 +43,9 @@ struct NoSwapListener {
 ///
 /// All orders are decided by exact signs at t+, so the state between events is exactly that of the motions (with an
 /// uncertified solver: as far as Schedule promises).
-template <int Degree, class Listener = NoSwapListener, EventQueue Queue = DefaultEventQueue,
+template <int Degree, class Listener = NoSwapListener, class Queue = PlaceQueue,
           FailureTimeSolver Solver = CertifiedSolver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 class SortedList {
  public:
   using Id = std::uint32_t;
@@ -82,6 +86,9 @@ class SortedList {
   /// Time of the next swap, `never` if there is none within the horizon.
   double next_time() const { return schedule_.next_time(); }
 
+  /// When an element is to swap with the one on its right, `never` if not within the horizon. Precondition: contains(id).
+  double swap_time(Id id) const { return schedule_.time(slot(position_[id])); }
+
   /// Makes the swap due at next_time(). Precondition: there is one.
   void process();
 
@@ -98,20 +105,27 @@ class SortedList {
 
   /// Whether a may stand before b at t+.
   bool in_order(const Entry& a, const Entry& b, double t) const {
-    const int s = sign_after(certificates::Order<Degree>{a.motion, b.motion}, t);
+    const certificates::Order<Degree> order{a.motion, b.motion};
+    int s = order.quick_sign(t);
+    if (s == 0) s = sign_after(order, t);
     if (s != 0) return s > 0;
     const auto rank_a = listener_.rank(a.id);
     const auto rank_b = listener_.rank(b.id);
     return rank_a != rank_b ? rank_a < rank_b : a.id < b.id;
   }
 
+  static constexpr bool by_place = std::same_as<Queue, PlaceQueue>;
+
+  /// Of the pair whose left element stands there.
+  Slot slot(std::size_t left) const { return by_place ? static_cast<Slot>(left) : order_[left].id; }
+  std::size_t left_of(Slot slot) const { return by_place ? slot : position_[slot]; }
+
   certificates::Order<Degree> pair(std::size_t left) const { return {order_[left].motion, order_[left + 1].motion}; }
 
   /// Certifies the pair whose left element stands at `left`.
   void certify(std::size_t left, double now) {
-    const Id slot = order_[left].id;
-    if (left + 1 == order_.size()) return schedule_.clear(slot);
-    schedule_.certify(slot, pair(left), now);
+    if (left + 1 == order_.size()) return schedule_.clear(slot(left));
+    schedule_.certify(slot(left), pair(left), now);
     if (now == disturbed_) settle_tie(left, now);
   }
 
@@ -124,8 +138,20 @@ class SortedList {
   /// Equal for good and in the wrong order: that is no failure of a certificate, and comes only from changes made
   /// before all events of their time were processed.
   void settle_tie(std::size_t left, double now) {
-    const Id slot = order_[left].id;
-    if (!schedule_.contains(slot) && !in_order(order_[left], order_[left + 1], now)) schedule_.set(slot, now);
+    if (schedule_.contains(slot(left)) || in_order(order_[left], order_[left + 1], now)) return;
+    schedule_.set(slot(left), now);
+  }
+
+  /// To be called at the end of each change of the schedule.
+  void settle() {
+    if constexpr (by_place) {
+      schedule_.settle([this](Slot place) { return order_[place].id; });
+      // The two pairs around it will be needed too. In large lists they are not in the nearest cache.
+      const std::size_t place = schedule_.queue().candidate();
+      if (place + 2 >= order_.size() || place == 0) return;
+      __builtin_prefetch(&order_[place - 1]);
+      __builtin_prefetch(&order_[place + 2]);
+    }
   }
 
   /// To be called before elements are put in place at a time whose events may not all have been processed: until they
@@ -147,7 +173,7 @@ class SortedList {
   void make_room(Id id) {
     if (id < position_.size()) return;
     position_.resize(std::max<std::size_t>(id + 1, 2 * position_.size()), absent);
-    schedule_.resize(position_.size());
+    if constexpr (!by_place) schedule_.resize(position_.size());
   }
 
   static void require_legal(Id id, const Motion<Degree>& motion) {
@@ -178,28 +204,34 @@ class SortedList {
 
 // ---------------------------------------------------------------------------------------------------------------
 
-template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> entries, double now) {
-  std::vector<Id> ids;
-  ids.reserve(entries.size());
+  Id greatest = 0;
   for (const Entry& entry : entries) {
     require_legal(entry.id, entry.motion);
-    ids.push_back(entry.id);
+    greatest = std::max(greatest, entry.id);
   }
-  std::sort(ids.begin(), ids.end());
-  if (const auto twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end()) refuse_twice(*twice);
-  for (const Entry& entry : order_) {
-    schedule_.clear(entry.id);
-    position_[entry.id] = absent;
+  std::vector<bool> used(entries.empty() ? 0 : greatest + std::size_t{1});
+  for (const Entry& entry : entries) {
+    if (used[entry.id]) refuse_twice(entry.id);
+    used[entry.id] = true;
   }
-  if (!ids.empty()) make_room(ids.back());
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    schedule_.clear(slot(i));
+    position_[order_[i].id] = absent;
+  }
+  if (!entries.empty()) make_room(greatest);
+  if constexpr (by_place) schedule_.resize(entries.size());
   order_.assign(entries.begin(), entries.end());
   std::sort(order_.begin(), order_.end(), [&](const Entry& a, const Entry& b) { return a.id != b.id && in_order(a, b, now); });
   renumber(0);
   for (std::size_t i = 0; i < order_.size(); ++i) certify(i, now);
+  settle();
 }
 
-template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Degree>& motion, double now) {
   require_legal(id, motion);
   if (contains(id)) refuse_twice(id);
@@ -210,24 +242,33 @@ void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Deg
                                           [&](const Entry& other) { return in_order(other, entry, now); });
   const auto index = static_cast<std::size_t>(place - order_.begin());
   order_.insert(place, entry);
+  if constexpr (by_place) schedule_.insert_slot(static_cast<Slot>(index));
   renumber(index);
   if (index > 0) certify(index - 1, now);
   certify(index, now);
+  settle();
 }
 
-template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::remove(Id id, double now) {
   require(id);
   expect_disorder(now);
   const std::size_t index = position_[id];
-  schedule_.clear(id);
+  if constexpr (by_place) {
+    schedule_.erase_slot(static_cast<Slot>(index));
+  } else {
+    schedule_.clear(id);
+  }
   order_.erase(order_.begin() + static_cast<std::ptrdiff_t>(index));
   position_[id] = absent;
   renumber(index);
   if (index > 0) certify(index - 1, now);
+  settle();
 }
 
-template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Degree>& motion, double now) {
   require(id);
   require_finite(id, motion);
@@ -245,6 +286,7 @@ void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Deg
   }
   // The pairs on both sides of the element, and the pair that closed up where it left. Elements it has passed keep
   // their neighbours, and a slot is the left element's, so nothing else changes.
+  if constexpr (by_place) schedule_.move_slot(static_cast<Slot>(before), static_cast<Slot>(index));
   if (index > 0) certify(index - 1, now);
   certify(index, now);
   if (index < before) {
@@ -252,34 +294,40 @@ void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Deg
   } else if (index > before && before > 0) {
     certify(before - 1, now);
   }
+  settle();
 }
 
-template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::process() {
-  const auto [time, slot] = schedule_.next();
-  const std::size_t left = position_[slot];
-  if (!schedule_.failed(slot, pair(left), time)) return;
+  const auto [time, top] = schedule_.next();
+  const std::size_t left = left_of(top);
+  if (!schedule_.failed(top, pair(left), time)) return settle();
   exchange(left);
   listener_.swapped(order_[left].id, order_[left + 1].id, time);
   // Certified anew: the pair itself, whose sign has just turned, and the two pairs around it.
   if (time == disturbed_) {  // It may have been a tie.
     certify(left, time);
   } else {
-    schedule_.certify_turned(order_[left].id, pair(left), time);
+    schedule_.certify_turned(slot(left), pair(left), time);
   }
   if (left > 0) certify_in_event(left - 1, time);
   certify_in_event(left + 1, time);
+  settle();
 }
 
-template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::extend_horizon(double now, double horizon) {
   schedule_.set_horizon(horizon);
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    if (schedule_.concerned(order_[i].id)) certify(i, now);
+    if (schedule_.concerned(slot(i))) certify(i, now);
   }
+  settle();
 }
 
-template <int Degree, class Listener, EventQueue Queue, FailureTimeSolver Solver>
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::audit(double now) const {
   const auto fail = [](std::size_t i, const char* what) {
     throw AuditFailure("SortedList: place " + std::to_string(i) + ": " + what);
@@ -290,13 +338,13 @@ void SortedList<Degree, Listener, Queue, Solver>::audit(double now) const {
     double t = never;
     if (i + 1 < order_.size()) {
       const bool ordered = in_order(order_[i], order_[i + 1], now);
-      if (!ordered && !(schedule_.contains(id) && schedule_.time(id) <= now)) fail(i, "greater than its right neighbour");
+      if (!ordered && !(schedule_.time(slot(i)) <= now)) fail(i, "greater than its right neighbour");
       t = failure_time(pair(i), now, schedule_.horizon());
       if (!ordered && now == disturbed_) t = now;  // a tie to be settled, perhaps
     }
     if constexpr (!Solver::certified) continue;  // It may be wrong about times.
-    if (schedule_.contains(id) != (t != never)) fail(i, "an event is missing or stands without cause");
-    if (schedule_.contains(id) && schedule_.time(id) != t) fail(i, "the scheduled swap has the wrong time");
+    if (schedule_.contains(slot(i)) != (t != never)) fail(i, "an event is missing or stands without cause");
+    if (schedule_.contains(slot(i)) && schedule_.time(slot(i)) != t) fail(i, "the scheduled swap has the wrong time");
   }
 }
 

@@ -102,7 +102,7 @@ struct Result {
 template <int Degree, class Solver>
 Result run(const Scene<Degree>& scene) {
   Result result;
-  using List = structures::SortedList<Degree, EndListener, DefaultEventQueue, Solver>;
+  using List = structures::SortedList<Degree, EndListener, PlaceQueue, Solver>;
   std::vector<List> lists(3, List(EndListener{&result.meetings}));
   for (std::size_t d = 0; d < 3; ++d) {
     std::vector<typename List::Entry> entries;

@@ -2,6 +2,7 @@
 #include "kds/calendar_queue.hpp"
 #include "kds/dary_queue.hpp"
 #include "kds/pairing_queue.hpp"
+#include "kds/place_queue.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
 #include "tests/structures/random_values.hpp"
@@ -40,7 +41,7 @@ struct Recorder {
   static std::uint32_t rank(std::uint32_t id) { return rank_of(id); }
 };
 
-template <int Degree, class Queue = DefaultEventQueue>
+template <int Degree, class Queue = PlaceQueue>
 using List = SortedList<Degree, Recorder, Queue>;
 
 template <class L>
@@ -114,6 +115,8 @@ TEMPLATE_TEST_CASE_SIG("a kinetic sorted list is in the exact order of its motio
       const std::size_t most = 3 + 5 * (seed % 4);
       const int steps = 40;
       const Log log = run<Degree, CalendarQueue<>>(seed, kind, most, steps, no_window);
+      CHECK(run<Degree, PlaceQueue>(seed, kind, most, steps, no_window) == log);
+      CHECK(run<Degree, PlaceQueue>(seed, kind, most, steps, 0.2) == log);
       CHECK(run<Degree, DaryQueue<>>(seed, kind, most, steps, no_window) == log);
       CHECK(run<Degree, PairingQueue<>>(seed, kind, most, steps, no_window) == log);
       CHECK(run<Degree, CalendarQueue<>>(seed, kind, most, steps, 0.1) == log);

@@ -97,7 +97,7 @@ struct Outcome {
 template <int Degree, class Solver>
 Outcome run(const std::vector<Motion<Degree>>& motions, double end) {
   Outcome outcome;
-  SortedList<Degree, Recorder, DefaultEventQueue, Solver> list(Recorder{&outcome.log});
+  SortedList<Degree, Recorder, PlaceQueue, Solver> list(Recorder{&outcome.log});
   for (std::uint32_t id = 0; id < motions.size(); ++id) list.insert(id, motions[id], 0);
   Simulator simulator(0, list);
   std::size_t steps = 0;
