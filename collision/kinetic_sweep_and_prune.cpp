@@ -41,8 +41,8 @@ void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::uint32_t 
     if (listed_ == all_axes) changes_.push_back({a, b, false});
     return;
   }
-  // It matters if they overlap on the other axes.
-  if (overlap_on(lists_[axis], a, b) != met) return;
+  // It matters if they overlap on the other axes. (Intervals that are not inverted need no look at this one.)
+  if ((listed_ == all_axes || inverted_ > 0 || axis != sweep_axis_) && overlap_on(lists_[axis], a, b) != met) return;
   for (std::size_t d = 0; d < 3; ++d) {
     if (d != axis && is_listed(d) && !overlap_on(lists_[d], a, b)) return;
   }

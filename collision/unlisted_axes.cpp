@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 
 namespace kds::collision {
 namespace {
 
-/// Where x is from now to the horizon, rounded outward; NaNs where the numbers overflow.
+/// Widens [low, high] by where x is from now to the horizon, rounded outward; to all there is where the numbers overflow.
 ///
 /// The terms of the motion are monotone in the time since its start, so an interval for each will do. Roundings: the
 /// times, a product of up to three factors and the sums, 2^-53 of a term each, less than 2^-48 of the terms in all.
@@ -38,9 +39,23 @@ void widen(const Motion<Degree>& x, double now, double horizon, double& low, dou
     greatest += std::max(s, e);
     size += std::max(std::abs(s), std::abs(e));
   }
+  if (!(size < never)) {
+    low = -never;
+    high = never;
+    return;
+  }
   const double margin = 0x1p-48 * size + 0x1p-1000;  // the second for underflow
   low = std::min(low, least - margin);
   high = std::max(high, greatest + margin);
+}
+
+/// A float not above x; a NaN for a NaN.
+float below(double x) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  if (x > 0x1p127) return 0x1p127f;
+  if (x < -0x1p127) return -infinity;
+  const auto rounded = static_cast<float>(x);
+  return static_cast<double>(rounded) <= x ? rounded : std::nextafter(rounded, -infinity);
 }
 
 }  // namespace
@@ -122,11 +137,13 @@ void UnlistedAxes<Degree>::choose(unsigned axes, double now) {
 template <int Degree>
 typename UnlistedAxes<Degree>::Hull UnlistedAxes<Degree>::hull(const KineticBox<Degree>& box, double now) const {
   Hull hull;
-  hull.low.fill(never);
-  hull.high.fill(-never);
   for (std::size_t i = 0; i < 2; ++i) {
-    widen(box.min.axis(axes_[i]), now, horizon_, hull.low[i], hull.high[i]);
-    widen(box.max.axis(axes_[i]), now, horizon_, hull.low[i], hull.high[i]);
+    double low = never;
+    double high = -never;
+    widen(box.min.axis(axes_[i]), now, horizon_, low, high);
+    widen(box.max.axis(axes_[i]), now, horizon_, low, high);
+    hull.low[i] = below(low);
+    hull.high[i] = -below(-high);
   }
   return hull;
 }
@@ -199,7 +216,7 @@ void UnlistedAxes<Degree>::remove(PairSlot slot) {
 }
 
 template <int Degree>
-bool UnlistedAxes<Degree>::parted(BodyId a, BodyId b) {
+bool UnlistedAxes<Degree>::drop(BodyId a, BodyId b) {
   const PairSlot slot = find(a, b);
   if (slot == no_pair) return false;
   const bool overlap = pairs_[slot].overlap;

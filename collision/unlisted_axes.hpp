@@ -53,8 +53,9 @@ class UnlistedAxes {
   /// The boxes of a pair have met on all axes with a list; a < b. Returns whether they overlap on these axes too.
   bool met(BodyId a, BodyId b, double now) { return near(a, b) && add(a, b, now); }
 
-  /// They have parted on an axis with a list. Returns whether they have overlapped on these until now.
-  bool parted(BodyId a, BodyId b);
+  /// They have parted on an axis with a list. Returns whether they have overlapped on these until now. (Pairs that are
+  /// known are near.)
+  bool parted(BodyId a, BodyId b) { return near(a, b) && drop(a, b); }
 
   /// Looks again at a pair that overlaps on the listed axes, as the horizon is later.
   void look_farther(BodyId a, BodyId b, double now);
@@ -81,12 +82,12 @@ class UnlistedAxes {
   using PairSlot = std::uint32_t;
   static constexpr PairSlot no_pair = ~PairSlot{0};
 
-  /// What a box covers from some time to the horizon.
+  /// What a box covers from some time to the horizon, rounded outward to floats, which are half as much to fetch.
   struct Hull {
-    std::array<double, 2> low{0, 0};
-    std::array<double, 2> high{0, 0};
+    std::array<float, 2> low{0, 0};
+    std::array<float, 2> high{0, 0};
 
-    bool meets(const Hull& other) const {  // also where a number is none
+    bool meets(const Hull& other) const {
       const bool apart = (high[0] < other.low[0]) | (other.high[0] < low[0]) | (high[1] < other.low[1]) |
                          (other.high[1] < low[1]);
       return !apart;
@@ -108,6 +109,7 @@ class UnlistedAxes {
 
   Hull hull(const KineticBox<Degree>& box, double now) const;
   bool add(BodyId a, BodyId b, double now);
+  bool drop(BodyId a, BodyId b);
   PairSlot find(BodyId a, BodyId b) const;
   void remove(PairSlot slot);
   double next_change(const Pair& pair, double now) const;
