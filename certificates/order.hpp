@@ -39,16 +39,35 @@ struct Order {
     return at_rest || lower.start == upper.start;
   }
 
-  /// Sign of upper(t) - lower(t) in doubles where that is certain, else 0.
+  struct RoughValue {
+    double value;
+    double margin;
+  };
+
+  /// x(t) in doubles: two values whose difference exceeds the sum of their margins are in the order that they seem to be.
   ///
   /// Error bound: each term goes through at most 3 n + 1 roundings (the time since the start counts n times, Horner's rule
-  /// 2 n, the difference once), n the degree; 32 are charged, of the sum of all terms' magnitudes. Underflow is nothing to
-  /// 2^-1000, and an overflow fails both comparisons.
-  int quick_sign(double t) const {
+  /// 2 n, a difference of two values once), n the degree; 32 are charged, of the sum of all terms' magnitudes. Underflow is
+  /// nothing to 2^-1000, and an overflow fails every comparison.
+  static RoughValue rough_value(const Motion<Degree>& x, double t) {
     static_assert(Degree <= 8);
-    double size = 0;
-    const double gap = value(upper, t, size) - value(lower, t, size);
-    const double margin = 0x1p-48 * size + 0x1p-1000;
+    const double elapsed = t - x.start;
+    double sum = x.position.c[Degree];
+    double size = std::abs(sum);
+    unrolled<Degree>([&](auto k) {
+      const double c = x.position.c[Degree - 1 - k];
+      sum = sum * elapsed + c;
+      size = size * std::abs(elapsed) + std::abs(c);
+    });
+    return {sum, 0x1p-48 * size + 0x1p-1000};
+  }
+
+  /// Sign of upper(t) - lower(t) in doubles where that is certain, else 0.
+  int quick_sign(double t) const {
+    const auto [above, above_margin] = rough_value(upper, t);
+    const auto [below, below_margin] = rough_value(lower, t);
+    const double gap = above - below;
+    const double margin = above_margin + below_margin;
     return gap > margin ? 1 : (-gap > margin ? -1 : 0);
   }
 
@@ -94,20 +113,6 @@ struct Order {
       return kds::quick_parabola_failure_time<turned>(detail::parabola_between(lower, upper), now, horizon);
     }
     return kds::quick_parabola_failure_time<turned>(detail::shifted_parabola_between(lower, upper), now, horizon);
-  }
-
-  /// x(t), rounded; the magnitudes of its terms are added to `size`.
-  static double value(const Motion<Degree>& x, double t, double& size) {
-    const double elapsed = t - x.start;
-    double sum = x.position.c[Degree];
-    double magnitudes = std::abs(sum);
-    unrolled<Degree>([&](auto k) {
-      const double c = x.position.c[Degree - 1 - k];
-      sum = sum * elapsed + c;
-      magnitudes = magnitudes * std::abs(elapsed) + std::abs(c);
-    });
-    size += magnitudes;
-    return sum;
   }
 
   /// The later of the starts is the epoch; the motion that started earlier is shifted to it. Differences of motions
