@@ -91,6 +91,14 @@ class Simulator {
     return std::apply([](const auto&... s) { return (Counters{} + ... + s.counters()); }, structures_);
   }
 
+  /// Saves or loads the clock and the structures, which must have archive(). See save() in snapshot.hpp.
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive.tag("Simulator");
+    archive(now_, horizon_, window_);
+    std::apply([&](auto&... s) { (s.archive(archive), ...); }, structures_);
+  }
+
  private:
   std::pair<double, std::size_t> next() const {
     std::pair<double, std::size_t> first{never, 0};

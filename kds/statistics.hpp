@@ -16,6 +16,11 @@ struct Counters {
     return {a.events + b.events, a.certificates + b.certificates, a.rescheduled + b.rescheduled,
             a.repaired + b.repaired};
   }
+  friend Counters operator-(const Counters& a, const Counters& b) {
+    return {a.events - b.events, a.certificates - b.certificates, a.rescheduled - b.rescheduled,
+            a.repaired - b.repaired};
+  }
+  friend bool operator==(const Counters&, const Counters&) = default;
 };
 
 }  // namespace kds

@@ -1,0 +1,199 @@
+// The moving elements that several structures share, and who is told when they are changed.
+#pragma once
+
+#include "kds/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kds {
+
+/// Number of a moving element: a small integer chosen by the caller, or by MovingSet::add().
+using Id = std::uint32_t;
+
+/// No element.
+inline constexpr Id nobody = std::numeric_limits<Id>::max();
+
+namespace detail {
+template <class E>
+bool finite(const E& element) {
+  if constexpr (requires { element.finite(); }) {
+    return element.finite();
+  } else {
+    return is_finite(element);
+  }
+}
+}  // namespace detail
+
+/// What moves: a Motion, a path in the plane or in space, a sampled position with a bound on its speed.
+template <class E>
+concept MovingElement = std::default_initializable<E> && std::copyable<E> && requires(const E& element) {
+  { detail::finite(element) } -> std::convertible_to<bool>;
+};
+
+/// An element of which only samples are known: Bounded, and what is made of it.
+template <class E>
+concept Sampled = MovingElement<E> && requires { requires E::sampled; };
+
+/// Moving elements by id. Structures attach themselves, and are told of every edit.
+///
+/// An edit is made at a clock value, which is that of the simulator that runs the structures. Law: an edit comes after
+/// the events of its time: every structure first processes what is due then (so that nobody has to repair a state that
+/// is being repaired), the edit is made, and every structure takes it up. An edit at a time before an earlier one, or
+/// after an event that has not been processed, is an error and throws before anything is changed.
+///
+/// Cost: a virtual call a structure and edit; none for an event. Elements are stored by id.
+template <MovingElement E>
+class MovingSet {
+ public:
+  using Element = E;
+
+  /// Who is told of edits. In their order: settle(), then one of the others.
+  class Observer {
+   public:
+    virtual void settle(double now) = 0;            ///< process what is due up to now
+    virtual void inserted(Id id, double now) = 0;   ///< the element is there
+    virtual void removing(Id id, double now) = 0;   ///< the element is still there
+    virtual void changing(Id id, double now) = 0;   ///< the element still moves as before
+    virtual void changed(Id id, double now) = 0;    ///< it has its new motion
+
+   protected:
+    ~Observer() = default;
+  };
+
+  MovingSet() = default;
+  MovingSet(const MovingSet&) = delete;  ///< observers refer to it; see save() for a copy of its state
+  MovingSet& operator=(const MovingSet&) = delete;
+
+  bool contains(Id id) const { return id < present_.size() && present_[id]; }
+  std::size_t size() const { return size_; }
+  /// Every id is below this.
+  Id end_id() const { return static_cast<Id>(present_.size()); }
+  /// Precondition: contains(id).
+  const Element& operator[](Id id) const { return elements_[id]; }
+
+  /// The ids in use, ascending.
+  std::vector<Id> ids() const {
+    std::vector<Id> result;
+    for (Id id = 0; id < end_id(); ++id) {
+      if (present_[id]) result.push_back(id);
+    }
+    return result;
+  }
+
+  /// Throws std::invalid_argument for an id that is used or reserved, and for an element that is not finite.
+  void insert(Id id, const Element& element, double now) {
+    if (id == nobody) throw std::invalid_argument("MovingSet: id " + std::to_string(id) + " is reserved");
+    if (contains(id)) throw std::invalid_argument("MovingSet: id " + std::to_string(id) + " is used twice");
+    require_finite(id, element);
+    settle(now);
+    if (id >= present_.size()) {
+      elements_.resize(id + std::size_t{1});
+      present_.resize(id + std::size_t{1}, 0);
+    }
+    elements_[id] = element;
+    present_[id] = 1;
+    ++size_;
+    for (Observer* observer : observers_) observer->inserted(id, now);
+  }
+
+  /// Inserts under the first id above all that were ever used.
+  Id add(const Element& element, double now) {
+    const Id id = end_id();
+    insert(id, element, now);
+    return id;
+  }
+
+  /// Throws std::out_of_range for an id that is not used.
+  void remove(Id id, double now) {
+    require(id);
+    settle(now);
+    require(id);  // A listener may have had its way with it.
+    for (Observer* observer : observers_) observer->removing(id, now);
+    present_[id] = 0;
+    --size_;
+  }
+
+  /// Gives an element another motion, continuously or with a jump.
+  void update(Id id, const Element& element, double now) {
+    require(id);
+    require_finite(id, element);
+    settle(now);
+    require(id);
+    replace(id, element, now);
+  }
+
+  /// Where new samples come from: sampler(id, now) gives an element sampled at now. Structures ask for one when a
+  /// certificate is no longer guaranteed, but for none sooner than `tick` seconds after the last: what is closer to
+  /// failing than that is not guaranteed in between (a tick of 0 would have them ask for ever where two elements meet).
+  void sample_with(std::function<Element(Id, double)> sampler, double tick)
+    requires Sampled<Element>
+  {
+    if (!(tick > 0)) throw std::invalid_argument("MovingSet::sample_with: the tick must be > 0");
+    sampler_ = std::move(sampler);
+    tick_ = tick;
+  }
+  double tick() const { return tick_; }
+  std::uint64_t samples() const { return samples_; }  ///< taken so far
+
+  /// Samples an element, and tells the structures. Unlike other edits this one may come amidst the events of a time:
+  /// structures of samples are in order at all times.
+  void resample(Id id, double now)
+    requires Sampled<Element>
+  {
+    if (!sampler_) throw std::logic_error("MovingSet: an element is to be sampled, but there is no sampler");
+    const Element element = sampler_(id, now);
+    require_finite(id, element);
+    ++samples_;
+    replace(id, element, now);
+  }
+
+  void attach(Observer& observer) { observers_.push_back(&observer); }
+  void detach(Observer& observer) { std::erase(observers_, &observer); }
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive.tag("MovingSet");
+    archive(elements_, present_, size_, samples_);
+  }
+
+ private:
+  void replace(Id id, const Element& element, double now) {
+    for (Observer* observer : observers_) observer->changing(id, now);
+    elements_[id] = element;
+    for (Observer* observer : observers_) observer->changed(id, now);
+  }
+
+  void settle(double now) {
+    if (!std::isfinite(now)) throw std::invalid_argument("MovingSet: the time of an edit must be finite");
+    for (Observer* observer : observers_) observer->settle(now);
+  }
+
+  void require(Id id) const {
+    if (!contains(id)) throw std::out_of_range("MovingSet: no element with id " + std::to_string(id));
+  }
+
+  static void require_finite(Id id, const Element& element) {
+    if (!detail::finite(element)) {
+      throw std::invalid_argument("MovingSet: the motion of id " + std::to_string(id) + " is not finite");
+    }
+  }
+
+  std::vector<Element> elements_;
+  std::vector<std::uint8_t> present_;
+  std::size_t size_ = 0;
+  std::vector<Observer*> observers_;
+  std::function<Element(Id, double)> sampler_;
+  double tick_ = 0;
+  std::uint64_t samples_ = 0;
+};
+
+}  // namespace kds

@@ -1,0 +1,135 @@
+// Piecewise motion: elements that take up another motion at known times.
+#pragma once
+
+#include "kds/audit.hpp"
+#include "kds/default_event_queue.hpp"
+#include "kds/failure_time.hpp"
+#include "kds/moving_set.hpp"
+#include "kds/statistics.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kds {
+
+/// Plans for the elements of a set: from `start` on the element has this motion. To the simulator it is one more
+/// structure, whose events are the seams between pieces; an edit by hand leaves the plan as it is.
+///
+/// As with every edit, events of the seam's time come before it (see MovingSet). Whether pieces meet at a seam is the
+/// planner's affair: a jump is legal.
+///
+/// Cost: O(1) queue operations a seam, and what the structures have to do for an edit.
+template <MovingElement E>
+class Pieces final : private MovingSet<E>::Observer {
+ public:
+  /// The set must outlive it.
+  explicit Pieces(MovingSet<E>& elements) : elements_(elements) { elements_.attach(*this); }
+  ~Pieces() { elements_.detach(*this); }
+  Pieces(const Pieces&) = delete;
+  Pieces& operator=(const Pieces&) = delete;
+
+  /// Appends a piece to the plan of an element. Throws std::out_of_range for an element that is not there,
+  /// std::invalid_argument for a start that is not finite, before `now`, or not after that of the piece before.
+  void plan(Id id, double start, const E& motion, double now) {
+    if (!elements_.contains(id)) throw std::out_of_range("Pieces: no element with id " + std::to_string(id));
+    if (!detail::finite(motion)) {
+      throw std::invalid_argument("Pieces: a motion of id " + std::to_string(id) + " is not finite");
+    }
+    if (id >= plans_.size()) {
+      plans_.resize(id + std::size_t{1});
+      queue_.resize(plans_.size());
+    }
+    auto& plan = plans_[id];
+    if (!std::isfinite(start) || start < now || (!plan.empty() && start <= plan.back().start)) {
+      throw std::invalid_argument("Pieces: the pieces of id " + std::to_string(id) + " must start one after another");
+    }
+    plan.push_back({start, motion});
+    schedule(id);
+  }
+
+  /// Pieces still to come.
+  std::size_t planned(Id id) const { return id < plans_.size() ? plans_[id].size() : 0; }
+
+  double next_time() const {
+    if (queue_.empty() || queue_.top().time > horizon_) return never;
+    return queue_.top().time;
+  }
+
+  void process() {
+    const auto [time, id] = queue_.top();
+    const Piece piece = plans_[id].front();
+    plans_[id].erase(plans_[id].begin());
+    schedule(id);
+    ++counters_.events;
+    const bool outer = !processing_;
+    processing_ = true;
+    elements_.update(id, piece.motion, time);
+    if (outer) processing_ = false;
+  }
+
+  void extend_horizon(double /*now*/, double horizon) { horizon_ = horizon; }
+
+  void audit(double now) const {
+    for (Id id = 0; id < plans_.size(); ++id) {
+      const double start = plans_[id].empty() ? never : plans_[id].front().start;
+      if (queue_.time(id) != start) throw AuditFailure("Pieces: id " + std::to_string(id) + ": scheduled at another time");
+      if (start < now) throw AuditFailure("Pieces: id " + std::to_string(id) + ": a piece has been passed over");
+    }
+  }
+
+  const Counters& counters() const { return counters_; }
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive.tag("Pieces");
+    archive(plans_, horizon_, counters_);
+    if constexpr (Archive::loading) {
+      for (Slot slot = 0; slot < queue_.slots(); ++slot) queue_.clear(slot);
+      queue_.resize(plans_.size());
+      for (Id id = 0; id < plans_.size(); ++id) schedule(id);
+    }
+  }
+
+ private:
+  struct Piece {
+    double start = 0;
+    E motion{};
+
+    template <class Archive>
+    void archive(Archive& archive) {
+      archive(start, motion);
+    }
+  };
+
+  void schedule(Id id) {
+    if (plans_[id].empty()) {
+      queue_.clear(id);
+    } else {
+      queue_.set(id, plans_[id].front().start);
+    }
+  }
+
+  void settle(double now) override {
+    if (next_time() < now) throw std::logic_error("Pieces: an edit at " + std::to_string(now) + " would pass over a piece");
+    while (!processing_ && next_time() <= now) process();
+  }
+  void inserted(Id /*id*/, double /*now*/) override {}
+  void removing(Id id, double /*now*/) override {
+    if (planned(id) == 0) return;
+    plans_[id].clear();
+    queue_.clear(id);
+  }
+  void changing(Id /*id*/, double /*now*/) override {}
+  void changed(Id /*id*/, double /*now*/) override {}
+
+  MovingSet<E>& elements_;
+  std::vector<std::vector<Piece>> plans_;
+  DefaultEventQueue queue_;
+  Counters counters_;
+  double horizon_ = never;
+  bool processing_ = false;
+};
+
+}  // namespace kds

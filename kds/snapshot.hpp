@@ -1,0 +1,166 @@
+// The state of a run as bytes: to go back to, to keep in a file, to run again.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <istream>
+#include <iterator>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace kds {
+
+/// What save() gives and restore() takes: a copy of everything that decides the events to come. Loaded into parts of
+/// the same types, it gives the same events, bit for bit. A roll-back is a restore() of an earlier snapshot, which is
+/// what optimistic concurrency asks for ([Paper] section 4.2; [Jefferson85]).
+///
+/// The bytes are those of the machine: a file is for the same program on the same kind of processor.
+class Snapshot {
+ public:
+  Snapshot() = default;
+  explicit Snapshot(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
+
+  const std::vector<char>& bytes() const { return bytes_; }
+  friend bool operator==(const Snapshot&, const Snapshot&) = default;
+
+ private:
+  std::vector<char> bytes_;
+};
+
+namespace detail {
+
+/// Calls archive(...) of its own for what has one, copies the bytes of what may be copied so, and goes through vectors.
+template <class Derived>
+class Archive {
+ public:
+  template <class... T>
+  void operator()(T&... values) {
+    (one(values), ...);
+  }
+
+  /// A name that must be there again when it is loaded.
+  void tag(std::string_view name) {
+    std::vector<char> letters(name.begin(), name.end());
+    const std::vector<char> expected = letters;
+    one(letters);
+    if (letters != expected) {
+      throw std::runtime_error("snapshot: expected " + std::string(name) + ", found " +
+                               std::string(letters.begin(), letters.end()));
+    }
+  }
+
+ private:
+  template <class T>
+  void one(T& value) {
+    auto& self = static_cast<Derived&>(*this);
+    if constexpr (requires { value.archive(self); }) {
+      value.archive(self);
+    } else if constexpr (requires { archive_members(self, value); }) {
+      archive_members(self, value);
+    } else if constexpr (requires { value.resize(1), value.data(); }) {
+      std::uint64_t size = value.size();
+      one(size);
+      self.room(size);
+      value.resize(size);
+      using Entry = std::remove_cvref_t<decltype(value[0])>;
+      if constexpr (std::is_trivially_copyable_v<Entry>) {
+        self.bytes(reinterpret_cast<char*>(value.data()), size * sizeof(Entry));
+      } else {
+        for (auto& entry : value) one(entry);
+      }
+    } else {
+      static_assert(std::is_trivially_copyable_v<T>, "snapshot: a type without archive(), which is not plain data");
+      self.bytes(reinterpret_cast<char*>(&value), sizeof(T));
+    }
+  }
+};
+
+class Writer : public Archive<Writer> {
+ public:
+  static constexpr bool loading = false;
+  void bytes(char* data, std::size_t size) { out_.insert(out_.end(), data, data + size); }
+  void room(std::uint64_t /*size*/) const {}
+  std::vector<char> take() { return std::move(out_); }
+
+ private:
+  std::vector<char> out_;
+};
+
+class Reader : public Archive<Reader> {
+ public:
+  static constexpr bool loading = true;
+  explicit Reader(const std::vector<char>& in) : in_(in) {}
+  void bytes(char* data, std::size_t size) {
+    room(size);
+    std::copy_n(in_.begin() + static_cast<std::ptrdiff_t>(at_), size, data);
+    at_ += size;
+  }
+  /// Every entry takes a byte at least: refuses sizes that cannot be.
+  void room(std::uint64_t size) const {
+    if (size > in_.size() - at_) throw std::runtime_error("snapshot: it ends before its time");
+  }
+  bool at_end() const { return at_ == in_.size(); }
+
+ private:
+  const std::vector<char>& in_;
+  std::size_t at_ = 0;
+};
+
+/// [Fowler] FNV-1a: finds damage, not malice.
+inline std::uint64_t checksum(const std::vector<char>& bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+  return hash;
+}
+
+}  // namespace detail
+
+/// Copies the state of simulators, sets of elements, structures: whatever has archive(). A Simulator includes its
+/// structures, but not the elements: save(simulator, points).
+template <class... Parts>
+Snapshot save(Parts&... parts) {
+  detail::Writer writer;
+  (parts.archive(writer), ...);
+  return Snapshot(writer.take());
+}
+
+/// Puts parts back into a saved state. They must be those that were saved, or others made of the same types in the same
+/// order; structures must be attached to the sets. Throws std::runtime_error for a snapshot of other parts, and the
+/// parts are then to be thrown away or restored from another.
+template <class... Parts>
+void restore(const Snapshot& snapshot, Parts&... parts) {
+  detail::Reader reader(snapshot.bytes());
+  (parts.archive(reader), ...);
+  if (!reader.at_end()) throw std::runtime_error("snapshot: there is more in it than was asked for");
+}
+
+/// Writes a snapshot, with its length and a checksum.
+inline void write(std::ostream& out, const Snapshot& snapshot) {
+  const std::uint64_t head[3] = {0x31534453444bu, snapshot.bytes().size(), detail::checksum(snapshot.bytes())};
+  char letters[sizeof head];
+  std::memcpy(letters, head, sizeof head);
+  out.write(letters, sizeof head);
+  out.write(snapshot.bytes().data(), static_cast<std::streamsize>(snapshot.bytes().size()));
+  if (!out) throw std::runtime_error("snapshot: cannot be written");
+}
+
+/// Throws std::runtime_error for what is no snapshot of this kind of machine, or is damaged.
+inline Snapshot read_snapshot(std::istream& in) {
+  std::uint64_t head[3] = {};
+  char letters[sizeof head];
+  if (!in.read(letters, sizeof head)) throw std::runtime_error("snapshot: it ends before its time");
+  std::memcpy(head, letters, sizeof head);
+  if (head[0] != 0x31534453444bu) throw std::runtime_error("snapshot: this is none, or is from another kind of machine");
+  std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
+  if (bytes.size() != head[1] || detail::checksum(bytes) != head[2]) throw std::runtime_error("snapshot: it is damaged");
+  return Snapshot(std::move(bytes));
+}
+
+}  // namespace kds
