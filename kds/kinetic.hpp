@@ -130,6 +130,8 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   void finish(bool in_event);
 
   void certify(Slot slot, bool in_event);
+  /// A tick after the oldest sample of the slot's members.
+  double soonest_sample(Slot slot) const;
   void hold(Slot slot, bool held);
 
   [[noreturn]] static void fail_use(const std::string& what) { throw std::logic_error(Rule::name + (": " + what)); }
@@ -203,7 +205,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
     if constexpr (Sampled<Element>) {
       const Conservative conservative{certificate};
       schedule_.certify(slot, conservative, last_);
-      const double soonest = last_ + elements_.tick();
+      const double soonest = soonest_sample(slot);
       if (schedule_.contains(slot) && schedule_.time(slot) < soonest) {
         schedule_.set(slot, soonest <= schedule_.horizon() ? soonest : never);
       }
@@ -214,6 +216,13 @@ void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
   });
   if (!certified) schedule_.clear(slot);
   hold(slot, certified);
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+double Kinetic<Rule, Listener, Queue, Solver>::soonest_sample(Slot slot) const {
+  double oldest = never;
+  for (const Id id : rule_.members(slot)) oldest = std::min(oldest, elements_[id].start);
+  return oldest + elements_.tick();
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
@@ -263,7 +272,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
       if constexpr (Sampled<Element>) {
         const Conservative conservative{certificate};
         const double t = failure_time(conservative, now, schedule_.horizon());
-        const double latest = std::max(t, now + elements_.tick());
+        const double latest = std::max(t, soonest_sample(slot));
         if (time > latest && latest <= schedule_.horizon()) fail(slot, "is to be sampled too late");
       } else if constexpr (Solver::certified) {
         if (failure_time(certificate, now, schedule_.horizon()) != time) fail(slot, "the event has the wrong time");

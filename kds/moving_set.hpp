@@ -39,9 +39,12 @@ concept MovingElement = std::default_initializable<E> && std::copyable<E> && req
   { detail::finite(element) } -> std::convertible_to<bool>;
 };
 
-/// An element of which only samples are known: Bounded, and what is made of it.
+/// An element of which only samples are known, the last one at time `start`: Bounded, and what is made of it.
 template <class E>
-concept Sampled = MovingElement<E> && requires { requires E::sampled; };
+concept Sampled = MovingElement<E> && requires(const E& element) {
+  requires E::sampled;
+  { element.start } -> std::convertible_to<double>;
+};
 
 /// Moving elements by id. Structures attach themselves, and are told of every edit.
 ///
@@ -132,7 +135,7 @@ class MovingSet {
   }
 
   /// Where new samples come from: sampler(id, now) gives an element sampled at now. Structures ask for one when a
-  /// certificate is no longer guaranteed, but for none sooner than `tick` seconds after the last: what is closer to
+  /// certificate is no longer guaranteed, but not before a member's last one is `tick` seconds old: what is closer to
   /// failing than that is not guaranteed in between (a tick of 0 would have them ask for ever where two elements meet).
   void sample_with(std::function<Element(Id, double)> sampler, double tick)
     requires Sampled<Element>
@@ -151,6 +154,7 @@ class MovingSet {
   {
     if (!sampler_) throw std::logic_error("MovingSet: an element is to be sampled, but there is no sampler");
     const Element element = sampler_(id, now);
+    if (element.start != now) throw std::logic_error("MovingSet: a sample must be of the time it is asked for");
     require_finite(id, element);
     ++samples_;
     replace(id, element, now);

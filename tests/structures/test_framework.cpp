@@ -1,0 +1,453 @@
+// The framework, with the list of the examples: against the exact order, with edits, pieces, samples and snapshots.
+#include "examples/list_in_forty_lines.hpp"
+#include "kds/dary_queue.hpp"
+#include "kds/pairing_queue.hpp"
+#include "kds/pieces.hpp"
+#include "kds/simulator.hpp"
+#include "kds/snapshot.hpp"
+#include "structures/sorted_list.hpp"
+#include "tests/structures/random_values.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace kds;
+using namespace kds::tests;
+using examples::ListRule;
+
+using Log = std::vector<KineticEvent>;
+
+struct ToLog {
+  Log* log;
+  template <class Rule>
+  void operator()(const Rule&, const KineticEvent& event) const {
+    log->push_back(event);
+  }
+};
+
+template <int Degree, class Queue = DefaultEventQueue>
+using List = Kinetic<ListRule<Motion<Degree>>, ToLog, Queue>;
+
+std::uint32_t no_rank(std::uint32_t) { return 0; }
+
+template <int Degree>
+void apply(const Change<Degree>& change, MovingSet<Motion<Degree>>& set, double now) {
+  using What = typename Change<Degree>::What;
+  if (change.what == What::insert) set.insert(change.id, change.motion, now);
+  if (change.what == What::remove) set.remove(change.id, now);
+  if (change.what == What::update) set.update(change.id, change.motion, now);
+}
+
+/// Random changes and advances; the number of states that were wrong.
+template <int Degree, class Queue>
+int mistakes(std::uint64_t seed, Kind kind, double window, Log& log) {
+  Random random(seed);
+  Model<Degree> model;
+  MovingSet<Motion<Degree>> set;
+  double now = beginning(kind);
+  for (std::uint32_t id = 0; id < 10; ++id) {
+    model.motions[2 * id] = random_motion<Degree>(random, kind, now);
+    set.insert(2 * id, model.motions[2 * id], now);
+  }
+  List<Degree, Queue> list(set, now, {}, {&log});
+  Simulator simulator(now, list);
+  if (window < never) simulator.set_window(window);
+  int wrong = 0;
+  const auto compare = [&] { wrong += list.rule().order() != model.order(simulator.now(), no_rank); };
+  for (int step = 0; step < 30; ++step) {
+    const double target = now + random_delay(random, kind);
+    while (simulator.step(target)) {
+      simulator.audit();
+      if (simulator.next_time() > simulator.now()) compare();
+    }
+    simulator.advance_to(target);
+    now = target;
+    apply(random_change(random, kind, now, 20, model), set, now);
+    simulator.audit();
+    compare();
+  }
+  return wrong;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE_SIG("a list in forty lines is in exact order after every event and edit", "[framework]",
+                       ((int Degree), Degree), 1, 2, 3) {
+  for (const Kind kind : all_kinds) {
+    for (std::uint64_t seed = 500; seed < 503; ++seed) {
+      CAPTURE(Degree, static_cast<int>(kind), seed);
+      Log log, same;
+      CHECK(mistakes<Degree, CalendarQueue<>>(seed, kind, never, log) == 0);
+      CHECK(mistakes<Degree, PairingQueue<>>(seed, kind, 0.3, same) == 0);
+      CHECK(log == same);
+      same.clear();
+      CHECK(mistakes<Degree, DaryQueue<>>(seed, kind, 2, same) == 0);
+      CHECK(log == same);
+    }
+  }
+}
+
+TEST_CASE("the list of the framework swaps when the tuned one does, and keeps to its measures", "[framework]") {
+  const std::uint64_t seed = 510;
+  CAPTURE(seed);
+  Random random(seed);
+  MovingSet<Motion<2>> set;
+  std::vector<structures::SortedList<2>::Entry> entries;
+  const std::uint64_t n = 60;
+  for (Id id = 0; id < n; ++id) {
+    const auto motion = random_motion<2>(random, Kind::generic, 0);
+    set.insert(id, motion, 0);
+    entries.push_back({motion, id});
+  }
+  Log log;
+  List<2> list(set, 0, {}, {&log});
+  structures::SortedList<2> tuned;
+  tuned.assign(entries, 0);
+  Simulator simulator(0, list, tuned);
+  std::uint64_t swaps = 0;
+  int apart = 0;
+  while (simulator.step()) {
+    ++swaps;
+    apart += list.next_time() < tuned.next_time();
+    if (swaps % 2 == 0) apart += list.next_time() != tuned.next_time();
+  }
+  CHECK(apart == 0);
+  CHECK(swaps == 2 * log.size());
+  const Measures m = list.measures();
+  CHECK(m.events == log.size());
+  CHECK(m.events > n);
+  CHECK(m.external == m.events);    // efficient: every event is a change of the order
+  CHECK(m.most_touched == 3);       // responsive
+  CHECK(m.touched <= 3 * m.events);
+  CHECK(m.most_per_element == 2);   // local
+  CHECK(m.held == n - 1);           // compact
+  CHECK(m.most_held == n - 1);
+  CHECK(list.counters().events == m.events);
+}
+
+TEST_CASE("several structures share one set, and each hears of each edit", "[framework]") {
+  MovingSet<Motion<1>> set;
+  Log first_log, second_log;
+  List<1> first(set, 0, {}, {&first_log});
+  set.insert(7, {{{0, 1}}, 0}, 0);
+  List<1> second(set, 0, {}, {&second_log});  // Comes later, and takes up what is there.
+  set.insert(3, {{{2, 0}}, 0}, 0);
+  Simulator simulator(0, first, second);
+  CHECK(first.rule().order() == std::vector<Id>{7, 3});
+  CHECK(second.rule().order() == std::vector<Id>{7, 3});
+  CHECK(first.next_time() == 2);
+  simulator.advance_to(5);
+  CHECK(first.rule().order() == std::vector<Id>{3, 7});
+  CHECK(first_log.size() == 1);
+  CHECK(first_log == second_log);
+  set.update(7, {{{-1, 0}}, 5}, 5);
+  CHECK(second.rule().order() == std::vector<Id>{7, 3});
+  set.remove(3, 5);
+  CHECK(first.rule().order() == std::vector<Id>{7});
+  CHECK(set.size() == 1);
+  simulator.audit();
+}
+
+// --- errors of use
+
+TEST_CASE("a set refuses what cannot be, and changes nothing", "[framework]") {
+  MovingSet<Motion<1>> set;
+  Log log;
+  List<1> list(set, 0, {}, {&log});
+  set.insert(0, {{{0, 1}}, 0}, 0);
+  set.insert(1, {{{1, 0}}, 0}, 0);
+  Simulator simulator(0, list);
+  CHECK_THROWS_WITH(set.insert(1, {}, 0), "MovingSet: id 1 is used twice");
+  CHECK_THROWS_AS(set.insert(nobody, {}, 0), std::invalid_argument);
+  CHECK_THROWS_WITH(set.update(4, {}, 0), "MovingSet: no element with id 4");
+  CHECK_THROWS_AS(set.remove(4, 0), std::out_of_range);
+  CHECK_THROWS_WITH(set.update(1, {{{std::nan(""), 0}}, 0}, 0), "MovingSet: the motion of id 1 is not finite");
+  CHECK_THROWS_AS(set.insert(5, {}, never), std::invalid_argument);
+  // The two meet at 1: an edit at 2 would be one of a state that is not right.
+  CHECK_THROWS_WITH(set.insert(5, {}, 2), Catch::Contains("would pass over an event at 1"));
+  simulator.advance_to(3);
+  CHECK_THROWS_AS(set.insert(5, {}, 0.5), std::logic_error);
+  CHECK(set.size() == 2);
+  CHECK(list.rule().order() == std::vector<Id>{1, 0});
+  simulator.audit();
+}
+
+namespace {
+
+/// Edits the elements from within repair(), as it must not.
+struct Meddler : ListRule<Motion<1>> {
+  MovingSet<Motion<1>>* set;
+  Effect repair(Slot slot, Repair<Motion<1>>& repair) {
+    set->remove(0, repair.now());
+    return ListRule<Motion<1>>::repair(slot, repair);
+  }
+};
+
+/// Turns an element round at each swap, as it may.
+struct TurnRound {
+  MovingSet<Motion<1>>* set;
+  int edits = 0;
+  void operator()(const ListRule<Motion<1>>&, const KineticEvent& event) {
+    ++edits;
+    Motion<1> motion = restarted((*set)[0], event.time);
+    motion.position.c[1] = -motion.position.c[1];
+    set->update(0, motion, event.time);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a rule may not edit the elements, a listener may", "[framework]") {
+  MovingSet<Motion<1>> set;
+  set.insert(0, {{{0, 1}}, 0}, 0);
+  set.insert(1, {{{1, 0}}, 0}, 0);
+  set.insert(2, {{{-1, 0}}, 0}, 0);
+  {
+    Meddler rule;
+    rule.set = &set;
+    Kinetic<Meddler> list(set, 0, rule);
+    CHECK_THROWS_AS(list.process(), std::logic_error);
+  }
+  Kinetic<ListRule<Motion<1>>, TurnRound> list(set, 0, {}, {&set});
+  Simulator simulator(0, list);
+  while (simulator.step(20)) simulator.audit();
+  CHECK(list.listener().edits >= 2);
+  CHECK(set[0].start > 0);
+}
+
+TEST_CASE("a structure of none and of one has no events", "[framework]") {
+  MovingSet<Motion<1>> set;
+  Log log;
+  List<1> list(set, 0, {}, {&log});
+  Simulator simulator(0, list);
+  CHECK_FALSE(simulator.step());
+  CHECK(list.measures() == Measures{});
+  set.insert(9, {{{0, 1}}, 0}, 0);
+  CHECK(list.next_time() == never);
+  CHECK(list.measures().held == 0);
+  simulator.audit();
+  set.remove(9, 0);
+  CHECK(list.rule().order().empty());
+  simulator.audit();
+}
+
+TEST_CASE("an audit finds a clock that has run past an event", "[framework]") {
+  MovingSet<Motion<1>> set;
+  set.insert(0, {{{0, 1}}, 0}, 0);
+  set.insert(1, {{{1, 0}}, 0}, 0);
+  Log log;
+  List<1> list(set, 0, {}, {&log});
+  CHECK_NOTHROW(list.audit(1));
+  CHECK_THROWS_WITH(list.audit(2), Catch::Contains("ListRule: slot 0"));
+  list.process();
+  CHECK_NOTHROW(list.audit(2));
+  CHECK_THROWS_AS(list.audit(0), AuditFailure);
+}
+
+// --- pieces
+
+TEST_CASE("a zigzag in pieces is that of edits by hand", "[framework][pieces]") {
+  const auto zigzag = [](bool planned) {
+    MovingSet<Motion<1>> set;
+    Log log;
+    List<1> list(set, 0, {}, {&log});
+    Pieces<Motion<1>> pieces(set);
+    set.insert(0, {{{0.5, 0}}, 0}, 0);
+    set.insert(1, {{{0, 1}}, 0}, 0);
+    Simulator simulator(0, pieces, list);
+    for (int k = 1; k < 8; ++k) {
+      const Motion<1> motion{{{k % 2 == 1 ? 1.0 : 0.0, k % 2 == 1 ? -1.0 : 1.0}}, 1.0 * k};
+      if (planned) {
+        pieces.plan(1, k, motion, simulator.now());
+      } else {
+        simulator.advance_to(k);
+        set.update(1, motion, k);
+      }
+    }
+    while (simulator.step()) simulator.audit();
+    CHECK(pieces.counters().events == (planned ? 7 : 0));
+    return log;
+  };
+  const Log log = zigzag(true);
+  CHECK(log.size() == 8);
+  CHECK(log == zigzag(false));
+}
+
+TEST_CASE("plans are refused out of order, and go with their element", "[framework][pieces]") {
+  MovingSet<Motion<1>> set;
+  Pieces<Motion<1>> pieces(set);
+  set.insert(0, {}, 0);
+  pieces.plan(0, 2, {{{0, 1}}, 2}, 0);
+  CHECK_THROWS_AS(pieces.plan(0, 2, {}, 0), std::invalid_argument);
+  CHECK_THROWS_AS(pieces.plan(0, 1, {}, 0), std::invalid_argument);
+  CHECK_THROWS_AS(pieces.plan(0, never, {}, 0), std::invalid_argument);
+  CHECK_THROWS_AS(pieces.plan(3, 4, {}, 0), std::out_of_range);
+  CHECK_THROWS_AS(pieces.plan(0, 4, {{{0, never}}, 0}, 0), std::invalid_argument);
+  CHECK(pieces.planned(0) == 1);
+  CHECK_THROWS_AS(set.update(0, {}, 3), std::logic_error);  // It would pass over a seam.
+  set.remove(0, 1);
+  CHECK(pieces.planned(0) == 0);
+  CHECK(pieces.next_time() == never);
+}
+
+TEST_CASE("a thousand seams at one time need no deep stack and leave the right order", "[framework][pieces]") {
+  MovingSet<Motion<1>> set;
+  Pieces<Motion<1>> pieces(set);
+  const Id n = 1000;
+  Log log;
+  List<1> list(set, 0, {}, {&log});
+  for (Id id = 0; id < n; ++id) {
+    set.insert(id, {{{1.0 * id, 0}}, 0}, 0);
+    pieces.plan(id, 1, {{{1.0 * id, -2.0 * id}}, 1}, 0);
+  }
+  Simulator simulator(0, list, pieces);
+  simulator.advance_to(1);
+  CHECK(log.empty());
+  simulator.advance_to(2);
+  simulator.audit();
+  CHECK(list.rule().order().front() == n - 1);
+  CHECK(log.size() == n * (n - 1) / 2);
+}
+
+// --- samples
+
+TEST_CASE("sampled values: never out of order for longer than a tick, and resampled only when they may meet",
+          "[framework][bounded]") {
+  const std::uint64_t seed = 520;
+  CAPTURE(seed);
+  Random random(seed);
+  const Id n = 12;
+  std::vector<std::array<double, 3>> swing(n);  // middle, width, frequency: known to the sampler only
+  for (auto& s : swing) s = {random.between(-4, 4), random.between(0, 0.6), random.between(0.1, 2)};
+  const auto truth = [&](Id id, double t) { return swing[id][0] + swing[id][1] * std::sin(swing[id][2] * t); };
+  const double tick = 0.01;
+  MovingSet<Bounded> set;
+  const auto sample = [&](Id id, double t) { return Bounded{truth(id, t), swing[id][1] * swing[id][2], t}; };
+  set.sample_with(sample, tick);
+  for (Id id = 0; id < n; ++id) set.insert(id, sample(id, 0), 0);
+  Kinetic<ListRule<Bounded>> list(set, 0);
+  Simulator simulator(0, list);
+  const double end = 10;
+  int wrong = 0;
+  for (double t = 0.05; t < end; t += 0.05) {
+    simulator.advance_to(t);
+    list.audit(t);
+    const auto& order = list.rule().order();
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+      // What two values can do to their distance within a tick.
+      const double slack = tick * (set[order[i]].speed + set[order[i + 1]].speed) * (1 + 1e-9);
+      wrong += truth(order[i], t) > truth(order[i + 1], t) + slack;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(set.samples() > 2 * n);
+  CHECK(set.samples() < 0.3 * n * end / tick);  // Sampling everything every tick takes n end / tick.
+  CHECK(list.measures().events > n);
+}
+
+TEST_CASE("sampled values need a sampler with a tick", "[framework][bounded]") {
+  MovingSet<Bounded> set;
+  CHECK_THROWS_AS(set.sample_with([](Id, double) { return Bounded{}; }, 0), std::invalid_argument);
+  CHECK_THROWS_AS(set.insert(0, {0, -1, 0}, 0), std::invalid_argument);
+  set.insert(0, {0, 1, 0}, 0);
+  set.insert(1, {1, 1, 0}, 0);
+  Kinetic<ListRule<Bounded>> list(set, 0);
+  CHECK(list.next_time() == 0.5);
+  CHECK_THROWS_AS(list.process(), std::logic_error);
+}
+
+// --- snapshots
+
+namespace {
+
+struct Run {
+  MovingSet<Motion<2>> set;
+  Log log;
+  Pieces<Motion<2>> pieces{set};
+  List<2> list;
+  List<2, PairingQueue<>> other;
+  Simulator<Pieces<Motion<2>>, List<2>, List<2, PairingQueue<>>> simulator{0, pieces, list, other};
+
+  explicit Run(std::uint64_t seed, Id n) : list(set, 0, {}, {&log}), other(set, 0, {}, {&log}) {
+    Random random(seed);
+    for (Id id = 0; id < n; ++id) {
+      set.insert(id, random_motion<2>(random, Kind::generic, 0), 0);
+      pieces.plan(id, 1 + random.unit(), random_motion<2>(random, Kind::generic, 1), 0);
+    }
+  }
+  /// Ten edits and the events between.
+  void go_on(std::uint64_t seed) {
+    Random random(seed);
+    for (int i = 0; i < 10; ++i) {
+      simulator.advance_to(simulator.now() + random.between(0, 0.3));
+      const Id id = static_cast<Id>(random.below(set.end_id()));
+      set.update(id, random_motion<2>(random, Kind::generic, simulator.now()), simulator.now());
+    }
+    simulator.audit();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("rolled back and run again, and loaded elsewhere, a simulator makes the same events bit for bit",
+          "[framework][snapshot]") {
+  const std::uint64_t seed = 530;
+  CAPTURE(seed);
+  Run run(seed, 40);
+  run.simulator.set_window(0.7);
+  run.go_on(1);
+  const Snapshot middle = save(run.simulator, run.set);
+  const std::size_t before = run.log.size();
+  run.go_on(2);
+  const Snapshot end = save(run.simulator, run.set);
+  const Log expected(run.log.begin() + static_cast<std::ptrdiff_t>(before), run.log.end());
+  REQUIRE(expected.size() > 100);
+
+  run.log.clear();
+  restore(middle, run.simulator, run.set);
+  CHECK(save(run.simulator, run.set) == middle);
+  run.simulator.audit();
+  run.go_on(2);
+  CHECK(run.log == expected);
+  CHECK(save(run.simulator, run.set) == end);
+
+  std::stringstream file;
+  write(file, middle);
+  Run elsewhere(seed + 1, 3);  // of the same types, and another past
+  restore(read_snapshot(file), elsewhere.simulator, elsewhere.set);
+  elsewhere.log.clear();
+  elsewhere.go_on(2);
+  CHECK(elsewhere.log == expected);
+  CHECK(save(elsewhere.simulator, elsewhere.set) == end);
+  CHECK(elsewhere.list.measures() == run.list.measures());
+  CHECK(elsewhere.simulator.counters() == run.simulator.counters());
+}
+
+TEST_CASE("snapshots that are damaged, cut or of other parts are refused", "[framework][snapshot]") {
+  Run run(540, 5);
+  const Snapshot good = save(run.simulator, run.set);
+  std::stringstream file;
+  write(file, good);
+  const std::string letters = file.str();
+  for (const std::size_t at : {std::size_t{2}, std::size_t{9}, letters.size() / 2, letters.size() - 1}) {
+    std::string bad = letters;
+    bad[at] = static_cast<char>(bad[at] ^ 4);
+    std::stringstream in(bad);
+    CHECK_THROWS_AS(read_snapshot(in), std::runtime_error);
+  }
+  for (const std::size_t length : {std::size_t{0}, std::size_t{12}, letters.size() - 1}) {
+    std::stringstream in(letters.substr(0, length));
+    CHECK_THROWS_AS(read_snapshot(in), std::runtime_error);
+  }
+  CHECK_THROWS_WITH(restore(good, run.set), Catch::Contains("expected MovingSet, found Simulator"));
+  CHECK_THROWS_AS(restore(good, run.simulator), std::runtime_error);
+  CHECK_THROWS_AS(restore(save(run.set), run.set, run.set), std::runtime_error);
+}
