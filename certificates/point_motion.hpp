@@ -71,6 +71,13 @@ struct PointMotion {
   }
 };
 
+/// For snapshots (kds/snapshot.hpp).
+template <class Archive, int Degree>
+void archive_members(Archive& archive, PointMotion<Degree>& path) {
+  for (auto& c : path.coefficients) archive(c[0], c[1], c[2]);
+  archive(path.start);
+}
+
 /// b - a, coordinate by coordinate, as polynomials in (t - epoch) in the arithmetic of Number.
 template <class Number, int Degree>
 std::array<Polynomial<Degree, Number>, 3> relative_motion(const PointMotion<Degree>& a, const PointMotion<Degree>& b,

@@ -1,0 +1,44 @@
+// Two moving points in order along a direction.
+#pragma once
+
+#include "kds/bounded.hpp"
+#include "kds/certificate.hpp"
+#include "kds/motion.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace kds::certificates {
+
+/// direction . (upper(t) - lower(t)) >= 0. The direction, any doubles, is taken as exact and need not be a unit vector.
+/// Degree that of the paths. A path is anything with axis(d): PointMotion, PlaneMotion.
+template <class Path, std::size_t Dimension>
+struct DirectionOrder {
+  static constexpr int degree = Path::degree;
+  const Path& lower;
+  const Path& upper;
+  const std::array<double, Dimension>& direction;
+
+  template <class Number>
+  auto polynomial(double epoch) const {
+    auto f = along<Number>(0, epoch);
+    for (std::size_t d = 1; d < Dimension; ++d) f = f + along<Number>(d, epoch);
+    return f;
+  }
+
+  bool vanishes() const {
+    for (std::size_t d = 0; d < Dimension; ++d) {
+      if (direction[d] != 0 && !(lower.axis(static_cast<int>(d)) == upper.axis(static_cast<int>(d)))) return false;
+    }
+    return true;
+  }
+
+ private:
+  template <class Number>
+  auto along(std::size_t d, double epoch) const {
+    const int axis = static_cast<int>(d);
+    return difference_about<Number>(upper.axis(axis), lower.axis(axis), epoch) * direction[d];
+  }
+};
+
+}  // namespace kds::certificates

@@ -1,0 +1,61 @@
+// A moving point outside the circle through three others: the certificate of Delaunay triangulations.
+#pragma once
+
+#include "kds/bounded.hpp"
+#include "kds/certificate.hpp"
+#include "kds/motion.hpp"
+
+namespace kds::certificates {
+
+/// d is not inside the circle through a, b, c, which turn counter-clockwise.
+///
+/// Minus the determinant of the rows (x, y, x^2 + y^2), x and y being a - d, b - d, c - d. Degree 4 for linear, 8 for
+/// quadratic paths. Laws: even permutations of a, b, c, d leave it as it is, odd ones change its sign; so the edge between
+/// triangles a, b, c and b, a, d has one certificate, from whichever side it is looked at. Paper: [Guibas85].
+template <class Path>
+struct InCircle {
+  static constexpr int degree = 4 * Path::degree;
+  const Path& a;
+  const Path& b;
+  const Path& c;
+  const Path& d;
+
+  template <class Number>
+  auto polynomial(double epoch) const {
+    return value([&](const Path& p, int axis) { return difference_about<Number>(p.axis(axis), d.axis(axis), epoch); });
+  }
+
+  Ball<DoubleDouble> extended_value(double t) const
+    requires(!requires { Path::sampled; })
+  {
+    return value([&](const Path& p, int axis) { return extended_difference(p.axis(axis), d.axis(axis), t); });
+  }
+
+  /// Cheap and sufficient: two of the four are one.
+  bool vanishes() const
+    requires(!requires { Path::sampled; })
+  {
+    return a == b || a == c || a == d || b == c || b == d || c == d;
+  }
+
+ private:
+  template <class T>
+  static auto squared(const T& x) {
+    if constexpr (requires { square(x); }) {
+      return square(x);
+    } else {
+      return x * x;
+    }
+  }
+
+  template <class From>
+  auto value(const From& from_d) const {
+    const auto ax = from_d(a, 0), ay = from_d(a, 1);
+    const auto bx = from_d(b, 0), by = from_d(b, 1);
+    const auto cx = from_d(c, 0), cy = from_d(c, 1);
+    return (squared(ax) + squared(ay)) * (by * cx - bx * cy) + (squared(bx) + squared(by)) * (cy * ax - cx * ay) +
+           (squared(cx) + squared(cy)) * (ay * bx - ax * by);
+  }
+};
+
+}  // namespace kds::certificates

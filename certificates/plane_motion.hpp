@@ -1,0 +1,49 @@
+// Motion of a point in the plane.
+#pragma once
+
+#include "kds/bounded.hpp"
+#include "kds/motion.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace kds::certificates {
+
+/// Two polynomials in the time since the path's own start: x and y.
+template <int Degree>
+struct PlaneMotion {
+  static constexpr int degree = Degree;
+
+  std::array<Polynomial<Degree>, 2> coordinate;  ///< length, length/s, ...; of degree 2: half the acceleration
+  double start = 0;                              ///< s
+
+  Motion<Degree> axis(int d) const { return {coordinate[static_cast<std::size_t>(d)], start}; }
+  /// x and y at t, rounded.
+  std::array<double, 2> operator()(double t) const { return {coordinate[0](t - start), coordinate[1](t - start)}; }
+
+  bool finite() const { return is_finite(axis(0)) && is_finite(axis(1)); }
+  friend bool operator==(const PlaneMotion&, const PlaneMotion&) = default;
+};
+
+/// The same motion restarted at t, equal up to the rounding of its new coefficients.
+template <int Degree>
+PlaneMotion<Degree> restarted(const PlaneMotion<Degree>& path, double t) {
+  return {{kds::restarted(path.axis(0), t).position, kds::restarted(path.axis(1), t).position}, t};
+}
+
+/// A point of the plane that was sampled at `start` and has moved at most at `speed` since, in either coordinate.
+struct BoundedPoint {
+  static constexpr int degree = 1;
+  static constexpr bool sampled = true;
+
+  std::array<double, 2> position{};  ///< length
+  double speed = 0;                  ///< length/s
+  double start = 0;                  ///< s
+
+  Bounded axis(int d) const { return {position[static_cast<std::size_t>(d)], speed, start}; }
+  bool finite() const { return is_finite(axis(0)) && is_finite(axis(1)); }
+  friend bool operator==(const BoundedPoint&, const BoundedPoint&) = default;
+};
+
+}  // namespace kds::certificates

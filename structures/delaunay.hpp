@@ -1,0 +1,21 @@
+// Kinetic Delaunay triangulation in the plane.
+#pragma once
+
+#include "structures/plane_triangulation.hpp"
+
+namespace kds::structures {
+
+/// The Delaunay triangulation of moving points: no point is inside the circle through the corners of a triangle. With four
+/// or more points on one circle for good, one of the triangulations that have this property.
+///
+/// Papers: [Guibas91], [Basch99]. Certificates of degree 4 for linear, 8 for quadratic paths.
+///
+/// Cost: an event is a flip, O(1) certificates (responsive: 16 marked at most, 5 in-circle tests among them); at most 5 n
+/// certificates (compact: 3 n edges and 2 n areas); an element is in as many as it has neighbours, three times over (not
+/// local in the worst case, six neighbours on average); every event is a change of the triangulation (efficient).
+/// Insertion O(sqrt n) for the walk and O(neighbours); removal O(neighbours^2); a new motion is a removal and an
+/// insertion. Number of events: nearly quadratic for linear paths [Rubin15].
+template <class Path>
+using DelaunayRule = PlaneTriangulationRule<Path, Criterion::delaunay>;
+
+}  // namespace kds::structures

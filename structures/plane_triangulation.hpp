@@ -1,0 +1,315 @@
+// Kinetic triangulations of moving points in the plane: what Delaunay triangulation and convex hull have in common.
+#pragma once
+
+#include "certificates/direction_order.hpp"
+#include "certificates/in_circle.hpp"
+#include "certificates/orientation.hpp"
+#include "kds/audit.hpp"
+#include "kds/kinetic.hpp"
+#include "structures/lawson.hpp"
+#include "structures/triangle_mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace kds::structures {
+
+/// What a triangulation proves besides being one.
+enum class Criterion { delaunay, hull };
+
+/// Keeps a triangulation of moving points, in which the hull is convex and, if asked for, every edge is Delaunay.
+///
+/// Certificates: of each edge between finite triangles that it is Delaunay (InCircle); of each vertex of the hull that the
+/// hull turns left there, and of each edge of the hull that the apex of its triangle is inside (Orientation); of each
+/// triangle that it has positive area. As long as the first hold a triangle does not turn over, but several of them can
+/// fail within one spacing of the clock, and the state has to be right then too. Repair: an edge whose certificate
+/// fails is flipped; where flips cannot put right what exact signs find (points that run through each other within one
+/// spacing) the triangulation is built anew at that instant; rebuilds() counts it.
+///
+/// Points that are one for good share a vertex. While all points are on one line for good there is no triangle, and
+/// nothing is known of them: flat().
+template <class Path, Criterion What>
+class PlaneTriangulationRule {
+ public:
+  using Element = Path;
+  using Edge = TriangleMesh::Edge;
+  static constexpr const char* name = What == Criterion::delaunay ? "Delaunay" : "ConvexHull";
+  static constexpr Id infinite = TriangleMesh::infinite;
+
+  /// The triangles; those with the vertex `infinite` lie outside the hull.
+  const TriangleMesh& mesh() const { return mesh_; }
+  /// Whether all points are on one line, or fewer than three.
+  bool flat() const { return mesh_.empty(); }
+  /// The vertex that stands for a point: itself, or one that it is one with for good.
+  Id vertex(Id id) const { return id < same_as_.size() && same_as_[id] != nobody ? same_as_[id] : id; }
+  /// Ids on the hull, counter-clockwise from the lowest; those on its edges are among them. Empty if flat().
+  std::vector<Id> hull() const;
+  std::uint64_t rebuilds() const { return rebuilds_; }
+
+  using Orientation = certificates::Orientation<Path>;
+  using InCircle = certificates::InCircle<Path>;
+  using Choice = std::variant<std::monostate, Orientation, InCircle>;
+
+  // Slots 4 t, 4 t + 1, 4 t + 2: the edges of triangle t, each known by the lesser of its half-edges; 4 t + 3: its area.
+  Choice certificate(Slot slot, const MovingSet<Path>& x) const;
+  std::vector<Id> members(Slot slot) const;
+  Effect repair(Slot slot, Repair<Path>& repair);
+  void insert(Id id, Repair<Path>& repair);
+  void remove(Id id, Repair<Path>& repair);
+  void build(Repair<Path>& repair) { rebuild(nobody, repair); }
+  void audit(const MovingSet<Path>& x, double now) const;
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(mesh_, same_as_, hidden_, near_, busy_at_, repairs_, rebuilds_);
+  }
+
+ private:
+  /// Signs of one instant.
+  struct Predicates {
+    const MovingSet<Path>& x;
+    double now;
+    int orientation(Id a, Id b, Id c) const { return exact_sign(Orientation{x[a], x[b], x[c]}, now); }
+    int in_circle(Id a, Id b, Id c, Id d) const { return exact_sign(InCircle{x[a], x[b], x[c], x[d]}, now); }
+    bool same(Id a, Id b) const {
+      return exact_sign(certificates::DirectionOrder<Path, 2>{x[a], x[b], along_x}, now) == 0 &&
+             exact_sign(certificates::DirectionOrder<Path, 2>{x[a], x[b], along_y}, now) == 0;
+    }
+    static constexpr std::array<double, 2> along_x{1, 0}, along_y{0, 1};
+  };
+
+  bool has_infinite_neighbour(std::uint32_t t) const {
+    for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
+      if (mesh_.apex(mesh_.twin(h)) == infinite) return true;
+    }
+    return false;
+  }
+
+  bool turn_back(std::uint32_t t, Lawson<Predicates>& lawson);
+  void place(Id id, Lawson<Predicates>& lawson);
+  void rebuild(Id without, Repair<Path>& repair);
+  void certify_touched(Repair<Path>& repair);
+
+  TriangleMesh mesh_;
+  std::vector<Id> same_as_;   ///< of a point that has no vertex of its own
+  std::uint64_t hidden_ = 0;  ///< how many these are
+  std::uint32_t near_ = 0;    ///< a triangle to begin walks with
+  double busy_at_ = -never;   ///< time of the last event, and how many there have been at that time
+  std::uint64_t repairs_ = 0;
+  std::uint64_t rebuilds_ = 0;
+  std::vector<std::uint32_t> touched_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <class Path, Criterion What>
+std::vector<Id> PlaneTriangulationRule<Path, What>::hull() const {
+  std::vector<Id> ids;
+  if (flat()) return ids;
+  const Edge first = mesh_.from(infinite);
+  Edge h = first;
+  do {
+    ids.push_back(mesh_.target(h));
+    h = mesh_.clockwise(h);  // about infinity, so counter-clockwise about the points
+  } while (h != first);
+  std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+template <class Path, Criterion What>
+auto PlaneTriangulationRule<Path, What>::certificate(Slot slot, const MovingSet<Path>& x) const -> Choice {
+  const std::uint32_t t = slot / 4;
+  if (t >= mesh_.end_triangle() || !mesh_.in_use(t)) return {};
+  if (slot % 4 == 3) {
+    if (!mesh_.finite(t) || has_infinite_neighbour(t)) return {};
+    return Orientation{x[mesh_.origin(3 * t)], x[mesh_.origin(3 * t + 1)], x[mesh_.origin(3 * t + 2)]};
+  }
+  const Edge h = 3 * t + slot % 4;
+  if (mesh_.twin(h) < h) return {};
+  const Id a = mesh_.origin(h), b = mesh_.target(h), c = mesh_.apex(h), d = mesh_.apex(mesh_.twin(h));
+  if (a == infinite) return Orientation{x[c], x[b], x[d]};
+  if (b == infinite) return Orientation{x[d], x[a], x[c]};
+  if (c == infinite) return Orientation{x[b], x[a], x[d]};
+  if (d == infinite) return Orientation{x[a], x[b], x[c]};
+  if constexpr (What == Criterion::hull) return {};
+  return InCircle{x[a], x[b], x[c], x[d]};
+}
+
+template <class Path, Criterion What>
+std::vector<Id> PlaneTriangulationRule<Path, What>::members(Slot slot) const {
+  const std::uint32_t t = slot / 4;
+  const Edge h = 3 * t + (slot % 4 == 3 ? 0 : slot % 4);
+  std::vector<Id> ids{mesh_.origin(h), mesh_.target(h), mesh_.apex(h)};
+  if (slot % 4 != 3) ids.push_back(mesh_.apex(mesh_.twin(h)));
+  std::erase(ids, infinite);
+  return ids;
+}
+
+template <class Path, Criterion What>
+Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Repair<Path>& repair) {
+  if (busy_at_ != repair.now()) repairs_ = 0;
+  busy_at_ = repair.now();
+  const Predicates is{repair.elements(), repair.now()};
+  Lawson<Predicates> lawson(mesh_, is, touched_);
+  const std::uint32_t t = slot / 4;
+  const Edge h = 3 * t + (slot % 4 == 3 ? 0 : slot % 4);
+  const auto corners = lawson.corners(h);
+  bool external = What == Criterion::delaunay || std::find(corners.begin(), corners.end(), infinite) != corners.end();
+  // Signs of one instant make flips end. Points that have run through each other may make them go on for ever.
+  bool repaired = ++repairs_ <= 64 + 4 * mesh_.size();
+  if (repaired && slot % 4 != 3 && lawson.flippable(h)) {
+    lawson.flip(h);
+  } else if (repaired) {
+    const std::uint32_t other = mesh_.twin(h) / 3;
+    repaired = turn_back(t, lawson) || (slot % 4 != 3 && turn_back(other, lawson));
+    external = true;
+  }
+  if (!repaired) {
+    rebuild(nobody, repair);
+    return Effect::external;
+  }
+  certify_touched(repair);
+  return external ? Effect::external : Effect::internal;
+}
+
+/// Flips the edge that a triangle has turned over. False if it has not, or there is no such edge.
+template <class Path, Criterion What>
+bool PlaneTriangulationRule<Path, What>::turn_back(std::uint32_t t, Lawson<Predicates>& lawson) {
+  if (!mesh_.finite(t) || lawson.area(t) >= 0) return false;
+  Edge hull_edge = TriangleMesh::none;
+  int hull_edges = 0;
+  for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
+    if (mesh_.apex(mesh_.twin(h)) == infinite) {
+      hull_edge = h;
+      ++hull_edges;
+    } else if (lawson.flippable(h)) {
+      lawson.flip(h);
+      return true;
+    }
+  }
+  if (hull_edges != 1 || !lawson.flippable(hull_edge)) return false;
+  lawson.flip(hull_edge);
+  return true;
+}
+
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::place(Id id, Lawson<Predicates>& lawson) {
+  if (near_ >= mesh_.end_triangle() || !mesh_.in_use(near_)) {
+    near_ = 0;
+    while (!mesh_.in_use(near_)) ++near_;
+  }
+  same_as_[id] = lawson.insert(id, near_);
+  hidden_ += same_as_[id] != nobody;
+  near_ = mesh_.from(vertex(id)) / 3;
+}
+
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::insert(Id id, Repair<Path>& repair) {
+  if (same_as_.size() <= id) same_as_.resize(id + std::size_t{1}, nobody);
+  if (flat()) return rebuild(nobody, repair);
+  const Predicates is{repair.elements(), repair.now()};
+  Lawson<Predicates> lawson(mesh_, is, touched_);
+  place(id, lawson);
+  certify_touched(repair);
+}
+
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::remove(Id id, Repair<Path>& repair) {
+  if (same_as_[id] != nobody) {
+    same_as_[id] = nobody;
+    --hidden_;
+    return;
+  }
+  if (flat()) return;
+  const auto heir = hidden_ == 0 ? same_as_.end() : std::find(same_as_.begin(), same_as_.end(), id);
+  if (heir != same_as_.end()) {
+    const auto next = static_cast<Id>(heir - same_as_.begin());
+    mesh_.rename(id, next);
+    std::replace(same_as_.begin(), same_as_.end(), id, next);
+    same_as_[next] = nobody;
+    --hidden_;
+    const Edge first = mesh_.from(next);
+    Edge h = first;
+    do {
+      touched_.push_back(h / 3);
+      h = mesh_.clockwise(h);
+    } while (h != first);
+    return certify_touched(repair);
+  }
+  const Predicates is{repair.elements(), repair.now()};
+  Lawson<Predicates> lawson(mesh_, is, touched_);
+  const Edge spoke = mesh_.from(id);
+  const Id beside = mesh_.target(spoke) != infinite ? mesh_.target(spoke) : mesh_.apex(spoke);
+  if (!lawson.remove(id)) return rebuild(id, repair);
+  near_ = mesh_.from(beside) / 3;
+  certify_touched(repair);
+}
+
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::rebuild(Id without, Repair<Path>& repair) {
+  const std::uint32_t before = mesh_.end_triangle();
+  rebuilds_ += before != 0;
+  mesh_.clear();
+  touched_.clear();
+  hidden_ = 0;
+  same_as_.assign(repair.elements().end_id(), nobody);
+  std::vector<Id> ids = repair.elements().ids();
+  std::erase(ids, without);
+  // In an order that has nothing to do with where the points are, and is the same on every machine.
+  const auto shuffled = [](Id id) { return (id + 1) * std::uint64_t{0x9e3779b97f4a7c15u} >> 20; };
+  std::sort(ids.begin(), ids.end(), [&](Id a, Id b) { return shuffled(a) < shuffled(b); });
+  const Predicates is{repair.elements(), repair.now()};
+  Lawson<Predicates> lawson(mesh_, is, touched_);
+  if (lawson.begin(ids)) {
+    for (const Id id : ids) {
+      if (!mesh_.contains(id)) place(id, lawson);
+    }
+  }
+  touched_.clear();
+  for (Slot slot = 0; slot < 4 * std::max(before, mesh_.end_triangle()); ++slot) repair.certify(slot);
+}
+
+/// The edges of triangles that have changed, their areas, and those of their neighbours, which depend on whether they are
+/// at the hull.
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::certify_touched(Repair<Path>& repair) {
+  for (const std::uint32_t t : touched_) {
+    for (Slot slot = 4 * t; slot < 4 * t + 4; ++slot) repair.certify(slot);
+    if (!mesh_.in_use(t)) continue;
+    for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
+      const Edge twin = mesh_.twin(h);
+      repair.certify(twin / 3 * 4 + twin % 3);
+      repair.certify(twin / 3 * 4 + 3);
+    }
+  }
+  touched_.clear();
+}
+
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::audit(const MovingSet<Path>& x, double now) const {
+  const auto fail = [](Id id, const char* what) {
+    throw AuditFailure(name + (": id " + std::to_string(id)) + ": " + what);
+  };
+  mesh_.audit();
+  const Predicates is{x, now};
+  std::uint64_t hidden = 0;
+  for (Id id = 0; id < x.end_id() && !flat(); ++id) {
+    const bool has_twin = id < same_as_.size() && same_as_[id] != nobody;
+    hidden += has_twin;
+    if (!x.contains(id)) {
+      if (has_twin || mesh_.contains(id)) fail(id, "is in the triangulation, but not in the set");
+    } else if (has_twin ? mesh_.contains(id) || !mesh_.contains(same_as_[id]) : !mesh_.contains(id)) {
+      fail(id, "has no vertex, or two");
+    } else if (has_twin && !is.same(id, same_as_[id])) {
+      fail(id, "is not where its vertex is");
+    }
+  }
+  if (!flat() && hidden != hidden_) fail(nobody, "the number of points without vertex is another");
+}
+
+}  // namespace kds::structures
