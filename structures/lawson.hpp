@@ -83,13 +83,15 @@ class Lawson {
       flip(victim);
     }
     if (mesh_.size() < 6) return false;
-    std::vector<Edge> edges;
-    for_each_edge(vertex, [&](Edge h) { return edges.push_back(mesh_.twin(TriangleMesh::next(h))), false; });
     for_each_edge(vertex, [&](Edge h) { return touched_.push_back(h / 3), false; });
-    touched_.push_back(mesh_.merge(vertex));
+    mesh_.merge(vertex);
     bool solid = false;
     for (std::uint32_t t = 0; t < mesh_.end_triangle() && !solid; ++t) solid = mesh_.in_use(t) && mesh_.finite(t);
     if (!solid) return false;
+    std::vector<Edge> edges;  // Those of all the triangles that now are where the vertex was.
+    for (const std::uint32_t t : touched_) {
+      if (mesh_.in_use(t)) edges.insert(edges.end(), {3 * t, 3 * t + 1, 3 * t + 2});
+    }
     legalise(std::move(edges));
     return true;
   }

@@ -24,12 +24,15 @@ enum class Criterion { delaunay, hull };
 
 /// Keeps a triangulation of moving points, in which the hull is convex and, if asked for, every edge is Delaunay.
 ///
-/// Certificates: of each edge between finite triangles that it is Delaunay (InCircle); of each vertex of the hull that the
-/// hull turns left there, and of each edge of the hull that the apex of its triangle is inside (Orientation); of each
-/// triangle that it has positive area. As long as the first hold a triangle does not turn over, but several of them can
-/// fail within one spacing of the clock, and the state has to be right then too. Repair: an edge whose certificate
-/// fails is flipped; where flips cannot put right what exact signs find (points that run through each other within one
-/// spacing) the triangulation is built anew at that instant; rebuilds() counts it.
+/// The proof. Each triangle has positive area (Orientation); the hull turns left at each of its vertices (Orientation);
+/// and it goes round once: of its edges, each of which is known to lead to the right or to the left (DirectionOrder), one
+/// stretch leads to the right and one to the left. Then the angles add up so that the triangles around each vertex go
+/// round once too, and so do not overlap anywhere (see docs/framework.md). Each edge is locally Delaunay (InCircle), so
+/// all are [Lawson77]. Without the going round, points that change places within one spacing of the clock could leave
+/// triangles in two layers, every edge of which is Delaunay.
+///
+/// Repair: an edge whose certificate fails is flipped. Where flips cannot put right what exact signs find (points that
+/// run through each other within one spacing) the triangulation is built anew at that instant; rebuilds() counts it.
 ///
 /// Points that are one for good share a vertex. While all points are on one line for good there is no triangle, and
 /// nothing is known of them: flat().
@@ -53,9 +56,11 @@ class PlaneTriangulationRule {
 
   using Orientation = certificates::Orientation<Path>;
   using InCircle = certificates::InCircle<Path>;
-  using Choice = std::variant<std::monostate, Orientation, InCircle>;
+  using Direction = certificates::DirectionOrder<Path, 2>;
+  using Choice = std::variant<std::monostate, Orientation, InCircle, Direction>;
 
-  // Slots 4 t, 4 t + 1, 4 t + 2: the edges of triangle t, each known by the lesser of its half-edges; 4 t + 3: its area.
+  // Slots 4 t, 4 t + 1, 4 t + 2: the edges of triangle t, each known by the lesser of its half-edges; 4 t + 3: its area, or,
+  // if it is infinite, the direction of its edge of the hull.
   Choice certificate(Slot slot, const MovingSet<Path>& x) const;
   std::vector<Id> members(Slot slot) const;
   Effect repair(Slot slot, Repair<Path>& repair);
@@ -66,7 +71,7 @@ class PlaneTriangulationRule {
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(mesh_, same_as_, hidden_, near_, busy_at_, repairs_, rebuilds_);
+    archive(mesh_, heading_, same_as_, hidden_, near_, busy_at_, repairs_, rebuilds_);
   }
 
  private:
@@ -76,12 +81,30 @@ class PlaneTriangulationRule {
     double now;
     int orientation(Id a, Id b, Id c) const { return exact_sign(Orientation{x[a], x[b], x[c]}, now); }
     int in_circle(Id a, Id b, Id c, Id d) const { return exact_sign(InCircle{x[a], x[b], x[c], x[d]}, now); }
-    bool same(Id a, Id b) const {
-      return exact_sign(certificates::DirectionOrder<Path, 2>{x[a], x[b], along_x}, now) == 0 &&
-             exact_sign(certificates::DirectionOrder<Path, 2>{x[a], x[b], along_y}, now) == 0;
+    int order(Id a, Id b, const std::array<double, 2>& along) const {
+      return exact_sign(Direction{x[a], x[b], along}, now);
     }
-    static constexpr std::array<double, 2> along_x{1, 0}, along_y{0, 1};
+    bool same(Id a, Id b) const { return order(a, b, along_x) == 0 && order(a, b, along_y) == 0; }
   };
+  static constexpr std::array<double, 2> along_x{1, 0}, along_y{0, 1};
+
+  /// Whither an edge of the hull leads, counter-clockwise; up and down where it is upright for good.
+  enum class Heading : std::int8_t { none, right, left, up, down };
+  static bool is_forward(Heading heading) { return heading == Heading::right || heading == Heading::up; }
+
+  /// The edge of the hull that an infinite triangle is at, counter-clockwise.
+  std::array<Id, 2> hull_edge(std::uint32_t t) const {
+    Edge h = 3 * t;
+    while (mesh_.apex(h) != infinite) ++h;
+    return {mesh_.target(h), mesh_.origin(h)};
+  }
+  Heading heading(std::uint32_t t, const Predicates& is) const {
+    const auto [from, to] = hull_edge(t);
+    if (const int s = is.order(from, to, along_x)) return s > 0 ? Heading::right : Heading::left;
+    return is.order(from, to, along_y) > 0 ? Heading::up : Heading::down;
+  }
+  void find_headings(const Predicates& is);
+  bool hull_goes_round_once() const;
 
   bool has_infinite_neighbour(std::uint32_t t) const {
     for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
@@ -96,6 +119,7 @@ class PlaneTriangulationRule {
   void certify_touched(Repair<Path>& repair);
 
   TriangleMesh mesh_;
+  std::vector<Heading> heading_;  ///< of an infinite triangle
   std::vector<Id> same_as_;   ///< of a point that has no vertex of its own
   std::uint64_t hidden_ = 0;  ///< how many these are
   std::uint32_t near_ = 0;    ///< a triangle to begin walks with
@@ -126,7 +150,13 @@ auto PlaneTriangulationRule<Path, What>::certificate(Slot slot, const MovingSet<
   const std::uint32_t t = slot / 4;
   if (t >= mesh_.end_triangle() || !mesh_.in_use(t)) return {};
   if (slot % 4 == 3) {
-    if (!mesh_.finite(t) || has_infinite_neighbour(t)) return {};
+    if (!mesh_.finite(t)) {
+      const auto [from, to] = hull_edge(t);
+      const bool forward = is_forward(heading_[t]);
+      const bool upright = heading_[t] == Heading::up || heading_[t] == Heading::down;
+      return Direction{x[forward ? from : to], x[forward ? to : from], upright ? along_y : along_x};
+    }
+    if (has_infinite_neighbour(t)) return {};  // It is the apex of an edge of the hull.
     return Orientation{x[mesh_.origin(3 * t)], x[mesh_.origin(3 * t + 1)], x[mesh_.origin(3 * t + 2)]};
   }
   const Edge h = 3 * t + slot % 4;
@@ -158,23 +188,53 @@ Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Repair<Path>& repai
   Lawson<Predicates> lawson(mesh_, is, touched_);
   const std::uint32_t t = slot / 4;
   const Edge h = 3 * t + (slot % 4 == 3 ? 0 : slot % 4);
-  const auto corners = lawson.corners(h);
-  bool external = What == Criterion::delaunay || std::find(corners.begin(), corners.end(), infinite) != corners.end();
   // Signs of one instant make flips end. Points that have run through each other may make them go on for ever.
   bool repaired = ++repairs_ <= 64 + 4 * mesh_.size();
-  if (repaired && slot % 4 != 3 && lawson.flippable(h)) {
+  const bool turned = !mesh_.finite(t) && slot % 4 == 3;
+  if (repaired && turned) {
+    heading_[t] = heading(t, is);
+  } else if (repaired && slot % 4 != 3 && lawson.flippable(h)) {
     lawson.flip(h);
   } else if (repaired) {
     const std::uint32_t other = mesh_.twin(h) / 3;
     repaired = turn_back(t, lawson) || (slot % 4 != 3 && turn_back(other, lawson));
-    external = true;
   }
-  if (!repaired) {
-    rebuild(nobody, repair);
-    return Effect::external;
+  bool at_hull = turned;
+  for (const std::uint32_t touched : touched_) at_hull = at_hull || !mesh_.finite(touched);
+  const bool external = !turned && (What == Criterion::delaunay || at_hull);
+  if (repaired) certify_touched(repair);
+  if (repaired && at_hull && !hull_goes_round_once()) {  // More edges may have turned at this time.
+    find_headings(is);
+    for (std::uint32_t i = 0; i < mesh_.end_triangle(); ++i) {
+      if (mesh_.in_use(i) && !mesh_.finite(i)) repair.certify(4 * i + 3);
+    }
+    repaired = hull_goes_round_once();
   }
-  certify_touched(repair);
-  return external ? Effect::external : Effect::internal;
+  if (repaired) return external ? Effect::external : Effect::internal;
+  rebuild(nobody, repair);
+  return Effect::external;
+}
+
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::find_headings(const Predicates& is) {
+  heading_.resize(mesh_.end_triangle(), Heading::none);
+  for (std::uint32_t t = 0; t < mesh_.end_triangle(); ++t) {
+    if (mesh_.in_use(t) && !mesh_.finite(t)) heading_[t] = heading(t, is);
+  }
+}
+
+/// By what is known of its edges. O(points of the hull), no arithmetic.
+template <class Path, Criterion What>
+bool PlaneTriangulationRule<Path, What>::hull_goes_round_once() const {
+  int changes = 0;
+  const Edge first = mesh_.from(infinite);
+  Edge h = first;
+  do {
+    const Edge next = mesh_.clockwise(h);
+    changes += is_forward(heading_[h / 3]) != is_forward(heading_[next / 3]);
+    h = next;
+  } while (h != first);
+  return changes == 2;
 }
 
 /// Flips the edge that a triangle has turned over. False if it has not, or there is no such edge.
@@ -271,14 +331,18 @@ void PlaneTriangulationRule<Path, What>::rebuild(Id without, Repair<Path>& repai
     }
   }
   touched_.clear();
+  find_headings(is);
   for (Slot slot = 0; slot < 4 * std::max(before, mesh_.end_triangle()); ++slot) repair.certify(slot);
 }
 
-/// The edges of triangles that have changed, their areas, and those of their neighbours, which depend on whether they are
+/// The edges of triangles that have changed, their areas or headings, and those of their neighbours, which depend on whether they are
 /// at the hull.
 template <class Path, Criterion What>
 void PlaneTriangulationRule<Path, What>::certify_touched(Repair<Path>& repair) {
+  const Predicates is{repair.elements(), repair.now()};
+  heading_.resize(mesh_.end_triangle(), Heading::none);
   for (const std::uint32_t t : touched_) {
+    if (mesh_.in_use(t) && !mesh_.finite(t)) heading_[t] = heading(t, is);
     for (Slot slot = 4 * t; slot < 4 * t + 4; ++slot) repair.certify(slot);
     if (!mesh_.in_use(t)) continue;
     for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
@@ -296,6 +360,7 @@ void PlaneTriangulationRule<Path, What>::audit(const MovingSet<Path>& x, double 
     throw AuditFailure(name + (": id " + std::to_string(id)) + ": " + what);
   };
   mesh_.audit();
+  if (!flat() && !hull_goes_round_once()) fail(nobody, "the hull does not go round once");
   const Predicates is{x, now};
   std::uint64_t hidden = 0;
   for (Id id = 0; id < x.end_id() && !flat(); ++id) {
