@@ -12,6 +12,7 @@
 #include <iterator>
 #include <optional>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -39,6 +40,19 @@ class Repair {
   /// The slot is given up: it will not be asked for.
   void retire(Slot slot) { mark(slot, Mark::retire); }
 
+  /// For rules made of rules: while `part` runs, its slot s is the slot first + stride * s of the whole.
+  template <class Part>
+  auto nested(Slot first, Slot stride, Part&& part) {
+    const Slot first_before = std::exchange(first_, first_ + stride_ * first);
+    const Slot stride_before = std::exchange(stride_, stride_ * stride);
+    const auto result = part();
+    first_ = first_before;
+    stride_ = stride_before;
+    return result;
+  }
+  /// The slots marked so far, in the numbering of the whole.
+  const std::vector<Slot>& marked() const { return marked_; }
+
  private:
   template <class, class, EventQueue, class>
   friend class Kinetic;
@@ -47,6 +61,7 @@ class Repair {
   explicit Repair(const MovingSet<E>& elements) : elements_(elements) {}
 
   void mark(Slot slot, Mark what) {
+    slot = first_ + stride_ * slot;
     if (slot >= marks_.size()) marks_.resize(slot + std::size_t{1}, Mark::none);
     if (marks_[slot] == Mark::none) marked_.push_back(slot);
     marks_[slot] = what;
@@ -56,6 +71,8 @@ class Repair {
   std::vector<Slot> marked_;
   std::vector<Mark> marks_;
   double now_ = 0;
+  Slot first_ = 0;
+  Slot stride_ = 1;
 };
 
 namespace detail {

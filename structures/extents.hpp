@@ -4,14 +4,13 @@
 #include "certificates/direction_order.hpp"
 #include "kds/audit.hpp"
 #include "kds/kinetic.hpp"
+#include "structures/bracket.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,7 +30,7 @@ inline std::vector<std::array<double, 3>> kdop_directions(int k) {
 
 /// Keeps, for each of m directions, the foremost and the hindmost of moving points: the extents that bound the set.
 ///
-/// A binary tournament for each end of each direction, over the same entrants. When a match's certificate fails it is
+/// A binary tournament for each end of each direction. When a match's certificate fails it is
 /// played again, and so are those above it as long as the winner is another. Papers: [Basch99] section 3.2; for k-DOPs
 /// that move [Coming06].
 ///
@@ -57,6 +56,7 @@ class ExtentsRule {
       }
       if (zero) throw std::invalid_argument("Extents: a direction must not be zero");
     }
+    brackets_.resize(2 * directions_.size());
   }
 
   const std::vector<Direction>& directions() const { return directions_; }
@@ -70,122 +70,68 @@ class ExtentsRule {
     return {value(direction, points[*hindmost(direction)], t), value(direction, points[*foremost(direction)], t)};
   }
 
-  // A slot is a match of a bracket ("lane"): matches 1 .. capacity - 1 in heap order, entrant i at capacity + i.
+  // A slot is a match of one of the brackets: match * 2 m + bracket.
   std::optional<certificates::DirectionOrder<Path, Dimension>> certificate(Slot slot, const MovingSet<Path>& x) const {
-    const auto [node, lane] = match(slot);
-    if (node == 0 || !is_played(node, lane)) return std::nullopt;
-    return in_order(x[loser(node, lane)], x[winner_of(node, lane)], lane);
+    const auto [match, i] = place(slot);
+    if (!brackets_[i].two_play(match)) return std::nullopt;
+    return in_order(x[brackets_[i].loser(match)], x[brackets_[i].winner(match)], i);
   }
   std::array<Id, 2> members(Slot slot) const {
-    const auto [node, lane] = match(slot);
-    return {loser(node, lane), winner_of(node, lane)};
+    const auto [match, i] = place(slot);
+    return {brackets_[i].loser(match), brackets_[i].winner(match)};
   }
 
   Effect repair(Slot slot, Repair<Path>& repair) {
-    const auto [node, lane] = match(slot);
-    const Id before = winner_of(1, lane);
-    climb(node, lane, nobody, repair);
-    return winner_of(1, lane) != before ? Effect::external : Effect::internal;
+    const auto [match, i] = place(slot);
+    const Id before = brackets_[i].winner();
+    brackets_[i].climb(match, nobody, beats(i, repair), marks(i, repair));
+    return brackets_[i].winner() != before ? Effect::external : Effect::internal;
   }
+  void insert(Id id, Repair<Path>& repair) { set(id, true, repair); }
+  void remove(Id id, Repair<Path>& repair) { set(id, false, repair); }
+  void change(Id id, Repair<Path>& repair) { set(id, true, repair); }
 
-  void insert(Id id, Repair<Path>& repair) {
-    if (id >= capacity_) grow(repair);
-    entrants_[id] = id;
-    change(id, repair);
-  }
-  void remove(Id id, Repair<Path>& repair) {
-    entrants_[id] = nobody;
-    change(id, repair);
-  }
-  void change(Id id, Repair<Path>& repair) {
-    for (std::size_t lane = 0; lane < lanes(); ++lane) climb((capacity_ + id) / 2, lane, id, repair);
-  }
-  void build(Repair<Path>& repair) {
-    for (const Id id : repair.elements().ids()) {
-      if (id >= entrants_.size()) entrants_.resize(id + std::size_t{1}, nobody);
-      entrants_[id] = id;
-    }
-    if (!entrants_.empty()) grow(repair);
-  }
-
-  void audit(const MovingSet<Path>& x, double now) const {
-    const auto fail = [](std::size_t node, std::size_t lane, const char* what) {
-      throw AuditFailure("Extents: match " + std::to_string(node) + " of bracket " + std::to_string(lane) + ": " + what);
-    };
-    for (Id id = 0; id < entrants_.size(); ++id) {
-      if ((entrants_[id] != nobody) != x.contains(id)) fail(capacity_ + id, 0, "an entrant is missing or gone");
-    }
-    for (std::size_t node = 1; node < capacity_; ++node) {
-      for (std::size_t lane = 0; lane < lanes(); ++lane) {
-        const Id left = winner_of(2 * node, lane), right = winner_of(2 * node + 1, lane), won = winner_of(node, lane);
-        if (won != left && won != right) fail(node, lane, "the winner did not play");
-        if (won == nobody && left != right) fail(node, lane, "the only entrant has not won");
+  void audit(const MovingSet<Path>& x, double /*now*/) const {
+    for (const Bracket& bracket : brackets_) {
+      bracket.audit(name);
+      for (Id id = 0; id < x.end_id(); ++id) {
+        if (bracket.contains(id) != x.contains(id)) throw AuditFailure("Extents: an entrant is missing or gone");
       }
     }
-    static_cast<void>(now);
   }
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(directions_, entrants_, winner_, capacity_);
+    archive(directions_, brackets_);
   }
 
  private:
-  std::size_t lanes() const { return 2 * directions_.size(); }
-  std::pair<std::size_t, std::size_t> match(Slot slot) const { return {slot / lanes(), slot % lanes()}; }
-  Slot slot(std::size_t node, std::size_t lane) const { return static_cast<Slot>(node * lanes() + lane); }
-
-  std::optional<Id> winner(std::size_t lane) const {
-    if (capacity_ == 0 || winner_of(1, lane) == nobody) return std::nullopt;
-    return winner_of(1, lane);
+  std::pair<std::size_t, std::size_t> place(Slot slot) const {
+    return {slot / brackets_.size(), slot % brackets_.size()};
   }
 
-  Id winner_of(std::size_t node, std::size_t lane) const {
-    return node < capacity_ ? winner_[node * lanes() + lane] : entrants_[node - capacity_];
-  }
-  Id loser(std::size_t node, std::size_t lane) const {
-    const Id left = winner_of(2 * node, lane);
-    return winner_of(node, lane) == left ? winner_of(2 * node + 1, lane) : left;
-  }
-  bool is_played(std::size_t node, std::size_t lane) const {
-    return winner_of(2 * node, lane) != nobody && winner_of(2 * node + 1, lane) != nobody;
+  std::optional<Id> winner(std::size_t bracket) const {
+    const Id id = brackets_[bracket].winner();
+    return id == nobody ? std::nullopt : std::optional(id);
   }
 
-  /// "The loser is not before the winner": even lanes ask for the foremost, odd ones for the hindmost.
-  certificates::DirectionOrder<Path, Dimension> in_order(const Path& loser, const Path& winner, std::size_t lane) const {
-    const Direction& direction = directions_[lane / 2];
-    if (lane % 2 == 0) return {loser, winner, direction};
+  /// "The loser is not before the winner": even brackets ask for the foremost, odd ones for the hindmost.
+  certificates::DirectionOrder<Path, Dimension> in_order(const Path& loser, const Path& winner, std::size_t i) const {
+    const Direction& direction = directions_[i / 2];
+    if (i % 2 == 0) return {loser, winner, direction};
     return {winner, loser, direction};
   }
-
-  void play(std::size_t node, std::size_t lane, Repair<Path>& repair) {
-    const Id left = winner_of(2 * node, lane);
-    const Id right = winner_of(2 * node + 1, lane);
-    Id& won = winner_[node * lanes() + lane];
-    if (left == nobody || right == nobody) {
-      won = left == nobody ? right : left;
-    } else {
-      won = repair.sign(in_order(repair[right], repair[left], lane)) >= 0 ? left : right;
-    }
-    repair.certify(slot(node, lane));
+  auto beats(std::size_t i, const Repair<Path>& repair) const {
+    return [this, i, &repair](Id left, Id right) { return repair.sign(in_order(repair[right], repair[left], i)) >= 0; };
+  }
+  auto marks(std::size_t i, Repair<Path>& repair) const {
+    return [this, i, &repair](std::size_t match) { repair.certify(static_cast<Slot>(match * brackets_.size() + i)); };
   }
 
-  /// Plays a match, and those above it while what is below them is another: the winner, or the motion of `changed`.
-  void climb(std::size_t node, std::size_t lane, Id changed, Repair<Path>& repair) {
-    for (; node >= 1; node /= 2) {
-      const Id before = winner_of(node, lane);
-      play(node, lane, repair);
-      if (winner_of(node, lane) == before && before != changed && before != nobody) return;
-    }
-  }
-
-  void grow(Repair<Path>& repair) {
-    if (capacity_ == 0) capacity_ = 2;
-    while (capacity_ < repair.elements().end_id()) capacity_ *= 2;
-    entrants_.resize(capacity_, nobody);
-    winner_.assign(capacity_ * lanes(), nobody);
-    for (std::size_t node = capacity_ - 1; node >= 1; --node) {
-      for (std::size_t lane = 0; lane < lanes(); ++lane) play(node, lane, repair);
+  void set(Id id, bool present, Repair<Path>& repair) {
+    for (std::size_t i = 0; i < brackets_.size(); ++i) {
+      brackets_[i].reserve(id + std::size_t{1}, beats(i, repair), marks(i, repair));
+      brackets_[i].set(id, present, beats(i, repair), marks(i, repair));
     }
   }
 
@@ -196,9 +142,7 @@ class ExtentsRule {
   }
 
   std::vector<Direction> directions_;
-  std::vector<Id> entrants_;  ///< of an id: itself, or nobody
-  std::vector<Id> winner_;    ///< of a match in a lane
-  std::size_t capacity_ = 0;
+  std::vector<Bracket> brackets_;
 };
 
 }  // namespace kds::structures

