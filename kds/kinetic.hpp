@@ -12,6 +12,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -203,7 +204,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
   detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
     certified = true;
     if constexpr (Sampled<Element>) {
-      const Conservative conservative{certificate};
+      const Conservative<std::remove_cvref_t<decltype(certificate)>> conservative{certificate};
       schedule_.certify(slot, conservative, last_);
       const double soonest = soonest_sample(slot);
       if (schedule_.contains(slot) && schedule_.time(slot) < soonest) {
@@ -270,7 +271,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
       certified = true;
       if (exact_sign(certificate, now) < 0 && (Sampled<Element> || time > now)) fail(slot, "has failed");
       if constexpr (Sampled<Element>) {
-        const Conservative conservative{certificate};
+        const Conservative<std::remove_cvref_t<decltype(certificate)>> conservative{certificate};
         const double t = failure_time(conservative, now, schedule_.horizon());
         const double latest = std::max(t, soonest_sample(slot));
         if (time > latest && latest <= schedule_.horizon()) fail(slot, "is to be sampled too late");

@@ -1,16 +1,14 @@
 // Kinetic triangulations of moving points in the plane: what Delaunay triangulation and convex hull have in common.
 #pragma once
 
-#include "certificates/direction_order.hpp"
-#include "certificates/in_circle.hpp"
-#include "certificates/orientation.hpp"
 #include "kds/audit.hpp"
 #include "kds/kinetic.hpp"
+#include "structures/hull_headings.hpp"
 #include "structures/lawson.hpp"
+#include "structures/plane_predicates.hpp"
 #include "structures/triangle_mesh.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -73,40 +71,11 @@ class PlaneTriangulationRule {
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(mesh_, heading_, same_as_, hidden_, near_, busy_at_, repairs_, rebuilds_);
+    archive(mesh_, headings_, same_as_, hidden_, near_, busy_at_, repairs_, rebuilds_);
   }
 
  private:
-  /// Signs of one instant.
-  struct Predicates {
-    const MovingSet<Path>& x;
-    double now;
-    int orientation(Id a, Id b, Id c) const { return exact_sign(Orientation{x[a], x[b], x[c]}, now); }
-    int in_circle(Id a, Id b, Id c, Id d) const { return exact_sign(InCircle{x[a], x[b], x[c], x[d]}, now); }
-    int order(Id a, Id b, const std::array<double, 2>& along) const {
-      return exact_sign(Direction{x[a], x[b], along}, now);
-    }
-    bool same(Id a, Id b) const { return order(a, b, along_x) == 0 && order(a, b, along_y) == 0; }
-  };
-  static constexpr std::array<double, 2> along_x{1, 0}, along_y{0, 1};
-
-  /// Whither an edge of the hull leads, counter-clockwise; up and down where it is upright for good.
-  enum class Heading : std::int8_t { none, right, left, up, down };
-  static bool is_forward(Heading heading) { return heading == Heading::right || heading == Heading::up; }
-
-  /// The edge of the hull that an infinite triangle is at, counter-clockwise.
-  std::array<Id, 2> hull_edge(std::uint32_t t) const {
-    Edge h = 3 * t;
-    while (mesh_.apex(h) != infinite) ++h;
-    return {mesh_.target(h), mesh_.origin(h)};
-  }
-  Heading heading(std::uint32_t t, const Predicates& is) const {
-    const auto [from, to] = hull_edge(t);
-    if (const int s = is.order(from, to, along_x)) return s > 0 ? Heading::right : Heading::left;
-    return is.order(from, to, along_y) > 0 ? Heading::up : Heading::down;
-  }
-  void find_headings(const Predicates& is);
-  bool hull_goes_round_once() const;
+  using Predicates = PlanePredicates<Path>;
 
   bool has_infinite_neighbour(std::uint32_t t) const {
     for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
@@ -115,13 +84,14 @@ class PlaneTriangulationRule {
     return false;
   }
 
+  bool look_round(const Predicates& is, Repair<Path>& repair);
   bool turn_back(std::uint32_t t, Lawson<Predicates>& lawson);
   void place(Id id, Lawson<Predicates>& lawson);
   void rebuild(Id without, Repair<Path>& repair);
   void certify_touched(Repair<Path>& repair);
 
   TriangleMesh mesh_;
-  std::vector<Heading> heading_;  ///< of an infinite triangle
+  HullHeadings headings_;
   std::vector<Id> same_as_;   ///< of a point that has no vertex of its own
   std::uint64_t hidden_ = 0;  ///< how many these are
   std::uint32_t near_ = 0;    ///< a triangle to begin walks with
@@ -152,12 +122,7 @@ auto PlaneTriangulationRule<Path, What>::certificate(Slot slot, const MovingSet<
   const std::uint32_t t = slot / 4;
   if (t >= mesh_.end_triangle() || !mesh_.in_use(t)) return {};
   if (slot % 4 == 3) {
-    if (!mesh_.finite(t)) {
-      const auto [from, to] = hull_edge(t);
-      const bool forward = is_forward(heading_[t]);
-      const bool upright = heading_[t] == Heading::up || heading_[t] == Heading::down;
-      return Direction{x[forward ? from : to], x[forward ? to : from], upright ? along_y : along_x};
-    }
+    if (!mesh_.finite(t)) return headings_.certificate(mesh_, t, x);
     if (has_infinite_neighbour(t)) return {};  // It is the apex of an edge of the hull.
     return Orientation{x[mesh_.origin(3 * t)], x[mesh_.origin(3 * t + 1)], x[mesh_.origin(3 * t + 2)]};
   }
@@ -194,7 +159,7 @@ Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Repair<Path>& repai
   bool repaired = ++repairs_ <= 64 + 4 * mesh_.size();
   const bool turned = !mesh_.finite(t) && slot % 4 == 3;
   if (repaired && turned) {
-    heading_[t] = heading(t, is);
+    headings_.find(mesh_, t, is);
   } else if (repaired && slot % 4 != 3 && lawson.flippable(h)) {
     lawson.flip(h);
   } else if (repaired) {
@@ -205,38 +170,21 @@ Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Repair<Path>& repai
   for (const std::uint32_t touched : touched_) at_hull = at_hull || !mesh_.finite(touched);
   const bool external = !turned && (What == Criterion::delaunay || at_hull);
   if (repaired) certify_touched(repair);
-  if (repaired && at_hull && !hull_goes_round_once()) {  // More edges may have turned at this time.
-    find_headings(is);
-    for (std::uint32_t i = 0; i < mesh_.end_triangle(); ++i) {
-      if (mesh_.in_use(i) && !mesh_.finite(i)) repair.certify(4 * i + 3);
-    }
-    repaired = hull_goes_round_once();
-  }
+  if (repaired && at_hull && !headings_.go_round_once(mesh_)) repaired = look_round(is, repair);
   if (repaired) return external ? Effect::external : Effect::internal;
   rebuild(nobody, repair);
   return Effect::external;
 }
 
+/// What all edges of the hull are now: more of them may have turned at this time. False if it does not go round once.
 template <class Path, Criterion What>
-void PlaneTriangulationRule<Path, What>::find_headings(const Predicates& is) {
-  heading_.resize(mesh_.end_triangle(), Heading::none);
+bool PlaneTriangulationRule<Path, What>::look_round(const Predicates& is, Repair<Path>& repair) {
   for (std::uint32_t t = 0; t < mesh_.end_triangle(); ++t) {
-    if (mesh_.in_use(t) && !mesh_.finite(t)) heading_[t] = heading(t, is);
+    if (!mesh_.in_use(t) || mesh_.finite(t)) continue;
+    headings_.find(mesh_, t, is);
+    repair.certify(4 * t + 3);
   }
-}
-
-/// By what is known of its edges. O(points of the hull), no arithmetic.
-template <class Path, Criterion What>
-bool PlaneTriangulationRule<Path, What>::hull_goes_round_once() const {
-  int changes = 0;
-  const Edge first = mesh_.from(infinite);
-  Edge h = first;
-  do {
-    const Edge next = mesh_.clockwise(h);
-    changes += is_forward(heading_[h / 3]) != is_forward(heading_[next / 3]);
-    h = next;
-  } while (h != first);
-  return changes == 2;
+  return headings_.go_round_once(mesh_);
 }
 
 /// Flips the edge that a triangle has turned over. False if it has not, or there is no such edge.
@@ -333,7 +281,7 @@ void PlaneTriangulationRule<Path, What>::rebuild(Id without, Repair<Path>& repai
     }
   }
   touched_.clear();
-  find_headings(is);
+  if (!flat()) look_round(is, repair);
   for (Slot slot = 0; slot < 4 * std::max(before, mesh_.end_triangle()); ++slot) repair.certify(slot);
 }
 
@@ -342,9 +290,8 @@ void PlaneTriangulationRule<Path, What>::rebuild(Id without, Repair<Path>& repai
 template <class Path, Criterion What>
 void PlaneTriangulationRule<Path, What>::certify_touched(Repair<Path>& repair) {
   const Predicates is{repair.elements(), repair.now()};
-  heading_.resize(mesh_.end_triangle(), Heading::none);
   for (const std::uint32_t t : touched_) {
-    if (mesh_.in_use(t) && !mesh_.finite(t)) heading_[t] = heading(t, is);
+    if (mesh_.in_use(t) && !mesh_.finite(t)) headings_.find(mesh_, t, is);
     for (Slot slot = 4 * t; slot < 4 * t + 4; ++slot) repair.certify(slot);
     if (!mesh_.in_use(t)) continue;
     for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
@@ -362,7 +309,7 @@ void PlaneTriangulationRule<Path, What>::audit(const MovingSet<Path>& x, double 
     throw AuditFailure(name + (": id " + std::to_string(id)) + ": " + what);
   };
   mesh_.audit();
-  if (!flat() && !hull_goes_round_once()) fail(nobody, "the hull does not go round once");
+  if (!flat() && !headings_.go_round_once(mesh_)) fail(nobody, "the hull does not go round once");
   const Predicates is{x, now};
   std::uint64_t hidden = 0;
   for (Id id = 0; id < x.end_id() && !flat(); ++id) {

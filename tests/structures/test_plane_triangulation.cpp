@@ -303,3 +303,53 @@ TEST_CASE("the walk of a small triangulation through edits of all kinds ends now
   }
   CHECK(wrong == 0);
 }
+
+TEST_CASE("a Delaunay triangulation of sampled points is that of the truth where it is guaranteed", "[delaunay][bounded]") {
+  using certificates::BoundedPoint;
+  const std::uint64_t seed = 880;
+  CAPTURE(seed);
+  Random random(seed);
+  const Id n = 12;
+  std::vector<std::array<double, 4>> orbit(n);  // centre, radius, frequency: known to the sampler only
+  for (auto& o : orbit) {
+    o = {random.between(-1, 1), random.between(-1, 1), random.between(0, 0.1), random.between(-0.5, 0.5)};
+  }
+  const auto truth = [&](Id id, double t) {
+    const auto [x, y, r, w] = orbit[id];
+    return std::array{x + r * std::cos(w * t), y + r * std::sin(w * t)};
+  };
+  const auto sample = [&](Id id, double t) {
+    return BoundedPoint{truth(id, t), orbit[id][2] * std::abs(orbit[id][3]), t};
+  };
+  MovingSet<BoundedPoint> set;
+  const double tick = 0.02, end = 8;
+  set.sample_with(sample, tick);
+  for (Id id = 0; id < n; ++id) set.insert(id, sample(id, 0), 0);
+  Kinetic<DelaunayRule<BoundedPoint>> delaunay(set, 0);
+  Simulator simulator(0, delaunay);
+  int wrong = 0, guaranteed = 0, edges = 0;
+  for (double t = 0.125; t <= end; t += 0.125) {
+    simulator.advance_to(t);
+    simulator.audit();
+    const TriangleMesh& mesh = delaunay.rule().mesh();
+    MovingSet<PlaneMotion<0>> real;
+    for (Id id = 0; id < n; ++id) real.insert(id, {{{{{truth(id, t)[0]}}, {{truth(id, t)[1]}}}}, t}, t);
+    for (Slot slot = 0; slot < 4 * mesh.end_triangle(); ++slot) {
+      kds::detail::with_certificate(delaunay.rule().certificate(slot, set), [&](const auto& certificate) {
+        using C = std::remove_cvref_t<decltype(certificate)>;
+        if constexpr (std::is_same_v<C, certificates::InCircle<BoundedPoint>>) {
+          ++edges;
+          if (sign_after(Conservative<C>{certificate}, t) < 0) return;
+          ++guaranteed;
+          const auto id = [&](const BoundedPoint& p) { return static_cast<Id>(&p - &set[0]); };
+          const Id a = id(certificate.a), b = id(certificate.b), c = id(certificate.c), d = id(certificate.d);
+          wrong += sign_after(certificates::InCircle<PlaneMotion<0>>{real[a], real[b], real[c], real[d]}, t) < 0;
+        }
+      });
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(guaranteed > 0.9 * edges);
+  CHECK(set.samples() > n);
+  CHECK(set.samples() < 0.5 * n * end / tick);  // Sampling everything every tick takes n end / tick.
+}

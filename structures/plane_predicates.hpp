@@ -1,0 +1,38 @@
+// What is asked of points in the plane at an instant, answered by the exact signs of certificates.
+#pragma once
+
+#include "certificates/direction_order.hpp"
+#include "certificates/in_circle.hpp"
+#include "certificates/orientation.hpp"
+#include "kds/bounded.hpp"
+#include "kds/moving_set.hpp"
+
+#include <array>
+
+namespace kds::structures {
+
+inline constexpr std::array<double, 2> along_x{1, 0};
+inline constexpr std::array<double, 2> along_y{0, 1};
+
+/// Signs at now+; those of sampled points are of their samples. A sign is 0 only if what it asks is degenerate for good.
+template <class Path>
+struct PlanePredicates {
+  const MovingSet<Path>& x;
+  double now;
+
+  /// > 0 if a, b, c turn counter-clockwise.
+  int orientation(Id a, Id b, Id c) const {
+    return exact_sign(certificates::Orientation<Path>{x[a], x[b], x[c]}, now);
+  }
+  /// < 0 if d is inside the circle through a, b, c, which turn counter-clockwise.
+  int in_circle(Id a, Id b, Id c, Id d) const {
+    return exact_sign(certificates::InCircle<Path>{x[a], x[b], x[c], x[d]}, now);
+  }
+  /// > 0 if b is farther in a direction than a.
+  int order(Id a, Id b, const std::array<double, 2>& along) const {
+    return exact_sign(certificates::DirectionOrder<Path, 2>{x[a], x[b], along}, now);
+  }
+  bool same(Id a, Id b) const { return order(a, b, along_x) == 0 && order(a, b, along_y) == 0; }
+};
+
+}  // namespace kds::structures
