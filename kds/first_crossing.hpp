@@ -177,16 +177,19 @@ inline int exponent_of(double x) {
 inline double power_of_two(int e) { return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52); }
 
 /// A power of two near the least x at which a negative term comes up to the constant one, or near the end if that is
-/// earlier. A guess of where things happen; nothing rests on it.
+/// earlier. A guess of where things happen; nothing rests on it. Where the constant term may be zero (two things that have
+/// just met) it says nothing of what comes, and the linear one takes its place.
 template <int Degree>
 int scale_exponent(const Polynomial<Degree, Ball<double>>& p, double end) {
   constexpr int most = 100;  // so that no power up to the eighth overflows
   int scale = end < 0x1p100 ? exponent_of(end) + 1 : most;
-  const int constant = exponent_of(p.c[0].middle);
+  const int met = Degree > 1 && std::abs(p.c[0].middle) <= p.c[0].radius ? 1 : 0;
+  const int constant = exponent_of(p.c[static_cast<std::size_t>(met)].middle);
   unrolled<Degree>([&](auto below) {
     constexpr int i = static_cast<int>(below) + 1;
-    const int reach = ((constant - exponent_of(p.c[i].middle)) * (65536 / i)) >> 16;
-    scale = std::min(scale, p.c[i].middle < 0 ? reach : most);
+    const int share = met == 1 ? 65536 / std::max(i - 1, 1) : 65536 / i;
+    const int reach = ((constant - exponent_of(p.c[i].middle)) * share) >> 16;
+    scale = std::min(scale, p.c[i].middle < 0 && i > met ? reach : most);
   });
   return scale == most ? 0 : std::max(scale, -most);
 }

@@ -84,6 +84,13 @@ class PlaneTriangulationRule {
     return false;
   }
 
+  /// The triangle on the other side of the hull from an infinite one; a finite one gives itself.
+  std::uint32_t behind(std::uint32_t t) const {
+    for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
+      if (mesh_.apex(h) == infinite) return mesh_.twin(h) / 3;
+    }
+    return t;
+  }
   bool look_round(const Predicates& is, Repair<Path>& repair);
   bool turn_back(std::uint32_t t, Lawson<Predicates>& lawson);
   void place(Id id, Lawson<Predicates>& lawson);
@@ -164,7 +171,7 @@ Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Repair<Path>& repai
     lawson.flip(h);
   } else if (repaired) {
     const std::uint32_t other = mesh_.twin(h) / 3;
-    repaired = turn_back(t, lawson) || (slot % 4 != 3 && turn_back(other, lawson));
+    repaired = turn_back(t, lawson) || (slot % 4 != 3 && (turn_back(other, lawson) || turn_back(behind(t), lawson)));
   }
   bool at_hull = turned;
   for (const std::uint32_t touched : touched_) at_hull = at_hull || !mesh_.finite(touched);
@@ -285,19 +292,24 @@ void PlaneTriangulationRule<Path, What>::rebuild(Id without, Repair<Path>& repai
   for (Slot slot = 0; slot < 4 * std::max(before, mesh_.end_triangle()); ++slot) repair.certify(slot);
 }
 
-/// The edges of triangles that have changed, their areas or headings, and those of their neighbours, which depend on whether they are
-/// at the hull.
+/// The edges of triangles that have changed, their areas or headings. At the hull also the areas of their neighbours,
+/// which are certified only while they are not at the hull.
 template <class Path, Criterion What>
 void PlaneTriangulationRule<Path, What>::certify_touched(Repair<Path>& repair) {
   const Predicates is{repair.elements(), repair.now()};
+  bool at_hull = false;
   for (const std::uint32_t t : touched_) {
-    if (mesh_.in_use(t) && !mesh_.finite(t)) headings_.find(mesh_, t, is);
+    if (!mesh_.in_use(t) || mesh_.finite(t)) continue;
+    headings_.find(mesh_, t, is);
+    at_hull = true;
+  }
+  for (const std::uint32_t t : touched_) {
     for (Slot slot = 4 * t; slot < 4 * t + 4; ++slot) repair.certify(slot);
     if (!mesh_.in_use(t)) continue;
     for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
       const Edge twin = mesh_.twin(h);
       repair.certify(twin / 3 * 4 + twin % 3);
-      repair.certify(twin / 3 * 4 + 3);
+      if (at_hull) repair.certify(twin / 3 * 4 + 3);
     }
   }
   touched_.clear();

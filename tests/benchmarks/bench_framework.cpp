@@ -1,0 +1,162 @@
+// What the framework costs, and what its structures do: CSV.
+//
+// First the sorted list of the framework (examples/list_in_forty_lines.hpp) against the tuned one (structures/sorted_list.hpp)
+// on the same values: CPU time a swap as a ratio, the two run in turn, median of ROUNDS (the first argument, 9). Then each
+// structure of the family on n points with random positions in a unit square and speeds up to 1, run for a while: events,
+// the four measures, and CPU time an event as a ratio to that of a swap of the tuned list of as many values.
+#include "certificates/plane_motion.hpp"
+#include "examples/list_in_forty_lines.hpp"
+#include "kds/kinetic.hpp"
+#include "kds/simulator.hpp"
+#include "structures/closest_pair.hpp"
+#include "structures/convex_hull.hpp"
+#include "structures/delaunay.hpp"
+#include "structures/extents.hpp"
+#include "structures/heap.hpp"
+#include "structures/sorted_list.hpp"
+#include "tests/benchmarks/thread_time.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+namespace {
+
+using namespace kds;
+using kds::benchmarks::thread_seconds;
+using kds::tests::Random;
+
+template <int Degree>
+Motion<Degree> random_value(Random& random) {
+  Motion<Degree> motion;
+  motion.position.c[0] = random.unit();
+  for (std::size_t i = 1; i <= Degree; ++i) motion.position.c[i] = random.between(-1, 1);
+  return motion;
+}
+
+template <int Degree>
+certificates::PlaneMotion<Degree> random_path(Random& random) {
+  const auto x = random_value<Degree>(random);
+  const auto y = random_value<Degree>(random);
+  return {{x.position, y.position}, 0};
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+struct Cost {
+  double seconds;
+  std::uint64_t events;
+  double per_event() const { return seconds / static_cast<double>(events); }
+};
+
+template <class Structure>
+Cost run(Structure& structure, double end) {
+  Simulator simulator(0, structure);
+  const double start = thread_seconds();
+  simulator.advance_to(end);
+  return {thread_seconds() - start, structure.counters().events};
+}
+
+/// Until about 20 n swaps have been made, but at most for a second.
+double duration(Id n) { return std::min(1.0, 100.0 / n); }
+
+template <int Degree>
+Cost tuned_list(Id n, double end) {
+  Random random(n);
+  std::vector<typename structures::SortedList<Degree>::Entry> entries;
+  for (Id id = 0; id < n; ++id) entries.push_back({random_value<Degree>(random), id});
+  structures::SortedList<Degree> list;
+  Simulator simulator(0, list);
+  simulator.set_window(end);
+  list.assign(entries, 0);
+  const double start = thread_seconds();
+  simulator.advance_to(end);
+  return {thread_seconds() - start, list.counters().events};
+}
+
+template <int Degree>
+Cost framework_list(Id n, double end) {
+  Random random(n);
+  MovingSet<Motion<Degree>> set;
+  for (Id id = 0; id < n; ++id) set.insert(id, random_value<Degree>(random), 0);
+  Kinetic<examples::ListRule<Motion<Degree>>> list(set, 0);
+  list.extend_horizon(0, end);
+  return run(list, end);
+}
+
+template <int Degree>
+void compare_lists(Id n, int rounds) {
+  const double end = duration(n);
+  std::vector<double> ratios;
+  std::uint64_t events = 0;
+  for (int round = 0; round < rounds; ++round) {
+    const Cost tuned = tuned_list<Degree>(n, end);
+    const Cost framework = framework_list<Degree>(n, end);
+    if (tuned.events != framework.events) std::abort();
+    events = tuned.events;
+    ratios.push_back(framework.seconds / tuned.seconds);
+  }
+  std::printf("list of the framework / tuned list,%d,%u,%llu,%.2f\n", Degree, n, static_cast<unsigned long long>(events),
+              median(ratios));
+}
+
+/// A structure on random elements, against swaps of a tuned list.
+template <class Rule, class Make>
+void measure(const char* name, int degree, Id n, double end, int rounds, const Rule& rule, Make&& make) {
+  std::vector<double> ratios;
+  Measures m;
+  for (int round = 0; round < rounds; ++round) {
+    Random random(n);
+    MovingSet<typename Rule::Element> set;
+    for (Id id = 0; id < n; ++id) set.insert(id, make(random), 0);
+    Kinetic<Rule> structure(set, 0, rule);
+    structure.extend_horizon(0, end);
+    const Cost cost = run(structure, end);
+    const Cost swaps = tuned_list<1>(n, duration(n));
+    if (cost.events > 0) ratios.push_back(cost.per_event() / swaps.per_event());
+    m = structure.measures();
+  }
+  const auto number = [](std::uint64_t x) { return static_cast<double>(x); };
+  std::printf("%s,%d,%u,%llu,%.2f,%.1f,%llu,%.2f,%llu,%.1f\n", name, degree, n, static_cast<unsigned long long>(m.events),
+              number(m.external) / number(m.events), number(m.touched) / number(m.events),
+              static_cast<unsigned long long>(m.most_touched), number(m.most_held) / n,
+              static_cast<unsigned long long>(m.most_per_element), ratios.empty() ? 0 : median(ratios));
+  std::fflush(stdout);
+}
+
+template <int Degree>
+void measure_plane(Id n, double end, int rounds) {
+  using Path = certificates::PlaneMotion<Degree>;
+  measure("convex hull", Degree, n, end, rounds, structures::ConvexHullRule<Path>{}, random_path<Degree>);
+  measure("Delaunay", Degree, n, end, rounds, structures::DelaunayRule<Path>{}, random_path<Degree>);
+  measure("closest pair", Degree, n, end, rounds, structures::ClosestPairRule<Path>{}, random_path<Degree>);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 9;
+  std::printf("what,degree,n,swaps,time ratio\n");
+  for (const Id n : {100u, 1000u, 10000u}) compare_lists<1>(n, rounds);
+  for (const Id n : {100u, 1000u, 10000u}) compare_lists<2>(n, rounds);
+  std::printf("\nstructure,degree,n,events,external share,certificates/event,most/event,held/n,most/element,"
+              "time of an event / swap of a tuned list\n");
+  const auto value = [](Random& random) { return random_value<1>(random); };
+  const auto path = [](Random& random) { return random_path<1>(random); };
+  using Path = certificates::PlaneMotion<1>;
+  for (const Id n : {100u, 1000u, 10000u}) {
+    measure("heap", 1, n, 1, rounds, structures::HeapRule<structures::ByValue<Motion<1>>>{}, value);
+    measure("extents of 4 directions", 1, n, 1, rounds,
+            structures::ExtentsRule<Path, 2>({{1, 0}, {1, 1}, {0, 1}, {-1, 1}}), path);
+  }
+  for (const Id n : {100u, 1000u}) {
+    measure_plane<1>(n, 0.25, rounds);
+    measure_plane<2>(n, 0.25, rounds);
+  }
+}
