@@ -113,7 +113,7 @@ class Reader : public Archive<Reader> {
   std::size_t at_ = 0;
 };
 
-/// [Fowler] FNV-1a: finds damage, not malice.
+/// FNV-1a: finds damage, not malice.
 inline std::uint64_t checksum(const std::vector<char>& bytes) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;

@@ -22,9 +22,8 @@ namespace kds::structures {
 ///
 /// They are joined by an edge of the Delaunay triangulation [Shamos75], so a tournament of its edges by their lengths finds
 /// them: half of the certificates are those of the triangulation, half say that the loser of a match is not shorter than
-/// its winner. Papers: [Guibas91], [Basch97] for proximity of moving points; differs from the latter, which has a list
-/// for each of six directions in place of the triangulation: certificates of degree 4 and 2 in place of 1 and 2, but
-/// fewer events, for a triangulation changes only where points are neighbours.
+/// its winner. Papers: [Guibas91]; [Basch97], which differs: it finds candidates by sorted lists and cones of 60 degrees,
+/// with certificates of degree 1 and 2 in place of 4 and 2.
 ///
 /// Cost: an event O(log n) certificates, five edges' matches at most (responsive); 5 n certificates of the triangulation
 /// and 3 n matches (compact); locality is that of the triangulation, times log n. External events are changes of the pair.

@@ -10,11 +10,12 @@ namespace kds::structures {
 ///
 /// Papers: [Guibas91], [Basch99]. Certificates of degree 4 for linear, 8 for quadratic paths.
 ///
-/// Cost: an event is a flip, O(1) certificates (responsive: 16 marked at most, 5 in-circle tests among them); at most 5 n
-/// certificates (compact: 3 n edges and 2 n areas); an element is in as many as it has neighbours, three times over (not
-/// local in the worst case, six neighbours on average); every event is a change of the triangulation (efficient).
-/// Insertion O(sqrt n) for the walk and O(neighbours); removal O(neighbours^2); a new motion is a removal and an
-/// insertion. Number of events: nearly quadratic for linear paths [Rubin15].
+/// Cost: an event is a flip, O(1) certificates (responsive: 20 marked at most, 5 in-circle tests among them); at most 5 n
+/// certificates (compact: 3 n edges, 2 n areas and directions of the hull's edges); an element is in some three for each of
+/// its neighbours (not local in the worst case, six neighbours on average); but for edges of the hull that come to lead
+/// another way every event is a change of the triangulation (efficient). Insertion O(sqrt n) for the walk and
+/// O(neighbours); removal O(neighbours^2); a new motion is a removal and an insertion. Number of events: at most nearly
+/// cubic [Guibas91], nearly quadratic where all move at one speed [Rubin15].
 template <class Path>
 using DelaunayRule = PlaneTriangulationRule<Path, Criterion::delaunay>;
 

@@ -32,7 +32,7 @@ inline std::vector<std::array<double, 3>> kdop_directions(int k) {
 ///
 /// A binary tournament for each end of each direction. When a match's certificate fails it is
 /// played again, and so are those above it as long as the winner is another. Papers: [Basch99] section 3.2; for k-DOPs
-/// that move [Coming06].
+/// that move [Coming08].
 ///
 /// Cost for m directions: a change O(m log n), an event O(log n) certificates (responsive); an element plays in at most
 /// 2 m log2 n matches (local); 2 m (n - 1) certificates (compact). External events are changes of an extreme point.
