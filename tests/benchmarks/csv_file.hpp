@@ -1,0 +1,29 @@
+// Figures to a file and to the terminal.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+namespace kds::benchmarks {
+
+/// Opens folder/name for writing and makes the folder; throws std::runtime_error where that fails.
+inline std::ofstream open_csv(const std::filesystem::path& folder, const std::string& name) {
+  std::filesystem::create_directories(folder);
+  std::ofstream file(folder / name);
+  if (!file) throw std::runtime_error("cannot write " + (folder / name).string());
+  return file;
+}
+
+/// One line, as of printf, to the file and to the terminal.
+inline void tell(std::ofstream& file, const char* format, auto... values) {
+  char line[512];
+  std::snprintf(line, sizeof line, format, values...);
+  file << line << std::flush;
+  std::fputs(line, stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace kds::benchmarks

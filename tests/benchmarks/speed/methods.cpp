@@ -1,0 +1,124 @@
+#include "tests/benchmarks/speed/methods.hpp"
+
+#include "examples/kds-collide/run.hpp"
+#include "tests/benchmarks/thread_time.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+
+namespace speed {
+namespace {
+
+using kds::benchmarks::thread_seconds;
+using kds::collision::BodyId;
+using kds::collision::BroadPhaseKind;
+
+std::vector<Method> list_methods() {
+  std::vector<Method> list{
+      {"auto", BroadPhaseKind::kinetic_sap},
+      {"kinetic-sap", BroadPhaseKind::kinetic_sap},
+      {"sap", BroadPhaseKind::sap},
+      {"all-pairs", BroadPhaseKind::all_pairs, 4000},
+  };
+  for (const auto& known : kds_collide::broad_phases()) {
+    const auto same = [&](const Method& m) { return m.name == known.name; };
+    if (std::none_of(list.begin(), list.end(), same)) {
+      throw std::runtime_error("tests/benchmarks/speed/methods.cpp lacks the method " + std::string(known.name));
+    }
+  }
+  return list;
+}
+
+/// Adds up a hash of each event.
+class Hasher final : public kds::collision::WorldListener<1> {
+ public:
+  using World = kds::collision::World<1>;
+
+  Hasher(Outcome& outcome, std::vector<Meeting>* meetings) : outcome_(outcome), meetings_(meetings) {}
+
+  void contact(World&, const kds::collision::PairEvent& e) override {
+    note(1, e.a, e.b, e.contact);
+    if (meetings_) meetings_->push_back({e.contact.time, e.a, e.b});
+  }
+  void separation(World&, const kds::collision::PairEvent& e) override { note(2, e.a, e.b, e.contact); }
+  void overlap(World&, const kds::collision::PairEvent& e) override { note(3, e.a, e.b, e.contact); }
+  void wall(World&, const kds::collision::WallEvent& e) override {
+    note(4, e.body, static_cast<BodyId>(e.wall), e.contact);
+  }
+  void held(World&, const kds::collision::PairEvent& e) override { note(5, e.a, e.b, e.contact); }
+
+ private:
+  static std::uint64_t mix(std::uint64_t h, std::uint64_t x) {
+    h = (h ^ x) * 0x9E3779B97F4A7C15u;
+    return h ^ (h >> 29);
+  }
+  void note(std::uint64_t kind, BodyId a, BodyId b, const kds::collision::Contact& c) {
+    std::uint64_t h = mix(kind, std::uint64_t{a} << 32 | b);
+    h = mix(h, std::bit_cast<std::uint64_t>(c.time));
+    for (int d = 0; d < 3; ++d) {
+      h = mix(h, std::bit_cast<std::uint64_t>(c.point[d]));
+      h = mix(h, std::bit_cast<std::uint64_t>(c.normal[d]));
+    }
+    outcome_.hash += h;
+    ++outcome_.events;
+  }
+
+  Outcome& outcome_;
+  std::vector<Meeting>* meetings_;
+};
+
+}  // namespace
+
+const std::vector<Method>& methods() {
+  static const std::vector<Method> list = list_methods();
+  return list;
+}
+
+const Method& method(const std::string& name) {
+  for (const Method& m : methods()) {
+    if (m.name == name) return m;
+  }
+  throw std::invalid_argument("there is no method " + name);
+}
+
+kds::collision::WorldOptions world_options(const BallScene& scene, const Method& method, const Drive& drive) {
+  kds::collision::WorldOptions options;
+  options.start_time = scene.start_time;
+  options.window = drive.duration;
+  options.response = kds::collision::Response::elastic;
+  options.broad_phase = method.kind;
+  options.rate = drive.rate;
+  options.walls = kds::collision::Walls{Eigen::Vector3d::Zero(), scene.side};
+  return options;
+}
+
+kds::collision::BodyDescription<1> description(const BallScene::Ball& ball) {
+  kds::collision::BodyDescription<1> body;
+  body.shape = kds::collision::Sphere{ball.radius};
+  body.motion = {{{ball.position, ball.velocity}, ball.start}};
+  return body;
+}
+
+Outcome run_method(const BallScene& scene, const Method& method, const Drive& drive, std::vector<Meeting>* meetings) {
+  Outcome outcome;
+  Hasher hasher(outcome, meetings);
+  const double begin = thread_seconds();
+  kds::collision::World<1> world(world_options(scene, method, drive), &hasher);
+  for (const BallScene::Ball& ball : scene.balls) world.add_body(description(ball));
+  world.advance_to(scene.start_time);
+  const double middle = thread_seconds();
+  const double end = scene.start_time + drive.duration;
+  for (std::uint64_t frame = 1;; ++frame) {
+    const double t = scene.start_time + static_cast<double>(frame) / drive.rate;
+    if (!(t < end)) break;
+    world.advance_to(t);
+  }
+  world.advance_to(end);
+  outcome.run = thread_seconds() - middle;
+  outcome.setup = middle - begin;
+  outcome.counters = world.counters();
+  return outcome;
+}
+
+}  // namespace speed
