@@ -59,8 +59,7 @@ std::vector<Target> measure_gas(const Settings& settings) {
     for (const std::size_t n : {std::size_t{1000}, std::size_t{10'000}, std::size_t{100'000}}) {
       if (n > 1000 && settings.quick) continue;
       const BallScene scene = equilibrium(n, packing);
-      // Some 20 000 contacts, whatever the density; a second for the fastest.
-      const double contacts = 20'000;
+      const double contacts = n > 1000 ? 10'000 : 5000;  // about, whatever the density
       Drive drive;
       drive.duration = contacts / (0.5 * static_cast<double>(n) * contact_rate(packing));
       drive.rate = std::max(60.0, 1 / drive.duration);
