@@ -71,7 +71,6 @@ class Trees : public BulletBroadPhase<btDbvtBroadphase> {
     broad_phase_ = std::make_unique<btDbvtBroadphase>();
     broad_phase_->m_deferedcollide = Deferred;
     create(boxes);
-    broad_phase_->optimize();
   }
   Trees(const Trees&) = delete;
   Trees& operator=(const Trees&) = delete;
