@@ -1,21 +1,46 @@
 // Measures in a process of its own, which can be ended.
 #pragma once
 
+#include <poll.h>
 #include <sys/mman.h>
-#include <sys/time.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmath>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <exception>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 
 namespace speed {
+
+/// Waits for a child to end, and ends it when it has used so much CPU time; whether it was ended. Not by a timer of the
+/// child's own: Linux then keeps the clock of its CPU time in steps of some milliseconds.
+inline bool ended_after(double cpu_seconds, pid_t child) {
+  const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
+  if (handle < 0) throw std::runtime_error("pidfd_open: needs Linux 5.3");
+  clockid_t clock{};
+  clock_getcpuclockid(child, &clock);
+  bool ended = false;
+  for (double used = 0; !ended;) {
+    pollfd waiting{handle, POLLIN, 0};
+    const double wait_ms = std::clamp(1e3 * (cpu_seconds - used), 1.0, 60e3);
+    if (poll(&waiting, 1, static_cast<int>(wait_ms)) > 0) break;
+    std::timespec now{};
+    if (clock_gettime(clock, &now) != 0) break;
+    used = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+    ended = used >= cpu_seconds;
+  }
+  if (ended) kill(child, SIGKILL);
+  close(handle);
+  return ended;
+}
 
 /// What `work` returns, computed in a child process; nothing if it needed more than `cpu_seconds`, set-up and all.
 /// Each run begins with the same heap, whatever ran before, and what one takes in memory is gone with it. Throws
@@ -29,10 +54,6 @@ std::optional<Result> isolated(double cpu_seconds, Work work) {
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("no child process");
   if (child == 0) {
-    itimerval limit{};
-    limit.it_value.tv_sec = static_cast<time_t>(cpu_seconds);
-    limit.it_value.tv_usec = static_cast<suseconds_t>(1e6 * (cpu_seconds - std::floor(cpu_seconds))) + 1;
-    setitimer(ITIMER_PROF, &limit, nullptr);  // ends the process by SIGPROF
     int status = 0;
     try {
       new (memory) Result(work());
@@ -42,13 +63,14 @@ std::optional<Result> isolated(double cpu_seconds, Work work) {
     }
     _exit(status);  // without destructors, which belong to the parent
   }
+  const bool too_long = ended_after(cpu_seconds, child);
   int status = 0;
   waitpid(child, &status, 0);
   std::optional<Result> result;
   const bool ended_well = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   if (ended_well) result = *static_cast<const Result*>(memory);
   munmap(memory, sizeof(Result));
-  if (!ended_well && !(WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF)) {
+  if (!ended_well && !too_long) {
     throw std::runtime_error("a measured run failed" +
                              (WIFSIGNALED(status) ? " by signal " + std::to_string(WTERMSIG(status)) : std::string()));
   }

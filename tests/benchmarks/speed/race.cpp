@@ -55,7 +55,7 @@ std::vector<Result> race(const std::vector<Entrant>& entrants, const RaceOptions
       const double once = result.best.total();
       if (result.cut || once > options.hopeless * best || once * round > options.patience) continue;
       const auto times = static_cast<std::size_t>(std::clamp(options.least / once, 1.0, 1000.0));
-      const auto run = isolated(std::numeric_limits<std::int32_t>::max(), [&] { return repeated(entrants[i], times); });
+      const auto run = isolated(std::numeric_limits<double>::infinity(), [&] { return repeated(entrants[i], times); });
       if (!run) throw std::runtime_error(entrants[i].name + ": a run was ended");
       result.best_run = std::min(result.best_run, run->run);
       if (run->total() < once) result.best = *run;
