@@ -9,17 +9,14 @@
 #include <vector>
 
 namespace speed {
-namespace {
 
 using kds::benchmarks::open_csv;
 using kds::benchmarks::tell;
 
-}  // namespace
-
 std::vector<Target> measure_growth(const Settings& settings) {
   auto file = open_csv(settings.folder, "speed-growth.csv");
   tell(file, "bodies,method,setup_us_a_body,run_us_a_body,setup_cpu,run_cpu,peak_mib,contacts,swaps,tests,certificates,"
-             "box_updates,cut\n");
+             "box_updates,instructions,cache_misses,page_faults,cut\n");
   std::vector<std::size_t> sizes{1000, 10'000};
   if (!settings.quick) sizes.insert(sizes.end(), {100'000, 1'000'000});
   double first = 0;
@@ -48,11 +45,13 @@ std::vector<Target> measure_growth(const Settings& settings) {
       const double share = 1e6 / static_cast<double>(n);
       const auto& counters = r.best.counters;
       const auto number = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
-      tell(file, "%zu,%s,%.3f,%.3f,%.6f,%.6f,%.1f,%llu,%llu,%llu,%llu,%llu,%d\n", n, r.name.c_str(),
+      const auto count = [](std::int64_t x) { return static_cast<long long>(x); };
+      tell(file, "%zu,%s,%.3f,%.3f,%.6f,%.6f,%.1f,%llu,%llu,%llu,%llu,%llu,%lld,%lld,%lld,%d\n", n, r.name.c_str(),
            share * r.best.setup, share * r.best_run, r.best.setup, r.best_run,
            static_cast<double>(r.best.peak_bytes) * 0x1p-20, number(r.best.contacts),
            number(counters.broad_phase.swaps), number(r.best.tests), number(counters.broad_phase.certificates),
-           number(counters.broad_phase.box_updates), r.cut);
+           number(counters.broad_phase.box_updates), count(r.best.hardware.instructions),
+           count(r.best.hardware.cache_misses), count(r.best.hardware.page_faults), r.cut);
     }
     last = results.front();
     const double a_body = (last.cut ? last.best.run : last.best.total()) / static_cast<double>(n);

@@ -103,6 +103,7 @@ kds::collision::BodyDescription<1> description(const BallScene::Ball& ball) {
 Outcome run_method(const BallScene& scene, const Method& method, const Drive& drive, std::vector<Meeting>* meetings) {
   Outcome outcome;
   Hasher hasher(outcome, meetings);
+  const HardwareCounters hardware;
   const double begin = thread_seconds();
   kds::collision::World<1> world(world_options(scene, method, drive), &hasher);
   for (const BallScene::Ball& ball : scene.balls) world.add_body(description(ball));
@@ -118,6 +119,7 @@ Outcome run_method(const BallScene& scene, const Method& method, const Drive& dr
   outcome.run = thread_seconds() - middle;
   outcome.setup = middle - begin;
   outcome.counters = world.counters();
+  outcome.hardware = hardware.read();
   return outcome;
 }
 

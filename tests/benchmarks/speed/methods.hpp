@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/world.hpp"
+#include "tests/benchmarks/speed/hardware_counters.hpp"
 #include "tests/benchmarks/speed/scenes.hpp"
 
 #include <cstddef>
@@ -39,6 +40,7 @@ struct Outcome {
   std::uint64_t events = 0;  ///< contacts, walls, overlaps, holds
   std::uint64_t hash = 0;    ///< of all of them, bit by bit; the order of those at one time does not count
   kds::collision::WorldCounters counters;
+  HardwareCounts hardware;   ///< set-up and run
 
   double total() const { return setup + run; }
 };
