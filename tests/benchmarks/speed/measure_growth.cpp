@@ -38,7 +38,7 @@ std::vector<Target> measure_growth(const Settings& settings) {
     }
     RaceOptions race_options;
     race_options.rounds = settings.quick ? 1 : 5;
-    race_options.cap = 30;
+    race_options.cap = 15;
     const auto results = race(entrants, race_options);
     check_agreement(results, std::to_string(n) + " balls");
     for (const Result& r : results) {

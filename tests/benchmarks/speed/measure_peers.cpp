@@ -118,7 +118,7 @@ std::vector<Target> measure_peers(const Settings& settings) {
     RaceOptions race_options;
     race_options.rounds = settings.quick ? 1 : 5;
     race_options.hopeless = 1e9;  // a ratio is wanted, however great
-    race_options.cap = settings.quick ? 5 : 25;
+    race_options.cap = settings.quick ? 5 : 15;
     const auto results = race(entrants(scene, drive, expected), race_options);
     for (const Result& r : results) {
       tell(file, "%zu,%g,%g,%g,%s,%.6f,%.6f,%llu,%llu,%.1e,%llu,%d\n", setting.bodies, setting.packing, setting.rate,

@@ -108,6 +108,7 @@ Outcome run_method(const BallScene& scene, const Method& method, const Drive& dr
   kds::collision::World<1> world(world_options(scene, method, drive), &hasher);
   for (const BallScene::Ball& ball : scene.balls) world.add_body(description(ball));
   world.advance_to(scene.start_time);
+  outcome.after_setup = world.counters();
   const double middle = thread_seconds();
   const double end = scene.start_time + drive.duration;
   for (std::uint64_t frame = 1;; ++frame) {

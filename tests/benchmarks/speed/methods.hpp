@@ -39,8 +39,9 @@ struct Outcome {
   double run = 0;            ///< CPU s from there to the end
   std::uint64_t events = 0;  ///< contacts, walls, overlaps, holds
   std::uint64_t hash = 0;    ///< of all of them, bit by bit; the order of those at one time does not count
-  kds::collision::WorldCounters counters;
-  HardwareCounts hardware;   ///< set-up and run
+  kds::collision::WorldCounters counters;     ///< set-up and run
+  kds::collision::WorldCounters after_setup;  ///< what of it was set-up
+  HardwareCounts hardware;                    ///< set-up and run
 
   double total() const { return setup + run; }
 };

@@ -29,6 +29,7 @@ Run to_run(const Outcome& outcome) {
   run.hash = outcome.hash;
   run.tests = outcome.counters.pair_tests;
   run.counters = outcome.counters;
+  run.after_setup = outcome.after_setup;
   run.hardware = outcome.hardware;
   return run;
 }

@@ -23,6 +23,7 @@ struct Run {
   double worst_time = 0;        ///< s; greatest difference of a contact's time from that expected
   std::uint64_t peak_bytes = 0; ///< memory of the process, where asked for
   kds::collision::WorldCounters counters;
+  kds::collision::WorldCounters after_setup;  ///< of these
   HardwareCounts hardware;
 
   double total() const { return setup + run; }
