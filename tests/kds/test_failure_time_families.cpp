@@ -169,7 +169,11 @@ using Value = PolynomialCertificate<Degree>;
 }  // namespace
 
 TEST_CASE("a root among the doubles is placed by one value, one at a double by an exact sign", "[failure_time]") {
-  const SignCounters ordinary = asked(Value<2>{{{{1, -1, -1}}, 0}});
+  const SignCounters known = asked(Value<2>{{{{1, -1, -1}}, 0}});  // a parabola of known coefficients: not even that
+  CHECK(known.extended == 0);
+  CHECK(known.exact == 0);
+  CHECK(known.searches == 0);
+  const SignCounters ordinary = asked(Value<3>{{{{1, -1, -1, 0}}, 0}});
   CHECK(ordinary.extended == 1);
   CHECK(ordinary.exact == 0);
   CHECK(ordinary.searches == 0);
