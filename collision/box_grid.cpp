@@ -49,6 +49,7 @@ struct BoxGrid::Cells {
 
 BoxGrid::Exponent BoxGrid::level_for(double extent) {
   if (!(extent > 0)) return -most;
+  if (!(extent < 0x1p1023)) return most;
   int exponent = 0;
   std::frexp(extent, &exponent);  // extent < 2^exponent
   return static_cast<Exponent>(std::clamp(exponent, -most, most));

@@ -72,7 +72,7 @@ class BoxGrid {
  private:
   using Exponent = std::int16_t;
   static constexpr Exponent absent = std::numeric_limits<Exponent>::min();
-  static constexpr int most = 1000;  ///< exponents are within +-most: cells are finite, and no bodies are smaller
+  static constexpr int most = 1023;  ///< exponents are within +-most: all space is a few cells of the coarsest
 
   /// Two doubles at a time: one SSE or NEON register.
   using Two = double __attribute__((vector_size(16)));

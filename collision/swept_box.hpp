@@ -64,10 +64,12 @@ StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double fr
   return swept;
 }
 
-/// A box that holds a kinetic box over [from, to].
+/// A box that holds a kinetic box over [from, to], also one whose ends have passed each other.
 template <int Degree>
 StaticBox swept_box(const KineticBox<Degree>& box, double from, double to) {
-  return {swept_point(box.min, from, to).min, swept_point(box.max, from, to).max};
+  const StaticBox low = swept_point(box.min, from, to);
+  const StaticBox high = swept_point(box.max, from, to);
+  return {low.min.min(high.min), low.max.max(high.max)};
 }
 
 }  // namespace kds::collision
