@@ -44,11 +44,12 @@ struct Order {
     double margin;
   };
 
-  /// x(t) in doubles: two values whose difference exceeds the sum of their margins are in the order that they seem to be.
+  /// x(t) in doubles: two values whose difference exceeds the sum of their margins are in the order that they seem to
+  /// be.
   ///
-  /// Error bound: each term goes through at most 3 n + 1 roundings (the time since the start counts n times, Horner's rule
-  /// 2 n, a difference of two values once), n the degree; 32 are charged, of the sum of all terms' magnitudes. Underflow is
-  /// nothing to 2^-1000, and an overflow fails every comparison.
+  /// Error bound: each term goes through at most 3 n + 1 roundings (the time since the start counts n times, Horner's
+  /// rule 2 n, a difference of two values once), n the degree; 32 are charged, of the sum of all terms' magnitudes.
+  /// Underflow is nothing to 2^-1000, and an overflow fails every comparison.
   static RoughValue rough_value(const Motion<Degree>& x, double t) {
     static_assert(Degree <= 8);
     const double elapsed = t - x.start;
@@ -85,8 +86,8 @@ struct Order {
   double straight_failure_time(double now, double horizon) const
     requires(Degree == 1);
 
-  /// The first double not before the root of the line that the difference is and that falls, if not beyond the horizon; a
-  /// NaN where it takes more care.
+  /// The first double not before the root of the line that the difference is and that falls, if not beyond the horizon;
+  /// a NaN where it takes more care.
   double first_past_root(double horizon) const
     requires(Degree >= 1);
 
@@ -224,11 +225,11 @@ double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) 
   return quick_parabola_failure_time<true>(now, horizon);
 }
 
-/// Error bound, with u = 2^-53. A position is c0 + c1 (now - start): its run c1 (now - start) goes through two roundings,
-/// then the sum and the difference of the two positions through one each, so the gap is known to 4.1 u size, and `surely`
-/// is below it with room for its own rounding. Underflow is nothing to a gap of 2^-1000; an overflow leaves an infinity or
-/// a NaN, which fails the test. `fall` is a difference of doubles, so its sign is exact; it, its product and the time left
-/// are rounded by u each, for which the last factor is more than enough.
+/// Error bound, with u = 2^-53. A position is c0 + c1 (now - start): its run c1 (now - start) goes through two
+/// roundings, then the sum and the difference of the two positions through one each, so the gap is known to 4.1 u size,
+/// and `surely` is below it with room for its own rounding. Underflow is nothing to a gap of 2^-1000; an overflow
+/// leaves an infinity or a NaN, which fails the test. `fall` is a difference of doubles, so its sign is exact; it, its
+/// product and the time left are rounded by u each, for which the last factor is more than enough.
 template <int Degree>
 double Order<Degree>::straight_failure_time(double now, double horizon) const
   requires(Degree == 1)

@@ -56,7 +56,8 @@ std::vector<BodyId> KineticSweepAndPrune<Degree>::partners_now(BodyId id, double
   std::vector<BodyId> partners;
   partners_on_lists(id, partners);
   if (listed_ != all_axes) {
-    std::erase_if(partners, [&](BodyId other) { return !unlisted_.met(std::min(id, other), std::max(id, other), now); });
+    std::erase_if(partners,
+                  [&](BodyId other) { return !unlisted_.met(std::min(id, other), std::max(id, other), now); });
   }
   std::sort(partners.begin(), partners.end());
   return partners;
@@ -162,18 +163,21 @@ void KineticSweepAndPrune<Degree>::update_listed_pairs(BodyId id, const KineticB
     list.update(min_end(id), box.min.axis(static_cast<int>(d)), now);
     list.update(max_end(id), box.max.axis(static_cast<int>(d)), now);
     for (const PairChange& change : changes_) {
-      auto it = std::find_if(seen.begin(), seen.end(), [&](const Seen& s) { return s.a == change.a && s.b == change.b; });
+      auto it =
+          std::find_if(seen.begin(), seen.end(), [&](const Seen& s) { return s.a == change.a && s.b == change.b; });
       if (it == seen.end()) it = seen.insert(seen.end(), Seen{change.a, change.b, {}});
       it->apart_changes[d] = !it->apart_changes[d];
     }
   }
   updating_ = false;
   changes_.clear();
-  std::sort(seen.begin(), seen.end(), [](const Seen& x, const Seen& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+  std::sort(seen.begin(), seen.end(),
+            [](const Seen& x, const Seen& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
   for (const Seen& pair : seen) {
     // Each swap of a minimum with a maximum of a pair toggles its overlap on that axis.
     bool before = true;
-    for (std::size_t d = 0; d < 3; ++d) before = before && (overlap_on(lists_[d], pair.a, pair.b) != pair.apart_changes[d]);
+    for (std::size_t d = 0; d < 3; ++d)
+      before = before && (overlap_on(lists_[d], pair.a, pair.b) != pair.apart_changes[d]);
     const bool after = overlap(pair.a, pair.b);
     if (before && !after) listener.pair_ended(pair.a, pair.b, now);
     if (!before && after) listener.pair_began(pair.a, pair.b, now);

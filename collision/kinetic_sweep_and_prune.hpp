@@ -15,20 +15,21 @@ namespace kds::collision {
 /// How many of the three axes have a sorted list.
 enum class ListedAxes { automatic = 0, one = 1, two = 2, three = 3 };
 
-/// Kinetic sorted lists of interval ends, one for each listed axis; a swap of a minimum with a maximum begins or ends an
-/// overlap there, and whether the other lists overlap is read from positions: no table of pairs is kept. The axes without
-/// a list have a certificate for each pair that overlaps on the listed ones and comes near on the others (UnlistedAxes).
+/// Kinetic sorted lists of interval ends, one for each listed axis; a swap of a minimum with a maximum begins or ends
+/// an overlap there, and whether the other lists overlap is read from positions: no table of pairs is kept. The axes
+/// without a list have a certificate for each pair that overlaps on the listed ones and comes near on the others
+/// (UnlistedAxes).
 ///
 /// Paper: [Paper] sections 4.1-4.3. Differs: by default one list. A body passes the coordinates of all others, near or
-/// far, on each listed axis, so swaps are what it costs, and one list has a third of them; of the pairs that meet on one
-/// axis few come near on the others. The axis is the one with the fewest pairs and swaps to expect from sizes and speeds;
-/// it is chosen again when the horizon is moved or the bodies have doubled. Fewer than 64 bodies get three lists, which
-/// costs no more then. Times of pairs are the same, bit for bit, whatever is listed. Of changes at one time lists come
-/// first, in the order of axes, then pairs by (a, b) on the other axes; so a pair may overlap for no time at all (begin
-/// on one axis and end on another at once) on listed axes alone.
+/// far, on each listed axis, so swaps are what it costs, and one list has a third of them; of the pairs that meet on
+/// one axis few come near on the others. The axis is the one with the fewest pairs and swaps to expect from sizes and
+/// speeds; it is chosen again when the horizon is moved or the bodies have doubled. Fewer than 64 bodies get three
+/// lists, which costs no more then. Times of pairs are the same, bit for bit, whatever is listed. Of changes at one
+/// time lists come first, in the order of axes, then pairs by (a, b) on the other axes; so a pair may overlap for no
+/// time at all (begin on one axis and end on another at once) on listed axes alone.
 ///
-/// Cost: O(log n) or less a swap (the queue's), no cost between events; a motion change the swaps of its jump and a look
-/// at the pairs that overlap on the first listed axis; insertion and removal O(n) moves of memory besides that.
+/// Cost: O(log n) or less a swap (the queue's), no cost between events; a motion change the swaps of its jump and a
+/// look at the pairs that overlap on the first listed axis; insertion and removal O(n) moves of memory besides that.
 ///
 /// Ends that are equal for good (boxes that touch and move together) do not overlap.
 template <int Degree>
@@ -110,8 +111,8 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   std::size_t chosen_at_ = 0;   // bodies when the axes were chosen
   double horizon_ = never;
 
-  /// What lists and pairs report while they move. During a motion change swaps are only collected, as the axes change in
-  /// turn.
+  /// What lists and pairs report while they move. During a motion change swaps are only collected, as the axes change
+  /// in turn.
   std::vector<PairChange> changes_;
   bool updating_ = false;
 

@@ -8,9 +8,9 @@
 
 namespace kds::collision {
 
-/// What a list is expected to cost: the pairs that overlap on its axis, which is about (lengths of all intervals) / (length
-/// of the whole), and their changes, (speeds) x (time to come) / (length of the whole). Without a horizon, the time to come
-/// is what bodies take to cross their own sizes. A new axis must promise a third less.
+/// What a list is expected to cost: the pairs that overlap on its axis, which is about (lengths of all intervals) /
+/// (length of the whole), and their changes, (speeds) x (time to come) / (length of the whole). Without a horizon, the
+/// time to come is what bodies take to cross their own sizes. A new axis must promise a third less.
 template <int Degree>
 unsigned KineticSweepAndPrune<Degree>::best_axes(std::span<const Entry> bodies, double now) const {
   if (asked_ == ListedAxes::three) return all_axes;

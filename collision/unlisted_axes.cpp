@@ -12,7 +12,8 @@
 namespace kds::collision {
 namespace {
 
-/// Widens [low, high] by where x is from now to the horizon, rounded outward; to all there is where the numbers overflow.
+/// Widens [low, high] by where x is from now to the horizon, rounded outward; to all there is where the numbers
+/// overflow.
 ///
 /// The terms of the motion are monotone in the time since its start, so an interval for each will do. Roundings: the
 /// times, a product of up to three factors and the sums, 2^-53 of a term each, less than 2^-48 of the terms in all.
@@ -89,8 +90,9 @@ class UnlistedAxes<Degree>::Sides {
         const double run_lower = side.lower.position.c[1] * (now - side.lower.start);
         const double run_upper = side.upper.position.c[1] * (now - side.upper.start);
         const double gap = (side.upper.position.c[0] + run_upper) - (side.lower.position.c[0] + run_lower);
-        const double least = gap - 0x1p-50 * (std::abs(side.upper.position.c[0]) + std::abs(run_upper) +
-                                              std::abs(side.lower.position.c[0]) + std::abs(run_lower)) -
+        const double least = gap -
+                             0x1p-50 * (std::abs(side.upper.position.c[0]) + std::abs(run_upper) +
+                                        std::abs(side.lower.position.c[0]) + std::abs(run_lower)) -
                              0x1p-1000;  // for underflow
         const double rate = side.upper.position.c[1] - side.lower.position.c[1];
         if (rate >= 0 && least > 0) return true;

@@ -20,10 +20,10 @@ struct PairChange {
 /// Keeps, for the pairs of boxes that overlap on all axes with a list, the exact times at which they begin and cease to
 /// overlap on the others: one certificate a pair in place of the swaps of a list.
 ///
-/// Most pairs need none. Of each body there is the hull of its box from now to the horizon, rounded outward; pairs whose
-/// hulls are apart on one of these axes stay apart. The next filter takes two straight paths in doubles, with bounds on
-/// the errors. What is left gets first_all_broken() or first_any_holds() over the sides of its boxes: the same doubles
-/// at which lists of these axes would swap.
+/// Most pairs need none. Of each body there is the hull of its box from now to the horizon, rounded outward; pairs
+/// whose hulls are apart on one of these axes stay apart. The next filter takes two straight paths in doubles, with
+/// bounds on the errors. What is left gets first_all_broken() or first_any_holds() over the sides of its boxes: the
+/// same doubles at which lists of these axes would swap.
 ///
 /// State is that of t+, so no pair is ever reported for no time at all. Events of one time come by (a, b).
 ///
@@ -88,9 +88,7 @@ class UnlistedAxes {
     std::array<float, 2> high{0, 0};
 
     bool meets(const Hull& other) const {
-      const bool apart = (high[0] < other.low[0]) | (other.high[0] < low[0]) | (high[1] < other.low[1]) |
-                         (other.high[1] < low[1]);
-      return !apart;
+      return high[0] >= other.low[0] && other.high[0] >= low[0] && high[1] >= other.low[1] && other.high[1] >= low[1];
     }
   };
 
@@ -118,10 +116,10 @@ class UnlistedAxes {
   std::array<int, 2> axes_{0, 0};  // the first count_ of them
   std::size_t count_ = 0;
   double horizon_ = never;
-  std::vector<KineticBox<Degree>> boxes_;         // by body
-  std::vector<Hull> hulls_;                       // by body
+  std::vector<KineticBox<Degree>> boxes_;        // by body
+  std::vector<Hull> hulls_;                      // by body
   std::vector<std::vector<PairSlot>> pairs_of_;  // by body
-  std::vector<Pair> pairs_;                       // those that overlap, or will before the horizon
+  std::vector<Pair> pairs_;                      // those that overlap, or will before the horizon
   std::vector<PairSlot> free_;
   DaryQueue<PairRank> queue_;
   Counters counters_;

@@ -16,15 +16,15 @@ namespace kds {
 
 /// The least of a row of times, and where it stands.
 ///
-/// Slots are places in a row: insert_slot() and erase_slot() shift those behind. Eight of them, a cache line, are a group
-/// whose least is kept; so are eight groups, and so on up to one. A change is written down at once and counts after the
-/// next settle(), which brings the groups of the places changed since the last one up to date: for neighbours, one group
-/// on each level, log8(n) of them.
+/// Slots are places in a row: insert_slot() and erase_slot() shift those behind. Eight of them, a cache line, are a
+/// group whose least is kept; so are eight groups, and so on up to one. A change is written down at once and counts
+/// after the next settle(), which brings the groups of the places changed since the last one up to date: for
+/// neighbours, one group on each level, log8(n) of them.
 ///
-/// Made for lists whose swaps change three neighbouring slots: what a heap or a calendar decides by branches that nobody
-/// can foresee, this does by conditional moves, in the same few dozens of cycles each time, whatever the times are. Times
-/// are kept as their place among all doubles, and "no event" as a number of each slot's own behind them, so that only
-/// events of one time are ever equal, and to look at ranks is a branch that is hardly ever taken.
+/// Made for lists whose swaps change three neighbouring slots: what a heap or a calendar decides by branches that
+/// nobody can foresee, this does by conditional moves, in the same few dozens of cycles each time, whatever the times
+/// are. Times are kept as their place among all doubles, and "no event" as a number of each slot's own behind them, so
+/// that only events of one time are ever equal, and to look at ranks is a branch that is hardly ever taken.
 ///
 /// Cost: set, clear O(1); settle O(log n + distance between the first and the last place changed / 8); insert_slot,
 /// erase_slot O(n) moves of memory, and the groups behind.
@@ -54,11 +54,12 @@ class PlaceQueue {
 
   /// Number of events; counts them.
   std::size_t size() const {
-    return static_cast<std::size_t>(std::count_if(keys_[0].begin(), keys_[0].end(), [](Key key) { return key <= latest; }));
+    return static_cast<std::size_t>(
+        std::count_if(keys_[0].begin(), keys_[0].end(), [](Key key) { return key <= latest; }));
   }
 
-  /// Of events of one time the one with the least rank(place) goes first, then the first place. Ranks of places that have
-  /// not changed must not have changed either.
+  /// Of events of one time the one with the least rank(place) goes first, then the first place. Ranks of places that
+  /// have not changed must not have changed either.
   template <class Rank>
   void settle(Rank&& rank);
 
@@ -84,8 +85,8 @@ class PlaceQueue {
   template <std::size_t Count, class Rank>
   static void least(const Key* keys, const Slot* places, Key& key, Slot& place, Rank& rank);
 
-  // Level 0 are the places themselves, filled up to a multiple of eight; on level k + 1 there is the least of each group
-  // of level k, and in places_ where it stands. The last has one.
+  // Level 0 are the places themselves, filled up to a multiple of eight; on level k + 1 there is the least of each
+  // group of level k, and in places_ where it stands. The last has one.
   std::vector<std::vector<Key>> keys_{{}};
   std::vector<std::vector<Slot>> places_{{}};
   std::size_t size_ = 0;

@@ -32,9 +32,9 @@ struct NoSwapListener {
 /// One certificate for each adjacent pair; when it fails, the two swap and up to three pairs are certified again.
 /// Paper: [Paper] sections 4.1-4.3 and Figures 3-5; [Basch99] section 2.
 ///
-/// Elements are known by ids chosen by the caller, small integers used once each. They are stored in list order
-/// (motion and id side by side), so a swap touches one or two cache lines. The event of a pair is in the slot of its
-/// left element's place, where the queue is one of places (the default), so that a swap changes three neighbouring slots;
+/// Elements are known by ids chosen by the caller, small integers used once each. They are stored in list order (motion
+/// and id side by side), so a swap touches one or two cache lines. The event of a pair is in the slot of its left
+/// element's place, where the queue is one of places (the default), so that a swap changes three neighbouring slots;
 /// else in the slot of that element's id. Swaps of one time come in the order of the left elements' ids either way.
 ///
 /// Cost: a swap O(1) and one pop and up to two pushes of the queue; a motion change the same plus the swaps that a
@@ -86,7 +86,8 @@ class SortedList {
   /// Time of the next swap, `never` if there is none within the horizon.
   double next_time() const { return schedule_.next_time(); }
 
-  /// When an element is to swap with the one on its right, `never` if not within the horizon. Precondition: contains(id).
+  /// When an element is to swap with the one on its right, `never` if not within the horizon. Precondition:
+  /// contains(id).
   double swap_time(Id id) const { return schedule_.time(slot(position_[id])); }
 
   /// Makes the swap due at next_time(). Precondition: there is one.

@@ -3,9 +3,10 @@
 //     bench_swaps [ROUNDS]     default 7; writes CSV to the standard output
 //
 // Boxes of sizes 1-3 at 1 % density in free flight for one second, by number and by listed axes. Rounds run in turn, so
-// that a change of the machine's pace hits all alike; figures are medians. `baseline` is the time against three lists of
-// the same scene in the same round. Instructions are those of this thread in user mode, where the kernel counts them
-// (perf_event_open), else the column is empty. Every round checks that all ways report the same pairs at the same times.
+// that a change of the machine's pace hits all alike; figures are medians. `baseline` is the time against three lists
+// of the same scene in the same round. Instructions are those of this thread in user mode, where the kernel counts them
+// (perf_event_open), else the column is empty. Every round checks that all ways report the same pairs at the same
+// times.
 
 #include "collision/kinetic_sweep_and_prune.hpp"
 #include "tests/benchmarks/thread_time.hpp"
@@ -103,7 +104,8 @@ Result run(const std::vector<KineticBox<1>>& boxes, ListedAxes listed, const Ins
   broad_phase.insert(entries, 0, result.log);
   const double start = benchmarks::thread_seconds();
   const double before = instructions.now();
-  while (broad_phase.advance(1, result.log)) {}
+  while (broad_phase.advance(1, result.log)) {
+  }
   result.instructions = instructions.now() - before;
   const double end = benchmarks::thread_seconds();
   result.setup = start - begin;
@@ -136,8 +138,10 @@ bool measure(std::size_t bodies, int rounds, const Instructions& instructions) {
       samples[i].whole.push_back(result.setup + result.run);
       samples[i].instructions.push_back(result.instructions);
       work[i] = result.work;
-      if (i == 0) three = std::move(result);
-      else if (result.log.reports != three.log.reports) return false;
+      if (i == 0)
+        three = std::move(result);
+      else if (result.log.reports != three.log.reports)
+        return false;
       samples[i].ratio.push_back(samples[i].whole.back() / samples[0].whole.back());
     }
   }
