@@ -52,9 +52,6 @@ class BoxGrid {
   /// One past the greatest number that there has been.
   Id end() const { return static_cast<Id>(items_.size()); }
 
-  /// Makes ready for a box of such an extent: cheapest before any come.
-  void expect(double extent) { use_level(level_for(extent)); }
-
   /// Size of the cells of the level that a box of such an extent belongs to.
   static double cell_for(double extent);
 

@@ -3,6 +3,7 @@
 #include "kds/audit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -12,12 +13,10 @@ namespace {
 
 constexpr double largest = std::numeric_limits<double>::max();
 
-/// A body's reach over its size when it comes, if nothing is known of the others; and at most, and over their spacing.
-constexpr double usual_reach = 1;
-constexpr double most_first_reach = 2;
+/// A body's reach when it comes, over the spacing of bodies.
 constexpr double reach_per_spacing = 0.25;
 
-/// Less would have a body renewed ever so often among many that touch it anyway.
+/// At least, over its size: less would have it renewed ever so often among others that touch it anyway.
 constexpr double least_reach = 0.125;
 
 /// An old fat box is kept if it lasts this share of a new one's lifetime.
@@ -31,21 +30,27 @@ double greatest_speed(const certificates::PointMotion<Degree>& motion, double t)
   return motion.velocity(t).cwiseAbs().maxCoeff();
 }
 
-/// The reach, over their sizes, that suits bodies which are spread evenly over the box around them.
-double reach_for(std::span<const StaticBox> boxes) {
-  if (boxes.empty()) return usual_reach;
-  StaticBox all = boxes.front();
-  double sizes = 0;
-  for (const StaticBox& box : boxes) {
-    all.min = all.min.min(box.min);
-    all.max = all.max.max(box.max);
-    sizes += box.extent();
+/// Distance between neighbours if bodies are spread evenly over the box that holds the middle half of them on each axis;
+/// told from some of them. What is far out, up to a quarter on each side, makes no difference.
+template <int Degree>
+double typical_spacing(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
+  constexpr std::size_t sample = 256;
+  const std::size_t step = std::max<std::size_t>(bodies.size() / sample, 1);
+  std::array<std::vector<double>, 3> places;
+  double size = 0;
+  for (std::size_t i = 0; i < bodies.size(); i += step) {
+    const StaticBox box = swept_box(*bodies[i].box, now, now);
+    size += box.extent();
+    for (std::size_t d = 0; d < 3; ++d) places[d].push_back(box.min[static_cast<Eigen::Index>(d)]);
   }
-  const auto count = static_cast<double>(boxes.size());
-  const double size = sizes / count;
-  const double spacing = std::cbrt((all.max - all.min).max(size).prod() / count);
-  const double reach = reach_per_spacing * spacing / size;
-  return std::isfinite(reach) ? std::clamp(reach, least_reach, most_first_reach) : usual_reach;
+  size /= static_cast<double>(places[0].size());
+  double volume = 1;
+  for (auto& place : places) {
+    std::sort(place.begin(), place.end());
+    volume *= std::max(2 * (place[place.size() * 3 / 4] - place[place.size() / 4]), size);
+  }
+  const double spacing = std::cbrt(volume / static_cast<double>(bodies.size()));
+  return std::isfinite(spacing) ? spacing : size;
 }
 
 StaticBox whole_space() {
@@ -56,14 +61,13 @@ StaticBox whole_space() {
 
 /// Seconds until a box has moved by its reach; `never` if it is at rest.
 template <int Degree>
-double KineticGrid<Degree>::lifetime(const Body& body, double size, double now) {
+double KineticGrid<Degree>::lifetime(const Body& body, double now) {
   const KineticBox<Degree>& box = body.box;
-  const double length = body.reach * size;
   const double speed = std::max(greatest_speed(box.min, now), greatest_speed(box.max, now));
-  double time = speed > 0 ? length / speed : never;
+  double time = speed > 0 ? body.reach / speed : never;
   if constexpr (Degree >= 2) {
     const double bend = std::max(box.min.coefficients[2].cwiseAbs().maxCoeff(), box.max.coefficients[2].cwiseAbs().maxCoeff());
-    if (bend > 0) time = std::min(time, std::sqrt(length / bend));
+    if (bend > 0) time = std::min(time, std::sqrt(body.reach / bend));
   }
   return time;
 }
@@ -73,7 +77,8 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double no
   Body& body = bodies_[id];
   body.fattened = now;
   const double size = present.extent();
-  double time = lifetime(body, size, now);
+  body.reach = std::max(body.reach, least_reach * size);
+  double time = lifetime(body, now);
   if (time == never) return {present, never};
   for (;;) {
     // Where the clock is coarse, a box lasts until its next tick at least.
@@ -111,13 +116,13 @@ void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
   Body& body = bodies_[id];
   if (body.expiry <= now) {
     switch (body.begun) {
-      case 0: body.reach = std::min(1.4 * body.reach, 0x1p100); break;
+      case 0: body.reach = std::min(1.4 * body.reach, 0x1p1000); break;
       case 1: body.reach *= 1.15; break;
       case 2: break;
-      default: body.reach = std::max((body.begun < 8 ? 0.8 : 0.5) * body.reach, least_reach);
+      default: body.reach *= body.begun < 8 ? 0.8 : 0.5;
     }
   } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
-    body.reach = std::max(0.8 * body.reach, least_reach);
+    body.reach *= 0.8;
   }
   body.begun = 0;
 }
@@ -164,17 +169,11 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
     expiry_.resize(room);
   }
   fat_boxes_.reserve(fat_boxes_.size() + bodies.size());
-  std::vector<StaticBox> present;
-  present.reserve(bodies.size());
+  if (fat_boxes_.size() == 0 && !bodies.empty()) first_reach_ = reach_per_spacing * typical_spacing<Degree>(bodies, now);
   for (const Entry& entry : bodies) {
-    present.push_back(swept_box(*entry.box, now, now));
+    bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
+    renew(entry.id, swept_box(*entry.box, now, now), now, listener);
   }
-  if (fat_boxes_.size() == 0) first_reach_ = reach_for(present);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    bodies_[bodies[i].id] = {*bodies[i].box, first_reach_, now, never, 0};
-    fat_boxes_.expect(present[i].extent() * (1 + first_reach_));
-  }
-  for (std::size_t i = 0; i < bodies.size(); ++i) renew(bodies[i].id, present[i], now, listener);
 }
 
 template <int Degree>
@@ -193,7 +192,7 @@ void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, doubl
   const StaticBox present = swept_box(box, now, now);
   const StaticBox fat = fat_boxes_.box(id);
   if (fat.contains(present)) {
-    const double time = lifetime(body, present.extent(), now);
+    const double time = lifetime(body, now);
     if (time == never) return set_expiry(id, never);
     const double expiry = now + kept_share * time;
     if (expiry > now && expiry <= largest && fat.contains(swept_box(box, now, expiry))) {

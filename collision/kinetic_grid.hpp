@@ -54,7 +54,7 @@ class KineticGrid final : public BroadPhase<Degree> {
  private:
   struct Body {
     KineticBox<Degree> box;
-    double reach = 0;         ///< over the box's size
+    double reach = 0;         ///< how far it may move in its fat box
     double fattened = 0;      ///< when its fat box was made
     double expiry = never;    ///< until when it holds
     std::uint32_t begun = 0;  ///< pairs since its last renewal
@@ -65,7 +65,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   };
 
   FatBox fat_box(BodyId id, const StaticBox& present, double now);
-  static double lifetime(const Body& body, double size, double now);
+  static double lifetime(const Body& body, double now);
   void adapt_reach(BodyId id, double now);
   void renew(BodyId id, const StaticBox& present, double now, PairListener& listener);
   void set_expiry(BodyId id, double expiry);
@@ -76,7 +76,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   CalendarQueue<> expiry_;    // slots are bodies; none later than the horizon
   double horizon_ = never;
   BoxGrid::Changes changes_;
-  double first_reach_ = 1;    ///< of a body that comes
+  double first_reach_ = 0;    ///< of a body that comes
   std::uint64_t wishes_ = 0;  ///< for a coarser level, since there was one
   BroadPhaseCounters counters_;
 };
