@@ -211,7 +211,8 @@ double Order<Degree>::first_past_root(double horizon) const
                        2 * (fine.gap.radius + std::abs(root) * fine.rate.radius) * std::abs(inverse);
   if (!(std::abs(time.low) > error)) return undecided;
   // next_up() where the low part is positive, without a branch: it would be mispredicted half the time.
-  const std::int64_t up = time.low > 0;
+  // Its sign bit, for compilers make branches of comparisons; it is not zero.
+  const auto up = static_cast<std::int64_t>(~std::bit_cast<std::uint64_t>(time.low) >> 63);
   const double t = std::bit_cast<double>(std::bit_cast<std::int64_t>(time.high) + (time.high < 0 ? -up : up));
   return t <= horizon ? t : never;
 }
