@@ -25,9 +25,7 @@ struct DistanceOrder {
     return apart(c, d, 0) + apart(c, d, 1) - (apart(a, b, 0) + apart(a, b, 1));
   }
 
-  Ball<DoubleDouble> extended_value(double t) const
-    requires(!requires { Path::sampled; })
-  {
+  Ball<DoubleDouble> extended_value(double t) const requires(!requires { Path::sampled; }) {
     const auto apart = [&](const Path& p, const Path& q, int axis) {
       const Ball<DoubleDouble> x = extended_difference(q.axis(axis), p.axis(axis), t);
       return x * x;
@@ -36,11 +34,7 @@ struct DistanceOrder {
   }
 
   /// Cheap and sufficient: it is the same pair twice.
-  bool vanishes() const
-    requires(!requires { Path::sampled; })
-  {
-    return (a == c && b == d) || (a == d && b == c);
-  }
+  bool vanishes() const requires(!requires { Path::sampled; }) { return (a == c && b == d) || (a == d && b == c); }
 };
 
 }  // namespace kds::certificates

@@ -10,8 +10,8 @@ namespace kds::certificates {
 /// d is not inside the circle through a, b, c, which turn counter-clockwise.
 ///
 /// Minus the determinant of the rows (x, y, x^2 + y^2), x and y being a - d, b - d, c - d. Degree 4 for linear, 8 for
-/// quadratic paths. Laws: even permutations of a, b, c, d leave it as it is, odd ones change its sign; so the edge between
-/// triangles a, b, c and b, a, d has one certificate, from whichever side it is looked at. Paper: [Guibas85].
+/// quadratic paths. Laws: even permutations of a, b, c, d leave it as it is, odd ones change its sign; so the edge
+/// between triangles a, b, c and b, a, d has one certificate, from whichever side it is looked at. Paper: [Guibas85].
 template <class Path>
 struct InCircle {
   static constexpr int degree = 4 * Path::degree;
@@ -25,16 +25,12 @@ struct InCircle {
     return value([&](const Path& p, int axis) { return difference_about<Number>(p.axis(axis), d.axis(axis), epoch); });
   }
 
-  Ball<DoubleDouble> extended_value(double t) const
-    requires(!requires { Path::sampled; })
-  {
+  Ball<DoubleDouble> extended_value(double t) const requires(!requires { Path::sampled; }) {
     return value([&](const Path& p, int axis) { return extended_difference(p.axis(axis), d.axis(axis), t); });
   }
 
   /// Cheap and sufficient: two of the four are one.
-  bool vanishes() const
-    requires(!requires { Path::sampled; })
-  {
+  bool vanishes() const requires(!requires { Path::sampled; }) {
     return a == b || a == c || a == d || b == c || b == d || c == d;
   }
 

@@ -9,8 +9,8 @@ namespace kds::certificates {
 
 /// det(b - a, c - a) >= 0: a, b, c turn counter-clockwise, or are collinear. Twice the area of the triangle.
 ///
-/// Degree 2 for linear, 4 for quadratic paths. A path is anything with axis(0) and axis(1): PlaneMotion, BoundedPoint, or
-/// a PointMotion seen from above. Laws: Orientation(b, c, a) == Orientation(a, b, c) == -Orientation(b, a, c).
+/// Degree 2 for linear, 4 for quadratic paths. A path is anything with axis(0) and axis(1): PlaneMotion, BoundedPoint,
+/// or a PointMotion seen from above. Laws: Orientation(b, c, a) == Orientation(a, b, c) == -Orientation(b, a, c).
 template <class Path>
 struct Orientation {
   static constexpr int degree = 2 * Path::degree;
@@ -24,19 +24,13 @@ struct Orientation {
     return to(b, 0) * to(c, 1) - to(b, 1) * to(c, 0);
   }
 
-  Ball<DoubleDouble> extended_value(double t) const
-    requires(!requires { Path::sampled; })
-  {
+  Ball<DoubleDouble> extended_value(double t) const requires(!requires { Path::sampled; }) {
     const auto to = [&](const Path& p, int d) { return extended_difference(p.axis(d), a.axis(d), t); };
     return to(b, 0) * to(c, 1) - to(b, 1) * to(c, 0);
   }
 
   /// Cheap and sufficient: two of the three are one.
-  bool vanishes() const
-    requires(!requires { Path::sampled; })
-  {
-    return a == b || b == c || c == a;
-  }
+  bool vanishes() const requires(!requires { Path::sampled; }) { return a == b || b == c || c == a; }
 };
 
 }  // namespace kds::certificates

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -13,24 +14,23 @@ namespace kds::examples {
 
 /// Keeps values in ascending order; those that are equal for ever by id. Slot i: element i and its right neighbour.
 template <MovingElement Value>
-class ListRule {
- public:
+struct ListRule {
   using Element = Value;
   using InOrder = certificates::InOrder<Value>;
   static constexpr const char* name = "ListRule";
-
-  const std::vector<Id>& order() const { return order_; }
+  std::vector<Id> order;  ///< ids in order
+  std::vector<Id> place;  ///< of an id in the order
 
   std::optional<InOrder> certificate(Slot left, const MovingSet<Value>& x) const {
-    if (place_[left] + 1 == order_.size()) return std::nullopt;
-    return InOrder{x[left], x[order_[place_[left] + 1]]};
+    if (place[left] + 1 == order.size()) return std::nullopt;
+    return InOrder{x[left], x[order[place[left] + 1]]};
   }
-  std::array<Id, 2> members(Slot left) const { return {left, order_[place_[left] + 1]}; }
+  std::array<Id, 2> members(Slot left) const { return {left, order[place[left] + 1]}; }
 
   Effect repair(Slot left, Repair<Value>& repair) {
-    const std::size_t i = place_[left];
-    std::swap(order_[i], order_[i + 1]);
-    certify(i > 0 ? i - 1 : 0, i + 2, i + 2, repair);
+    const std::size_t i = place[left];
+    std::swap(order[i], order[i + 1]);
+    renew(i, i + 2, i + 2, repair);
     return Effect::external;
   }
   void insert(Id id, Repair<Value>& repair) {
@@ -38,29 +38,23 @@ class ListRule {
       const int s = repair.sign(InOrder{repair[other], repair[self]});
       return s > 0 || (s == 0 && other < self);
     };
-    const auto place = order_.insert(std::lower_bound(order_.begin(), order_.end(), id, before), id);
-    const auto i = static_cast<std::size_t>(place - order_.begin());
-    certify(i > 0 ? i - 1 : 0, i + 1, order_.size(), repair);
+    const auto at = order.insert(std::lower_bound(order.begin(), order.end(), id, before), id);
+    const auto i = static_cast<std::size_t>(at - order.begin());
+    renew(i, i + 1, order.size(), repair);
   }
   void remove(Id id, Repair<Value>& repair) {
-    const std::size_t i = place_[id];
-    order_.erase(order_.begin() + static_cast<std::ptrdiff_t>(i));
     repair.retire(id);
-    certify(i > 0 ? i - 1 : 0, i, order_.size(), repair);
+    order.erase(order.begin() + place[id]);
+    renew(place[id], place[id], order.size(), repair);
+  }
+  /// Numbers the places from i up to `moved`; certifies the pairs from the one that ends at i up to the one at `last`.
+  void renew(std::size_t i, std::size_t last, std::size_t moved, Repair<Value>& repair) {
+    place.resize(repair.elements().end_id());
+    for (std::size_t k = i; k < moved; ++k) place[order[k]] = static_cast<Id>(k);
+    for (std::size_t k = std::max<std::size_t>(i, 1) - 1; k < std::min(last, order.size()); ++k) repair.certify(order[k]);
   }
   template <class Archive>
-  void archive(Archive& archive) { archive(order_, place_); }
-
- private:
-  /// Numbers the places from `first` up to `moved`, and certifies those up to `last`.
-  void certify(std::size_t first, std::size_t last, std::size_t moved, Repair<Value>& repair) {
-    place_.resize(repair.elements().end_id());
-    for (std::size_t i = first; i < moved; ++i) place_[order_[i]] = static_cast<Id>(i);
-    for (std::size_t i = first; i < std::min(last, order_.size()); ++i) repair.certify(order_[i]);
-  }
-
-  std::vector<Id> order_;    // ids in order
-  std::vector<Id> place_;    // of an id in the order
+  void archive(Archive& archive) { archive(order, place); }
 };
 
 }  // namespace kds::examples

@@ -142,8 +142,7 @@ struct OfSamples {
 
 /// Sign of a certificate at t+, of an uncertain one that of its samples. Exact.
 template <class C>
-  requires(Certificate<C> || UncertainCertificate<C>)
-int exact_sign(const C& certificate, double t) {
+requires(Certificate<C> || UncertainCertificate<C>) int exact_sign(const C& certificate, double t) {
   if constexpr (Certificate<C>) {
     return sign_after(certificate, t);
   } else {

@@ -42,8 +42,7 @@ struct NoListener {
 /// anew (MovingSet::sample_with); the state is that of the samples.
 ///
 /// Cost of an event, beyond the rule's own: a pop, and for each certificate it marks a failure time and a push.
-template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue,
-          class Solver = CertifiedSolver>
+template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue, class Solver = CertifiedSolver>
 class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   static_assert(detail::NamesElement<Rule>, "kinetic rule: `using Element = ...;` must name what moves");
   static_assert(detail::HasName<Rule>, "kinetic rule: `static constexpr const char* name = ...;` is missing");
@@ -144,7 +143,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   Schedule<Queue, Solver> schedule_;
   std::vector<std::uint8_t> held_;  ///< whether a slot has a certificate
   Measures measures_;
-  Counters offset_;  ///< what was counted before the state was loaded, less what the schedule had counted
+  Counters offset_;       ///< what was counted before the state was loaded, less what the schedule had counted
   double last_ = -never;  ///< of the last change
   bool busy_ = false;
 };
@@ -162,9 +161,9 @@ void Kinetic<Rule, Listener, Queue, Solver>::process() {
     for (const Id id : ids) elements_.resample(id, time);
   } else {
     bool failed = false;
-    detail::with_certificate(rule_.certificate(slot, elements_), [&, time = time, slot = slot](const auto& certificate) {
-      failed = schedule_.failed(slot, certificate, time);
-    });
+    detail::with_certificate(
+        rule_.certificate(slot, elements_),
+        [&, time = time, slot = slot](const auto& certificate) { failed = schedule_.failed(slot, certificate, time); });
     if (!failed) return;
     begin(time);
     event.effect = rule_.repair(slot, repair_);
@@ -309,7 +308,8 @@ void Kinetic<Rule, Listener, Queue, Solver>::archive(Archive& archive) {
   if constexpr (requires { rule_.archive(archive); }) {
     rule_.archive(archive);
   } else {
-    static_assert(!sizeof(Archive), "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
+    static_assert(!sizeof(Archive),
+                  "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
   }
   archive(held_, times, horizon, counted, measures_, last_);
   if constexpr (Archive::loading) {

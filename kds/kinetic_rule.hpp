@@ -112,12 +112,17 @@ void with_certificate(const T& choice, F&& f) {
 
 // One concept a part of a rule, so that Kinetic can name the part that is missing.
 template <class R>
-concept NamesElement = requires { typename R::Element; } && MovingElement<typename R::Element>;
+concept NamesElement = requires {
+  typename R::Element;
+}
+&&MovingElement<typename R::Element>;
 template <class R>
-concept HasName = requires { { R::name } -> std::convertible_to<const char*>; };
+concept HasName = requires {
+  { R::name } -> std::convertible_to<const char*>;
+};
 template <class R>
 concept Certifies = requires(const R& rule, Slot slot, const MovingSet<typename R::Element>& elements) {
-  { rule.certificate(slot, elements) };
+  {rule.certificate(slot, elements)};
   requires IsCertificateChoice<std::remove_cvref_t<decltype(rule.certificate(slot, elements))>>::value;
 };
 template <class R>
@@ -160,6 +165,6 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
 /// another after a call has been marked in it; (5) insert, remove and change are called with a state that is right.
 template <class R>
 concept KineticRule = detail::NamesElement<R> && detail::HasName<R> && detail::Certifies<R> &&
-                      detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R>;
+    detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R>;
 
 }  // namespace kds

@@ -15,11 +15,11 @@ enum class Effect : std::uint8_t { internal, external };
 /// if it has not many more events than the thing it is kept for has changes (events against external).
 struct Measures {
   std::uint64_t events = 0;
-  std::uint64_t external = 0;       ///< events that changed what is kept: the rest only changed the proof
-  std::uint64_t touched = 0;        ///< certificates made, replaced or given up in all events
-  std::uint64_t most_touched = 0;   ///< ... in one event
-  std::uint64_t held = 0;           ///< certificates now, with or without an event to come
-  std::uint64_t most_held = 0;      ///< ... at any time
+  std::uint64_t external = 0;          ///< events that changed what is kept: the rest only changed the proof
+  std::uint64_t touched = 0;           ///< certificates made, replaced or given up in all events
+  std::uint64_t most_touched = 0;      ///< ... in one event
+  std::uint64_t held = 0;              ///< certificates now, with or without an event to come
+  std::uint64_t most_held = 0;         ///< ... at any time
   std::uint64_t most_per_element = 0;  ///< certificates that the busiest element is in now
 
   friend bool operator==(const Measures&, const Measures&) = default;

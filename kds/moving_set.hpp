@@ -62,11 +62,11 @@ class MovingSet {
   /// Who is told of edits. In their order: settle(), then one of the others.
   class Observer {
    public:
-    virtual void settle(double now) = 0;            ///< process what is due up to now
-    virtual void inserted(Id id, double now) = 0;   ///< the element is there
-    virtual void removing(Id id, double now) = 0;   ///< the element is still there
-    virtual void changing(Id id, double now) = 0;   ///< the element still moves as before
-    virtual void changed(Id id, double now) = 0;    ///< it has its new motion
+    virtual void settle(double now) = 0;           ///< process what is due up to now
+    virtual void inserted(Id id, double now) = 0;  ///< the element is there
+    virtual void removing(Id id, double now) = 0;  ///< the element is still there
+    virtual void changing(Id id, double now) = 0;  ///< the element still moves as before
+    virtual void changed(Id id, double now) = 0;   ///< it has its new motion
 
    protected:
     ~Observer() = default;
@@ -137,9 +137,7 @@ class MovingSet {
   /// Where new samples come from: sampler(id, now) gives an element sampled at now. Structures ask for one when a
   /// certificate is no longer guaranteed, but not before a member's last one is `tick` seconds old: what is closer to
   /// failing than that is not guaranteed in between (a tick of 0 would have them ask for ever where two elements meet).
-  void sample_with(std::function<Element(Id, double)> sampler, double tick)
-    requires Sampled<Element>
-  {
+  void sample_with(std::function<Element(Id, double)> sampler, double tick) requires Sampled<Element> {
     if (!(tick > 0)) throw std::invalid_argument("MovingSet::sample_with: the tick must be > 0");
     sampler_ = std::move(sampler);
     tick_ = tick;
@@ -149,9 +147,7 @@ class MovingSet {
 
   /// Samples an element, and tells the structures. Unlike other edits this one may come amidst the events of a time:
   /// structures of samples are in order at all times.
-  void resample(Id id, double now)
-    requires Sampled<Element>
-  {
+  void resample(Id id, double now) requires Sampled<Element> {
     if (!sampler_) throw std::logic_error("MovingSet: an element is to be sampled, but there is no sampler");
     const Element element = sampler_(id, now);
     if (element.start != now) throw std::logic_error("MovingSet: a sample must be of the time it is asked for");

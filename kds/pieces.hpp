@@ -74,7 +74,8 @@ class Pieces final : private MovingSet<E>::Observer {
   void audit(double now) const {
     for (Id id = 0; id < plans_.size(); ++id) {
       const double start = plans_[id].empty() ? never : plans_[id].front().start;
-      if (queue_.time(id) != start) throw AuditFailure("Pieces: id " + std::to_string(id) + ": scheduled at another time");
+      if (queue_.time(id) != start)
+        throw AuditFailure("Pieces: id " + std::to_string(id) + ": scheduled at another time");
       if (start < now) throw AuditFailure("Pieces: id " + std::to_string(id) + ": a piece has been passed over");
     }
   }
@@ -112,7 +113,8 @@ class Pieces final : private MovingSet<E>::Observer {
   }
 
   void settle(double now) override {
-    if (next_time() < now) throw std::logic_error("Pieces: an edit at " + std::to_string(now) + " would pass over a piece");
+    if (next_time() < now)
+      throw std::logic_error("Pieces: an edit at " + std::to_string(now) + " would pass over a piece");
     while (!processing_ && next_time() <= now) process();
   }
   void inserted(Id /*id*/, double /*now*/) override {}

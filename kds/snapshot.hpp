@@ -157,9 +157,11 @@ inline Snapshot read_snapshot(std::istream& in) {
   char letters[sizeof head];
   if (!in.read(letters, sizeof head)) throw std::runtime_error("snapshot: it ends before its time");
   std::memcpy(head, letters, sizeof head);
-  if (head[0] != 0x31534453444bu) throw std::runtime_error("snapshot: this is none, or is from another kind of machine");
+  if (head[0] != 0x31534453444bu)
+    throw std::runtime_error("snapshot: this is none, or is from another kind of machine");
   std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
-  if (bytes.size() != head[1] || detail::checksum(bytes) != head[2]) throw std::runtime_error("snapshot: it is damaged");
+  if (bytes.size() != head[1] || detail::checksum(bytes) != head[2])
+    throw std::runtime_error("snapshot: it is damaged");
   return Snapshot(std::move(bytes));
 }
 

@@ -13,9 +13,9 @@
 
 namespace kds::structures {
 
-/// A complete binary tree in heap order: matches 1 .. capacity - 1, entrant i at capacity + i. The winner of match 1 has
-/// won the tournament. Knows no time: who wins a match is asked of beats(i, j), whether entrant i goes before j, with
-/// i < j, so that ties can go to the lower. Each match that is played again is given to played(match).
+/// A complete binary tree in heap order: matches 1 .. capacity - 1, entrant i at capacity + i. The winner of match 1
+/// has won the tournament. Knows no time: who wins a match is asked of beats(i, j), whether entrant i goes before j,
+/// with i < j, so that ties can go to the lower. Each match that is played again is given to played(match).
 class Bracket {
  public:
   using Entrant = std::uint32_t;
@@ -48,7 +48,8 @@ class Bracket {
     for (std::size_t match = capacity - 1; match >= 1; --match) play(match, beats, played);
   }
 
-  /// Lets one in or out, or plays the matches of one who is another than before. O(log n). Precondition: below capacity().
+  /// Lets one in or out, or plays the matches of one who is another than before. O(log n). Precondition: below
+  /// capacity().
   template <class Beats, class Played>
   void set(Entrant entrant, bool present, const Beats& beats, const Played& played) {
     entrants_[entrant] = present ? entrant : nobody;

@@ -20,24 +20,25 @@ namespace kds::structures {
 
 /// Keeps the two of moving points that are closest to each other.
 ///
-/// They are joined by an edge of the Delaunay triangulation [Shamos75], so a tournament of its edges by their lengths finds
-/// them: half of the certificates are those of the triangulation, half say that the loser of a match is not shorter than
-/// its winner. Papers: [Guibas91]; [Basch97], which differs: it finds candidates by sorted lists and cones of 60 degrees,
-/// with certificates of degree 1 and 2 in place of 4 and 2.
+/// They are joined by an edge of the Delaunay triangulation [Shamos75], so a tournament of its edges by their lengths
+/// finds them: half of the certificates are those of the triangulation, half say that the loser of a match is not
+/// shorter than its winner. Papers: [Guibas91]; [Basch97], which differs: it finds candidates by sorted lists and cones
+/// of 60 degrees, with certificates of degree 1 and 2 in place of 4 and 2.
 ///
-/// Cost: an event O(log n) certificates, five edges' matches at most (responsive); 5 n certificates of the triangulation
-/// and 3 n matches (compact); locality is that of the triangulation, times log n. External events are changes of the pair.
+/// Cost: an event O(log n) certificates, five edges' matches at most (responsive); 5 n certificates of the
+/// triangulation and 3 n matches (compact); locality is that of the triangulation, times log n. External events are
+/// changes of the pair.
 ///
-/// Points that are one for good are a closest pair. Of three points and more that are all on one line for good nothing is
-/// known (DelaunayRule::flat()).
+/// Points that are one for good are a closest pair. Of three points and more that are all on one line for good nothing
+/// is known (DelaunayRule::flat()).
 template <class Path>
 class ClosestPairRule {
  public:
   using Element = Path;
   static constexpr const char* name = "ClosestPair";
 
-  /// The pair, the lower id first; none if there are fewer than two points, or more on one line. Of several pairs that are
-  /// equally close for good it is any.
+  /// The pair, the lower id first; none if there are fewer than two points, or more on one line. Of several pairs that
+  /// are equally close for good it is any.
   std::optional<std::array<Id, 2>> pair() const;
   const DelaunayRule<Path>& delaunay() const { return delaunay_; }
 
@@ -133,7 +134,8 @@ class ClosestPairRule {
       const Slot slot = repair.marked()[i] / 2;
       if (repair.marked()[i] % 2 == 0 && slot % 4 != 3) edges.push_back(slot / 4 * 3 + slot % 4);
     }
-    bracket_.update(edges, [&](Edge h) { return is_entrant(h); }, beats(repair.elements(), repair), marks(repair));
+    bracket_.update(
+        edges, [&](Edge h) { return is_entrant(h); }, beats(repair.elements(), repair), marks(repair));
   }
 
   DelaunayRule<Path> delaunay_;

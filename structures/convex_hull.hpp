@@ -12,9 +12,10 @@ namespace kds::structures {
 /// envelopes, which bounds the events that do not change the hull; here they are cheap and of low degree, but every
 /// three points may cause one.
 ///
-/// Certificates of degree 2 for linear, 4 for quadratic paths. Cost: an event is a flip, O(1) certificates (responsive);
-/// at most 2 n + (points of the hull) certificates (compact); an element is in as many as it has neighbours (not local in
-/// the worst case). External events are changes of the hull, all others are internal: not efficient in general.
+/// Certificates of degree 2 for linear, 4 for quadratic paths. Cost: an event is a flip, O(1) certificates
+/// (responsive); at most 2 n + (points of the hull) certificates (compact); an element is in as many as it has
+/// neighbours (not local in the worst case). External events are changes of the hull, all others are internal: not
+/// efficient in general.
 template <class Path>
 using ConvexHullRule = PlaneTriangulationRule<Path, Criterion::hull>;
 

@@ -16,10 +16,11 @@
 
 namespace kds::structures {
 
-/// The k / 2 directions of the usual k-DOPs in space: k = 6 the axes, 14 with the corners of a cube, 18 with the middles
-/// of its edges, 26 with both. Not of unit length, so that they are exact. Paper: [Klosowski98].
+/// The k / 2 directions of the usual k-DOPs in space: k = 6 the axes, 14 with the corners of a cube, 18 with the
+/// middles of its edges, 26 with both. Not of unit length, so that they are exact. Paper: [Klosowski98].
 inline std::vector<std::array<double, 3>> kdop_directions(int k) {
-  if (k != 6 && k != 14 && k != 18 && k != 26) throw std::invalid_argument("kdop_directions: k must be 6, 14, 18 or 26");
+  if (k != 6 && k != 14 && k != 18 && k != 26)
+    throw std::invalid_argument("kdop_directions: k must be 6, 14, 18 or 26");
   std::vector<std::array<double, 3>> directions{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   if (k == 14 || k == 26) directions.insert(directions.end(), {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}});
   if (k == 18 || k == 26) {

@@ -11,9 +11,9 @@
 
 namespace kds::structures {
 
-/// Remembers of each edge of the hull whither it leads, counter-clockwise: to the right or to the left; up or down if it
-/// is upright for good. A closed polygon that turns left at each of its vertices is convex if and only if one stretch of
-/// its edges leads forward (right, or up) and one back: else it goes round more than once, like a pentagram.
+/// Remembers of each edge of the hull whither it leads, counter-clockwise: to the right or to the left; up or down if
+/// it is upright for good. A closed polygon that turns left at each of its vertices is convex if and only if one
+/// stretch of its edges leads forward (right, or up) and one back: else it goes round more than once, like a pentagram.
 class HullHeadings {
  public:
   /// Looks at the edge of the hull of an infinite triangle. O(1).

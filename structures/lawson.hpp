@@ -19,7 +19,8 @@ namespace kds::structures {
 ///
 /// Law: triangles have positive area; a vertex on an edge of the hull is a vertex of the hull.
 ///
-/// Cost: insertion O(1) expected flips for points in random order, after a walk of O(sqrt n); removal O(k^2) for k edges.
+/// Cost: insertion O(1) expected flips for points in random order, after a walk of O(sqrt n); removal O(k^2) for k
+/// edges.
 template <class Predicates>
 class Lawson {
  public:
@@ -46,8 +47,8 @@ class Lawson {
     return false;
   }
 
-  /// Inserts a vertex, looking for its place from the triangle `near`. Gives the vertex it is one with, which it then does
-  /// not join, or nobody.
+  /// Inserts a vertex, looking for its place from the triangle `near`. Gives the vertex it is one with, which it then
+  /// does not join, or nobody.
   Id insert(Id vertex, std::uint32_t near) {
     const std::uint32_t place = locate(vertex, near);
     for (Edge h = 3 * place; h < 3 * place + 3; ++h) {
@@ -96,8 +97,8 @@ class Lawson {
     return true;
   }
 
-  /// Sign of what has to hold at an edge: that it is Delaunay, or, at the hull, that what lies inside does so and that the
-  /// hull turns left. Where the apex of a hull edge is on the edge for good it is 0.
+  /// Sign of what has to hold at an edge: that it is Delaunay, or, at the hull, that what lies inside does so and that
+  /// the hull turns left. Where the apex of a hull edge is on the edge for good it is 0.
   int edge(Edge h) const {
     const auto [a, b, c, d] = corners(h);
     if (a == infinite) return is_.orientation(c, b, d);

@@ -14,16 +14,15 @@ namespace kds::structures {
 inline constexpr std::array<double, 2> along_x{1, 0};
 inline constexpr std::array<double, 2> along_y{0, 1};
 
-/// Signs at now+; those of sampled points are of their samples. A sign is 0 only if what it asks is degenerate for good.
+/// Signs at now+; those of sampled points are of their samples. A sign is 0 only if what it asks is degenerate for
+/// good.
 template <class Path>
 struct PlanePredicates {
   const MovingSet<Path>& x;
   double now;
 
   /// > 0 if a, b, c turn counter-clockwise.
-  int orientation(Id a, Id b, Id c) const {
-    return exact_sign(certificates::Orientation<Path>{x[a], x[b], x[c]}, now);
-  }
+  int orientation(Id a, Id b, Id c) const { return exact_sign(certificates::Orientation<Path>{x[a], x[b], x[c]}, now); }
   /// < 0 if d is inside the circle through a, b, c, which turn counter-clockwise.
   int in_circle(Id a, Id b, Id c, Id d) const {
     return exact_sign(certificates::InCircle<Path>{x[a], x[b], x[c], x[d]}, now);

@@ -23,11 +23,11 @@ enum class Criterion { delaunay, hull };
 /// Keeps a triangulation of moving points, in which the hull is convex and, if asked for, every edge is Delaunay.
 ///
 /// The proof. Each triangle has positive area (Orientation); the hull turns left at each of its vertices (Orientation);
-/// and it goes round once: of its edges, each of which is known to lead to the right or to the left (DirectionOrder), one
-/// stretch leads to the right and one to the left. Then the angles add up so that the triangles around each vertex go
-/// round once too, and so do not overlap anywhere (see docs/framework.md). Each edge is locally Delaunay (InCircle), so
-/// all are [Lawson77]. Without the going round, points that change places within one spacing of the clock could leave
-/// triangles in two layers, every edge of which is Delaunay.
+/// and it goes round once: of its edges, each of which is known to lead to the right or to the left (DirectionOrder),
+/// one stretch leads to the right and one to the left. Then the angles add up so that the triangles around each vertex
+/// go round once too, and so do not overlap anywhere (see docs/framework.md). Each edge is locally Delaunay (InCircle),
+/// so all are [Lawson77]. Without the going round, points that change places within one spacing of the clock could
+/// leave triangles in two layers, every edge of which is Delaunay.
 ///
 /// Repair: an edge whose certificate fails is flipped. Where flips cannot put right what exact signs find (points that
 /// run through each other within one spacing) the triangulation is built anew at that instant; rebuilds() counts it.
@@ -59,8 +59,8 @@ class PlaneTriangulationRule {
   using Direction = certificates::DirectionOrder<Path, 2>;
   using Choice = std::variant<std::monostate, Orientation, InCircle, Direction>;
 
-  // Slots 4 t, 4 t + 1, 4 t + 2: the edges of triangle t, each known by the lesser of its half-edges; 4 t + 3: its area, or,
-  // if it is infinite, the direction of its edge of the hull.
+  // Slots 4 t, 4 t + 1, 4 t + 2: the edges of triangle t, each known by the lesser of its half-edges; 4 t + 3: its
+  // area, or, if it is infinite, the direction of its edge of the hull.
   Choice certificate(Slot slot, const MovingSet<Path>& x) const;
   std::vector<Id> members(Slot slot) const;
   Effect repair(Slot slot, Repair<Path>& repair);

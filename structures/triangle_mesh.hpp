@@ -13,10 +13,10 @@
 
 namespace kds::structures {
 
-/// Half-edges in an array. Half-edge h = 3 t + i leads from corner i of triangle t to the next, its triangle on the left;
-/// the third corner is its apex. The vertex `infinite` makes a triangle with each edge of the convex hull, so that every
-/// half-edge has a twin and a hull is nothing special. Knows no coordinates. Paper: [Guibas85], with triangles in place
-/// of quad-edges.
+/// Half-edges in an array. Half-edge h = 3 t + i leads from corner i of triangle t to the next, its triangle on the
+/// left; the third corner is its apex. The vertex `infinite` makes a triangle with each edge of the convex hull, so
+/// that every half-edge has a twin and a hull is nothing special. Knows no coordinates. Paper: [Guibas85], with
+/// triangles in place of quad-edges.
 ///
 /// Cost: O(1) for everything but audit(). Numbers of triangles are kept until they are removed, and then used again.
 class TriangleMesh {
@@ -80,8 +80,8 @@ class TriangleMesh {
   /// Begins with the triangle a, b, c and three infinite ones. Precondition: empty.
   void begin(Id a, Id b, Id c) {
     clear();
-    for (const auto& corners : {std::array{a, b, c}, std::array{b, a, infinite}, std::array{c, b, infinite},
-                                std::array{a, c, infinite}}) {
+    for (const auto& corners :
+         {std::array{a, b, c}, std::array{b, a, infinite}, std::array{c, b, infinite}, std::array{a, c, infinite}}) {
       create(corners);
     }
     join(0, 3), join(1, 6), join(2, 9);
@@ -162,7 +162,8 @@ class TriangleMesh {
       for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
         if (twin_[h] == none || twin_[twin_[h]] != h) fail(h, "is not its twin's twin");
         if (origin(twin_[h]) != target(h)) fail(h, "does not end where its twin begins");
-        if (!contains(origin_[h]) || origin_[from(origin_[h])] != origin_[h]) fail(h, "begins at a vertex that is not there");
+        if (!contains(origin_[h]) || origin_[from(origin_[h])] != origin_[h])
+          fail(h, "begins at a vertex that is not there");
       }
     }
     if (!empty() && size() != 2 * vertices - 4) fail(size(), "the triangles are not as many as on a sphere");

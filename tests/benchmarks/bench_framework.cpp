@@ -1,9 +1,10 @@
 // What the framework costs, and what its structures do: CSV.
 //
-// First the sorted list of the framework (examples/list_in_forty_lines.hpp) against the tuned one (structures/sorted_list.hpp)
-// on the same values: CPU time a swap as a ratio, the two run in turn, median of ROUNDS (the first argument, 9). Then each
-// structure of the family on n points with random positions in a unit square and speeds up to 1, run for a while: events,
-// the four measures, and CPU time an event as a ratio to that of a swap of the tuned list of as many values.
+// First the sorted list of the framework (examples/list_in_forty_lines.hpp) against the tuned one
+// (structures/sorted_list.hpp) on the same values: CPU time a swap as a ratio, the two run in turn, median of ROUNDS
+// (the first argument, 9). Then each structure of the family on n points with random positions in a unit square and
+// speeds up to 1, run for a while: events, the four measures, and CPU time an event as a ratio to that of a swap of the
+// tuned list of as many values.
 #include "certificates/plane_motion.hpp"
 #include "examples/list_in_forty_lines.hpp"
 #include "kds/kinetic.hpp"
@@ -102,8 +103,8 @@ void compare_lists(Id n, int rounds) {
     events = tuned.events;
     ratios.push_back(framework.seconds / tuned.seconds);
   }
-  std::printf("list of the framework / tuned list,%d,%u,%llu,%.2f\n", Degree, n, static_cast<unsigned long long>(events),
-              median(ratios));
+  std::printf("list of the framework / tuned list,%d,%u,%llu,%.2f\n", Degree, n,
+              static_cast<unsigned long long>(events), median(ratios));
 }
 
 /// A structure on random elements, against swaps of a tuned list.
@@ -123,10 +124,11 @@ void measure(const char* name, int degree, Id n, double end, int rounds, const R
     m = structure.measures();
   }
   const auto number = [](std::uint64_t x) { return static_cast<double>(x); };
-  std::printf("%s,%d,%u,%llu,%.2f,%.1f,%llu,%.2f,%llu,%.1f\n", name, degree, n, static_cast<unsigned long long>(m.events),
-              number(m.external) / number(m.events), number(m.touched) / number(m.events),
-              static_cast<unsigned long long>(m.most_touched), number(m.most_held) / n,
-              static_cast<unsigned long long>(m.most_per_element), ratios.empty() ? 0 : median(ratios));
+  std::printf("%s,%d,%u,%llu,%.2f,%.1f,%llu,%.2f,%llu,%.1f\n", name, degree, n,
+              static_cast<unsigned long long>(m.events), number(m.external) / number(m.events),
+              number(m.touched) / number(m.events), static_cast<unsigned long long>(m.most_touched),
+              number(m.most_held) / n, static_cast<unsigned long long>(m.most_per_element),
+              ratios.empty() ? 0 : median(ratios));
   std::fflush(stdout);
 }
 
@@ -145,8 +147,9 @@ int main(int argc, char** argv) {
   std::printf("what,degree,n,swaps,time ratio\n");
   for (const Id n : {100u, 1000u, 10000u}) compare_lists<1>(n, rounds);
   for (const Id n : {100u, 1000u, 10000u}) compare_lists<2>(n, rounds);
-  std::printf("\nstructure,degree,n,events,external share,certificates/event,most/event,held/n,most/element,"
-              "time of an event / swap of a tuned list\n");
+  std::printf(
+      "\nstructure,degree,n,events,external share,certificates/event,most/event,held/n,most/element,"
+      "time of an event / swap of a tuned list\n");
   const auto value = [](Random& random) { return random_value<1>(random); };
   const auto path = [](Random& random) { return random_path<1>(random); };
   using Path = certificates::PlaneMotion<1>;

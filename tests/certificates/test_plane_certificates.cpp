@@ -57,8 +57,8 @@ TEMPLATE_TEST_CASE_SIG("plane certificates are the polynomials they say they are
     const ExactPoint p = exact(a), q = exact(b), r = exact(c), s = exact(d);
     wrong_orientation += mistakes(Orientation<PlaneMotion<Degree>>{a, b, c}, minor(p, q, r), random);
     // By the last column of the determinant with ones: another way than the certificate's.
-    const auto circle = lift(s) * minor(p, q, r) - lift(r) * minor(p, q, s) + lift(q) * minor(p, r, s) -
-                        lift(p) * minor(q, r, s);
+    const auto circle =
+        lift(s) * minor(p, q, r) - lift(r) * minor(p, q, s) + lift(q) * minor(p, r, s) - lift(p) * minor(q, r, s);
     wrong_circle += mistakes(InCircle<PlaneMotion<Degree>>{a, b, c, d}, circle, random);
     const std::array<double, 2> direction{random.between(-1, 1), coarse ? 0.0 : random.between(-1, 1)};
     const oracle::Polynomial x(oracle::rational(direction[0])), y(oracle::rational(direction[1]));
@@ -89,8 +89,10 @@ TEST_CASE("orientation and in-circle have the symmetries they state", "[plane]")
     const int left = sign_after(Orientation<Path>{a, b, c}, t);
     wrong += left != sign_after(Orientation<Path>{b, c, a}, t) || left != -sign_after(Orientation<Path>{b, a, c}, t);
     const int outside = sign_after(InCircle<Path>{a, b, c, d}, t);
-    wrong += outside != sign_after(InCircle<Path>{b, a, d, c}, t) || outside != sign_after(InCircle<Path>{c, d, a, b}, t);
-    wrong += outside != sign_after(InCircle<Path>{b, c, a, d}, t) || outside != -sign_after(InCircle<Path>{b, a, c, d}, t);
+    wrong +=
+        outside != sign_after(InCircle<Path>{b, a, d, c}, t) || outside != sign_after(InCircle<Path>{c, d, a, b}, t);
+    wrong +=
+        outside != sign_after(InCircle<Path>{b, c, a, d}, t) || outside != -sign_after(InCircle<Path>{b, a, c, d}, t);
   }
   CHECK(wrong == 0);
 }
@@ -99,10 +101,10 @@ TEST_CASE("a point enters a circle, three points come to one line", "[plane]") {
   const auto at = [](double x, double y, double speed = 0) { return PlaneMotion<1>{{{{{x, speed}}, {{y, 0}}}}, 0}; };
   const auto a = at(1, 0), b = at(0, 1), c = at(-1, 0);
   const auto d = at(-3, 0, 0.5), e = at(-3, 1, 1);
-  CHECK(failure_time(InCircle<PlaneMotion<1>>{a, b, c, d}, 0) == 4);   // through c
-  CHECK(recovery_time(InCircle<PlaneMotion<1>>{a, b, c, d}, 5) == 8);  // out of it through a
+  CHECK(failure_time(InCircle<PlaneMotion<1>>{a, b, c, d}, 0) == 4);      // through c
+  CHECK(recovery_time(InCircle<PlaneMotion<1>>{a, b, c, d}, 5) == 8);     // out of it through a
   CHECK(failure_time(InCircle<PlaneMotion<1>>{a, b, c, e}, 0) == never);  // touches it at b
-  CHECK(failure_time(Orientation<PlaneMotion<1>>{a, b, e}, 0) == 3);   // through b
+  CHECK(failure_time(Orientation<PlaneMotion<1>>{a, b, e}, 0) == 3);      // through b
   CHECK(failure_time(InCircle<PlaneMotion<1>>{a, b, c, a}, 0) == never);
 }
 

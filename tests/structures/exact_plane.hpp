@@ -54,9 +54,7 @@ class ExactPlane {
 
  private:
   using Point = std::array<oracle::Polynomial, 2>;
-  Point from(Id a, Id b) const {
-    return {points_.at(b)[0] - points_.at(a)[0], points_.at(b)[1] - points_.at(a)[1]};
-  }
+  Point from(Id a, Id b) const { return {points_.at(b)[0] - points_.at(a)[0], points_.at(b)[1] - points_.at(a)[1]}; }
   std::map<Id, Point> points_;
   oracle::Rational now_;
 };

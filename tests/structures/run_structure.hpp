@@ -34,7 +34,7 @@ Element restarted_at(const Element& element, double t) {
 
 struct RunOptions {
   int steps = 20;
-  std::size_t first = 8;   ///< elements at the beginning
+  std::size_t first = 8;  ///< elements at the beginning
   std::size_t most = 16;
   double window = never;
   std::size_t check_one_in = 1;  ///< events of which one is checked

@@ -17,7 +17,8 @@ using structures::ClosestPairRule;
 
 /// No pair is closer; where there is none, there are too few points, or all are on one line.
 template <int Degree>
-int check_pair(const ClosestPairRule<PlaneMotion<Degree>>& rule, const MovingSet<PlaneMotion<Degree>>& set, double now) {
+int check_pair(const ClosestPairRule<PlaneMotion<Degree>>& rule, const MovingSet<PlaneMotion<Degree>>& set,
+               double now) {
   const ExactPlane plane(set, now);
   const auto ids = plane.ids();
   const auto pair = rule.pair();
@@ -60,8 +61,8 @@ TEST_CASE("the closest pair keeps to its measures", "[closest_pair]") {
   CHECK(check_pair(closest.rule(), set, 2) == 0);
   CHECK(m.external > 10);
   CHECK(m.external < m.events);
-  CHECK(m.most_held <= 8 * n);                                 // compact
-  CHECK(m.most_touched <= 20 + 10 * std::log2(6 * n));         // responsive
+  CHECK(m.most_held <= 8 * n);                          // compact
+  CHECK(m.most_touched <= 20 + 10 * std::log2(6 * n));  // responsive
 }
 
 TEST_CASE("of none, one, two, and of points that are one", "[closest_pair][degeneracy]") {

@@ -2,8 +2,8 @@
 #include "certificates/plane_motion.hpp"
 #include "certificates/point_motion.hpp"
 #include "structures/extents.hpp"
-#include "tests/support/exact_algebra.hpp"
 #include "tests/structures/run_structure.hpp"
+#include "tests/support/exact_algebra.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -112,12 +112,13 @@ TEST_CASE("extents keep to their measures", "[extents]") {
   const auto levels = static_cast<std::uint64_t>(std::ceil(std::log2(n)));
   Kinetic<ExtentsRule<PointMotion<2>, 3>> extents(set, 0, ExtentsRule<PointMotion<2>, 3>(kdop_directions(14)));
   Simulator simulator(0, extents);
-  while (simulator.step()) {}
+  while (simulator.step()) {
+  }
   const Measures m = extents.measures();
   CHECK(m.held == lanes * (n - 1));
-  CHECK(m.most_held == lanes * (n - 1));      // compact
+  CHECK(m.most_held == lanes * (n - 1));        // compact
   CHECK(m.most_per_element <= lanes * levels);  // local
-  CHECK(m.most_touched <= levels + 1);        // responsive
+  CHECK(m.most_touched <= levels + 1);          // responsive
   CHECK(m.external > lanes);
   CHECK(m.external < m.events);
 }

@@ -61,7 +61,7 @@ int mistakes(std::uint64_t seed, Kind kind, double window, Log& log) {
   Simulator simulator(now, list);
   if (window < never) simulator.set_window(window);
   int wrong = 0;
-  const auto compare = [&] { wrong += list.rule().order() != model.order(simulator.now(), no_rank); };
+  const auto compare = [&] { wrong += list.rule().order != model.order(simulator.now(), no_rank); };
   for (int step = 0; step < 30; ++step) {
     const double target = now + random_delay(random, kind);
     while (simulator.step(target)) {
@@ -124,11 +124,11 @@ TEST_CASE("the list of the framework swaps when the tuned one does, and keeps to
   const Measures m = list.measures();
   CHECK(m.events == log.size());
   CHECK(m.events > n);
-  CHECK(m.external == m.events);    // efficient: every event is a change of the order
-  CHECK(m.most_touched == 3);       // responsive
+  CHECK(m.external == m.events);  // efficient: every event is a change of the order
+  CHECK(m.most_touched == 3);     // responsive
   CHECK(m.touched <= 3 * m.events);
-  CHECK(m.most_per_element == 2);   // local
-  CHECK(m.held == n - 1);           // compact
+  CHECK(m.most_per_element == 2);  // local
+  CHECK(m.held == n - 1);          // compact
   CHECK(m.most_held == n - 1);
   CHECK(list.counters().events == m.events);
 }
@@ -141,17 +141,17 @@ TEST_CASE("several structures share one set, and each hears of each edit", "[fra
   List<1> second(set, 0, {}, {&second_log});  // Comes later, and takes up what is there.
   set.insert(3, {{{2, 0}}, 0}, 0);
   Simulator simulator(0, first, second);
-  CHECK(first.rule().order() == std::vector<Id>{7, 3});
-  CHECK(second.rule().order() == std::vector<Id>{7, 3});
+  CHECK(first.rule().order == std::vector<Id>{7, 3});
+  CHECK(second.rule().order == std::vector<Id>{7, 3});
   CHECK(first.next_time() == 2);
   simulator.advance_to(5);
-  CHECK(first.rule().order() == std::vector<Id>{3, 7});
+  CHECK(first.rule().order == std::vector<Id>{3, 7});
   CHECK(first_log.size() == 1);
   CHECK(first_log == second_log);
   set.update(7, {{{-1, 0}}, 5}, 5);
-  CHECK(second.rule().order() == std::vector<Id>{7, 3});
+  CHECK(second.rule().order == std::vector<Id>{7, 3});
   set.remove(3, 5);
-  CHECK(first.rule().order() == std::vector<Id>{7});
+  CHECK(first.rule().order == std::vector<Id>{7});
   CHECK(set.size() == 1);
   simulator.audit();
 }
@@ -176,7 +176,7 @@ TEST_CASE("a set refuses what cannot be, and changes nothing", "[framework]") {
   simulator.advance_to(3);
   CHECK_THROWS_AS(set.insert(5, {}, 0.5), std::logic_error);
   CHECK(set.size() == 2);
-  CHECK(list.rule().order() == std::vector<Id>{1, 0});
+  CHECK(list.rule().order == std::vector<Id>{1, 0});
   simulator.audit();
 }
 
@@ -235,7 +235,7 @@ TEST_CASE("a structure of none and of one has no events", "[framework]") {
   CHECK(list.measures().held == 0);
   simulator.audit();
   set.remove(9, 0);
-  CHECK(list.rule().order().empty());
+  CHECK(list.rule().order.empty());
   simulator.audit();
 }
 
@@ -313,7 +313,7 @@ TEST_CASE("a thousand seams at one time need no deep stack and leave the right o
   CHECK(log.empty());
   simulator.advance_to(2);
   simulator.audit();
-  CHECK(list.rule().order().front() == n - 1);
+  CHECK(list.rule().order.front() == n - 1);
   CHECK(log.size() == n * (n - 1) / 2);
 }
 
@@ -340,7 +340,7 @@ TEST_CASE("sampled values: never out of order for longer than a tick, and resamp
   for (double t = 0.05; t < end; t += 0.05) {
     simulator.advance_to(t);
     list.audit(t);
-    const auto& order = list.rule().order();
+    const auto& order = list.rule().order;
     for (std::size_t i = 0; i + 1 < n; ++i) {
       // What two values can do to their distance within a tick.
       const double slack = tick * (set[order[i]].speed + set[order[i + 1]].speed) * (1 + 1e-9);

@@ -57,14 +57,15 @@ TEST_CASE("a heap keeps to its measures", "[heap]") {
   for (Id id = 0; id < n; ++id) set.insert(id, {{{random.between(-1, 1), random.between(-1, 1)}}, 0}, 0);
   Heap<1> heap(set, 0);
   Simulator simulator(0, heap);
-  while (simulator.step()) {}
+  while (simulator.step()) {
+  }
   const Measures m = heap.measures();
   CHECK(m.held == n - 1);
-  CHECK(m.most_held == n - 1);       // compact
-  CHECK(m.most_per_element == 3);    // local
-  CHECK(m.most_touched <= 5);        // responsive
+  CHECK(m.most_held == n - 1);     // compact
+  CHECK(m.most_per_element == 3);  // local
+  CHECK(m.most_touched <= 5);      // responsive
   CHECK(m.external > 3);
-  CHECK(m.external < n);             // Each line is greatest at most once.
+  CHECK(m.external < n);  // Each line is greatest at most once.
   CHECK(m.events < 3 * n * std::log2(n));
   CHECK(set[*heap.rule().top()].position.c[1] > 0.9);
 }

@@ -133,15 +133,16 @@ TEST_CASE("triangulations keep to their measures", "[delaunay][hull]") {
   Simulator simulator(0, delaunay, hull);
   sign_counters = {};
   simulator.advance_to(3);
-  CHECK(sign_counters.searches < 20);  // Edges that have just been flipped, whose value is zero up to rounding, need none.
+  CHECK(sign_counters.searches <
+        20);  // Edges that have just been flipped, whose value is zero up to rounding, need none.
   CHECK(sign_counters.exact < 20);
   simulator.audit();
   CHECK(delaunay.rule().hull() == hull.rule().hull());
   const Measures d = delaunay.measures(), h = hull.measures();
   CHECK(d.events > n);
   CHECK(d.external > 0.9 * d.events);  // efficient: the rest are edges of the hull that come to lead another way
-  CHECK(d.most_touched <= 20);     // responsive: 5 edges from both sides, 6 areas
-  CHECK(d.most_held <= 5 * n);     // compact
+  CHECK(d.most_touched <= 20);         // responsive: 5 edges from both sides, 6 areas
+  CHECK(d.most_held <= 5 * n);         // compact
   CHECK(h.most_held <= 3 * n);
   CHECK(h.most_touched <= 20);
   CHECK(h.external < h.events);
@@ -221,7 +222,8 @@ TEST_CASE("points that are one for good share a vertex, until one goes its own w
   CHECK(wrong == 0);
 }
 
-TEST_CASE("points on one line for good have no triangle; a point beside it makes some", "[delaunay][hull][degeneracy]") {
+TEST_CASE("points on one line for good have no triangle; a point beside it makes some",
+          "[delaunay][hull][degeneracy]") {
   MovingSet<PlaneMotion<1>> set;
   Delaunay1 delaunay(set, 0);
   Hull1 hull(set, 0);
@@ -268,8 +270,9 @@ TEST_CASE("where the clock is coarse many events fall on one of its times, and t
     Random random(seed);
     MovingSet<PlaneMotion<1>> set;
     for (Id id = 0; id < 9; ++id) {
-      set.insert(id, line(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1),
-                          start), start);
+      set.insert(
+          id, line(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), start),
+          start);
     }
     Delaunay1 delaunay(set, start);
     Hull1 hull(set, start);
@@ -307,7 +310,8 @@ TEST_CASE("the walk of a small triangulation through edits of all kinds ends now
   CHECK(wrong == 0);
 }
 
-TEST_CASE("a Delaunay triangulation of sampled points is that of the truth where it is guaranteed", "[delaunay][bounded]") {
+TEST_CASE("a Delaunay triangulation of sampled points is that of the truth where it is guaranteed",
+          "[delaunay][bounded]") {
   using certificates::BoundedPoint;
   const std::uint64_t seed = 880;
   CAPTURE(seed);
