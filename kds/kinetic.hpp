@@ -109,16 +109,17 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
     rule_.remove(id, repair_);
     finish(false);
   }
-  void changing(Id id, double now) override {
+  void changing(Id id, const Element& next, double now) override {
     begin(now);
-    if constexpr (!requires { rule_.change(id, repair_); }) rule_.remove(id, repair_);
+    keeps_ = requires { rule_.change(id, repair_); };
+    if constexpr (requires { rule_.keeps(id, next, repair_); }) keeps_ = rule_.keeps(id, next, repair_);
+    if (!keeps_) rule_.remove(id, repair_);
   }
   void changed(Id id, double /*now*/) override {
     if constexpr (requires { rule_.change(id, repair_); }) {
-      rule_.change(id, repair_);
-    } else {
-      rule_.insert(id, repair_);
+      if (keeps_) rule_.change(id, repair_);
     }
+    if (!keeps_) rule_.insert(id, repair_);
     finish(false);
   }
 
@@ -146,6 +147,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   Counters offset_;       ///< what was counted before the state was loaded, less what the schedule had counted
   double last_ = -never;  ///< of the last change
   bool busy_ = false;
+  bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
 };
 
 // ---------------------------------------------------------------------------------------------------------------

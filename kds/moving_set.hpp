@@ -62,11 +62,11 @@ class MovingSet {
   /// Who is told of edits. In their order: settle(), then one of the others.
   class Observer {
    public:
-    virtual void settle(double now) = 0;           ///< process what is due up to now
-    virtual void inserted(Id id, double now) = 0;  ///< the element is there
-    virtual void removing(Id id, double now) = 0;  ///< the element is still there
-    virtual void changing(Id id, double now) = 0;  ///< the element still moves as before
-    virtual void changed(Id id, double now) = 0;   ///< it has its new motion
+    virtual void settle(double now) = 0;                          ///< process what is due up to now
+    virtual void inserted(Id id, double now) = 0;                 ///< the element is there
+    virtual void removing(Id id, double now) = 0;                 ///< the element is still there
+    virtual void changing(Id id, const E& next, double now) = 0;  ///< the element still moves as before
+    virtual void changed(Id id, double now) = 0;                  ///< it has its new motion
 
    protected:
     ~Observer() = default;
@@ -167,7 +167,7 @@ class MovingSet {
 
  private:
   void replace(Id id, const Element& element, double now) {
-    for (Observer* observer : observers_) observer->changing(id, now);
+    for (Observer* observer : observers_) observer->changing(id, element, now);
     elements_[id] = element;
     for (Observer* observer : observers_) observer->changed(id, now);
   }

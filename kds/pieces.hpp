@@ -123,7 +123,7 @@ class Pieces final : private MovingSet<E>::Observer {
     plans_[id].clear();
     queue_.clear(id);
   }
-  void changing(Id /*id*/, double /*now*/) override {}
+  void changing(Id /*id*/, const E& /*next*/, double /*now*/) override {}
   void changed(Id /*id*/, double /*now*/) override {}
 
   MovingSet<E>& elements_;

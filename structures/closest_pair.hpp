@@ -85,6 +85,10 @@ class ClosestPairRule {
     present_[id] = 0;
     within(repair, [&] { delaunay_.remove(id, repair); });
   }
+  bool keeps(Id id, const Path& next, Repair<Path>& repair) { return delaunay_.keeps(id, next, repair); }
+  void change(Id id, Repair<Path>& repair) {
+    within(repair, [&] { delaunay_.change(id, repair); });
+  }
 
   void audit(const MovingSet<Path>& x, double now) const {
     delaunay_.audit(x, now);

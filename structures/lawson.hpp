@@ -97,6 +97,31 @@ class Lawson {
     return true;
   }
 
+  /// Whether the triangles around a vertex have positive area, and the hull turns left there.
+  bool fits(Id vertex) const {
+    bool good = true;
+    for_each_edge(vertex, [&](Edge h) {
+      if (mesh_.finite(h / 3)) return !(good = area(h / 3) > 0);
+      for (Edge e = h - h % 3; e < h - h % 3 + 3; ++e) {
+        if (mesh_.origin(e) == infinite || mesh_.target(e) == infinite) good = good && edge(e) > 0;
+      }
+      return !good;
+    });
+    return good;
+  }
+
+  /// Flips what is not legal around a vertex, which fits.
+  void legalise_around(Id vertex) {
+    std::vector<Edge> edges;
+    for_each_edge(vertex, [&](Edge h) {
+      touched_.push_back(h / 3);
+      edges.push_back(h);
+      edges.push_back(TriangleMesh::next(h));
+      return false;
+    });
+    legalise(std::move(edges));
+  }
+
   /// Sign of what has to hold at an edge: that it is Delaunay, or, at the hull, that what lies inside does so and that
   /// the hull turns left. Where the apex of a hull edge is on the edge for good it is 0.
   int edge(Edge h) const {

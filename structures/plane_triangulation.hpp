@@ -66,6 +66,8 @@ class PlaneTriangulationRule {
   Effect repair(Slot slot, Repair<Path>& repair);
   void insert(Id id, Repair<Path>& repair);
   void remove(Id id, Repair<Path>& repair);
+  bool keeps(Id id, const Path& next, Repair<Path>& repair);
+  void change(Id id, Repair<Path>& repair);
   void build(Repair<Path>& repair) { rebuild(nobody, repair); }
   void audit(const MovingSet<Path>& x, double now) const;
 
@@ -233,6 +235,22 @@ void PlaneTriangulationRule<Path, What>::insert(Id id, Repair<Path>& repair) {
   Lawson<Predicates> lawson(mesh_, is, touched_);
   place(id, lawson);
   certify_touched(repair);
+}
+
+/// A motion that leaves the triangles around the vertex as they are: a bounce, say, or a small jump.
+template <class Path, Criterion What>
+bool PlaneTriangulationRule<Path, What>::keeps(Id id, const Path& next, Repair<Path>& repair) {
+  if (flat() || hidden_ > 0) return false;
+  const Predicates is{repair.elements(), repair.now(), id, &next};
+  return Lawson<Predicates>(mesh_, is, touched_).fits(id);
+}
+
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::change(Id id, Repair<Path>& repair) {
+  const Predicates is{repair.elements(), repair.now()};
+  Lawson<Predicates>(mesh_, is, touched_).legalise_around(id);
+  certify_touched(repair);
+  if (!headings_.go_round_once(mesh_)) rebuild(nobody, repair);
 }
 
 template <class Path, Criterion What>

@@ -151,6 +151,45 @@ TEST_CASE("triangulations keep to their measures", "[delaunay][hull]") {
   CHECK(hull.rule().rebuilds() == 0);
 }
 
+TEST_CASE("a bounce leaves a triangulation as it is; a jump does not", "[delaunay]") {
+  const std::uint64_t seed = 825;
+  CAPTURE(seed);
+  Random random(seed);
+  MovingSet<PlaneMotion<1>> set;
+  for (Id id = 0; id < 60; ++id) set.insert(id, random_point<1>(random, Kind::generic, 0), 0);
+  Delaunay1 delaunay(set, 0);
+  Simulator simulator(0, delaunay);
+  int other = 0, expensive = 0, wrong = 0;
+  for (Id id = 0; id < 60; ++id) {
+    simulator.advance_to(0.01 * id);
+    const auto neighbours = [&] {
+      std::vector<Id> result;
+      for (Id end = 0; end < 60; ++end) {
+        if (end != id && delaunay.rule().mesh().connected(id, end)) result.push_back(end);
+      }
+      return result;
+    };
+    const auto before = neighbours();
+    const auto certificates = delaunay.counters().certificates;
+    auto path = certificates::restarted(set[id], simulator.now());
+    path.coordinate[0].c[1] = -path.coordinate[0].c[1];
+    set.update(id, path, simulator.now());
+    other += neighbours() != before;
+    expensive += delaunay.counters().certificates - certificates > 4 * before.size() + 12;
+    if (id % 10 == 0) {
+      set.update(id, line(5 + id, 5), simulator.now());
+      simulator.audit();
+      wrong += check_triangulation(delaunay.rule(), set, simulator.now());
+      CHECK(neighbours() != before);
+    }
+  }
+  simulator.audit();
+  CHECK(other == 0);
+  CHECK(expensive == 0);
+  CHECK(wrong == 0);
+  CHECK(delaunay.rule().rebuilds() == 0);
+}
+
 // --- degeneracies
 
 TEST_CASE("four points of a square lattice are on one circle, for a moment and for good", "[delaunay][degeneracy]") {
