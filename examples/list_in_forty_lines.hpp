@@ -51,7 +51,7 @@ struct ListRule {
   void renew(std::size_t i, std::size_t last, std::size_t moved, Repair<Value>& repair) {
     place.resize(repair.elements().end_id());
     for (std::size_t k = i; k < moved; ++k) place[order[k]] = static_cast<Id>(k);
-    for (std::size_t k = std::max<std::size_t>(i, 1) - 1; k < std::min(last, order.size()); ++k) repair.certify(order[k]);
+    for (std::size_t k = i > 0 ? i - 1 : 0; k < std::min(last, order.size()); ++k) repair.certify(order[k]);
   }
   template <class Archive>
   void archive(Archive& archive) { archive(order, place); }
