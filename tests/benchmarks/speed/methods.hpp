@@ -14,12 +14,12 @@
 namespace speed {
 
 struct Method {
-  const char* name;  ///< as the tool calls it
+  std::string name;  ///< as the tool calls it
   kds::collision::BroadPhaseKind kind;
   std::size_t most_bodies = std::numeric_limits<std::size_t>::max();  ///< more would not fit into memory
 };
 
-/// All of them, the default first. Throws std::runtime_error if the tool has one that is missing here.
+/// All that the library has, the default first.
 const std::vector<Method>& methods();
 const Method& method(const std::string& name);
 
