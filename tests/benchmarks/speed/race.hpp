@@ -40,7 +40,8 @@ struct RaceOptions {
   double hopeless = 20;      ///< times the best so far: ended there and not run again
   double floor = 0.25;       ///< CPU s that everybody gets
   double cap = 20;           ///< CPU s that nobody gets more of
-  double least = 0.02;       ///< CPU s a round is filled with by repeating short runs, of which the median counts
+  double least = 0.02;       ///< CPU s a round is filled with by repeating short runs, of which the median counts; each
+                             ///< round begins with a run that does not count, but for the first, which is that alone
   double patience = 8;       ///< CPU s after which an entrant has no further rounds
 };
 
