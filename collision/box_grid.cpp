@@ -17,6 +17,9 @@ std::int64_t floor_to_integer(double x) {
 
 }  // namespace
 
+/// Cells are at least this much larger than a box. Larger ones are fewer to look into, and hold more.
+constexpr double roominess = 1.4;
+
 /// A block of cells of one level.
 struct BoxGrid::Cells {
   Cells(const StaticBox& box, const Level& level) : tag(level.tag) {
@@ -51,13 +54,13 @@ BoxGrid::Exponent BoxGrid::level_for(double extent) {
   if (!(extent > 0)) return -most;
   if (!(extent < 0x1p1023)) return most;
   int exponent = 0;
-  std::frexp(extent, &exponent);  // extent < 2^exponent
+  std::frexp(roominess * extent, &exponent);  // the mantissa is below 1
   return static_cast<Exponent>(std::clamp(exponent, -most, most));
 }
 
-double BoxGrid::cell_for(double extent) { return std::ldexp(1.0, level_for(extent)); }
+double BoxGrid::room_for(double extent) { return std::ldexp(1 / roominess, level_for(extent)); }
 
-double BoxGrid::coarsest() const { return levels_.empty() ? 0 : std::ldexp(1.0, levels_.back().exponent); }
+double BoxGrid::coarsest() const { return levels_.empty() ? 0 : std::ldexp(1 / roominess, levels_.back().exponent); }
 
 BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
   auto place = std::lower_bound(levels_.begin(), levels_.end(), exponent,

@@ -8,6 +8,7 @@
 #include <emmintrin.h>
 #endif
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -52,10 +53,14 @@ class BoxGrid {
   /// One past the greatest number that there has been.
   Id end() const { return static_cast<Id>(items_.size()); }
 
-  /// Size of the cells of the level that a box of such an extent belongs to.
-  static double cell_for(double extent);
+  /// Greatest extent of a box of the same level as one of this extent.
+  static double room_for(double extent);
 
-  void reserve(std::size_t boxes) { natives_.reserve(2 * boxes); }
+  /// Makes room for boxes of numbers below `end`.
+  void reserve(Id end) {
+    items_.resize(std::max<std::size_t>(items_.size(), end));
+    natives_.reserve(2 * std::size_t{end});
+  }
 
   /// Puts a box in, or in place of the one of that number. Appends to `changes`.
   void put(Id id, const StaticBox& box, Changes& changes);

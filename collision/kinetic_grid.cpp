@@ -89,9 +89,9 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double no
     if (!(extent <= largest)) return {whole_space(), never};
     ++counters_.certificates;
     // One that is just too large for a level is better cut than in the next.
-    const double cell = 0.5 * BoxGrid::cell_for(extent);
-    if (extent < 1.5 * cell && size < 0.75 * cell) {
-      time *= 0.999 * (cell - size) / (extent - size);
+    const double room_below = 0.5 * BoxGrid::room_for(extent);
+    if (extent < 1.5 * room_below && size < 0.75 * room_below) {
+      time *= 0.999 * (room_below - size) / (extent - size);
       expiry = std::max(now + time, next_up(now));
       box = swept_box(body.box, now, expiry);
       extent = box.extent();
@@ -168,7 +168,7 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
     bodies_.resize(room);
     expiry_.resize(room);
   }
-  fat_boxes_.reserve(fat_boxes_.size() + bodies.size());
+  fat_boxes_.reserve(end);
   if (fat_boxes_.size() == 0 && !bodies.empty()) first_reach_ = reach_per_spacing * typical_spacing<Degree>(bodies, now);
   for (const Entry& entry : bodies) {
     bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
