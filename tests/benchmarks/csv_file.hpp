@@ -17,13 +17,18 @@ inline std::ofstream open_csv(const std::filesystem::path& folder, const std::st
   return file;
 }
 
-/// One line, as of printf, to the file and to the terminal.
-inline void tell(std::ofstream& file, const char* format, auto... values) {
-  char line[512];
-  std::snprintf(line, sizeof line, format, values...);
+/// One line to the file and to the terminal.
+inline void tell(std::ofstream& file, const std::string& line) {
   file << line << std::flush;
-  std::fputs(line, stdout);
+  std::fputs(line.c_str(), stdout);
   std::fflush(stdout);
+}
+
+/// The same, as of printf.
+inline void tell(std::ofstream& file, const char* format, auto value, auto... more) {
+  char line[512];
+  std::snprintf(line, sizeof line, format, value, more...);
+  tell(file, std::string(line));
 }
 
 }  // namespace kds::benchmarks
