@@ -16,8 +16,7 @@ struct StaticBox {
   Eigen::Array3d max;
 
   bool overlaps(const StaticBox& other) const {
-    return (min[0] <= other.max[0]) & (other.min[0] <= max[0]) & (min[1] <= other.max[1]) & (other.min[1] <= max[1]) &
-           (min[2] <= other.max[2]) & (other.min[2] <= max[2]);
+    return (min <= other.max).all() && (other.min <= max).all();
   }
   bool contains(const StaticBox& other) const {
     return (min <= other.min).all() && (other.max <= max).all();
