@@ -19,6 +19,10 @@ constexpr double reach_per_spacing = 0.25;
 /// At least, over its size: less would have it renewed ever so often among others that touch it anyway.
 constexpr double least_reach = 0.125;
 
+/// At least, over its coordinates: boxes without extent have a reach too, which then adapts.
+constexpr double least_part_of_coordinates = 0x1p-40;
+constexpr double least_reach_at_all = 0x1p-500;
+
 /// An old fat box is kept if it lasts this share of a new one's lifetime.
 constexpr double kept_share = 0.25;
 
@@ -59,7 +63,7 @@ StaticBox whole_space() {
 
 }  // namespace
 
-/// Seconds until a box has moved by its reach; `never` if it is at rest.
+/// Seconds until a box has moved by its reach, `never` if it is at rest; exact for straight paths, up to rounding.
 template <int Degree>
 double KineticGrid<Degree>::lifetime(const Body& body, double now) {
   const KineticBox<Degree>& box = body.box;
@@ -77,7 +81,8 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double no
   Body& body = bodies_[id];
   body.fattened = now;
   const double size = present.extent();
-  body.reach = std::max(body.reach, least_reach * size);
+  const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
+  body.reach = std::max({body.reach, least_reach * size, least_part_of_coordinates * coordinates, least_reach_at_all});
   double time = lifetime(body, now);
   if (time == never) return {present, never};
   for (;;) {

@@ -108,6 +108,21 @@ TEST_CASE("Clocks so large that a body moves by its size between two doubles do 
   CHECK(pairs.now.empty());
 }
 
+TEST_CASE("Boxes without extent move on in the kinetic grid too", "[broad_phase]") {
+  KineticGrid<1> grid;
+  Pairs pairs;
+  certificates::PointMotion<1> path;
+  path.coefficients = {Vector3d(0, 0, 0), Vector3d(1, 0, 0)};
+  const KineticBox<1> point{path, path};
+  path.coefficients = {Vector3d(7, 0, 0), Vector3d(0, 0, 0)};
+  const KineticBox<1> other{path, path};
+  const std::vector<KineticGrid<1>::Entry> entries{{0, &point}, {1, &other}};
+  grid.insert(entries, 0, pairs);
+  while (grid.advance(10, pairs)) {}
+  CHECK(pairs.since.contains({0, 1}));
+  CHECK(grid.counters().box_updates < 5000);
+}
+
 TEST_CASE("An audit of the kinetic grid sees a body outside its fat box", "[broad_phase]") {
   KineticGrid<1> grid;
   Pairs pairs;
