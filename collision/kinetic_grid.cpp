@@ -70,7 +70,7 @@ double KineticGrid<Degree>::lifetime(const Body& body, double now) {
   const double speed = std::max(greatest_speed(box.min, now), greatest_speed(box.max, now));
   double time = speed > 0 ? body.reach / speed : never;
   if constexpr (Degree >= 2) {
-    const double bend = std::max(box.min.coefficients[2].cwiseAbs().maxCoeff(), box.max.coefficients[2].cwiseAbs().maxCoeff());
+    const double bend = box.min.coefficients[2].cwiseAbs().cwiseMax(box.max.coefficients[2].cwiseAbs()).maxCoeff();
     if (bend > 0) time = std::min(time, std::sqrt(body.reach / bend));
   }
   return time;

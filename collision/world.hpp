@@ -1,136 +1,25 @@
 // The collision detection engine: bodies, broad phase, contacts, response.
 #pragma once
 
+#include "collision/body_description.hpp"
 #include "collision/broad_phase.hpp"
-#include "collision/broad_phase_kind.hpp"
 #include "collision/contact.hpp"
 #include "collision/least_constraint.hpp"
 #include "collision/narrow_phase.hpp"
 #include "collision/profile.hpp"
 #include "collision/shape.hpp"
+#include "collision/world_listener.hpp"
+#include "collision/world_options.hpp"
 #include "kds/calendar_queue.hpp"
 #include "kds/dary_queue.hpp"
 
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string_view>
 #include <vector>
 
 namespace kds::collision {
-
-/// What the engine does about contacts.
-enum class Response {
-  none,      ///< reports contacts and separations; bodies pass through each other
-  elastic,   ///< frictionless impulses by the bodies' restitution, no spin; motions change at each contact
-  callback,  ///< as elastic, but the listener changes the motions; a pair it leaves approaching passes through
-};
-
-/// Bounces that pile up in time (Zeno). A contact is *held* instead of bounced back from, in mode `elastic`, if it
-/// - has no rebound: restitution 0, or no speed of approach;
-/// - would be back within interval / contacts, pressed by the acceleration that it has (a ball coming to rest), or rise
-///   by roundings of the coordinates only;
-/// - is of two bodies that have both met others more than `contacts` times within `interval` (fixed bodies and walls do
-///   not count).
-/// What is held loses its relative normal velocity and from then on moves on along the contact, without friction and at
-/// no cost, by least constraint (least_constraint.hpp): forces pass through stacks. It is let go when it is pulled or
-/// pushed away, pushed together anew (which is a contact), loses its support or slides off. Where bodies cannot be
-/// held (between two fixed ones that close in) the pair is let pass until it has separated. So it is, in mode
-/// `callback` too, after ten times as many meetings. Holds are counted and reported, and a run always ends.
-///
-/// Differs from counting meetings of pairs: a pair is forgotten when its bounding volumes part, which boxes do at each
-/// bounce, and when that is depends on the broad phase.
-struct ZenoPolicy {
-  std::uint32_t contacts = 100;  ///< more makes longer cascades exact and collapses slower
-  double interval = 1e-9;        ///< s
-};
-
-/// Reflecting walls: a ball around each body stays inside the box [min, max].
-struct Walls {
-  Eigen::Vector3d min;
-  Eigen::Vector3d max;
-  double restitution = 1;  ///< in [0, 1]; see BodyDescription
-};
-
-struct WorldOptions {
-  double start_time = 0;                ///< s; keep it near 0: events are as fine as doubles near the clock
-  double window = never;                ///< s; how far ahead events are predicted at a time
-  Response response = Response::none;
-  BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
-  double rate = 0;                      ///< Hz; frames of the swept boxes, needed by `sap` alone
-  std::optional<Walls> walls;
-  bool report_pairs = false;            ///< tell the listener of bounding volumes that begin and cease to overlap
-  bool profile = false;                 ///< measure where the time goes
-  ZenoPolicy zeno;
-  /// Bodies added, removed and moved by callbacks within zeno.interval of simulated time, and 64 for each body there
-  /// is: more end the run by std::runtime_error, since callbacks that go on for ever at one time would never let the
-  /// clock move. Without callbacks a run always ends.
-  std::uint64_t most_edits = 1'000'000;
-};
-
-/// The volume that the broad phase sees.
-enum class BoundingVolume {
-  shape,   ///< the tightest box around the shape in its orientation
-  sphere,  ///< the box around the bounding sphere: right for a shape in any orientation
-};
-
-/// A body to add.
-template <int Degree>
-struct BodyDescription {
-  using Motion = certificates::PointMotion<Degree>;
-  /// Gives a box that holds the body from time t until its valid_until, which must be later than t.
-  using BoxFunction = std::function<KineticBox<Degree>(double t, const Motion& motion)>;
-
-  Shape shape;
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  /// One or more pieces sorted by start. The first may lie in the past; in the future, the body enters then.
-  std::vector<Motion> motion;
-  double mass = 1;     ///< > 0
-  bool fixed = false;  ///< infinite mass
-  /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.
-  double restitution = 1;
-  std::uint32_t category = 1;          ///< bits
-  std::uint32_t collides_with = ~0u;   ///< a pair is tested if each one's category is in the other's mask
-  BoundingVolume volume = BoundingVolume::shape;
-  BoxFunction box;     ///< instead of `volume`: caller-given conservative boxes
-};
-
-/// Something of two bodies: contact, overlap or separation.
-struct PairEvent {
-  BodyId a;
-  BodyId b;
-  Contact contact;
-};
-
-/// A body's bounding sphere meets a wall: 0 is -x, 1 is +x, 2 is -y ... 5 is +z.
-struct WallEvent {
-  BodyId body;
-  int wall;
-  Contact contact;  ///< normal points out of the domain
-};
-
-template <int Degree>
-class World;
-
-/// Told of events in order of time. Every callback may change motions, add and remove bodies, the ones concerned
-/// included; the world is consistent when it is called.
-template <int Degree>
-class WorldListener {
- public:
-  virtual ~WorldListener() = default;
-  virtual void contact(World<Degree>&, const PairEvent&) {}     ///< penetration begins; motions are as after response
-  virtual void separation(World<Degree>&, const PairEvent&) {}  ///< `none` alone: penetration ends
-  virtual void overlap(World<Degree>&, const PairEvent&) {}     ///< in contact when entering the world or after a jump
-  virtual void wall(World<Degree>&, const WallEvent&) {}
-  virtual void pair_began(World<Degree>&, BodyId, BodyId, double) {}
-  virtual void pair_ended(World<Degree>&, BodyId, BodyId, double) {}
-  virtual void held(World<Degree>&, const PairEvent&) {}        ///< the Zeno policy has acted on a pair
-  virtual void held_at_wall(World<Degree>&, const WallEvent&) {}
-  /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
-  virtual void moved(World<Degree>&, BodyId) {}
-};
 
 struct WorldCounters {
   BroadPhaseCounters broad_phase;
@@ -147,8 +36,8 @@ struct WorldCounters {
 /// Runs bodies through time and reports their contacts at exact times.
 ///
 /// [Paper] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
-/// broad phase, bounding volumes that expire, walls, held pairs let go, contacts by (a, b). Dynamic test results are kept until a motion
-/// changes; then only the pairs of that body that are active are tested again.
+/// broad phase, bounding volumes that expire, walls, held pairs let go, contacts by (a, b). Dynamic test results are kept
+/// until a motion changes; then only the pairs of that body that are active are tested again.
 ///
 /// Degree 1 (straight paths) never pays for degree 2.
 template <int Degree>

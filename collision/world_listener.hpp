@@ -1,0 +1,44 @@
+// What a world tells.
+#pragma once
+
+#include "collision/contact.hpp"
+#include "collision/kinetic_box.hpp"
+
+namespace kds::collision {
+
+/// Something of two bodies: contact, overlap or separation.
+struct PairEvent {
+  BodyId a;
+  BodyId b;
+  Contact contact;
+};
+
+/// A body's bounding sphere meets a wall: 0 is -x, 1 is +x, 2 is -y ... 5 is +z.
+struct WallEvent {
+  BodyId body;
+  int wall;
+  Contact contact;  ///< normal points out of the domain
+};
+
+template <int Degree>
+class World;
+
+/// Told of events in order of time. Every callback may change motions, add and remove bodies, the ones concerned
+/// included; the world is consistent when it is called.
+template <int Degree>
+class WorldListener {
+ public:
+  virtual ~WorldListener() = default;
+  virtual void contact(World<Degree>&, const PairEvent&) {}     ///< penetration begins; motions are as after response
+  virtual void separation(World<Degree>&, const PairEvent&) {}  ///< `none` alone: penetration ends
+  virtual void overlap(World<Degree>&, const PairEvent&) {}     ///< in contact when entering the world or after a jump
+  virtual void wall(World<Degree>&, const WallEvent&) {}
+  virtual void pair_began(World<Degree>&, BodyId, BodyId, double) {}
+  virtual void pair_ended(World<Degree>&, BodyId, BodyId, double) {}
+  virtual void held(World<Degree>&, const PairEvent&) {}        ///< the Zeno policy has acted on a pair
+  virtual void held_at_wall(World<Degree>&, const WallEvent&) {}
+  /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
+  virtual void moved(World<Degree>&, BodyId) {}
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,63 @@
+// How a world is to run.
+#pragma once
+
+#include "collision/broad_phase_kind.hpp"
+#include "kds/lattice.hpp"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <optional>
+
+namespace kds::collision {
+
+/// What the engine does about contacts.
+enum class Response {
+  none,      ///< reports contacts and separations; bodies pass through each other
+  elastic,   ///< frictionless impulses by the bodies' restitution, no spin; motions change at each contact
+  callback,  ///< as elastic, but the listener changes the motions; a pair it leaves approaching passes through
+};
+
+/// Bounces that pile up in time (Zeno). A contact is *held* instead of bounced back from, in mode `elastic`, if it
+/// - has no rebound: restitution 0, or no speed of approach;
+/// - would be back within interval / contacts, pressed by the acceleration that it has (a ball coming to rest), or rise
+///   by roundings of the coordinates only;
+/// - is of two bodies that have both met others more than `contacts` times within `interval` (fixed bodies and walls do
+///   not count).
+/// What is held loses its relative normal velocity and from then on moves on along the contact, without friction and at
+/// no cost, by least constraint (least_constraint.hpp): forces pass through stacks. It is let go when it is pulled or
+/// pushed away, pushed together anew (which is a contact), loses its support or slides off. Where bodies cannot be
+/// held (between two fixed ones that close in) the pair is let pass until it has separated. So it is, in mode
+/// `callback` too, after ten times as many meetings. Holds are counted and reported, and a run always ends.
+///
+/// Differs from counting meetings of pairs: a pair is forgotten when its bounding volumes part, which boxes do at each
+/// bounce, and when that is depends on the broad phase.
+struct ZenoPolicy {
+  std::uint32_t contacts = 100;  ///< more makes longer cascades exact and collapses slower
+  double interval = 1e-9;        ///< s
+};
+
+/// Reflecting walls: a ball around each body stays inside the box [min, max].
+struct Walls {
+  Eigen::Vector3d min;
+  Eigen::Vector3d max;
+  double restitution = 1;  ///< in [0, 1]; see BodyDescription
+};
+
+struct WorldOptions {
+  double start_time = 0;                ///< s; keep it near 0: events are as fine as doubles near the clock
+  double window = never;                ///< s; how far ahead events are predicted at a time
+  Response response = Response::none;
+  BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
+  double rate = 0;                      ///< Hz; frames of the swept boxes, needed by `sap` alone
+  std::optional<Walls> walls;
+  bool report_pairs = false;            ///< tell the listener of bounding volumes that begin and cease to overlap
+  bool profile = false;                 ///< measure where the time goes
+  ZenoPolicy zeno;
+  /// Bodies added, removed and moved by callbacks within zeno.interval of simulated time, and 64 for each body there
+  /// is: more end the run by std::runtime_error, since callbacks that go on for ever at one time would never let the
+  /// clock move. Without callbacks a run always ends.
+  std::uint64_t most_edits = 1'000'000;
+};
+
+}  // namespace kds::collision
