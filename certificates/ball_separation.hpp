@@ -76,11 +76,12 @@ bool BallSeparation<PathDegree>::relative_path_is_line() const {
 
 /// The path of b as seen from a, about now, if that is a line: r + v (t - now).
 ///
-/// Error bounds, with u = 2^-53. A coordinate at `now` is evaluated by Horner's rule with an elapsed time known to u: at
-/// most 6 u of the sum of its terms' magnitudes, and the difference of two adds u; so r is known to 8 u m, where m is
-/// that sum for both bodies. Likewise the rate v to 8 u w. Then r . v is known to (8 + 8 + 4) u m . w, r . r to
-/// (16 + 4) u m . m plus products of errors, v . v likewise, and the square of the reach to 6 u of itself. All are below
-/// 2^-48 (32 u) of the sum of magnitudes, with room for the rounding of the bound. Underflow loses less than 2^-1000.
+/// Error bounds, with u = 2^-53. A coordinate at `now` is evaluated by Horner's rule with an elapsed time known to u:
+/// at most 6 u of the sum of its terms' magnitudes, and the difference of two adds u; so r is known to 8 u m, where m
+/// is that sum for both bodies. Likewise the rate v to 8 u w. Then r . v is known to (8 + 8 + 4) u m . w, r . r to
+/// (16 + 4) u m . m plus products of errors, v . v likewise, and the square of the reach to 6 u of itself. All are
+/// below 2^-48 (32 u) of the sum of magnitudes, with room for the rounding of the bound. Underflow loses less than
+/// 2^-1000.
 template <int PathDegree>
 struct BallSeparation<PathDegree>::RelativeLine {
   Eigen::Array3d r, v, m, w;
@@ -167,8 +168,9 @@ double BallSeparation<PathDegree>::first_approach(double now, double horizon) co
       if (t > now && square.middle - square.radius > 2 * steep * steep) return t;
     }
   }
-  const DerivativeCertificate<BallSeparation> parting{*this};
-  return first_all_broken<BallSeparation, DerivativeCertificate<BallSeparation>>(now, horizon, {this, 1}, {&parting, 1});
+  using Parting = DerivativeCertificate<BallSeparation>;
+  const Parting parting{*this};
+  return first_all_broken<BallSeparation, Parting>(now, horizon, {this, 1}, {&parting, 1});
 }
 
 template <int PathDegree>

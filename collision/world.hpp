@@ -36,8 +36,8 @@ struct WorldCounters {
 /// Runs bodies through time and reports their contacts at exact times.
 ///
 /// [Paper] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
-/// broad phase, bounding volumes that expire, walls, held pairs let go, contacts by (a, b). Dynamic test results are kept
-/// until a motion changes; then only the pairs of that body that are active are tested again.
+/// broad phase, bounding volumes that expire, walls, held pairs let go, contacts by (a, b). Dynamic test results are
+/// kept until a motion changes; then only the pairs of that body that are active are tested again.
 ///
 /// Degree 1 (straight paths) never pays for degree 2.
 template <int Degree>
