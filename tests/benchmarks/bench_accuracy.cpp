@@ -96,7 +96,7 @@ struct Times {
 template <int Degree>
 void measure(const Scene<Degree>& scene, int rounds, std::ofstream& csv) {
   Outcome outcome, other;
-  const auto truth = run_world(scene, BroadPhaseKind::kinetic_sap, 0, outcome);
+  const auto truth = run_world(scene, BroadPhaseKind::automatic, 0, outcome);
   if (run_world(scene, BroadPhaseKind::all_pairs, 0, other) != truth) {
     throw std::runtime_error(scene.name + ": all pairs give other contacts");
   }

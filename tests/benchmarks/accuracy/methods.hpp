@@ -92,7 +92,7 @@ Outcome run(const Scene<Degree>& scene, Method method, double rate) {
   using kds::collision::BroadPhaseKind;
   Outcome outcome;
   switch (method) {
-    case Method::event_driven: run_world(scene, BroadPhaseKind::kinetic_sap, 0, outcome); break;
+    case Method::event_driven: run_world(scene, BroadPhaseKind::automatic, 0, outcome); break;
     case Method::swept: run_world(scene, BroadPhaseKind::sap, rate, outcome); break;
     case Method::polling: return run_sampler<PollingSampler<Degree>>(scene, rate, scene.end_time);
     case Method::discrete: return run_sampler<DiscreteSampler<Degree>>(scene, rate);
