@@ -17,15 +17,15 @@ using certificates::first_all_broken;
 using certificates::first_any_holds;
 
 using Line = PolynomialCertificate<1>;
-using Parabola = PolynomialCertificate<2>;
+using OnAParabola = PolynomialCertificate<2>;
 
 struct Problem {
   std::vector<Line> lines;
-  std::vector<Parabola> parabolas;
+  std::vector<OnAParabola> parabolas;
   std::vector<oracle::Polynomial> polynomials;
 
   std::span<const Line> line_span() const { return lines; }
-  std::span<const Parabola> parabola_span() const { return parabolas; }
+  std::span<const OnAParabola> parabola_span() const { return parabolas; }
 };
 
 template <int Degree>
@@ -138,14 +138,14 @@ TEST_CASE("one holds again first where the exact stretches say so", "[conjunctio
 
 TEST_CASE("by hand: two facts that fail in turn and never together, and two that do", "[conjunction]") {
   // Broken in (1, 2) and in (2, 3): never both.
-  const std::vector<Parabola> in_turn{{{{{2, -3, 1}}, 0}}, {{{{6, -5, 1}}, 0}}};
-  CHECK(first_all_broken(0.0, never, std::span<const Parabola>(in_turn)) == never);
+  const std::vector<OnAParabola> in_turn{{{{{2, -3, 1}}, 0}}, {{{{6, -5, 1}}, 0}}};
+  CHECK(first_all_broken(0.0, never, std::span<const OnAParabola>(in_turn)) == never);
   // Broken in (1, 3) and in (2, 4): both from 2.
-  const std::vector<Parabola> together{{{{{3, -4, 1}}, 0}}, {{{{8, -6, 1}}, 0}}};
-  CHECK(first_all_broken(0.0, never, std::span<const Parabola>(together)) == 2);
-  CHECK(first_all_broken(0.0, 1.5, std::span<const Parabola>(together)) == never);
-  CHECK(first_all_broken(2.5, never, std::span<const Parabola>(together)) == 2.5);
-  CHECK(first_all_broken(3.0, never, std::span<const Parabola>(together)) == never);
-  CHECK(first_any_holds(2.0, never, std::span<const Parabola>(together)) == 3);
-  CHECK(first_any_holds(2.0, 2.5, std::span<const Parabola>(together)) == never);
+  const std::vector<OnAParabola> together{{{{{3, -4, 1}}, 0}}, {{{{8, -6, 1}}, 0}}};
+  CHECK(first_all_broken(0.0, never, std::span<const OnAParabola>(together)) == 2);
+  CHECK(first_all_broken(0.0, 1.5, std::span<const OnAParabola>(together)) == never);
+  CHECK(first_all_broken(2.5, never, std::span<const OnAParabola>(together)) == 2.5);
+  CHECK(first_all_broken(3.0, never, std::span<const OnAParabola>(together)) == never);
+  CHECK(first_any_holds(2.0, never, std::span<const OnAParabola>(together)) == 3);
+  CHECK(first_any_holds(2.0, 2.5, std::span<const OnAParabola>(together)) == never);
 }
