@@ -132,8 +132,11 @@ void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
   body.begun = 0;
 }
 
+/// In the order of bodies, whatever cells they were found in.
 template <int Degree>
 void KineticGrid<Degree>::report(BodyId id, double now, PairListener& listener) {
+  std::sort(changes_.ended.begin(), changes_.ended.end());
+  std::sort(changes_.began.begin(), changes_.began.end());
   for (const BodyId other : changes_.ended) listener.pair_ended(std::min(id, other), std::max(id, other), now);
   for (const BodyId other : changes_.began) {
     ++bodies_[id].begun;

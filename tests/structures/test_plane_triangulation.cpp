@@ -151,7 +151,7 @@ TEST_CASE("triangulations keep to their measures", "[delaunay][hull]") {
   CHECK(hull.rule().rebuilds() == 0);
 }
 
-TEST_CASE("a bounce leaves a triangulation as it is; a jump does not", "[delaunay]") {
+TEST_CASE("a bounce leaves a triangulation as it is, and a jump does not", "[delaunay]") {
   const std::uint64_t seed = 825;
   CAPTURE(seed);
   Random random(seed);
@@ -261,7 +261,7 @@ TEST_CASE("points that are one for good share a vertex, until one goes its own w
   CHECK(wrong == 0);
 }
 
-TEST_CASE("points on one line for good have no triangle; a point beside it makes some",
+TEST_CASE("points on one line for good have no triangle, and a point beside it makes some",
           "[delaunay][hull][degeneracy]") {
   MovingSet<PlaneMotion<1>> set;
   Delaunay1 delaunay(set, 0);
