@@ -232,7 +232,6 @@ class World final : private PairListener {
   bool is_jump(BodyId id, const Motion& to) const;
   KineticBox<Degree> bounding_box(BodyId id) const;
   KineticBox<Degree> renewed_box(BodyId id);
-  double box_valid_until(const Body& body) const { return body.extras ? body.extras->box.valid_until : never; }
   void schedule_wall(BodyId id);
   void schedule_volume(BodyId id);
   MovingShape<Degree> moving(BodyId id) const { return {bodies_[id].shape, movers_[id].motion}; }

@@ -187,13 +187,14 @@ template <int Degree>
 KineticBox<Degree> World<Degree>::renewed_box(BodyId id) {
   Extras* const extras = bodies_[id].extras.get();
   if (extras && extras->box_function) {
-    extras->box = extras->box_function(now_, movers_[id].motion);
-    if (!extras->box.min.finite() || !extras->box.max.finite()) {
+    const KineticBox<Degree> box = extras->box_function(now_, movers_[id].motion);
+    if (!box.min.finite() || !box.max.finite()) {
       throw std::invalid_argument("BodyDescription.box: returned a box that is not finite");
     }
-    if (!(extras->box.valid_until > now_)) {
+    if (!(box.valid_until > now_)) {
       throw std::invalid_argument("BodyDescription.box: returned a box whose validity has ended");
     }
+    extras->box = box;
   }
   return bounding_box(id);
 }
