@@ -16,6 +16,9 @@ constexpr double largest = std::numeric_limits<double>::max();
 /// A body's reach when it comes, over the spacing of bodies.
 constexpr double reach_per_spacing = 0.25;
 
+/// At most: such that a box of this reach on both sides still has an extent.
+constexpr double greatest_reach = 0x1p1020;
+
 /// At least, over its size: less would have it renewed ever so often among others that touch it anyway.
 constexpr double least_reach = 0.125;
 
@@ -68,7 +71,7 @@ template <int Degree>
 double KineticGrid<Degree>::lifetime(const Body& body, double now) {
   const KineticBox<Degree>& box = body.box;
   const double speed = std::max(greatest_speed(box.min, now), greatest_speed(box.max, now));
-  double time = speed > 0 ? body.reach / speed : never;
+  double time = speed > 0 ? std::min(body.reach / speed, largest) : never;
   if constexpr (Degree >= 2) {
     const double bend = box.min.coefficients[2].cwiseAbs().cwiseMax(box.max.coefficients[2].cwiseAbs()).maxCoeff();
     if (bend > 0) time = std::min(time, std::sqrt(body.reach / bend));
@@ -121,8 +124,8 @@ void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
   Body& body = bodies_[id];
   if (body.expiry <= now) {
     switch (body.begun) {
-      case 0: body.reach = std::min(1.4 * body.reach, 0x1p1000); break;
-      case 1: body.reach *= 1.15; break;
+      case 0: body.reach = std::min(1.4 * body.reach, greatest_reach); break;
+      case 1: body.reach = std::min(1.15 * body.reach, greatest_reach); break;
       case 2: break;
       default: body.reach *= body.begun < 8 ? 0.8 : 0.5;
     }
