@@ -4,7 +4,7 @@
 #include "certificates/conjunction.hpp"
 #include "certificates/point_motion.hpp"
 #include "kds/certificate.hpp"
-#include "kds/failure_time.hpp"
+#include "kds/roots/failure_time.hpp"
 
 #include <Eigen/Core>
 

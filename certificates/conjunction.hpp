@@ -1,7 +1,7 @@
 // Several facts at once: the first time at which all of a set of certificates have failed.
 #pragma once
 
-#include "kds/failure_time.hpp"
+#include "kds/roots/failure_time.hpp"
 
 #include <algorithm>
 #include <span>

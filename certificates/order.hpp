@@ -2,10 +2,10 @@
 #pragma once
 
 #include "certificates/order_parabola.hpp"
+#include "kds/arithmetic/unrolled.hpp"
 #include "kds/certificate.hpp"
-#include "kds/failure_time.hpp"
 #include "kds/motion.hpp"
-#include "kds/unrolled.hpp"
+#include "kds/roots/failure_time.hpp"
 
 #include <bit>
 #include <cmath>

@@ -1,8 +1,8 @@
 // The difference of two moving values as a parabola with its error bounds.
 #pragma once
 
-#include "kds/failure_time_parabola.hpp"
 #include "kds/motion.hpp"
+#include "kds/roots/failure_time_parabola.hpp"
 
 #include <cmath>
 #include <limits>

@@ -71,7 +71,7 @@ struct PointMotion {
   }
 };
 
-/// For snapshots (kds/snapshot.hpp).
+/// For snapshots (kds/framework/snapshot.hpp).
 template <class Archive, int Degree>
 void archive_members(Archive& archive, PointMotion<Degree>& path) {
   for (auto& c : path.coefficients) archive(c[0], c[1], c[2]);

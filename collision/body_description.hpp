@@ -1,8 +1,8 @@
 // What a body is when it is added to a world.
 #pragma once
 
-#include "collision/kinetic_box.hpp"
-#include "collision/shape.hpp"
+#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/shapes/shape.hpp"
 
 #include <Eigen/Geometry>
 

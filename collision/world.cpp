@@ -1,12 +1,12 @@
 // The clock of the world: which event is next, and what the callers of the engine see.
 #include "collision/world.hpp"
 
-#include "collision/adaptive_broad_phase.hpp"
-#include "collision/all_pairs.hpp"
-#include "collision/kinetic_grid.hpp"
-#include "collision/kinetic_sweep_and_prune.hpp"
+#include "collision/broad_phase/adaptive_broad_phase.hpp"
+#include "collision/broad_phase/all_pairs.hpp"
+#include "collision/broad_phase/kinetic_grid.hpp"
+#include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
+#include "collision/broad_phase/swept_sweep_and_prune.hpp"
 #include "collision/profile.hpp"
-#include "collision/swept_sweep_and_prune.hpp"
 #include "kds/audit.hpp"
 
 #include <algorithm>

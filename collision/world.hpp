@@ -2,16 +2,16 @@
 #pragma once
 
 #include "collision/body_description.hpp"
-#include "collision/broad_phase.hpp"
-#include "collision/contact.hpp"
-#include "collision/least_constraint.hpp"
-#include "collision/narrow_phase.hpp"
+#include "collision/broad_phase/broad_phase.hpp"
+#include "collision/narrow_phase/contact.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
-#include "collision/shape.hpp"
+#include "collision/response/least_constraint.hpp"
+#include "collision/shapes/shape.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
-#include "kds/calendar_queue.hpp"
-#include "kds/dary_queue.hpp"
+#include "kds/events/calendar_queue.hpp"
+#include "kds/events/dary_queue.hpp"
 
 #include <cstdint>
 #include <deque>

@@ -2,8 +2,8 @@
 #include "certificates/ball_separation.hpp"
 #include "certificates/conjunction.hpp"
 #include "certificates/wall_separation.hpp"
-#include "collision/impulse.hpp"
 #include "collision/profile.hpp"
+#include "collision/response/impulse.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // What a world tells.
 #pragma once
 
-#include "collision/contact.hpp"
-#include "collision/kinetic_box.hpp"
+#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/narrow_phase/contact.hpp"
 
 namespace kds::collision {
 

@@ -1,8 +1,8 @@
 // How a world is to run.
 #pragma once
 
-#include "collision/broad_phase_kind.hpp"
-#include "kds/lattice.hpp"
+#include "collision/broad_phase/broad_phase_kind.hpp"
+#include "kds/arithmetic/lattice.hpp"
 
 #include <Eigen/Core>
 

@@ -1,12 +1,12 @@
 // Certificates: polynomials of time that are >= 0 while a fact holds, and their exact signs.
 #pragma once
 
-#include "kds/ball.hpp"
-#include "kds/compensated.hpp"
-#include "kds/exact.hpp"
-#include "kds/failure_time_parabola.hpp"
+#include "kds/arithmetic/ball.hpp"
+#include "kds/arithmetic/compensated.hpp"
+#include "kds/arithmetic/exact.hpp"
 #include "kds/motion.hpp"
 #include "kds/polynomial.hpp"
+#include "kds/roots/failure_time_parabola.hpp"
 
 #include <concepts>
 #include <cstdint>

@@ -1,11 +1,11 @@
 // Motion of one value: a polynomial in the time since its own start.
 #pragma once
 
-#include "kds/ball.hpp"
-#include "kds/compensated.hpp"
-#include "kds/exact.hpp"
+#include "kds/arithmetic/ball.hpp"
+#include "kds/arithmetic/compensated.hpp"
+#include "kds/arithmetic/exact.hpp"
+#include "kds/arithmetic/unrolled.hpp"
 #include "kds/polynomial.hpp"
-#include "kds/unrolled.hpp"
 
 #include <array>
 #include <cmath>

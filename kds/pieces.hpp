@@ -2,9 +2,9 @@
 #pragma once
 
 #include "kds/audit.hpp"
-#include "kds/default_event_queue.hpp"
-#include "kds/failure_time.hpp"
-#include "kds/moving_set.hpp"
+#include "kds/events/default_event_queue.hpp"
+#include "kds/framework/moving_set.hpp"
+#include "kds/roots/failure_time.hpp"
 #include "kds/statistics.hpp"
 
 #include <cmath>

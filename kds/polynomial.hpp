@@ -1,7 +1,7 @@
 // Polynomials in one variable with a degree known at compile time.
 #pragma once
 
-#include "kds/unrolled.hpp"
+#include "kds/arithmetic/unrolled.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // The clock: runs kinetic structures in the order of time.
 #pragma once
 
-#include "kds/failure_time.hpp"
+#include "kds/roots/failure_time.hpp"
 #include "kds/statistics.hpp"
 
 #include <algorithm>

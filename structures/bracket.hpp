@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
-#include "kds/event_queue.hpp"
+#include "kds/events/event_queue.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -3,7 +3,7 @@
 
 #include "certificates/direction_order.hpp"
 #include "kds/audit.hpp"
-#include "kds/kinetic.hpp"
+#include "kds/framework/kinetic.hpp"
 #include "structures/bracket.hpp"
 
 #include <array>

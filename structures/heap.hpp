@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
-#include "kds/kinetic.hpp"
+#include "kds/framework/kinetic.hpp"
 #include "structures/ranking.hpp"
 
 #include <array>

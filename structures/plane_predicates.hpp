@@ -5,7 +5,7 @@
 #include "certificates/in_circle.hpp"
 #include "certificates/orientation.hpp"
 #include "kds/bounded.hpp"
-#include "kds/moving_set.hpp"
+#include "kds/framework/moving_set.hpp"
 
 #include <array>
 

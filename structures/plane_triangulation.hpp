@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
-#include "kds/kinetic.hpp"
+#include "kds/framework/kinetic.hpp"
 #include "structures/hull_headings.hpp"
 #include "structures/lawson.hpp"
 #include "structures/plane_predicates.hpp"

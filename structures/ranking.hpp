@@ -3,7 +3,7 @@
 
 #include "certificates/direction_order.hpp"
 #include "certificates/in_order.hpp"
-#include "kds/moving_set.hpp"
+#include "kds/framework/moving_set.hpp"
 
 #include <array>
 #include <concepts>

@@ -3,9 +3,9 @@
 
 #include "certificates/order.hpp"
 #include "kds/audit.hpp"
+#include "kds/events/place_queue.hpp"
+#include "kds/events/schedule.hpp"
 #include "kds/motion.hpp"
-#include "kds/place_queue.hpp"
-#include "kds/schedule.hpp"
 
 #include <algorithm>
 #include <concepts>

@@ -3,8 +3,8 @@
 
 #include "certificates/order.hpp"
 #include "kds/audit.hpp"
+#include "kds/events/schedule.hpp"
 #include "kds/motion.hpp"
-#include "kds/schedule.hpp"
 
 #include <cstdint>
 #include <limits>

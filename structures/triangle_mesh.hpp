@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
-#include "kds/moving_set.hpp"
+#include "kds/framework/moving_set.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // kds-collide: a scene in, events out.
-#include "collision/broad_phase_kind.hpp"
+#include "collision/broad_phase/broad_phase_kind.hpp"
 #include "examples/kds-collide/event_csv.hpp"
 #include "examples/kds-collide/generator.hpp"
 #include "examples/kds-collide/output_file.hpp"

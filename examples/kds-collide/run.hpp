@@ -12,7 +12,7 @@
 namespace kds_collide {
 
 struct RunOptions {
-  std::string broad_phase = "auto";  ///< a name in collision/broad_phase_kind.hpp
+  std::string broad_phase = "auto";  ///< a name in collision/broad_phase/broad_phase_kind.hpp
   double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
   bool pairs = false;                ///< tell of bounding volumes too
   bool steady_progress = false;      ///< call on_time at least a hundred times

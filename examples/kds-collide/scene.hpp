@@ -2,8 +2,8 @@
 #pragma once
 
 #include "certificates/point_motion.hpp"
-#include "collision/mesh.hpp"
-#include "collision/shape.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "collision/shapes/shape.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -6,9 +6,9 @@
 //
 // The time ahead is exponential, or 1 / (exponential): the latter has the heavy tail of gap / relative velocity.
 // Choices are drawn beforehand, and the loop that only reads them is timed too and taken off.
-#include "kds/calendar_queue.hpp"
-#include "kds/dary_queue.hpp"
-#include "kds/pairing_queue.hpp"
+#include "kds/events/calendar_queue.hpp"
+#include "kds/events/dary_queue.hpp"
+#include "kds/events/pairing_queue.hpp"
 
 #include <chrono>
 #include <cmath>

@@ -7,7 +7,7 @@
 // tuned list of as many values.
 #include "certificates/plane_motion.hpp"
 #include "examples/list_in_forty_lines.hpp"
-#include "kds/kinetic.hpp"
+#include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
 #include "structures/closest_pair.hpp"
 #include "structures/convex_hull.hpp"

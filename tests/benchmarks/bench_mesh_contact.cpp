@@ -1,8 +1,8 @@
 // Times of the tests of meshes: one box test, one pair of triangles, whole queries, building of trees.
-#include "collision/convex_touch.hpp"
-#include "collision/mesh_contact.hpp"
-#include "collision/obb_descent.hpp"
-#include "collision/separating_axes.hpp"
+#include "collision/narrow_phase/convex_touch.hpp"
+#include "collision/narrow_phase/mesh_contact.hpp"
+#include "collision/narrow_phase/obb_descent.hpp"
+#include "collision/narrow_phase/separating_axes.hpp"
 #include "tests/collision/sample_meshes.hpp"
 
 #include <cstdio>

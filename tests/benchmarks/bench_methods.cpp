@@ -8,7 +8,7 @@
 // are scenes of different seeds, run one method after the other so that a change of the machine's pace hits all alike.
 // Every sample checks that the methods made the same contacts; it stops where they did not.
 
-#include "collision/broad_phase_kind.hpp"
+#include "collision/broad_phase/broad_phase_kind.hpp"
 #include "examples/kds-collide/run.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/generated_scene.hpp"

@@ -8,7 +8,7 @@
 // (perf_event_open), else the column is empty. Every round checks that all ways report the same pairs at the same
 // times.
 
-#include "collision/kinetic_sweep_and_prune.hpp"
+#include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/support/random_numbers.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "certificates/point_motion.hpp"
-#include "kds/failure_time.hpp"
+#include "kds/roots/failure_time.hpp"
 #include "tests/support/exact_failure_time.hpp"
 #include "tests/support/random_numbers.hpp"
 #include "tests/support/same_number.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/world.hpp"
-#include "kds/lattice.hpp"
+#include "kds/arithmetic/lattice.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Random scenes of moving bodies for property tests.
 #pragma once
 
-#include "collision/mesh.hpp"
+#include "collision/shapes/mesh.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"

@@ -1,9 +1,9 @@
 // Meshes, orientations and motions that the tests and the benchmark of meshes use.
 #pragma once
 
-#include "collision/mesh.hpp"
-#include "collision/relative_motion.hpp"
-#include "collision/shape.hpp"
+#include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "collision/shapes/shape.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

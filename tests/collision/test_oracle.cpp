@@ -1,5 +1,5 @@
 // Spheres and boxes against exact rational arithmetic: no contact missed, none invented, every time the right double.
-#include "collision/narrow_phase.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
 #include "tests/collision/random_scenes.hpp"
 #include "tests/support/exact_bodies.hpp"
 #include "tests/support/exact_failure_time.hpp"

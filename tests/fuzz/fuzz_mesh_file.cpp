@@ -1,7 +1,7 @@
 // The readers of OBJ and STL files on any bytes: a mesh, or one line that says what is wrong.
 //
 // The input's first byte chooses the format: 'o' is OBJ, anything else STL.
-#include "collision/mesh.hpp"
+#include "collision/shapes/mesh.hpp"
 #include "examples/kds-collide/mesh_file.hpp"
 #include "tests/examples/temporary_folder.hpp"
 #include "tests/fuzz/check.hpp"

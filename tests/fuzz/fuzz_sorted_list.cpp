@@ -1,7 +1,7 @@
 // A kinetic sorted list under any sequence of operations against the exact order of its motions.
-#include "kds/calendar_queue.hpp"
-#include "kds/dary_queue.hpp"
-#include "kds/pairing_queue.hpp"
+#include "kds/events/calendar_queue.hpp"
+#include "kds/events/dary_queue.hpp"
+#include "kds/events/pairing_queue.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
 #include "tests/fuzz/bytes.hpp"

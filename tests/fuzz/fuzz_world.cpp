@@ -1,6 +1,6 @@
 // Worlds under any sequence of calls, made from outside and from callbacks: every broad phase gives the same events,
 // the audit holds after every step, and contact is what a plain test of all pairs says.
-#include "collision/narrow_phase.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/collision/random_scenes.hpp"
 #include "tests/fuzz/bytes.hpp"

@@ -1,4 +1,4 @@
-#include "kds/exact.hpp"
+#include "kds/arithmetic/exact.hpp"
 #include "kds/motion.hpp"
 #include "kds/polynomial.hpp"
 #include "tests/support/random_numbers.hpp"

@@ -1,7 +1,7 @@
 // The clock: order of events, windows, counters, audit; with structures that follow a script, and with one that keeps
 // real certificates.
 #include "kds/audit.hpp"
-#include "kds/default_event_queue.hpp"
+#include "kds/events/default_event_queue.hpp"
 #include "kds/simulator.hpp"
 #include "tests/support/exact_failure_time.hpp"
 #include "tests/support/random_numbers.hpp"

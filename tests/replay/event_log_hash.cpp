@@ -5,9 +5,9 @@
 // event_log_hash --log NAME     prints the events of one scene, numbers in hexadecimal, for diff
 //
 // The file in the repository is made by the first form: event_log_hash > tests/replay/golden.txt
-#include "kds/calendar_queue.hpp"
-#include "kds/dary_queue.hpp"
-#include "kds/pairing_queue.hpp"
+#include "kds/events/calendar_queue.hpp"
+#include "kds/events/dary_queue.hpp"
+#include "kds/events/pairing_queue.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
 #include "tests/replay/event_hash.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "certificates/plane_motion.hpp"
-#include "kds/moving_set.hpp"
+#include "kds/framework/moving_set.hpp"
 #include "tests/structures/random_values.hpp"
 #include "tests/support/exact_algebra.hpp"
 

@@ -1,9 +1,9 @@
 // Runs a structure made of a rule through random edits and advances, with audits, windows and a snapshot.
 #pragma once
 
-#include "kds/kinetic.hpp"
+#include "kds/framework/kinetic.hpp"
+#include "kds/framework/snapshot.hpp"
 #include "kds/simulator.hpp"
-#include "kds/snapshot.hpp"
 #include "tests/structures/random_values.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,10 +1,10 @@
 // The framework, with the list of the examples: against the exact order, with edits, pieces, samples and snapshots.
 #include "examples/list_in_forty_lines.hpp"
-#include "kds/dary_queue.hpp"
-#include "kds/pairing_queue.hpp"
+#include "kds/events/dary_queue.hpp"
+#include "kds/events/pairing_queue.hpp"
+#include "kds/framework/snapshot.hpp"
 #include "kds/pieces.hpp"
 #include "kds/simulator.hpp"
-#include "kds/snapshot.hpp"
 #include "structures/sorted_list.hpp"
 #include "tests/structures/random_values.hpp"
 

@@ -1,8 +1,8 @@
 // The kinetic sorted list against the exact order of its motions, at every event and between events.
-#include "kds/calendar_queue.hpp"
-#include "kds/dary_queue.hpp"
-#include "kds/pairing_queue.hpp"
-#include "kds/place_queue.hpp"
+#include "kds/events/calendar_queue.hpp"
+#include "kds/events/dary_queue.hpp"
+#include "kds/events/pairing_queue.hpp"
+#include "kds/events/place_queue.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
 #include "tests/structures/random_values.hpp"

@@ -1,7 +1,7 @@
 // The kinetic tournament against the exact maximum of its motions, at every event and between events.
-#include "kds/calendar_queue.hpp"
-#include "kds/dary_queue.hpp"
-#include "kds/pairing_queue.hpp"
+#include "kds/events/calendar_queue.hpp"
+#include "kds/events/dary_queue.hpp"
+#include "kds/events/pairing_queue.hpp"
 #include "kds/simulator.hpp"
 #include "structures/tournament.hpp"
 #include "tests/structures/random_values.hpp"

@@ -5,7 +5,7 @@
 #include "tests/structures/random_values.hpp"
 
 #ifdef KDS_WITH_GSL
-#include "kds/gsl_roots.hpp"
+#include "kds/roots/gsl_roots.hpp"
 #endif
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // Exact numbers of the library against rationals of the oracle.
 #pragma once
 
-#include "kds/exact.hpp"
+#include "kds/arithmetic/exact.hpp"
 #include "tests/support/exact_rational.hpp"
 
 namespace oracle {

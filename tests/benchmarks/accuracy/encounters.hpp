@@ -1,9 +1,9 @@
 // Pairs of bodies that meet, at any clock, place, speed and size, and the error of the time at which they do.
 #pragma once
 
-#include "collision/narrow_phase.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/world.hpp"
-#include "kds/lattice.hpp"
+#include "kds/arithmetic/lattice.hpp"
 #include "tests/support/exact_bodies.hpp"
 #include "tests/support/exact_oracle.hpp"
 #include "tests/support/random_numbers.hpp"

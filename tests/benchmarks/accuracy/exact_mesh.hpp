@@ -1,7 +1,7 @@
 // When two meshes on straight paths touch, in exact rational arithmetic, and how far apart they are at a time.
 #pragma once
 
-#include "collision/mesh.hpp"
+#include "collision/shapes/mesh.hpp"
 #include "collision/world.hpp"
 #include "tests/support/exact_oracle.hpp"
 

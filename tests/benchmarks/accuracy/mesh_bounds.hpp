@@ -1,8 +1,8 @@
 // How early contacts of meshes are, against exact arithmetic and against the bound that the library states.
 #pragma once
 
-#include "collision/mesh_contact.hpp"
-#include "collision/relative_motion.hpp"
+#include "collision/narrow_phase/mesh_contact.hpp"
+#include "collision/narrow_phase/relative_motion.hpp"
 #include "tests/benchmarks/accuracy/encounters.hpp"
 #include "tests/benchmarks/accuracy/exact_mesh.hpp"
 

@@ -2,7 +2,7 @@
 // overlap and did not at the sample before.
 #pragma once
 
-#include "collision/kinetic_sweep_and_prune.hpp"
+#include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "tests/benchmarks/accuracy/contacts.hpp"
 #include "tests/benchmarks/accuracy/static_tests.hpp"
 

@@ -1,8 +1,8 @@
 // Whether two shapes overlap where they stand, as a sampling engine asks, and how deep. Doubles, no margins.
 #pragma once
 
-#include "collision/mesh_contact.hpp"
-#include "collision/shape.hpp"
+#include "collision/narrow_phase/mesh_contact.hpp"
+#include "collision/shapes/shape.hpp"
 
 #include <Eigen/Core>
 

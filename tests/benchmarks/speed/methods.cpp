@@ -1,6 +1,6 @@
 #include "tests/benchmarks/speed/methods.hpp"
 
-#include "collision/broad_phase_kind.hpp"
+#include "collision/broad_phase/broad_phase_kind.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 
 #include <bit>

@@ -1,6 +1,6 @@
 // Rules from which one part each is missing: they must not compile, and the compiler must say what is missing.
-#include "kds/kinetic.hpp"
-#include "kds/snapshot.hpp"
+#include "kds/framework/kinetic.hpp"
+#include "kds/framework/snapshot.hpp"
 
 #include <optional>
 #include <string>

@@ -1,8 +1,8 @@
 // Contenders: the library's failure times.
 #pragma once
 
-#include "kds/enclosed_failure_time.hpp"
-#include "kds/failure_time.hpp"
+#include "kds/roots/enclosed_failure_time.hpp"
+#include "kds/roots/failure_time.hpp"
 #include "tests/benchmarks/roots/contenders.hpp"
 
 namespace bench_roots {

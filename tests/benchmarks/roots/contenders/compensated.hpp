@@ -1,7 +1,7 @@
 // Contender: closed forms without avoidable cancellation, and with residuals of twice the precision.
 #pragma once
 
-#include "kds/double_double.hpp"
+#include "kds/arithmetic/double_double.hpp"
 #include "tests/benchmarks/roots/contenders/closed_form.hpp"
 
 namespace bench_roots {

@@ -3,7 +3,7 @@
 
 #ifdef KDS_WITH_GSL
 
-#include "kds/gsl_roots.hpp"
+#include "kds/roots/gsl_roots.hpp"
 
 #include <limits>
 #include <stdexcept>

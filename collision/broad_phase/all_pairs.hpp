@@ -1,0 +1,45 @@
+// No pruning at all: the baseline that tests every pair once and keeps the result.
+#pragma once
+
+#include "collision/broad_phase/broad_phase.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace kds::collision {
+
+/// Cached dynamic collision detection ([Paper] section 5): every pair is active from the time both bodies are there.
+/// Cost: O(n) pairs to test for each motion change.
+template <int Degree>
+class AllPairs final : public BroadPhase<Degree> {
+ public:
+  using Entry = typename BroadPhase<Degree>::Entry;
+
+  bool exact() const override { return false; }
+  std::string_view name() const override { return "all-pairs"; }
+
+  void insert(std::span<const Entry> bodies, double now, PairListener& listener) override {
+    for (const Entry& body : bodies) {
+      for (const BodyId other : bodies_) listener.pair_began(std::min(body.id, other), std::max(body.id, other), now);
+      bodies_.push_back(body.id);
+    }
+  }
+
+  void remove(BodyId id, double now, PairListener& listener) override {
+    bodies_.erase(std::find(bodies_.begin(), bodies_.end(), id));
+    for (const BodyId other : bodies_) listener.pair_ended(std::min(id, other), std::max(id, other), now);
+  }
+
+  void update(BodyId, const KineticBox<Degree>&, double, PairListener&) override { ++box_updates_; }
+  bool advance(double, PairListener&) override { return false; }
+  double next_time() const override { return never; }
+  void extend_horizon(double, double) override {}
+  void audit(double) const override {}
+  BroadPhaseCounters counters() const override { return {0, 0, box_updates_}; }
+
+ private:
+  std::vector<BodyId> bodies_;
+  std::uint64_t box_updates_ = 0;
+};
+
+}  // namespace kds::collision

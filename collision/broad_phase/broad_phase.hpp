@@ -1,0 +1,72 @@
+// What every broad phase promises.
+#pragma once
+
+#include "collision/broad_phase/kinetic_box.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace kds::collision {
+
+/// Told of pairs whose kinetic bounding volumes begin and cease to overlap. a < b always.
+class PairListener {
+ public:
+  virtual ~PairListener() = default;
+  virtual void pair_began(BodyId a, BodyId b, double t) = 0;
+  virtual void pair_ended(BodyId a, BodyId b, double t) = 0;
+};
+
+/// Work done by a broad phase.
+struct BroadPhaseCounters {
+  std::uint64_t swaps = 0;         ///< exchanges of adjacent interval ends
+  std::uint64_t certificates = 0;  ///< failure times computed
+  std::uint64_t box_updates = 0;   ///< bounding volumes computed or changed
+};
+
+/// Reports, at the right times and in order, which pairs of bodies have to be tested.
+///
+/// Semantic laws: (1) a pair is reported as begun no later than the instant its kinetic boxes overlap, and as ended
+/// not before they cease to; (2) where `exact()` is true, at exactly those instants; (3) reports alternate for each
+/// pair, beginning with pair_began, and removing a body ends its pairs; (4) a broad phase never reports a time
+/// before the last it was given. Swapping one broad phase for another changes neither contacts nor their times.
+template <int Degree>
+class BroadPhase {
+ public:
+  struct Entry {
+    BodyId id;
+    const KineticBox<Degree>* box;
+  };
+
+  virtual ~BroadPhase() = default;
+
+  /// Whether pairs are exactly those whose kinetic boxes overlap.
+  virtual bool exact() const = 0;
+
+  /// As in broad_phase_kind.hpp.
+  virtual std::string_view name() const = 0;
+
+  /// Adds bodies; cheapest when all come in one call. Pairs that overlap are reported.
+  virtual void insert(std::span<const Entry> bodies, double now, PairListener& listener) = 0;
+  virtual void remove(BodyId id, double now, PairListener& listener) = 0;
+
+  /// Gives a body another box, which may be a jump.
+  virtual void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) = 0;
+
+  /// Processes events not later than `limit` and returns true right after the first that reported a pair; false when
+  /// all are done. Precondition: limit is finite.
+  virtual bool advance(double limit, PairListener& listener) = 0;
+
+  /// Time of the next event, `never` if none is known.
+  virtual double next_time() const = 0;
+
+  /// Events later than this need not be known yet.
+  virtual void extend_horizon(double now, double horizon) = 0;
+
+  /// Checks the state against the motions; throws AuditFailure.
+  virtual void audit(double now) const = 0;
+
+  virtual BroadPhaseCounters counters() const = 0;
+};
+
+}  // namespace kds::collision

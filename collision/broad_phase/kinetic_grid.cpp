@@ -1,0 +1,250 @@
+#include "collision/broad_phase/kinetic_grid.hpp"
+
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace kds::collision {
+namespace {
+
+constexpr double largest = std::numeric_limits<double>::max();
+
+/// A body's reach when it comes, over the spacing of bodies.
+constexpr double reach_per_spacing = 0.25;
+
+/// At most: such that a box of this reach on both sides still has an extent.
+constexpr double greatest_reach = 0x1p1020;
+
+/// At least, over its size: less would have it renewed ever so often among others that touch it anyway.
+constexpr double least_reach = 0.125;
+
+/// At least, over its coordinates: boxes without extent have a reach too, which then adapts.
+constexpr double least_part_of_coordinates = 0x1p-40;
+constexpr double least_reach_at_all = 0x1p-500;
+
+/// An old fat box is kept if it lasts this share of a new one's lifetime.
+constexpr double kept_share = 0.25;
+
+/// Bodies take so large a share of all before a coarser level is begun just for their reach.
+constexpr std::uint64_t share_for_level = 8;
+
+template <int Degree>
+double greatest_speed(const certificates::PointMotion<Degree>& motion, double t) {
+  return motion.velocity(t).cwiseAbs().maxCoeff();
+}
+
+/// Distance between neighbours if bodies are spread evenly over the box that holds the middle half of them on each axis;
+/// told from some of them. What is far out, up to a quarter on each side, makes no difference.
+template <int Degree>
+double typical_spacing(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
+  constexpr std::size_t sample = 256;
+  const std::size_t step = std::max<std::size_t>(bodies.size() / sample, 1);
+  std::array<std::vector<double>, 3> places;
+  double size = 0;
+  for (std::size_t i = 0; i < bodies.size(); i += step) {
+    const StaticBox box = swept_box(*bodies[i].box, now, now);
+    size += box.extent();
+    for (std::size_t d = 0; d < 3; ++d) places[d].push_back(box.min[static_cast<Eigen::Index>(d)]);
+  }
+  size /= static_cast<double>(places[0].size());
+  double volume = 1;
+  for (auto& place : places) {
+    std::sort(place.begin(), place.end());
+    volume *= std::max(2 * (place[place.size() * 3 / 4] - place[place.size() / 4]), size);
+  }
+  const double spacing = std::cbrt(volume / static_cast<double>(bodies.size()));
+  return std::isfinite(spacing) ? spacing : size;
+}
+
+StaticBox whole_space() {
+  return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)};
+}
+
+}  // namespace
+
+/// Seconds until a box has moved by its reach, `never` if it is at rest; exact for straight paths, up to rounding.
+template <int Degree>
+double KineticGrid<Degree>::lifetime(const Body& body, double now) {
+  const KineticBox<Degree>& box = body.box;
+  const double speed = std::max(greatest_speed(box.min, now), greatest_speed(box.max, now));
+  double time = speed > 0 ? std::min(body.reach / speed, largest) : never;
+  if constexpr (Degree >= 2) {
+    const double bend = box.min.coefficients[2].cwiseAbs().cwiseMax(box.max.coefficients[2].cwiseAbs()).maxCoeff();
+    if (bend > 0) time = std::min(time, std::sqrt(body.reach / bend));
+  }
+  return time;
+}
+
+template <int Degree>
+auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double now) -> FatBox {
+  Body& body = bodies_[id];
+  body.fattened = now;
+  const double size = present.extent();
+  const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
+  body.reach = std::max({body.reach, least_reach * size, least_part_of_coordinates * coordinates, least_reach_at_all});
+  double time = lifetime(body, now);
+  if (time == never) return {present, never};
+  for (;;) {
+    // Where the clock is coarse, a box lasts until its next tick at least.
+    double expiry = std::max(now + time, next_up(now));
+    if (expiry > largest) return {whole_space(), never};
+    StaticBox box = swept_box(body.box, now, expiry);
+    double extent = box.extent();
+    if (!(extent <= largest)) return {whole_space(), never};
+    ++counters_.certificates;
+    // One that is just too large for a level is better cut than in the next.
+    const double room_below = 0.5 * BoxGrid::room_for(extent);
+    if (extent < 1.5 * room_below && size < 0.75 * room_below) {
+      time *= 0.999 * (room_below - size) / (extent - size);
+      expiry = std::max(now + time, next_up(now));
+      box = swept_box(body.box, now, expiry);
+      extent = box.extent();
+    }
+    // A coarser level costs all bodies something, so it takes many to begin one; until then boxes are cut to fit.
+    const double room = fat_boxes_.coarsest() - size;
+    if (extent - size <= room || room < 0.25 * size || expiry == next_up(now)) return {box, expiry};
+    if (++wishes_ * share_for_level > fat_boxes_.size()) {
+      wishes_ = 0;
+      return {box, expiry};
+    }
+    body.reach *= 0.75;
+    time *= 0.75;
+  }
+}
+
+/// A box that has lasted its time: it costs about as much as two pairs, so at one or two pairs a renewal, those begun by
+/// others' renewals included, a longer reach and a shorter one would both cost more (found by measuring, for packings
+/// from 0.01 to 0.25). One that the body leaves early, since its motion has changed, was too long.
+template <int Degree>
+void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
+  Body& body = bodies_[id];
+  if (body.expiry <= now) {
+    switch (body.begun) {
+      case 0: body.reach = std::min(1.4 * body.reach, greatest_reach); break;
+      case 1: body.reach = std::min(1.15 * body.reach, greatest_reach); break;
+      case 2: break;
+      default: body.reach *= body.begun < 8 ? 0.8 : 0.5;
+    }
+  } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
+    body.reach *= 0.8;
+  }
+  body.begun = 0;
+}
+
+/// In the order of bodies, whatever cells they were found in.
+template <int Degree>
+void KineticGrid<Degree>::report(BodyId id, double now, PairListener& listener) {
+  std::sort(changes_.ended.begin(), changes_.ended.end());
+  std::sort(changes_.began.begin(), changes_.began.end());
+  for (const BodyId other : changes_.ended) listener.pair_ended(std::min(id, other), std::max(id, other), now);
+  for (const BodyId other : changes_.began) {
+    ++bodies_[id].begun;
+    ++bodies_[other].begun;
+    listener.pair_began(std::min(id, other), std::max(id, other), now);
+  }
+}
+
+template <int Degree>
+void KineticGrid<Degree>::set_expiry(BodyId id, double expiry) {
+  bodies_[id].expiry = expiry;
+  expiry_.set(id, expiry <= horizon_ ? expiry : never);
+}
+
+template <int Degree>
+void KineticGrid<Degree>::extend_horizon(double, double horizon) {
+  horizon_ = horizon;
+  visit([&](BodyId id, const KineticBox<Degree>&) { set_expiry(id, bodies_[id].expiry); });
+}
+
+template <int Degree>
+void KineticGrid<Degree>::renew(BodyId id, const StaticBox& present, double now, PairListener& listener) {
+  ++counters_.box_updates;
+  const FatBox fat = fat_box(id, present, now);
+  set_expiry(id, fat.expiry);
+  changes_.clear();
+  fat_boxes_.put(id, fat.box, changes_);
+  report(id, now, listener);
+}
+
+template <int Degree>
+void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
+  BodyId end = 0;
+  for (const Entry& entry : bodies) end = std::max(end, entry.id + 1);
+  if (end > bodies_.size()) {
+    const std::size_t room = bodies_.empty() ? end : std::max<std::size_t>(end, 2 * bodies_.size());
+    bodies_.resize(room);
+    expiry_.resize(room);
+  }
+  fat_boxes_.reserve(end);
+  if (fat_boxes_.size() == 0 && !bodies.empty()) first_reach_ = reach_per_spacing * typical_spacing<Degree>(bodies, now);
+  for (const Entry& entry : bodies) {
+    bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
+    renew(entry.id, swept_box(*entry.box, now, now), now, listener);
+  }
+}
+
+template <int Degree>
+void KineticGrid<Degree>::remove(BodyId id, double now, PairListener& listener) {
+  changes_.clear();
+  fat_boxes_.remove(id, changes_);
+  expiry_.clear(id);
+  report(id, now, listener);
+}
+
+template <int Degree>
+void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
+  Body& body = bodies_[id];
+  body.box = box;
+  // The old fat box will often do for a while.
+  const StaticBox present = swept_box(box, now, now);
+  const StaticBox fat = fat_boxes_.box(id);
+  if (fat.contains(present)) {
+    const double time = lifetime(body, now);
+    if (time == never) return set_expiry(id, never);
+    const double expiry = now + kept_share * time;
+    if (expiry > now && expiry <= largest && fat.contains(swept_box(box, now, expiry))) {
+      ++counters_.certificates;
+      return set_expiry(id, expiry);
+    }
+  }
+  adapt_reach(id, now);
+  renew(id, present, now, listener);
+}
+
+template <int Degree>
+bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
+  while (!expiry_.empty()) {
+    const auto [time, id] = expiry_.top();
+    if (time > limit) return false;
+    adapt_reach(id, time);
+    renew(id, swept_box(bodies_[id].box, time, time), time, listener);
+    if (!changes_.began.empty() || !changes_.ended.empty()) return true;
+  }
+  return false;
+}
+
+template <int Degree>
+void KineticGrid<Degree>::audit(double now) const {
+  for (BodyId id = 0; id < fat_boxes_.end(); ++id) {
+    if (!fat_boxes_.contains(id)) continue;
+    if (bodies_[id].expiry <= now) continue;  // due
+    const StaticBox present = swept_box(bodies_[id].box, now, now);
+    // The margins of rounding differ from those of the whole span.
+    const double slack = 0x1p-45 * std::max(present.min.abs().maxCoeff(), present.max.abs().maxCoeff());
+    StaticBox inner = present;
+    inner.min += slack;
+    inner.max -= slack;
+    if (!fat_boxes_.box(id).contains(inner)) {
+      throw AuditFailure("KineticGrid: body " + std::to_string(id) + " is outside its fat box");
+    }
+  }
+}
+
+template class KineticGrid<1>;
+template class KineticGrid<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,87 @@
+// Kinetic grid: a broad phase whose proof is local.
+#pragma once
+
+#include "collision/broad_phase/box_grid.hpp"
+#include "collision/broad_phase/broad_phase.hpp"
+#include "kds/events/calendar_queue.hpp"
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace kds::collision {
+
+/// Every body has a *fat box* at rest that holds its kinetic box for a while; the only certificate of a body is that it
+/// is still inside, and pairs are those whose fat boxes overlap (box_grid.hpp). When its time is up, a body gets a new
+/// fat box: what it sweeps until it has moved by a length, its *reach*. So a body pays for its neighbours only, not, as
+/// in sorted lists, for all whose coordinates it passes; and one at rest pays nothing.
+///
+/// The reach adapts, body by body: it grows while few pairs begin and shrinks while many do, which balances the cost of
+/// renewals against that of pairs, at every density, size and speed. It changes the cost, never the contacts.
+///
+/// The time for which a fat box holds is not a root: a time is chosen, and the box is then what is swept until then,
+/// rounded outward. Nothing of what is scheduled needs to be exact, nor is.
+/// Cost: O(1) a renewal or motion change, for bodies of bounded density, and a queue operation; nothing in between.
+template <int Degree>
+class KineticGrid final : public BroadPhase<Degree> {
+ public:
+  using Entry = typename BroadPhase<Degree>::Entry;
+
+  bool exact() const override { return false; }
+  std::string_view name() const override { return "grid"; }
+  void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
+  void remove(BodyId id, double now, PairListener& listener) override;
+  void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
+  bool advance(double limit, PairListener& listener) override;
+  double next_time() const override { return expiry_.empty() ? never : expiry_.top().time; }
+  void extend_horizon(double now, double horizon) override;
+  void audit(double now) const override;
+  BroadPhaseCounters counters() const override { return counters_; }
+
+  std::size_t size() const { return fat_boxes_.size(); }
+
+  /// Whether two bodies are a pair. Precondition: both are here.
+  bool paired(BodyId a, BodyId b) const { return fat_boxes_.box(a).overlaps(fat_boxes_.box(b)); }
+
+  /// Calls visit(id, box) for each body.
+  template <class Visit>
+  void visit(Visit&& visit) const {
+    for (BodyId id = 0; id < fat_boxes_.end(); ++id) {
+      if (fat_boxes_.contains(id)) visit(id, bodies_[id].box);
+    }
+  }
+
+ private:
+  struct Body {
+    KineticBox<Degree> box;
+    double reach = 0;         ///< how far it may move in its fat box
+    double fattened = 0;      ///< when its fat box was made
+    double expiry = never;    ///< until when it holds
+    std::uint32_t begun = 0;  ///< pairs since its last renewal
+  };
+  struct FatBox {
+    StaticBox box;
+    double expiry;
+  };
+
+  FatBox fat_box(BodyId id, const StaticBox& present, double now);
+  static double lifetime(const Body& body, double now);
+  void adapt_reach(BodyId id, double now);
+  void renew(BodyId id, const StaticBox& present, double now, PairListener& listener);
+  void set_expiry(BodyId id, double expiry);
+  void report(BodyId id, double now, PairListener& listener);
+
+  std::vector<Body> bodies_;  // by id
+  BoxGrid fat_boxes_;
+  CalendarQueue<> expiry_;    // slots are bodies; none later than the horizon
+  double horizon_ = never;
+  BoxGrid::Changes changes_;
+  double first_reach_ = 0;    ///< of a body that comes
+  std::uint64_t wishes_ = 0;  ///< for a coarser level, since there was one
+  BroadPhaseCounters counters_;
+};
+
+extern template class KineticGrid<1>;
+extern template class KineticGrid<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,161 @@
+// Which axes have lists, and who overlaps on them.
+#include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+namespace kds::collision {
+
+/// What a list is expected to cost: the pairs that overlap on its axis, which is about (lengths of all intervals) /
+/// (length of the whole), and their changes, (speeds) x (time to come) / (length of the whole). Without a horizon, the
+/// time to come is what bodies take to cross their own sizes. A new axis must promise a third less.
+template <int Degree>
+unsigned KineticSweepAndPrune<Degree>::best_axes(std::span<const Entry> bodies, double now) const {
+  if (asked_ == ListedAxes::three) return all_axes;
+  if (asked_ == ListedAxes::automatic && bodies.size() < few_bodies) return all_axes;
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(never);
+  Eigen::Vector3d high = -low;
+  Eigen::Vector3d lengths = Eigen::Vector3d::Zero();
+  Eigen::Vector3d speeds = Eigen::Vector3d::Zero();
+  for (const Entry& body : bodies) {
+    const Eigen::Vector3d min = body.box->min.position(now);
+    const Eigen::Vector3d max = body.box->max.position(now);
+    low = low.cwiseMin(min);
+    high = high.cwiseMax(max);
+    lengths += max - min;
+    speeds += body.box->min.velocity(now).cwiseAbs();
+  }
+  const double crossing = speeds.sum() > 0 ? lengths.sum() / speeds.sum() : 0;
+  const Eigen::Vector3d cost =
+      (lengths + speeds * std::min(crossing, horizon_ - now)).cwiseQuotient((high - low).cwiseMax(0x1p-1000));
+  const auto promises = [&](std::size_t axis) {
+    const bool has_list = listed_ != all_axes && is_listed(axis);
+    return cost[static_cast<Eigen::Index>(axis)] * (has_list ? 2.0 / 3 : 1.0);
+  };
+  std::array<std::size_t, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) { return promises(a) < promises(b); });
+  return 1u << axes[0] | (asked_ == ListedAxes::two ? 1u << axes[1] : 0u);
+}
+
+template <int Degree>
+void KineticSweepAndPrune<Degree>::build_lists(std::span<const Entry> bodies, unsigned listed, double now) {
+  listed_ = listed;
+  sweep_axis_ = static_cast<std::size_t>(std::countr_zero(listed));
+  chosen_at_ = bodies.size();
+  std::vector<typename List::Entry> ends;
+  ends.reserve(2 * bodies.size());
+  for (std::size_t d = 0; d < 3; ++d) {
+    ends.clear();
+    if (is_listed(d)) {
+      for (const Entry& body : bodies) {
+        ends.push_back({body.box->min.axis(static_cast<int>(d)), min_end(body.id)});
+        ends.push_back({body.box->max.axis(static_cast<int>(d)), max_end(body.id)});
+      }
+    }
+    lists_[d].assign(ends, now);
+  }
+  count_open();
+}
+
+/// Changes the lists, if that pays, in the midst of a run. What overlaps stays the same, so nothing is reported; that
+/// holds where no event is due.
+template <int Degree>
+void KineticSweepAndPrune<Degree>::choose_again(double now) {
+  if (asked_ == ListedAxes::three || next_time() <= now) return;
+  std::vector<Entry> bodies;
+  for (const auto& end : sweep_list().entries()) {
+    if (is_min(end.id)) bodies.push_back({end.id / 2, &unlisted_.box(end.id / 2)});
+  }
+  chosen_at_ = bodies.size();
+  const unsigned listed = best_axes(bodies, now);
+  if (listed == listed_) return;
+  unlisted_.choose(all_axes & ~listed, now);
+  build_lists(bodies, listed, now);
+  if (listed_ == all_axes) return;
+  for (const auto& [a, b] : pairs_on_lists()) unlisted_.met(a, b, now);
+}
+
+template <int Degree>
+void KineticSweepAndPrune<Degree>::count_open() {
+  if (listed_ == all_axes) return;
+  const auto ends = sweep_list().entries();
+  open_.resize(ends.size());
+  inverted_ = 0;
+  std::int32_t open = 0;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const bool opens = is_min(ends[i].id);
+    open += opens ? 1 : -1;
+    open_[i] = open;
+    inverted_ += opens && sweep_list().position(ends[i].id ^ 1) < i;
+  }
+}
+
+/// The pairs a < b that overlap where there are lists and are near each other where there are none. Sorted.
+template <int Degree>
+auto KineticSweepAndPrune<Degree>::pairs_on_lists() const -> std::vector<BodyPair> {
+  std::vector<BodyPair> pairs;
+  const auto add = [&](BodyId a, BodyId b) {
+    if (listed_ != all_axes && !unlisted_.near(a, b)) return;
+    if (overlap_where_listed(a, b)) pairs.emplace_back(std::min(a, b), std::max(a, b));
+  };
+  std::vector<BodyId> open;
+  if (inverted_ > 0) {
+    for (const auto& end : sweep_list().entries()) {
+      if (!is_min(end.id)) continue;
+      open.clear();
+      partners_on_lists(end.id / 2, open);
+      for (const BodyId other : open) {
+        if (other < end.id / 2) add(other, end.id / 2);
+      }
+    }
+  } else {
+    std::vector<std::uint32_t> place(unlisted_.bodies());
+    for (const auto& end : sweep_list().entries()) {
+      const BodyId id = end.id / 2;
+      if (is_min(end.id)) {
+        for (const BodyId other : open) add(other, id);
+        place[id] = static_cast<std::uint32_t>(open.size());
+        open.push_back(id);
+      } else if (place[id] < open.size() && open[place[id]] == id) {  // else it has not begun: it is inverted
+        place[open.back()] = place[id];
+        open[place[id]] = open.back();
+        open.pop_back();
+      }
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+/// Appends the bodies that overlap with this one where there are lists. They have an end between its ends, or are open
+/// where it begins; those are found going left, until as many have been seen as are open.
+template <int Degree>
+void KineticSweepAndPrune<Degree>::partners_on_lists(BodyId id, std::vector<BodyId>& partners) const {
+  const List& list = sweep_list();
+  const auto ends = list.entries();
+  const auto [first, last] = std::minmax({list.position(min_end(id)), list.position(max_end(id))});
+  const auto add = [&](BodyId other) {
+    if (overlap_where_listed(id, other)) partners.push_back(other);
+  };
+  for (std::size_t i = first + 1; i < last; ++i) {
+    const std::uint32_t end = ends[i].id;
+    const std::uint32_t other_end = list.position(end ^ 1);
+    if (is_min(end) || other_end < first || other_end > last) add(end / 2);
+  }
+  std::int32_t open = first > 0 && inverted_ == 0 && listed_ != all_axes ? open_[first - 1] : 0;
+  const bool all = inverted_ > 0 || listed_ == all_axes;  // then there is no telling how many
+  for (std::size_t i = first; i-- > 0 && (all || open > 0);) {
+    const std::uint32_t end = ends[i].id;
+    if (!is_min(end)) continue;
+    const std::uint32_t other_end = list.position(end ^ 1);
+    open -= other_end > first;
+    if (other_end > last) add(end / 2);
+  }
+}
+
+template class KineticSweepAndPrune<1>;
+template class KineticSweepAndPrune<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,186 @@
+#include "collision/broad_phase/swept_sweep_and_prune.hpp"
+
+#include "collision/profile.hpp"
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace kds::collision {
+
+template <int Degree>
+SweptSweepAndPrune<Degree>::SweptSweepAndPrune(double start, double rate, Profile* profile)
+    : start_(start), rate_(rate), profile_(profile), frame_end_(start) {}
+
+template <int Degree>
+bool SweptSweepAndPrune<Degree>::overlap(BodyId a, BodyId b) const {
+  const StaticBox& x = swept_[a];
+  const StaticBox& y = swept_[b];
+  return x.min[0] < y.max[0] && y.min[0] < x.max[0] && x.min[1] < y.max[1] && y.min[1] < x.max[1] &&
+         x.min[2] < y.max[2] && y.min[2] < x.max[2];
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::sweep(BodyId id, double from) {
+  ++counters_.box_updates;
+  swept_[id] = swept_box(boxes_[id], from, frame_end_);
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::add_pair(BodyId a, BodyId b, double now, PairListener& listener) {
+  if (!pairs_.insert(key(a, b)).second) return;
+  reported_ = true;
+  listener.pair_began(a, b, now);
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::drop_pair(BodyId a, BodyId b, double now, PairListener& listener) {
+  if (pairs_.erase(key(a, b)) == 0) return;
+  reported_ = true;
+  listener.pair_ended(a, b, now);
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::exchange(std::size_t axis, std::size_t left, double now, PairListener& listener) {
+  auto& ends = ends_[axis];
+  std::swap(ends[left], ends[left + 1]);
+  ++counters_.swaps;
+  const std::uint32_t now_left = ends[left].id;
+  const std::uint32_t now_right = ends[left + 1].id;
+  places_[axis][now_left] = static_cast<std::uint32_t>(left);
+  places_[axis][now_right] = static_cast<std::uint32_t>(left + 1);
+  if (((now_left ^ now_right) & 1) == 0 || now_left / 2 == now_right / 2) return;
+  const BodyId a = std::min(now_left, now_right) / 2;
+  const BodyId b = std::max(now_left, now_right) / 2;
+  if ((now_left & 1) != 0) {
+    drop_pair(a, b, now, listener);  // a maximum has moved left of a minimum
+  } else if (overlap(a, b)) {
+    add_pair(a, b, now, listener);
+  }
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::sort_axis(std::size_t axis, double now, PairListener& listener) {
+  auto& ends = ends_[axis];
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    for (std::size_t j = i; j > 0 && before(ends[j], ends[j - 1]); --j) exchange(axis, j - 1, now, listener);
+  }
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::frame(double now, PairListener& listener) {
+  ++frames_;
+  frame_end_ = start_ + static_cast<double>(frames_) / rate_;
+  {
+    const Stopwatch watch(profile_, Work::update);
+    for (const BodyId id : bodies_) sweep(id, now);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (End& end : ends_[axis]) end.value = value(end.id, axis);
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) sort_axis(axis, now, listener);
+}
+
+template <int Degree>
+bool SweptSweepAndPrune<Degree>::advance(double limit, PairListener& listener) {
+  while (frame_end_ <= limit) {
+    reported_ = false;
+    frame(frame_end_, listener);
+    if (reported_) return true;
+  }
+  return false;
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
+  if (frame_end_ <= now) {  // the others' boxes reach no farther
+    frames_ = static_cast<std::uint64_t>(std::floor((now - start_) * rate_));
+    frame(now, listener);
+  }
+  std::vector<BodyId> added;
+  for (const Entry& body : bodies) {
+    if (body.id >= boxes_.size()) {
+      boxes_.resize(body.id + 1);
+      swept_.resize(body.id + 1);
+      for (auto& places : places_) places.resize(2 * (body.id + 1));
+    }
+    boxes_[body.id] = *body.box;
+    sweep(body.id, now);
+    added.push_back(body.id);
+    bodies_.push_back(body.id);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ends_[axis].push_back({swept_[body.id].min[axis], 2 * body.id});
+      ends_[axis].push_back({swept_[body.id].max[axis], 2 * body.id + 1});
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::sort(ends_[axis].begin(), ends_[axis].end(), before);
+    for (std::size_t i = 0; i < ends_[axis].size(); ++i) places_[axis][ends_[axis][i].id] = static_cast<std::uint32_t>(i);
+  }
+  // One sweep along x finds all overlaps; those known already are passed over.
+  std::vector<BodyId> open;
+  std::vector<std::pair<BodyId, BodyId>> found;
+  for (const End& end : ends_[0]) {
+    const BodyId id = end.id / 2;
+    if ((end.id & 1) == 0) {
+      for (const BodyId other : open) {
+        if (overlap(id, other)) found.emplace_back(std::min(id, other), std::max(id, other));
+      }
+      open.push_back(id);
+    } else if (const auto it = std::find(open.begin(), open.end(), id); it != open.end()) {
+      *it = open.back();
+      open.pop_back();
+    }
+  }
+  std::sort(found.begin(), found.end());
+  for (const auto& [a, b] : found) add_pair(a, b, now, listener);
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::remove(BodyId id, double now, PairListener& listener) {
+  bodies_.erase(std::find(bodies_.begin(), bodies_.end(), id));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::erase_if(ends_[axis], [id](const End& end) { return end.id / 2 == id; });
+    for (std::size_t i = 0; i < ends_[axis].size(); ++i) places_[axis][ends_[axis][i].id] = static_cast<std::uint32_t>(i);
+  }
+  for (const BodyId other : bodies_) drop_pair(std::min(id, other), std::max(id, other), now, listener);
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::move_end(std::size_t axis, std::uint32_t id, double now, PairListener& listener) {
+  auto& ends = ends_[axis];
+  std::size_t i = places_[axis][id];
+  ends[i].value = value(id, axis);
+  for (; i > 0 && before(ends[i], ends[i - 1]); --i) exchange(axis, i - 1, now, listener);
+  for (; i + 1 < ends.size() && before(ends[i + 1], ends[i]); ++i) exchange(axis, i, now, listener);
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
+  boxes_[id] = box;
+  sweep(id, now);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Growing ends first, so that the two never pass each other.
+    move_end(axis, 2 * id, now, listener);
+    move_end(axis, 2 * id + 1, now, listener);
+  }
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::audit(double) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 1; i < ends_[axis].size(); ++i) {
+      if (before(ends_[axis][i], ends_[axis][i - 1])) {
+        throw AuditFailure("SweptSweepAndPrune: axis " + std::to_string(axis) + ", place " + std::to_string(i) +
+                           ": out of order");
+      }
+    }
+  }
+}
+
+template class SweptSweepAndPrune<1>;
+template class SweptSweepAndPrune<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,319 @@
+#include "collision/broad_phase/unlisted_axes.hpp"
+
+#include "certificates/conjunction.hpp"
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+
+namespace kds::collision {
+namespace {
+
+/// Widens [low, high] by where x is from now to the horizon, rounded outward; to all there is where the numbers
+/// overflow.
+///
+/// The terms of the motion are monotone in the time since its start, so an interval for each will do. Roundings: the
+/// times, a product of up to three factors and the sums, 2^-53 of a term each, less than 2^-48 of the terms in all.
+template <int Degree>
+void widen(const Motion<Degree>& x, double now, double horizon, double& low, double& high) {
+  const double from = now - x.start;
+  const double to = horizon - x.start;
+  double least = x.position.c[0];
+  double greatest = least;
+  double size = std::abs(least);
+  double first = 1, last = 1;
+  for (std::size_t i = 1; i <= Degree; ++i) {
+    first *= from;
+    last *= to;
+    const double c = x.position.c[i];
+    if (c == 0) continue;
+    double s = c * first;
+    double e = c * last;
+    if (from < 0 && i % 2 == 0) {  // a power that turns at the start of the motion
+      s = std::max({s, e, 0.0});
+      e = std::min({c * first, c * last, 0.0});
+    }
+    least += std::min(s, e);
+    greatest += std::max(s, e);
+    size += std::max(std::abs(s), std::abs(e));
+  }
+  if (!(size < never)) {
+    low = -never;
+    high = never;
+    return;
+  }
+  const double margin = 0x1p-48 * size + 0x1p-1000;  // the second for underflow
+  low = std::min(low, least - margin);
+  high = std::max(high, greatest + margin);
+}
+
+/// A float not above x; a NaN for a NaN.
+float below(double x) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  if (x > 0x1p127) return 0x1p127f;
+  if (x < -0x1p127) return -infinity;
+  const auto rounded = static_cast<float>(x);
+  return static_cast<double>(rounded) <= x ? rounded : std::nextafter(rounded, -infinity);
+}
+
+}  // namespace
+
+/// The facts that keep two boxes apart on the axes without a list.
+template <int Degree>
+class UnlistedAxes<Degree>::Sides {
+ public:
+  using Apart = certificates::Order<Degree>;
+
+  Sides(const UnlistedAxes& axes, BodyId a, BodyId b)
+      : ends_{ends(axes, 0, a, b), ends(axes, 1, a, b)},
+        apart_{Apart{ends_[0].a_max, ends_[0].b_min}, Apart{ends_[0].b_max, ends_[0].a_min},
+               Apart{ends_[1].a_max, ends_[1].b_min}, Apart{ends_[1].b_max, ends_[1].a_min}},
+        count_(axes.count_) {}
+  Sides(const Sides&) = delete;
+  Sides& operator=(const Sides&) = delete;
+
+  std::span<const Apart> apart() const { return {apart_.data(), 2 * count_}; }
+
+  /// Whether the boxes certainly do not overlap from now to the horizon: straight paths in doubles.
+  ///
+  /// A side is gap + rate (t - now); the errors of gap are within 2^-50 of the terms it is made of (see
+  /// Order::line()), the rate is a difference of doubles with an exact sign. A side is broken after `begin` seconds, or
+  /// until `end`: each is rounded the safe way by more than the quotient's and the rate's 2^-53.
+  bool stay_apart(double now, double horizon) const {
+    if constexpr (Degree == 1) {
+      double begin = 0;
+      double end = (horizon - now) * (1 + 0x1p-48);
+      for (const Apart& side : apart()) {
+        const double run_lower = side.lower.position.c[1] * (now - side.lower.start);
+        const double run_upper = side.upper.position.c[1] * (now - side.upper.start);
+        const double gap = (side.upper.position.c[0] + run_upper) - (side.lower.position.c[0] + run_lower);
+        const double least = gap -
+                             0x1p-50 * (std::abs(side.upper.position.c[0]) + std::abs(run_upper) +
+                                        std::abs(side.lower.position.c[0]) + std::abs(run_lower)) -
+                             0x1p-1000;  // for underflow
+        const double rate = side.upper.position.c[1] - side.lower.position.c[1];
+        if (rate >= 0 && least > 0) return true;
+        if (rate < 0) begin = std::max(begin, least / -rate * (1 - 0x1p-48));
+        if (rate > 0) end = std::min(end, -least / rate * (1 + 0x1p-48));
+      }
+      return begin > end;
+    } else {
+      return false;
+    }
+  }
+
+ private:
+  struct Ends {
+    Motion<Degree> a_min, a_max, b_min, b_max;
+  };
+
+  static Ends ends(const UnlistedAxes& axes, std::size_t i, BodyId a, BodyId b) {
+    const int d = axes.axes_[i];
+    const auto& box_a = axes.boxes_[a];
+    const auto& box_b = axes.boxes_[b];
+    return {box_a.min.axis(d), box_a.max.axis(d), box_b.min.axis(d), box_b.max.axis(d)};
+  }
+
+  std::array<Ends, 2> ends_;
+  std::array<Apart, 4> apart_;
+  std::size_t count_;
+};
+
+template <int Degree>
+void UnlistedAxes<Degree>::choose(unsigned axes, double now) {
+  count_ = 0;
+  for (int d = 0; d < 3; ++d) {
+    if ((axes >> d & 1) != 0) axes_[count_++] = d;
+  }
+  if (count_ == 1) axes_[1] = axes_[0];
+  for (PairSlot slot = 0; slot < pairs_.size(); ++slot) queue_.clear(slot);
+  pairs_.clear();
+  free_.clear();
+  for (auto& pairs : pairs_of_) pairs.clear();
+  for (BodyId id = 0; id < boxes_.size(); ++id) hulls_[id] = hull(boxes_[id], now);
+}
+
+template <int Degree>
+typename UnlistedAxes<Degree>::Hull UnlistedAxes<Degree>::hull(const KineticBox<Degree>& box, double now) const {
+  Hull hull;
+  for (std::size_t i = 0; i < 2; ++i) {
+    double low = never;
+    double high = -never;
+    widen(box.min.axis(axes_[i]), now, horizon_, low, high);
+    widen(box.max.axis(axes_[i]), now, horizon_, low, high);
+    hull.low[i] = below(low);
+    hull.high[i] = -below(-high);
+  }
+  return hull;
+}
+
+template <int Degree>
+void UnlistedAxes<Degree>::set_box(BodyId id, const KineticBox<Degree>& box, double now) {
+  if (id >= boxes_.size()) {
+    boxes_.resize(id + 1);
+    hulls_.resize(id + 1);
+    pairs_of_.resize(id + 1);
+  }
+  boxes_[id] = box;
+  if (count_ > 0) hulls_[id] = hull(box, now);
+}
+
+template <int Degree>
+typename UnlistedAxes<Degree>::PairSlot UnlistedAxes<Degree>::find(BodyId a, BodyId b) const {
+  const auto& fewer = pairs_of_[a].size() <= pairs_of_[b].size() ? pairs_of_[a] : pairs_of_[b];
+  for (const PairSlot slot : fewer) {
+    if (pairs_[slot].a == a && pairs_[slot].b == b) return slot;
+  }
+  return no_pair;
+}
+
+/// Time of the pair's next change, `never` if it has none before the horizon; now if it is in the wrong state.
+template <int Degree>
+double UnlistedAxes<Degree>::next_change(const Pair& pair, double now) const {
+  const Sides sides(*this, pair.a, pair.b);
+  return pair.overlap ? certificates::first_any_holds(now, horizon_, sides.apart())
+                      : certificates::first_all_broken(now, horizon_, sides.apart());
+}
+
+template <int Degree>
+bool UnlistedAxes<Degree>::add(BodyId a, BodyId b, double now) {
+  const Sides sides(*this, a, b);
+  if (sides.stay_apart(now, horizon_)) return false;
+  ++counters_.certificates;
+  double next = certificates::first_all_broken(now, horizon_, sides.apart());
+  if (next == never) return false;
+  const bool overlap = next == now;
+  if (overlap) next = certificates::first_any_holds(now, horizon_, sides.apart());
+  PairSlot slot;
+  if (free_.empty()) {
+    slot = static_cast<PairSlot>(pairs_.size());
+    pairs_.emplace_back();
+    if (queue_.slots() < pairs_.size()) queue_.resize(2 * pairs_.size());
+  } else {
+    slot = free_.back();
+    free_.pop_back();
+  }
+  pairs_[slot] = {a, b, overlap, true};
+  pairs_of_[a].push_back(slot);
+  pairs_of_[b].push_back(slot);
+  queue_.set(slot, next);
+  return overlap;
+}
+
+template <int Degree>
+void UnlistedAxes<Degree>::remove(PairSlot slot) {
+  queue_.clear(slot);
+  pairs_[slot].alive = false;
+  for (const BodyId id : {pairs_[slot].a, pairs_[slot].b}) {
+    auto& pairs = pairs_of_[id];
+    const auto it = std::find(pairs.begin(), pairs.end(), slot);
+    if (it == pairs.end()) continue;
+    *it = pairs.back();
+    pairs.pop_back();
+  }
+  free_.push_back(slot);
+}
+
+template <int Degree>
+bool UnlistedAxes<Degree>::drop(BodyId a, BodyId b) {
+  const PairSlot slot = find(a, b);
+  if (slot == no_pair) return false;
+  const bool overlap = pairs_[slot].overlap;
+  remove(slot);
+  return overlap;
+}
+
+template <int Degree>
+void UnlistedAxes<Degree>::look_farther(BodyId a, BodyId b, double now) {
+  if (!near(a, b)) return;
+  const PairSlot slot = find(a, b);
+  if (slot == no_pair) {
+    add(a, b, now);
+  } else if (!queue_.contains(slot)) {
+    ++counters_.certificates;
+    queue_.set(slot, next_change(pairs_[slot], now));
+  }
+}
+
+template <int Degree>
+void UnlistedAxes<Degree>::forget_pairs(BodyId id, std::vector<BodyId>& partners) {
+  while (!pairs_of_[id].empty()) {
+    const PairSlot slot = pairs_of_[id].back();
+    const Pair& pair = pairs_[slot];
+    if (pair.overlap) partners.push_back(pair.a == id ? pair.b : pair.a);
+    remove(slot);
+  }
+}
+
+template <int Degree>
+bool UnlistedAxes<Degree>::overlap(BodyId a, BodyId b) const {
+  const PairSlot slot = find(std::min(a, b), std::max(a, b));
+  return slot != no_pair && pairs_[slot].overlap;
+}
+
+template <int Degree>
+void UnlistedAxes<Degree>::process() {
+  const auto [time, slot] = queue_.top();
+  Pair& pair = pairs_[slot];
+  pair.overlap = !pair.overlap;
+  ++counters_.events;
+  ++counters_.certificates;
+  changes_->push_back({pair.a, pair.b, pair.overlap});
+  const double next = next_change(pair, time);
+  if (next == never && !pair.overlap) {
+    remove(slot);
+  } else {
+    queue_.set(slot, next);
+  }
+}
+
+template <int Degree>
+void UnlistedAxes<Degree>::extend_horizon(double now, double horizon) {
+  const bool extended = horizon > horizon_;
+  horizon_ = horizon;
+  if (count_ == 0) return;
+  for (BodyId id = 0; id < boxes_.size(); ++id) hulls_[id] = hull(boxes_[id], now);
+  if (extended) return;
+  for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
+    if (!pairs_[slot].alive || queue_.time(slot) <= horizon_) continue;
+    if (pairs_[slot].overlap) {
+      queue_.clear(slot);
+    } else {
+      remove(slot);
+    }
+  }
+}
+
+template <int Degree>
+void UnlistedAxes<Degree>::audit(double now) const {
+  for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
+    const Pair& pair = pairs_[slot];
+    if (!pair.alive || queue_.time(slot) <= now) continue;
+    if (queue_.time(slot) != next_change(pair, now)) {
+      throw AuditFailure("UnlistedAxes: bodies " + std::to_string(pair.a) + " and " + std::to_string(pair.b) +
+                         ": the scheduled change has the wrong time");
+    }
+  }
+}
+
+template <int Degree>
+void UnlistedAxes<Degree>::audit_pair(BodyId a, BodyId b, double now) const {
+  const PairSlot slot = find(a, b);
+  const bool known = slot != no_pair;
+  if (known && queue_.time(slot) <= now) return;
+  const Sides sides(*this, a, b);
+  const double next = certificates::first_all_broken(now, horizon_, sides.apart());
+  const bool overlap = known && pairs_[slot].overlap;
+  if (overlap != (next == now) || (!overlap && known != (next != never))) {
+    throw AuditFailure("UnlistedAxes: bodies " + std::to_string(a) + " and " + std::to_string(b) +
+                       ": overlap, or will, and that is not known, or the other way round");
+  }
+}
+
+template class UnlistedAxes<1>;
+template class UnlistedAxes<2>;
+
+}  // namespace kds::collision

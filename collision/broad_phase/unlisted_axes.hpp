@@ -1,0 +1,131 @@
+// Overlap on the axes that have no sorted list.
+#pragma once
+
+#include "collision/broad_phase/broad_phase.hpp"
+#include "kds/events/dary_queue.hpp"
+#include "kds/statistics.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace kds::collision {
+
+/// A pair of bodies, a < b, whose boxes begin or cease to overlap.
+struct PairChange {
+  BodyId a, b;
+  bool began;
+};
+
+/// Keeps, for the pairs of boxes that overlap on all axes with a list, the exact times at which they begin and cease to
+/// overlap on the others: one certificate a pair in place of the swaps of a list.
+///
+/// Most pairs need none. Of each body there is the hull of its box from now to the horizon, rounded outward; pairs
+/// whose hulls are apart on one of these axes stay apart. The next filter takes two straight paths in doubles, with
+/// bounds on the errors. What is left gets first_all_broken() or first_any_holds() over the sides of its boxes: the
+/// same doubles at which lists of these axes would swap.
+///
+/// State is that of t+, so no pair is ever reported for no time at all. Events of one time come by (a, b).
+///
+/// Cost: a few operations for a pair that meets on the listed axes; where its hulls overlap, two to four failure times
+/// and one event for each beginning and end.
+template <int Degree>
+class UnlistedAxes {
+ public:
+  /// Changes found by process() are appended to `changes`.
+  explicit UnlistedAxes(std::vector<PairChange>& changes) : changes_(&changes), queue_(PairRank{&pairs_}) {}
+  UnlistedAxes(const UnlistedAxes&) = delete;
+  UnlistedAxes& operator=(const UnlistedAxes&) = delete;
+
+  /// From now on these axes have no list: bit d stands for axis d, at most two of them. Forgets all pairs.
+  void choose(unsigned axes, double now);
+
+  /// Gives a body its box. Precondition: none of its pairs is known.
+  void set_box(BodyId id, const KineticBox<Degree>& box, double now);
+  const KineticBox<Degree>& box(BodyId id) const { return boxes_[id]; }
+
+  /// The greatest id so far, and one.
+  std::size_t bodies() const { return boxes_.size(); }
+
+  /// Whether the pair may overlap here before the horizon: the first filter alone.
+  bool near(BodyId a, BodyId b) const { return hulls_[a].meets(hulls_[b]); }
+
+  /// The boxes of a pair have met on all axes with a list; a < b. Returns whether they overlap on these axes too.
+  bool met(BodyId a, BodyId b, double now) { return near(a, b) && add(a, b, now); }
+
+  /// They have parted on an axis with a list. Returns whether they have overlapped on these until now. (Pairs that are
+  /// known are near.)
+  bool parted(BodyId a, BodyId b) { return near(a, b) && drop(a, b); }
+
+  /// Looks again at a pair that overlaps on the listed axes, as the horizon is later.
+  void look_farther(BodyId a, BodyId b, double now);
+
+  /// Forgets all pairs of a body; those it has overlapped with are appended to `partners`.
+  void forget_pairs(BodyId id, std::vector<BodyId>& partners);
+
+  /// Whether a pair overlaps on these axes. Precondition: it does on the others.
+  bool overlap(BodyId a, BodyId b) const;
+
+  double next_time() const { return queue_.empty() ? never : queue_.top().time; }
+  void process();
+
+  /// The owner then lets all pairs that overlap on the listed axes look_farther().
+  void extend_horizon(double now, double horizon);
+
+  /// Checks what is known; the owner calls audit_pair() for all pairs that overlap on the listed axes.
+  void audit(double now) const;
+  void audit_pair(BodyId a, BodyId b, double now) const;
+
+  const Counters& counters() const { return counters_; }
+
+ private:
+  using PairSlot = std::uint32_t;
+  static constexpr PairSlot no_pair = ~PairSlot{0};
+
+  /// What a box covers from some time to the horizon, rounded outward to floats, which are half as much to fetch.
+  struct Hull {
+    std::array<float, 2> low{0, 0};
+    std::array<float, 2> high{0, 0};
+
+    bool meets(const Hull& other) const {
+      return high[0] >= other.low[0] && other.high[0] >= low[0] && high[1] >= other.low[1] && other.high[1] >= low[1];
+    }
+  };
+
+  struct Pair {
+    BodyId a, b;
+    bool overlap = false;
+    bool alive = false;
+  };
+  struct PairRank {
+    const std::vector<Pair>* pairs;
+    std::uint64_t operator()(std::uint32_t slot) const {
+      return std::uint64_t{(*pairs)[slot].a} << 32 | (*pairs)[slot].b;
+    }
+  };
+  class Sides;
+
+  Hull hull(const KineticBox<Degree>& box, double now) const;
+  bool add(BodyId a, BodyId b, double now);
+  bool drop(BodyId a, BodyId b);
+  PairSlot find(BodyId a, BodyId b) const;
+  void remove(PairSlot slot);
+  double next_change(const Pair& pair, double now) const;
+
+  std::vector<PairChange>* changes_;
+  std::array<int, 2> axes_{0, 0};  // the first count_ of them
+  std::size_t count_ = 0;
+  double horizon_ = never;
+  std::vector<KineticBox<Degree>> boxes_;        // by body
+  std::vector<Hull> hulls_;                      // by body
+  std::vector<std::vector<PairSlot>> pairs_of_;  // by body
+  std::vector<Pair> pairs_;                      // those that overlap, or will before the horizon
+  std::vector<PairSlot> free_;
+  DaryQueue<PairRank> queue_;
+  Counters counters_;
+};
+
+extern template class UnlistedAxes<1>;
+extern template class UnlistedAxes<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,246 @@
+#include "collision/narrow_phase/ball_touch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d unit(const Vector3d& v) {
+  const double largest = v.cwiseAbs().maxCoeff();
+  const Vector3d scaled = v / largest;
+  return scaled / std::sqrt(dot(scaled, scaled));
+}
+
+}  // namespace
+
+NearestPoint nearest_point(const PlacedTriangle& triangle, const Vector3d& to) {
+  const auto& v = triangle.vertices;
+  const Vector3d normal = unit(cross(triangle.edge(0), triangle.edge(1)));
+  bool inside = true;
+  NearestPoint best{v[0], 0, 0};
+  double least = TimeSpans::infinity;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3d edge = triangle.edge(i);
+    const Vector3d d = to - v[i];
+    inside = inside && dot(cross(normal, edge), d) > 0;
+    const double along = dot(edge, d);
+    const double length = dot(edge, edge);
+    NearestPoint candidate{v[i], 0, i};
+    if (along >= length) {
+      candidate = {v[(i + 1) % 3], 0, (i + 1) % 3};
+    } else if (along > 0) {
+      candidate = {v[i] + (along / length) * edge, 1, i};
+    }
+    const Vector3d apart = to - candidate.point;
+    const double distance = dot(apart, apart);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  if (inside) return {to - dot(normal, to - v[0]) * normal, 2, 0};
+  return best;
+}
+
+template <int Degree>
+BallTouch<Degree>::BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball,
+                             const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, double horizon,
+                             const TimeWindow& interest)
+    : triangle_(triangle),
+      radius_(ball.radius),
+      motion_(motion),
+      gap_(gap),
+      horizon_(horizon),
+      interest_{std::max(interest.begin, 0.0), std::min(interest.end, horizon)} {
+  add_face();
+  for (std::size_t i = 0; i < 3; ++i) add_edge(i);
+  for (std::size_t i = 0; i < 3; ++i) add_vertex(i);
+}
+
+template <int Degree>
+auto BallTouch<Degree>::from(std::size_t vertex) const -> Path {
+  Path path = motion_.coefficients;
+  path[0] -= triangle_.vertices[vertex];
+  return path;
+}
+
+/// What is left of the motion when that along the edge is taken out.
+template <int Degree>
+auto BallTouch<Degree>::across_edge(std::size_t i) const -> Path {
+  const Vector3d along = unit(triangle_.edge(i));
+  Path path = from(i);
+  for (Vector3d& c : path) c -= dot(along, c) * along;
+  return path;
+}
+
+/// When normal . r - reach < gap.
+template <int Degree>
+TimeSpans BallTouch<Degree>::below(const Vector3d& normal, double reach) const {
+  const auto& r = motion_.coefficients;
+  if constexpr (Degree == 1) {
+    return negative_spans(dot(normal, r[0]) - reach - gap_.c[0], dot(normal, r[1]) - gap_.c[1]);
+  } else {
+    return negative_spans(dot(normal, r[0]) - reach - gap_.c[0], dot(normal, r[1]) - gap_.c[1],
+                          dot(normal, r[2]) - gap_.c[2]);
+  }
+}
+
+/// Whether the path comes near the origin within the window of interest, judged by its chord.
+template <int Degree>
+bool BallTouch<Degree>::matters(const Path& path) const {
+  const double length = interest_.end - interest_.begin;
+  const Vector3d begin = place_on(path, interest_.begin);
+  const Vector3d along = place_on(path, interest_.end) - begin;
+  const double square = dot(along, along);
+  const double part = square > 0 ? std::clamp(-dot(begin, along) / square, 0.0, 1.0) : 0.0;
+  const Vector3d nearest = begin + part * along;
+  double reach = radius_ + 4 * gap_(interest_.end);
+  if constexpr (Degree == 2) reach += 0.25 * length * length * std::sqrt(dot(path[2], path[2]));
+  return !(dot(nearest, nearest) > reach * reach);
+}
+
+template <int Degree>
+TimeSpans BallTouch<Degree>::within(const Path& path) const {
+  std::array<double, Degree + 1> reach = gap_.c;
+  reach[0] += radius_;
+  return near_spans(path, reach, horizon_);
+}
+
+template <int Degree>
+void BallTouch<Degree>::add_face() {
+  const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));
+  Piece piece;
+  for (const double side : {1.0, -1.0}) {
+    const Vector3d out = side * normal;
+    piece.conditions[piece.size++] = below(out, triangle_.project(out).high + radius_);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3d out = unit(cross(triangle_.edge(i), normal));
+    piece.conditions[piece.size++] =
+        below(out, std::max(dot(out, triangle_.vertices[i]), dot(out, triangle_.vertices[(i + 1) % 3])));
+  }
+  pieces_[size_++] = piece;
+}
+
+template <int Degree>
+void BallTouch<Degree>::add_edge(std::size_t i) {
+  const Vector3d along = unit(triangle_.edge(i));
+  Piece piece;
+  piece.conditions[piece.size++] = below(along, dot(along, triangle_.vertices[(i + 1) % 3]));
+  piece.conditions[piece.size++] = below(-along, -dot(along, triangle_.vertices[i]));
+  // The costly condition last, and only if it counts.
+  if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
+  const Path path = across_edge(i);
+  if (!matters(path)) return;
+  piece.conditions[piece.size++] = within(path);
+  pieces_[size_++] = piece;
+}
+
+template <int Degree>
+void BallTouch<Degree>::add_vertex(std::size_t i) {
+  const Path path = from(i);
+  if (!matters(path)) return;
+  Piece piece;
+  piece.conditions[piece.size++] = within(path);
+  pieces_[size_++] = piece;
+}
+
+template <int Degree>
+double BallTouch<Degree>::first_inside(double tau) const {
+  double first = TimeSpans::infinity;
+  for (std::size_t i = 0; i < size_; ++i) first = std::min(first, first_inside_all(pieces_[i].spans(), tau));
+  return first;
+}
+
+template <int Degree>
+double BallTouch<Degree>::enter(double tau) const {
+  // Downwards through the pieces that contain the time, as far as they reach.
+  double begin = TimeSpans::infinity;
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (pieces_[i].contains(tau)) begin = std::min(begin, enter_all(pieces_[i].spans(), tau));
+  }
+  return begin;
+}
+
+template <int Degree>
+double BallTouch<Degree>::leave(double tau) const {
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (tau == TimeSpans::infinity) return tau;
+      if (!pieces_[i].contains(tau)) continue;
+      tau = leave_all(pieces_[i].spans(), tau);
+      moved = true;
+    }
+  }
+  return tau;
+}
+
+template <int Degree>
+TouchDirection BallTouch<Degree>::direction(double tau) const {
+  const Vector3d centre = motion_.position(tau);
+  const Vector3d velocity = motion_.velocity(tau);
+  const NearestPoint nearest = nearest_point(triangle_, centre);
+  const Vector3d apart = centre - nearest.point;
+  const auto speeds = smallest_speeds(motion_);
+  if (!(apart.cwiseAbs().maxCoeff() > 0)) {
+    // The centre passes through the surface: from now on it moves away.
+    const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));
+    return {dot(normal, velocity) < 0 ? Vector3d(-normal) : normal, -radius_, false};
+  }
+  const Vector3d normal = unit(apart);
+  const double distance = std::sqrt(dot(apart, apart));
+  const double rate = dot(normal, velocity);
+  bool approaching = rate < 0;
+  if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
+    // Second derivative of the distance: bending towards the surface beats leaving its round.
+    Vector3d sideways = velocity - rate * normal;
+    if (nearest.dimension == 1) {
+      const Vector3d along = unit(triangle_.edge(nearest.index));
+      sideways -= dot(along, sideways) * along;
+    }
+    const double round = nearest.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
+    approaching = dot(normal, motion_.acceleration()) + round < -speeds[1];
+  }
+  return {normal, distance - radius_, approaching};
+}
+
+template <int Degree>
+double BallTouch<Degree>::turning(double tau, double end) const {
+  if constexpr (Degree == 2) {
+    // Where the distance to a part of the triangle has a maximum while that part is the nearest.
+    const auto consider = [&](double top, double distance) {
+      if (!(top > tau && top < end)) return;
+      const Vector3d centre = motion_.position(top);
+      const Vector3d apart = centre - nearest_point(triangle_, centre).point;
+      if (distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4) end = top;
+    };
+    const auto consider_path = [&](const Path& path) {
+      const DistanceQuartic quartic(path, {0, 0, 0});
+      const auto points = quartic.turning_points(horizon_);
+      for (std::size_t i = 0; i < points.size; ++i) {
+        const double top = points.at[i];
+        if (quartic.bend(top) < 0) consider(top, place_on(path, top).norm());
+      }
+    };
+    const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));
+    const double p1 = dot(normal, motion_.coefficients[1]);
+    const double p2 = dot(normal, motion_.coefficients[2]);
+    if (p2 != 0) {
+      const double top = -p1 / (2 * p2);
+      const double height = dot(normal, motion_.position(top) - triangle_.vertices[0]);
+      if ((height > 0) == (p2 < 0)) consider(top, std::abs(height));
+    }
+    for (std::size_t i = 0; i < 3; ++i) consider_path(across_edge(i));
+    for (std::size_t i = 0; i < 3; ++i) consider_path(from(i));
+  }
+  return end;
+}
+
+template class BallTouch<1>;
+template class BallTouch<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,83 @@
+// A moving ball and a triangle.
+#pragma once
+
+#include "collision/narrow_phase/convex_touch.hpp"
+#include "collision/narrow_phase/near_spans.hpp"
+#include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/narrow_phase/separating_axes.hpp"
+#include "collision/narrow_phase/time_spans.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace kds::collision {
+
+/// The point of a triangle nearest to another point, and what part of the triangle it lies on.
+struct NearestPoint {
+  Eigen::Vector3d point;
+  int dimension;      ///< 0: a vertex, 1: inside an edge, 2: inside the triangle
+  std::size_t index;  ///< of the vertex or edge; edge i leads from vertex i to vertex i + 1 (mod 3)
+};
+NearestPoint nearest_point(const PlacedTriangle& triangle, const Eigen::Vector3d& to);
+
+/// When a ball touches a triangle: their distance is below radius + contact gap. The set of such places of the ball's
+/// centre is the union of seven convex pieces: a prism over the face, three cylinders about the edges, three balls
+/// about the vertices. Same members as ConvexTouch; closed forms for linear motion, for quadratic motion quartics
+/// whose sign changes are bracketed between those of their derivatives.
+///
+/// Squared distances are never expanded about tau = 0 to decide a sign, only evaluated from the place of the centre at
+/// tau: so their error is that of the distance, which the contact gap covers, however small the ball.
+template <int Degree>
+class BallTouch {
+ public:
+  using Path = std::array<Eigen::Vector3d, Degree + 1>;  ///< polynomial of tau
+
+  /// Motion of the ball seen from the triangle's body. `horizon`: no contact after it; a function of the bodies and
+  /// motion alone, or answers would not be. Parts of the triangle that the ball is not near within the window of
+  /// interest are left out: what is said about times outside is not to be used.
+  BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball, const RelativeMotion<Degree>& motion,
+            const ContactGap<Degree>& gap, double horizon, const TimeWindow& interest);
+
+  double first_inside(double tau) const;
+  double enter(double tau) const;
+  double leave(double tau) const;
+  bool approaching(double tau) const { return direction(tau).approaching; }
+  TouchDirection direction(double tau) const;
+  double turning(double tau, double end) const;
+
+ private:
+  /// Slab or cylinder and its ends; five conditions at most.
+  struct Piece {
+    std::array<TimeSpans, 5> conditions;
+    std::size_t size = 0;
+
+    std::span<const TimeSpans> spans() const { return {conditions.data(), size}; }
+    bool contains(double tau) const { return first_inside_all(spans(), tau) == tau; }
+  };
+
+  void add_face();
+  void add_edge(std::size_t i);
+  void add_vertex(std::size_t i);
+  TimeSpans below(const Eigen::Vector3d& normal, double reach) const;
+  bool matters(const Path& path) const;
+  TimeSpans within(const Path& path) const;
+  Path from(std::size_t vertex) const;
+  Path across_edge(std::size_t i) const;
+
+  PlacedTriangle triangle_;
+  double radius_;
+  RelativeMotion<Degree> motion_;
+  ContactGap<Degree> gap_;
+  double horizon_;
+  TimeWindow interest_;
+  std::array<Piece, 7> pieces_;
+  std::size_t size_ = 0;
+};
+
+extern template class BallTouch<1>;
+extern template class BallTouch<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,19 @@
+// A contact of two bodies.
+#pragma once
+
+#include "collision/narrow_phase/feature.hpp"
+
+#include <Eigen/Core>
+
+namespace kds::collision {
+
+/// When, where and how two bodies touch.
+struct Contact {
+  double time = 0;                                           ///< s
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();           ///< in world coordinates
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();         ///< unit, from a to b
+  Feature feature_a{};                                       ///< what of a touches; none for spheres
+  Feature feature_b{};
+};
+
+}  // namespace kds::collision

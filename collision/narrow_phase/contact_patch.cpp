@@ -1,0 +1,145 @@
+#include "collision/narrow_phase/contact_patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// An edge of a box counts as across the direction when its sine is below this: a choice between naming, say, an
+/// edge and its end point, without effect on times.
+constexpr double parallel_sine = 0x1p-30;
+
+Vector3d mean(std::span<const Vector3d> points) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3d& p : points) sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+/// Halfway between the closest points of two segments.
+Vector3d between_segments(const Vector3d& p0, const Vector3d& p1, const Vector3d& q0, const Vector3d& q1) {
+  const Vector3d u = p1 - p0;
+  const Vector3d v = q1 - q0;
+  const Vector3d w = p0 - q0;
+  const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double determinant = uu * vv - uv * uv;
+  if (determinant <= parallel_sine * uu * vv) {
+    // Parallel: the middle of the stretch they share, measured along u.
+    const double q_start = -uw / uu;
+    const double q_stop = q_start + uv / uu;
+    const double low = std::max(0.0, std::min(q_start, q_stop));
+    const double high = std::min(1.0, std::max(q_start, q_stop));
+    return p0 + u * std::clamp(0.5 * (low + high), 0.0, 1.0);
+  }
+  double s = std::clamp((uv * vw - vv * uw) / determinant, 0.0, 1.0);
+  const double t = std::clamp((uv * s + vw) / vv, 0.0, 1.0);
+  s = std::clamp((uv * t - uw) / uu, 0.0, 1.0);
+  return 0.5 * (p0 + u * s + q0 + v * t);
+}
+
+/// Two directions that complete the normal to a right-handed frame.
+std::pair<Vector3d, Vector3d> tangents(const Vector3d& normal) {
+  int smallest = 0;
+  normal.cwiseAbs().minCoeff(&smallest);
+  const Vector3d first = normal.cross(Vector3d::Unit(smallest)).normalized();
+  return {first, normal.cross(first)};
+}
+
+/// Cuts a polygon or segment with the half plane left of the line from `from` to `to`, seen along the normal.
+std::vector<Vector3d> clip(const std::vector<Vector3d>& polygon, const Vector3d& from, const Vector3d& inward) {
+  std::vector<Vector3d> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector3d& here = polygon[i];
+    const Vector3d& next = polygon[(i + 1) % polygon.size()];
+    const double d_here = inward.dot(here - from);
+    const double d_next = inward.dot(next - from);
+    if (d_here >= 0) kept.push_back(here);
+    if ((d_here < 0) != (d_next < 0)) kept.push_back(here + (next - here) * (d_here / (d_here - d_next)));
+  }
+  return kept;
+}
+
+}  // namespace
+
+Feature box_feature(const BoxSide& side) {
+  const auto vertex = [](const BoxSide& s) {
+    std::uint32_t index = 0;
+    for (int d = 0; d < 3; ++d) index |= s[d] > 0 ? 1u << d : 0u;
+    return index;
+  };
+  const int free_axes = static_cast<int>((side.array() == 0).count());
+  Feature feature;
+  if (free_axes == 0) {
+    feature.kind = Feature::Kind::vertex;
+    feature.first = vertex(side);
+  } else if (free_axes == 1) {
+    BoxSide low = side, high = side;
+    for (int d = 0; d < 3; ++d) {
+      if (side[d] == 0) low[d] = -1, high[d] = 1;
+    }
+    feature.kind = Feature::Kind::edge;
+    feature.first = vertex(low);
+    feature.second = vertex(high);
+  } else {
+    feature.kind = Feature::Kind::face;
+    for (int d = 0; d < 3; ++d) {
+      if (side[d] != 0) feature.first = static_cast<std::uint32_t>(2 * d + (side[d] > 0));
+    }
+  }
+  return feature;
+}
+
+BoxSupport box_support(const PlacedShape& box, const Vector3d& direction) {
+  BoxSide side;
+  for (int d = 0; d < 3; ++d) {
+    const Vector3d& u = box.half_axes[static_cast<std::size_t>(d)];
+    const double along = direction.dot(u);
+    side[d] = std::abs(along) <= parallel_sine * u.norm() ? 0 : (along > 0 ? 1 : -1);
+  }
+  BoxSupport support{box_feature(side), {Vector3d::Zero()}};
+  for (int d = 0; d < 3; ++d) {
+    const Vector3d& u = box.half_axes[static_cast<std::size_t>(d)];
+    if (side[d] != 0) {
+      for (Vector3d& v : support.vertices) v += side[d] * u;
+      continue;
+    }
+    // Out along -u, back along +u: the four corners of a face come in cyclic order.
+    std::vector<Vector3d> doubled;
+    for (const Vector3d& v : support.vertices) doubled.push_back(v - u);
+    for (auto v = support.vertices.rbegin(); v != support.vertices.rend(); ++v) doubled.push_back(*v + u);
+    support.vertices = std::move(doubled);
+  }
+  return support;
+}
+
+Vector3d patch_centre(std::span<const Vector3d> a, std::span<const Vector3d> b, const Vector3d& offset,
+                      const Vector3d& normal) {
+  std::vector<Vector3d> moved(b.begin(), b.end());
+  for (Vector3d& p : moved) p += offset;
+  if (a.size() == 1) return a[0];
+  if (moved.size() == 1) return moved[0];
+  if (a.size() == 2 && moved.size() == 2) return between_segments(a[0], a[1], moved[0], moved[1]);
+  std::vector<Vector3d> cut(a.begin(), a.end());
+  std::vector<Vector3d> window = std::move(moved);
+  if (window.size() == 2) std::swap(cut, window);
+  const auto [first, second] = tangents(normal);
+  double area = 0;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const Vector3d& p = window[i];
+    const Vector3d& q = window[(i + 1) % window.size()];
+    area += first.dot(p) * second.dot(q) - first.dot(q) * second.dot(p);
+  }
+  const double turn = area < 0 ? -1.0 : 1.0;
+  for (std::size_t i = 0; i < window.size() && !cut.empty(); ++i) {
+    const Vector3d along = window[(i + 1) % window.size()] - window[i];
+    cut = clip(cut, window[i], turn * normal.cross(along));
+  }
+  // Empty only where rounding has just parted them.
+  return cut.empty() ? mean(window) : mean(cut);
+}
+
+}  // namespace kds::collision

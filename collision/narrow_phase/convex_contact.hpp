@@ -1,0 +1,28 @@
+// Dynamic tests of spheres and boxes, by exact signs.
+#pragma once
+
+#include "collision/narrow_phase/narrow_phase.hpp"
+
+namespace kds::collision {
+
+/// The functions of narrow_phase.hpp for shapes that are spheres or boxes. Bodies of mesh shape: not accepted.
+///
+/// Method: the set of relative positions in which two convex shapes penetrate is a union of convex *pieces* (one for
+/// two spheres or two boxes; slabs, edge cylinders and vertex balls for a box and a sphere), and each piece is a
+/// conjunction of polynomial certificates that are all broken inside it. The first contact is the least of the
+/// pieces' first times, each found by jumping from one failure time to the next.
+/// Paper: [Eberly01] for the separating axes; [Basch99] for certificates that witness disjointness.
+template <int Degree>
+struct ConvexContact {
+  using Body = MovingShape<Degree>;
+
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
+  static bool in_contact(const Body& a, const Body& b, double t);
+  static double first_separation(const Body& a, const Body& b, double t0, double horizon);
+  static Contact contact_at(const Body& a, const Body& b, double t);
+};
+
+extern template struct ConvexContact<1>;
+extern template struct ConvexContact<2>;
+
+}  // namespace kds::collision

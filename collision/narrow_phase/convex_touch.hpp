@@ -1,0 +1,219 @@
+// When a triangle touches another triangle or a box, one of them moving.
+#pragma once
+
+#include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/narrow_phase/separating_axes.hpp"
+#include "collision/narrow_phase/time_spans.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace kds::collision {
+
+/// How two things touch at a time.
+struct TouchDirection {
+  Eigen::Vector3d normal;  ///< unit, from a to b
+  double separation;       ///< along the normal; < 0: penetration
+  bool approaching;
+};
+
+/// Speeds along an axis up to [0] + tau [1] are rounding: zero.
+template <int Degree>
+std::array<double, 2> smallest_speeds(const RelativeMotion<Degree>& motion) {
+  constexpr double rounding = 8 * 0x1p-53;
+  if constexpr (Degree == 1) {
+    return {rounding * motion.coefficients[1].norm(), 0};
+  } else {
+    return {rounding * motion.coefficients[1].norm(), 2 * rounding * motion.coefficients[2].norm()};
+  }
+}
+
+/// When a triangle and another convex shape touch: while all the conditions "their gap along this direction is below
+/// the contact gap" hold, each of them a polynomial of the time. Everything it says is a closed form of the shapes and
+/// the motion alone.
+template <int Degree, class B>
+class ConvexTouch {
+ public:
+  ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap)
+      : a_(a), b_(b), motion_(motion), gap_(gap) {
+    double enter = -TimeSpans::infinity;
+    double leave = TimeSpans::infinity;
+    every_condition([&](const Condition& condition) {
+      const auto& p = condition.separation;
+      if constexpr (Degree == 1) {
+        const double c0 = p[0] - gap.c[0];
+        const double c1 = p[1] - gap.c[1];
+        if (c1 > 0) {
+          leave = std::min(leave, -c0 / c1);
+        } else if (c1 < 0) {
+          const double begin = -c0 / c1;
+          if (begin > enter) {
+            enter = begin;
+            entry_speed_ = -p[1];
+          }
+        } else if (c0 >= 0) {
+          leave = -TimeSpans::infinity;
+        }
+      } else {
+        near_[size_++] = negative_spans(p[0] - gap.c[0], p[1] - gap.c[1], p[2] - gap.c[2]);
+      }
+    });
+    if constexpr (Degree == 1) near_[size_++] = TimeSpans::between(enter, leave);
+  }
+
+  /// The first time >= tau at which they touch, or infinity.
+  double first_inside(double tau) const { return first_inside_all(near(), tau); }
+
+  /// When the contact that holds at tau began and ends. Precondition: first_inside(tau) == tau.
+  double enter(double tau) const { return enter_all(near(), tau); }
+  double leave(double tau) const {
+    for (;;) {
+      tau = leave_all(near(), tau);
+      if (tau == TimeSpans::infinity || first_inside(tau) != tau) return tau;
+    }
+  }
+
+  /// Whether, at tau, they approach along the direction of least overlap.
+  bool approaching(double tau) const {
+    if constexpr (Degree == 1) {
+      // That is the direction along which they have just come within the gap.
+      if (tau == near_[0].begin[0] && entry_speed_ > smallest_speeds(motion_)[0]) return true;
+    }
+    return direction(tau).approaching;
+  }
+
+  /// The direction, from a to b, along which they overlap least just after tau.
+  ///
+  /// Of directions that tie within rounding one that falls is taken if none rises: then they approach. (A rising one
+  /// will be the greatest and they part along it.) Faces in one plane tie with both directions of their normal, and do
+  /// not say on which side the bodies are: the centres do.
+  TouchDirection direction(double tau) const {
+    const Conditions conditions(*this);
+    const auto speeds = smallest_speeds(motion_);
+    const Eigen::Vector3d offset = motion_.position(tau);
+    const double rounding = gap_(tau) / tie;
+    double most = -TimeSpans::infinity;
+    for (const Condition& each : conditions) most = std::max(most, each(tau));
+    TouchDirection chosen{Eigen::Vector3d::Zero(), -TimeSpans::infinity, false};
+    int chosen_trend = 0;
+    for (const Condition& each : conditions) {
+      const double separation = each(tau);
+      if (separation < most - rounding) continue;
+      if (opposite_of(conditions, each)(tau) >= most - rounding && dot(each.normal, offset) < 0) continue;
+      const int trend = each.trend(tau, speeds);
+      // Rising before falling before neither; then the greatest.
+      const auto weight = [](int t) { return t > 0 ? 2 : (t < 0 ? 1 : 0); };
+      const bool better =
+          weight(trend) == weight(chosen_trend) ? separation > chosen.separation : weight(trend) > weight(chosen_trend);
+      if (better) {
+        chosen = {each.normal, separation, trend < 0};
+        chosen_trend = trend;
+      }
+    }
+    return chosen;
+  }
+
+  /// The first time after tau, before `end`, at which bodies that move apart turn towards each other: where a
+  /// separation that is the greatest of all has its maximum, or `end`. Elsewhere the greatest separation rises on.
+  double turning(double tau, double end) const {
+    if constexpr (Degree == 2) {
+      const Conditions conditions(*this);
+      for (const Condition& each : conditions) {
+        const auto& p = each.separation;
+        if (!(p[2] < 0)) continue;
+        const double top = -p[1] / (2 * p[2]);
+        if (!(top > tau && top < end)) continue;
+        const double least = each(top) + gap_(top) / tie;
+        if (std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) { return c(top) <= least; })) {
+          end = top;
+        }
+      }
+    }
+    return end;
+  }
+
+ private:
+  /// Two sides of 17 axes.
+  static constexpr std::size_t capacity = 34;
+  /// Separations nearer than gap / tie are equal: 16 roundings, where two computations of one separation differ by 8.
+  static constexpr double tie = 4;
+
+  struct Condition {
+    std::array<double, Degree + 1> separation;  ///< along the normal; below the gap: near
+    Eigen::Vector3d normal;                     ///< unit, from a to b
+
+    double operator()(double tau) const {
+      if constexpr (Degree == 1) {
+        return separation[0] + tau * separation[1];
+      } else {
+        return separation[0] + tau * (separation[1] + tau * separation[2]);
+      }
+    }
+
+    /// 1 if it rises just after tau, -1 if it falls, 0 if it does neither but for rounding.
+    int trend(double tau, const std::array<double, 2>& speeds) const {
+      const auto sign = [](double x, double rounding) { return x > rounding ? 1 : (x < -rounding ? -1 : 0); };
+      if constexpr (Degree == 1) {
+        return sign(separation[1], speeds[0]);
+      } else {
+        const int now = sign(separation[1] + 2 * tau * separation[2], speeds[0] + tau * speeds[1]);
+        return now != 0 ? now : sign(separation[2], 0.5 * speeds[1]);
+      }
+    }
+  };
+
+  /// Calls visit(condition) for both sides of every axis.
+  template <class Visit>
+  void every_condition(const Visit& visit) const {
+    every_axis(a_, b_, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
+      const double length = std::sqrt(dot(axis, axis));
+      if (!(length > vanishing_axis)) return true;
+      const double inverse = 1 / length;
+      const Eigen::Vector3d normal = axis * inverse;
+      Condition condition{{}, normal};
+      for (std::size_t i = 0; i <= Degree; ++i) condition.separation[i] = dot(normal, motion_.coefficients[i]);
+      Condition opposite{{}, -normal};
+      for (std::size_t i = 0; i <= Degree; ++i) opposite.separation[i] = -condition.separation[i];
+      condition.separation[0] -= (of_a.high - of_b.low) * inverse;
+      opposite.separation[0] -= (of_b.high - of_a.low) * inverse;
+      visit(condition);
+      visit(opposite);
+      return true;
+    });
+  }
+
+  class Conditions {
+   public:
+    explicit Conditions(const ConvexTouch& touch) {
+      touch.every_condition([this](const Condition& condition) { items_[size_++] = condition; });
+    }
+    const Condition* begin() const { return items_.data(); }
+    const Condition* end() const { return items_.data() + size_; }
+
+   private:
+    std::array<Condition, capacity> items_;
+    std::size_t size_ = 0;
+  };
+
+  /// The conditions of the two sides of an axis stand side by side.
+  static const Condition& opposite_of(const Conditions& conditions, const Condition& condition) {
+    return (&condition - conditions.begin()) % 2 == 0 ? *(&condition + 1) : *(&condition - 1);
+  }
+
+  std::span<const TimeSpans> near() const { return {near_.data(), size_}; }
+
+  PlacedTriangle a_;
+  B b_;
+  const RelativeMotion<Degree>& motion_;
+  ContactGap<Degree> gap_;
+  std::array<TimeSpans, Degree == 1 ? 1 : capacity> near_;  ///< when each separation is below the gap
+  std::size_t size_ = 0;
+  double entry_speed_ = 0;  ///< degree 1: along the axis on which they come within the gap last
+};
+
+}  // namespace kds::collision

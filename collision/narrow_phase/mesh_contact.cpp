@@ -1,0 +1,145 @@
+#include "collision/narrow_phase/mesh_contact.hpp"
+
+#include "collision/narrow_phase/mesh_query.hpp"
+#include "kds/arithmetic/lattice.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+#include <variant>
+
+namespace kds::collision {
+namespace {
+
+using namespace detail;
+
+constexpr double infinity = TimeSpans::infinity;
+
+}  // namespace
+
+// ---- MeshPair ------------------------------------------------------------------------------------------------------
+
+template <int Degree>
+MeshPair<Degree>::MeshPair(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion)
+    : a_(a), b_(b), motion_(motion), gap_(contact_gap(motion, a.bounding_radius + b.bounding_radius)) {}
+
+/// Calls the question with the Query for the kind of b and the degree that the motion has.
+template <int Degree>
+template <class Question>
+auto MeshPair<Degree>::ask(const Question& question) const {
+  const auto with_motion = [&](const auto& motion, const auto& gap) {
+    constexpr int degree = static_cast<int>(std::tuple_size_v<std::decay_t<decltype(gap.c)>>) - 1;
+    if (std::holds_alternative<Sphere>(b_.shape)) return question(Query<degree, BallPartner>(a_, b_, motion, gap));
+    if (std::holds_alternative<Box>(b_.shape)) return question(Query<degree, BoxPartner>(a_, b_, motion, gap));
+    return question(Query<degree, PlacedMesh>(a_, b_, motion, gap));
+  };
+  if constexpr (Degree == 2) {
+    if (motion_.coefficients[2].isZero(0) && gap_.c[2] == 0) {
+      const auto& [r0, r1, r2] = motion_.coefficients;
+      const auto& [u0, u1, u2] = motion_.uncertainty;
+      return with_motion(RelativeMotion<1>{{r0, r1}, {u0, u1}, motion_.epoch}, ContactGap<1>{{gap_.c[0], gap_.c[1]}});
+    }
+  }
+  return with_motion(motion_, gap_);
+}
+
+template <int Degree>
+std::optional<MeshTouch> MeshPair<Degree>::first_contact(double tau0, double tau1, ContactMode mode) const {
+  return ask([&](const auto& query) { return query.first_contact(tau0, tau1, mode); });
+}
+
+template <int Degree>
+bool MeshPair<Degree>::touching(double tau) const {
+  return ask([&](const auto& query) { return query.touching(tau); });
+}
+
+template <int Degree>
+double MeshPair<Degree>::first_free_time(double tau, double limit) const {
+  return ask([&](const auto& query) { return query.first_free_time(tau, limit); });
+}
+
+template <int Degree>
+MeshTouchPlace MeshPair<Degree>::where(double tau) const {
+  return ask([&](const auto& query) { return query.where(tau); });
+}
+
+template class MeshPair<1>;
+template class MeshPair<2>;
+
+// ---- MeshContact ---------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// The first double t with t - epoch >= tau.
+double clock_time(double epoch, double tau) {
+  double t = epoch + tau;
+  while (t - epoch < tau) t = next_up(t);
+  while (next_down(t) - epoch >= tau) t = next_down(t);
+  return t;
+}
+
+/// A pair in which a is a mesh, on the clock.
+template <int Degree>
+struct ClockedPair {
+  using Body = MovingShape<Degree>;
+
+  ClockedPair(const Body& first, const Body& second)
+      : swapped(!std::holds_alternative<MeshShape>(first.shape.shape)),
+        a(swapped ? second : first),
+        b(swapped ? first : second),
+        motion(relative_to(a.motion, b.motion)),
+        pair(a.shape, b.shape, motion) {}
+
+  /// Before the epoch one of the bodies has not begun to move so: nothing is asked about that.
+  double tau(double t) const { return std::max(t - motion.epoch, 0.0); }
+  double clock(double tau_found, double t0, double horizon) const {
+    if (tau_found == infinity) return infinity;
+    if (tau_found <= tau(t0)) return t0;
+    const double t = std::max(t0, clock_time(motion.epoch, tau_found));
+    return t <= horizon ? t : infinity;
+  }
+
+  bool swapped;
+  Body a;
+  Body b;
+  RelativeMotion<Degree> motion;
+  MeshPair<Degree> pair;
+};
+
+}  // namespace
+
+template <int Degree>
+double MeshContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode) {
+  const ClockedPair<Degree> clocked(a, b);
+  const auto touch = clocked.pair.first_contact(clocked.tau(t0), clocked.tau(horizon), mode);
+  return touch ? clocked.clock(touch->tau, t0, horizon) : infinity;
+}
+
+template <int Degree>
+bool MeshContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
+  const ClockedPair<Degree> clocked(a, b);
+  return clocked.pair.touching(clocked.tau(t));
+}
+
+template <int Degree>
+double MeshContact<Degree>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
+  const ClockedPair<Degree> clocked(a, b);
+  return clocked.clock(clocked.pair.first_free_time(clocked.tau(t0), clocked.tau(horizon)), t0, horizon);
+}
+
+template <int Degree>
+Contact MeshContact<Degree>::contact_at(const Body& a, const Body& b, double t) {
+  const ClockedPair<Degree> clocked(a, b);
+  const auto where = clocked.pair.where(clocked.tau(t));
+  Contact contact{t, clocked.a.motion.position(t) + where.point, where.normal, where.feature_a, where.feature_b};
+  if (clocked.swapped) {
+    contact.normal = -contact.normal;
+    std::swap(contact.feature_a, contact.feature_b);
+  }
+  return contact;
+}
+
+template struct MeshContact<1>;
+template struct MeshContact<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,48 @@
+#include "collision/narrow_phase/narrow_phase.hpp"
+
+#include "collision/narrow_phase/convex_contact.hpp"
+#include "collision/narrow_phase/mesh_contact.hpp"
+
+namespace kds::collision {
+namespace {
+
+template <int Degree>
+bool has_mesh(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+  return std::holds_alternative<MeshShape>(a.shape.shape) || std::holds_alternative<MeshShape>(b.shape.shape);
+}
+
+}  // namespace
+
+template <int Degree>
+double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
+                     ContactMode mode) {
+  return has_mesh(a, b) ? MeshContact<Degree>::first_contact(a, b, t0, horizon, mode)
+                        : ConvexContact<Degree>::first_contact(a, b, t0, horizon, mode);
+}
+
+template <int Degree>
+bool in_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+  return has_mesh(a, b) ? MeshContact<Degree>::in_contact(a, b, t) : ConvexContact<Degree>::in_contact(a, b, t);
+}
+
+template <int Degree>
+double first_separation(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon) {
+  return has_mesh(a, b) ? MeshContact<Degree>::first_separation(a, b, t0, horizon)
+                        : ConvexContact<Degree>::first_separation(a, b, t0, horizon);
+}
+
+template <int Degree>
+Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+  return has_mesh(a, b) ? MeshContact<Degree>::contact_at(a, b, t) : ConvexContact<Degree>::contact_at(a, b, t);
+}
+
+template double first_contact(const MovingShape<1>&, const MovingShape<1>&, double, double, ContactMode);
+template double first_contact(const MovingShape<2>&, const MovingShape<2>&, double, double, ContactMode);
+template bool in_contact(const MovingShape<1>&, const MovingShape<1>&, double);
+template bool in_contact(const MovingShape<2>&, const MovingShape<2>&, double);
+template double first_separation(const MovingShape<1>&, const MovingShape<1>&, double, double);
+template double first_separation(const MovingShape<2>&, const MovingShape<2>&, double, double);
+template Contact contact_at(const MovingShape<1>&, const MovingShape<1>&, double);
+template Contact contact_at(const MovingShape<2>&, const MovingShape<2>&, double);
+
+}  // namespace kds::collision

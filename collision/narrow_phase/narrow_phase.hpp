@@ -1,0 +1,49 @@
+// Narrow phase: when two moving shapes touch, and where.
+#pragma once
+
+#include "certificates/point_motion.hpp"
+#include "collision/narrow_phase/contact.hpp"
+#include "collision/shapes/shape.hpp"
+
+namespace kds::collision {
+
+/// What happens to bodies that touch.
+enum class ContactMode {
+  transparent,  ///< they pass through each other; contact and separation alternate
+  resolved,     ///< an impulse turns them back: contact counts only while they approach
+};
+
+/// A shape on its way.
+template <int Degree>
+struct MovingShape {
+  const PlacedShape& shape;
+  const certificates::PointMotion<Degree>& motion;
+};
+
+/// The first time t in [t0, horizon] at which a and b come into contact, or `never`.
+///
+/// Spheres and boxes: the first double just after which they penetrate, by exact signs (for boxes and spheres against
+/// boxes: of the shapes that their rounded axes describe). Meshes: never late, early by at most the margin of
+/// mesh_contact.hpp. The answer depends on the two shapes and motions alone, and on t0 only in that earlier contacts
+/// are passed over.
+///
+/// Mode `resolved`: shapes that overlap at t0 by rounding (an impulse has just been applied) are in contact only if
+/// they approach. Mode `transparent`: t0 itself where they overlap there.
+template <int Degree>
+double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
+                     ContactMode mode);
+
+/// Whether a and b penetrate just after t.
+template <int Degree>
+bool in_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+
+/// The first time t in [t0, horizon] just after which a and b do not penetrate, or `never`.
+template <int Degree>
+double first_separation(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon);
+
+/// Point, normal and features of the contact at t, a time that first_contact or in_contact has named. In doubles:
+/// accurate to some ulps of the coordinates.
+template <int Degree>
+Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+
+}  // namespace kds::collision

@@ -1,0 +1,161 @@
+// Separating axes of a triangle with a triangle or a box, one of them moving.
+#pragma once
+
+#include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/narrow_phase/time_spans.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace kds::collision {
+
+struct Interval {
+  double low;
+  double high;
+};
+
+/// A triangle in world orientation about the centre of its body.
+struct PlacedTriangle {
+  std::array<Eigen::Vector3d, 3> vertices;
+
+  Interval project(const Eigen::Vector3d& axis) const {
+    const double x = dot(axis, vertices[0]);
+    const double y = dot(axis, vertices[1]);
+    const double z = dot(axis, vertices[2]);
+    return {std::min(x, std::min(y, z)), std::max(x, std::max(y, z))};
+  }
+  Eigen::Vector3d edge(std::size_t i) const { return vertices[i == 2 ? 0 : i + 1] - vertices[i]; }
+};
+
+/// A solid box about its centre.
+struct PlacedBox {
+  std::array<Eigen::Vector3d, 3> half_axes;
+  Eigen::Matrix3d rotation;  ///< columns: normals of its faces
+
+  Interval project(const Eigen::Vector3d& axis) const {
+    const double reach =
+        std::abs(dot(axis, half_axes[0])) + std::abs(dot(axis, half_axes[1])) + std::abs(dot(axis, half_axes[2]));
+    return {-reach, reach};
+  }
+};
+
+/// A ball about its centre.
+struct PlacedBall {
+  double radius;
+
+  Interval project(const Eigen::Vector3d& axis) const {
+    const double reach = radius * std::sqrt(dot(axis, axis));
+    return {-reach, reach};
+  }
+};
+
+inline Interval interval(double x, double y) { return x < y ? Interval{x, y} : Interval{y, x}; }
+
+/// Calls test(axis, interval of a, interval of b) for the directions that can separate the two, until it says false;
+/// returns what it said last. The intervals are the projections on the axis, which has any length.
+///
+/// Two triangles: the two normals, the nine products of edges, and the normals of the six edges in their planes, which
+/// alone separate triangles of one plane, and keep those of nearly one plane from counting as touching far away from
+/// each other. Any direction is a valid witness of separation, however it was rounded, so a bad one (from nearly
+/// parallel edges) only fails to separate.
+template <class Test>
+bool every_axis(const PlacedTriangle& a, const PlacedTriangle& b, Test&& test) {
+  const std::array<Eigen::Vector3d, 3> u{a.edge(0), a.edge(1), a.edge(2)};
+  const std::array<Eigen::Vector3d, 3> v{b.edge(0), b.edge(1), b.edge(2)};
+  // The ends of an edge project to one point, up to rounding, on an axis across it.
+  const auto across = [](const PlacedTriangle& t, std::size_t i, const Eigen::Vector3d& axis) {
+    return interval(dot(axis, t.vertices[i]), dot(axis, t.vertices[i == 0 ? 2 : i - 1]));
+  };
+  const auto flat = [](const PlacedTriangle& t, const Eigen::Vector3d& axis) {
+    const double height = dot(axis, t.vertices[0]);
+    return Interval{height, height};
+  };
+  const Eigen::Vector3d normal_a = cross(u[0], u[1]);
+  if (!test(normal_a, flat(a, normal_a), b.project(normal_a))) return false;
+  const Eigen::Vector3d normal_b = cross(v[0], v[1]);
+  if (!test(normal_b, a.project(normal_b), flat(b, normal_b))) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Eigen::Vector3d axis = cross(u[i], v[j]);
+      if (!test(axis, across(a, i, axis), across(b, j, axis))) return false;
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = cross(u[i], normal_a);
+    if (!test(axis, across(a, i, axis), b.project(axis))) return false;
+  }
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Eigen::Vector3d axis = cross(v[j], normal_b);
+    if (!test(axis, a.project(axis), across(b, j, axis))) return false;
+  }
+  return true;
+}
+
+/// A triangle and a solid box: the normals of both and the products of their edges.
+template <class Test>
+bool every_axis(const PlacedTriangle& a, const PlacedBox& b, Test&& test) {
+  const auto try_axis = [&](const Eigen::Vector3d& axis) { return test(axis, a.project(axis), b.project(axis)); };
+  for (int i = 0; i < 3; ++i) {
+    if (!try_axis(b.rotation.col(i))) return false;
+  }
+  const std::array<Eigen::Vector3d, 3> u{a.edge(0), a.edge(1), a.edge(2)};
+  if (!try_axis(cross(u[0], u[1]))) return false;
+  for (const auto& e : u) {
+    for (int i = 0; i < 3; ++i) {
+      if (!try_axis(cross(e, b.rotation.col(i)))) return false;
+    }
+  }
+  return true;
+}
+
+/// A triangle and a ball: not all directions that can separate them (their number has no end), but the normals of the
+/// triangle and its edges, and of the box around it.
+template <class Test>
+bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
+  const auto try_axis = [&](const Eigen::Vector3d& axis) { return test(axis, a.project(axis), b.project(axis)); };
+  const std::array<Eigen::Vector3d, 3> u{a.edge(0), a.edge(1), a.edge(2)};
+  const Eigen::Vector3d normal = cross(u[0], u[1]);
+  if (!try_axis(normal)) return false;
+  for (int d = 0; d < 3; ++d) {
+    if (!try_axis(Eigen::Vector3d::Unit(d))) return false;
+  }
+  for (const auto& e : u) {
+    if (!try_axis(cross(e, normal))) return false;
+  }
+  return true;
+}
+
+/// Axes shorter than this are left out, which is always safe; with coordinates of 2^-100 to 2^100 they come from
+/// parallel edges alone, and squares of projections do not underflow.
+inline constexpr double vanishing_axis = 0x1p-320;
+
+/// Cheap test: shrinks the window to times at which a and b may touch, with b moving; false if there are none.
+/// Projections are widened by `margin` as in BoxPairTest, times the 1-norm of the axis, which is not below its length.
+template <int Degree, class A, class B>
+bool may_touch(const A& a, const B& b, const RelativeMotion<Degree>& motion,
+               const std::array<double, Degree + 1>& margin, TimeWindow& window) {
+  return every_axis(a, b, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
+    const double length = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
+    if (!(length > vanishing_axis)) return true;
+    // They overlap while low < axis . r < high.
+    const double low = of_a.low - of_b.high - length * margin[0];
+    const double high = of_a.high - of_b.low + length * margin[0];
+    const double p0 = dot(axis, motion.coefficients[0]);
+    const double p1 = dot(axis, motion.coefficients[1]);
+    const double m1 = length * margin[1];
+    if constexpr (Degree == 1) {
+      return clip_to_negative(p0 - high, p1 - m1, window) && clip_to_negative(low - p0, -p1 - m1, window);
+    } else {
+      const double p2 = dot(axis, motion.coefficients[2]);
+      const double m2 = length * margin[2];
+      return clip_to_negative(p0 - high, p1 - m1, p2 - m2, window) &&
+             clip_to_negative(low - p0, -p1 - m1, -p2 - m2, window);
+    }
+  });
+}
+
+}  // namespace kds::collision

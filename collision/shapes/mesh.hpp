@@ -1,0 +1,82 @@
+// Triangle surfaces, immutable and shared by bodies.
+#pragma once
+
+#include "collision/narrow_phase/obb_tree.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kds::collision {
+
+/// A mesh that cannot be used. The message names what is wrong and where.
+class InvalidMesh : public std::invalid_argument {
+ public:
+  enum class Part : std::uint8_t { whole, vertex, triangle };
+
+  InvalidMesh(Part part, std::size_t index, const std::string& what)
+      : std::invalid_argument(what), part_(part), index_(index) {}
+
+  Part part() const { return part_; }
+  std::size_t index() const { return index_; }  ///< of the vertex or triangle, from 0
+
+ private:
+  Part part_;
+  std::size_t index_;
+};
+
+/// Where a body's rotation and scale put a vertex of its mesh, about the body's centre. Every part of the module that
+/// needs a turned vertex gets it from here, so that triangles with a common vertex agree on it bit for bit.
+inline Eigen::Vector3d placed_vertex(const Eigen::Matrix3d& rotation, double scale, const Eigen::Vector3d& vertex) {
+  const double x = scale * vertex[0];
+  const double y = scale * vertex[1];
+  const double z = scale * vertex[2];
+  return {rotation(0, 0) * x + rotation(0, 1) * y + rotation(0, 2) * z,
+          rotation(1, 0) * x + rotation(1, 1) * y + rotation(1, 2) * z,
+          rotation(2, 0) * x + rotation(2, 1) * y + rotation(2, 2) * z};
+}
+
+/// A triangle surface with its tree of oriented boxes. Coordinates in units of length about the model's origin, which
+/// is the centre of the bodies that use it. It need not be closed, connected or consistently wound.
+class Mesh {
+ public:
+  using Triangle = std::array<std::uint32_t, 3>;  ///< indices of vertices
+
+  /// Throws InvalidMesh if there is no triangle, a coordinate is not finite or beyond `largest_coordinate`, an index
+  /// is out of range, or a triangle is degenerate: a vertex named twice, or corners in a line up to `thinnest_sine`.
+  Mesh(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> triangles);
+
+  std::span<const Eigen::Vector3d> vertices() const { return vertices_; }
+  std::span<const Triangle> triangles() const { return triangles_; }
+  const ObbTree& tree() const { return tree_; }
+
+  /// Radius of the ball about the origin that holds all vertices, rounded up.
+  double bounding_radius() const { return bounding_radius_; }
+
+  /// All vertices, placed.
+  std::vector<Eigen::Vector3d> placed_vertices(const Eigen::Matrix3d& rotation, double scale) const;
+
+  /// Corners of the axis-aligned box around the placed vertices that triangles use: tight, without margin.
+  void extents(const Eigen::Matrix3d& rotation, double scale, Eigen::Vector3d& low, Eigen::Vector3d& high) const;
+
+  /// Degenerate below: the sine of the angle at which two edges meet. 64 roundings of the cross product; a triangle
+  /// so thin has no normal to speak of.
+  static constexpr double thinnest_sine = 0x1p-46;
+  /// 1.3e30: squares of products of three lengths and a speed must not overflow.
+  static constexpr double largest_coordinate = 0x1p100;
+
+ private:
+  std::vector<Eigen::Vector3d> vertices_;
+  std::vector<Triangle> triangles_;
+  ObbTree tree_;
+  std::vector<std::uint32_t> used_;  // vertices that triangles use, each once
+  double bounding_radius_ = 0;
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,347 @@
+// Event queue in buckets of time: a calendar whose days adapt to the events in it.
+#pragma once
+
+#include "kds/events/event_queue.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace kds {
+
+/// A calendar queue: amortised O(1) for set, clear and pop, without allocation after resize().
+///
+/// A year begins at the earliest event and has a few days for each event; what comes later waits in an unsorted list,
+/// the years to come. A day is an unsorted, doubly linked list of its slots, so that set and clear touch a constant
+/// number of words. Only the events of the present day, and any set to a time before it, stand in order, in a small
+/// heap. When the last day is over, the events to come are dealt out into a new year, whose days are as long as the
+/// distance between the events then nearest.
+///
+/// The division into days is monotone in time even as it is rounded (a subtraction and a multiplication by a positive
+/// number, each monotone), so the order is exact whatever the length of a day. Bad luck only costs time: should the
+/// present day grow long (a burst, a cluster narrower than a day, times all equal or set backwards), the heap takes
+/// over with O(log n) an operation, and a new year is begun once that has cost about as much as beginning one.
+///
+/// Paper: [Brown88]; the sorted front is from [Tang05]. Differs: days do not wrap around, so none is searched for the
+/// events of this year; the present day is a heap, so bursts need no finer calendar within the calendar.
+template <QueueRank Rank = SlotRank>
+class CalendarQueue {
+ public:
+  explicit CalendarQueue(Rank rank = {}) : rank_(rank) {}
+
+  void resize(std::size_t slots);
+  void set(Slot slot, double time);
+  void clear(Slot slot);
+  void pop() { clear(top().slot); }
+  QueuedEvent top() const;
+
+  bool contains(Slot slot) const { return time(slot) != detail::no_event; }
+  double time(Slot slot) const { return nodes_[slot].time; }
+  bool empty() const { return size_ == 0; }
+  std::size_t size() const { return size_; }
+  std::size_t slots() const { return nodes_.size(); }
+  std::uint64_t operations() const { return operations_; }
+
+ private:
+  using Key = detail::QueueKey<Rank>;
+  static constexpr bool has_ranks = !std::is_same_v<Rank, SlotRank>;
+
+  // These change the speed, never the order.
+  static constexpr std::size_t days_per_event = 4;  ///< in a year. More make years rarer and take more memory
+  static constexpr double events_per_day = 1;       ///< meant at the beginning of the year
+  static constexpr std::size_t near_part = 8;       ///< one in so many events, the earliest, tells the length of a day
+  static constexpr std::size_t sample_size = 256;   ///< of events looked at for that
+  static constexpr std::size_t long_day = 16;       ///< events; what goes beyond is put on the bill for a new year
+
+  // What Node::back says: the slot before, or the day whose first slot this is, or the place in the present day's heap.
+  static constexpr std::uint32_t first_of_day = 1u << 30;
+  static constexpr std::uint32_t in_present = 1u << 31;
+  static constexpr std::uint32_t payload = first_of_day - 1;
+  static constexpr std::uint32_t none = payload;
+
+  struct Node {
+    double time = detail::no_event;
+    std::uint32_t next = none;
+    std::uint32_t back = 0;
+  };
+
+  Key key(Slot slot) const {
+    if constexpr (has_ranks) {
+      return {nodes_[slot].time, ranks_[slot], slot};
+    } else {
+      return {nodes_[slot].time, slot};
+    }
+  }
+
+  void insert(Slot slot) const;
+  void remove(Slot slot) const;
+  void link(Slot slot, std::uint32_t day) const;
+  void link_all(std::uint32_t first, std::uint32_t day) const;
+  std::uint32_t take_day(std::uint32_t day) const;
+
+  void push_present(Slot slot) const;
+  void erase_present(std::size_t place) const;
+  void sift_up(std::size_t place, const Key& key) const;
+  void sift_down(std::size_t place, const Key& key) const;
+  void put(std::size_t place, const Key& key) const {
+    present_[place] = key;
+    nodes_[key.slot].back = in_present | static_cast<std::uint32_t>(place);
+  }
+
+  void next_day() const;
+  void open_day(std::uint32_t day) const;
+  std::uint32_t next_busy_day() const;
+  void begin_year() const;
+  void end_year() const;
+  double day_length(double& earliest) const;
+
+  // To turn a leaf of the calendar changes nothing that can be seen, hence top() may do it: mutable.
+  mutable std::vector<Node> nodes_;          // by slot
+  mutable std::vector<std::uint32_t> days_;  // first slot of each day; days_[year_] is that of the years to come
+  mutable std::vector<std::uint64_t> busy_;  // a bit for each of days_ that is not empty
+  mutable std::vector<Key> present_;         // binary heap, least first
+  mutable std::uint32_t year_ = 0;           // days in this year
+  mutable std::uint32_t today_ = 0;
+  mutable double begin_ = 0;            // time at which the year begins
+  mutable double days_per_second_ = 1;  // positive and finite
+  // In days since the beginning: what comes before tomorrow_ is the present day's, what comes from year_end_ on is the
+  // years to come's. At first all is.
+  mutable double tomorrow_ = -detail::no_event;
+  mutable double year_end_ = -detail::no_event;
+  mutable std::size_t bill_ = 0;
+  std::vector<std::uint64_t> ranks_;  // by slot, as they were when it was set; empty for SlotRank
+  std::size_t size_ = 0;
+  std::uint64_t operations_ = 0;
+  [[no_unique_address]] Rank rank_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <QueueRank Rank>
+void CalendarQueue<Rank>::resize(std::size_t slots) {
+  assert(slots <= none / (2 * days_per_event));  // the days, rounded up, must be numbered too
+  for (std::size_t slot = slots; slot < nodes_.size(); ++slot) clear(static_cast<Slot>(slot));
+  nodes_.resize(slots);
+  if constexpr (has_ranks) ranks_.resize(slots);
+  present_.reserve(slots);
+  const std::size_t days = std::bit_ceil(std::max<std::size_t>(days_per_event * slots, 64));
+  if (days + 1 <= days_.size()) return;
+  const bool used = !days_.empty();
+  if (used) end_year();
+  const std::uint32_t waiting = used ? take_day(year_) : none;
+  days_.resize(days + 1, none);
+  busy_.resize(days / 64 + 1, 0);
+  link_all(waiting, year_);
+  tomorrow_ = year_end_ = -detail::no_event;  // nor may what is set before the next year begins stand before them
+}
+
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::set(Slot slot, double time) {
+  assert(slot < nodes_.size() && time > -detail::no_event);
+  if (time == detail::no_event) return clear(slot);
+  ++operations_;
+  if (contains(slot)) {
+    remove(slot);
+  } else {
+    ++size_;
+  }
+  nodes_[slot].time = time;
+  if constexpr (has_ranks) ranks_[slot] = rank_(slot);
+  insert(slot);
+}
+
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::clear(Slot slot) {
+  if (!contains(slot)) return;
+  ++operations_;
+  --size_;
+  remove(slot);
+  nodes_[slot].time = detail::no_event;
+}
+
+template <QueueRank Rank>
+inline QueuedEvent CalendarQueue<Rank>::top() const {
+  assert(!empty());
+  if (present_.empty()) next_day();
+  return {present_[0].time, present_[0].slot};
+}
+
+// --- where an event stands
+
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::insert(Slot slot) const {
+  const double day = (nodes_[slot].time - begin_) * days_per_second_;
+  if (day >= tomorrow_) return link(slot, day < year_end_ ? static_cast<std::uint32_t>(day) : year_);
+  push_present(slot);
+  if (present_.size() > long_day && ++bill_ > size_) {
+    end_year();
+    begin_year();
+  }
+}
+
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::remove(Slot slot) const {
+  const Node node = nodes_[slot];
+  if (node.back & in_present) return erase_present(node.back & payload);
+  if (node.next != none) nodes_[node.next].back = node.back;
+  if (node.back & first_of_day) {
+    const std::uint32_t day = node.back & payload;
+    days_[day] = node.next;
+    busy_[day / 64] ^= std::uint64_t{node.next == none} << (day % 64);
+  } else {
+    nodes_[node.back].next = node.next;
+  }
+}
+
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::link(Slot slot, std::uint32_t day) const {
+  const std::uint32_t next = days_[day];
+  nodes_[slot].next = next;
+  nodes_[slot].back = first_of_day | day;
+  if (next != none) nodes_[next].back = slot;
+  days_[day] = slot;
+  busy_[day / 64] |= std::uint64_t{1} << (day % 64);
+}
+
+template <QueueRank Rank>
+void CalendarQueue<Rank>::link_all(std::uint32_t first, std::uint32_t day) const {
+  for (std::uint32_t slot = first; slot != none;) link(std::exchange(slot, nodes_[slot].next), day);
+}
+
+/// Empties a day; the first of its slots, which are still linked to one another.
+template <QueueRank Rank>
+inline std::uint32_t CalendarQueue<Rank>::take_day(std::uint32_t day) const {
+  busy_[day / 64] &= ~(std::uint64_t{1} << (day % 64));
+  return std::exchange(days_[day], none);
+}
+
+// --- the heap of the present day
+
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::push_present(Slot slot) const {
+  const Key added = key(slot);
+  present_.push_back(added);
+  sift_up(present_.size() - 1, added);
+}
+
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::erase_present(std::size_t place) const {
+  const Key last = present_.back();
+  present_.pop_back();
+  if (place == present_.size()) return;
+  if (place > 0 && last < present_[(place - 1) / 2]) {
+    sift_up(place, last);
+  } else {
+    sift_down(place, last);
+  }
+}
+
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::sift_up(std::size_t place, const Key& moved) const {
+  while (place > 0) {
+    const std::size_t parent = (place - 1) / 2;
+    if (!(moved < present_[parent])) break;
+    put(place, present_[parent]);
+    place = parent;
+  }
+  put(place, moved);
+}
+
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::sift_down(std::size_t place, const Key& moved) const {
+  for (;;) {
+    std::size_t child = 2 * place + 1;
+    if (child >= present_.size()) break;
+    if (child + 1 < present_.size() && present_[child + 1] < present_[child]) ++child;
+    if (!(present_[child] < moved)) break;
+    put(place, present_[child]);
+    place = child;
+  }
+  put(place, moved);
+}
+
+// --- the turn of days and years
+
+/// Opens the next day that has an event. Precondition: the present day is empty, the queue is not.
+template <QueueRank Rank>
+void CalendarQueue<Rank>::next_day() const {
+  if (bill_ > size_) end_year();
+  const std::uint32_t day = next_busy_day();
+  if (day == year_) return begin_year();
+  open_day(day);
+  if (present_.size() > long_day) bill_ += present_.size();
+}
+
+template <QueueRank Rank>
+void CalendarQueue<Rank>::open_day(std::uint32_t day) const {
+  today_ = day;
+  tomorrow_ = day + 1.0;
+  for (std::uint32_t slot = take_day(day); slot != none;) push_present(std::exchange(slot, nodes_[slot].next));
+}
+
+/// The years to come, if there is no other; not past them. Precondition: one of them is busy.
+template <QueueRank Rank>
+inline std::uint32_t CalendarQueue<Rank>::next_busy_day() const {
+  std::size_t word = today_ / 64;
+  while (busy_[word] == 0) ++word;  // the bits of days gone by are clear
+  return static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(busy_[word])));
+}
+
+/// Sends all events, of the present day too, to the years to come.
+template <QueueRank Rank>
+void CalendarQueue<Rank>::end_year() const {
+  for (const Key& key : present_) link(key.slot, year_);
+  present_.clear();
+  if (size_ == 0) return;
+  for (std::uint32_t day = next_busy_day(); day != year_; day = next_busy_day()) {
+    today_ = day;
+    link_all(take_day(day), year_);
+  }
+}
+
+/// Deals the events of the years to come, which are all there are, out into a year, and opens its first day.
+template <QueueRank Rank>
+void CalendarQueue<Rank>::begin_year() const {
+  const double length = day_length(begin_);
+  days_per_second_ = std::clamp(1 / length, std::numeric_limits<double>::min(), std::numeric_limits<double>::max());
+  std::uint32_t slot = take_day(year_);
+  const std::size_t days = std::bit_ceil(std::max<std::size_t>(days_per_event * size_, 64));
+  year_ = static_cast<std::uint32_t>(std::min(days, days_.size() - 1));
+  tomorrow_ = 0;
+  year_end_ = year_;
+  bill_ = 0;
+  while (slot != none) insert(std::exchange(slot, nodes_[slot].next));
+  open_day(0);
+}
+
+/// How long a day should be for the events of the years to come; finds the earliest on the way.
+template <QueueRank Rank>
+double CalendarQueue<Rank>::day_length(double& earliest) const {
+  std::array<double, sample_size> sample;
+  const std::size_t stride = (size_ + sample_size - 1) / sample_size;
+  std::size_t seen = 0;
+  earliest = detail::no_event;
+  for (std::uint32_t slot = days_[year_]; slot != none; slot = nodes_[slot].next, ++seen) {
+    const double time = nodes_[slot].time;
+    earliest = std::min(earliest, time);
+    if (seen % stride == 0) sample[seen / stride] = time;
+  }
+  const auto begin = sample.begin();
+  const auto end = begin + static_cast<std::ptrdiff_t>((seen + stride - 1) / stride);
+  std::sort(begin, end);
+  // Enough events to be told apart from one burst at the beginning.
+  const auto near = std::max(begin + (end - begin - 1) / static_cast<std::ptrdiff_t>(near_part),
+                             std::upper_bound(begin, end, earliest));
+  if (near == end) return 1;  // all at one time, as far as is seen
+  const double events = static_cast<double>(near - begin + 1) * static_cast<double>(stride);
+  return events_per_day * (*near - earliest) / events;
+}
+
+static_assert(EventQueue<CalendarQueue<>>);
+
+}  // namespace kds

@@ -1,0 +1,147 @@
+// The certificates of a structure and the times at which they fail.
+#pragma once
+
+#include "kds/arithmetic/lattice.hpp"
+#include "kds/events/default_event_queue.hpp"
+#include "kds/events/event_queue.hpp"
+#include "kds/events/place_queue.hpp"
+#include "kds/roots/solver.hpp"
+#include "kds/statistics.hpp"
+
+#include <concepts>
+#include <cstddef>
+
+namespace kds {
+
+/// Keeps the failure time of the certificate in each slot, and knows which fails first.
+///
+/// A structure calls certify() whenever a slot holds a new certificate, and, in its process(), failed() before it
+/// repairs anything. With the certified solver that is all; events are then where failure_time() says, and no
+/// event proves early.
+///
+/// With any other solver the schedule puts right what exact signs can put right:
+///  1. a certificate that does not hold when it is made fails at once, whatever the solver says, and one that holds
+///     fails after now;
+///  2. an event whose certificate still holds (it proves early) is not processed, but rescheduled to the certified
+///     failure time: an event proves early once at most;
+///  3. an event that comes late leaves its structure to be repaired late, by exact signs: the certificates that
+///     appear then, and have failed before, fail at once. They are counted.
+/// A failure the solver misses altogether is not found. Counters: `rescheduled` (2), `repaired` (3); both stay zero
+/// with the certified solver.
+/// A queue of places (PlaceQueue) will do as well; then settle() is to be called after changes.
+template <class Queue = DefaultEventQueue, FailureTimeSolver Solver = CertifiedSolver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+class Schedule {
+ public:
+  void resize(std::size_t slots) { queue_.resize(slots); }
+  void clear(Slot slot) { queue_.clear(slot); }
+
+  // See PlaceQueue.
+  void insert_slot(Slot place) { queue_.insert_slot(place); }
+  void erase_slot(Slot place) { queue_.erase_slot(place); }
+  void move_slot(Slot from, Slot to) { queue_.move_slot(from, to); }
+  template <class Rank>
+  void settle(Rank&& rank) {
+    queue_.settle(rank);
+  }
+
+  bool empty() const { return queue_.empty(); }
+  bool contains(Slot slot) const { return queue_.contains(slot); }
+  double time(Slot slot) const { return queue_.time(slot); }
+
+  /// Time of the next failure within the horizon, `never` if there is none, and its slot.
+  double next_time() const { return queue_.empty() ? never : queue_.top().time; }
+  QueuedEvent next() const { return queue_.top(); }
+
+  double horizon() const { return horizon_; }
+
+  /// What is beyond needs no event. The structure certifies again those slots that the change concerns: see
+  /// concerned().
+  void set_horizon(double horizon) {
+    extended_ = horizon > horizon_;
+    horizon_ = horizon;
+  }
+
+  /// Whether the last change of the horizon concerns a slot: what is scheduled stays right when the horizon grows;
+  /// what lies beyond a shrunken one goes.
+  bool concerned(Slot slot) const {
+    return extended_ ? !queue_.contains(slot) : queue_.contains(slot) && queue_.time(slot) > horizon_;
+  }
+
+  /// Schedules the failure of a slot's new certificate.
+  template <Certificate C>
+  void certify(Slot slot, const C& certificate, double now) {
+    ++counters_.certificates;
+    set(slot, solve(certificate, now));
+  }
+
+  /// Counts a certificate that appears in an event at `now` and has failed before, as it may after a late event.
+  template <Certificate C>
+  void look_for_late_events(const C& certificate, double now) {
+    if constexpr (!Solver::certified) {
+      counters_.repaired += sign_after(certificate, now) < 0 && sign_after(certificate, next_down(now)) < 0;
+    }
+  }
+
+  /// The same for a certificate whose sign has just turned from - to +: that of two elements which have swapped.
+  template <Certificate C>
+  void certify_turned(Slot slot, const C& certificate, double now) {
+    if constexpr (requires(const Solver& solver) { solver.after_turn(certificate, now, now); }) {
+      ++counters_.certificates;
+      set(slot, solver_.after_turn(certificate, now, horizon_));
+    } else {
+      certify(slot, certificate, now);
+    }
+  }
+
+  /// Schedules a slot by hand; `never` clears it.
+  void set(Slot slot, double time) {
+    if (time == never) {
+      queue_.clear(slot);
+    } else {
+      queue_.set(slot, time);
+    }
+  }
+
+  /// To be asked by process(): whether the certificate of the slot on top has really failed at its time. If not, the
+  /// event has been rescheduled, and there is nothing to repair. (What vanishes for good never fails by itself: such a
+  /// slot was set by hand, and has its event.)
+  template <Certificate C>
+  bool failed(Slot slot, const C& certificate, double time) {
+    if constexpr (!Solver::certified) {
+      if (sign_after(certificate, time) > 0) {
+        ++counters_.rescheduled;
+        set(slot, failure_time(certificate, time, horizon_));
+        return false;
+      }
+    }
+    ++counters_.events;
+    return true;
+  }
+
+  /// What failed() and certify() have counted.
+  const Counters& counters() const { return counters_; }
+  const Queue& queue() const { return queue_; }
+
+ private:
+  template <Certificate C>
+  double solve(const C& certificate, double now) const {
+    if constexpr (Solver::certified) {
+      return solver_(certificate, now, horizon_);
+    } else {
+      const int s = sign_after(certificate, now);
+      if (s <= 0) return s < 0 && now <= horizon_ ? now : never;
+      const double t = solver_(certificate, now, horizon_);
+      if (!(t > now)) return next_up(now) <= horizon_ ? next_up(now) : never;  // also a NaN: asked again then, exactly
+      return t <= horizon_ ? t : never;
+    }
+  }
+
+  Queue queue_;
+  Solver solver_;
+  Counters counters_;
+  double horizon_ = never;
+  bool extended_ = false;
+};
+
+}  // namespace kds

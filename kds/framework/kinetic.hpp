@@ -1,0 +1,328 @@
+// A kinetic structure made of a rule: everything but how to certify and how to repair.
+#pragma once
+
+#include "kds/audit.hpp"
+#include "kds/events/schedule.hpp"
+#include "kds/framework/kinetic_rule.hpp"
+
+#include <algorithm>
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace kds {
+
+/// A certificate that failed and was repaired.
+struct KineticEvent {
+  double time = 0;
+  Slot slot = 0;
+  Effect effect = Effect::internal;
+
+  friend bool operator==(const KineticEvent&, const KineticEvent&) = default;
+};
+
+/// Hears nothing. A listener is a function object called as listener(rule, event) after each event, when the
+/// structure is in order again: it may look at the rule, and edit the elements.
+struct NoListener {
+  template <class Rule>
+  void operator()(const Rule& /*rule*/, const KineticEvent& /*event*/) const {}
+};
+
+/// Makes a KineticStructure of a KineticRule: keeps the queue, certifies what the rule marks, takes up the edits of the
+/// set of elements that it is attached to, counts, checks itself, and is saved and loaded.
+///
+/// Several structures may share a set; a Simulator runs them side by side. With sampled elements (Bounded) a failure
+/// means that the certificate is no longer guaranteed: the rule is not asked to repair, but the elements are sampled
+/// anew (MovingSet::sample_with); the state is that of the samples.
+///
+/// Cost of an event, beyond the rule's own: a pop, and for each certificate it marks a failure time and a push.
+template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue, class Solver = CertifiedSolver>
+class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
+  static_assert(detail::NamesElement<Rule>, "kinetic rule: `using Element = ...;` must name what moves");
+  static_assert(detail::HasName<Rule>, "kinetic rule: `static constexpr const char* name = ...;` is missing");
+  static_assert(detail::Certifies<Rule>,
+                "kinetic rule: `certificate(Slot, const MovingSet<Element>&) const` must give a certificate, or a "
+                "std::optional or std::variant of certificates");
+  static_assert(detail::NamesMembers<Rule>, "kinetic rule: `members(Slot) const` must give a range of ids");
+  static_assert(detail::Repairs<Rule>, "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing");
+  static_assert(detail::InsertsAndRemoves<Rule>,
+                "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing");
+  static_assert(FailureTimeSolver<Solver>, "Kinetic: the solver is no FailureTimeSolver");
+
+ public:
+  using Element = typename Rule::Element;
+
+  /// Takes up what is in the set. The set must outlive the structure.
+  explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
+      : elements_(elements), rule_(std::move(rule)), listener_(std::move(listener)), repair_(elements) {
+    begin(now);
+    if constexpr (requires { rule_.build(repair_); }) {
+      rule_.build(repair_);
+    } else {
+      for (const Id id : elements.ids()) rule_.insert(id, repair_);
+    }
+    finish(false);
+    elements_.attach(*this);
+  }
+  ~Kinetic() { elements_.detach(*this); }
+  Kinetic(const Kinetic&) = delete;
+  Kinetic& operator=(const Kinetic&) = delete;
+
+  const Rule& rule() const { return rule_; }
+  Listener& listener() { return listener_; }
+  const MovingSet<Element>& elements() const { return elements_; }
+
+  double next_time() const { return schedule_.next_time(); }
+
+  /// Makes the event due at next_time(). Precondition: there is one.
+  void process();
+
+  void extend_horizon(double now, double horizon);
+
+  /// Checks every certificate and failure time with exact signs, and what the rule itself has to check. Throws
+  /// AuditFailure.
+  void audit(double now) const;
+
+  Counters counters() const { return schedule_.counters() + offset_; }
+  /// Counted so far; most_per_element is found now, in time linear in the certificates.
+  Measures measures() const;
+
+  /// Saves or loads all that the structure knows. Needs a rule with archive().
+  template <class Archive>
+  void archive(Archive& archive);
+
+ private:
+  void settle(double now) override;
+  void inserted(Id id, double now) override {
+    begin(now);
+    rule_.insert(id, repair_);
+    finish(false);
+  }
+  void removing(Id id, double now) override {
+    begin(now);
+    rule_.remove(id, repair_);
+    finish(false);
+  }
+  void changing(Id id, const Element& next, double now) override {
+    begin(now);
+    keeps_ = requires { rule_.change(id, repair_); };
+    if constexpr (requires { rule_.keeps(id, next, repair_); }) keeps_ = rule_.keeps(id, next, repair_);
+    if (!keeps_) rule_.remove(id, repair_);
+  }
+  void changed(Id id, double /*now*/) override {
+    if constexpr (requires { rule_.change(id, repair_); }) {
+      if (keeps_) rule_.change(id, repair_);
+    }
+    if (!keeps_) rule_.insert(id, repair_);
+    finish(false);
+  }
+
+  void begin(double now) {
+    if (busy_) fail_use("the elements may not be edited from within the rule");
+    busy_ = true;
+    repair_.now_ = last_ = now;
+  }
+  void finish(bool in_event);
+
+  void certify(Slot slot, bool in_event);
+  /// A tick after the oldest sample of the slot's members.
+  double soonest_sample(Slot slot) const;
+  void hold(Slot slot, bool held);
+
+  [[noreturn]] static void fail_use(const std::string& what) { throw std::logic_error(Rule::name + (": " + what)); }
+
+  MovingSet<Element>& elements_;
+  Rule rule_;
+  Listener listener_;
+  Repair<Element> repair_;
+  Schedule<Queue, Solver> schedule_;
+  std::vector<std::uint8_t> held_;  ///< whether a slot has a certificate
+  Measures measures_;
+  Counters offset_;       ///< what was counted before the state was loaded, less what the schedule had counted
+  double last_ = -never;  ///< of the last change
+  bool busy_ = false;
+  bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
+};
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::process() {
+  const auto [time, slot] = schedule_.next();
+  KineticEvent event{time, slot, Effect::internal};
+  if constexpr (Sampled<Element>) {
+    const auto members = rule_.members(slot);
+    const std::vector<Id> ids(std::begin(members), std::end(members));
+    schedule_.set(slot, never);
+    for (const Id id : ids) elements_.resample(id, time);
+  } else {
+    bool failed = false;
+    detail::with_certificate(
+        rule_.certificate(slot, elements_),
+        [&, time = time, slot = slot](const auto& certificate) { failed = schedule_.failed(slot, certificate, time); });
+    if (!failed) return;
+    begin(time);
+    event.effect = rule_.repair(slot, repair_);
+    repair_.certify(slot);
+    measures_.touched += repair_.marked_.size();
+    measures_.most_touched = std::max<std::uint64_t>(measures_.most_touched, repair_.marked_.size());
+    finish(true);
+  }
+  ++measures_.events;
+  measures_.external += event.effect == Effect::external;
+  listener_(rule_, event);
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::finish(bool in_event) {
+  if (!repair_.marks_.empty() && held_.size() < repair_.marks_.size()) {
+    held_.resize(repair_.marks_.size(), 0);
+    schedule_.resize(repair_.marks_.size());
+  }
+  for (const Slot slot : repair_.marked_) {
+    if (repair_.marks_[slot] == Repair<Element>::Mark::retire) {
+      schedule_.clear(slot);
+      hold(slot, false);
+    } else {
+      certify(slot, in_event);
+    }
+    repair_.marks_[slot] = Repair<Element>::Mark::none;
+  }
+  repair_.marked_.clear();
+  measures_.most_held = std::max(measures_.most_held, measures_.held);
+  busy_ = false;
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
+  bool certified = false;
+  detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
+    certified = true;
+    if constexpr (Sampled<Element>) {
+      const Conservative<std::remove_cvref_t<decltype(certificate)>> conservative{certificate};
+      schedule_.certify(slot, conservative, last_);
+      const double soonest = soonest_sample(slot);
+      if (schedule_.contains(slot) && schedule_.time(slot) < soonest) {
+        schedule_.set(slot, soonest <= schedule_.horizon() ? soonest : never);
+      }
+    } else {
+      if (in_event) schedule_.look_for_late_events(certificate, last_);
+      schedule_.certify(slot, certificate, last_);
+    }
+  });
+  if (!certified) schedule_.clear(slot);
+  hold(slot, certified);
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+double Kinetic<Rule, Listener, Queue, Solver>::soonest_sample(Slot slot) const {
+  double oldest = never;
+  for (const Id id : rule_.members(slot)) oldest = std::min(oldest, elements_[id].start);
+  return oldest + elements_.tick();
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::hold(Slot slot, bool held) {
+  measures_.held += held;
+  measures_.held -= held_[slot];
+  held_[slot] = held;
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::extend_horizon(double now, double horizon) {
+  begin(now);
+  schedule_.set_horizon(horizon);
+  for (Slot slot = 0; slot < held_.size(); ++slot) {
+    if (held_[slot] && schedule_.concerned(slot)) certify(slot, false);
+  }
+  finish(false);
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::settle(double now) {
+  if (now < last_) {
+    fail_use("an edit at " + std::to_string(now) + " comes after a change at " + std::to_string(last_));
+  }
+  if (next_time() < now) {
+    fail_use("an edit at " + std::to_string(now) + " would pass over an event at " + std::to_string(next_time()));
+  }
+  if constexpr (Sampled<Element>) return;  // In order at all times.
+  while (next_time() <= now) process();
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
+  const auto fail = [](Slot slot, const char* what) {
+    throw AuditFailure(Rule::name + (": slot " + std::to_string(slot)) + ": " + what);
+  };
+  for (Slot slot = 0; slot < held_.size(); ++slot) {
+    if (!held_[slot]) {
+      if (schedule_.contains(slot)) fail(slot, "an event without certificate");
+      continue;
+    }
+    bool certified = false;
+    const double time = schedule_.contains(slot) ? schedule_.time(slot) : never;
+    detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
+      certified = true;
+      if (exact_sign(certificate, now) < 0 && (Sampled<Element> || time > now)) fail(slot, "has failed");
+      if constexpr (Sampled<Element>) {
+        const Conservative<std::remove_cvref_t<decltype(certificate)>> conservative{certificate};
+        const double t = failure_time(conservative, now, schedule_.horizon());
+        const double latest = std::max(t, soonest_sample(slot));
+        if (time > latest && latest <= schedule_.horizon()) fail(slot, "is to be sampled too late");
+      } else if constexpr (Solver::certified) {
+        if (failure_time(certificate, now, schedule_.horizon()) != time) fail(slot, "the event has the wrong time");
+      }
+    });
+    if (!certified) fail(slot, "is held, but there is no certificate");
+  }
+  if constexpr (requires { rule_.audit(elements_, now); }) rule_.audit(elements_, now);
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+Measures Kinetic<Rule, Listener, Queue, Solver>::measures() const {
+  std::vector<std::uint64_t> of_element(elements_.end_id(), 0);
+  for (Slot slot = 0; slot < held_.size(); ++slot) {
+    if (!held_[slot]) continue;
+    for (const Id id : rule_.members(slot)) ++of_element[id];
+  }
+  Measures result = measures_;
+  for (const std::uint64_t count : of_element) result.most_per_element = std::max(result.most_per_element, count);
+  return result;
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+template <class Archive>
+void Kinetic<Rule, Listener, Queue, Solver>::archive(Archive& archive) {
+  std::vector<double> times(held_.size(), never);
+  for (Slot slot = 0; slot < held_.size(); ++slot) {
+    if (schedule_.contains(slot)) times[slot] = schedule_.time(slot);
+  }
+  double horizon = schedule_.horizon();
+  Counters counted = counters();
+  archive.tag(Rule::name);
+  if constexpr (requires { rule_.archive(archive); }) {
+    rule_.archive(archive);
+  } else {
+    static_assert(!sizeof(Archive),
+                  "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
+  }
+  archive(held_, times, horizon, counted, measures_, last_);
+  if constexpr (Archive::loading) {
+    if (times.size() != held_.size()) throw std::runtime_error("snapshot: it is damaged");
+    for (Slot slot = 0; slot < schedule_.queue().slots(); ++slot) schedule_.clear(slot);
+    schedule_.resize(held_.size());
+    schedule_.set_horizon(horizon);
+    for (Slot slot = 0; slot < held_.size(); ++slot) schedule_.set(slot, times[slot]);
+    offset_ = counted - schedule_.counters();
+    repair_.marks_.assign(held_.size(), Repair<Element>::Mark::none);
+  }
+}
+
+}  // namespace kds

@@ -1,0 +1,172 @@
+// What the writer of a kinetic structure writes: how to certify a slot, and how to repair when it fails.
+#pragma once
+
+#include "kds/bounded.hpp"
+#include "kds/certificate.hpp"
+#include "kds/events/event_queue.hpp"
+#include "kds/framework/measures.hpp"
+#include "kds/framework/moving_set.hpp"
+
+#include <concepts>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace kds {
+
+/// A change in the making, as a rule sees it: when, of which elements, and which slots have a new certificate.
+///
+/// Slots that are marked are certified when the rule is done, each once: a rule may mark more than it must, in any
+/// order, while its state is in pieces.
+template <MovingElement E>
+class Repair {
+ public:
+  double now() const { return now_; }
+  const E& operator[](Id id) const { return elements_[id]; }
+  const MovingSet<E>& elements() const { return elements_; }
+
+  /// Sign of a certificate at now+, exact; of sampled elements that of their samples.
+  template <class C>
+  int sign(const C& certificate) const {
+    return exact_sign(certificate, now_);
+  }
+
+  /// The slot's certificate is another, or there is none any more: it will be asked for.
+  void certify(Slot slot) { mark(slot, Mark::certify); }
+  /// The slot is given up: it will not be asked for.
+  void retire(Slot slot) { mark(slot, Mark::retire); }
+
+  /// For rules made of rules: while `part` runs, its slot s is the slot first + stride * s of the whole.
+  template <class Part>
+  auto nested(Slot first, Slot stride, Part&& part) {
+    const Slot first_before = std::exchange(first_, first_ + stride_ * first);
+    const Slot stride_before = std::exchange(stride_, stride_ * stride);
+    const auto result = part();
+    first_ = first_before;
+    stride_ = stride_before;
+    return result;
+  }
+  /// The slots marked so far, in the numbering of the whole.
+  const std::vector<Slot>& marked() const { return marked_; }
+
+ private:
+  template <class, class, EventQueue, class>
+  friend class Kinetic;
+  enum class Mark : std::uint8_t { none, certify, retire };
+
+  explicit Repair(const MovingSet<E>& elements) : elements_(elements) {}
+
+  void mark(Slot slot, Mark what) {
+    slot = first_ + stride_ * slot;
+    if (slot >= marks_.size()) marks_.resize(slot + std::size_t{1}, Mark::none);
+    if (marks_[slot] == Mark::none) marked_.push_back(slot);
+    marks_[slot] = what;
+  }
+
+  const MovingSet<E>& elements_;
+  std::vector<Slot> marked_;
+  std::vector<Mark> marks_;
+  double now_ = 0;
+  Slot first_ = 0;
+  Slot stride_ = 1;
+};
+
+namespace detail {
+
+template <class T>
+struct IsOptional : std::false_type {};
+template <class T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+template <class T>
+struct IsVariant : std::false_type {};
+template <class... T>
+struct IsVariant<std::variant<T...>> : std::true_type {};
+
+/// Whether failure times can be asked of it, directly or as of a certificate of sampled elements.
+template <class C>
+concept AnyCertificate = Certificate<C> || UncertainCertificate<C>;
+
+template <class T>
+struct IsCertificateChoice : std::bool_constant<AnyCertificate<T> || std::same_as<T, std::monostate>> {};
+template <class T>
+struct IsCertificateChoice<std::optional<T>> : IsCertificateChoice<T> {};
+template <class... T>
+struct IsCertificateChoice<std::variant<T...>> : std::bool_constant<(IsCertificateChoice<T>::value && ...)> {};
+
+/// Calls f with the certificate, if there is one.
+template <class T, class F>
+void with_certificate(const T& choice, F&& f) {
+  if constexpr (std::same_as<T, std::monostate>) {
+  } else if constexpr (IsOptional<T>::value) {
+    if (choice) with_certificate(*choice, f);
+  } else if constexpr (IsVariant<T>::value) {
+    std::visit([&](const auto& alternative) { with_certificate(alternative, f); }, choice);
+  } else {
+    f(choice);
+  }
+}
+
+// One concept a part of a rule, so that Kinetic can name the part that is missing.
+template <class R>
+concept NamesElement = requires {
+  typename R::Element;
+}
+&&MovingElement<typename R::Element>;
+template <class R>
+concept HasName = requires {
+  { R::name } -> std::convertible_to<const char*>;
+};
+template <class R>
+concept Certifies = requires(const R& rule, Slot slot, const MovingSet<typename R::Element>& elements) {
+  {rule.certificate(slot, elements)};
+  requires IsCertificateChoice<std::remove_cvref_t<decltype(rule.certificate(slot, elements))>>::value;
+};
+template <class R>
+concept NamesMembers = requires(const R& rule, Slot slot) {
+  { *std::begin(rule.members(slot)) } -> std::convertible_to<Id>;
+};
+template <class R>
+concept Repairs = requires(R& rule, Slot slot, Repair<typename R::Element>& repair) {
+  { rule.repair(slot, repair) } -> std::same_as<Effect>;
+};
+template <class R>
+concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>& repair) {
+  rule.insert(id, repair);
+  rule.remove(id, repair);
+};
+
+}  // namespace detail
+
+/// The part of a kinetic structure that its writer writes; Kinetic<Rule> makes a structure of it.
+///
+///     static constexpr const char* name           what messages call it
+///     using Element                               what moves
+///     certificate(slot, elements) const           the slot's fact: a certificate; std::optional or std::variant of
+///                                                 them (with std::monostate) where there may be none, or several kinds
+///     members(slot) const                         ids of the elements that the slot's certificate is about, as a range
+///     repair(slot, repair) -> Effect              put right what failed, and mark the slots whose certificates are new
+///     insert(id, repair), remove(id, repair)      take up an element; let one go, which is still there
+///
+/// and, if it likes,
+///
+///     change(id, repair)                          take up a new motion; without it: remove and insert
+///     keeps(id, next, repair) -> bool             whether change() can take up this motion: asked before it, with the old
+///                                                 motion still in place; if not: remove and insert
+///     build(repair)                               take up all of repair.elements() at once; without it: insert each
+///     audit(elements, now) const                  throw AuditFailure if its own state is incoherent
+///     archive(archive)                            name its members, archive(a_, b_), so that it can be saved
+///
+/// Semantic laws: (1) certificates that hold, all of them, prove the state; (2) what a slot's certificate is depends on
+/// the rule's state and the motions only; (3) repair() decides by exact signs at now+ (Repair::sign), and is called
+/// only for a slot whose certificate has failed there; each call removes a contradiction between state and signs and
+/// makes none that was removed before at the same time (see docs/termination.md); (4) every slot whose certificate is
+/// another after a call has been marked in it; (5) insert, remove and change are called with a state that is right.
+template <class R>
+concept KineticRule = detail::NamesElement<R> && detail::HasName<R> && detail::Certifies<R> &&
+    detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R>;
+
+}  // namespace kds

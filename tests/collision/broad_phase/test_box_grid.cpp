@@ -1,0 +1,140 @@
+// The hierarchical hash grid against brute force.
+#include "collision/broad_phase/box_grid.hpp"
+#include "collision/broad_phase/cell_table.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+namespace {
+
+using kds::tests::Random;
+
+TEST_CASE("A cell table holds what was added and not removed", "[box_grid]") {
+  Random random(11);
+  CellTable table;
+  std::map<CellTable::Key, std::multiset<std::uint32_t>> expected;
+  for (int round = 0; round < 20'000; ++round) {
+    // A few keys, so that cells grow long, and among them some that differ in high bits only.
+    const CellTable::Key cell = random.below(40) << (random.one_in(2) ? 0 : 44);
+    const auto number = static_cast<std::uint32_t>(random.below(30));
+    if (random.below(5) < (round < 10'000 ? 3u : 2u)) {
+      table.add(cell, number);
+      expected[cell].insert(number);
+    } else {
+      table.remove(cell, number);  // which may not be there
+      auto& numbers = expected[cell];
+      if (const auto it = numbers.find(number); it != numbers.end()) numbers.erase(it);
+    }
+    if (round % 50 != 0) continue;
+    std::multiset<std::uint32_t> found;
+    table.visit(cell, [&](std::uint32_t n) { found.insert(n); });
+    REQUIRE(found == expected[cell]);
+  }
+  for (const auto& [cell, numbers] : expected) {
+    std::multiset<std::uint32_t> found;
+    table.visit(cell, [&](std::uint32_t n) { found.insert(n); });
+    REQUIRE(found == numbers);
+  }
+  table.clear();
+  std::size_t left = 0;
+  for (const auto& [cell, numbers] : expected) table.visit(cell, [&](std::uint32_t) { ++left; });
+  CHECK(left == 0);
+}
+
+StaticBox random_box(Random& random, double size, double side, double far) {
+  Eigen::Array3d centre;
+  Eigen::Array3d half;
+  for (int d = 0; d < 3; ++d) {
+    centre[d] = far + random.between(-side, side);
+    half[d] = size * random.between(0.1, 0.5);
+  }
+  return {centre - half, centre + half};
+}
+
+std::pair<BoxGrid::Id, BoxGrid::Id> ordered(BoxGrid::Id a, BoxGrid::Id b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// Sizes over many levels, or all of one; boxes that touch, since coordinates are rounded to a lattice in every other
+/// round.
+void compare_with_brute_force(std::uint64_t seed, int sizes, double far) {
+  INFO("seed " << seed << ", sizes over 2^" << sizes << ", around " << far);
+  Random random(seed);
+  BoxGrid grid;
+  std::map<BoxGrid::Id, StaticBox> boxes;
+  std::set<std::pair<BoxGrid::Id, BoxGrid::Id>> pairs;
+  BoxGrid::Changes changes;
+  std::size_t seen = 0;
+  for (int round = 0; round < 800; ++round) {
+    const auto id = static_cast<BoxGrid::Id>(random.below(60));
+    changes.clear();
+    if (boxes.contains(id) && random.one_in(4)) {
+      grid.remove(id, changes);
+      boxes.erase(id);
+      REQUIRE(changes.began.empty());
+    } else {
+      StaticBox box = random_box(random, std::ldexp(1.0, -static_cast<int>(random.below(static_cast<std::size_t>(sizes) + 1))), 2, far);
+      if (round % 2 == 0) {
+        box.min = (box.min * 8).round() / 8;
+        box.max = (box.max * 8).round() / 8;
+      }
+      grid.put(id, box, changes);
+      boxes[id] = box;
+    }
+    for (const auto other : changes.ended) REQUIRE(pairs.erase(ordered(id, other)) == 1);
+    for (const auto other : changes.began) REQUIRE(pairs.insert(ordered(id, other)).second);
+    REQUIRE(grid.size() == boxes.size());
+    std::set<std::pair<BoxGrid::Id, BoxGrid::Id>> expected;
+    for (auto a = boxes.begin(); a != boxes.end(); ++a) {
+      for (auto b = std::next(a); b != boxes.end(); ++b) {
+        if (a->second.overlaps(b->second)) expected.emplace(a->first, b->first);
+      }
+    }
+    REQUIRE(pairs == expected);
+    seen += pairs.size();
+  }
+  CHECK(seen > 300);
+}
+
+TEST_CASE("A box grid tells of just the overlaps that change", "[box_grid]") {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    compare_with_brute_force(seed, 0, 0);
+    compare_with_brute_force(seed, 12, 0);
+    compare_with_brute_force(seed, 3, 1e6);
+    compare_with_brute_force(seed, 3, -1e15);  // where boxes are a few spacings of the doubles
+  }
+}
+
+TEST_CASE("Boxes of no extent, and ones that fill all space, have their place in a box grid", "[box_grid]") {
+  constexpr double most = std::numeric_limits<double>::max();
+  const StaticBox all{Eigen::Array3d::Constant(-most), Eigen::Array3d::Constant(most)};
+  const StaticBox point{Eigen::Array3d::Constant(3), Eigen::Array3d::Constant(3)};
+  const StaticBox far{Eigen::Array3d::Constant(1e300), Eigen::Array3d::Constant(2e300)};
+  BoxGrid grid;
+  BoxGrid::Changes changes;
+  grid.put(0, point, changes);
+  grid.put(1, all, changes);
+  CHECK(changes.began == std::vector<BoxGrid::Id>{0});
+  changes.clear();
+  grid.put(2, far, changes);
+  CHECK(changes.began == std::vector<BoxGrid::Id>{1});
+  changes.clear();
+  grid.put(3, point, changes);
+  std::sort(changes.began.begin(), changes.began.end());
+  CHECK(changes.began == std::vector<BoxGrid::Id>{0, 1});
+  changes.clear();
+  grid.remove(1, changes);
+  std::sort(changes.ended.begin(), changes.ended.end());
+  CHECK(changes.ended == std::vector<BoxGrid::Id>{0, 2, 3});
+}
+
+}  // namespace
+}  // namespace kds::collision

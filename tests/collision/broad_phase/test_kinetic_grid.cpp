@@ -1,0 +1,137 @@
+// The kinetic grid, and the broad phase that chooses, by themselves, against brute force over exact numbers.
+#include "collision/broad_phase/adaptive_broad_phase.hpp"
+#include "collision/broad_phase/kinetic_grid.hpp"
+#include "kds/audit.hpp"
+#include "tests/collision/broad_phase/broad_phase_stress.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cstdint>
+#include <memory>
+
+namespace kds::collision {
+namespace {
+
+using namespace tests;
+
+template <int Degree>
+std::unique_ptr<BroadPhase<Degree>> make(bool chooses) {
+  if (chooses) return std::make_unique<AdaptiveBroadPhase<Degree>>();
+  return std::make_unique<KineticGrid<Degree>>();
+}
+
+TEMPLATE_TEST_CASE_SIG("The kinetic grid has all pairs that overlap, whatever happens", "[broad_phase]",
+                       ((int Degree), Degree), 1, 2) {
+  const bool chooses = GENERATE(false, true);
+  std::size_t reports = 0;
+  std::size_t events = 0;
+  for (const bool coarse : {false, true}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      INFO("degree " << Degree << (coarse ? ", coarse" : ", fine") << " numbers, seed " << seed
+                     << (chooses ? ", choosing" : ""));
+      Stress<Degree> stress(seed, coarse, make<Degree>(chooses));
+      stress.insert(14);
+      stress.compare_with_brute_force();
+      for (int round = 0; round < 80; ++round) {
+        stress.advance(stress.now + (coarse ? 0.25 * stress.random.integer(0, 4) : stress.random.between(0, 1)));
+        stress.compare_with_brute_force();
+        // Between a few and many, so that the choice is made anew.
+        const auto dice = stress.random.below(12);
+        const bool fewer = (round / 20) % 2 != 0;
+        if (dice < 3 && (!fewer || stress.boxes.size() < 4)) {
+          stress.insert(1 + stress.random.below(4));
+        } else if (dice < 6 && fewer) {
+          stress.remove();
+        } else {
+          stress.update();
+        }
+        stress.compare_with_brute_force();
+        stress.broad_phase.audit(stress.now);
+      }
+      reports += stress.pairs.reports;
+      events += stress.events;
+    }
+  }
+  CHECK(reports > 1000);
+  CHECK(events > 300);
+}
+
+KineticBox<1> cube(const Vector3d& at, const Vector3d& velocity, double now = 0) {
+  certificates::PointMotion<1> centre;
+  centre.coefficients = {at, velocity};
+  centre.start = now;
+  return box_around(centre, Vector3d::Constant(-0.5), Vector3d::Constant(0.5));
+}
+
+TEST_CASE("A body at rest costs nothing while time goes on, and starts when it is told to", "[broad_phase]") {
+  KineticGrid<1> grid;
+  Pairs pairs;
+  const auto still = cube({0, 0, 0}, Vector3d::Zero());
+  const auto other = cube({10, 0, 0}, Vector3d::Zero());
+  const std::vector<KineticGrid<1>::Entry> entries{{0, &still}, {1, &other}};
+  grid.insert(entries, 0, pairs);
+  CHECK(grid.next_time() == never);
+  CHECK(!grid.advance(1e9, pairs));
+  grid.update(1, cube({10, 0, 0}, {-1, 0, 0}, 5), 5, pairs);
+  CHECK(grid.next_time() < never);
+  while (grid.advance(20, pairs)) {}
+  CHECK(pairs.reports == 2);  // it has passed the other
+  CHECK(pairs.now.empty());
+}
+
+TEST_CASE("Bodies that fly apart are soon left alone", "[broad_phase]") {
+  KineticGrid<1> grid;
+  Pairs pairs;
+  std::vector<KineticBox<1>> boxes;
+  for (int i = 0; i < 20; ++i) boxes.push_back(cube({2.0 * i, 0, 0}, {0.1 * i, 0, 0}));
+  std::vector<KineticGrid<1>::Entry> entries;
+  for (BodyId id = 0; id < 20; ++id) entries.push_back({id, &boxes[id]});
+  grid.insert(entries, 0, pairs);
+  while (grid.advance(1e6, pairs)) {}
+  // Fat boxes are the longer the farther there is nothing: far fewer renewals than lengths travelled.
+  CHECK(grid.counters().box_updates < 5000);
+  while (grid.next_time() < never) grid.advance(grid.next_time(), pairs);  // to the end of time
+  CHECK(grid.counters().box_updates < 200'000);
+}
+
+TEST_CASE("Clocks so large that a body moves by its size between two doubles do not stop the kinetic grid",
+          "[broad_phase]") {
+  KineticGrid<1> grid;
+  Pairs pairs;
+  const double now = 0x1p60;  // where doubles are 256 apart
+  const auto fast = cube({0, 0, 0}, {1, 0, 0}, now);
+  const auto target = cube({5000, 0, 0}, Vector3d::Zero(), now);
+  const std::vector<KineticGrid<1>::Entry> entries{{0, &fast}, {1, &target}};
+  grid.insert(entries, now, pairs);
+  while (grid.advance(now + 8192, pairs)) {}
+  CHECK(pairs.since.contains({0, 1}));
+  CHECK(pairs.now.empty());
+}
+
+TEST_CASE("Boxes without extent move on in the kinetic grid too", "[broad_phase]") {
+  KineticGrid<1> grid;
+  Pairs pairs;
+  certificates::PointMotion<1> path;
+  path.coefficients = {Vector3d(0, 0, 0), Vector3d(1, 0, 0)};
+  const KineticBox<1> point{path, path};
+  path.coefficients = {Vector3d(7, 0, 0), Vector3d(0, 0, 0)};
+  const KineticBox<1> other{path, path};
+  const std::vector<KineticGrid<1>::Entry> entries{{0, &point}, {1, &other}};
+  grid.insert(entries, 0, pairs);
+  while (grid.advance(10, pairs)) {}
+  CHECK(pairs.since.contains({0, 1}));
+  CHECK(grid.counters().box_updates < 5000);
+}
+
+TEST_CASE("An audit of the kinetic grid sees a body outside its fat box", "[broad_phase]") {
+  KineticGrid<1> grid;
+  Pairs pairs;
+  const auto moving = cube({0, 0, 0}, {1, 0, 0});
+  const std::vector<KineticGrid<1>::Entry> entries{{0, &moving}};
+  grid.insert(entries, 0, pairs);
+  grid.audit(0);
+  CHECK_THROWS_AS(grid.audit(-100), AuditFailure);
+}
+
+}  // namespace
+}  // namespace kds::collision
