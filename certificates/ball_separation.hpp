@@ -132,19 +132,19 @@ struct BallSeparation<PathDegree>::RelativeLine {
 /// f > 0 now, and falls: when it reaches zero.
 template <int PathDegree>
 double BallSeparation<PathDegree>::quick_root(const Polynomial<2, Ball<double>>& f, double now, double horizon) const {
-  const int real = certain_sign(detail::discriminant(f));
+  const int real = certain_sign(kds::detail::discriminant(f));
   if (real < 0) return never;
-  return real > 0 ? detail::quadratic_failure_time(*this, f, now, horizon) : detail::undecided;
+  return real > 0 ? kds::detail::quadratic_failure_time(*this, f, now, horizon) : kds::detail::undecided;
 }
 
 template <int PathDegree>
 double BallSeparation<PathDegree>::quick_failure_time(double now, double horizon) const {
-  if (!relative_path_is_line()) return detail::undecided;
+  if (!relative_path_is_line()) return kds::detail::undecided;
   const auto f = RelativeLine(*this, now).polynomial();
   const int value = certain_sign(f.c[0]);
   if (value < 0) return now;
   const int rate = certain_sign(f.c[1]);
-  if (value == 0 || rate == 0) return detail::undecided;
+  if (value == 0 || rate == 0) return kds::detail::undecided;
   return rate > 0 ? never : quick_root(f, now, horizon);
 }
 
@@ -163,7 +163,7 @@ double BallSeparation<PathDegree>::first_approach(double now, double horizon) co
       const double t = quick_root(f, now, horizon);
       if (t == never) return never;
       // They approach there if the root is farther from that of f' than from the next double: sqrt(D) > 2 c2 spacing.
-      const Ball<double> square = detail::discriminant(f);
+      const Ball<double> square = kds::detail::discriminant(f);
       const double steep = 4 * f.c[2].middle * std::abs(t) * 0x1p-52;
       if (t > now && square.middle - square.radius > 2 * steep * steep) return t;
     }
@@ -180,10 +180,10 @@ auto BallSeparation<PathDegree>::estimated_first_approach(double now, double hor
     if (certain_sign(line.rate()) > 0) return {never, true};
     const auto f = line.polynomial();
     if (certain_sign(f.c[0]) > 0 && certain_sign(f.c[1]) < 0) {
-      const Ball<double> square = detail::discriminant(f);
+      const Ball<double> square = kds::detail::discriminant(f);
       const int real = certain_sign(square);
       if (real < 0) return {never, true};
-      if (const auto root = detail::quadratic_root(f, square); real > 0 && root.error < never) {
+      if (const auto root = kds::detail::quadratic_root(f, square); real > 0 && root.error < never) {
         const double t = next_down(now + (root.x - root.error) * (1 - 0x1p-50));
         return t > horizon ? Estimate{never, true} : Estimate{std::max(t, now), false};
       }

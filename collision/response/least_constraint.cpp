@@ -23,7 +23,7 @@ std::size_t most_sweeps(std::size_t touches) {
   return std::min(4096 + 64 * touches, 64 + most_updates / touches);
 }
 
-double largest(std::span<const Vector3d> rates) {
+double greatest(std::span<const Vector3d> rates) {
   double result = 0;
   for (const Vector3d& rate : rates) result = std::max(result, rate.cwiseAbs().maxCoeff());
   return result;
@@ -212,7 +212,7 @@ double parting_rate(std::span<const Vector3d> rates, const Touch& touch) {
 
 bool least_constraint(Rates rates, Touches touches) {
   if (touches.empty()) return true;
-  const double scale = largest(rates);
+  const double scale = greatest(rates);
   for (Touch& touch : touches) {  // the guesses
     const double guess = touch.push;
     touch.push = 0;
