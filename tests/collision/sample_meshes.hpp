@@ -123,4 +123,11 @@ RelativeMotion<Degree> encounter(Random& random, double distance, double miss) {
   return motion;
 }
 
+/// A needle whose tip is its model's origin and whose body stretches along -z.
+inline std::shared_ptr<const Mesh> needle() {
+  return std::make_shared<const Mesh>(
+      std::vector<Vector3d>{{0, 0, 0}, {0.1, 0, -1}, {-0.05, 0.09, -1}, {-0.05, -0.09, -1}},
+      std::vector<Mesh::Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
+}
+
 }  // namespace kds::collision::samples
