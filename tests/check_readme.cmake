@@ -1,11 +1,11 @@
 cmake_minimum_required(VERSION 3.23)
 # The example in the README is the one that is compiled and run.
 file(READ "${ROOT}/README.md" readme)
-file(READ "${ROOT}/examples/01_two_balls.cpp" example)
+file(READ "${ROOT}/examples/00_two_balls.cpp" example)
 string(FIND "${example}" "#include" begin)
 string(SUBSTRING "${example}" ${begin} -1 example)
 string(STRIP "${example}" example)
 string(FIND "${readme}" "${example}" found)
 if(found EQUAL -1)
-  message(FATAL_ERROR "README.md does not show examples/01_two_balls.cpp as it is")
+  message(FATAL_ERROR "README.md does not show examples/00_two_balls.cpp as it is")
 endif()

@@ -1,0 +1,84 @@
+// Certificates in words, with their failure times: what a page lists beside the picture.
+#pragma once
+
+#include "certificates/direction_order.hpp"
+#include "certificates/in_circle.hpp"
+#include "certificates/order.hpp"
+#include "certificates/orientation.hpp"
+#include "examples/course/page.hpp"
+#include "kds/framework/kinetic_rule.hpp"
+#include "kds/roots/failure_time.hpp"
+
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace kds::course {
+
+/// What a certificate says, of the elements of a set. One overload for each kind that is known; a certificate of yours
+/// gets `fact` from a function of the same form, or is called by its members.
+template <class Element>
+class Facts {
+ public:
+  Facts(const Page& page, const MovingSet<Element>& elements, std::vector<Id> members)
+      : page_(page), elements_(elements), members_(std::move(members)) {}
+
+  template <int Degree>
+  Held of(const certificates::Order<Degree>& c) const {
+    return {name(c.lower) + " \u2264 " + name(c.upper), {id(c.lower), id(c.upper)}};
+  }
+  template <class Path>
+  Held of(const certificates::Orientation<Path>& c) const {
+    return {name(c.a) + ", " + name(c.b) + ", " + name(c.c) + " turn left", {id(c.a), id(c.b), id(c.c)}};
+  }
+  template <class Path>
+  Held of(const certificates::InCircle<Path>& c) const {
+    return {name(c.d) + " is not in the circle " + name(c.a) + ", " + name(c.b) + ", " + name(c.c),
+            {id(c.a), id(c.b), id(c.c), id(c.d)}};
+  }
+  template <class Path, std::size_t Dimension>
+  Held of(const certificates::DirectionOrder<Path, Dimension>& c) const {
+    const std::string where = c.direction[0] != 0 ? " is not right of " : " is not above ";
+    return {name(c.lower) + where + name(c.upper), {id(c.lower), id(c.upper)}};
+  }
+  template <class Other>
+  Held of(const Other& c) const {
+    if constexpr (requires { c.fact(); }) return {c.fact(), members_};
+    std::string all;
+    for (const Id id : members_) all += (all.empty() ? "" : ", ") + page_.name(id);
+    return {all, members_};
+  }
+
+ private:
+  /// Certificates refer to the elements that they are about.
+  Id id(const Element& element) const {
+    for (const Id id : members_) {
+      if (&elements_[id] == &element) return id;
+    }
+    return nobody;
+  }
+  const std::string& name(const Element& element) const { return page_.name(id(element)); }
+
+  const Page& page_;
+  const MovingSet<Element>& elements_;
+  std::vector<Id> members_;
+};
+
+/// The certificates that a rule holds in the slots below `end`, and when each fails if nothing happens before.
+template <class Rule>
+std::vector<Held> certificates_of(const Rule& rule, Slot end, const MovingSet<typename Rule::Element>& elements,
+                                  double now, const Page& page) {
+  std::vector<Held> all;
+  for (Slot slot = 0; slot < end; ++slot) {
+    detail::with_certificate(rule.certificate(slot, elements), [&](const auto& certificate) {
+      const auto members = rule.members(slot);
+      const Facts<typename Rule::Element> facts(page, elements, {std::begin(members), std::end(members)});
+      Held held = facts.of(certificate);
+      held.fails = failure_time(certificate, now);
+      all.push_back(std::move(held));
+    });
+  }
+  return all;
+}
+
+}  // namespace kds::course

@@ -1,0 +1,177 @@
+#include "examples/course/page.hpp"
+
+#include "kds/arithmetic/lattice.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+namespace kds::course {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::string_view page_template =
+#include "page_template.inc"
+    ;
+constexpr std::string_view style =
+#include "style.inc"
+    ;
+constexpr std::string_view scripts[] = {
+#include "scripts.inc"
+};
+
+void replace(std::string& text, std::string_view mark, std::string_view part) {
+  text.replace(text.find(mark), mark.size(), part);
+}
+
+template <class List>
+void put(ordered_json& object, const char* key, const List& list) {
+  if (!list.empty()) object[key] = list;
+}
+
+}  // namespace
+
+Page::Page(View view, std::string title, std::string about, double begin, double end)
+    : view_(view), title_(std::move(title)), about_(std::move(about)), begin_(begin), end_(end) {
+  if (!(begin < end)) throw std::invalid_argument("Page: the end must come after the beginning");
+}
+
+void Page::element(Id id, std::string name, double radius) {
+  elements_.push_back({id, std::move(name), radius, {}, {}});
+}
+
+void Page::box(Id id, std::string name, std::array<double, 2> half) {
+  elements_.push_back({id, std::move(name), 0, half, {}});
+}
+
+Page::Element& Page::find(Id id) {
+  const auto found = std::find_if(elements_.begin(), elements_.end(), [&](const Element& e) { return e.id == id; });
+  if (found == elements_.end()) throw std::out_of_range("Page: no element with id " + std::to_string(id));
+  return *found;
+}
+
+const std::string& Page::name(Id id) const { return const_cast<Page*>(this)->find(id).name; }
+
+std::string Page::names(const std::vector<Id>& ids) const {
+  std::string all;
+  for (const Id id : ids) all += (all.empty() ? "" : " ") + name(id);
+  return all;
+}
+
+void Page::add_piece(Id id, Piece piece) {
+  auto& pieces = find(id).pieces;
+  // Several changes at one instant: the last one is what happens.
+  if (!pieces.empty() && pieces.back().since == piece.since) pieces.pop_back();
+  pieces.push_back(std::move(piece));
+}
+
+void Page::starts(State state) {
+  if (!states_.empty()) throw std::logic_error("Page: it has started already");
+  add_state(std::move(state));
+}
+
+void Page::event(double time, std::string text, std::vector<Id> members, State state) {
+  if (states_.empty()) throw std::logic_error("Page: starts() comes before event()");
+  if (!events_.empty() && time < events_.back().time) throw std::logic_error("Page: an event comes before the last");
+  events_.push_back({time, std::move(text), std::move(members)});
+  add_state(std::move(state));
+}
+
+/// Certificates that are held on are not written again.
+void Page::add_state(State state) {
+  const std::size_t number = states_.size();
+  std::vector<std::size_t> still;
+  for (Held& held : state.certificates) {
+    const auto same = std::find_if(open_.begin(), open_.end(), [&](std::size_t i) {
+      return spans_[i].held == held && std::find(still.begin(), still.end(), i) == still.end();
+    });
+    if (same == open_.end()) spans_.push_back({std::move(held), number, 0});
+    still.push_back(same == open_.end() ? spans_.size() - 1 : *same);
+  }
+  for (const std::size_t i : still) spans_[i].until = number + 1;
+  open_ = std::move(still);
+  state.certificates.clear();
+  states_.push_back(std::move(state));
+}
+
+std::string Page::json() const {
+  ordered_json page{{"title", title_}, {"about", about_}, {"view", view_ == View::line ? "line" : "plane"}};
+  page["begin"] = begin_;
+  page["end"] = end_;
+  page["play"] = play_time;
+  page["names"] = {{"event", legend.event},
+                   {"marked", legend.marked},
+                   {"outline", legend.outline},
+                   {"edges", legend.edges}};
+  put(page, "window", window);
+  put(page, "walls", walls);
+  put(page, "edges", edge_style);
+  if (intervals) page["intervals"] = true;
+  page["elements"] = ordered_json::array();
+  for (const Element& element : elements_) {
+    if (element.pieces.empty()) throw std::logic_error("Page: " + element.name + " has no motion");
+    const std::string label = element.name.size() <= 2 ? element.name : element.name.substr(0, 1);
+    ordered_json entry{{"id", element.id}, {"name", element.name}, {"label", label}};
+    if (element.radius > 0) entry["radius"] = element.radius;
+    if (element.half[0] > 0) entry["half"] = element.half;
+    entry["pieces"] = ordered_json::array();
+    for (const Piece& piece : element.pieces) {
+      ordered_json motion{{"since", piece.since}, {"start", piece.start}};
+      put(motion, "x", piece.x);
+      motion["y"] = piece.y;
+      entry["pieces"].push_back(std::move(motion));
+    }
+    page["elements"].push_back(std::move(entry));
+  }
+  page["events"] = ordered_json::array();
+  for (const Event& event : events_) {
+    page["events"].push_back({{"time", event.time}, {"text", event.text}, {"members", event.members}});
+  }
+  page["states"] = ordered_json::array();
+  for (const State& state : states_) {
+    ordered_json entry{{"text", state.text}};
+    put(entry, "order", state.order);
+    put(entry, "outline", state.outline);
+    put(entry, "edges", state.edges);
+    put(entry, "marked", state.marked);
+    page["states"].push_back(std::move(entry));
+  }
+  page["certificates"] = ordered_json::array();
+  for (const auto& [held, from, until] : spans_) {
+    ordered_json entry{{"fact", held.fact}, {"members", held.members}, {"from", from}, {"until", until}};
+    entry["fails"] = held.fails == never ? ordered_json() : ordered_json(held.fails);
+    page["certificates"].push_back(std::move(entry));
+  }
+  return page.dump();
+}
+
+std::string Page::html() const {
+  std::string page(page_template);
+  std::string code;
+  for (const std::string_view script : scripts) code += script;
+  // What is inserted may contain anything, so the last mark comes first.
+  replace(page, "/*{SCRIPTS}*/", code);
+  std::string data = json();
+  for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos; ++at) data.replace(at, 2, "<\\/");
+  replace(page, "/*{DATA}*/", data);
+  replace(page, "/*{STYLE}*/", style);
+  return page;
+}
+
+void Page::write(int argc, char** argv, const std::string& name) const {
+  const std::filesystem::path path = argc > 1 ? argv[1] : name + ".html";
+  std::ofstream file(path, std::ios::binary);
+  file << html();
+  file.close();
+  if (!file) throw std::runtime_error("cannot write " + path.string());
+  std::cout << "page: " << path.string() << " (open it in a browser)\n";
+}
+
+}  // namespace kds::course

@@ -1,0 +1,199 @@
+// Time: slider, keys, play and pause, the list of events, the certificates that hold now.
+const $ = (id) => document.getElementById(id);
+const view = (data.view === 'line' ? lineView : planeView)($('figure'));
+let now = data.begin, shown = -1, playing = false, lit = [];
+
+document.title = data.title;
+$('title').textContent = data.title;
+$('about').textContent = data.about;
+set($('time'), {min: data.begin, max: data.end});
+
+function setTime(t) {
+  now = Math.min(data.end, Math.max(data.begin, t));
+  $('time').value = now;
+  draw();
+}
+
+function draw() {
+  const number = stateNumber(now);
+  view.draw(now, number, lit);
+  $('now').textContent = `t = ${seconds(now)} s`;
+  $('time').setAttribute('aria-valuetext', `${seconds(now)} seconds`);
+  moveRibbon();
+  if (number === shown) return;
+  shown = number;
+  $('state').textContent = data.states[number].text;
+  $('figure').dataset.state = number;
+  showNext(number);
+  showCertificates(number);
+  markEvents(number);
+  drawRibbon();
+}
+
+function showNext(number) {
+  const next = nextToFail(number);
+  $('next').replaceChildren();
+  if (data.certificates.length === 0) return;
+  if (!next) return $('next').append('No certificate is going to fail.');
+  const time = document.createElement('b');
+  time.textContent = `${seconds(next.fails)} s`;
+  $('next').append(`Next to fail: ${next.fact}, at `, time);
+}
+
+function showCertificates(number) {
+  const all = certificatesAt(number), most = 60;
+  const next = nextToFail(number);
+  $('certificates-title').textContent = `Certificates that hold: ${all.length}`;
+  $('certificates').replaceChildren(...all.slice(0, most).map((held) => {
+    const row = document.createElement('li');
+    const [fact, time] = [document.createElement('span'), document.createElement('span')];
+    fact.textContent = held.fact;
+    time.textContent = held.fails === null ? 'for ever' : `until ${seconds(held.fails)}`;
+    row.classList.toggle('next', held === next);
+    row.append(fact, time);
+    row.addEventListener('mouseenter', () => { lit = held.members; draw(); });
+    row.addEventListener('mouseleave', () => { lit = []; draw(); });
+    return row;
+  }));
+  if (all.length > most) {
+    const rest = document.createElement('li');
+    rest.className = 'none';
+    rest.textContent = `and ${all.length - most} more, which hold longer`;
+    $('certificates').append(rest);
+  }
+  $('proof').hidden = data.certificates.length === 0;
+}
+
+function listEvents() {
+  $('events-title').textContent = `Events: ${data.events.length}`;
+  data.events.forEach((event, k) => {
+    const row = document.createElement('li');
+    const button = document.createElement('button');
+    const [time, text] = [document.createElement('time'), document.createElement('span')];
+    button.type = 'button';
+    button.dataset.event = k;
+    time.textContent = seconds(event.time);
+    text.textContent = event.text;
+    button.append(time, text);
+    button.addEventListener('click', () => setTime(event.time));
+    row.append(button);
+    $('events').append(row);
+  });
+  if (data.events.length === 0) $('events').innerHTML = '<li class="none">none</li>';
+}
+
+function markEvents(number) {
+  [...$('events').children].forEach((row, k) => {
+    row.classList.toggle('past', k < number);
+    row.classList.toggle('latest', k === number - 1);
+    if (k !== number - 1) return row.firstChild.removeAttribute?.('aria-current');
+    row.firstChild.setAttribute('aria-current', 'step');
+    const list = $('events');
+    if (row.offsetTop < list.scrollTop || row.offsetTop + row.offsetHeight > list.scrollTop + list.clientHeight) {
+      list.scrollTop = row.offsetTop - list.clientHeight / 2;
+    }
+  });
+}
+
+// Under the slider: what has happened and will, and when the certificates of now fail. Some of those will never come to
+// it: an event before may put others in their place.
+const ribbonX = (t) => 8 + (t - data.begin) / duration * ($('ribbon').clientWidth - 16);
+function drawRibbon() {
+  $('ribbon').replaceChildren();
+  data.events.forEach((event, k) => {
+    const past = k < shown ? ' past' : '';
+    make('path', {class: 'cursor' + past, opacity: past ? 1 : 0.35, d: `M${ribbonX(event.time)} 2v10`}, $('ribbon'));
+  });
+  const next = nextToFail(shown);
+  for (const held of certificatesAt(shown)) {
+    if (held.fails === null || held.fails > data.end) continue;
+    const kind = held === next ? ' next' : '';
+    make('path', {class: 'fails' + kind, d: `M${ribbonX(held.fails) - 4} 14h8l-4 7z`}, $('ribbon'));
+  }
+  make('path', {class: 'cursor', id: 'hand', 'stroke-width': 2}, $('ribbon'));
+  moveRibbon();
+}
+function moveRibbon() {
+  const hand = $('hand');
+  if (hand) set(hand, {d: `M${ribbonX(now)} 0v24`});
+}
+
+function goToEvent(step) {
+  const times = data.events.map((event) => event.time);
+  const target = step > 0 ? times.find((t) => t > now) : times.filter((t) => t < now).pop();
+  setTime(target ?? (step > 0 ? data.end : data.begin));
+}
+
+let last = 0;
+function play(on) {
+  playing = on;
+  $('play').textContent = on ? 'Pause' : 'Play';
+  $('play').setAttribute('aria-pressed', on);
+  if (!on) return;
+  if (now >= data.end) setTime(data.begin);
+  last = performance.now();
+  requestAnimationFrame(tick);
+}
+function tick(moment) {
+  if (!playing) return;
+  const pace = duration / data.play * Number($('speed').value);
+  setTime(now + Math.max(0, moment - last) / 1000 * pace);
+  last = moment;
+  if (now >= data.end) play(false); else requestAnimationFrame(tick);
+}
+
+function resize() {
+  const width = $('frame').clientWidth;
+  const height = Math.round(Math.max(260, Math.min(width * (width < 520 ? 0.95 : 0.62), innerHeight * 0.66)));
+  set($('figure'), {viewBox: `0 0 ${width} ${height}`, height});
+  view.layout(width, height);
+  set($('ribbon'), {viewBox: `0 0 ${$('ribbon').clientWidth} 24`});
+  drawRibbon();
+  draw();
+}
+
+$('time').addEventListener('input', () => { play(false); now = Number($('time').value); draw(); });
+$('play').addEventListener('click', () => play(!playing));
+$('before').addEventListener('click', () => goToEvent(-1));
+$('after').addEventListener('click', () => goToEvent(1));
+$('ribbon').addEventListener('click', (click) => {
+  const {left, width} = $('ribbon').getBoundingClientRect();
+  setTime(data.begin + (click.clientX - left - 8) / (width - 16) * duration);
+});
+if (view.timeAt) {
+  const drag = (event) => {
+    if (event.type === 'pointermove' && event.buttons !== 1) return;
+    play(false);
+    setTime(view.timeAt(event.clientX - $('figure').getBoundingClientRect().left));
+  };
+  $('figure').addEventListener('pointerdown', drag);
+  $('figure').addEventListener('pointermove', drag);
+}
+document.addEventListener('keydown', (event) => {
+  if (event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === 'SELECT') return;
+  const onButton = event.target.tagName === 'BUTTON';
+  const actions = {
+    n: () => goToEvent(1), p: () => goToEvent(-1), Home: () => setTime(data.begin), End: () => setTime(data.end),
+    ArrowRight: () => setTime(now + duration / 200), ArrowLeft: () => setTime(now - duration / 200),
+  };
+  if (!onButton) actions[' '] = () => play(!playing);
+  const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+  if (!action) return;
+  event.preventDefault();
+  if (event.key !== ' ') play(false);
+  action();
+});
+
+/** For whoever drives the page from outside: the same numbers that are drawn. */
+window.course = {
+  data, setTime, position,
+  state: (t) => ({...data.states[stateNumber(t)], number: stateNumber(t), certificates: certificatesAt(stateNumber(t))}),
+};
+
+drawLegend();
+listEvents();
+const wanted = /^#t=(.+)$/.exec(location.hash);
+if (wanted && Number.isFinite(Number(wanted[1]))) now = Math.min(data.end, Math.max(data.begin, Number(wanted[1])));
+$('time').value = now;
+new ResizeObserver(resize).observe($('frame'));
+resize();

@@ -1,0 +1,103 @@
+// What the program recorded, and where everything is at a time. Nothing else on this page evaluates a polynomial, and
+// nothing at all on it decides who is in order, on the hull or in touch: that is read from the recorded states.
+const data = JSON.parse(document.getElementById('data').textContent);
+const duration = data.end - data.begin;
+const elements = new Map(data.elements.map((element) => [element.id, element]));
+
+function value(coefficients, elapsed) {
+  let sum = 0;
+  for (let i = coefficients.length; i-- > 0;) sum = sum * elapsed + coefficients[i];
+  return sum;
+}
+
+function slope(coefficients, elapsed) {
+  let sum = 0;
+  for (let i = coefficients.length; i-- > 1;) sum = sum * elapsed + i * coefficients[i];
+  return sum;
+}
+
+/** The piece of motion that an element has at t+. */
+function pieceAt(element, t) {
+  let found = element.pieces[0];
+  for (const piece of element.pieces) if (piece.since <= t) found = piece;
+  return found;
+}
+
+/** Where an element is: x and y in the plane; on a line x is the time and y the value. */
+function position(id, t) {
+  const piece = pieceAt(elements.get(id), t);
+  const elapsed = t - piece.start;
+  return {x: piece.x ? value(piece.x, elapsed) : t, y: value(piece.y, elapsed)};
+}
+
+/** How many events there have been up to and including t: the number of the state that holds at t+. */
+function stateNumber(t) {
+  let low = 0, high = data.events.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (data.events[middle].time <= t) low = middle + 1; else high = middle;
+  }
+  return low;
+}
+
+const certificatesOf = new Map();
+/** The certificates of a state, the one that fails first in front. `fails` is null for those that never do. */
+function certificatesAt(number) {
+  if (!certificatesOf.has(number)) {
+    const held = data.certificates.filter((c) => c.from <= number && number < c.until);
+    held.sort((a, b) => (a.fails ?? Infinity) - (b.fails ?? Infinity));
+    certificatesOf.set(number, held);
+  }
+  return certificatesOf.get(number);
+}
+
+/** The certificate that will fail next, if there is one. */
+function nextToFail(number) {
+  const first = certificatesAt(number)[0];
+  return first && first.fails !== null ? first : null;
+}
+
+const digits = Math.max(0, Math.min(9, 3 - Math.floor(Math.log10(duration / 4))));
+const seconds = (t) => t.toFixed(digits);
+
+// Colours: one for each element while there are few.
+const colourful = data.elements.length <= 8;
+const colour = new Map(data.elements.map((e, i) => [e.id, colourful ? `var(--e${i})` : 'var(--point)']));
+
+function make(tag, attributes, parent) {
+  const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  set(node, attributes);
+  if (parent) parent.append(node);
+  return node;
+}
+function set(node, attributes) {
+  for (const [name, content] of Object.entries(attributes)) {
+    if (name === 'text') node.textContent = content; else node.setAttribute(name, content);
+  }
+}
+
+/** Round numbers between low and high, about as many as asked for. */
+function ticks(low, high, about) {
+  const rough = (high - low) / about;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * [1, 2, 5, 10].find((m) => m * power >= rough);
+  const result = [];
+  for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; ++i) result.push(+(i * step).toPrecision(12));
+  return result;
+}
+
+/** A dot with the element's letter, or its body if it has a size. */
+function drawElement(element, parent, scale) {
+  const group = make('g', {class: 'element', 'data-element': element.id}, parent);
+  const fill = colour.get(element.id);
+  make('title', {text: element.name}, group);
+  if (element.half) {
+    const [w, h] = element.half.map((half) => half * scale);
+    make('rect', {class: 'body', x: -w, y: -h, width: 2 * w, height: 2 * h, fill, stroke: fill}, group);
+  }
+  if (element.radius) make('circle', {class: 'body', r: element.radius * scale, fill, stroke: fill}, group);
+  make('circle', {class: 'ring', r: 13}, group);
+  make('circle', {class: 'dot', r: 9, fill}, group);
+  make('text', {y: 4, text: element.label}, group);
+  return group;
+}
