@@ -38,8 +38,8 @@ int main(int argc, char** argv) {
   // double before it f is not negative yet. Both signs are exact, so there is nothing to tune.
   const double fails = failure_time(below, 0);
   std::cout << "fails at t = " << fails << ", the double just after the root\n"
-            << "sign there " << sign_after(below, fails) << ", one double earlier " << sign_after(below, next_down(fails))
-            << '\n';
+            << "sign there " << sign_after(below, fails) << ", one double earlier "
+            << sign_after(below, next_down(fails)) << '\n';
   const double holds = recovery_time(below, fails);
   std::cout << "holds again from t = " << holds << " on\n";
 

@@ -25,8 +25,8 @@ struct Bouncer {
   bool finite() const { return is_finite(motion()); }  // asked of every element before it is taken up
 };
 
-/// What the certificate of a sorted list asks of an element: upper - lower as a polynomial in (t - epoch), in any number
-/// type. That is the whole interface: any element that has it can be sorted.
+/// What the certificate of a sorted list asks of an element: upper - lower as a polynomial in (t - epoch), in any
+/// number type. That is the whole interface: any element that has it can be sorted.
 template <class Number>
 Polynomial<2, Number> difference_about(const Bouncer& upper, const Bouncer& lower, double epoch) {
   return difference_about<Number>(upper.motion(), lower.motion(), epoch);
@@ -36,8 +36,8 @@ using List = examples::ListRule<Bouncer>;
 
 int main(int argc, char** argv) {
   course::Page page(course::View::line, "04 Your own motion",
-                    "Bouncing balls: each path is made of pieces, and a plan says when which piece begins. To the clock "
-                    "a plan is one more structure, whose events are the seams.", 0, 10);
+                    "Bouncing balls: each path is made of pieces, and a plan says when which piece begins. To the "
+                    "clock a plan is one more structure, whose events are the seams.", 0, 10);
   page.legend.event = "a swap";
   page.legend.marked = "the highest";
 

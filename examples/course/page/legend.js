@@ -18,8 +18,12 @@ function drawLegend() {
   const some = (name) => data.states.some((state) => state[name] && state[name].length > 0);
   const onLine = data.view === 'line';
   if (some('marked')) {
-    if (onLine) entry(data.names.marked, 'path', {class: 'known', d: 'M0 9H22'});
-    else make('circle', {class: 'ring', r: 7}, entry(data.names.marked, 'g', {class: 'element marked', transform: 'translate(11 9)'}));
+    if (onLine) {
+      entry(data.names.marked, 'path', {class: 'known', d: 'M0 9H22'});
+    } else {
+      const group = entry(data.names.marked, 'g', {class: 'element marked', transform: 'translate(11 9)'});
+      make('circle', {class: 'ring', r: 7}, group);
+    }
   }
   if (some('outline')) entry(data.names.outline, 'rect', {class: 'outline', x: 2, y: 2, width: 18, height: 14});
   if (some('edges')) entry(data.names.edges, 'path', {class: 'edge ' + (data.edges ?? ''), d: 'M0 9H22'});

@@ -1,0 +1,95 @@
+// You learn: bodies in a world; contacts at exact times, and an elastic response.
+// How to run: build/dev/examples/10_contacts, then open the page that it names
+// What you see: 11 contacts, and the energy is 1 of what it was
+#include "certificates/ball_separation.hpp"
+#include "collision/world.hpp"
+#include "examples/course/page.hpp"
+
+#include <iostream>
+#include <string>
+#include <vector>
+
+using namespace kds;
+using namespace kds::collision;
+using Eigen::Vector3d;
+using Path = certificates::PointMotion<2>;
+
+const Vector3d gravity(0, -1, 0);
+
+/// Is told of contacts while the world runs. Motions are already those after the bounce.
+class Teller final : public WorldListener<2> {
+ public:
+  explicit Teller(course::Page& page) : page_(page) {}
+
+  void contact(World<2>& world, const PairEvent& event) override {
+    ++contacts;
+    tell(world, event.contact.time, page_.name(event.a) + " hits " + page_.name(event.b), {event.a, event.b});
+  }
+  void wall(World<2>& world, const WallEvent& event) override {
+    const char* const walls[] = {"left", "right", "lower", "upper", "back", "front"};
+    const std::string text = page_.name(event.body) + " hits the " + walls[event.wall] + " wall";
+    tell(world, event.contact.time, text, {event.body});
+  }
+
+  /// What the page shows beside: for each pair the time until which it is known to be apart, if nothing happens before.
+  course::State known(const World<2>& world, double now) const {
+    course::State state{.text = std::to_string(contacts) + " contacts so far"};
+    for (BodyId a = 0; a < world.size(); ++a) {
+      for (BodyId b = a + 1; b < world.size(); ++b) {
+        const certificates::BallSeparation<2> apart{world.motion(a), world.motion(b), radius(a), radius(b)};
+        const std::string fact = page_.name(a) + " and " + page_.name(b) + " are apart";
+        state.certificates.push_back({fact, {a, b}, apart.first_approach(now, never)});
+      }
+    }
+    return state;
+  }
+  static double radius(BodyId id) { return 0.35 + 0.1 * id; }
+  int contacts = 0;
+
+ private:
+  void tell(World<2>& world, double time, const std::string& text, const std::vector<Id>& members) {
+    std::cout << "t = " << time << ": " << text << '\n';
+    for (const Id id : members) page_.moves(id, world.motion(id), time);
+    page_.event(time, text, members, known(world, time));
+  }
+
+  course::Page& page_;
+};
+
+double energy(const World<2>& world) {
+  double sum = 0;
+  for (BodyId id = 0; id < world.size(); ++id) {
+    const Vector3d v = world.motion(id).velocity(world.now());
+    sum += world.mass(id) * (v.squaredNorm() / 2 - gravity.dot(world.motion(id).position(world.now())));
+  }
+  return sum;
+}
+
+int main(int argc, char** argv) {
+  const double end = 12;
+  course::Page page(course::View::plane, "10 Contacts",
+                    "Balls in gravity, in a box. A contact is the moment at which the distance of two balls is the sum "
+                    "of their radii and falls; between contacts each path is one parabola.", 0, end);
+  page.walls = {0, 0, 8, 5};
+  page.window = {0, 0, 8, 5};
+  page.play_time = 20;
+
+  Teller teller(page);
+  World<2> world({.response = Response::elastic, .walls = Walls{Vector3d(0, 0, -2), Vector3d(8, 5, 2)}}, &teller);
+  const Vector3d places[] = {{1, 1, 0}, {3, 3.5, 0}, {5, 1.2, 0}, {6.6, 3.6, 0}};
+  const Vector3d speeds[] = {{1.1, 1.6, 0}, {0.7, 0, 0}, {-0.8, 1.2, 0}, {-1.2, -0.4, 0}};
+  for (Id id = 0; id < 4; ++id) {
+    const Path path{{places[id], speeds[id], gravity / 2}, 0};  // half the acceleration
+    const double radius = Teller::radius(id);
+    page.element(id, std::string(1, static_cast<char>('a' + id)), radius);
+    page.moves(id, path, 0);
+    world.add_body({.shape = Sphere{radius}, .motion = {path}, .mass = radius * radius * radius});
+  }
+  world.advance_to(0);
+  page.starts(teller.known(world, 0));
+  const double before = energy(world);
+  world.advance_to(end);
+  world.audit();
+  std::cout << teller.contacts << " contacts, and the energy is " << energy(world) / before << " of what it was\n";
+  page.write(argc, argv, "10_contacts");
+}
