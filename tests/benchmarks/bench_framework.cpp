@@ -9,6 +9,7 @@
 #include "examples/list_in_forty_lines.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
+#include "structures/aabb_tree.hpp"
 #include "structures/closest_pair.hpp"
 #include "structures/convex_hull.hpp"
 #include "structures/delaunay.hpp"
@@ -19,6 +20,7 @@
 #include "tests/support/random_numbers.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -157,6 +159,8 @@ int main(int argc, char** argv) {
     measure("heap", 1, n, 1, rounds, structures::HeapRule<structures::ByValue<Motion<1>>>{}, value);
     measure("extents of 4 directions", 1, n, 1, rounds,
             structures::ExtentsRule<Path, 2>({{1, 0}, {1, 1}, {0, 1}, {-1, 1}}), path);
+    // Fat boxes of about the points' distances.
+    measure("AABB tree", 1, n, 1, rounds, structures::AabbTreeRule<Path, 2>({0.25 / std::sqrt(n), 0}), path);
   }
   for (const Id n : {100u, 1000u}) {
     measure_plane<1>(n, 0.25, rounds);

@@ -1,0 +1,25 @@
+// A value that stays on one side of a limit.
+#pragma once
+
+#include "kds/bounded.hpp"
+#include "kds/certificate.hpp"
+#include "kds/motion.hpp"
+
+namespace kds::certificates {
+
+/// side * (limit - value(t)) >= 0: the value stays below the limit (side 1) or above it (side -1). Degree that of the
+/// value, which may be sampled.
+template <class Value>
+struct WithinLimit {
+  static constexpr int degree = Value::degree;
+  Value value;
+  double limit;
+  double side;
+
+  template <class Number>
+  auto polynomial(double epoch) const {
+    return (about<Number>(value, epoch) - constant<Number>(limit)) * -side;
+  }
+};
+
+}  // namespace kds::certificates

@@ -1,0 +1,299 @@
+// A bounding-volume tree of boxes that come, go and change, as a bare tree: which boxes overlap with this one?
+#pragma once
+
+#include "kds/audit.hpp"
+#include "kds/framework/moving_set.hpp"
+#include "structures/tree_box.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace kds::structures {
+
+/// A binary tree with a box a leaf, known by the caller's ids; an inner node holds the hull of its two. Knows no time.
+///
+/// A box is inserted where it adds least to the surfaces of the nodes [Goldsmith87], going down from the root; on the
+/// way back, a node and its nephew change places where that makes a box smaller [Kensler08]. Where surfaces do not tell
+/// (boxes that are one, or infinite) it goes to the side with fewer leaves. A box that changes but stays within its
+/// parent's is changed where it is; any other is inserted anew.
+///
+/// Cost: insertion, removal and change O(depth), which is O(log n) but for such as nested boxes; visit()
+/// that and what it finds, in scenes where boxes overlap with few others; 2 n - 1 nodes.
+template <std::size_t Dimension>
+class BoxTree {
+ public:
+  using Box = TreeBox<Dimension>;
+
+  std::size_t size() const { return root_ == none ? 0 : nodes_[root_].leaves; }
+  bool contains(Id id) const { return id < leaf_.size() && leaf_[id] != none; }
+  /// Precondition: contains(id).
+  const Box& box(Id id) const { return nodes_[leaf_[id]].box; }
+
+  /// Precondition: !contains(id).
+  void insert(Id id, const Box& box);
+  /// Precondition: contains(id).
+  void remove(Id id);
+  /// Gives it another box. Precondition: contains(id).
+  void change(Id id, const Box& box);
+
+  /// Calls found(id) for all boxes that overlap with this one, in no particular order. The tree must not be changed
+  /// from there.
+  template <class Found>
+  void visit(const Box& box, Found&& found) const;
+
+  /// Of the longest way down, in steps: 0 for one box. O(n).
+  std::size_t depth() const;
+  /// Sum of the surfaces of inner nodes, that of the root being 1: what a visit costs.
+  double relative_surface() const;
+
+  /// Throws AuditFailure unless every node is the hull of its two, and is where it is said to be.
+  void audit(const std::string& name) const;
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(nodes_, free_, leaf_, root_);
+  }
+
+ private:
+  using Place = std::uint32_t;
+  static constexpr Place none = std::numeric_limits<Place>::max();
+
+  struct Node {
+    Box box;
+    Place parent = none;
+    std::array<Place, 2> child{none, none};  ///< both or neither
+    std::uint32_t leaves = 1;                ///< below it, and itself
+    Id id = nobody;                          ///< of a leaf
+
+    bool is_leaf() const { return child[0] == none; }
+  };
+
+  Place take_node();
+  Place best_sibling(const Box& box) const;
+  /// Puts `other` below the parent of `place` in its stead, or at the top.
+  void replace(Place place, Place other);
+  void update(Place place);
+  void rotate(Place place);
+  /// Puts boxes right from here on upward.
+  void refit(Place place);
+
+  std::vector<Node> nodes_;
+  std::vector<Place> free_;
+  std::vector<Place> leaf_;  ///< by id
+  Place root_ = none;
+};
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <std::size_t Dimension>
+void BoxTree<Dimension>::insert(Id id, const Box& box) {
+  if (id >= leaf_.size()) leaf_.resize(id + std::size_t{1}, none);
+  const Place leaf = take_node();
+  nodes_[leaf].box = box;
+  nodes_[leaf].id = id;
+  leaf_[id] = leaf;
+  if (root_ == none) return void(root_ = leaf);
+  const Place sibling = best_sibling(box);
+  const Place parent = take_node();
+  replace(sibling, parent);
+  nodes_[parent].child = {sibling, leaf};
+  nodes_[sibling].parent = nodes_[leaf].parent = parent;
+  refit(parent);
+}
+
+template <std::size_t Dimension>
+void BoxTree<Dimension>::remove(Id id) {
+  const Place leaf = leaf_[id];
+  leaf_[id] = none;
+  free_.push_back(leaf);
+  if (leaf == root_) return void(root_ = none);
+  const Place parent = nodes_[leaf].parent;
+  const Place sibling = nodes_[parent].child[nodes_[parent].child[0] == leaf];
+  replace(parent, sibling);
+  free_.push_back(parent);
+  refit(nodes_[sibling].parent);
+}
+
+template <std::size_t Dimension>
+void BoxTree<Dimension>::change(Id id, const Box& box) {
+  const Place parent = nodes_[leaf_[id]].parent;
+  if (parent != none && !nodes_[parent].box.contains(box)) {
+    remove(id);
+    return insert(id, box);
+  }
+  nodes_[leaf_[id]].box = box;
+  refit(parent);
+}
+
+template <std::size_t Dimension>
+template <class Found>
+void BoxTree<Dimension>::visit(const Box& box, Found&& found) const {
+  if (root_ == none || !nodes_[root_].box.overlaps(box)) return;
+  std::vector<Place> open{root_};
+  while (!open.empty()) {
+    const Node& node = nodes_[open.back()];
+    open.pop_back();
+    if (node.is_leaf()) {
+      found(node.id);
+      continue;
+    }
+    for (const Place child : node.child) {
+      if (nodes_[child].box.overlaps(box)) open.push_back(child);
+    }
+  }
+}
+
+template <std::size_t Dimension>
+typename BoxTree<Dimension>::Place BoxTree<Dimension>::take_node() {
+  if (free_.empty()) {
+    nodes_.emplace_back();
+    return static_cast<Place>(nodes_.size() - 1);
+  }
+  const Place place = free_.back();
+  free_.pop_back();
+  nodes_[place] = Node{};
+  return place;
+}
+
+/// The node with which a new box is to share a parent. To stop at a node adds a node of the hull's surface; to go on
+/// makes this node larger by what the box adds to it, and costs at least what it adds to the child.
+template <std::size_t Dimension>
+typename BoxTree<Dimension>::Place BoxTree<Dimension>::best_sibling(const Box& box) const {
+  Place place = root_;
+  while (!nodes_[place].is_leaf()) {
+    const Node& node = nodes_[place];
+    const double whole = hull(node.box, box).surface();
+    const double grown = whole - node.box.surface();
+    std::array<double, 2> cost;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Node& child = nodes_[node.child[i]];
+      cost[i] = grown + hull(child.box, box).surface() - (child.is_leaf() ? 0 : child.box.surface());
+    }
+    if (whole < cost[0] && whole < cost[1]) break;
+    const auto leaves = [&](std::size_t i) { return nodes_[node.child[i]].leaves; };
+    const bool second = cost[1] < cost[0] || (!(cost[0] < cost[1]) && leaves(1) < leaves(0));
+    place = node.child[second];
+  }
+  return place;
+}
+
+template <std::size_t Dimension>
+void BoxTree<Dimension>::replace(Place place, Place other) {
+  const Place parent = nodes_[place].parent;
+  nodes_[other].parent = parent;
+  if (parent == none) {
+    root_ = other;
+  } else {
+    nodes_[parent].child[nodes_[parent].child[1] == place] = other;
+  }
+}
+
+template <std::size_t Dimension>
+void BoxTree<Dimension>::update(Place place) {
+  Node& node = nodes_[place];
+  const Node& left = nodes_[node.child[0]];
+  const Node& right = nodes_[node.child[1]];
+  node.box = hull(left.box, right.box);
+  node.leaves = left.leaves + right.leaves;
+}
+
+/// [Kensler08]: of the four exchanges of a child with a child of the other, makes the one that saves most, if one does.
+template <std::size_t Dimension>
+void BoxTree<Dimension>::rotate(Place place) {
+  double most = 0;
+  std::size_t side = 0, which = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Node& child = nodes_[nodes_[place].child[i]];
+    const Node& other = nodes_[nodes_[place].child[1 - i]];
+    if (other.is_leaf()) continue;
+    for (std::size_t j = 0; j < 2; ++j) {
+      const double saved = other.box.surface() - hull(child.box, nodes_[other.child[1 - j]].box).surface();
+      if (saved > most) most = saved, side = i, which = j;
+    }
+  }
+  if (!(most > 0)) return;
+  const Place child = nodes_[place].child[side];
+  const Place other = nodes_[place].child[1 - side];
+  const Place nephew = nodes_[other].child[which];
+  nodes_[place].child[side] = nephew;
+  nodes_[nephew].parent = place;
+  nodes_[other].child[which] = child;
+  nodes_[child].parent = other;
+  update(other);
+}
+
+template <std::size_t Dimension>
+void BoxTree<Dimension>::refit(Place place) {
+  for (; place != none; place = nodes_[place].parent) {
+    const Box box = nodes_[place].box;
+    const std::uint32_t leaves = nodes_[place].leaves;
+    update(place);
+    rotate(place);
+    if (box == nodes_[place].box && leaves == nodes_[place].leaves) return;
+  }
+}
+
+template <std::size_t Dimension>
+std::size_t BoxTree<Dimension>::depth() const {
+  std::size_t most = 0;
+  for (const Place leaf : leaf_) {
+    std::size_t steps = 0;
+    for (Place at = leaf; at != none && at != root_; at = nodes_[at].parent) ++steps;
+    most = std::max(most, steps);
+  }
+  return most;
+}
+
+template <std::size_t Dimension>
+double BoxTree<Dimension>::relative_surface() const {
+  if (size() < 2) return 0;
+  double sum = 0;
+  std::vector<Place> open{root_};
+  while (!open.empty()) {
+    const Node& node = nodes_[open.back()];
+    open.pop_back();
+    if (node.is_leaf()) continue;
+    sum += node.box.surface();
+    open.insert(open.end(), node.child.begin(), node.child.end());
+  }
+  return sum / nodes_[root_].box.surface();
+}
+
+template <std::size_t Dimension>
+void BoxTree<Dimension>::audit(const std::string& name) const {
+  const auto fail = [&](Place place, const char* what) {
+    throw AuditFailure(name + ": node " + std::to_string(place) + ": " + what);
+  };
+  std::size_t met = 0;
+  std::vector<Place> open;
+  if (root_ != none) open.push_back(root_);
+  if (root_ != none && nodes_[root_].parent != none) fail(root_, "the root has a parent");
+  while (!open.empty()) {
+    const Place place = open.back();
+    const Node& node = nodes_[place];
+    open.pop_back();
+    if (++met > nodes_.size()) fail(place, "is met twice");
+    if (node.is_leaf()) {
+      if (node.leaves != 1 || !contains(node.id) || leaf_[node.id] != place) fail(place, "a leaf is misplaced");
+      continue;
+    }
+    for (const Place child : node.child) {
+      if (nodes_[child].parent != place) fail(child, "its parent is another");
+      open.push_back(child);
+    }
+    const Node& left = nodes_[node.child[0]];
+    const Node& right = nodes_[node.child[1]];
+    if (node.box != hull(left.box, right.box)) fail(place, "is not the hull of its two");
+    if (node.leaves != left.leaves + right.leaves) fail(place, "has not so many leaves");
+  }
+  if (met + free_.size() != nodes_.size()) fail(root_, "nodes are lost");
+  const auto absent = static_cast<std::size_t>(std::count(leaf_.begin(), leaf_.end(), none));
+  if (leaf_.size() - absent != size()) fail(root_, "boxes are lost");
+}
+
+}  // namespace kds::structures
