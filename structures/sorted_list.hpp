@@ -54,6 +54,11 @@ class SortedList {
   struct Entry {
     Motion<Degree> motion;
     Id id;
+
+    template <class Archive>
+    void archive(Archive& archive) {
+      archive(motion, id);
+    }
   };
 
   explicit SortedList(Listener listener = {}) : listener_(listener) {}
@@ -100,6 +105,11 @@ class SortedList {
 
   const Counters& counters() const { return schedule_.counters(); }
   const Queue& queue() const { return schedule_.queue(); }
+
+  /// Saves or loads all that the list knows, and its listener if that has archive(). See save() in snapshot.hpp. Lists on
+  /// a queue of places and lists on others are two kinds.
+  template <class Archive>
+  void archive(Archive& archive);
 
  private:
   static constexpr std::uint32_t absent = std::numeric_limits<std::uint32_t>::max();
@@ -229,98 +239,6 @@ class SortedList {
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
   requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> entries, double now) {
-  Id greatest = 0;
-  for (const Entry& entry : entries) {
-    require_legal(entry.id, entry.motion);
-    greatest = std::max(greatest, entry.id);
-  }
-  std::vector<bool> used(entries.empty() ? 0 : greatest + std::size_t{1});
-  for (const Entry& entry : entries) {
-    if (used[entry.id]) refuse_twice(entry.id);
-    used[entry.id] = true;
-  }
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    schedule_.clear(slot(i));
-    position_[order_[i].id] = absent;
-  }
-  if (!entries.empty()) make_room(greatest);
-  if constexpr (by_place) schedule_.resize(entries.size());
-  sort(entries, now);
-  renumber(0);
-  for (std::size_t i = 0; i < order_.size(); ++i) certify(i, now);
-  settle();
-}
-
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Degree>& motion, double now) {
-  require_legal(id, motion);
-  if (contains(id)) refuse_twice(id);
-  make_room(id);
-  expect_disorder(now);
-  const Entry entry{motion, id};
-  const auto place = std::partition_point(order_.begin(), order_.end(),
-                                          [&](const Entry& other) { return in_order(other, entry, now); });
-  const auto index = static_cast<std::size_t>(place - order_.begin());
-  order_.insert(place, entry);
-  if constexpr (by_place) schedule_.insert_slot(static_cast<Slot>(index));
-  renumber(index);
-  if (index > 0) certify(index - 1, now);
-  certify(index, now);
-  settle();
-}
-
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::remove(Id id, double now) {
-  require(id);
-  expect_disorder(now);
-  const std::size_t index = position_[id];
-  if constexpr (by_place) {
-    schedule_.erase_slot(static_cast<Slot>(index));
-  } else {
-    schedule_.clear(id);
-  }
-  order_.erase(order_.begin() + static_cast<std::ptrdiff_t>(index));
-  position_[id] = absent;
-  renumber(index);
-  if (index > 0) certify(index - 1, now);
-  settle();
-}
-
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Degree>& motion, double now) {
-  require(id);
-  require_finite(id, motion);
-  expect_disorder(now);
-  const std::size_t before = position_[id];
-  std::size_t index = before;
-  order_[index].motion = motion;
-  while (index > 0 && !in_order(order_[index - 1], order_[index], now)) {
-    exchange(--index);
-    listener_.swapped(order_[index].id, order_[index + 1].id, now);
-  }
-  while (index + 1 < order_.size() && !in_order(order_[index], order_[index + 1], now)) {
-    exchange(index++);
-    listener_.swapped(order_[index - 1].id, order_[index].id, now);
-  }
-  // The pairs on both sides of the element, and the pair that closed up where it left. Elements it has passed keep
-  // their neighbours, and a slot is the left element's, so nothing else changes.
-  if constexpr (by_place) schedule_.move_slot(static_cast<Slot>(before), static_cast<Slot>(index));
-  if (index > 0) certify(index - 1, now);
-  certify(index, now);
-  if (index < before) {
-    certify(before, now);
-  } else if (index > before && before > 0) {
-    certify(before - 1, now);
-  }
-  settle();
-}
-
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::process() {
   const auto [time, top] = schedule_.next();
   const std::size_t left = left_of(top);
@@ -370,4 +288,16 @@ void SortedList<Degree, Listener, Queue, Solver>::audit(double now) const {
   }
 }
 
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+template <class Archive>
+void SortedList<Degree, Listener, Queue, Solver>::archive(Archive& archive) {
+  archive.tag("SortedList of degree " + std::to_string(Degree) + (by_place ? ", events by place" : ", events by id"));
+  archive(order_, position_, disturbed_, schedule_);
+  if constexpr (requires { listener_.archive(archive); }) listener_.archive(archive);
+  if constexpr (Archive::loading) settle();
+}
+
 }  // namespace kds::structures
+
+#include "structures/sorted_list_edits.hpp"

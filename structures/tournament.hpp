@@ -81,6 +81,13 @@ class Tournament {
 
   const Counters& counters() const { return schedule_.counters(); }
 
+  /// Saves or loads all that the tournament knows. See save() in snapshot.hpp.
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive.tag("Tournament of degree " + std::to_string(Degree));
+    archive(entrants_, winner_, schedule_, capacity_, size_);
+  }
+
  private:
   static constexpr Id nobody = std::numeric_limits<Id>::max();
 

@@ -10,6 +10,7 @@
 
 #include <concepts>
 #include <cstddef>
+#include <vector>
 
 namespace kds {
 
@@ -122,6 +123,22 @@ class Schedule {
   /// What failed() and certify() have counted.
   const Counters& counters() const { return counters_; }
   const Queue& queue() const { return queue_; }
+
+  /// Saves or loads the times of the slots, the horizon and the counters; see save() in snapshot.hpp. Queues are functions
+  /// of their times, so that one may be loaded into another. A queue of places is to be settled afterwards.
+  template <class Archive>
+  void archive(Archive& archive) {
+    std::vector<double> times;
+    if constexpr (!Archive::loading) {
+      for (Slot slot = 0; slot < queue_.slots(); ++slot) times.push_back(queue_.time(slot));
+    }
+    archive(times, horizon_, counters_);
+    if constexpr (Archive::loading) {
+      queue_.resize(0);
+      queue_.resize(times.size());
+      for (Slot slot = 0; slot < times.size(); ++slot) set(slot, times[slot]);
+    }
+  }
 
  private:
   template <Certificate C>

@@ -89,7 +89,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   /// AuditFailure.
   void audit(double now) const;
 
-  Counters counters() const { return schedule_.counters() + offset_; }
+  Counters counters() const { return schedule_.counters(); }
   /// Counted so far; most_per_element is found now, in time linear in the certificates.
   Measures measures() const;
 
@@ -144,7 +144,6 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   Schedule<Queue, Solver> schedule_;
   std::vector<std::uint8_t> held_;  ///< whether a slot has a certificate
   Measures measures_;
-  Counters offset_;       ///< what was counted before the state was loaded, less what the schedule had counted
   double last_ = -never;  ///< of the last change
   bool busy_ = false;
   bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
@@ -256,73 +255,6 @@ void Kinetic<Rule, Listener, Queue, Solver>::settle(double now) {
   while (next_time() <= now) process();
 }
 
-template <class Rule, class Listener, EventQueue Queue, class Solver>
-void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
-  const auto fail = [](Slot slot, const char* what) {
-    throw AuditFailure(Rule::name + (": slot " + std::to_string(slot)) + ": " + what);
-  };
-  for (Slot slot = 0; slot < held_.size(); ++slot) {
-    if (!held_[slot]) {
-      if (schedule_.contains(slot)) fail(slot, "an event without certificate");
-      continue;
-    }
-    bool certified = false;
-    const double time = schedule_.contains(slot) ? schedule_.time(slot) : never;
-    detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
-      certified = true;
-      if (exact_sign(certificate, now) < 0 && (Sampled<Element> || time > now)) fail(slot, "has failed");
-      if constexpr (Sampled<Element>) {
-        const Conservative<std::remove_cvref_t<decltype(certificate)>> conservative{certificate};
-        const double t = failure_time(conservative, now, schedule_.horizon());
-        const double latest = std::max(t, soonest_sample(slot));
-        if (time > latest && latest <= schedule_.horizon()) fail(slot, "is to be sampled too late");
-      } else if constexpr (Solver::certified) {
-        if (failure_time(certificate, now, schedule_.horizon()) != time) fail(slot, "the event has the wrong time");
-      }
-    });
-    if (!certified) fail(slot, "is held, but there is no certificate");
-  }
-  if constexpr (requires { rule_.audit(elements_, now); }) rule_.audit(elements_, now);
-}
-
-template <class Rule, class Listener, EventQueue Queue, class Solver>
-Measures Kinetic<Rule, Listener, Queue, Solver>::measures() const {
-  std::vector<std::uint64_t> of_element(elements_.end_id(), 0);
-  for (Slot slot = 0; slot < held_.size(); ++slot) {
-    if (!held_[slot]) continue;
-    for (const Id id : rule_.members(slot)) ++of_element[id];
-  }
-  Measures result = measures_;
-  for (const std::uint64_t count : of_element) result.most_per_element = std::max(result.most_per_element, count);
-  return result;
-}
-
-template <class Rule, class Listener, EventQueue Queue, class Solver>
-template <class Archive>
-void Kinetic<Rule, Listener, Queue, Solver>::archive(Archive& archive) {
-  std::vector<double> times(held_.size(), never);
-  for (Slot slot = 0; slot < held_.size(); ++slot) {
-    if (schedule_.contains(slot)) times[slot] = schedule_.time(slot);
-  }
-  double horizon = schedule_.horizon();
-  Counters counted = counters();
-  archive.tag(Rule::name);
-  if constexpr (requires { rule_.archive(archive); }) {
-    rule_.archive(archive);
-  } else {
-    static_assert(!sizeof(Archive),
-                  "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
-  }
-  archive(held_, times, horizon, counted, measures_, last_);
-  if constexpr (Archive::loading) {
-    if (times.size() != held_.size()) throw std::runtime_error("snapshot: it is damaged");
-    for (Slot slot = 0; slot < schedule_.queue().slots(); ++slot) schedule_.clear(slot);
-    schedule_.resize(held_.size());
-    schedule_.set_horizon(horizon);
-    for (Slot slot = 0; slot < held_.size(); ++slot) schedule_.set(slot, times[slot]);
-    offset_ = counted - schedule_.counters();
-    repair_.marks_.assign(held_.size(), Repair<Element>::Mark::none);
-  }
-}
-
 }  // namespace kds
+
+#include "kds/framework/kinetic_audit.hpp"

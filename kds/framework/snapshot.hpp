@@ -36,7 +36,15 @@ class Snapshot {
 
 namespace detail {
 
-/// Calls archive(...) of its own for what has one, copies the bytes of what may be copied so, and goes through vectors.
+template <class T>
+concept OptionalLike = requires(T& value) {
+  value.has_value();
+  value.emplace();
+  value.reset();
+};
+
+/// Calls archive(...) of its own for what has one, goes through vectors and optional values, and copies the bytes of what
+/// may be copied so.
 template <class Derived>
 class Archive {
  public:
@@ -64,20 +72,38 @@ class Archive {
       value.archive(self);
     } else if constexpr (requires { archive_members(self, value); }) {
       archive_members(self, value);
+    } else if constexpr (OptionalLike<T>) {
+      std::uint8_t there = value.has_value();
+      one(there);
+      if constexpr (Derived::loading) there ? void(value.emplace()) : value.reset();
+      if (value.has_value()) one(*value);
     } else if constexpr (requires { value.resize(1), value.data(); }) {
-      std::uint64_t size = value.size();
-      one(size);
-      self.room(size);
-      value.resize(size);
-      using Entry = std::remove_cvref_t<decltype(value[0])>;
-      if constexpr (std::is_trivially_copyable_v<Entry>) {
-        self.bytes(reinterpret_cast<char*>(value.data()), size * sizeof(Entry));
-      } else {
-        for (auto& entry : value) one(entry);
-      }
+      several(value);
     } else {
       static_assert(std::is_trivially_copyable_v<T>, "snapshot: a type without archive(), which is not plain data");
       self.bytes(reinterpret_cast<char*>(&value), sizeof(T));
+    }
+  }
+
+  /// The size and, of plain entries, how long they are: so that entries of other types are refused.
+  template <class T>
+  void several(T& values) {
+    auto& self = static_cast<Derived&>(*this);
+    using Entry = std::remove_cvref_t<decltype(values[0])>;
+    constexpr bool plain = std::is_trivially_copyable_v<Entry> && !OptionalLike<Entry> &&
+                           !requires(Entry & entry) { entry.archive(self); } &&
+                           !requires(Entry & entry) { archive_members(self, entry); };
+    std::uint64_t size = values.size();
+    std::uint32_t length = plain ? sizeof(Entry) : 0;
+    one(size);
+    one(length);
+    if (length != (plain ? sizeof(Entry) : 0)) throw std::runtime_error("snapshot: it is one of other types");
+    self.room(size);
+    values.resize(size);
+    if constexpr (plain) {
+      self.bytes(reinterpret_cast<char*>(values.data()), size * sizeof(Entry));
+    } else {
+      for (auto& entry : values) one(entry);
     }
   }
 };
@@ -132,13 +158,22 @@ Snapshot save(Parts&... parts) {
 }
 
 /// Puts parts back into a saved state. They must be those that were saved, or others made of the same types in the same
-/// order; structures must be attached to the sets. Throws std::runtime_error for a snapshot of other parts, and the
-/// parts are then to be thrown away or restored from another.
+/// order; structures must be attached to the sets. Listeners and queues may be others. Throws std::runtime_error for a
+/// snapshot of other parts, and then leaves the parts as they were. Cost: that of a save() and a load.
 template <class... Parts>
 void restore(const Snapshot& snapshot, Parts&... parts) {
-  detail::Reader reader(snapshot.bytes());
-  (parts.archive(reader), ...);
-  if (!reader.at_end()) throw std::runtime_error("snapshot: there is more in it than was asked for");
+  const auto load = [&](const Snapshot& from) {
+    detail::Reader reader(from.bytes());
+    (parts.archive(reader), ...);
+    if (!reader.at_end()) throw std::runtime_error("snapshot: there is more in it than was asked for");
+  };
+  const Snapshot before = save(parts...);
+  try {
+    load(snapshot);
+  } catch (...) {
+    load(before);
+    throw;
+  }
 }
 
 /// Writes a snapshot, with its length and a checksum.
