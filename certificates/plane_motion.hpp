@@ -32,6 +32,12 @@ PlaneMotion<Degree> restarted(const PlaneMotion<Degree>& path, double t) {
   return {{kds::restarted(path.axis(0), t).position, kds::restarted(path.axis(1), t).position}, t};
 }
 
+/// The same motion in time that runs backwards, exactly: see Motion.
+template <int Degree>
+PlaneMotion<Degree> reversed(const PlaneMotion<Degree>& path) {
+  return {{mirrored(path.coordinate[0]), mirrored(path.coordinate[1])}, 0.0 - path.start};
+}
+
 /// A point of the plane that was sampled at `start` and has moved at most at `speed` since, in either coordinate.
 struct BoundedPoint {
   static constexpr int degree = 1;

@@ -71,6 +71,15 @@ struct PointMotion {
   }
 };
 
+/// The same motion in time that runs backwards, exactly: see Motion.
+template <int Degree>
+PointMotion<Degree> reversed(const PointMotion<Degree>& path) {
+  PointMotion<Degree> result = path;
+  for (std::size_t i = 1; i <= Degree; i += 2) result.coefficients[i] = Eigen::Vector3d::Zero() - path.coefficients[i];
+  result.start = 0.0 - path.start;
+  return result;
+}
+
 /// For snapshots (kds/framework/snapshot.hpp).
 template <class Archive, int Degree>
 void archive_members(Archive& archive, PointMotion<Degree>& path) {

@@ -157,6 +157,20 @@ Ball<DoubleDouble> extended_difference(const Motion<Degree>& a, const Motion<Deg
   return compensated_value(relative, two_sum(t, -a.start));
 }
 
+/// The polynomial p(-x), exactly.
+template <int Degree>
+Polynomial<Degree> mirrored(const Polynomial<Degree>& p) {
+  Polynomial<Degree> result = p;
+  for (std::size_t i = 1; i <= Degree; i += 2) result.c[i] = 0.0 - p.c[i];  // never -0
+  return result;
+}
+
+/// The same motion in time that runs backwards: reversed(m)(-t) = m(t), exactly. Twice gives the motion itself.
+template <int Degree>
+Motion<Degree> reversed(const Motion<Degree>& motion) {
+  return {mirrored(motion.position), 0.0 - motion.start};
+}
+
 /// The same motion restarted at t: equal up to the rounding of its new coefficients.
 template <int Degree>
 Motion<Degree> restarted(const Motion<Degree>& motion, double t) {

@@ -82,6 +82,14 @@ class Simulator {
   /// Moves the clock to t without looking for events. Precondition: now() <= t and none is due before t.
   void set_clock(double t) { now_ = t; }
 
+  /// Turns the clock and the structures round, whose elements must have been turned before: see reverse() in
+  /// framework/reverse.hpp.
+  void turn_round() {
+    now_ = 0.0 - now_;  // never -0
+    horizon_ = now_ + window_;
+    std::apply([&](auto&... s) { (s.turn_round(now_, horizon_), ...); }, structures_);
+  }
+
   /// Checks every structure at the clock; throws AuditFailure.
   void audit() const {
     std::apply([&](const auto&... s) { (s.audit(now_), ...); }, structures_);

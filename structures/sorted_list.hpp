@@ -100,14 +100,18 @@ class SortedList {
 
   void extend_horizon(double now, double horizon);
 
+  /// Turns the motions round and certifies them in time that runs backwards: see reverse() in
+  /// kds/framework/reverse.hpp.
+  void turn_round(double now, double horizon);
+
   /// Checks order, positions and failure times against the motions, exactly.
   void audit(double now) const;
 
   const Counters& counters() const { return schedule_.counters(); }
   const Queue& queue() const { return schedule_.queue(); }
 
-  /// Saves or loads all that the list knows, and its listener if that has archive(). See save() in snapshot.hpp. Lists on
-  /// a queue of places and lists on others are two kinds.
+  /// Saves or loads all that the list knows, and its listener if that has archive(). See save() in snapshot.hpp. Lists
+  /// on a queue of places and lists on others are two kinds.
   template <class Archive>
   void archive(Archive& archive);
 

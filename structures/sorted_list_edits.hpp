@@ -102,4 +102,14 @@ void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Deg
   settle();
 }
 
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+void SortedList<Degree, Listener, Queue, Solver>::turn_round(double now, double horizon) {
+  for (Entry& entry : order_) entry.motion = reversed(entry.motion);
+  schedule_.set_horizon(horizon);
+  disturbed_ = now;  // It may have been amidst the events of a time.
+  for (std::size_t i = 0; i < order_.size(); ++i) certify(i, now);
+  settle();
+}
+
 }  // namespace kds::structures

@@ -77,6 +77,16 @@ class Tournament {
     for (std::size_t node = 1; node < capacity_; ++node) certify(node, now);
   }
 
+  /// Turns the motions round and plays all matches in time that runs backwards: see reverse() in
+  /// kds/framework/reverse.hpp.
+  void turn_round(double now, double horizon) {
+    for (auto& entrant : entrants_) {
+      if (entrant) entrant = reversed(*entrant);
+    }
+    schedule_.set_horizon(horizon);
+    for (std::size_t node = capacity_; node-- > 1;) play(node, now);
+  }
+
   void audit(double now) const;
 
   const Counters& counters() const { return schedule_.counters(); }

@@ -60,7 +60,8 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
 
   /// Takes up what is in the set. The set must outlive the structure.
   explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
-      : elements_(elements), rule_(std::move(rule)), listener_(std::move(listener)), repair_(elements) {
+      : elements_(elements), rule_(std::move(rule)), listener_(std::move(listener)), repair_(elements),
+        backwards_(elements.backwards()) {
     begin(now);
     if constexpr (requires { rule_.build(repair_); }) {
       rule_.build(repair_);
@@ -84,6 +85,18 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   void process();
 
   void extend_horizon(double now, double horizon);
+
+  /// Certifies anew, all elements having been turned round and the clock too: see reverse() in reverse.hpp. What has
+  /// failed by then fails at once, so that the events of this time bring the state before it.
+  void turn_round(double now, double horizon) requires Reversible<Element> {
+    backwards_ = !backwards_;
+    begin(now);
+    schedule_.set_horizon(horizon);
+    for (Slot slot = 0; slot < held_.size(); ++slot) {
+      if (held_[slot]) certify(slot, false);
+    }
+    finish(false);
+  }
 
   /// Checks every certificate and failure time with exact signs, and what the rule itself has to check. Throws
   /// AuditFailure.
@@ -125,6 +138,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
 
   void begin(double now) {
     if (busy_) fail_use("the elements may not be edited from within the rule");
+    if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
     busy_ = true;
     repair_.now_ = last_ = now;
   }
@@ -146,6 +160,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   Measures measures_;
   double last_ = -never;  ///< of the last change
   bool busy_ = false;
+  bool backwards_ = false;
   bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
 };
 

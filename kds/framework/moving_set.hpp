@@ -46,6 +46,12 @@ concept Sampled = MovingElement<E> && requires(const E& element) {
   { element.start } -> std::convertible_to<double>;
 };
 
+/// An element whose motion can be written in time that runs backwards, exactly: reversed(e)(-t) = e(t).
+template <class E>
+concept Reversible = MovingElement<E> && requires(const E& element) {
+  { reversed(element) } -> std::convertible_to<E>;
+};
+
 /// Moving elements by id. Structures attach themselves, and are told of every edit.
 ///
 /// An edit is made at a clock value, which is that of the simulator that runs the structures. Law: an edit comes after
@@ -156,13 +162,21 @@ class MovingSet {
     replace(id, element, now);
   }
 
+  /// Whether the motions are written in time that runs backwards: see reverse() in reverse.hpp, which calls
+  /// turn_round().
+  bool backwards() const { return backwards_; }
+  void turn_round() requires Reversible<E> {
+    for (E& element : elements_) element = reversed(element);
+    backwards_ = !backwards_;
+  }
+
   void attach(Observer& observer) { observers_.push_back(&observer); }
   void detach(Observer& observer) { std::erase(observers_, &observer); }
 
   template <class Archive>
   void archive(Archive& archive) {
     archive.tag("MovingSet");
-    archive(elements_, present_, size_, samples_);
+    archive(elements_, present_, size_, samples_, backwards_);
   }
 
  private:
@@ -194,6 +208,7 @@ class MovingSet {
   std::function<Element(Id, double)> sampler_;
   double tick_ = 0;
   std::uint64_t samples_ = 0;
+  bool backwards_ = false;
 };
 
 }  // namespace kds

@@ -43,8 +43,8 @@ concept OptionalLike = requires(T& value) {
   value.reset();
 };
 
-/// Calls archive(...) of its own for what has one, goes through vectors and optional values, and copies the bytes of what
-/// may be copied so.
+/// Calls archive(...) of its own for what has one, goes through vectors and optional values, and copies the bytes of
+/// what may be copied so.
 template <class Derived>
 class Archive {
  public:

@@ -124,13 +124,13 @@ int differences(std::uint64_t seed, Kind kind, double window) {
 TEMPLATE_TEST_CASE_SIG("lists and tournaments run again from a snapshot bit for bit", "[snapshot]",
                        ((int Degree), Degree), 1, 2, 3) {
   using ById = SortedList<Degree, structures::NoSwapListener, PairingQueue<>>;
+  using ById2 = SortedList<Degree, structures::NoSwapListener, DaryQueue<>>;
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 700; seed < 703; ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
       const double window = seed % 2 == 0 ? 0.4 : never;
       CHECK(differences<Degree, SortedList<Degree>, SortedList<Degree>>(seed, kind, window) == 0);
-      CHECK(differences<Degree, ById, SortedList<Degree, structures::NoSwapListener, DaryQueue<>>>(seed, kind, window) ==
-            0);
+      CHECK(differences<Degree, ById, ById2>(seed, kind, window) == 0);
       CHECK(differences<Degree, Tournament<Degree>, Tournament<Degree, PairingQueue<>>>(seed, kind, window) == 0);
     }
   }
@@ -145,7 +145,7 @@ TEST_CASE("a snapshot of something else is refused, and nothing has changed", "[
   list.edits(seed, 3);
   const Snapshot before = save(list.simulator);
   CHECK_THROWS_WITH(restore(save(lines.simulator), list.simulator),
-                    Catch::Contains("expected SortedList of degree 2") && Catch::Contains("found SortedList of degree 1"));
+                    Catch::Contains("expected SortedList of degree 2") && Catch::Contains("List of degree 1"));
   CHECK_THROWS_WITH(restore(save(tournament.simulator), list.simulator), Catch::Contains("found Tournament"));
   CHECK_THROWS_WITH(restore(save(by_id.simulator), list.simulator), Catch::Contains("events by id"));
   CHECK_THROWS_WITH(restore(before, list.structure), Catch::Contains("found Simulator"));

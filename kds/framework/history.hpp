@@ -1,0 +1,155 @@
+// Steps back and roll-backs to any earlier time, edits and all: snapshots now and then, and the calls made since.
+#pragma once
+
+#include "kds/framework/snapshot.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace kds {
+
+/// Runs a simulator and can bring back each of its earlier states, bit for bit: saves a snapshot every so many events,
+/// and writes down what it is asked to do in between, which is done again from the last snapshot on. [Jefferson85]
+/// calls this roll-back with periodic state saving.
+///
+/// Steps and edits must be made through it from the beginning, or it knows nothing of them. Edits and listeners are
+/// called again when they are replayed, and must then do the same (replaying() tells them). What is rolled back is
+/// forgotten: the run goes on from there.
+///
+/// Cost: memory, a snapshot every `every` events or calls, and a few words a call; a roll-back, a load and at most
+/// `every` events and calls. Not for time that runs backwards (reverse.hpp).
+template <class AnySimulator, class... Parts>
+class History {
+ public:
+  /// `parts`: the sets of elements and whatever else is saved with the simulator.
+  explicit History(std::uint64_t every, AnySimulator& simulator, Parts&... parts)
+      : simulator_(simulator), parts_(parts...), every_(std::max<std::uint64_t>(every, 1)) {
+    keep();
+  }
+
+  /// As those of the simulator.
+  bool step(double limit = forever) {
+    keep_now_and_then();
+    if (!simulator_.step(limit)) return false;
+    if (calls_.size() > kept_.back().calls && calls_.back().steps > 0 && calls_.back().limit == limit) {
+      ++calls_.back().steps;
+    } else {
+      calls_.push_back({limit, 1, {}});
+    }
+    ++events_;
+    return true;
+  }
+  void advance_to(double t) {
+    while (t >= simulator_.now() && step(t)) {}
+    simulator_.advance_to(t);
+    calls_.push_back({t, 0, {}});
+  }
+  /// Calls f(), which may edit the elements, plan pieces, and so on, at the clock.
+  void edit(std::function<void()> f) {
+    keep_now_and_then();
+    f();
+    calls_.push_back({simulator_.now(), 0, std::move(f)});
+  }
+
+  std::uint64_t events() const { return events_; }
+  std::size_t snapshots() const { return kept_.size(); }
+  bool replaying() const { return replaying_; }
+
+  /// Back to time t: all edits up to and including t have been made, and all events have happened. Throws
+  /// std::invalid_argument for a time after the clock, or before the first that is known.
+  void roll_back(double t) {
+    if (!(t <= simulator_.now()) || t < kept_.front().time) {
+      throw std::invalid_argument("History: " + std::to_string(t) + " is not between " +
+                                  std::to_string(kept_.front().time) + " and the clock at " +
+                                  std::to_string(simulator_.now()));
+    }
+    replay([&](const Kept& kept) { return kept.time <= t; }, t, std::numeric_limits<std::uint64_t>::max());
+    advance_to(t);
+  }
+
+  /// Undoes the last event and whatever came after it: the state is the one in which it was due. False if there is
+  /// none.
+  bool step_back() {
+    if (events_ == kept_.front().events) return false;
+    const std::uint64_t before = events_ - 1;
+    replay([&](const Kept& kept) { return kept.events <= before; }, forever, before);
+    return true;
+  }
+
+  /// Forgets what is not needed to go back to t.
+  void forget_before(double t) {
+    std::size_t first = 0;
+    while (first + 1 < kept_.size() && kept_[first + 1].time <= t) ++first;
+    const std::size_t calls = kept_[first].calls;
+    kept_.erase(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(first));
+    calls_.erase(calls_.begin(), calls_.begin() + static_cast<std::ptrdiff_t>(calls));
+    for (Kept& kept : kept_) kept.calls -= calls;
+  }
+
+ private:
+  /// An edit at time `limit`, so many steps up to it, or (neither) an advance to it.
+  struct Call {
+    double limit;
+    std::uint64_t steps;
+    std::function<void()> edit;
+  };
+  struct Kept {
+    double time;
+    std::uint64_t events;
+    std::size_t calls;  ///< that had been made
+    Snapshot snapshot;
+  };
+
+  static constexpr double forever = std::numeric_limits<double>::infinity();
+
+  void keep_now_and_then() {
+    if (events_ - kept_.back().events + calls_.size() - kept_.back().calls >= every_) keep();
+  }
+  void keep() {
+    const auto all = [&](auto&... parts) { return save(simulator_, parts...); };
+    kept_.push_back({simulator_.now(), events_, calls_.size(), std::apply(all, parts_)});
+  }
+
+  /// Loads the last snapshot that will do, and does again what was done up to a time and a number of events.
+  template <class WillDo>
+  void replay(WillDo&& will_do, double t, std::uint64_t events) {
+    while (!will_do(kept_.back())) kept_.pop_back();
+    const Kept& from = kept_.back();
+    std::apply([&](auto&... parts) { restore(from.snapshot, simulator_, parts...); }, parts_);
+    events_ = from.events;
+    std::vector<Call> calls(std::make_move_iterator(calls_.begin() + static_cast<std::ptrdiff_t>(from.calls)),
+                            std::make_move_iterator(calls_.end()));
+    calls_.resize(from.calls);
+    replaying_ = true;
+    for (Call& call : calls) {
+      if (call.steps > 0) {
+        std::uint64_t done = 0;
+        while (done < call.steps && events_ < events && step(std::min(call.limit, t))) ++done;
+        if (done < call.steps) break;
+      } else {
+        if (call.limit > t) break;
+        call.edit ? edit(std::move(call.edit)) : advance_to(call.limit);
+      }
+    }
+    replaying_ = false;
+  }
+
+  AnySimulator& simulator_;
+  std::tuple<Parts&...> parts_;
+  std::uint64_t every_;
+  std::uint64_t events_ = 0;
+  std::vector<Kept> kept_;
+  std::vector<Call> calls_;
+  bool replaying_ = false;
+};
+
+}  // namespace kds
