@@ -186,8 +186,8 @@ class PlacedPatch {
     for (std::size_t d = 0; d < 3; ++d) p[d] = q_[d] + e_[d] * t;
     const Lanes distance = detail::dot(p, p);
     const double least = lowest(distance);
-    std::size_t k = 0;
-    while (k < 3 && !(distance[k] <= least)) ++k;
+    // The first of them; no branch, for it would be as often wrong as right.
+    const std::size_t k = distance[0] <= least ? 0 : (distance[1] <= least ? 1 : (distance[2] <= least ? 2 : 3));
     const double along = t[k];
     if (along > 0 && along < 1) {
       return {detail::corner(p, k), least, PatchPart::edge, static_cast<std::uint8_t>(k), along};

@@ -8,13 +8,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace kds::certificates {
 
 namespace {
 
-/// After so many steps with fixed axes the axes turn as well: most queries end before.
-constexpr int fixed_steps = 5;
+/// In so many first steps the normal of the patch is the only axis that turns: most queries end before.
+constexpr int plane_steps = 5;
 /// After so many the direction is extrapolated as well, from the last two steps.
 constexpr int extrapolated_steps = 10;
 /// A query that has not ended after so many is undecided. At the default tolerance no more than 16 have been seen.
@@ -28,9 +29,11 @@ constexpr double greatest_size = 0x1p100;
 template <Patch kind, int Degree>
 class Search {
  public:
-  Search(const PatchPaths<Degree>& paths, const ContactTolerance& tolerance, double t0, double t1)
-      : paths_(paths), t0_(t0), t1_(t1) {
-    if (paths.size > 0 && !(paths.size > least_size && paths.size < greatest_size)) rescale();
+  /// `paths` makes the paths, in their place.
+  template <class Paths>
+  Search(const Paths& paths, const ContactTolerance& tolerance, double t0, double t1)
+      : paths_(paths()), t0_(t0), t1_(t1) {
+    if (paths_.size > 0 && !(paths_.size > least_size && paths_.size < greatest_size)) rescale();
     margin_ = axis_margin(paths_);
     tolerance_ = std::max(std::min(tolerance.absolute * scale_, tolerance.relative * paths_.size),
                           least_tolerance * paths_.size);
@@ -39,8 +42,8 @@ class Search {
     inner2_ = inner * inner;
   }
 
-  FeatureContact run() {
-    result_.tolerance = tolerance_ / scale_;
+  [[gnu::flatten]] FeatureContact run() {
+    result_.tolerance = tolerance_ * unscale_;
     if (boxes_apart(paths_, margin_)) return result_;
     double s = 0;
     for (;; ++result_.steps) {
@@ -61,15 +64,16 @@ class Search {
   }
 
  private:
-  double free_until(const PlacedPatch<kind>& patch, const PatchPoint& point, double s) const {
+  double free_until(const PlacedPatch<kind>& patch, const PatchPoint& point, double s) {
     double until = separated_until(paths_, margin_, point.position, s);
     if (until >= 1) return until;
-    if (point.part == PatchPart::interior || result_.steps >= fixed_steps) {
-      until = std::max(until, TurningAxis<kind, Degree>(paths_).separated_until(point, s));
-    }
-    if (result_.steps >= extrapolated_steps && until < 1) {
-      until = std::max(until, TurningAxis<kind, Degree>(paths_).separated_turning_on(axis_.normalized(), axis_time_,
-                                                                                     point.position.normalized(), s));
+    if (!turning_) turning_.emplace(paths_);
+    const int steps = result_.steps;
+    until = std::max(until, steps < plane_steps ? turning_->separated_by_plane_until(s) :
+                                                  turning_->separated_until(point, s));
+    if (steps >= extrapolated_steps && until < 1) {
+      until = std::max(until, turning_->separated_turning_on(axis_.normalized(), axis_time_,
+                                                             point.position.normalized(), s));
     }
     if (!(until > s)) {
       for (const auto& axis : patch.careful_axes()) until = std::max(until, separated_until(paths_, margin_, axis, s));
@@ -87,7 +91,7 @@ class Search {
     }
     describe(patch, w, p, s, FeatureContactStatus::undecided);
     if (point.part == PatchPart::interior) {
-      if (const auto end = Crossing<kind, Degree>(paths_, patch, s).until(w)) {
+      if (const auto end = Crossing<kind, Degree>(paths_, *turning_, patch, s).until(w)) {
         result_.status = FeatureContactStatus::contact;
         result_.latest = std::min(clock(*end, 1), t1_);
       }
@@ -102,7 +106,7 @@ class Search {
     // While the clock is rounded (see clock()) a corner moves on: by sqrt(3) 2 size a unit of s at most.
     const double rounding = s > 0 ? 0x1p-50 * (std::abs(result_.time) / (t1_ - t0_) + s) : 0;
     const double distance = p.norm();
-    result_.distance = (distance + 3 * margin_ + 4 * paths_.size * rounding) / scale_;
+    result_.distance = (distance + 3 * margin_ + 4 * paths_.size * rounding) * unscale_;
     if constexpr (kind == Patch::triangle) {
       result_.weights = {1, w[0] + w[3], w[1], w[2]};
     } else {
@@ -133,6 +137,7 @@ class Search {
   void rescale() {
     const int exponent = -std::ilogb(paths_.size);
     scale_ = std::ldexp(1.0, std::clamp(exponent, -1000, 1000));
+    unscale_ = 1 / scale_;
     for (auto& c : paths_.c) {
       for (auto& lanes : c) lanes = lanes * Lanes(scale_);
     }
@@ -141,9 +146,11 @@ class Search {
   }
 
   PatchPaths<Degree> paths_;
+  std::optional<TurningAxis<kind, Degree>> turning_;  // once a fixed axis has failed: before any s > 0
   double t0_;
   double t1_;
-  double scale_ = 1;
+  double scale_ = 1;  // a power of two
+  double unscale_ = 1;
   double margin_;
   double tolerance_;
   double inner2_;
@@ -155,7 +162,14 @@ class Search {
 template <Patch kind, int Degree>
 FeatureContact search(const std::array<const PointMotion<Degree>*, 4>& points, double t0, double t1,
                       const ContactTolerance& tolerance) {
-  return Search<kind, Degree>(patch_paths<kind, Degree>(points, t0, t1), tolerance, t0, t1).run();
+  const auto paths = [&] { return patch_paths<kind, Degree>(points, t0, t1); };
+  return Search<kind, Degree>(paths, tolerance, t0, t1).run();
+}
+
+template <Patch kind>
+FeatureContact search(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
+                      const ContactTolerance& tolerance) {
+  return Search<kind, 1>([&] { return patch_paths<kind>(begin, end); }, tolerance, 0, 1).run();
 }
 
 }  // namespace
@@ -176,12 +190,12 @@ FeatureContact edge_edge_contact(const PointMotion<Degree>& a, const PointMotion
 
 FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin,
                                    const std::array<Eigen::Vector3d, 4>& end, const ContactTolerance& tolerance) {
-  return Search<Patch::triangle, 1>(patch_paths<Patch::triangle>(begin, end), tolerance, 0, 1).run();
+  return search<Patch::triangle>(begin, end, tolerance);
 }
 
 FeatureContact edge_edge_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
                                  const ContactTolerance& tolerance) {
-  return Search<Patch::parallelogram, 1>(patch_paths<Patch::parallelogram>(begin, end), tolerance, 0, 1).run();
+  return search<Patch::parallelogram>(begin, end, tolerance);
 }
 
 template FeatureContact vertex_face_contact(const PointMotion<1>&, const PointMotion<1>&, const PointMotion<1>&,

@@ -49,6 +49,10 @@ inline Lanes next(Lanes x) {
   return {__builtin_shufflevector(x.low, x.high, 1, 2), __builtin_shufflevector(x.high, x.low, 1, 2)};
 }
 
+inline double sum_of(Lanes x) {
+  const Lanes::Pair sums = x.low + x.high;
+  return sums[0] + sums[1];
+}
 inline double lowest(Lanes x) {
   const Lanes::Pair m = lesser(x.low, x.high);
   return m[0] < m[1] ? m[0] : m[1];

@@ -59,13 +59,14 @@ namespace detail {
 template <int Degree>
 double size_of(const PatchPaths<Degree>& paths) {
   Lanes size(0.0);
-  double sum = 0;  // NaN or infinite if anything is
+  Lanes all(0.0);
   for (std::size_t d = 0; d < 3; ++d) {
     Lanes reach = absolute(paths.c[0][d]);
     for (std::size_t i = 1; i <= Degree; ++i) reach = reach + absolute(paths.c[i][d]);
     size = greater(reach, size);
-    sum += reach[0] + reach[1] + (reach[2] + reach[3]);
+    all = all + reach;
   }
+  const double sum = sum_of(all);  // NaN or infinite if anything is
   if (!(sum < 0x1p1000)) throw std::invalid_argument("feature contact: a coordinate or a time is not finite");
   return highest(size);
 }

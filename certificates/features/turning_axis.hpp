@@ -28,13 +28,28 @@ namespace kds::certificates {
 template <Patch kind, int Degree>
 class TurningAxis {
  public:
-  explicit TurningAxis(const PatchPaths<Degree>& paths) : paths_(paths) {}
+  explicit TurningAxis(const PatchPaths<Degree>& paths) : paths_(paths) {
+    const auto n = cross(side(0, 1), side(0, kind == Patch::triangle ? 2 : 3));
+    const auto q0 = corner(0);
+    volume_ = dot(n.v, q0.v);
+    volume_error_ = dot_error(n, q0);
+  }
 
-  /// As separated_until() in fixed_axis.hpp, with the axes that belong to the part of the patch on which `point` lies,
-  /// and to the larger parts next to it, which are at most a little worse now and may be much better soon; 1 where that
-  /// is all the time there is.
+  /// The signed volume n . q0 of the four points (six times that of their tetrahedron) for s in [0, 1], and a bound on
+  /// its error there.
+  const Polynomial<3 * Degree>& volume() const { return volume_; }
+  double volume_error() const { return volume_error_; }
+
+  /// As separated_until() in fixed_axis.hpp, with the normal of the patch, n = u x v: all corners are at the same height
+  /// n . q0.
+  double separated_by_plane_until(double s) const {
+    return positive_until(volume_(s) < 0 ? -volume_ : volume_, s, volume_error_);
+  }
+
+  /// The same with the axes that belong to the part of the patch on which `point` lies, and to the larger parts next to
+  /// it, which are at most a little worse now and may be much better soon; 1 where that is all the time there is.
   double separated_until(const PatchPoint& point, double s) const {
-    double until = over_interior(s);
+    double until = separated_by_plane_until(s);
     if (point.part == PatchPart::interior || until >= 1) return until;
     until = std::max(until, beside_edge(point.corner, point.position, s));
     if (point.part == PatchPart::edge || until >= 1) return until;
@@ -119,15 +134,6 @@ class TurningAxis {
     return positive_until(dot(a.v, b.v), s, dot_error(a, b));
   }
 
-  // n = u x v; all corners are at the same height n . q0.
-  double over_interior(double s) const {
-    const auto n = cross(side(0, 1), side(0, kind == Patch::triangle ? 2 : 3));
-    const auto q0 = corner(0);
-    auto height = dot(n.v, q0.v);
-    if (height(s) < 0) height = -height;
-    return positive_until(height, s, dot_error(n, q0));
-  }
-
   // The two corners that are not of the edge are as high as each other, if there are two.
   double beside_edge(std::size_t k, const Eigen::Vector3d& direction, double s) const {
     if (kind == Patch::triangle && k == 3) k = 0;  // the corner that a triangle repeats
@@ -141,6 +147,8 @@ class TurningAxis {
   }
 
   const PatchPaths<Degree>& paths_;
+  Polynomial<3 * Degree> volume_;
+  double volume_error_;
 };
 
 }  // namespace kds::certificates
