@@ -29,9 +29,9 @@ std::uint64_t flips(const std::array<Path, 4>& paths) {
 
 int main(int argc, char** argv) {
   course::Page page(course::View::line, "08 Degeneracies",
-                    "The state at t is the one just after t, and its signs are exact. So b may touch a without an event "
-                    "(a double root); c, d and e meet in one point and turn round in three swaps of one time; f and "
-                    "g are equal for ever and stand in the order of their numbers.", 0, 8);
+                    "The state at t is the one just after t, and its signs are exact. So b may touch a without an "
+                    "event (a double root); c, d and e meet in one point and turn round in three swaps of one time; "
+                    "f and g are equal for ever and stand in the order of their numbers.", 0, 8);
   page.legend.event = "a swap";
   const Motion<2> motions[] = {
       {{{1, 0, 0}}, 0},             // a stays

@@ -17,13 +17,13 @@ function setTime(t) {
 function draw() {
   const number = stateNumber(now);
   view.draw(now, number, lit);
+  $('figure').dataset.time = now;
   $('now').textContent = `t = ${seconds(now)} s`;
   $('time').setAttribute('aria-valuetext', `${seconds(now)} seconds`);
   moveRibbon();
   if (number === shown) return;
   shown = number;
   $('state').textContent = data.states[number].text;
-  $('figure').dataset.state = number;
   showNext(number);
   showCertificates(number);
   markEvents(number);
@@ -186,7 +186,7 @@ document.addEventListener('keydown', (event) => {
 
 /** For whoever drives the page from outside: the same numbers that are drawn. */
 window.course = {
-  data, setTime, position,
+  data, setTime, position, now: () => now,
   state: (t) => ({...data.states[stateNumber(t)], number: stateNumber(t), certificates: certificatesAt(stateNumber(t))}),
 };
 

@@ -1,0 +1,96 @@
+// Put at the end of a page: uses its controls as somebody would, and writes what is then in the picture into the
+// document, for the checker. The collector of errors stands at the beginning of the page (see check_page.cmake).
+window.addEventListener('load', () => {
+  const report = {errors: window.pageErrors, frames: [], clicks: [], keys: [], overlaps: []};
+  const figure = document.getElementById('figure');
+  const slider = document.getElementById('time');
+  const numbers = (text) => text.match(/-?[\d.]+(e[-+]?\d+)?/g).map(Number);
+
+  /** Picture units to those of the model. */
+  function model(x, y) {
+    const {x0, kx, y0, ky} = figure.dataset;
+    return [(x - x0) / kx, (y - y0) / ky];
+  }
+
+  function look(wanted) {
+    const elements = [...figure.querySelectorAll('[data-element]')];
+    const frame = {
+      wanted, time: Number(figure.dataset.time), slider: Number(slider.value), text: document.getElementById('state').textContent,
+      next: document.getElementById('next').textContent,
+      fails: window.course.state(Number(figure.dataset.time)).certificates[0]?.fails ?? null,
+      latest: [...document.querySelectorAll('#events li')].findIndex((row) => row.className.includes('latest')),
+      positions: elements.map((group) => [
+        Number(group.dataset.element), ...model(...numbers(group.getAttribute('transform')))]),
+      marked: elements.filter((group) => group.classList.contains('marked')).map((g) => Number(g.dataset.element)),
+    };
+    const places = [...figure.querySelectorAll('[data-place]')];
+    const height = (group) => numbers(group.getAttribute('transform'))[1];
+    frame.order = places.sort((a, b) => height(b) - height(a)).map((group) => Number(group.dataset.of));
+    frame.edges = [...figure.querySelectorAll('[data-edge]')].map((line) => {
+      const at = (name) => Number(line.getAttribute(name));
+      const ends = [...model(at('x1'), at('y1')), ...model(at('x2'), at('y2'))];
+      return [...line.dataset.edge.split('-').map(Number), ...ends];
+    });
+    const outline = figure.querySelector('[data-outline]');
+    frame.outline = outline ? numbers(outline.dataset.outline) : [];
+    const corners = outline ? numbers(outline.getAttribute('points')) : [];
+    frame.corners = frame.outline.map((_, i) => model(corners[2 * i], corners[2 * i + 1]));
+    return frame;
+  }
+
+  /** A slider rounds to some fifteen digits. */
+  function drag(t) {
+    slider.value = t;
+    slider.dispatchEvent(new Event('input', {bubbles: true}));
+    report.frames.push(look(t));
+  }
+
+  // Between events and at some of them, forwards and back.
+  const events = window.course.data.events.map((event) => event.time);
+  const {begin, end} = window.course.data;
+  const stops = [begin, ...new Set(events), end];
+  let times = [begin, end];
+  for (let i = 0; i + 1 < stops.length; ++i) times.push((stops[i] + stops[i + 1]) / 2);
+  times = times.filter((_, i) => i % Math.ceil(times.length / 50) === 0);
+  for (let i = 0; i < events.length; i += Math.ceil(events.length / 8)) times.push(events[i]);
+  times.sort((a, b) => a - b).forEach(drag);
+  times.reverse().filter((_, i) => i % 3 === 0).forEach(drag);
+
+  const buttons = [...document.querySelectorAll('#events button')];
+  for (let i = 0; i < buttons.length; i += Math.ceil(buttons.length / 6)) {
+    buttons[i].click();
+    report.clicks.push({event: i, ...look(null)});
+  }
+  const press = (key) => {
+    const before = window.course.now();
+    document.body.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, cancelable: true}));
+    report.keys.push([key, before, window.course.now()]);
+  };
+  ['Home', 'n', 'n', 'ArrowRight', 'p', 'End', 'ArrowLeft', 'Home'].forEach(press);
+
+  // Texts of the picture that run into each other, and a page that is wider than its window.
+  drag((begin + end) / 2);
+  const boxes = [...figure.querySelectorAll(':scope > text')].map((text) => [text.textContent, text.getBBox()]);
+  boxes.forEach(([a, p], i) => boxes.slice(i + 1).forEach(([b, q]) => {
+    const apart = p.x + p.width <= q.x || q.x + q.width <= p.x || p.y + p.height <= q.y || q.y + q.height <= p.y;
+    if (!apart) report.overlaps.push([a, b]);
+  }));
+  report.width = [document.documentElement.scrollWidth, window.innerWidth];
+
+  // Play, and pause a moment later.
+  drag(begin);
+  document.getElementById('play').click();
+  setTimeout(() => {
+    document.getElementById('play').click();
+    report.played = Number(slider.value);
+    const paused = report.played;
+    setTimeout(() => {
+      report.stayed = Number(slider.value) === paused;
+      const node = document.createElement('script');
+      node.type = 'application/json';
+      node.id = 'report';
+      node.textContent = JSON.stringify(report);
+      document.body.append(node);
+    }, 100);
+  }, 400);
+});
