@@ -14,19 +14,22 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace kds::collision {
 namespace {
 
 template <int Degree>
-std::unique_ptr<BroadPhase<Degree>> make_broad_phase(const WorldOptions& options, Profile* profile) {
+std::unique_ptr<BroadPhase<Degree>> make_broad_phase(const WorldOptions& options, Profile* profile,
+                                                     Kdops<Degree> kdops) {
   switch (options.broad_phase) {
     case BroadPhaseKind::automatic:
       return std::make_unique<AdaptiveBroadPhase<Degree>>();
     case BroadPhaseKind::grid:
       return std::make_unique<KineticGrid<Degree>>();
     case BroadPhaseKind::kinetic_sap:
-      return std::make_unique<KineticSweepAndPrune<Degree>>(options.start_time);
+      return std::make_unique<KineticSweepAndPrune<Degree>>(options.start_time, ListedAxes::automatic,
+                                                            std::move(kdops));
     case BroadPhaseKind::sap:
       if (!(options.rate > 0) || !std::isfinite(options.rate)) {
         throw std::invalid_argument("WorldOptions.rate: sweep and prune with swept boxes needs a rate > 0");
@@ -81,7 +84,7 @@ World<Degree>::World(const WorldOptions& options, Listener* listener)
       now_(options.start_time),
       horizon_(options.start_time + options.window) {
   validate(options);
-  broad_phase_ = make_broad_phase<Degree>(options, profile());
+  broad_phase_ = make_broad_phase<Degree>(options, profile(), kdops());
   broad_phase_->extend_horizon(now_, horizon_);
 }
 
@@ -325,11 +328,7 @@ void World<Degree>::audit() const {
         continue;
       }
       if (broad_phase_->next_time() <= now_) continue;
-      const BoxOverlap<Degree> boxes(bounding_box(a), bounding_box(b));
-      const auto apart = boxes.separations();
-      bool overlap = true;
-      for (const auto& side : apart) overlap = overlap && sign_after(side, now_) < 0;
-      if (overlap) fail(a, b, "the bounding volumes overlap and the pair is not active");
+      if (volumes_overlap(a, b)) fail(a, b, "the bounding volumes overlap and the pair is not active");
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include "collision/body_description.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/broad_phase/kdop.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
@@ -236,6 +237,12 @@ class World final : private PairListener {
   void schedule_volume(BodyId id);
   MovingShape<Degree> moving(BodyId id) const { return {bodies_[id].shape, movers_[id].motion}; }
 
+  // world_kdops.cpp: bounding volumes in more directions than the axes
+  Kdops<Degree> kdops();
+  void place_extents(BodyId id);
+  KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;
+  bool volumes_overlap(BodyId a, BodyId b) const;
+
   // world_contacts.cpp: tests, contacts, response
   ContactMode mode() const { return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved; }
   void test_dirty_pairs();
@@ -284,6 +291,8 @@ class World final : private PairListener {
   std::vector<Pair> pairs_;
   std::vector<PairSlot> free_pairs_;
   std::vector<PairSlot> dirty_;
+  std::vector<KdopDirection> directions_;      // beyond the axes
+  std::vector<std::array<double, 2>> extents_;  // by body and direction
   /// Ignored pairs that have ended at this instant: motions that change in turn may part boxes that touch and bring them
   /// together again.
   std::vector<Passing> passing_;

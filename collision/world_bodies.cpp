@@ -92,6 +92,7 @@ BodyId World<Degree>::add_body(const Description& description) {
   }
   bodies_[id] = std::move(added);
   movers_[id] = mover;
+  place_extents(id);
   ++alive_;
   if (const auto& extras = bodies_[id].extras) {
     if (extras->box_function) make_room(volumes_, bodies_.size());

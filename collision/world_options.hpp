@@ -50,6 +50,10 @@ struct WorldOptions {
   Response response = Response::none;
   BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
   double rate = 0;                      ///< Hz; frames of the swept boxes, needed by `sap` alone
+  /// Bounding volumes of kinetic sweep and prune: 6, boxes; 14, 18 or 26, k-DOPs, tighter around what is long, thin or
+  /// round, and more to compute (docs/kdops.md). Other broad phases know boxes alone. Contacts are the same; the pairs
+  /// reported are those whose volumes overlap.
+  int kdop = 6;
   std::optional<Walls> walls;
   bool report_pairs = false;            ///< tell the listener of bounding volumes that begin and cease to overlap
   bool profile = false;                 ///< measure where the time goes

@@ -9,16 +9,31 @@
 namespace kds::collision {
 
 template <int Degree>
-KineticSweepAndPrune<Degree>::KineticSweepAndPrune(double now, ListedAxes listed)
-    : asked_(listed),
-      lists_{List(AxisListener{this, 0}), List(AxisListener{this, 1}), List(AxisListener{this, 2})},
-      unlisted_(changes_),
-      simulator_(now, lists_[0], lists_[1], lists_[2], unlisted_) {}
+KineticSweepAndPrune<Degree>::KineticSweepAndPrune(double now, ListedAxes listed, Kdops<Degree> kdops)
+    : kdops_(std::move(kdops)),
+      asked_(listed),
+      all_axes_((1u << (3 + kdops_.directions.size())) - 1),
+      listed_(all_axes_),
+      unlisted_(changes_, 3 + kdops_.directions.size()),
+      slabs_(kdops_.directions.size()),
+      simulator_(now, lists_, unlisted_) {
+  for (std::size_t d = 0; d < 3 + kdops_.directions.size(); ++d) {
+    lists_.all.emplace_back(AxisListener{this, d});
+    lists_.used.push_back(d);
+  }
+}
+
+template <int Degree>
+void KineticSweepAndPrune<Degree>::set_volume(BodyId id, const KineticBox<Degree>& box, double now) {
+  for (std::size_t i = 0; i < slabs_.size(); ++i) slabs_[i] = kdops_.slab(id, i, now);
+  for (const auto& slab : slabs_) require_finite(slab, id);
+  unlisted_.set_box(id, box, slabs_, now);
+}
 
 template <int Degree>
 bool KineticSweepAndPrune<Degree>::overlap_where_listed(BodyId a, BodyId b) const {
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (is_listed(d) && !overlap_on(lists_[d], a, b)) return false;
+  for (const std::size_t d : lists_.used) {
+    if (!overlap_on(lists_.all[d], a, b)) return false;
   }
   return true;
 }
@@ -29,8 +44,8 @@ void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::uint32_t 
   const BodyId right_body = right / 2;
   // After the swap a minimum on the left means that the two intervals have met, a maximum that they have parted.
   const bool met = is_min(left);
-  if (listed_ != all_axes && axis == sweep_axis_) {
-    open_[lists_[axis].position(left)] += met ? 2 : -2;
+  if (!all_listed() && axis == sweep_axis_) {
+    open_[sweep_list().position(left)] += met ? 2 : -2;
     if (left_body == right_body) inverted_ += met ? std::size_t(-1) : 1;
   }
   if (left_body == right_body) return;
@@ -38,15 +53,15 @@ void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::uint32_t 
   const BodyId b = std::max(left_body, right_body);
   if (updating_) {
     ++update_swaps_;
-    if (listed_ == all_axes) changes_.push_back({a, b, false});
+    if (all_listed()) changes_.push_back({a, b, false});
     return;
   }
   // It matters if they overlap on the other axes. (Intervals that are not inverted need no look at this one.)
-  if ((listed_ == all_axes || inverted_ > 0 || axis != sweep_axis_) && overlap_on(lists_[axis], a, b) != met) return;
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (d != axis && is_listed(d) && !overlap_on(lists_[d], a, b)) return;
+  if ((all_listed() || inverted_ > 0 || axis != sweep_axis_) && overlap_on(lists_.all[axis], a, b) != met) return;
+  for (const std::size_t d : lists_.used) {
+    if (d != axis && !overlap_on(lists_.all[d], a, b)) return;
   }
-  if (listed_ != all_axes && !(met ? unlisted_.met(a, b, t) : unlisted_.parted(a, b))) return;
+  if (!all_listed() && !(met ? unlisted_.met(a, b, t) : unlisted_.parted(a, b))) return;
   changes_.push_back({a, b, met});
 }
 
@@ -55,7 +70,7 @@ template <int Degree>
 std::vector<BodyId> KineticSweepAndPrune<Degree>::partners_now(BodyId id, double now) {
   std::vector<BodyId> partners;
   partners_on_lists(id, partners);
-  if (listed_ != all_axes) {
+  if (!all_listed()) {
     std::erase_if(partners,
                   [&](BodyId other) { return !unlisted_.met(std::min(id, other), std::max(id, other), now); });
   }
@@ -68,21 +83,20 @@ void KineticSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double 
   simulator_.set_clock(now);
   box_updates_ += bodies.size();
   if (size() == 0) {
+    for (const Entry& body : bodies) set_volume(body.id, *body.box, now);
     const unsigned listed = best_axes(bodies, now);
-    unlisted_.choose(all_axes & ~listed, now);
-    for (const Entry& body : bodies) unlisted_.set_box(body.id, *body.box, now);
+    unlisted_.choose(all_axes_ & ~listed, now);
     build_lists(bodies, listed, now);
     for (const auto& [a, b] : pairs_on_lists()) {
-      if (listed_ == all_axes || unlisted_.met(a, b, now)) listener.pair_began(a, b, now);
+      if (all_listed() || unlisted_.met(a, b, now)) listener.pair_began(a, b, now);
     }
     return;
   }
   for (const Entry& body : bodies) {
-    unlisted_.set_box(body.id, *body.box, now);
-    for (std::size_t d = 0; d < 3; ++d) {
-      if (!is_listed(d)) continue;
-      lists_[d].insert(min_end(body.id), body.box->min.axis(static_cast<int>(d)), now);
-      lists_[d].insert(max_end(body.id), body.box->max.axis(static_cast<int>(d)), now);
+    set_volume(body.id, *body.box, now);
+    for (const std::size_t d : lists_.used) {
+      lists_.all[d].insert(min_end(body.id), unlisted_.end(body.id, d, false), now);
+      lists_.all[d].insert(max_end(body.id), unlisted_.end(body.id, d, true), now);
     }
     count_open();
     for (const BodyId other : partners_now(body.id, now)) {
@@ -96,15 +110,14 @@ template <int Degree>
 void KineticSweepAndPrune<Degree>::remove(BodyId id, double now, PairListener& listener) {
   simulator_.set_clock(now);
   std::vector<BodyId> partners;
-  if (listed_ == all_axes) {
+  if (all_listed()) {
     partners_on_lists(id, partners);
   } else {
     unlisted_.forget_pairs(id, partners);
   }
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (!is_listed(d)) continue;
-    lists_[d].remove(min_end(id), now);
-    lists_[d].remove(max_end(id), now);
+  for (const std::size_t d : lists_.used) {
+    lists_.all[d].remove(min_end(id), now);
+    lists_.all[d].remove(max_end(id), now);
   }
   count_open();
   std::sort(partners.begin(), partners.end());
@@ -116,19 +129,18 @@ void KineticSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& b
                                           PairListener& listener) {
   simulator_.set_clock(now);
   ++box_updates_;
-  if (listed_ == all_axes) {
-    unlisted_.set_box(id, box, now);
-    return update_listed_pairs(id, box, now, listener);
+  if (all_listed()) {
+    set_volume(id, box, now);
+    return update_listed_pairs(id, now, listener);
   }
   std::vector<BodyId> before;
   unlisted_.forget_pairs(id, before);
   std::sort(before.begin(), before.end());
-  unlisted_.set_box(id, box, now);
+  set_volume(id, box, now);
   updating_ = true;
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (!is_listed(d)) continue;
-    lists_[d].update(min_end(id), box.min.axis(static_cast<int>(d)), now);
-    lists_[d].update(max_end(id), box.max.axis(static_cast<int>(d)), now);
+  for (const std::size_t d : lists_.used) {
+    update_end(d, id, false, now);
+    update_end(d, id, true, now);
   }
   updating_ = false;
   const std::vector<BodyId> after = partners_now(id, now);
@@ -144,29 +156,27 @@ void KineticSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& b
   for (; old != before.end(); ++old) listener.pair_ended(std::min(id, *old), std::max(id, *old), now);
 }
 
-/// Where all axes have lists.
+/// Where all directions have lists.
 template <int Degree>
-void KineticSweepAndPrune<Degree>::update_listed_pairs(BodyId id, const KineticBox<Degree>& box, double now,
-                                                       PairListener& listener) {
+void KineticSweepAndPrune<Degree>::update_listed_pairs(BodyId id, double now, PairListener& listener) {
   changes_.clear();
   updating_ = true;
   // The state before each partner's first change is read off at the end: a pair has changed if it was met by an odd
   // number of swaps on some axis, so partners are collected with the old answer taken when first seen.
   struct Seen {
     BodyId a, b;
-    std::array<bool, 3> apart_changes;
+    unsigned apart_changes;  // bit d for direction d
   };
   std::vector<Seen> seen;
-  for (std::size_t d = 0; d < 3; ++d) {
-    auto& list = lists_[d];
+  for (const std::size_t d : lists_.used) {
     changes_.clear();
-    list.update(min_end(id), box.min.axis(static_cast<int>(d)), now);
-    list.update(max_end(id), box.max.axis(static_cast<int>(d)), now);
+    update_end(d, id, false, now);
+    update_end(d, id, true, now);
     for (const PairChange& change : changes_) {
       auto it =
           std::find_if(seen.begin(), seen.end(), [&](const Seen& s) { return s.a == change.a && s.b == change.b; });
-      if (it == seen.end()) it = seen.insert(seen.end(), Seen{change.a, change.b, {}});
-      it->apart_changes[d] = !it->apart_changes[d];
+      if (it == seen.end()) it = seen.insert(seen.end(), Seen{change.a, change.b, 0});
+      it->apart_changes ^= 1u << d;
     }
   }
   updating_ = false;
@@ -174,10 +184,11 @@ void KineticSweepAndPrune<Degree>::update_listed_pairs(BodyId id, const KineticB
   std::sort(seen.begin(), seen.end(),
             [](const Seen& x, const Seen& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
   for (const Seen& pair : seen) {
-    // Each swap of a minimum with a maximum of a pair toggles its overlap on that axis.
+    // Each swap of a minimum with a maximum of a pair toggles its overlap in that direction.
     bool before = true;
-    for (std::size_t d = 0; d < 3; ++d)
-      before = before && (overlap_on(lists_[d], pair.a, pair.b) != pair.apart_changes[d]);
+    for (const std::size_t d : lists_.used) {
+      before = before && overlap_on(lists_.all[d], pair.a, pair.b) != ((pair.apart_changes >> d & 1) != 0);
+    }
     const bool after = overlap(pair.a, pair.b);
     if (before && !after) listener.pair_ended(pair.a, pair.b, now);
     if (!before && after) listener.pair_began(pair.a, pair.b, now);
@@ -203,9 +214,9 @@ bool KineticSweepAndPrune<Degree>::advance(double limit, PairListener& listener)
 template <int Degree>
 void KineticSweepAndPrune<Degree>::extend_horizon(double now, double horizon) {
   horizon_ = horizon;
-  for (auto& list : lists_) list.extend_horizon(now, horizon);
+  lists_.extend_horizon(now, horizon);
   unlisted_.extend_horizon(now, horizon);
-  if (listed_ != all_axes) {
+  if (!all_listed()) {
     for (const auto& [a, b] : pairs_on_lists()) unlisted_.look_farther(a, b, now);
   }
   choose_again(now);
@@ -213,15 +224,15 @@ void KineticSweepAndPrune<Degree>::extend_horizon(double now, double horizon) {
 
 template <int Degree>
 void KineticSweepAndPrune<Degree>::audit(double now) const {
-  for (const auto& list : lists_) list.audit(now);
+  lists_.audit(now);
   for (const auto& end : sweep_list().entries()) {
-    for (std::size_t d = 0; d < 3; ++d) {
-      if (is_listed(d) && (!lists_[d].contains(end.id) || !lists_[d].contains(end.id ^ 1))) {
+    for (const std::size_t d : lists_.used) {
+      if (!lists_.all[d].contains(end.id) || !lists_.all[d].contains(end.id ^ 1)) {
         throw AuditFailure("KineticSweepAndPrune: body " + std::to_string(end.id / 2) + " lacks an end on some axis");
       }
     }
   }
-  if (listed_ == all_axes) return;
+  if (all_listed()) return;
   unlisted_.audit(now);
   std::int32_t open = 0;
   std::vector<BodyId> partners;
@@ -240,8 +251,7 @@ void KineticSweepAndPrune<Degree>::audit(double now) const {
 
 template <int Degree>
 BroadPhaseCounters KineticSweepAndPrune<Degree>::counters() const {
-  Counters swaps;
-  for (const auto& list : lists_) swaps = swaps + list.counters();
+  const Counters swaps = lists_.counters();
   return {swaps.events + update_swaps_, swaps.certificates + unlisted_.counters().certificates, box_updates_};
 }
 

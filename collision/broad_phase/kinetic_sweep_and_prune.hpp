@@ -2,18 +2,19 @@
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/broad_phase/kdop.hpp"
 #include "collision/broad_phase/unlisted_axes.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
 
-#include <array>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
 namespace kds::collision {
 
-/// How many of the three axes have a sorted list.
-enum class ListedAxes { automatic = 0, one = 1, two = 2, three = 3 };
+/// How many of the three axes, or of the directions of k-DOPs, have a sorted list.
+enum class ListedAxes { automatic, one, two, all };
 
 /// Kinetic sorted lists of interval ends, one for each listed axis; a swap of a minimum with a maximum begins or ends
 /// an overlap there, and whether the other lists overlap is read from positions: no table of pairs is kept. The axes
@@ -32,12 +33,15 @@ enum class ListedAxes { automatic = 0, one = 1, two = 2, three = 3 };
 /// look at the pairs that overlap on the first listed axis; insertion and removal O(n) moves of memory besides that.
 ///
 /// Ends that are equal for good (boxes that touch and move together) do not overlap.
+///
+/// Bounding volumes may be k-DOPs (Kdops): intervals in further directions, with lists or without like those on the axes;
+/// what overlaps does so in all. The list may then be in any direction. Papers: [Klosowski98], [Coming08].
 template <int Degree>
 class KineticSweepAndPrune final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  explicit KineticSweepAndPrune(double now, ListedAxes listed = ListedAxes::automatic);
+  explicit KineticSweepAndPrune(double now, ListedAxes listed = ListedAxes::automatic, Kdops<Degree> kdops = {});
   KineticSweepAndPrune(const KineticSweepAndPrune&) = delete;
   KineticSweepAndPrune& operator=(const KineticSweepAndPrune&) = delete;
 
@@ -52,14 +56,14 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   void audit(double now) const override;
   BroadPhaseCounters counters() const override;
 
-  /// Which axes have a list at present: bit d for axis d.
+  /// Which directions have a list at present: bit d for axis d, from bit 3 on those of the k-DOPs.
   unsigned listed_axes() const { return listed_; }
 
  private:
-  /// Learns of the swaps on one axis.
+  /// Learns of the swaps in one direction.
   struct AxisListener {
     KineticSweepAndPrune* owner;
-    std::size_t axis;
+    std::size_t axis;  ///< or other direction
 
     void swapped(std::uint32_t left, std::uint32_t right, double t) {
       // An end's id is twice its body's, plus one for a maximum: two ends of a kind never matter.
@@ -70,17 +74,47 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   };
   using List = structures::SortedList<Degree, AxisListener>;
 
+  /// The lists, as one structure. Of events at one time that of the first comes first.
+  class Lists {
+   public:
+    std::vector<List> all;         ///< by direction; empty where there is none
+    std::vector<std::size_t> used;  ///< which are not
+
+    double next_time() const { return next().first; }
+    void process() { all[next().second].process(); }
+    void extend_horizon(double now, double horizon) {
+      for (List& list : all) list.extend_horizon(now, horizon);
+    }
+    void audit(double now) const {
+      for (const List& list : all) list.audit(now);
+    }
+    Counters counters() const {
+      Counters sum;
+      for (const List& list : all) sum = sum + list.counters();
+      return sum;
+    }
+
+   private:
+    std::pair<double, std::size_t> next() const {
+      std::pair<double, std::size_t> first{never, 0};
+      for (const std::size_t d : used) {
+        if (const double t = all[d].next_time(); t < first.first) first = {t, d};
+      }
+      return first;
+    }
+  };
+
   static std::uint32_t min_end(BodyId id) { return 2 * id; }
   static std::uint32_t max_end(BodyId id) { return 2 * id + 1; }
   static bool is_min(std::uint32_t end) { return (end & 1) == 0; }
 
   bool is_listed(std::size_t axis) const { return (listed_ >> axis & 1) != 0; }
-  List& sweep_list() { return lists_[sweep_axis_]; }
-  const List& sweep_list() const { return lists_[sweep_axis_]; }
+  const List& sweep_list() const { return lists_.all[sweep_axis_]; }
+  bool all_listed() const { return listed_ == all_axes_; }
   std::size_t size() const { return sweep_list().size() / 2; }
 
   bool overlap(BodyId a, BodyId b) const {
-    return overlap_where_listed(a, b) && (listed_ == all_axes || unlisted_.overlap(a, b));
+    return overlap_where_listed(a, b) && (all_listed() || unlisted_.overlap(a, b));
   }
   bool overlap_where_listed(BodyId a, BodyId b) const;
   bool overlap_on(const List& list, BodyId a, BodyId b) const {
@@ -99,14 +133,20 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   void partners_on_lists(BodyId id, std::vector<BodyId>& partners) const;
 
   std::vector<BodyId> partners_now(BodyId id, double now);
-  void update_pairs(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener);
-  void update_listed_pairs(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener);
+  void update_listed_pairs(BodyId id, double now, PairListener& listener);
 
-  static constexpr unsigned all_axes = 7;
-  static constexpr std::size_t few_bodies = 64;  ///< fewer than this have three lists if nothing else is asked for
+  void set_volume(BodyId id, const KineticBox<Degree>& box, double now);
+  /// Moves an end in a direction to where set_volume() has put it.
+  void update_end(std::size_t d, BodyId id, bool upper, double now) {
+    lists_.all[d].update(upper ? max_end(id) : min_end(id), unlisted_.end(id, d, upper), now);
+  }
 
+  static constexpr std::size_t few_bodies = 64;  ///< fewer boxes than this have three lists if nothing else is asked for
+
+  Kdops<Degree> kdops_;
   ListedAxes asked_;
-  unsigned listed_ = all_axes;
+  unsigned all_axes_;  ///< and directions
+  unsigned listed_;
   std::size_t sweep_axis_ = 0;  // the first that has a list
   std::size_t chosen_at_ = 0;   // bodies when the axes were chosen
   double horizon_ = never;
@@ -121,9 +161,10 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   std::vector<std::int32_t> open_;
   std::size_t inverted_ = 0;
 
-  std::array<List, 3> lists_;
+  Lists lists_;
   UnlistedAxes<Degree> unlisted_;
-  Simulator<List, List, List, UnlistedAxes<Degree>> simulator_;
+  std::vector<KineticSlab<Degree>> slabs_;  // scratch
+  Simulator<Lists, UnlistedAxes<Degree>> simulator_;
   std::uint64_t box_updates_ = 0;
   std::uint64_t update_swaps_ = 0;
 };

@@ -1,10 +1,11 @@
-// Which axes have lists, and who overlaps on them.
+// Which directions have lists, and who overlaps on them.
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
 namespace kds::collision {
 
@@ -13,30 +14,33 @@ namespace kds::collision {
 /// time to come is what bodies take to cross their own sizes. A new axis must promise a third less.
 template <int Degree>
 unsigned KineticSweepAndPrune<Degree>::best_axes(std::span<const Entry> bodies, double now) const {
-  if (asked_ == ListedAxes::three) return all_axes;
-  if (asked_ == ListedAxes::automatic && bodies.size() < few_bodies) return all_axes;
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(never);
-  Eigen::Vector3d high = -low;
-  Eigen::Vector3d lengths = Eigen::Vector3d::Zero();
-  Eigen::Vector3d speeds = Eigen::Vector3d::Zero();
-  for (const Entry& body : bodies) {
-    const Eigen::Vector3d min = body.box->min.position(now);
-    const Eigen::Vector3d max = body.box->max.position(now);
-    low = low.cwiseMin(min);
-    high = high.cwiseMax(max);
-    lengths += max - min;
-    speeds += body.box->min.velocity(now).cwiseAbs();
+  const std::size_t directions = lists_.all.size();
+  if (asked_ == ListedAxes::all) return all_axes_;
+  if (asked_ == ListedAxes::automatic && bodies.size() < few_bodies && directions == 3) return all_axes_;
+  std::vector<double> lengths(directions), speeds(directions), wholes(directions);
+  for (std::size_t d = 0; d < directions; ++d) {
+    double low = never, high = -never;
+    for (const Entry& body : bodies) {
+      const Motion<Degree> min = unlisted_.end(body.id, d, false);
+      const double from = min(now);
+      const double to = unlisted_.end(body.id, d, true)(now);
+      low = std::min(low, from);
+      high = std::max(high, to);
+      lengths[d] += to - from;
+      speeds[d] += std::abs(derivative(min.position)(now - min.start));
+    }
+    wholes[d] = std::max(high - low, 0x1p-1000);
   }
-  const double crossing = speeds.sum() > 0 ? lengths.sum() / speeds.sum() : 0;
-  const Eigen::Vector3d cost =
-      (lengths + speeds * std::min(crossing, horizon_ - now)).cwiseQuotient((high - low).cwiseMax(0x1p-1000));
-  const auto promises = [&](std::size_t axis) {
-    const bool has_list = listed_ != all_axes && is_listed(axis);
-    return cost[static_cast<Eigen::Index>(axis)] * (has_list ? 2.0 / 3 : 1.0);
+  const double speed = speeds[0] + speeds[1] + speeds[2];
+  const double crossing = speed > 0 ? (lengths[0] + lengths[1] + lengths[2]) / speed : 0;
+  const auto promises = [&](std::size_t d) {
+    const double cost = (lengths[d] + speeds[d] * std::min(crossing, horizon_ - now)) / wholes[d];
+    return cost * (!all_listed() && is_listed(d) ? 2.0 / 3 : 1.0);
   };
-  std::array<std::size_t, 3> axes{0, 1, 2};
-  std::stable_sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) { return promises(a) < promises(b); });
-  return 1u << axes[0] | (asked_ == ListedAxes::two ? 1u << axes[1] : 0u);
+  std::vector<std::size_t> order(directions);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return promises(a) < promises(b); });
+  return 1u << order[0] | (asked_ == ListedAxes::two ? 1u << order[1] : 0u);
 }
 
 template <int Degree>
@@ -46,15 +50,17 @@ void KineticSweepAndPrune<Degree>::build_lists(std::span<const Entry> bodies, un
   chosen_at_ = bodies.size();
   std::vector<typename List::Entry> ends;
   ends.reserve(2 * bodies.size());
-  for (std::size_t d = 0; d < 3; ++d) {
+  lists_.used.clear();
+  for (std::size_t d = 0; d < lists_.all.size(); ++d) {
     ends.clear();
     if (is_listed(d)) {
+      lists_.used.push_back(d);
       for (const Entry& body : bodies) {
-        ends.push_back({body.box->min.axis(static_cast<int>(d)), min_end(body.id)});
-        ends.push_back({body.box->max.axis(static_cast<int>(d)), max_end(body.id)});
+        ends.push_back({unlisted_.end(body.id, d, false), min_end(body.id)});
+        ends.push_back({unlisted_.end(body.id, d, true), max_end(body.id)});
       }
     }
-    lists_[d].assign(ends, now);
+    lists_.all[d].assign(ends, now);
   }
   count_open();
 }
@@ -63,7 +69,7 @@ void KineticSweepAndPrune<Degree>::build_lists(std::span<const Entry> bodies, un
 /// holds where no event is due.
 template <int Degree>
 void KineticSweepAndPrune<Degree>::choose_again(double now) {
-  if (asked_ == ListedAxes::three || next_time() <= now) return;
+  if (asked_ == ListedAxes::all || next_time() <= now) return;
   std::vector<Entry> bodies;
   for (const auto& end : sweep_list().entries()) {
     if (is_min(end.id)) bodies.push_back({end.id / 2, &unlisted_.box(end.id / 2)});
@@ -71,15 +77,15 @@ void KineticSweepAndPrune<Degree>::choose_again(double now) {
   chosen_at_ = bodies.size();
   const unsigned listed = best_axes(bodies, now);
   if (listed == listed_) return;
-  unlisted_.choose(all_axes & ~listed, now);
+  unlisted_.choose(all_axes_ & ~listed, now);
   build_lists(bodies, listed, now);
-  if (listed_ == all_axes) return;
+  if (all_listed()) return;
   for (const auto& [a, b] : pairs_on_lists()) unlisted_.met(a, b, now);
 }
 
 template <int Degree>
 void KineticSweepAndPrune<Degree>::count_open() {
-  if (listed_ == all_axes) return;
+  if (all_listed()) return;
   const auto ends = sweep_list().entries();
   open_.resize(ends.size());
   inverted_ = 0;
@@ -97,7 +103,7 @@ template <int Degree>
 auto KineticSweepAndPrune<Degree>::pairs_on_lists() const -> std::vector<BodyPair> {
   std::vector<BodyPair> pairs;
   const auto add = [&](BodyId a, BodyId b) {
-    if (listed_ != all_axes && !unlisted_.near(a, b)) return;
+    if (!all_listed() && !unlisted_.near(a, b)) return;
     if (overlap_where_listed(a, b)) pairs.emplace_back(std::min(a, b), std::max(a, b));
   };
   std::vector<BodyId> open;
@@ -144,8 +150,8 @@ void KineticSweepAndPrune<Degree>::partners_on_lists(BodyId id, std::vector<Body
     const std::uint32_t other_end = list.position(end ^ 1);
     if (is_min(end) || other_end < first || other_end > last) add(end / 2);
   }
-  std::int32_t open = first > 0 && inverted_ == 0 && listed_ != all_axes ? open_[first - 1] : 0;
-  const bool all = inverted_ > 0 || listed_ == all_axes;  // then there is no telling how many
+  std::int32_t open = first > 0 && inverted_ == 0 && !all_listed() ? open_[first - 1] : 0;
+  const bool all = inverted_ > 0 || all_listed();  // then there is no telling how many
   for (std::size_t i = first; i-- > 0 && (all || open > 0);) {
     const std::uint32_t end = ends[i].id;
     if (!is_min(end)) continue;

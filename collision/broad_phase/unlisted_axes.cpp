@@ -61,21 +61,30 @@ float below(double x) {
 
 }  // namespace
 
-/// The facts that keep two boxes apart on the axes without a list.
+/// The facts that keep two bodies apart in the directions without a list. One at a time.
 template <int Degree>
 class UnlistedAxes<Degree>::Sides {
  public:
-  using Apart = certificates::Order<Degree>;
-
   Sides(const UnlistedAxes& axes, BodyId a, BodyId b)
       : ends_{ends(axes, 0, a, b), ends(axes, 1, a, b)},
         apart_{Apart{ends_[0].a_max, ends_[0].b_min}, Apart{ends_[0].b_max, ends_[0].a_min},
                Apart{ends_[1].a_max, ends_[1].b_min}, Apart{ends_[1].b_max, ends_[1].a_min}},
-        count_(axes.count_) {}
+        count_(axes.count_) {
+    if (axes.more_.empty()) return;
+    axes.scratch_.clear();
+    for (const std::size_t d : axes.more_) {
+      const KineticSlab<Degree>& slab_a = axes.slab(a, d);
+      const KineticSlab<Degree>& slab_b = axes.slab(b, d);
+      axes.scratch_.push_back({slab_a.max, slab_b.min});
+      axes.scratch_.push_back({slab_b.max, slab_a.min});
+    }
+    more_ = axes.scratch_;
+  }
   Sides(const Sides&) = delete;
   Sides& operator=(const Sides&) = delete;
 
-  std::span<const Apart> apart() const { return {apart_.data(), 2 * count_}; }
+  std::span<const Apart> apart() const { return {apart_.data(), 2 * count_}; }  ///< on axes
+  std::span<const Apart> more() const { return more_; }                         ///< in other directions
 
   /// Whether the boxes certainly do not overlap from now to the horizon: straight paths in doubles.
   ///
@@ -87,17 +96,10 @@ class UnlistedAxes<Degree>::Sides {
       double begin = 0;
       double end = (horizon - now) * (1 + 0x1p-48);
       for (const Apart& side : apart()) {
-        const double run_lower = side.lower.position.c[1] * (now - side.lower.start);
-        const double run_upper = side.upper.position.c[1] * (now - side.upper.start);
-        const double gap = (side.upper.position.c[0] + run_upper) - (side.lower.position.c[0] + run_lower);
-        const double least = gap -
-                             0x1p-50 * (std::abs(side.upper.position.c[0]) + std::abs(run_upper) +
-                                        std::abs(side.lower.position.c[0]) + std::abs(run_lower)) -
-                             0x1p-1000;  // for underflow
-        const double rate = side.upper.position.c[1] - side.lower.position.c[1];
-        if (rate >= 0 && least > 0) return true;
-        if (rate < 0) begin = std::max(begin, least / -rate * (1 - 0x1p-48));
-        if (rate > 0) end = std::min(end, -least / rate * (1 + 0x1p-48));
+        if (narrow(side, now, begin, end)) return true;
+      }
+      for (const Apart& side : more()) {
+        if (begin > end || narrow(side, now, begin, end)) return true;
       }
       return begin > end;
     } else {
@@ -106,6 +108,22 @@ class UnlistedAxes<Degree>::Sides {
   }
 
  private:
+  /// Leaves of [begin, end] the seconds from now for which a side may be broken; true if it never will be.
+  static bool narrow(const Apart& side, double now, double& begin, double& end) {
+    const double run_lower = side.lower.position.c[1] * (now - side.lower.start);
+    const double run_upper = side.upper.position.c[1] * (now - side.upper.start);
+    const double gap = (side.upper.position.c[0] + run_upper) - (side.lower.position.c[0] + run_lower);
+    const double least = gap -
+                         0x1p-50 * (std::abs(side.upper.position.c[0]) + std::abs(run_upper) +
+                                    std::abs(side.lower.position.c[0]) + std::abs(run_lower)) -
+                         0x1p-1000;  // for underflow
+    const double rate = side.upper.position.c[1] - side.lower.position.c[1];
+    if (rate >= 0 && least > 0) return true;
+    if (rate < 0) begin = std::max(begin, least / -rate * (1 - 0x1p-48));
+    if (rate > 0) end = std::min(end, -least / rate * (1 + 0x1p-48));
+    return false;
+  }
+
   struct Ends {
     Motion<Degree> a_min, a_max, b_min, b_max;
   };
@@ -120,45 +138,77 @@ class UnlistedAxes<Degree>::Sides {
   std::array<Ends, 2> ends_;
   std::array<Apart, 4> apart_;
   std::size_t count_;
+  std::span<const Apart> more_;
 };
 
 template <int Degree>
-void UnlistedAxes<Degree>::choose(unsigned axes, double now) {
+void UnlistedAxes<Degree>::choose(unsigned directions, double now) {
   count_ = 0;
-  for (int d = 0; d < 3; ++d) {
-    if ((axes >> d & 1) != 0) axes_[count_++] = d;
+  more_.clear();
+  for (std::size_t d = 0; d < directions_; ++d) {
+    if ((directions >> d & 1) == 0) continue;
+    if (d < 3 && count_ < 2) {
+      axes_[count_++] = static_cast<int>(d);
+    } else {
+      more_.push_back(d);
+    }
   }
   if (count_ == 1) axes_[1] = axes_[0];
   for (PairSlot slot = 0; slot < pairs_.size(); ++slot) queue_.clear(slot);
   pairs_.clear();
   free_.clear();
   for (auto& pairs : pairs_of_) pairs.clear();
-  for (BodyId id = 0; id < boxes_.size(); ++id) hulls_[id] = hull(boxes_[id], now);
+  more_hulls_.resize(boxes_.size() * 2 * more_.size());
+  for (BodyId id = 0; id < boxes_.size(); ++id) set_hulls(id, now);
 }
 
 template <int Degree>
-typename UnlistedAxes<Degree>::Hull UnlistedAxes<Degree>::hull(const KineticBox<Degree>& box, double now) const {
-  Hull hull;
-  for (std::size_t i = 0; i < 2; ++i) {
+void UnlistedAxes<Degree>::set_hulls(BodyId id, double now) {
+  const auto span = [&](const Motion<Degree>& min, const Motion<Degree>& max) {
     double low = never;
     double high = -never;
-    widen(box.min.axis(axes_[i]), now, horizon_, low, high);
-    widen(box.max.axis(axes_[i]), now, horizon_, low, high);
-    hull.low[i] = below(low);
-    hull.high[i] = -below(-high);
+    widen(min, now, horizon_, low, high);
+    widen(max, now, horizon_, low, high);
+    return std::array<float, 2>{below(low), -below(-high)};
+  };
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto [low, high] = span(boxes_[id].min.axis(axes_[i]), boxes_[id].max.axis(axes_[i]));
+    hulls_[id].low[i] = low;
+    hulls_[id].high[i] = high;
   }
-  return hull;
+  for (std::size_t i = 0; i < more_.size(); ++i) {
+    const auto [low, high] = span(slab(id, more_[i]).min, slab(id, more_[i]).max);
+    more_hulls_[2 * (id * more_.size() + i)] = low;
+    more_hulls_[2 * (id * more_.size() + i) + 1] = high;
+  }
 }
 
 template <int Degree>
-void UnlistedAxes<Degree>::set_box(BodyId id, const KineticBox<Degree>& box, double now) {
+bool UnlistedAxes<Degree>::near_on_more(BodyId a, BodyId b) const {
+  const float* const hulls_a = &more_hulls_[2 * a * more_.size()];
+  const float* const hulls_b = &more_hulls_[2 * b * more_.size()];
+  for (std::size_t i = 0; i < 2 * more_.size(); i += 2) {
+    if (!(hulls_a[i + 1] >= hulls_b[i] && hulls_b[i + 1] >= hulls_a[i])) return false;
+  }
+  return true;
+}
+
+template <int Degree>
+void UnlistedAxes<Degree>::set_box(BodyId id, const KineticBox<Degree>& box,
+                                   std::span<const KineticSlab<Degree>> slabs, double now) {
   if (id >= boxes_.size()) {
     boxes_.resize(id + 1);
     hulls_.resize(id + 1);
     pairs_of_.resize(id + 1);
+    if (directions_ > 3) slabs_.resize(boxes_.size() * directions_);
+    more_hulls_.resize(boxes_.size() * 2 * more_.size());
   }
   boxes_[id] = box;
-  if (count_ > 0) hulls_[id] = hull(box, now);
+  for (std::size_t d = 0; directions_ > 3 && d < directions_; ++d) {
+    KineticSlab<Degree>& slab = slabs_[id * directions_ + d];
+    slab = d < 3 ? KineticSlab<Degree>{end(id, d, false), end(id, d, true)} : slabs[d - 3];
+  }
+  if (count_ > 0) set_hulls(id, now);
 }
 
 template <int Degree>
@@ -174,8 +224,8 @@ typename UnlistedAxes<Degree>::PairSlot UnlistedAxes<Degree>::find(BodyId a, Bod
 template <int Degree>
 double UnlistedAxes<Degree>::next_change(const Pair& pair, double now) const {
   const Sides sides(*this, pair.a, pair.b);
-  return pair.overlap ? certificates::first_any_holds(now, horizon_, sides.apart())
-                      : certificates::first_all_broken(now, horizon_, sides.apart());
+  return pair.overlap ? certificates::first_any_holds(now, horizon_, sides.apart(), sides.more())
+                      : certificates::first_all_broken(now, horizon_, sides.apart(), sides.more());
 }
 
 template <int Degree>
@@ -183,10 +233,10 @@ bool UnlistedAxes<Degree>::add(BodyId a, BodyId b, double now) {
   const Sides sides(*this, a, b);
   if (sides.stay_apart(now, horizon_)) return false;
   ++counters_.certificates;
-  double next = certificates::first_all_broken(now, horizon_, sides.apart());
+  double next = certificates::first_all_broken(now, horizon_, sides.apart(), sides.more());
   if (next == never) return false;
   const bool overlap = next == now;
-  if (overlap) next = certificates::first_any_holds(now, horizon_, sides.apart());
+  if (overlap) next = certificates::first_any_holds(now, horizon_, sides.apart(), sides.more());
   PairSlot slot;
   if (free_.empty()) {
     slot = static_cast<PairSlot>(pairs_.size());
@@ -275,7 +325,7 @@ void UnlistedAxes<Degree>::extend_horizon(double now, double horizon) {
   const bool extended = horizon > horizon_;
   horizon_ = horizon;
   if (count_ == 0) return;
-  for (BodyId id = 0; id < boxes_.size(); ++id) hulls_[id] = hull(boxes_[id], now);
+  for (BodyId id = 0; id < boxes_.size(); ++id) set_hulls(id, now);
   if (extended) return;
   for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
     if (!pairs_[slot].alive || queue_.time(slot) <= horizon_) continue;
@@ -305,7 +355,7 @@ void UnlistedAxes<Degree>::audit_pair(BodyId a, BodyId b, double now) const {
   const bool known = slot != no_pair;
   if (known && queue_.time(slot) <= now) return;
   const Sides sides(*this, a, b);
-  const double next = certificates::first_all_broken(now, horizon_, sides.apart());
+  const double next = certificates::first_all_broken(now, horizon_, sides.apart(), sides.more());
   const bool overlap = known && pairs_[slot].overlap;
   if (overlap != (next == now) || (!overlap && known != (next != never))) {
     throw AuditFailure("UnlistedAxes: bodies " + std::to_string(a) + " and " + std::to_string(b) +

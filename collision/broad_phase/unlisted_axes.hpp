@@ -1,12 +1,16 @@
-// Overlap on the axes that have no sorted list.
+// Overlap in the directions that have no sorted list.
 #pragma once
 
+#include "certificates/order.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/broad_phase/kdop.hpp"
 #include "kds/events/dary_queue.hpp"
 #include "kds/statistics.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace kds::collision {
@@ -25,6 +29,8 @@ struct PairChange {
 /// bounds on the errors. What is left gets first_all_broken() or first_any_holds() over the sides of its boxes: the
 /// same doubles at which lists of these axes would swap.
 ///
+/// Directions are numbered: 0 to 2 are the axes, those of k-DOPs follow. A pair is apart while it is so in one of them.
+///
 /// State is that of t+, so no pair is ever reported for no time at all. Events of one time come by (a, b).
 ///
 /// Cost: a few operations for a pair that meets on the listed axes; where its hulls overlap, two to four failure times
@@ -32,23 +38,31 @@ struct PairChange {
 template <int Degree>
 class UnlistedAxes {
  public:
-  /// Changes found by process() are appended to `changes`.
-  explicit UnlistedAxes(std::vector<PairChange>& changes) : changes_(&changes), queue_(PairRank{&pairs_}) {}
+  /// Changes found by process() are appended to `changes`. There are 3 directions, or more.
+  UnlistedAxes(std::vector<PairChange>& changes, std::size_t directions)
+      : changes_(&changes), directions_(directions), queue_(PairRank{&pairs_}) {}
   UnlistedAxes(const UnlistedAxes&) = delete;
   UnlistedAxes& operator=(const UnlistedAxes&) = delete;
 
-  /// From now on these axes have no list: bit d stands for axis d, at most two of them. Forgets all pairs.
-  void choose(unsigned axes, double now);
+  /// From now on these directions have no list: bit d stands for direction d, at most two of the axes. Forgets all pairs.
+  void choose(unsigned directions, double now);
 
-  /// Gives a body its box. Precondition: none of its pairs is known.
-  void set_box(BodyId id, const KineticBox<Degree>& box, double now);
+  /// Gives a body its box, and its slabs in the directions beyond the axes. Precondition: none of its pairs is known.
+  void set_box(BodyId id, const KineticBox<Degree>& box, std::span<const KineticSlab<Degree>> slabs, double now);
   const KineticBox<Degree>& box(BodyId id) const { return boxes_[id]; }
+  /// An end of a body's interval in a direction.
+  Motion<Degree> end(BodyId id, std::size_t direction, bool upper) const {
+    if (direction < 3) return (upper ? boxes_[id].max : boxes_[id].min).axis(static_cast<int>(direction));
+    return upper ? slab(id, direction).max : slab(id, direction).min;
+  }
 
   /// The greatest id so far, and one.
   std::size_t bodies() const { return boxes_.size(); }
 
   /// Whether the pair may overlap here before the horizon: the first filter alone.
-  bool near(BodyId a, BodyId b) const { return hulls_[a].meets(hulls_[b]); }
+  bool near(BodyId a, BodyId b) const {
+    return hulls_[a].meets(hulls_[b]) && (more_.empty() || near_on_more(a, b));
+  }
 
   /// The boxes of a pair have met on all axes with a list; a < b. Returns whether they overlap on these axes too.
   bool met(BodyId a, BodyId b, double now) { return near(a, b) && add(a, b, now); }
@@ -105,7 +119,14 @@ class UnlistedAxes {
   };
   class Sides;
 
-  Hull hull(const KineticBox<Degree>& box, double now) const;
+  using Apart = certificates::Order<Degree>;
+
+  /// Of k-DOPs: the slab of a body in any direction, the axes too. They stay where they are while certificates are made.
+  const KineticSlab<Degree>& slab(BodyId id, std::size_t direction) const {
+    return slabs_[id * directions_ + direction];
+  }
+  void set_hulls(BodyId id, double now);
+  bool near_on_more(BodyId a, BodyId b) const;
   bool add(BodyId a, BodyId b, double now);
   bool drop(BodyId a, BodyId b);
   PairSlot find(BodyId a, BodyId b) const;
@@ -113,11 +134,16 @@ class UnlistedAxes {
   double next_change(const Pair& pair, double now) const;
 
   std::vector<PairChange>* changes_;
-  std::array<int, 2> axes_{0, 0};  // the first count_ of them
+  std::size_t directions_;
+  std::array<int, 2> axes_{0, 0};  // axes without a list: the first count_ of them
   std::size_t count_ = 0;
+  std::vector<std::size_t> more_;  // all other directions without a list
   double horizon_ = never;
   std::vector<KineticBox<Degree>> boxes_;        // by body
   std::vector<Hull> hulls_;                      // by body
+  std::vector<KineticSlab<Degree>> slabs_;       // by body and direction, if there are more than the axes
+  std::vector<float> more_hulls_;                // by body and direction of more_: from, to
+  mutable std::vector<Apart> scratch_;           // of Sides
   std::vector<std::vector<PairSlot>> pairs_of_;  // by body
   std::vector<Pair> pairs_;                      // those that overlap, or will before the horizon
   std::vector<PairSlot> free_;

@@ -100,4 +100,13 @@ void Mesh::extents(const Eigen::Matrix3d& rotation, double scale, Vector3d& low,
   }
 }
 
+std::array<double, 2> Mesh::extent(const Eigen::Matrix3d& rotation, double scale, const Vector3d& direction) const {
+  std::array<double, 2> ends{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const std::uint32_t index : used_) {
+    const double along = direction.dot(placed_vertex(rotation, scale, vertices_[index]));
+    ends = {std::min(ends[0], along), std::max(ends[1], along)};
+  }
+  return ends;
+}
+
 }  // namespace kds::collision

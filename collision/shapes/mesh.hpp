@@ -65,6 +65,10 @@ class Mesh {
   /// Corners of the axis-aligned box around the placed vertices that triangles use: tight, without margin.
   void extents(const Eigen::Matrix3d& rotation, double scale, Eigen::Vector3d& low, Eigen::Vector3d& high) const;
 
+  /// Least and greatest direction . v of the placed vertices that triangles use, rounded: by 2^-51 of the sum of the
+  /// magnitudes of its terms at most.
+  std::array<double, 2> extent(const Eigen::Matrix3d& rotation, double scale, const Eigen::Vector3d& direction) const;
+
   /// Degenerate below: the sine of the angle at which two edges meet. 64 roundings of the cross product; a triangle
   /// so thin has no normal to speak of.
   static constexpr double thinnest_sine = 0x1p-46;

@@ -71,4 +71,24 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
   return placed;
 }
 
+std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction) {
+  const double length = direction.norm() * (1 + rotation_margin);
+  double low = 0, high = 0, margin = 0;
+  if (const auto* sphere = std::get_if<Sphere>(&shape.shape)) {
+    high = sphere->radius * length;
+    low = -high;
+  } else if (std::holds_alternative<Box>(shape.shape)) {
+    for (const Eigen::Vector3d& half : shape.half_axes) high += std::abs(direction.dot(half));
+    low = -high;
+    margin = rotation_margin * shape.bounding_radius * length;
+  } else {
+    const auto& instance = std::get<MeshShape>(shape.shape);
+    const std::array<double, 2> ends = instance.mesh->extent(shape.rotation, instance.scale, direction);
+    low = ends[0];
+    high = ends[1];
+    margin = (mesh_margin + rotation_margin) * shape.bounding_radius * length;
+  }
+  return {low - margin, high + margin};
+}
+
 }  // namespace kds::collision

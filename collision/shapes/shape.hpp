@@ -45,4 +45,9 @@ struct PlacedShape {
 /// and > 0, a mesh must be there, the orientation must be a unit quaternion to 1e-6 (it is normalised).
 PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation);
 
+/// From where to where the shape reaches about its centre along a direction: least and greatest direction . x, rounded
+/// outward, with the margin of its bounding box. Of a mesh it costs a look at all its vertices. Precondition: the
+/// direction is of three numbers -1, 0 or 1.
+std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction);
+
 }  // namespace kds::collision

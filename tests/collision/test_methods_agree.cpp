@@ -55,6 +55,13 @@ void compare_methods(const Scene<Degree>& scene, WorldOptions options, Compared&
     if (changed.report_pairs && compared.times_of_pairs) require_equal(lasting_pairs(events), expected_pairs);
   };
   WorldOptions other = options;
+  for (const int k : {14, 18, 26}) {
+    INFO("k-DOPs, k = " << k);
+    other.kdop = k;
+    other.report_pairs = false;
+    check("kinetic-sap", other);
+  }
+  other = options;
   other.broad_phase = BroadPhaseKind::all_pairs;
   check("all-pairs", other);
   other.broad_phase = BroadPhaseKind::grid;
