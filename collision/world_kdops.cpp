@@ -44,7 +44,9 @@ KineticSlab<Degree> World<Degree>::slab(BodyId id, std::size_t i, double now) co
   const Body& b = bodies_[id];
   const auto& [low, high] = extents_[id * directions_.size() + i];
   const bool boxes_alone = b.extras && b.extras->box_function;
-  if (!boxes_alone && movers_[id].motion.start <= now) return slab_around(movers_[id].motion, low, high, directions_[i]);
+  if (!boxes_alone && movers_[id].motion.start <= now) {
+    return slab_around(movers_[id].motion, low, high, directions_[i]);
+  }
   return slab_around(bounding_box(id), directions_[i], now);
 }
 

@@ -34,8 +34,8 @@ enum class ListedAxes { automatic, one, two, all };
 ///
 /// Ends that are equal for good (boxes that touch and move together) do not overlap.
 ///
-/// Bounding volumes may be k-DOPs (Kdops): intervals in further directions, with lists or without like those on the axes;
-/// what overlaps does so in all. The list may then be in any direction. Papers: [Klosowski98], [Coming08].
+/// Bounding volumes may be k-DOPs (Kdops): intervals in further directions, with lists or without like those on the
+/// axes; what overlaps does so in all. The list may then be in any direction. Papers: [Klosowski98], [Coming08].
 template <int Degree>
 class KineticSweepAndPrune final : public BroadPhase<Degree> {
  public:
@@ -141,7 +141,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
     lists_.all[d].update(upper ? max_end(id) : min_end(id), unlisted_.end(id, d, upper), now);
   }
 
-  static constexpr std::size_t few_bodies = 64;  ///< fewer boxes than this have three lists if nothing else is asked for
+  static constexpr std::size_t few_bodies = 64;  ///< fewer boxes than this have three lists if not asked otherwise
 
   Kdops<Degree> kdops_;
   ListedAxes asked_;

@@ -44,7 +44,7 @@ class UnlistedAxes {
   UnlistedAxes(const UnlistedAxes&) = delete;
   UnlistedAxes& operator=(const UnlistedAxes&) = delete;
 
-  /// From now on these directions have no list: bit d stands for direction d, at most two of the axes. Forgets all pairs.
+  /// From now on these directions have no list: bit d stands for direction d. Forgets all pairs.
   void choose(unsigned directions, double now);
 
   /// Gives a body its box, and its slabs in the directions beyond the axes. Precondition: none of its pairs is known.
@@ -121,7 +121,7 @@ class UnlistedAxes {
 
   using Apart = certificates::Order<Degree>;
 
-  /// Of k-DOPs: the slab of a body in any direction, the axes too. They stay where they are while certificates are made.
+  /// Of k-DOPs: the slab of a body in any direction, the axes too.
   const KineticSlab<Degree>& slab(BodyId id, std::size_t direction) const {
     return slabs_[id * directions_ + direction];
   }
