@@ -52,4 +52,24 @@ struct BoundedPoint {
   friend bool operator==(const BoundedPoint&, const BoundedPoint&) = default;
 };
 
+/// A point of the plane that was sampled at `start` and has not accelerated by more than `acceleration` since, in
+/// either coordinate.
+struct BoundedAccelerationPoint {
+  static constexpr int degree = 2;
+  static constexpr bool sampled = true;
+  static constexpr bool moves = true;
+
+  std::array<double, 2> position{};  ///< length
+  std::array<double, 2> velocity{};  ///< length/s
+  double acceleration = 0;           ///< length/s^2
+  double start = 0;                  ///< s
+
+  BoundedAcceleration axis(int d) const {
+    const auto i = static_cast<std::size_t>(d);
+    return {position[i], velocity[i], acceleration, start};
+  }
+  bool finite() const { return is_finite(axis(0)) && is_finite(axis(1)); }
+  friend bool operator==(const BoundedAccelerationPoint&, const BoundedAccelerationPoint&) = default;
+};
+
 }  // namespace kds::certificates

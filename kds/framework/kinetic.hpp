@@ -145,6 +145,8 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   void finish(bool in_event);
 
   void certify(Slot slot, bool in_event);
+  bool failed(Slot slot, double time, bool counts = true);
+  void sample_again(Slot slot, double time);
   /// A tick after the oldest sample of the slot's members.
   double soonest_sample(Slot slot) const;
   void hold(Slot slot, bool held);
@@ -170,17 +172,10 @@ template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::process() {
   const auto [time, slot] = schedule_.next();
   KineticEvent event{time, slot, Effect::internal};
-  if constexpr (Sampled<Element>) {
-    const auto members = rule_.members(slot);
-    const std::vector<Id> ids(std::begin(members), std::end(members));
-    schedule_.set(slot, never);
-    for (const Id id : ids) elements_.resample(id, time);
+  if (!failed(slot, time)) {
+    if constexpr (!Sampled<Element>) return;
+    sample_again(slot, time);
   } else {
-    bool failed = false;
-    detail::with_certificate(
-        rule_.certificate(slot, elements_),
-        [&, time = time, slot = slot](const auto& certificate) { failed = schedule_.failed(slot, certificate, time); });
-    if (!failed) return;
     begin(time);
     event.effect = rule_.repair(slot, repair_);
     repair_.certify(slot);
@@ -191,6 +186,34 @@ void Kinetic<Rule, Listener, Queue, Solver>::process() {
   ++measures_.events;
   measures_.external += event.effect == Effect::external;
   listener_(rule_, event);
+}
+
+/// Whether it is for a failure that a slot is due, not for a sample, nor too early.
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+bool Kinetic<Rule, Listener, Queue, Solver>::failed(Slot slot, double time, bool counts) {
+  if constexpr (Sampled<Element> && !MovingSample<Element>) return false;  // Samples at rest never fail.
+  bool failed = false;
+  detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
+    if constexpr (MovingSample<Element>) {
+      const OfSamples<std::remove_cvref_t<decltype(certificate)>> of_samples{certificate};
+      failed = sign_after(of_samples, time) < 0 && (!counts || schedule_.failed(slot, of_samples, time));
+    } else if constexpr (!Sampled<Element>) {
+      failed = schedule_.failed(slot, certificate, time);
+    }
+  });
+  return failed;
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::sample_again(Slot slot, double time) {
+  if constexpr (Sampled<Element>) {
+    const auto members = rule_.members(slot);
+    const std::vector<Id> ids(std::begin(members), std::end(members));
+    schedule_.set(slot, never);
+    for (const Id id : ids) {
+      if (elements_.contains(id)) elements_.resample(id, time);  // else a listener has removed it
+    }
+  }
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
@@ -221,9 +244,13 @@ void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
     if constexpr (Sampled<Element>) {
       const Conservative<std::remove_cvref_t<decltype(certificate)>> conservative{certificate};
       schedule_.certify(slot, conservative, last_);
-      const double soonest = soonest_sample(slot);
-      if (schedule_.contains(slot) && schedule_.time(slot) < soonest) {
-        schedule_.set(slot, soonest <= schedule_.horizon() ? soonest : never);
+      double next = soonest_sample(slot);
+      if (schedule_.contains(slot) && schedule_.time(slot) < next) {
+        if constexpr (MovingSample<Element>) {  // The samples may cross before they may be taken anew.
+          const OfSamples<std::remove_cvref_t<decltype(certificate)>> of_samples{certificate};
+          next = std::min(next, failure_time(of_samples, last_, schedule_.horizon()));
+        }
+        schedule_.set(slot, next <= schedule_.horizon() ? next : never);
       }
     } else {
       if (in_event) schedule_.look_for_late_events(certificate, last_);
@@ -266,8 +293,22 @@ void Kinetic<Rule, Listener, Queue, Solver>::settle(double now) {
   if (next_time() < now) {
     fail_use("an edit at " + std::to_string(now) + " would pass over an event at " + std::to_string(next_time()));
   }
-  if constexpr (Sampled<Element>) return;  // In order at all times.
-  while (next_time() <= now) process();
+  if constexpr (Sampled<Element> && !MovingSample<Element>) return;  // In order at all times.
+  std::vector<Slot> due;  // for samples, which can wait
+  while (next_time() <= now) {
+    const Slot slot = schedule_.next().slot;
+    if constexpr (MovingSample<Element>) {
+      if (!failed(slot, now, false)) {
+        schedule_.set(slot, never);
+        due.push_back(slot);
+        continue;
+      }
+    }
+    process();
+  }
+  for (const Slot slot : due) {
+    if (held_[slot] && !schedule_.contains(slot)) schedule_.set(slot, now);
+  }
 }
 
 }  // namespace kds

@@ -26,11 +26,17 @@ void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
     const double time = schedule_.contains(slot) ? schedule_.time(slot) : never;
     detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
       certified = true;
-      if (exact_sign(certificate, now) < 0 && (Sampled<Element> || time > now)) fail(slot, "has failed");
+      if (exact_sign(certificate, now) < 0 && ((Sampled<Element> && !MovingSample<Element>) || time > now)) {
+        fail(slot, "has failed");
+      }
       if constexpr (Sampled<Element>) {
         const Conservative<std::remove_cvref_t<decltype(certificate)>> conservative{certificate};
         const double t = failure_time(conservative, now, schedule_.horizon());
-        const double latest = std::max(t, soonest_sample(slot));
+        double latest = std::max(t, soonest_sample(slot));
+        if constexpr (MovingSample<Element>) {
+          const OfSamples<std::remove_cvref_t<decltype(certificate)>> of_samples{certificate};
+          latest = std::min(latest, failure_time(of_samples, now, schedule_.horizon()));
+        }
         if (time > latest && latest <= schedule_.horizon()) fail(slot, "is to be sampled too late");
       } else if constexpr (Solver::certified) {
         if (failure_time(certificate, now, schedule_.horizon()) != time) fail(slot, "the event has the wrong time");

@@ -46,6 +46,11 @@ concept Sampled = MovingElement<E> && requires(const E& element) {
   { element.start } -> std::convertible_to<double>;
 };
 
+/// A sample that goes on moving, at the velocity that it had: BoundedAcceleration. The state is that of the samples as
+/// they move, so certificates of samples fail, and are repaired, as those of polynomials are.
+template <class E>
+concept MovingSample = Sampled<E> && requires { requires E::moves; };
+
 /// An element whose motion can be written in time that runs backwards, exactly: reversed(e)(-t) = e(t).
 template <class E>
 concept Reversible = MovingElement<E> && requires(const E& element) {
@@ -151,10 +156,12 @@ class MovingSet {
   double tick() const { return tick_; }
   std::uint64_t samples() const { return samples_; }  ///< taken so far
 
-  /// Samples an element, and tells the structures. Unlike other edits this one may come amidst the events of a time:
-  /// structures of samples are in order at all times.
+  /// Samples an element, and tells the structures. Unlike other edits this one may come amidst those of a time. Throws
+  /// std::out_of_range for an id that is not used.
   void resample(Id id, double now) requires Sampled<Element> {
     if (!sampler_) throw std::logic_error("MovingSet: an element is to be sampled, but there is no sampler");
+    require(id);
+    if constexpr (MovingSample<E>) settle(now), require(id);
     const Element element = sampler_(id, now);
     if (element.start != now) throw std::logic_error("MovingSet: a sample must be of the time it is asked for");
     require_finite(id, element);
