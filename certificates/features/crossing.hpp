@@ -15,8 +15,8 @@ namespace kds::certificates {
 /// through, or nothing where that is not easily proved (the point is near the rim, or hardly comes closer).
 ///
 /// Shortly before s and shortly after, the signed volume n . q0 has certain and opposite signs (by the polynomial that
-/// TurningAxis bounds; Horner's rule adds at most 2 x 6 roundings of its norm), so that the origin is in the plane of the
-/// patch in between; and during that time it cannot reach the rim: the coordinates of its foot, as
+/// TurningAxis bounds; Horner's rule adds at most 2 x 6 roundings of its norm), so that the origin is in the plane of
+/// the patch in between; and during that time it cannot reach the rim: the coordinates of its foot, as
 /// numerators over |n|^2, are polynomials with |derivative| <= 128 R^3 V, where no corner is farther than R or faster
 /// than V (n = u x v with |u|, |v| <= 2 R and |u'|, |v'| <= 2 V; x |n|^2 = n . (v x q0): 32 R^3 V; |n|^2: 64 R^3 V; and
 /// |n|^2 less two of the former: 128 R^3 V). Roundings, of corners and of these formulas, are below what is added to

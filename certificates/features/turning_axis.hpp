@@ -40,7 +40,7 @@ class TurningAxis {
   const Polynomial<3 * Degree>& volume() const { return volume_; }
   double volume_error() const { return volume_error_; }
 
-  /// As separated_until() in fixed_axis.hpp, with the normal of the patch, n = u x v: all corners are at the same height
+  /// As separated_until() in fixed_axis.hpp, with the normal of the patch, n = u x v: all corners are at one height,
   /// n . q0.
   double separated_by_plane_until(double s) const {
     return positive_until(volume_(s) < 0 ? -volume_ : volume_, s, volume_error_);

@@ -111,6 +111,13 @@ struct BernsteinPiece {
     return std::min(static_cast<std::size_t>(std::countr_one(positive() | 1u)), std::size_t{Degree});
   }
 
+  /// Whether nothing is left but errors.
+  bool drowned() const {
+    double largest = 0;
+    unrolled<Degree + 1>([&](auto i) { largest = std::max(largest, std::abs(b[i])); });
+    return largest <= 4 * error;
+  }
+
   /// Middle of the first stretch where the control polygon is negative, as a fraction of the interval.
   double dip() const {
     const std::size_t i = fall();
@@ -244,13 +251,13 @@ class CrossingSearch {
         --last_;
         continue;
       }
-      if (++cuts > most_cuts) return {Crossing::Status::undecided};
+      if (++cuts > most_cuts || piece.drowned()) return {Crossing::Status::undecided};
       piece.cut(std::clamp(piece.dip(), nearest_cut, 1 - nearest_cut), pieces_[++last_]);
     }
   }
 
  private:
-  static constexpr int most_cuts = 12;
+  static constexpr int most_cuts = 24;
   static constexpr double nearest_cut = 0x1p-10;  // to an end of the interval, as a fraction of it
 
   double x(const ProjectivePoint& point) const { return scale_ * (point.w / point.v); }
