@@ -6,7 +6,7 @@
 #include "kds/arithmetic/exact.hpp"
 #include "kds/motion.hpp"
 #include "kds/polynomial.hpp"
-#include "kds/roots/failure_time_parabola.hpp"
+#include "kds/roots/failure_time_falling_line.hpp"
 
 #include <concepts>
 #include <cstdint>

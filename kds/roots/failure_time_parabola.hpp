@@ -1,4 +1,4 @@
-// The failure time of a parabola, or line, whose coefficients are known: the quick answer.
+// The failure time of a parabola whose coefficients are known: the quick answer.
 #pragma once
 
 #include "kds/arithmetic/double_double.hpp"
@@ -33,9 +33,6 @@ struct Parabola {
 /// more.) What falls so briefly that no double may see it, or nearly touches, is left to the general method.
 template <bool turned, bool shifted>
 double quick_parabola_failure_time(const Parabola<shifted>& p, double now, double horizon);
-
-/// The same for a = 0, unless it has turned: then a line never fails.
-double quick_line_failure_time(const Parabola<false>& p, double now, double horizon);
 
 // ---------------------------------------------------------------------------------------------------------------
 
@@ -203,19 +200,6 @@ template <bool turned, bool shifted>
     if ((remaining < 0x1p200) & positive & (!convex | falling)) return never;
   }
   const double t = detail::first_double_after(p, detail::falling_root(p, discriminant));
-  return t > horizon ? never : t;
-}
-
-inline double quick_line_failure_time(const Parabola<false>& p, double now, double horizon) {
-  constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
-  const double elapsed = now - p.epoch;
-  const double remaining = horizon - p.epoch;
-  if (!(std::abs(elapsed) < 0x1p200)) return undecided;
-  const detail::Estimate value = detail::value_at(p, elapsed);
-  if (!value.positive()) return value.negative() ? now : undecided;
-  const double r = p.r.high;  // has the sign of r
-  if (r >= 0 || (remaining < 0x1p200 && detail::value_at(p, remaining).positive())) return never;
-  const double t = detail::first_double_after(p, {-p.g.high / r, -r, r < -0x1p-380});
   return t > horizon ? never : t;
 }
 

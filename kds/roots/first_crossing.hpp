@@ -184,8 +184,8 @@ inline int exponent_of(double x) {
 inline double power_of_two(int e) { return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52); }
 
 /// A power of two near the least x at which a negative term comes up to the constant one, or near the end if that is
-/// earlier. A guess of where things happen; nothing rests on it. Where the constant term may be zero (two things that have
-/// just met) it says nothing of what comes, and the linear one takes its place.
+/// earlier. A guess of where things happen; nothing rests on it. Where the constant term may be zero (two things that
+/// have just met) it says nothing of what comes, and the linear one takes its place.
 template <int Degree>
 int scale_exponent(const Polynomial<Degree, Ball<double>>& p, double end) {
   constexpr int most = 100;  // so that no power up to the eighth overflows

@@ -1,99 +1,16 @@
 // Values that differ by a parabola: the quick answer is that of the general method, bit for bit.
-#include "certificates/order.hpp"
+#include "tests/certificates/quick_order.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <array>
 #include <cmath>
-#include <sstream>
-#include <string>
 
 namespace {
 
 using namespace kds;
 using namespace kds::tests;
-using kds::certificates::Order;
-
-/// Order without its quick answers.
-template <int Degree>
-struct CarefulOrder {
-  static constexpr int degree = Degree;
-  Order<Degree> order;
-
-  template <class Number>
-  Polynomial<Degree, Number> polynomial(double epoch) const {
-    return order.template polynomial<Number>(epoch);
-  }
-  Ball<DoubleDouble> extended_value(double t) const { return order.extended_value(t); }
-  bool vanishes() const { return order.vanishes(); }
-};
-
-template <int Degree>
-std::string describe(const Motion<Degree>& lower, const Motion<Degree>& upper, double now, double horizon) {
-  std::ostringstream text;
-  text << std::hexfloat;
-  for (const auto* motion : {&lower, &upper}) {
-    for (const double c : motion->position.c) text << c << ' ';
-    text << "from " << motion->start << ", ";
-  }
-  text << "now " << now << ", horizon " << horizon;
-  return text.str();
-}
-
-/// Asks both ways and keeps count.
-struct Comparison {
-  int asked = 0;
-  int undecided = 0;
-  int failures = 0;  ///< failure times found
-  int wrong = 0;
-  std::string example;
-
-  template <int Degree>
-  void ask(const Motion<Degree>& lower, const Motion<Degree>& upper, double now, double horizon, bool turned = false) {
-    if (!(now <= horizon)) return;
-    const Order<Degree> order{lower, upper};
-    const CarefulOrder<Degree> careful{order};
-    double expected, quick, answer;
-    if (turned) {
-      expected = failure_time_after_turn(careful, now, horizon);
-      quick = order.quick_failure_time_after_turn(now, horizon);
-      answer = failure_time_after_turn(order, now, horizon);
-    } else {
-      expected = failure_time(careful, now, horizon);
-      quick = order.quick_failure_time(now, horizon);
-      answer = failure_time(order, now, horizon);
-    }
-    ++asked;
-    failures += expected < never;
-    undecided += std::isnan(quick);
-    if (answer == expected && (std::isnan(quick) || quick == expected)) return;
-    if (wrong++ == 0) example = describe(lower, upper, now, horizon) + (turned ? ", turned" : "");
-  }
-
-  /// From `now`; with the horizon at the failure and around it; at the failure, when they have swapped.
-  template <int Degree>
-  void ask_around(const Motion<Degree>& lower, const Motion<Degree>& upper, double now, double horizon) {
-    ask(lower, upper, now, horizon);
-    ask(lower, upper, now, never);
-    const double t = failure_time(CarefulOrder<Degree>{{lower, upper}}, now);
-    if (t == never) return;
-    for (const double edge : {next_down(t), t, next_up(t)}) ask(lower, upper, now, edge);
-    if (t == now) return;
-    ask(upper, lower, t, never, true);
-    ask(upper, lower, t, std::max(t, horizon), true);
-    ask(upper, lower, t, never);
-  }
-
-  void report() const {
-    INFO("asked " << asked << ", failures " << failures << ", undecided " << undecided << ", wrong " << wrong << ": "
-                  << example);
-    CHECK(wrong == 0);
-    CHECK(failures > asked / 5);
-  }
-};
-
-enum class Starts { common, different };
 
 template <int Degree>
 Motion<Degree> ordinary_value(Random& random) {
