@@ -56,6 +56,9 @@ struct BallSeparation {
   };
   Estimate estimated_first_approach(double now, double horizon) const;
 
+  /// f > 0 at t, by a quick test that knows the paths that quick_failure_time() knows; false says nothing.
+  bool surely_apart(double t) const;
+
  private:
   struct RelativeLine;
   bool relative_path_is_line() const;
@@ -190,6 +193,11 @@ auto BallSeparation<PathDegree>::estimated_first_approach(double now, double hor
     }
   }
   return {first_approach(now, horizon), true};
+}
+
+template <int PathDegree>
+bool BallSeparation<PathDegree>::surely_apart(double t) const {
+  return relative_path_is_line() && certain_sign(RelativeLine(*this, t).polynomial().c[0]) > 0;
 }
 
 }  // namespace kds::certificates

@@ -13,7 +13,7 @@
 namespace kds::collision {
 
 /// The volume that the broad phase sees.
-enum class BoundingVolume {
+enum class BoundingVolume : std::uint8_t {
   shape,   ///< the tightest box around the shape in its orientation
   sphere,  ///< the box around the bounding sphere: right for a shape in any orientation
 };

@@ -17,7 +17,9 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace kds::collision {
@@ -82,7 +84,7 @@ class World final : private PairListener {
   const Motion& motion(BodyId id) const { return body(id), movers_[id].motion; }
   /// The motion as it would go on without the contacts that hold it: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
-  const PlacedShape& shape(BodyId id) const { return body(id).shape; }
+  PlacedShape shape(BodyId id) const { return body(id), moving(id).shape; }
   double mass(BodyId id) const { return body(id).mass; }
   bool fixed(BodyId id) const { return body(id).inverse_mass == 0; }
 
@@ -128,26 +130,42 @@ class World final : private PairListener {
     PairSlot slot;
   };
 
-  struct Body {
-    PlacedShape shape;
+  /// Half the acceleration that callers gave. At degree 1 there is none.
+  struct Force {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  };
+  struct NoForce {};
+
+  struct Body : std::conditional_t<Degree >= 2, Force, NoForce> {
     std::vector<Link> pairs;
-    std::unique_ptr<Extras> extras;
-    double mass = 1;
     double inverse_mass = 1;
+    double restitution = 1;
+    double mass = 1;
+    double bounding_radius = 0;
     std::uint32_t category = 1;
     std::uint32_t collides_with = ~0u;
     BoundingVolume volume = BoundingVolume::shape;
     bool alive = false;
-    bool entered = false;  ///< is in the broad phase
-    std::uint64_t meetings = 0;  ///< contacts since burst_start (Zeno)
+    bool entered = false;         ///< is in the broad phase
+    bool disturbed = false;       ///< is in disturbed_
+    bool wall_estimated = false;  ///< its time in walls_ is a lower bound
+    std::uint64_t meetings = 0;   ///< contacts since burst_start (Zeno)
     double burst_start = -never;
-    double restitution = 1;
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< half the acceleration that callers gave
+    std::shared_ptr<const PlacedShape> shape;  ///< none if it is placed_ball(bounding_radius)
+    std::unique_ptr<Extras> extras;
     std::vector<HoldSlot> holds;
-    bool disturbed = false;         ///< is in disturbed_
-    bool wall_estimated = false;    ///< its time in walls_ is a lower bound
-    std::uint32_t island_place = 0;  ///< scratch
     std::uint64_t island = 0;        ///< the last it was seen in
+    std::uint32_t island_place = 0;  ///< scratch
+  };
+
+  /// A body for the narrow phase; the shape of a ball is made for the occasion.
+  class Moving : private std::optional<PlacedShape>, public MovingShape<Degree> {
+   public:
+    Moving(const Body& body, const Motion& motion)
+        : std::optional<PlacedShape>(body.shape ? std::nullopt : std::optional(placed_ball(body.bounding_radius))),
+          MovingShape<Degree>{body.shape ? *body.shape : **this, motion} {}
+    Moving(const Moving&) = delete;
+    Moving& operator=(const Moving&) = delete;
   };
 
   /// Two bodies, or a body (a) and a wall, that stay in touch.
@@ -235,7 +253,7 @@ class World final : private PairListener {
   KineticBox<Degree> renewed_box(BodyId id);
   void schedule_wall(BodyId id);
   void schedule_volume(BodyId id);
-  MovingShape<Degree> moving(BodyId id) const { return {bodies_[id].shape, movers_[id].motion}; }
+  Moving moving(BodyId id) const { return Moving(bodies_[id], movers_[id].motion); }
 
   // world_kdops.cpp: bounding volumes in more directions than the axes
   Kdops<Degree> kdops();

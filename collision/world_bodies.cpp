@@ -60,7 +60,10 @@ BodyId World<Degree>::add_body(const Description& description) {
   validate(description);
   count_edit();
   Body added;
-  added.shape = place(description.shape, description.orientation);
+  PlacedShape placed = place(description.shape, description.orientation);
+  const auto* const ball = std::get_if<Sphere>(&description.shape);
+  added.bounding_radius = placed.bounding_radius;
+  if (!ball || !placed.rotation.isIdentity(0)) added.shape = std::make_shared<const PlacedShape>(std::move(placed));
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
   added.restitution = description.restitution;
@@ -73,7 +76,7 @@ BodyId World<Degree>::add_body(const Description& description) {
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
   const bool enters_now = piece->start <= now_;
   Mover mover{*piece, 0};
-  if (const auto* ball = std::get_if<Sphere>(&description.shape)) mover.ball_radius = ball->radius;
+  if (ball) mover.ball_radius = ball->radius;
   if constexpr (Degree >= 2) added.force = piece->coefficients[2];
   if (enters_now) ++piece;
   std::vector<Motion> script(std::make_reverse_iterator(description.motion.end()), std::make_reverse_iterator(piece));
@@ -151,7 +154,7 @@ template <int Degree>
 bool World<Degree>::is_jump(BodyId id, const Motion& to) const {
   const Eigen::Vector3d before = movers_[id].motion.position(now_);
   const Eigen::Vector3d after = to.position(now_);
-  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + bodies_[id].shape.bounding_radius;
+  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + bodies_[id].bounding_radius;
   return (after - before).cwiseAbs().maxCoeff() > jump_tolerance * scale;
 }
 
@@ -176,11 +179,11 @@ template <int Degree>
 KineticBox<Degree> World<Degree>::bounding_box(BodyId id) const {
   const Body& b = bodies_[id];
   if (b.extras && b.extras->box_function) return b.extras->box;
-  if (b.volume == BoundingVolume::sphere) {
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.shape.bounding_radius);
+  if (!b.shape || b.volume == BoundingVolume::sphere) {
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
     return box_around(movers_[id].motion, -reach, reach);
   }
-  return box_around(movers_[id].motion, b.shape.low, b.shape.high);
+  return box_around(movers_[id].motion, b.shape->low, b.shape->high);
 }
 
 /// A bounding volume for the present motion.

@@ -75,17 +75,21 @@ template <int Degree>
 void World<Degree>::test(PairSlot slot) {
   Pair& pair = pairs_[slot];
   ++counters_.pair_tests;
-  if (!pair.fresh && !pair.ignored && mode() == ContactMode::resolved && holds_.size() == free_holds_.size()) {
+  if (!pair.ignored && mode() == ContactMode::resolved && holds_.size() == free_holds_.size()) {
     // Most tests by far are these, and need two cache lines.
     const Mover& a = movers_[pair.a];
     const Mover& b = movers_[pair.b];
     if (a.ball_radius > 0 && b.ball_radius > 0 && !(at_rest(a.motion) && at_rest(b.motion))) {
       const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
-      if (pair.let_pass == now_) return set_contact(slot, apart.first_approach(next_up(now_), horizon_));
-      const auto [time, exact] = apart.estimated_first_approach(now_, horizon_);
-      pair.estimated = !exact;
-      contacts_.set(slot, time);
-      return;
+      if (!pair.fresh || apart.surely_apart(now_)) {
+        if (pair.let_pass == now_ && !pair.fresh) {
+          return set_contact(slot, apart.first_approach(next_up(now_), horizon_));
+        }
+        const auto [time, exact] = apart.estimated_first_approach(now_, horizon_);
+        pair.estimated = !exact;
+        contacts_.set(slot, time);
+        return;
+      }
     }
   }
   const auto a = moving(pair.a);
@@ -243,7 +247,7 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
     return true;
   }
   const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
-                      bodies_[a].shape.bounding_radius + bodies_[b].shape.bounding_radius;
+                      bodies_[a].bounding_radius + bodies_[b].bounding_radius;
   const bool held = stays(restitution * approach, pressed, size, burst);
   if (held) {
     ++counters_.held;
@@ -304,7 +308,7 @@ double World<Degree>::earliest_wall_time(BodyId id, int wall) const {
     if (!(speed > 0)) return never;
     const double plane = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
     const double moved = motion.coefficients[1][axis] * (now_ - motion.start);
-    const double radius = bodies_[id].shape.bounding_radius;
+    const double radius = bodies_[id].bounding_radius;
     const double gap = out * (plane - (motion.coefficients[0][axis] + moved)) - radius;
     const double error =
         0x1p-49 * (std::abs(plane) + std::abs(motion.coefficients[0][axis]) + std::abs(moved) + radius);
@@ -324,7 +328,7 @@ double World<Degree>::next_wall_time(BodyId id, int wall, double horizon) const 
   using Wall = certificates::WallSeparation<Degree>;
   const auto inside = [&] {
     return Wall{motion.axis(axis), out > 0 ? options_.walls->max[axis] : options_.walls->min[axis],
-                bodies_[id].shape.bounding_radius, out};
+                bodies_[id].bounding_radius, out};
   };
   if constexpr (Degree == 1) {
     return motion.coefficients[1][axis] * out > 0 ? failure_time(inside(), now_, horizon) : never;
@@ -356,7 +360,7 @@ void World<Degree>::process_wall(BodyId id, double t) {
   event.contact.point = motion.coefficients[0];
   event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
   ++counters_.wall_contacts;
-  const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.shape.bounding_radius;
+  const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
   const bool held = stays(rebound, pressed, size, count_meeting(id));
   if (held) {
     ++counters_.held;

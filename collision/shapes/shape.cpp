@@ -36,6 +36,15 @@ bool is_signed_permutation(const Eigen::Matrix3d& m) {
 
 }  // namespace
 
+PlacedShape placed_ball(double radius) {
+  PlacedShape placed;
+  placed.shape = Sphere{radius};
+  placed.bounding_radius = radius;
+  placed.high.setConstant(radius);
+  placed.low = -placed.high;
+  return placed;
+}
+
 PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
   if (!orientation.coeffs().allFinite()) throw std::invalid_argument("orientation: must be finite");
   if (std::abs(orientation.norm() - 1) > quaternion_tolerance) {
@@ -47,9 +56,9 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
   if (!identity) placed.rotation = orientation.normalized().toRotationMatrix();
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     require_size(sphere->radius, "radius");
-    placed.bounding_radius = sphere->radius;
-    placed.high.setConstant(sphere->radius);
-    placed.low = -placed.high;
+    const Eigen::Matrix3d rotation = placed.rotation;
+    placed = placed_ball(sphere->radius);
+    placed.rotation = rotation;
   } else if (const auto* box = std::get_if<Box>(&shape)) {
     for (int d = 0; d < 3; ++d) require_size(box->half_extents[d], "half_extents");
     for (int d = 0; d < 3; ++d) {

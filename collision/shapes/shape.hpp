@@ -50,4 +50,7 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation);
 /// direction is of three numbers -1, 0 or 1.
 std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction);
 
+/// What place() makes of a ball. Precondition: a radius that place() accepts.
+PlacedShape placed_ball(double radius);
+
 }  // namespace kds::collision

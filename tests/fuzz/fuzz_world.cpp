@@ -144,9 +144,10 @@ class Scenario {
     for (BodyId a = 0; a < most_bodies; ++a) {
       for (BodyId b = a + 1; b < most_bodies; ++b) {
         if (!world_.contains(a) || !world_.contains(b) || !both_round(a, b) || !both_in(a, b)) continue;
-        const MovingShape<Degree> moving_a{world_.shape(a), world_.motion(a)};
-        const MovingShape<Degree> moving_b{world_.shape(b), world_.motion(b)};
-        const bool touch = in_contact(moving_a, moving_b, world_.now());
+        const PlacedShape shape_a = world_.shape(a);
+        const PlacedShape shape_b = world_.shape(b);
+        const bool touch = in_contact(MovingShape<Degree>{shape_a, world_.motion(a)},
+                                      MovingShape<Degree>{shape_b, world_.motion(b)}, world_.now());
         if (world_.touching(a, b) && !touch) throw Failure("bodies are said to touch and do not");
       }
     }
