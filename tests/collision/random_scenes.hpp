@@ -148,4 +148,16 @@ class SceneMaker {
   SceneOptions options_;
 };
 
+/// Two unit balls that meet at t = 1 and, in mode none, part at t = 3.
+template <int Degree = 1>
+std::vector<BodyDescription<Degree>> two_balls() {
+  return {ball<Degree>(1, {0, 0, 0}), ball<Degree>(1, {4, 0, 0}, {-2, 0, 0})};
+}
+
+inline WorldOptions with_response(Response response) {
+  WorldOptions options;
+  options.response = response;
+  return options;
+}
+
 }  // namespace kds::collision::tests
