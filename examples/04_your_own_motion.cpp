@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   course::Page page(course::View::line, "04 Your own motion",
                     "Bouncing balls: each path is made of pieces, and a plan says when which piece begins. To the "
                     "clock a plan is one more structure, whose events are the seams.", 0, 10);
-  page.legend.event = "a swap";
+  page.legend.event = "a swap or a bounce";
   page.legend.marked = "the highest";
 
   MovingSet<Bouncer> balls;

@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
     };
     tell(gone, " goes");
     tell(come, " comes");
-    if (text.empty()) text = "an edge of the hull leads another way";
+    if (text.empty()) text = "a hull edge leads another way";
     page.event(event.time, text, members, known(delaunay, event.time));
     before = after;
   };

@@ -2,9 +2,11 @@
 // How to run: build/dev/examples/10_contacts, then open the page that it names
 // What you see: 11 contacts, and the energy is 1 of what it was
 #include "certificates/ball_separation.hpp"
+#include "certificates/wall_separation.hpp"
 #include "collision/world.hpp"
 #include "examples/course/page.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -31,7 +33,7 @@ class Teller final : public WorldListener<2> {
     tell(world, event.contact.time, text, {event.body});
   }
 
-  /// What the page shows beside: for each pair the time until which it is known to be apart, if nothing happens before.
+  /// What the page shows beside: until when each pair is apart and each ball inside, if nothing happens before.
   course::State known(const World<2>& world, double now) const {
     course::State state{.text = std::to_string(contacts) + " contacts so far"};
     for (BodyId a = 0; a < world.size(); ++a) {
@@ -40,8 +42,22 @@ class Teller final : public WorldListener<2> {
         const std::string fact = page_.name(a) + " and " + page_.name(b) + " are apart";
         state.certificates.push_back({fact, {a, b}, apart.first_approach(now, never)});
       }
+      state.certificates.push_back({page_.name(a) + " is inside the walls", {a}, leaves(world, a, now)});
     }
     return state;
+  }
+  /// The first failure of the four certificates that keep a ball inside.
+  double leaves(const World<2>& world, BodyId id, double now) const {
+    double first = never;
+    for (int i = 0; i < 4; ++i) {
+      const auto wall = static_cast<std::size_t>(i);  // of x, y, x, y
+      const certificates::WallSeparation<2> inside{world.motion(id).axis(i % 2), page_.walls[wall], radius(id),
+                                                   i < 2 ? -1.0 : 1.0};
+      // Just after a bounce the ball may be outside by a rounding, on its way in.
+      const double from = sign_after(inside, now) < 0 ? recovery_time(inside, now) : now;
+      first = std::min(first, failure_time(inside, from));
+    }
+    return first;
   }
   static double radius(BodyId id) { return 0.35 + 0.1 * id; }
   int contacts = 0;

@@ -27,7 +27,6 @@ struct Side {
     const auto height = about<Number>(x, epoch) - constant<Number>(border);
     return above ? height : -height;
   }
-  std::string fact() const { return above ? "above the border" : "below the border"; }  // for the page
 };
 
 // Step 2: the rule. It has a state, here which side each value is on, and numbers its certificates: slot 2 i is about
@@ -67,6 +66,12 @@ struct BandRule {
     repair.retire(2 * id + 1);
   }
 };
+
+/// For the page alone: what it calls a certificate.
+template <class Name>
+std::string fact(const Side& side, const Name& name) {
+  return name(side.x) + (side.above ? " is above " : " is below ") + (side.border == 3 ? "low" : "high");
+}
 
 // Step 6: hand it to the framework, which does the rest: failure times, the queue, edits, audits, measures.
 int main(int argc, char** argv) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct Narrower {
   }
   bool vanishes() const { return a == c && b == d; }
 };
+
+/// What a page of the course calls it.
+template <class Name>
+std::string fact(const Narrower& gaps, const Name& name) {
+  return "gap " + name(gaps.a) + name(gaps.b) + " \u2264 gap " + name(gaps.c) + name(gaps.d);
+}
 
 /// Keeps two neighbours that are closest: the list knows who are neighbours, a tournament of their gaps who wins. Even
 /// slots are the list's, odd ones the matches; a gap takes part by the lower of its two.

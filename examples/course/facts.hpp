@@ -3,6 +3,7 @@
 
 #include "certificates/direction_order.hpp"
 #include "certificates/in_circle.hpp"
+#include "certificates/in_order.hpp"
 #include "certificates/order.hpp"
 #include "certificates/orientation.hpp"
 #include "examples/course/page.hpp"
@@ -16,7 +17,8 @@
 namespace kds::course {
 
 /// What a certificate says, of the elements of a set. One overload for each kind that is known; a certificate of yours
-/// gets `fact` from a function of the same form, or is called by its members.
+/// may have a function fact(certificate, name) beside it, where name(element) gives the element's name, else it is called
+/// by its members.
 template <class Element>
 class Facts {
  public:
@@ -41,9 +43,14 @@ class Facts {
     const std::string where = c.direction[0] != 0 ? " is not right of " : " is not above ";
     return {name(c.lower) + where + name(c.upper), {id(c.lower), id(c.upper)}};
   }
+  template <class Value>
+  Held of(const certificates::Ascending<Value>& c) const {
+    return {name(c.lower) + " \u2264 " + name(c.upper), {id(c.lower), id(c.upper)}};
+  }
   template <class Other>
   Held of(const Other& c) const {
-    if constexpr (requires { c.fact(); }) return {c.fact(), members_};
+    const auto called = [this](const Element& element) { return name(element); };
+    if constexpr (requires { fact(c, called); }) return {fact(c, called), members_};
     std::string all;
     for (const Id id : members_) all += (all.empty() ? "" : ", ") + page_.name(id);
     return {all, members_};

@@ -142,8 +142,11 @@ function tick(moment) {
   if (now >= data.end) play(false); else requestAnimationFrame(tick);
 }
 
+let laidOut = 0;
 function resize() {
   const width = $('frame').clientWidth;
+  if (width === laidOut) return;
+  laidOut = width;
   const height = Math.round(Math.max(260, Math.min(width * (width < 520 ? 0.95 : 0.62), innerHeight * 0.66)));
   set($('figure'), {viewBox: `0 0 ${width} ${height}`, height});
   view.layout(width, height);
@@ -195,5 +198,6 @@ listEvents();
 const wanted = /^#t=(.+)$/.exec(location.hash);
 if (wanted && Number.isFinite(Number(wanted[1]))) now = Math.min(data.end, Math.max(data.begin, Number(wanted[1])));
 $('time').value = now;
-new ResizeObserver(resize).observe($('frame'));
+// In the next frame, for the picture's height follows its width, and the observer would hear of that amidst its work.
+new ResizeObserver(() => requestAnimationFrame(resize)).observe($('frame'));
 resize();

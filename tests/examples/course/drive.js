@@ -80,17 +80,19 @@ window.addEventListener('load', () => {
   // Play, and pause a moment later.
   drag(begin);
   document.getElementById('play').click();
-  setTimeout(() => {
+  let waits = 0;
+  const watch = setInterval(() => {
+    if (window.course.now() === begin && ++waits < 100) return;  // frames may be slow to come
+    clearInterval(watch);
     document.getElementById('play').click();
-    report.played = Number(slider.value);
-    const paused = report.played;
+    report.played = window.course.now();
     setTimeout(() => {
-      report.stayed = Number(slider.value) === paused;
+      report.stayed = window.course.now() === report.played;
       const node = document.createElement('script');
       node.type = 'application/json';
       node.id = 'report';
       node.textContent = JSON.stringify(report);
       document.body.append(node);
     }, 100);
-  }, 400);
+  }, 50);
 });
