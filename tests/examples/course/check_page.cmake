@@ -14,7 +14,9 @@ file(READ "${DRIVER}" driver)
 string(CONCAT collector "<head><script>window.pageErrors = [];"
   "addEventListener('error', (e) => pageErrors.push(String(e.message)));"
   "addEventListener('unhandledrejection', (e) => pageErrors.push(String(e.reason)));"
-  "console.error = console.warn = (...all) => pageErrors.push(all.join(' '));</script>")
+  "console.error = console.warn = (...all) => pageErrors.push(all.join(' '));"
+  # In virtual time frames come when they like, timers when they are due.
+  "requestAnimationFrame = (f) => setTimeout(() => f(performance.now()), 16);</script>")
 string(REPLACE "<head>" "${collector}" html "${html}")
 string(REPLACE "</body>" "<script>${driver}</script></body>" html "${html}")
 file(WRITE "${FOLDER}/driven.html" "${html}")
