@@ -45,16 +45,17 @@ window.addEventListener('load', () => {
     report.frames.push(look(t));
   }
 
-  // Between events and at some of them, forwards and back.
+  // Shortly before and after every event, at some of them, and at times that have nothing to do with them: forwards, and
+  // some of it backwards.
   const events = window.course.data.events.map((event) => event.time);
   const {begin, end} = window.course.data;
-  const stops = [begin, ...new Set(events), end];
-  let times = [begin, end];
-  for (let i = 0; i + 1 < stops.length; ++i) times.push((stops[i] + stops[i + 1]) / 2);
-  times = times.filter((_, i) => i % Math.ceil(times.length / 50) === 0);
+  const moment = (end - begin) * 1e-6;
+  const times = [begin, end];
+  for (let i = 1; i < 16; ++i) times.push(begin + (end - begin) * ((i * 0.6180339887) % 1));
+  events.forEach((t) => times.push(Math.max(begin, t - moment), Math.min(end, t + moment)));
   for (let i = 0; i < events.length; i += Math.ceil(events.length / 8)) times.push(events[i]);
   times.sort((a, b) => a - b).forEach(drag);
-  times.reverse().filter((_, i) => i % 3 === 0).forEach(drag);
+  times.reverse().filter((_, i) => i % 5 === 0).forEach(drag);
 
   const buttons = [...document.querySelectorAll('#events button')];
   for (let i = 0; i < buttons.length; i += Math.ceil(buttons.length / 6)) {
