@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
   for (Id id = 0; id < boxes.size(); ++id) entries.push_back({id, &boxes[id]});
 
   Teller teller(page, boxes);
-  KineticSweepAndPrune<2> sweep(0, ListedAxes::three);
+  KineticSweepAndPrune<2> sweep(0, ListedAxes::all);
   sweep.insert(entries, 0, teller);
   teller.start();
   while (sweep.advance(end, teller)) {}  // returns after each change of a pair
