@@ -17,10 +17,12 @@ KineticSweepAndPrune<Degree>::KineticSweepAndPrune(double now, ListedAxes listed
       unlisted_(changes_, 3 + kdops_.directions.size()),
       slabs_(kdops_.directions.size()),
       simulator_(now, lists_, unlisted_) {
+  std::vector<std::size_t> directions;
   for (std::size_t d = 0; d < 3 + kdops_.directions.size(); ++d) {
     lists_.all.emplace_back(AxisListener{this, d});
-    lists_.used.push_back(d);
+    directions.push_back(d);
   }
+  lists_.use(directions);
 }
 
 template <int Degree>
@@ -83,6 +85,7 @@ void KineticSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double 
   simulator_.set_clock(now);
   box_updates_ += bodies.size();
   if (size() == 0) {
+    unlisted_.choose(0, now);  // it has nothing to do before it is known what is listed
     for (const Entry& body : bodies) set_volume(body.id, *body.box, now);
     const unsigned listed = best_axes(bodies, now);
     unlisted_.choose(all_axes_ & ~listed, now);

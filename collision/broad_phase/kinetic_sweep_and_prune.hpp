@@ -77,11 +77,19 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   /// The lists, as one structure. Of events at one time that of the first comes first.
   class Lists {
    public:
-    std::vector<List> all;         ///< by direction; empty where there is none
+    std::vector<List> all;          ///< by direction; empty where there is none
     std::vector<std::size_t> used;  ///< which are not
 
-    double next_time() const { return next().first; }
-    void process() { all[next().second].process(); }
+    void use(std::vector<std::size_t> directions) {
+      used = std::move(directions);
+      first_ = used.front();
+    }
+    double next_time() const {
+      if (used.size() > 1) find_first();
+      return all[first_].next_time();
+    }
+    /// Precondition: next_time() has been asked for since the last change.
+    void process() { all[first_].process(); }
     void extend_horizon(double now, double horizon) {
       for (List& list : all) list.extend_horizon(now, horizon);
     }
@@ -95,13 +103,14 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
     }
 
    private:
-    std::pair<double, std::size_t> next() const {
-      std::pair<double, std::size_t> first{never, 0};
+    void find_first() const {
+      double time = never;
       for (const std::size_t d : used) {
-        if (const double t = all[d].next_time(); t < first.first) first = {t, d};
+        if (const double t = all[d].next_time(); t < time) time = t, first_ = d;
       }
-      return first;
     }
+
+    mutable std::size_t first_ = 0;  ///< of those in use: whose event is next
   };
 
   static std::uint32_t min_end(BodyId id) { return 2 * id; }

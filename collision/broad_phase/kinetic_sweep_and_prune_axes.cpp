@@ -17,24 +17,28 @@ unsigned KineticSweepAndPrune<Degree>::best_axes(std::span<const Entry> bodies, 
   const std::size_t directions = lists_.all.size();
   if (asked_ == ListedAxes::all) return all_axes_;
   if (asked_ == ListedAxes::automatic && bodies.size() < few_bodies && directions == 3) return all_axes_;
-  std::vector<double> lengths(directions), speeds(directions), wholes(directions);
-  for (std::size_t d = 0; d < directions; ++d) {
-    double low = never, high = -never;
-    for (const Entry& body : bodies) {
-      const Motion<Degree> min = unlisted_.end(body.id, d, false);
-      const double from = min(now);
-      const double to = unlisted_.end(body.id, d, true)(now);
-      low = std::min(low, from);
-      high = std::max(high, to);
-      lengths[d] += to - from;
-      speeds[d] += std::abs(derivative(min.position)(now - min.start));
+  std::vector<double> lengths(directions), speeds(directions), low(directions, never), high(directions, -never);
+  const auto add = [&](std::size_t d, double min, double max, double speed) {
+    low[d] = std::min(low[d], min);
+    high[d] = std::max(high[d], max);
+    lengths[d] += max - min;
+    speeds[d] += std::abs(speed);
+  };
+  for (const Entry& body : bodies) {
+    const Eigen::Vector3d min = body.box->min.position(now);
+    const Eigen::Vector3d max = body.box->max.position(now);
+    const Eigen::Vector3d speed = body.box->min.velocity(now);
+    for (int d = 0; d < 3; ++d) add(static_cast<std::size_t>(d), min[d], max[d], speed[d]);
+    for (std::size_t d = 3; d < directions; ++d) {
+      const Motion<Degree> end = unlisted_.end(body.id, d, false);
+      add(d, end(now), unlisted_.end(body.id, d, true)(now), derivative(end.position)(now - end.start));
     }
-    wholes[d] = std::max(high - low, 0x1p-1000);
   }
   const double speed = speeds[0] + speeds[1] + speeds[2];
   const double crossing = speed > 0 ? (lengths[0] + lengths[1] + lengths[2]) / speed : 0;
   const auto promises = [&](std::size_t d) {
-    const double cost = (lengths[d] + speeds[d] * std::min(crossing, horizon_ - now)) / wholes[d];
+    const double whole = std::max(high[d] - low[d], 0x1p-1000);
+    const double cost = (lengths[d] + speeds[d] * std::min(crossing, horizon_ - now)) / whole;
     return cost * (!all_listed() && is_listed(d) ? 2.0 / 3 : 1.0);
   };
   std::vector<std::size_t> order(directions);
@@ -50,11 +54,11 @@ void KineticSweepAndPrune<Degree>::build_lists(std::span<const Entry> bodies, un
   chosen_at_ = bodies.size();
   std::vector<typename List::Entry> ends;
   ends.reserve(2 * bodies.size());
-  lists_.used.clear();
+  std::vector<std::size_t> used;
   for (std::size_t d = 0; d < lists_.all.size(); ++d) {
     ends.clear();
     if (is_listed(d)) {
-      lists_.used.push_back(d);
+      used.push_back(d);
       for (const Entry& body : bodies) {
         ends.push_back({unlisted_.end(body.id, d, false), min_end(body.id)});
         ends.push_back({unlisted_.end(body.id, d, true), max_end(body.id)});
@@ -62,6 +66,7 @@ void KineticSweepAndPrune<Degree>::build_lists(std::span<const Entry> bodies, un
     }
     lists_.all[d].assign(ends, now);
   }
+  lists_.use(used);
   count_open();
 }
 

@@ -121,13 +121,16 @@ void UnlistedAxes<Degree>::set_box(BodyId id, const KineticBox<Degree>& box,
     boxes_.resize(id + 1);
     hulls_.resize(id + 1);
     pairs_of_.resize(id + 1);
-    if (directions_ > 3) slabs_.resize(boxes_.size() * directions_);
-    more_hulls_.resize(boxes_.size() * 2 * more_.size());
+    if (!slabs.empty()) {
+      slabs_.resize(boxes_.size() * directions_);
+      more_hulls_.resize(boxes_.size() * 2 * more_.size());
+    }
   }
   boxes_[id] = box;
-  for (std::size_t d = 0; directions_ > 3 && d < directions_; ++d) {
-    KineticSlab<Degree>& slab = slabs_[id * directions_ + d];
-    slab = d < 3 ? KineticSlab<Degree>{end(id, d, false), end(id, d, true)} : slabs[d - 3];
+  if (!slabs.empty()) {
+    KineticSlab<Degree>* const all = &slabs_[id * directions_];
+    for (std::size_t d = 0; d < 3; ++d) all[d] = {end(id, d, false), end(id, d, true)};
+    std::copy(slabs.begin(), slabs.end(), all + 3);
   }
   if (count_ > 0) set_hulls(id, now);
 }
