@@ -29,11 +29,11 @@ void World<Degree>::place_extents(BodyId id) {
   for (std::size_t i = 0; i < directions_.size(); ++i) {
     const Eigen::Vector3d direction(directions_[i].data());
     auto& reach = extents_[id * directions_.size() + i];
-    if (b.volume == BoundingVolume::sphere) {
-      const double radius = b.shape.bounding_radius * direction.norm() * (1 + 0x1p-48);
+    if (!b.shape || b.volume == BoundingVolume::sphere) {
+      const double radius = b.bounding_radius * direction.norm() * (1 + 0x1p-48);
       reach = {-radius, radius};
     } else {
-      reach = extent(b.shape, direction);
+      reach = extent(*b.shape, direction);
     }
   }
 }

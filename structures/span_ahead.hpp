@@ -2,9 +2,9 @@
 #pragma once
 
 #include "kds/arithmetic/ball.hpp"
-#include "kds/bounded.hpp"
 #include "kds/motion.hpp"
 #include "kds/roots/failure_time.hpp"
+#include "kds/uncertain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,18 +17,14 @@ struct Span {
   double max;
 };
 
-/// An interval whose inside holds the value from now until `ahead` seconds later; all there is where the numbers
-/// overflow.
-///
-/// Written about now each term of the motion is monotone in time, so its ends will do. Roundings: n - 1 of a power, one
-/// of the product, n of the sums, 2^-53 of a term each; 2^-48 of all terms covers degrees to 15, and leaves the ends
-/// strictly outside; 2^-1000 is for underflow.
+namespace detail {
+
+/// Adds the terms of a polynomial in the time from now on, over [0, ahead]: each is monotone, so its ends will do.
 template <int Degree>
-Span span_ahead(const Motion<Degree>& value, double now, double ahead) {
-  static_assert(Degree <= 15);
-  const auto f = about<Ball<double>>(value, now);
-  Span span{f.c[0].middle - f.c[0].radius, f.c[0].middle + f.c[0].radius};
-  double size = std::abs(f.c[0].middle) + f.c[0].radius;
+void add_terms(const Polynomial<Degree, Ball<double>>& f, double ahead, Span& span, double& size) {
+  span.min += f.c[0].middle - f.c[0].radius;
+  span.max += f.c[0].middle + f.c[0].radius;
+  size += std::abs(f.c[0].middle) + f.c[0].radius;
   double power = 1;
   for (std::size_t i = 1; i <= Degree; ++i) {
     power *= ahead;
@@ -38,17 +34,32 @@ Span span_ahead(const Motion<Degree>& value, double now, double ahead) {
     span.max += std::max(high, 0.0);
     size += std::max(std::abs(low), std::abs(high));
   }
+}
+
+}  // namespace detail
+
+/// An interval whose inside holds the value from now until `ahead` seconds later, a sampled one whatever it does; all
+/// there is where the numbers overflow.
+///
+/// Roundings: n - 1 of a power, one of the product, n + 2 of the sums, 2^-53 of a term each; 2^-48 of all terms covers
+/// degrees to 12, and leaves the ends strictly outside; 2^-1000 is for underflow.
+template <class Value>
+Span span_ahead(const Value& value, double now, double ahead) {
+  static_assert(Value::degree <= 12);
+  const auto f = about<Ball<double>>(value, now);
+  Span span{0, 0};
+  double size = 0;
+  if constexpr (requires { f.middle; }) {
+    detail::add_terms(f.middle, ahead, span, size);
+    Span radius{0, 0};
+    detail::add_terms(f.radius, ahead, radius, size);
+    span = {span.min - radius.max, span.max + radius.max};
+  } else {
+    detail::add_terms(f, ahead, span, size);
+  }
   if (!(size < never)) return {-never, never};
   const double margin = 0x1p-48 * size + 0x1p-1000;
   return {span.min - margin, span.max + margin};
-}
-
-/// The same of a sampled value, whatever it does.
-inline Span span_ahead(const Bounded& value, double now, double ahead) {
-  const double reach = value.speed * ((now - value.start) + ahead);
-  const double margin = 0x1p-48 * (std::abs(value.position) + reach) + 0x1p-1000;
-  if (!(margin < never)) return {-never, never};
-  return {value.position - reach - margin, value.position + reach + margin};
 }
 
 }  // namespace kds::structures
