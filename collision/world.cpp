@@ -20,21 +20,20 @@ namespace kds::collision {
 namespace {
 
 template <int Degree>
-std::unique_ptr<BroadPhase<Degree>> make_broad_phase(const WorldOptions& options, Profile* profile,
-                                                     Kdops<Degree> kdops) {
+std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options, double now, Profile* profile,
+                                                    Kdops<Degree> kdops) {
   switch (options.broad_phase) {
     case BroadPhaseKind::automatic:
       return std::make_unique<AdaptiveBroadPhase<Degree>>();
     case BroadPhaseKind::grid:
       return std::make_unique<KineticGrid<Degree>>();
     case BroadPhaseKind::kinetic_sap:
-      return std::make_unique<KineticSweepAndPrune<Degree>>(options.start_time, ListedAxes::automatic,
-                                                            std::move(kdops));
+      return std::make_unique<KineticSweepAndPrune<Degree>>(now, ListedAxes::automatic, std::move(kdops));
     case BroadPhaseKind::sap:
       if (!(options.rate > 0) || !std::isfinite(options.rate)) {
         throw std::invalid_argument("WorldOptions.rate: sweep and prune with swept boxes needs a rate > 0");
       }
-      return std::make_unique<SweptSweepAndPrune<Degree>>(options.start_time, options.rate, profile);
+      return std::make_unique<SweptSweepAndPrune<Degree>>(now, options.rate, profile);
     case BroadPhaseKind::all_pairs:
       return std::make_unique<AllPairs<Degree>>();
   }
@@ -84,7 +83,12 @@ World<Degree>::World(const WorldOptions& options, Listener* listener)
       now_(options.start_time),
       horizon_(options.start_time + options.window) {
   validate(options);
-  broad_phase_ = make_broad_phase<Degree>(options, profile(), kdops());
+  make_broad_phase();
+}
+
+template <int Degree>
+void World<Degree>::make_broad_phase() {
+  broad_phase_ = new_broad_phase<Degree>(options_, now_, profile(), kdops());
   broad_phase_->extend_horizon(now_, horizon_);
 }
 
@@ -308,7 +312,7 @@ void World<Degree>::fill_in(Pending& separation) const {
 template <int Degree>
 WorldCounters World<Degree>::counters() const {
   WorldCounters counters = counters_;
-  counters.broad_phase = broad_phase_->counters();
+  counters.broad_phase = counters_.broad_phase + broad_phase_->counters();  // and those of before it was loaded
   return counters;
 }
 

@@ -34,6 +34,8 @@ struct WorldCounters {
   std::uint64_t wall_contacts = 0;
   std::uint64_t motion_updates = 0;  ///< by response, walls, scripts and callers
   std::uint64_t held = 0;            ///< times the Zeno policy acted
+
+  friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
 };
 
 /// Runs bodies through time and reports their contacts at exact times.
@@ -103,6 +105,13 @@ class World final : private PairListener {
 
   /// Checks the broad phase against the motions, exactly, and the pairs against brute force; throws AuditFailure.
   void audit() const;
+
+  /// Saves or loads all that decides the events to come: see save() and restore() in kds/framework/snapshot.hpp. A world
+  /// that is loaded, with the same options (broad phase and window may be others), makes the same contacts at the same
+  /// times, bit for bit; see docs/framework.md for the rest. Throws std::invalid_argument for a body with a box function,
+  /// std::logic_error from within a callback.
+  template <class Archive>
+  void archive(Archive& archive);
 
  private:
   using PairSlot = std::uint32_t;
@@ -228,6 +237,7 @@ class World final : private PairListener {
   };
 
   // world.cpp: the clock
+  void make_broad_phase();
   void reach(double limit);
   void enter_new_bodies();
   void start_pieces();
@@ -237,7 +247,15 @@ class World final : private PairListener {
 
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }
 
+  // world_snapshot.cpp: saving and loading
+  struct Image;
+  Image image() const;
+  void become(const Image& image);
+  void load_pairs(const Image& image);
+  std::vector<std::shared_ptr<const Mesh>> meshes() const;
+
   // world_bodies.cpp: bodies and pairs
+  void set_shape(BodyId id, PlacedShape placed);
   const Body& body(BodyId id) const;
   Body& body(BodyId id);
   void pair_began(BodyId a, BodyId b, double t) override;

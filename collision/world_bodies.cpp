@@ -61,9 +61,6 @@ BodyId World<Degree>::add_body(const Description& description) {
   count_edit();
   Body added;
   PlacedShape placed = place(description.shape, description.orientation);
-  const auto* const ball = std::get_if<Sphere>(&description.shape);
-  added.bounding_radius = placed.bounding_radius;
-  if (!ball || !placed.rotation.isIdentity(0)) added.shape = std::make_shared<const PlacedShape>(std::move(placed));
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
   added.restitution = description.restitution;
@@ -75,8 +72,7 @@ BodyId World<Degree>::add_body(const Description& description) {
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
   const bool enters_now = piece->start <= now_;
-  Mover mover{*piece, 0};
-  if (ball) mover.ball_radius = ball->radius;
+  const Mover mover{*piece, 0};
   if constexpr (Degree >= 2) added.force = piece->coefficients[2];
   if (enters_now) ++piece;
   std::vector<Motion> script(std::make_reverse_iterator(description.motion.end()), std::make_reverse_iterator(piece));
@@ -95,6 +91,7 @@ BodyId World<Degree>::add_body(const Description& description) {
   }
   bodies_[id] = std::move(added);
   movers_[id] = mover;
+  set_shape(id, std::move(placed));
   place_extents(id);
   ++alive_;
   if (const auto& extras = bodies_[id].extras) {
@@ -104,6 +101,15 @@ BodyId World<Degree>::add_body(const Description& description) {
   }
   if (enters_now) entering_.push_back(id);
   return id;
+}
+
+template <int Degree>
+void World<Degree>::set_shape(BodyId id, PlacedShape placed) {
+  Body& b = bodies_[id];
+  const auto* const ball = std::get_if<Sphere>(&placed.shape);
+  b.bounding_radius = placed.bounding_radius;
+  movers_[id].ball_radius = ball ? ball->radius : 0;
+  if (!ball || !placed.rotation.isIdentity(0)) b.shape = std::make_shared<const PlacedShape>(std::move(placed));
 }
 
 template <int Degree>

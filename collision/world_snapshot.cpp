@@ -1,0 +1,297 @@
+// Worlds saved, and loaded again.
+#include "collision/world_snapshot.hpp"
+
+#include "collision/shapes/mesh.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace kds::collision {
+namespace {
+
+/// Options that decide events. Broad phase, window and profile may be others.
+template <class Archive>
+void archive_options(Archive& archive, const WorldOptions& options, bool exact) {
+  const auto same = [&](const char* what, auto value) {
+    auto found = value;
+    archive(found);
+    if (found != value) {
+      throw std::runtime_error(std::string("snapshot: it is of a world with other options: ") + what);
+    }
+  };
+  same("response", static_cast<std::uint32_t>(options.response));
+  same("walls", std::uint32_t{options.walls.has_value()});
+  if (options.walls) {
+    for (int d = 0; d < 3; ++d) same("walls", options.walls->min[d]), same("walls", options.walls->max[d]);
+    same("walls.restitution", options.walls->restitution);
+  }
+  same("zeno.contacts", options.zeno.contacts);
+  same("zeno.interval", options.zeno.interval);
+  same("report_pairs", std::uint32_t{options.report_pairs});
+  if (options.report_pairs) same("broad_phase, which reports its pairs", std::uint32_t{exact});
+}
+
+bool equal(std::span<const Eigen::Vector3d> a, const std::vector<Eigen::Vector3d>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+struct PairCollector final : PairListener {
+  std::vector<std::pair<BodyId, BodyId>> pairs;
+  void pair_began(BodyId a, BodyId b, double) override { pairs.emplace_back(a, b); }
+  void pair_ended(BodyId a, BodyId b, double) override { std::erase(pairs, std::pair(a, b)); }
+};
+
+}  // namespace
+
+template <int Degree>
+template <class Archive>
+void World<Degree>::Image::mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
+                                const std::vector<std::shared_ptr<const Mesh>>& known) {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Mesh::Triangle> triangles;
+  if (mesh) {
+    vertices.assign(mesh->vertices().begin(), mesh->vertices().end());
+    triangles.assign(mesh->triangles().begin(), mesh->triangles().end());
+  }
+  each(archive, vertices, [&](Eigen::Vector3d& v) { vector(archive, v); });
+  archive(triangles);
+  if constexpr (Archive::loading) {
+    const auto same = std::find_if(known.begin(), known.end(), [&](const auto& other) {
+      return equal(other->vertices(), vertices) && std::equal(triangles.begin(), triangles.end(),
+                                                              other->triangles().begin(), other->triangles().end());
+    });
+    mesh = same != known.end() ? *same : std::make_shared<const Mesh>(std::move(vertices), std::move(triangles));
+  }
+}
+
+template <int Degree>
+template <class Archive>
+void World<Degree>::Image::shape(Archive& archive, BodyImage& body) const {
+  PlacedShape& placed = body.placed;
+  std::uint32_t kind = static_cast<std::uint32_t>(placed.shape.index());
+  archive(kind);
+  if constexpr (Archive::loading) {
+    if (kind > 2) throw std::runtime_error("snapshot: it is damaged");
+    if (kind == 0) placed.shape = Sphere{0};
+    if (kind == 1) placed.shape = Box{Eigen::Vector3d::Zero()};
+    if (kind == 2) placed.shape = MeshShape{};
+  }
+  if (auto* const sphere = std::get_if<Sphere>(&placed.shape)) archive(sphere->radius);
+  if (auto* const box = std::get_if<Box>(&placed.shape)) vector(archive, box->half_extents);
+  if (auto* const mesh = std::get_if<MeshShape>(&placed.shape)) {
+    archive(body.mesh, mesh->scale);
+    mesh->mesh = meshes.at(body.mesh);
+  }
+  for (double& entry : placed.rotation.reshaped()) archive(entry);
+  for (Eigen::Vector3d& half : placed.half_axes) vector(archive, half);
+  vector(archive, placed.low), vector(archive, placed.high);
+  archive(placed.bounding_radius);
+}
+
+template <int Degree>
+template <class Archive>
+void World<Degree>::Image::body(Archive& archive, BodyImage& body) const {
+  archive(body.alive);
+  if (!body.alive) return;
+  shape(archive, body);
+  archive(body.entered, body.motion, body.script, body.mass, body.inverse_mass, body.restitution, body.category,
+          body.collides_with, body.volume, body.meetings, body.burst_start, body.holds);
+  vector(archive, body.force);
+}
+
+template <int Degree>
+template <class Archive>
+void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
+  archive(now, horizon, counters, edits, edits_start);
+  each(archive, meshes, [&](auto& one) { mesh(archive, one, known); });
+  each(archive, bodies, [&](BodyImage& one) { body(archive, one); });
+  archive(free_bodies, entering, disturbed, free_holds, releases);
+  each(archive, pairs, [&](PairImage& image) {
+    Pair& p = image.pair;
+    archive(p.a, p.b, p.dirty, p.fresh, p.touching, p.ignored, p.boxes_overlap, p.estimated, p.let_pass, image.contact,
+            image.boxes);
+  });
+  each(archive, passing, [&](Passing& p) { archive(p.a, p.b, p.at, p.let_pass); });
+  each(archive, holds, [&](Hold& h) {
+    archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh);
+    vector(archive, h.normal);
+  });
+  each(archive, pending, [&](Pending& p) {
+    archive(p.kind, p.a, p.b, p.placed, p.contact.time);
+    for (Feature* f : {&p.contact.feature_a, &p.contact.feature_b}) archive(f->kind, f->first, f->second);
+    vector(archive, p.contact.point), vector(archive, p.contact.normal);
+  });
+}
+
+template <int Degree>
+std::vector<std::shared_ptr<const Mesh>> World<Degree>::meshes() const {
+  std::vector<std::shared_ptr<const Mesh>> result;
+  for (BodyId id = 0; id < bodies_.size(); ++id) {
+    if (!bodies_[id].alive) continue;
+    const PlacedShape placed = shape(id);
+    const auto* const mesh = std::get_if<MeshShape>(&placed.shape);
+    if (mesh && std::find(result.begin(), result.end(), mesh->mesh) == result.end()) result.push_back(mesh->mesh);
+  }
+  return result;
+}
+
+template <int Degree>
+typename World<Degree>::Image World<Degree>::image() const {
+  Image image;
+  image.now = now_, image.horizon = horizon_, image.counters = counters();
+  image.meshes = meshes();
+  for (BodyId id = 0; id < bodies_.size(); ++id) {
+    const Body& b = bodies_[id];
+    auto& to = image.bodies.emplace_back();
+    if (!b.alive) continue;
+    if (b.extras && b.extras->box_function) {
+      throw std::invalid_argument("World: body " + std::to_string(id) + " cannot be saved: it has a box function");
+    }
+    to.alive = true, to.entered = b.entered;
+    to.placed = shape(id);
+    if (const auto* const mesh = std::get_if<MeshShape>(&to.placed.shape)) {
+      to.mesh = static_cast<std::uint32_t>(std::find(image.meshes.begin(), image.meshes.end(), mesh->mesh) -
+                                           image.meshes.begin());
+    }
+    to.motion = movers_[id].motion;
+    if (b.extras) to.script = b.extras->script;
+    to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
+    to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume;
+    to.meetings = b.meetings, to.burst_start = b.burst_start;
+    if constexpr (Degree >= 2) to.force = b.force;
+    to.holds = b.holds;
+  }
+  for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
+    if (!pairs_[slot].alive) continue;
+    auto& to = image.pairs.emplace_back();
+    to.pair = pairs_[slot];
+    to.contact = contacts_.time(slot);
+    if (slot < boxes_.slots()) to.boxes = boxes_.time(slot);
+  }
+  std::sort(image.pairs.begin(), image.pairs.end(), [](const auto& x, const auto& y) {
+    return std::pair(x.pair.a, x.pair.b) < std::pair(y.pair.a, y.pair.b);
+  });
+  image.holds = holds_, image.free_holds = free_holds_;
+  for (HoldSlot slot = 0; slot < holds_.size(); ++slot) image.releases.push_back(releases_.time(slot));
+  image.free_bodies = free_bodies_, image.entering = entering_, image.disturbed = disturbed_;
+  image.passing = passing_;
+  image.pending.assign(pending_.begin(), pending_.end());
+  image.edits = edits_, image.edits_start = edits_start_;
+  return image;
+}
+
+template <int Degree>
+void World<Degree>::become(const Image& image) {
+  now_ = image.now, horizon_ = image.horizon;
+  edits_ = image.edits, edits_start_ = image.edits_start;
+  free_bodies_ = image.free_bodies, entering_ = image.entering, disturbed_ = image.disturbed;
+  passing_ = image.passing;
+  pending_.assign(image.pending.begin(), image.pending.end());
+  const std::size_t count = image.bodies.size();
+  bodies_.clear(), movers_.clear();
+  bodies_.resize(count), movers_.resize(count);
+  alive_ = 0;
+  islands_ = 0;
+  pieces_.resize(0), volumes_.resize(0), walls_.resize(0);
+  pieces_.resize(count);
+  for (BodyId id = 0; id < count; ++id) {
+    const auto& from = image.bodies[id];
+    if (!from.alive) continue;
+    ++alive_;
+    Body& b = bodies_[id];
+    b.alive = true, b.entered = from.entered;
+    set_shape(id, from.placed);
+    movers_[id].motion = from.motion;
+    b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
+    b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume;
+    place_extents(id);
+    b.meetings = from.meetings, b.burst_start = from.burst_start;
+    if constexpr (Degree >= 2) b.force = from.force;
+    b.holds = from.holds;
+    if (from.script.empty()) continue;
+    b.extras = std::make_unique<Extras>(Extras{from.script, {}, {}});
+    pieces_.set(id, from.script.back().start);
+  }
+  for (const BodyId id : disturbed_) bodies_[id].disturbed = bodies_[id].alive;
+  holds_ = image.holds, free_holds_ = image.free_holds;
+  releases_.resize(0);
+  releases_.resize(holds_.size());
+  for (HoldSlot slot = 0; slot < holds_.size(); ++slot) releases_.set(slot, image.releases[slot]);
+  load_pairs(image);
+}
+
+/// The pairs that were known, and what has become of them in a broad phase made anew.
+template <int Degree>
+void World<Degree>::load_pairs(const Image& image) {
+  make_broad_phase();
+  PairCollector found;
+  std::vector<typename BroadPhase<Degree>::Entry> entries;
+  std::vector<KineticBox<Degree>> boxes;
+  for (BodyId id = 0; id < bodies_.size(); ++id) {
+    if (!bodies_[id].entered) continue;
+    entries.push_back({id, nullptr});
+    boxes.push_back(bounding_box(id));
+    schedule_wall(id);
+  }
+  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].box = &boxes[i];
+  broad_phase_->insert(entries, now_, found);
+  std::sort(found.pairs.begin(), found.pairs.end());
+
+  pairs_.clear(), free_pairs_.clear(), dirty_.clear();
+  contacts_.resize(0), boxes_.resize(0);
+  contacts_.resize(image.pairs.size());
+  if (options_.report_pairs && !broad_phase_->exact()) boxes_.resize(image.pairs.size());
+  for (const auto& from : image.pairs) {
+    const auto slot = static_cast<PairSlot>(pairs_.size());
+    Pair& pair = pairs_.emplace_back(from.pair);
+    pair.alive = true, pair.dirty = false;
+    pair.place_in_a = static_cast<std::uint32_t>(bodies_[pair.a].pairs.size());
+    pair.place_in_b = static_cast<std::uint32_t>(bodies_[pair.b].pairs.size());
+    bodies_[pair.a].pairs.push_back({pair.b, slot});
+    bodies_[pair.b].pairs.push_back({pair.a, slot});
+    contacts_.set(slot, from.contact);
+    if (slot < boxes_.slots()) boxes_.set(slot, from.boxes);
+    if (from.pair.dirty) mark_dirty(slot);
+  }
+  const auto is_found = [&](const auto& from) {
+    return std::binary_search(found.pairs.begin(), found.pairs.end(), std::pair(from.pair.a, from.pair.b));
+  };
+  for (const auto& from : image.pairs) {
+    if (!is_found(from)) pair_ended(from.pair.a, from.pair.b, now_);
+  }
+  for (const auto& [a, b] : found.pairs) {
+    if (find_pair(a, b) == no_pair) pair_began(a, b, now_);
+  }
+  counters_ = image.counters;
+  counters_.broad_phase = image.counters.broad_phase - broad_phase_->counters();
+}
+
+template <int Degree>
+template <class Archive>
+void World<Degree>::archive(Archive& archive) {
+  if (stepping_) throw std::logic_error("World: it can be neither saved nor loaded from within a callback");
+  archive.tag("World of degree " + std::to_string(Degree));
+  archive_options(archive, options_, broad_phase_->exact());
+  if constexpr (Archive::loading) {
+    Image loaded;
+    loaded.archive(archive, meshes());
+    become(loaded);
+  } else {
+    Image saved = image();
+    saved.archive(archive, {});
+  }
+}
+
+template class World<1>;
+template class World<2>;
+template void World<1>::archive(kds::detail::Writer&);
+template void World<1>::archive(kds::detail::Reader&);
+template void World<2>::archive(kds::detail::Writer&);
+template void World<2>::archive(kds::detail::Reader&);
+
+}  // namespace kds::collision

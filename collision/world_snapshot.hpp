@@ -1,0 +1,80 @@
+// What decides the future of a world, as plain members that can be written down.
+#pragma once
+
+#include "collision/world.hpp"
+#include "kds/framework/snapshot.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace kds::collision {
+
+/// A copy of all that decides the events to come. Broad phases are not in it, since they are functions of the motions,
+/// nor are times that are. What has been decided with the past in view is: contact times of known pairs, the places
+/// where held bodies lean on each other, who passes through whom, the counts of the Zeno policy, reports not yet made.
+template <int Degree>
+struct World<Degree>::Image {
+  struct BodyImage {
+    bool alive = false;
+    bool entered = false;
+    PlacedShape placed;
+    std::uint32_t mesh = 0;  ///< number in `meshes`, of a mesh
+    Motion motion;
+    std::vector<Motion> script;
+    double mass = 1, inverse_mass = 1, restitution = 1;
+    std::uint32_t category = 1, collides_with = ~0u;
+    BoundingVolume volume = BoundingVolume::shape;
+    std::uint64_t meetings = 0;
+    double burst_start = 0;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    std::vector<HoldSlot> holds;
+  };
+  struct PairImage {
+    Pair pair;
+    double contact = never;  ///< when it is due in the queues
+    double boxes = never;
+  };
+
+  double now = 0, horizon = 0;
+  WorldCounters counters;
+  std::vector<std::shared_ptr<const Mesh>> meshes;
+  std::vector<BodyImage> bodies;  // by id
+  std::vector<BodyId> free_bodies, entering, disturbed;
+  std::vector<PairImage> pairs;
+  std::vector<Passing> passing;
+  std::vector<Hold> holds;
+  std::vector<double> releases;  // by hold
+  std::vector<HoldSlot> free_holds;
+  std::vector<Pending> pending;
+  std::uint64_t edits = 0;
+  double edits_start = 0;
+
+  /// Loading, meshes that are among `known` are not built again.
+  template <class Archive>
+  void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known);
+
+ private:
+  template <class Archive, class T, class One>
+  static void each(Archive& archive, std::vector<T>& values, One&& one) {
+    std::uint64_t size = values.size();
+    archive(size);
+    archive.room(size);
+    values.resize(size);
+    for (T& value : values) one(value);
+  }
+  template <class Archive>
+  static void vector(Archive& archive, Eigen::Vector3d& v) {
+    archive(v[0], v[1], v[2]);
+  }
+  template <class Archive>
+  static void mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
+                   const std::vector<std::shared_ptr<const Mesh>>& known);
+  template <class Archive>
+  void shape(Archive& archive, BodyImage& body) const;
+  template <class Archive>
+  void body(Archive& archive, BodyImage& body) const;
+};
+
+}  // namespace kds::collision
