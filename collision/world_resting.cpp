@@ -135,16 +135,24 @@ bool World<Degree>::settle_island(BodyId id) {
   for (const BodyId each : island.bodies) motions.push_back(movers_[each].motion.restarted(now_));
   const std::vector<Motion> before = motions;
   if (!constrain(island, 1, motions)) return false;
+  const auto take_up = [&] {
+    for (std::size_t i = 0; i < island.free; ++i) {
+      if (motions[i] == before[i]) continue;
+      ++counters_.motion_updates;
+      set_motion(island.bodies[i], motions[i], false);
+      pending_.push_back({Pending::Kind::moved, island.bodies[i], no_body, {.time = now_}});
+    }
+  };
   if constexpr (Degree >= 2) {
+    const std::vector<Motion> stopped = motions;
     for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[2] = bodies_[island.bodies[i]].force;
-    if (!constrain(island, 2, motions)) return false;
+    if (!constrain(island, 2, motions)) {  // What is pulled away at once has been stopped all the same.
+      motions = stopped;
+      take_up();
+      return false;
+    }
   }
-  for (std::size_t i = 0; i < island.free; ++i) {
-    if (motions[i] == before[i]) continue;
-    ++counters_.motion_updates;
-    set_motion(island.bodies[i], motions[i], false);
-    pending_.push_back({Pending::Kind::moved, island.bodies[i], no_body, {.time = now_}});
-  }
+  take_up();
   for (const HoldSlot slot : island.holds) {
     holds_[slot].fresh = false;
     schedule_release(slot);
