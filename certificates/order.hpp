@@ -133,9 +133,9 @@ double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) 
 /// run is known to 3 u, and the sum to 4 u (|gap| + |run|). From starts of their own: a run c1 (now - start) goes
 /// through two roundings, then the sum and the difference of the two positions through one each: 4.1 u of all
 /// magnitudes. Charged are 8 u, which leaves room for the rounding of `surely` and of the sum of the magnitudes.
-/// Underflow is nothing to a gap of 2^-1000; an overflow leaves an infinity or a NaN, which fails the tests. `fall` is a
-/// difference of doubles: its sign is exact; it, its product and the time left are rounded by u each, for which the
-/// last factor is more than enough.
+/// Underflow is nothing to a gap of 2^-1000; an overflow leaves an infinity or a NaN, which fails the tests. `fall` is
+/// a difference of doubles, so its sign is exact; it, its product and the time left are rounded by u each, for which
+/// the last factor is more than enough.
 template <int Degree>
 double Order<Degree>::quick_straight_failure_time(double now, double horizon) const
   requires(Degree == 1)

@@ -84,10 +84,10 @@ struct PolynomialCertificate {
   bool vanishes() const { return value.position == Polynomial<Degree>{}; }
 
   double quick_failure_time(double now, double horizon) const
-    requires(Degree == 2)
+    requires(Degree == 1 || Degree == 2)
   {
     const Parabola<false> p = parabola();
-    if (p.a.high == 0) return quick_line_failure_time(p, now, horizon);
+    if (Degree == 1 || p.a.high == 0) return quick_line_failure_time(p, now, horizon);
     return quick_parabola_failure_time<false>(p, now, horizon);
   }
   double quick_failure_time_after_turn(double now, double horizon) const
@@ -98,8 +98,8 @@ struct PolynomialCertificate {
 
  private:
   Parabola<false> parabola() const {
-    const auto& [g, r, a] = value.position.c;
-    return {g, r, a, 0, 0, value.start};
+    const auto& c = value.position.c;
+    return {c[0], c[1], Degree == 2 ? c[c.size() - 1] : 0, 0, 0, value.start};
   }
 };
 

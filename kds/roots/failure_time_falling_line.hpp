@@ -18,6 +18,14 @@ double quick_line_failure_time(const Parabola<shifted>& p, double now, double ho
 
 namespace detail {
 
+/// Whether the line is zero at t, or false where that takes more digits. Precondition: t is its root up to rounding, and
+/// g and r are in the range below.
+inline bool is_root(const Parabola<false>& p, double t) {
+  const DoubleDouble h = two_sum(t, -p.epoch);
+  const DoubleDouble run = two_product(p.r.high, h.high);
+  return h.low == 0 && p.r.low == 0 && run.high == -p.g.high && run.low == -p.g.low;
+}
+
 /// The first double not before the root of the line p, r < 0, or a NaN where that cannot be told.
 ///
 /// x = -g / r in doubles; c is its first 26 bits, and r = r_c + r_e with 26 bits in r_c. Then g + r_c c and r_e c are
@@ -59,8 +67,12 @@ template <bool shifted>
   // Nothing over- or underflows then.
   const double least = std::min(std::abs(g), -r);
   const double greatest = std::max(std::abs(g), -r);
-  const bool told = known & (margin > error) & (least > 0x1p-450) & (greatest < 0x1p450);
-  return told ? t : std::numeric_limits<double>::quiet_NaN();
+  const bool told = known & (least > 0x1p-450) & (greatest < 0x1p450);
+  if (told & (margin > error)) return t;
+  if constexpr (!shifted) {  // times on a grid: the root is a double itself
+    if (told && is_root(p, place.high + low)) return place.high + low;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace detail
