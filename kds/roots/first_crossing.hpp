@@ -63,6 +63,9 @@ struct ProjectivePoint {
   double v;
 };
 
+/// The compiler's own vectors: an SSE or NEON register, or two numbers where there are none.
+using Pair = double __attribute__((vector_size(16)));
+
 enum class Pattern { positive, falls_once, other };
 
 /// The signs of a row of coefficients as bits: signs of random polynomials are what processors cannot foresee.
@@ -150,13 +153,25 @@ struct BernsteinPiece {
     double largest = 0;
     unrolled<Degree + 1>([&](auto i) { largest = std::max(largest, std::abs(b[i])); });
     error += 2.1 * Degree * 0x1p-53 * largest;
-    auto row = b;
-    left.b[0] = row[0];
-    unrolled<Degree>([&](auto k) {
-      unrolled<Degree - k>([&](auto i) { row[i] = mu * row[i] + lambda * row[i + 1]; });
-      left.b[k + 1] = row[0];
+    // Two numbers at a time. What a stage makes of the number behind its last one is of no use, and not used.
+    constexpr std::size_t pairs = Degree / 2 + 1;
+    std::array<Pair, pairs> row;
+    unrolled<pairs>([&](auto j) {
+      constexpr std::size_t second = 2 * j + 1;
+      row[j] = Pair{b[2 * j], second <= Degree ? b[std::min<std::size_t>(second, Degree)] : 0};
     });
-    b = row;
+    const Pair near{mu, mu};
+    const Pair far{lambda, lambda};
+    unrolled<Degree>([&](auto k) {
+      constexpr std::size_t last = Degree - k;
+      left.b[k] = row[0][0];
+      b[last] = row[last / 2][last % 2];
+      unrolled<(last + 1) / 2>([&](auto j) {
+        constexpr std::size_t next = j + 1 < pairs ? j + 1 : j;
+        row[j] = near * row[j] + far * __builtin_shufflevector(row[j], row[next], 1, 2);
+      });
+    });
+    left.b[Degree] = b[0] = row[0][0];
     left.error = error;
     left.begin = begin;
     left.end = begin = {mu * begin.w + lambda * end.w, mu * begin.v + lambda * end.v};
