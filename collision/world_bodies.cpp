@@ -60,7 +60,14 @@ BodyId World<Degree>::add_body(const Description& description) {
   validate(description);
   count_edit();
   Body added;
-  PlacedShape placed = place(description.shape, description.orientation);
+  const auto* const ball = std::get_if<Sphere>(&description.shape);
+  if (ball && description.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs()) {
+    require_radius(ball->radius);
+    added.bounding_radius = ball->radius;
+  } else {
+    added.shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
+    added.bounding_radius = added.shape->bounding_radius;
+  }
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
   added.restitution = description.restitution;
@@ -72,7 +79,7 @@ BodyId World<Degree>::add_body(const Description& description) {
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
   const bool enters_now = piece->start <= now_;
-  const Mover mover{*piece, 0};
+  const Mover mover{*piece, ball ? ball->radius : 0};
   if constexpr (Degree >= 2) added.force = piece->coefficients[2];
   if (enters_now) ++piece;
   std::vector<Motion> script(std::make_reverse_iterator(description.motion.end()), std::make_reverse_iterator(piece));
@@ -91,7 +98,6 @@ BodyId World<Degree>::add_body(const Description& description) {
   }
   bodies_[id] = std::move(added);
   movers_[id] = mover;
-  set_shape(id, std::move(placed));
   place_extents(id);
   ++alive_;
   if (const auto& extras = bodies_[id].extras) {
@@ -104,12 +110,11 @@ BodyId World<Degree>::add_body(const Description& description) {
 }
 
 template <int Degree>
-void World<Degree>::set_shape(BodyId id, PlacedShape placed) {
-  Body& b = bodies_[id];
-  const auto* const ball = std::get_if<Sphere>(&placed.shape);
-  b.bounding_radius = placed.bounding_radius;
-  movers_[id].ball_radius = ball ? ball->radius : 0;
-  if (!ball || !placed.rotation.isIdentity(0)) b.shape = std::make_shared<const PlacedShape>(std::move(placed));
+void World<Degree>::reserve(std::size_t bodies) {
+  bodies_.reserve(bodies);
+  movers_.reserve(bodies);
+  entering_.reserve(bodies);
+  if (options_.walls && walls_.slots() < bodies) walls_.resize(bodies);
 }
 
 template <int Degree>
@@ -225,7 +230,14 @@ void World<Degree>::schedule_wall(BodyId id) {
   if (!options_.walls) return;
   make_room(walls_, bodies_.size());
   double earliest = never;
-  for (int wall = 0; wall < 6; ++wall) earliest = std::min(earliest, earliest_wall_time(id, wall));
+  for (int axis = 0; axis < 3; ++axis) {
+    if constexpr (Degree == 1) {  // it approaches no more than one of the two
+      const int wall = 2 * axis + (movers_[id].motion.coefficients[1][axis] > 0);
+      earliest = std::min(earliest, earliest_wall_time(id, wall));
+    } else {
+      earliest = now_;
+    }
+  }
   bodies_[id].wall_estimated = true;
   walls_.set(id, earliest <= horizon_ ? std::max(earliest, now_) : never);
 }

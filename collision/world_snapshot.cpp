@@ -186,6 +186,15 @@ typename World<Degree>::Image World<Degree>::image() const {
 }
 
 template <int Degree>
+void World<Degree>::set_shape(BodyId id, PlacedShape placed) {
+  Body& b = bodies_[id];
+  const auto* const ball = std::get_if<Sphere>(&placed.shape);
+  b.bounding_radius = placed.bounding_radius;
+  movers_[id].ball_radius = ball ? ball->radius : 0;
+  if (!ball || !placed.rotation.isIdentity(0)) b.shape = std::make_shared<const PlacedShape>(std::move(placed));
+}
+
+template <int Degree>
 void World<Degree>::become(const Image& image) {
   now_ = image.now, horizon_ = image.horizon;
   edits_ = image.edits, edits_start_ = image.edits_start;

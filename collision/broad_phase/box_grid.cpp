@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace kds::collision {
@@ -14,6 +15,11 @@ std::int64_t floor_to_integer(double x) {
   return cut - (bounded < static_cast<double>(cut));
 }
 
+/// 2^exponent, without a call where it is a normal number.
+double power_of_two(int exponent) {
+  return exponent > -1023 && exponent <= 1023 ? std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52)
+                                              : std::ldexp(1.0, exponent);
+}
 
 }  // namespace
 
@@ -58,15 +64,23 @@ BoxGrid::Exponent BoxGrid::level_for(double extent) {
   return static_cast<Exponent>(std::clamp(exponent, -most, most));
 }
 
-double BoxGrid::room_for(double extent) { return std::ldexp(1 / roominess, level_for(extent)); }
+double BoxGrid::room_for(double extent) { return power_of_two(level_for(extent)) / roominess; }
 
-double BoxGrid::coarsest() const { return levels_.empty() ? 0 : std::ldexp(1 / roominess, levels_.back().exponent); }
+double BoxGrid::coarsest() const { return levels_.empty() ? 0 : power_of_two(levels_.back().exponent) / roominess; }
+
+std::vector<BoxGrid::Level>::iterator BoxGrid::find_level(Exponent exponent) {
+  return std::lower_bound(levels_.begin(), levels_.end(), exponent,
+                          [](const Level& level, Exponent e) { return level.exponent < e; });
+}
+
+std::vector<BoxGrid::Level>::iterator BoxGrid::add_level(std::vector<Level>::iterator place, Exponent exponent) {
+  return levels_.insert(place, Level{exponent, power_of_two(-exponent), ++tags_ << 60});
+}
 
 BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
-  auto place = std::lower_bound(levels_.begin(), levels_.end(), exponent,
-                                [](const Level& level, Exponent e) { return level.exponent < e; });
+  auto place = find_level(exponent);
   if (place != levels_.end() && place->exponent == exponent) return *place;
-  place = levels_.insert(place, Level{exponent, std::ldexp(1.0, -exponent), ++tags_ << 60});
+  place = add_level(place, exponent);
   for (Id id = 0; id < items_.size(); ++id) {
     if (items_[id].level == absent || items_[id].level > exponent) continue;
     ++place->guests;
@@ -108,7 +122,58 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes) {
   size_ += from_level == absent;
   item.bounds = bounds(box);
   item.level = level;
+  if (from_level == absent) return enter(id, changes);
   relocate(id, from, from_level, box, changes);
+}
+
+void BoxGrid::announce(Id id, const StaticBox& box) {
+  Item& item = items_[id];
+  item.bounds = bounds(box);
+  item.level = level_for(box.extent());
+  const auto place = find_level(item.level);
+  if (place == levels_.end() || place->exponent != item.level) add_level(place, item.level);
+  ++size_;
+}
+
+/// A number for a new search, which no box has been reported in.
+void BoxGrid::begin_search(Id id) {
+  if (++search_ == 0) {  // all numbers have been used
+    for (Item& other : items_) other.reported = 0;
+    search_ = 1;
+  }
+  items_[id].reported = search_;
+}
+
+void BoxGrid::enter(Id id, Changes& changes) {
+  begin_search(id);
+  const StaticBox box = this->box(id);
+  const Bounds limits = BoxGrid::limits(box);
+  const auto look = [&](Id other_id) {
+    Item& other = items_[other_id];
+    if (other.reported == search_ || !other.bounds.within(limits)) return;
+    other.reported = search_;
+    changes.began.push_back(other_id);
+  };
+  for (Level& level : levels_) {
+    if (level.exponent < items_[id].level) continue;
+    const Cells cells(box, level);
+    if (level.exponent == items_[id].level) {
+      level.idle = 0;
+      ++level.natives;
+      cells.each([&](CellTable::Key cell, auto...) {
+        if (level.guests > 0) guests_.visit(cell, look);
+        natives_.add(cell, id, look);
+      });
+    } else {
+      if (level.natives == 0 && ++level.idle > size_) idle_ = true;
+      ++level.guests;
+      cells.each([&](CellTable::Key cell, auto...) {
+        if (level.natives > 0) natives_.visit(cell, look);
+        guests_.add(cell, id);
+      });
+    }
+  }
+  if (idle_) drop_idle_level();
 }
 
 void BoxGrid::remove(Id id, Changes& changes) {
@@ -120,18 +185,14 @@ void BoxGrid::remove(Id id, Changes& changes) {
   relocate(id, from, from_level, from, changes);
 }
 
-/// Moves a box, whose new state is in place, from one set of cells to another, and compares overlaps then and now. Either
-/// level may be `absent`.
+/// Moves a box, whose new state is in place, from one set of cells to another, and compares overlaps then and now. Its
+/// new level may be `absent`.
 void BoxGrid::relocate(Id id, const StaticBox& from, Exponent from_level, const StaticBox& to, Changes& changes) {
   const Exponent to_level = items_[id].level;
-  if (++search_ == 0) {  // all numbers have been used
-    for (Item& other : items_) other.reported = 0;
-    search_ = 1;
-  }
-  items_[id].reported = search_;
+  begin_search(id);
   constexpr double none = -std::numeric_limits<double>::infinity();
   const Bounds nowhere{{none, none}, {none, none}, {none, none}};
-  const Bounds limits_before = from_level != absent ? limits(from) : nowhere;
+  const Bounds limits_before = limits(from);
   const Bounds limits_after = to_level != absent ? limits(to) : nowhere;
   const Bounds limits_ever = limits_before.joined(limits_after);
   const auto look = [&](Id other_id) {
@@ -144,7 +205,7 @@ void BoxGrid::relocate(Id id, const StaticBox& from, Exponent from_level, const 
   };
   const bool stays = from_level == to_level;
   for (Level& level : levels_) {
-    const bool was = from_level != absent && level.exponent >= from_level;
+    const bool was = level.exponent >= from_level;
     const bool is = to_level != absent && level.exponent >= to_level;
     if (!was && !is) continue;
     const bool was_own = level.exponent == from_level;

@@ -65,6 +65,12 @@ class BoxGrid {
   /// Puts a box in, or in place of the one of that number. Appends to `changes`.
   void put(Id id, const StaticBox& box, Changes& changes);
 
+  /// To put many into an empty grid in whatever order suits the cache: first all are announced, then each one enters.
+  /// Nothing else may be asked in between. Precondition: id below the end reserved; none has entered.
+  void announce(Id id, const StaticBox& box);
+  /// Appends to `changes` those that have entered before. Precondition: announced.
+  void enter(Id id, Changes& changes);
+
   /// Precondition: contains(id). Appends to `changes`.
   void remove(Id id, Changes& changes);
 
@@ -124,7 +130,10 @@ class BoxGrid {
   struct Cells;
 
   static Exponent level_for(double extent);
+  std::vector<Level>::iterator find_level(Exponent exponent);
+  std::vector<Level>::iterator add_level(std::vector<Level>::iterator place, Exponent exponent);
   Level& use_level(Exponent exponent);
+  void begin_search(Id id);
   void relocate(Id id, const StaticBox& from, Exponent from_level, const StaticBox& to, Changes& changes);
   void drop_idle_level();
   template <class Look>

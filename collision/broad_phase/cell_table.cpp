@@ -16,24 +16,15 @@ void CellTable::reserve(std::size_t cells) {
   if (slots > slots_.size()) rehash(slots);
 }
 
-void CellTable::add(Key cell, std::uint32_t number) {
-  if (4 * (taken_ + 1) > 3 * slots_.size()) {
-    // Empty cells may be most of what fills the table; then it need not grow.
-    std::size_t used = 1;
-    for (const Slot& slot : slots_) used += slot.count > 0;
-    rehash(std::bit_ceil(std::max<std::size_t>(2 * used, 64)));
-  }
-  Slot& slot = slots_[find(cell)];
-  if (!slot.taken) {
-    slot = Slot{};
-    slot.taken = true;
-    slot.cell = cell;
-    ++taken_;
-  }
-  if (slot.count < slot.numbers.size()) {
-    slot.numbers[slot.count++] = number;
-    return;
-  }
+void CellTable::grow() {
+  // Empty cells may be most of what fills the table; then it need not grow.
+  std::size_t used = 1;
+  for (const Slot& slot : slots_) used += slot.count > 0;
+  rehash(std::bit_ceil(std::max<std::size_t>(2 * used, 64)));
+}
+
+/// Precondition: there is no more room in the slot itself.
+void CellTable::add_to_chunk(Slot& slot, std::uint32_t number) {
   if (slot.more == none || chunks_[slot.more].count == chunks_[slot.more].numbers.size()) {
     std::uint32_t added = free_chunks_;
     if (added != none) {

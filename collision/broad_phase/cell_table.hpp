@@ -27,7 +27,28 @@ class CellTable {
   /// Room for so many cells without rehashing.
   void reserve(std::size_t cells);
 
-  void add(Key cell, std::uint32_t number);
+  void add(Key cell, std::uint32_t number) {
+    add(cell, number, [](std::uint32_t) {});
+  }
+
+  /// visit() and add().
+  template <class Visit>
+  void add(Key cell, std::uint32_t number, Visit&& visit) {
+    if (4 * (taken_ + 1) > 3 * slots_.size()) grow();
+    Slot& slot = slots_[find(cell)];
+    if (!slot.taken) {
+      slot = Slot{};
+      slot.taken = true;
+      slot.cell = cell;
+      ++taken_;
+    }
+    visit_slot(slot, visit);
+    if (slot.count < slot.numbers.size()) {
+      slot.numbers[slot.count++] = number;
+    } else {
+      add_to_chunk(slot, number);
+    }
+  }
 
   /// Removes one such number, if the cell holds any.
   void remove(Key cell, std::uint32_t number);
@@ -36,11 +57,7 @@ class CellTable {
   template <class Visit>
   void visit(Key cell, Visit&& visit) const {
     if (slots_.empty()) return;
-    const Slot& slot = slots_[find(cell)];
-    for (std::uint32_t i = 0; i < slot.count; ++i) visit(slot.numbers[i]);
-    for (std::uint32_t c = slot.more; c != none; c = chunks_[c].next) {
-      for (std::uint32_t i = 0; i < chunks_[c].count; ++i) visit(chunks_[c].numbers[i]);
-    }
+    visit_slot(slots_[find(cell)], visit);
   }
 
  private:
@@ -68,6 +85,16 @@ class CellTable {
     return i;
   }
 
+  template <class Visit>
+  void visit_slot(const Slot& slot, Visit& visit) const {
+    for (std::uint32_t i = 0; i < slot.count; ++i) visit(slot.numbers[i]);
+    for (std::uint32_t c = slot.more; c != none; c = chunks_[c].next) {
+      for (std::uint32_t i = 0; i < chunks_[c].count; ++i) visit(chunks_[c].numbers[i]);
+    }
+  }
+
+  void add_to_chunk(Slot& slot, std::uint32_t number);
+  void grow();
   void rehash(std::size_t slots);
 
   std::vector<Slot> slots_;  // a power of two

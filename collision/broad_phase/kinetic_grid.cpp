@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 namespace kds::collision {
@@ -29,6 +31,9 @@ constexpr double least_reach_at_all = 0x1p-500;
 /// An old fat box is kept if it lasts this share of a new one's lifetime.
 constexpr double kept_share = 0.25;
 
+/// Fewer bodies fit into the cache in any order.
+constexpr std::size_t few = 4096;
+
 /// Bodies take so large a share of all before a coarser level is begun just for their reach.
 constexpr std::uint64_t share_for_level = 8;
 
@@ -45,6 +50,7 @@ double typical_spacing(std::span<const typename BroadPhase<Degree>::Entry> bodie
   const std::size_t step = std::max<std::size_t>(bodies.size() / sample, 1);
   std::array<std::vector<double>, 3> places;
   double size = 0;
+  for (auto& place : places) place.reserve(bodies.size() / step + 1);
   for (std::size_t i = 0; i < bodies.size(); i += step) {
     const StaticBox box = swept_box(*bodies[i].box, now, now);
     size += box.extent();
@@ -53,11 +59,49 @@ double typical_spacing(std::span<const typename BroadPhase<Degree>::Entry> bodie
   size /= static_cast<double>(places[0].size());
   double volume = 1;
   for (auto& place : places) {
-    std::sort(place.begin(), place.end());
-    volume *= std::max(2 * (place[place.size() * 3 / 4] - place[place.size() / 4]), size);
+    const auto quarter = place.begin() + static_cast<std::ptrdiff_t>(place.size() / 4);
+    const auto three_quarters = place.begin() + static_cast<std::ptrdiff_t>(place.size() * 3 / 4);
+    std::nth_element(place.begin(), quarter, place.end());
+    const double low = *quarter;
+    std::nth_element(quarter, three_quarters, place.end());
+    volume *= std::max(2 * (*three_quarters - low), size);
   }
   const double spacing = std::cbrt(volume / static_cast<double>(bodies.size()));
   return std::isfinite(spacing) ? spacing : size;
+}
+
+/// The order in which to put in many bodies that come at once: by blocks of space, along [Morton66]'s curve, so that
+/// what a body meets, and the cells it is in, have just been used and are in the cache.
+template <int Degree>
+std::vector<BodyId> spatial_order(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
+  constexpr std::size_t bodies_per_block = 8;
+  const auto place = [&](std::size_t i) { return swept_box(*bodies[i].box, now, now).min; };
+  Eigen::Array3d low = place(0);
+  Eigen::Array3d high = low;
+  for (std::size_t i = 1; i < bodies.size(); ++i) {
+    const Eigen::Array3d at = place(i);
+    low = low.min(at);
+    high = high.max(at);
+  }
+  const int levels = (std::bit_width(bodies.size() / bodies_per_block) - 1) / 3;
+  const Eigen::Array3d scale = std::ldexp(1.0, levels) / (high - low);
+  const double last = std::ldexp(1.0, levels) - 1;
+  const auto block_of = [&](std::size_t i) {
+    const Eigen::Array3d x = (place(i) - low) * scale;
+    std::size_t block = 0;
+    for (int d = 0; d < 3; ++d) {
+      const auto along = x[d] > 0 ? static_cast<std::size_t>(std::min(x[d], last)) : 0;
+      for (int bit = 0; bit < levels; ++bit) block |= (along >> bit & 1) << (3 * bit + d);
+    }
+    return static_cast<std::uint32_t>(block);
+  };
+  std::vector<std::uint32_t> blocks(bodies.size());
+  std::vector<std::uint32_t> places((std::size_t{1} << 3 * levels) + 1, 0);
+  for (std::size_t i = 0; i < bodies.size(); ++i) ++places[(blocks[i] = block_of(i)) + 1];
+  std::partial_sum(places.begin(), places.end(), places.begin());
+  std::vector<BodyId> order(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) order[places[blocks[i]]++] = bodies[i].id;
+  return order;
 }
 
 StaticBox whole_space() {
@@ -181,9 +225,24 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   }
   fat_boxes_.reserve(end);
   if (fat_boxes_.size() == 0 && !bodies.empty()) first_reach_ = reach_per_spacing * typical_spacing<Degree>(bodies, now);
+  if (fat_boxes_.size() > 0 || bodies.size() < few) {
+    for (const Entry& entry : bodies) {
+      bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
+      renew(entry.id, swept_box(*entry.box, now, now), now, listener);
+    }
+    return;
+  }
   for (const Entry& entry : bodies) {
     bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
-    renew(entry.id, swept_box(*entry.box, now, now), now, listener);
+    ++counters_.box_updates;
+    const FatBox fat = fat_box(entry.id, swept_box(*entry.box, now, now), now);
+    set_expiry(entry.id, fat.expiry);
+    fat_boxes_.announce(entry.id, fat.box);
+  }
+  for (const BodyId id : spatial_order<Degree>(bodies, now)) {
+    changes_.clear();
+    fat_boxes_.enter(id, changes_);
+    report(id, now, listener);
   }
 }
 

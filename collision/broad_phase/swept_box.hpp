@@ -64,8 +64,25 @@ StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double fr
 }
 
 /// A box that holds a kinetic box over [from, to], also one whose ends have passed each other.
+///
+/// Corners that move alike, as they do unless a caller gives the box, share what they move by; the sums then have one
+/// rounding more, and the same margin covers them.
 template <int Degree>
 StaticBox swept_box(const KineticBox<Degree>& box, double from, double to) {
+  if constexpr (Degree == 1) {
+    using Eigen::Array3d;
+    if (box.min.start == box.max.start && box.min.coefficients[1] == box.max.coefficients[1]) {
+      const Array3d velocity = box.min.coefficients[1].array();
+      const Array3d at_begin = velocity * (from - box.min.start);
+      const Array3d at_end = velocity * (to - box.min.start);
+      const Array3d low = box.min.coefficients[0].array();
+      const Array3d high = box.max.coefficients[0].array();
+      const Array3d first = at_begin.min(at_end);
+      const Array3d last = at_begin.max(at_end);
+      const Array3d margin = 8 * 0x1p-53 * (low.abs().max(high.abs()) + first.abs().max(last.abs()));
+      return {low.min(high) + first - margin, low.max(high) + last + margin};
+    }
+  }
   const StaticBox low = swept_point(box.min, from, to);
   const StaticBox high = swept_point(box.max, from, to);
   return {low.min.min(high.min), low.max.max(high.max)};

@@ -36,7 +36,10 @@ bool is_signed_permutation(const Eigen::Matrix3d& m) {
 
 }  // namespace
 
+void require_radius(double radius) { require_size(radius, "radius"); }
+
 PlacedShape placed_ball(double radius) {
+  require_radius(radius);
   PlacedShape placed;
   placed.shape = Sphere{radius};
   placed.bounding_radius = radius;
@@ -55,7 +58,6 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
   const bool identity = orientation.vec().isZero(0);
   if (!identity) placed.rotation = orientation.normalized().toRotationMatrix();
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    require_size(sphere->radius, "radius");
     const Eigen::Matrix3d rotation = placed.rotation;
     placed = placed_ball(sphere->radius);
     placed.rotation = rotation;

@@ -50,7 +50,8 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation);
 /// direction is of three numbers -1, 0 or 1.
 std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction);
 
-/// What place() makes of a ball. Precondition: a radius that place() accepts.
+/// What place() makes of a ball that is not turned; throws as it does.
 PlacedShape placed_ball(double radius);
+void require_radius(double radius);
 
 }  // namespace kds::collision

@@ -136,5 +136,47 @@ TEST_CASE("Boxes of no extent, and ones that fill all space, have their place in
   CHECK(changes.ended == std::vector<BoxGrid::Id>{0, 2, 3});
 }
 
+TEST_CASE("Boxes that are announced and enter in any order overlap as they do", "[box_grid]") {
+  Random random(23);
+  for (const int spread : {0, 8}) {
+    BoxGrid grid;
+    std::vector<StaticBox> boxes;
+    for (int i = 0; i < 400; ++i) {
+      boxes.push_back(random_box(random, std::ldexp(1.0, random.integer(-spread, spread)), 6, 0));
+    }
+    grid.reserve(static_cast<BoxGrid::Id>(boxes.size()));
+    std::vector<BoxGrid::Id> order;
+    for (BoxGrid::Id id = 0; id < boxes.size(); ++id) {
+      grid.announce(id, boxes[id]);
+      order.insert(order.begin() + static_cast<std::ptrdiff_t>(random.below(order.size() + 1)), id);
+    }
+    std::set<std::pair<BoxGrid::Id, BoxGrid::Id>> pairs, expected;
+    std::size_t reports = 0;
+    BoxGrid::Changes changes;
+    for (const BoxGrid::Id id : order) {
+      changes.clear();
+      grid.enter(id, changes);
+      reports += changes.began.size() + changes.ended.size();
+      for (const BoxGrid::Id other : changes.began) pairs.insert(ordered(id, other));
+    }
+    for (BoxGrid::Id a = 0; a < boxes.size(); ++a) {
+      for (BoxGrid::Id b = a + 1; b < boxes.size(); ++b) {
+        if (boxes[a].overlaps(boxes[b])) expected.insert({a, b});
+      }
+    }
+    CHECK(pairs == expected);
+    CHECK(reports == expected.size());
+    CHECK(expected.size() > 50);
+    // And it goes on as if they had been put in.
+    for (BoxGrid::Id id = 0; id < boxes.size(); ++id) {
+      changes.clear();
+      grid.remove(id, changes);
+      for (const BoxGrid::Id other : changes.ended) pairs.erase(ordered(id, other));
+    }
+    CHECK(pairs.empty());
+    CHECK(grid.size() == 0);
+  }
+}
+
 }  // namespace
 }  // namespace kds::collision

@@ -3,11 +3,15 @@
 #include "collision/broad_phase/kinetic_grid.hpp"
 #include "kds/audit.hpp"
 #include "tests/collision/broad_phase/broad_phase_stress.hpp"
+#include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cstdint>
 #include <memory>
+#include <set>
+#include <utility>
+#include <vector>
 
 namespace kds::collision {
 namespace {
@@ -131,6 +135,57 @@ TEST_CASE("An audit of the kinetic grid sees a body outside its fat box", "[broa
   grid.insert(entries, 0, pairs);
   grid.audit(0);
   CHECK_THROWS_AS(grid.audit(-100), AuditFailure);
+}
+
+class PairSet final : public PairListener {
+ public:
+  void pair_began(BodyId a, BodyId b, double) override { twice += !pairs.insert({a, b}).second; }
+  void pair_ended(BodyId a, BodyId b, double) override { pairs.erase({a, b}); }
+
+  std::set<std::pair<BodyId, BodyId>> pairs;
+  int twice = 0;
+};
+
+TEST_CASE("Thousands that come at once have the pairs of their fat boxes", "[broad_phase]") {
+  kds::tests::Random random(31);
+  constexpr std::size_t count = 5000;
+  std::vector<KineticBox<1>> boxes;
+  for (std::size_t i = 0; i < count; ++i) {
+    certificates::PointMotion<1> motion;
+    for (int d = 0; d < 3; ++d) {
+      motion.coefficients[0][d] = random.between(0, d == 2 ? 4 : 40);
+      motion.coefficients[1][d] = i % 5 == 0 ? 0 : random.between(-1, 1);
+    }
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(i % 100 == 0 ? 3 : 0.5);
+    boxes.push_back(box_around(motion, -reach, reach));
+  }
+  std::vector<BroadPhase<1>::Entry> entries;
+  for (std::size_t i = 0; i < count; ++i) entries.push_back({static_cast<BodyId>(3 * (count - i)), &boxes[i]});
+  KineticGrid<1> grid;
+  PairSet found;
+  grid.extend_horizon(0, never);
+  grid.insert(entries, 0, found);
+  grid.audit(0);
+  CHECK(grid.size() == count);
+  const auto check = [&] {
+    std::size_t wrong = 0;
+    std::size_t expected = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {  // ids fall
+        const bool paired = grid.paired(entries[i].id, entries[j].id);
+        expected += paired;
+        wrong += paired && !found.pairs.contains({entries[i].id, entries[j].id});
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK(expected == found.pairs.size());
+    CHECK(expected > count);
+    CHECK(found.twice == 0);
+  };
+  check();
+  while (grid.advance(0.5, found)) {}
+  grid.audit(0.5);
+  check();
 }
 
 }  // namespace
