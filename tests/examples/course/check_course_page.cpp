@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
     if (report["frames"].size() < 5) wrong("the slider has not been moved");
     for (const json& frame : report["frames"]) {
       const double asked = frame["wanted"];
-      if (frame["slider"] != frame["time"]) wrong("the slider is at ", frame["slider"], ", the picture at ", frame["time"]);
+      if (frame["slider"] != frame["time"]) wrong("slider at ", frame["slider"], ", picture at ", frame["time"]);
       if (!near(frame["slider"], asked)) wrong("the slider is at ", frame["slider"], ", not at ", asked);
       check_frame(page, argv[1], frame);
     }

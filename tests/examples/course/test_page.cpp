@@ -1,0 +1,66 @@
+// The pages of the course, as far as no browser is needed.
+#include "examples/course/page.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <stdexcept>
+#include <string>
+
+using namespace kds;
+using course::Page;
+using course::View;
+using nlohmann::json;
+
+TEST_CASE("a page stores motions as they are, and certificates once", "[course]") {
+  Page page(View::line, "title", "about </script>", 0, 1);
+  page.element(3, "ball");
+  page.moves(3, Motion<2>{{{0.1, 1e-300, -1.0 / 3}}, 5}, 0);
+  page.moves(3, Motion<2>{{{1, 1, 1}}, 0}, 0.5);
+  page.moves(3, Motion<2>{{{2, 2, 2}}, 0}, 0.5);  // at the same instant: this one counts
+  const course::Held lasting{"holds", {3}, never}, passing{"passes", {3}, 0.25};
+  page.starts({.text = "first", .certificates = {lasting, passing}});
+  page.event(0.25, "it has passed", {3}, {.text = "second", .marked = {3}, .certificates = {lasting}});
+  page.event(0.5, "once more", {3}, {.text = "third", .certificates = {passing, lasting}});
+
+  const json data = json::parse(page.json());
+  const json& pieces = data["elements"][0]["pieces"];
+  REQUIRE(pieces.size() == 2);
+  CHECK(pieces[0]["y"] == json({0.1, 1e-300, -1.0 / 3}));
+  CHECK(pieces[0]["start"] == 5);
+  CHECK(pieces[1]["y"] == json({2, 2, 2}));
+  CHECK(data["elements"][0]["label"] == "b");
+  CHECK(data["states"].size() == 3);
+  CHECK(data["states"][1]["marked"] == json({3}));
+  const json& held = data["certificates"];
+  REQUIRE(held.size() == 3);
+  CHECK((held[0]["from"] == 0 && held[0]["until"] == 3 && held[0]["fails"].is_null()));
+  CHECK((held[1]["from"] == 0 && held[1]["until"] == 1 && held[1]["fails"] == 0.25));
+  CHECK((held[2]["from"] == 2 && held[2]["until"] == 3));
+}
+
+TEST_CASE("a page is one file whose data cannot end its script", "[course]") {
+  Page page(View::plane, "t", "</script><script>alert(1)</script>", 0, 1);
+  page.element(0, "a");
+  page.moves(0, certificates::PlaneMotion<1>{{{{{0, 1}}, {{1, 0}}}}, 0}, 0);
+  page.starts({.text = "s"});
+  const std::string html = page.html();
+  CHECK(html.find("alert(1)</script>") == std::string::npos);
+  CHECK(html.find("/*{") == std::string::npos);       // every part has been put in
+  CHECK(html.find("src=\"") == std::string::npos);    // nothing is fetched
+  CHECK(html.find("http://www.w3.org/2000/svg") != std::string::npos);
+  CHECK(html.find("https://") == std::string::npos);
+}
+
+TEST_CASE("a page refuses what it could not show", "[course]") {
+  CHECK_THROWS_AS(Page(View::line, "", "", 1, 1), std::invalid_argument);
+  Page page(View::line, "", "", 0, 1);
+  CHECK_THROWS_AS(page.moves(7, Motion<0>{}, 0), std::out_of_range);
+  CHECK_THROWS_AS(page.event(0, "", {}, {}), std::logic_error);
+  page.starts({});
+  CHECK_THROWS_AS(page.starts({}), std::logic_error);
+  page.event(0.5, "", {}, {});
+  CHECK_THROWS_AS(page.event(0.4, "", {}, {}), std::logic_error);
+  page.element(0, "a");
+  CHECK_THROWS_AS(page.json(), std::logic_error);  // it has no motion
+}
