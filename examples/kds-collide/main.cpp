@@ -63,6 +63,8 @@ void describe(CLI::App& app, Arguments& arguments) {
       ->type_name("FILE|-");
   app.add_option("--broad-phase", arguments.run.broad_phase, "How pairs are found; \"list\" names the ways")
       ->type_name("NAME");
+  app.add_option("--kdop", arguments.run.kdop, "Bounding volumes of kinetic-sap: 6 (boxes), 14, 18 or 26 sides")
+      ->type_name("K");
   app.add_option("--until", arguments.until, "End the run at T, in seconds, instead of the scene's end_time")
       ->type_name("T");
   app.add_option("--rate", arguments.run.rate, "Ask for results so many times a second (sap needs it); 0 = not at all")
@@ -121,6 +123,12 @@ void check(const Arguments& arguments) {
     std::string names;
     for (const auto& b : known) names += (names.empty() ? "" : ", ") + std::string(b.name);
     throw ArgumentError("--broad-phase: there is no \"" + run.broad_phase + "\"; there are " + names);
+  }
+  if (run.kdop != 6 && run.kdop != 14 && run.kdop != 18 && run.kdop != 26) {
+    throw ArgumentError("--kdop: must be 6, 14, 18 or 26");
+  }
+  if (run.kdop != 6 && run.broad_phase != "kinetic-sap") {
+    throw ArgumentError("--kdop: more than 6 is for --broad-phase kinetic-sap alone");
   }
   if (run.broad_phase == "sap" && run.rate == 0) throw ArgumentError("--rate: must be > 0 for the broad phase \"sap\"");
   check_files_differ(arguments);

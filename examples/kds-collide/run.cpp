@@ -109,6 +109,7 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   world_options.response =
       scene.response == Response::elastic ? kds::collision::Response::elastic : kds::collision::Response::none;
   world_options.broad_phase = broad_phase;
+  world_options.kdop = options.kdop;
   world_options.rate = options.rate;
   world_options.report_pairs = options.pairs;
   world_options.profile = options.profile;

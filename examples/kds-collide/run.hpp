@@ -13,6 +13,7 @@ namespace kds_collide {
 
 struct RunOptions {
   std::string broad_phase = "auto";  ///< a name in collision/broad_phase/broad_phase_kind.hpp
+  int kdop = 6;                      ///< 6, boxes, or, for "kinetic-sap", 14, 18 or 26
   double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
   bool pairs = false;                ///< tell of bounding volumes too
   bool steady_progress = false;      ///< call on_time at least a hundred times

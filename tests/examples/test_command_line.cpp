@@ -112,6 +112,7 @@ TEST_CASE("command line: all broad phases write the same events of generated sce
   const std::string expected = events("");
   CHECK(lines_of(expected).size() > 2);
   CHECK(events("--broad-phase kinetic-sap --rate 60") == expected);
+  CHECK(events("--broad-phase kinetic-sap --kdop 26 --rate 60") == expected);
   CHECK(events("--broad-phase sap --rate 60") == expected);
   CHECK(events("--broad-phase sap --rate 1000") == expected);
   CHECK(events("--broad-phase all-pairs") == expected);
@@ -166,6 +167,8 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"scene.json --until -1", "kds-collide: --until: is before the motion begins"},
       {"scene.json --broad-phase best",
        "kds-collide: --broad-phase: there is no \"best\"; there are auto, grid, kinetic-sap"},
+      {"scene.json --broad-phase kinetic-sap --kdop 8", "kds-collide: --kdop: must be 6, 14, 18 or 26"},
+      {"scene.json --kdop 14", "kds-collide: --kdop: more than 6 is for --broad-phase kinetic-sap alone"},
       {"scene.json --broad-phase sap", "kds-collide: --rate: must be > 0 for the broad phase \"sap\""},
       {"scene.json --events none/e.csv", "none/e.csv: file: cannot be written: No such file or directory"},
       {"scene.json --events e.csv --stats none/s.json", "none/s.json: file: cannot be written: "},
