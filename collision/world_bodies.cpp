@@ -14,6 +14,9 @@ namespace {
 /// body's size, is a jump: far above what restarting a motion rounds, far below what a caller would mean as one.
 constexpr double jump_tolerance = 0x1p-40;
 
+/// Room for pairs that a body gets with its first: as much as the smallest block of memory has.
+constexpr std::size_t first_pairs = 3;
+
 template <int Degree>
 void validate(const BodyDescription<Degree>& description) {
   const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
@@ -272,6 +275,9 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
     // What is let pass is ignored from the next instant on; its boxes may begin to overlap then.
     pair.ignored = pair.ignored || passing.at == t || (passing.let_pass && next_up(passing.at) == t);
     if (passing.let_pass && passing.at == t) pair.let_pass = t;
+  }
+  for (Body* const body : {&body_a, &body_b}) {
+    if (body->pairs.capacity() == 0) body->pairs.reserve(first_pairs);
   }
   // A jump may part two bodies and another one bring them together at the same instant.
   pair.touching = take_back(Pending::Kind::separation, a, b, t);

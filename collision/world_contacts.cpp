@@ -57,9 +57,12 @@ void World<Degree>::test_dirty_pairs() {
   // In the order of the bodies, whatever the broad phase, so that reports are made in one order.
   const bool reports = (options_.report_pairs && !broad_phase_->exact()) ||
                        std::any_of(dirty_.begin(), dirty_.end(), [&](PairSlot slot) { return pairs_[slot].fresh; });
-  if (reports) std::sort(dirty_.begin(), dirty_.end(), [&](PairSlot x, PairSlot y) {
+  const auto earlier = [&](PairSlot x, PairSlot y) {
     return std::pair(pairs_[x].a, pairs_[x].b) < std::pair(pairs_[y].a, pairs_[y].b);
-  });
+  };
+  if (reports && !std::is_sorted(dirty_.begin(), dirty_.end(), earlier)) {
+    std::sort(dirty_.begin(), dirty_.end(), earlier);
+  }
   for (const PairSlot slot : dirty_) {
     pairs_[slot].dirty = false;
     if (!pairs_[slot].alive) continue;
