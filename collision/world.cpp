@@ -323,6 +323,7 @@ void World<Degree>::audit() const {
     throw AuditFailure("World: bodies " + std::to_string(a) + " and " + std::to_string(b) + ": " + what);
   };
   if (!entering_.empty() || !dirty_.empty()) return;  // Work of this instant is still to be done.
+  if (disturbed_.empty()) audit_holds();
   for (BodyId a = 0; a < bodies_.size(); ++a) {
     for (BodyId b = a + 1; b < bodies_.size(); ++b) {
       if (!bodies_[a].entered || !bodies_[b].entered) continue;

@@ -109,10 +109,10 @@ class World final : private PairListener {
   /// Checks the broad phase against the motions, exactly, and the pairs against brute force; throws AuditFailure.
   void audit() const;
 
-  /// Saves or loads all that decides the events to come: see save() and restore() in kds/framework/snapshot.hpp. A world
-  /// that is loaded, with the same options (broad phase and window may be others), makes the same contacts at the same
-  /// times, bit for bit; see docs/framework.md for the rest. Throws std::invalid_argument for a body with a box function,
-  /// std::logic_error from within a callback.
+  /// Saves or loads all that decides the events to come: see save() and restore() in kds/framework/snapshot.hpp. A
+  /// world that is loaded, with the same options (broad phase and window may be others), makes the same contacts at the
+  /// same times, bit for bit; see docs/framework.md for the rest. Throws std::invalid_argument for a body with a box
+  /// function, std::logic_error from within a callback.
   template <class Archive>
   void archive(Archive& archive);
 
@@ -318,6 +318,7 @@ class World final : private PairListener {
   void schedule_release(HoldSlot slot);
   void release(HoldSlot slot);
   void count_edit();
+  void audit_holds() const;  ///< world_audit.cpp
 
   WorldOptions options_;
   Listener* listener_;
@@ -332,8 +333,8 @@ class World final : private PairListener {
   std::vector<PairSlot> dirty_;
   std::vector<KdopDirection> directions_;      // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction
-  /// Ignored pairs that have ended at this instant: motions that change in turn may part boxes that touch and bring them
-  /// together again.
+  /// Ignored pairs that have ended at this instant: motions that change in turn may part boxes that touch and bring
+  /// them together again.
   std::vector<Passing> passing_;
   std::vector<Hold> holds_;
   std::vector<HoldSlot> free_holds_;

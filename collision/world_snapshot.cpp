@@ -82,13 +82,15 @@ void World<Degree>::Image::shape(Archive& archive, BodyImage& body) const {
     if (kind == 2) placed.shape = MeshShape{};
   }
   if (auto* const sphere = std::get_if<Sphere>(&placed.shape)) archive(sphere->radius);
-  if (auto* const box = std::get_if<Box>(&placed.shape)) vector(archive, box->half_extents);
+  if (auto* const box = std::get_if<Box>(&placed.shape)) {
+    vector(archive, box->half_extents);
+    for (Eigen::Vector3d& half : placed.half_axes) vector(archive, half);
+  }
   if (auto* const mesh = std::get_if<MeshShape>(&placed.shape)) {
     archive(body.mesh, mesh->scale);
     mesh->mesh = meshes.at(body.mesh);
   }
   for (double& entry : placed.rotation.reshaped()) archive(entry);
-  for (Eigen::Vector3d& half : placed.half_axes) vector(archive, half);
   vector(archive, placed.low), vector(archive, placed.high);
   archive(placed.bounding_radius);
 }
