@@ -29,7 +29,7 @@ namespace kds {
 ///     Nothing is assumed about the roots: double and clustered ones cost more, never an error. sign_counters.searches
 ///     counts these.
 ///
-/// Cost: from 10 ns (decided by signs) through 15 (a parabola of known coefficients), 30 (degree 2) and 120 to 300
+/// Cost: from 7 ns (a line of known coefficients) through 15 (a parabola of such), 30 (degree 2) and 120 to 300
 /// (degree 4 to 8) for an ordinary root; 2 to 70 us for the third step, most for clustered roots of a high degree.
 /// `horizon` may be infinite. enclosed_failure_time.hpp has results with enclosure and status.
 template <Certificate C>
