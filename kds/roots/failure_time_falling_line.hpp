@@ -18,8 +18,8 @@ double quick_line_failure_time(const Parabola<shifted>& p, double now, double ho
 
 namespace detail {
 
-/// Whether the line is zero at t, or false where that takes more digits. Precondition: t is its root up to rounding, and
-/// g and r are in the range below.
+/// Whether the line is zero at t, or false where that takes more digits. Precondition: t is its root up to rounding,
+/// and g and r are in the range below.
 inline bool is_root(const Parabola<false>& p, double t) {
   const DoubleDouble h = two_sum(t, -p.epoch);
   const DoubleDouble run = two_product(p.r.high, h.high);
