@@ -18,7 +18,7 @@ namespace {
 constexpr int plane_steps = 5;
 /// After so many the direction is extrapolated as well, from the last two steps.
 constexpr int extrapolated_steps = 10;
-/// A query that has not ended after so many is undecided. At the default tolerance no more than 16 have been seen.
+/// A query that has not ended after so many is undecided. At the default tolerance no more than 8 have been seen.
 constexpr int most_steps = 256;
 /// Least tolerance, as a part of the size: hundreds of margins (fixed_axis.hpp).
 constexpr double least_tolerance = 0x1p-38;

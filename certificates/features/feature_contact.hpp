@@ -54,12 +54,12 @@ struct FeatureContact {
 ///
 /// Method: the kinetic separating axis. Take the direction between the closest points; as a certificate ("all corners
 /// of the one lie beyond all corners of the other along it") it fails at a closed-form root; jump there, take the new
-/// direction, until the features are within the tolerance or nothing fails any more. After a few steps (grazing,
-/// turning close by) the axis turns with its features, which keeps the steps few. Derivations, margins and figures:
+/// direction, until the features are within the tolerance or nothing fails any more. Axes that turn with the features
+/// (their plane at once, edges after a few steps) keep the steps few. Derivations, margins and figures:
 /// docs/features.md. Faces without area and edges without length are segments and points, and are welcome.
 ///
-/// Cost: for linear paths 0.06 - 0.1 us without a contact, 0.35 us with one, 1.6 us at worst seen; half as much again
-/// for quadratic ones. Paths that do not start at t0 cost 0.2 - 0.5 us more (they are moved there in double-double).
+/// Cost: for linear paths 0.06 - 0.1 us without a contact, 0.25 us with one, 1.7 us at worst seen; a third more for
+/// quadratic ones. Paths that do not start at t0 cost 0.2 - 0.5 us more (they are moved there in double-double).
 /// Precondition: t0 <= t1, both finite. Throws std::invalid_argument if a number is not finite.
 template <int Degree>
 FeatureContact vertex_face_contact(const PointMotion<Degree>& vertex, const PointMotion<Degree>& a,
