@@ -162,6 +162,7 @@ TEMPLATE_TEST_CASE_SIG("quick answers about balls are the ones that exact signs 
   Random random(seed);
   int decided = 0;
   int later = 0;
+  int apart = 0;
   for (int round = 0; round < 60'000; ++round) {
     const Approach<PathDegree> approach(random, random.one_in(4) ? random.integer(-300, 300) : 0);
     const BallSeparation<PathDegree> balls{approach.a, approach.b, approach.radius_a, approach.radius_b};
@@ -186,7 +187,12 @@ TEMPLATE_TEST_CASE_SIG("quick answers about balls are the ones that exact signs 
       REQUIRE(estimate.time == expected);
     }
     later += !estimate.exact && expected < never;
+
+    const bool surely = balls.surely_apart(now);
+    if (surely && sign_after(plain, now) <= 0) REQUIRE(sign_after(plain, now) > 0);
+    apart += surely;
   }
   CHECK(decided > 30'000);
   CHECK(later > 1'000);
+  CHECK(apart > 10'000);
 }

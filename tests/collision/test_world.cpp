@@ -286,5 +286,31 @@ TEST_CASE("The same run gives the same events", "[world]") {
   CHECK(in_order_of_time(first));
 }
 
+TEST_CASE("A body has the shape it was given, and room may be made beforehand", "[world]") {
+  World<1> world(with_response(Response::none));
+  world.reserve(100);
+  CHECK(world.size() == 0);
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()));
+  BodyDescription<1> ball;
+  ball.shape = Sphere{0.75};
+  ball.motion = {motion<1>({0, 0, 0})};
+  BodyDescription<1> turned_ball = ball;
+  turned_ball.orientation = turned;
+  BodyDescription<1> box = turned_ball;
+  box.shape = Box{{1, 2, 3}};
+  for (const auto& description : {ball, turned_ball, box}) {
+    const PlacedShape shape = world.shape(world.add_body(description));
+    const PlacedShape expected = place(description.shape, description.orientation);
+    CHECK(shape.shape.index() == expected.shape.index());
+    CHECK(shape.rotation == expected.rotation);
+    if (std::holds_alternative<Box>(shape.shape)) CHECK(shape.half_axes == expected.half_axes);
+    CHECK(shape.low == expected.low);
+    CHECK(shape.high == expected.high);
+    CHECK(shape.bounding_radius == expected.bounding_radius);
+  }
+  CHECK(std::get<Sphere>(world.shape(1).shape).radius == 0.75);
+  CHECK(world.size() == 3);
+}
+
 }  // namespace
 }  // namespace kds::collision
