@@ -359,7 +359,8 @@ void World<Degree>::process_wall(BodyId id, double t) {
   if constexpr (Degree >= 2) pressed = 2 * motion.coefficients[2][axis] * out;
   const double rebound = std::min(body.restitution, options_.walls->restitution) * approach;
   WallEvent event{id, wall, {.time = t}};
-  event.contact.normal = Vector3d::Unit(axis) * out;
+  event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
+  event.contact.normal[axis] = out;
   event.contact.point = motion.coefficients[0];
   event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
   ++counters_.wall_contacts;
