@@ -68,7 +68,8 @@ class World final : private PairListener {
   /// Removes a body. Its pairs end, and in mode `none` its contacts separate, with reports.
   void remove_body(BodyId id);
 
-  /// From now on the body moves so, whatever pieces it still had. A jump counts as entering anew.
+  /// From now on the body moves so, whatever pieces it still had. A jump counts as entering anew. Throws
+  /// std::invalid_argument for a motion that is not finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
 
   /// Processes everything up to and including t.

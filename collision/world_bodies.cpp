@@ -148,6 +148,10 @@ template <int Degree>
 void World<Degree>::update_motion(BodyId id, const Motion& motion) {
   Body& b = body(id);
   if (!motion.finite()) throw std::invalid_argument("World::update_motion: the motion is not finite");
+  if (motion.start > now_) {
+    throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(motion.start) +
+                                ", after the clock at " + std::to_string(now_));
+  }
   count_edit();
   if (b.extras) b.extras->script.clear();
   clear(pieces_, id);
