@@ -6,6 +6,7 @@
 #include "kds/framework/kinetic_rule.hpp"
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <functional>
@@ -146,6 +147,14 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
 
   void certify(Slot slot, bool in_event);
   bool failed(Slot slot, double time, bool counts = true);
+  /// Whether it is of the two whose order has just failed, the other way round: that is certified for less.
+  template <class C>
+  bool has_turned(const C& certificate) const {
+    if constexpr (detail::OrdersTwo<C>) {
+      return last_ > edited_ && &certificate.lower == crossed_[1] && &certificate.upper == crossed_[0];
+    }
+    return false;
+  }
   void sample_again(Slot slot, double time);
   /// A tick after the oldest sample of the slot's members.
   double soonest_sample(Slot slot) const;
@@ -161,6 +170,8 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   std::vector<std::uint8_t> held_;  ///< whether a slot has a certificate
   Measures measures_;
   double last_ = -never;  ///< of the last change
+  double edited_ = -never;                  ///< when there was a change that was no event
+  std::array<const void*, 2> crossed_{};  ///< the two whose order failed in the event that is processed
   bool busy_ = false;
   bool backwards_ = false;
   bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
@@ -199,6 +210,7 @@ bool Kinetic<Rule, Listener, Queue, Solver>::failed(Slot slot, double time, bool
       failed = sign_after(of_samples, time) < 0 && (!counts || schedule_.failed(slot, of_samples, time));
     } else if constexpr (!Sampled<Element>) {
       failed = schedule_.failed(slot, certificate, time);
+      if constexpr (detail::OrdersTwo<decltype(certificate)>) crossed_ = {&certificate.lower, &certificate.upper};
     }
   });
   return failed;
@@ -218,6 +230,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::sample_again(Slot slot, double time
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::finish(bool in_event) {
+  if (!in_event) edited_ = last_;
   if (!repair_.marks_.empty() && held_.size() < repair_.marks_.size()) {
     held_.resize(repair_.marks_.size(), 0);
     schedule_.resize(repair_.marks_.size());
@@ -232,6 +245,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::finish(bool in_event) {
     repair_.marks_[slot] = Repair<Element>::Mark::none;
   }
   repair_.marked_.clear();
+  crossed_ = {};
   measures_.most_held = std::max(measures_.most_held, measures_.held);
   busy_ = false;
 }
@@ -254,7 +268,11 @@ void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
       }
     } else {
       if (in_event) schedule_.look_for_late_events(certificate, last_);
-      schedule_.certify(slot, certificate, last_);
+      if (in_event && has_turned(certificate)) {
+        schedule_.certify_turned(slot, certificate, last_);
+      } else {
+        schedule_.certify(slot, certificate, last_);
+      }
     }
   });
   if (!certified) schedule_.clear(slot);

@@ -110,6 +110,14 @@ void with_certificate(const T& choice, F&& f) {
   }
 }
 
+/// A certificate that two elements are in order, each the whole of it: of them the other way round it is the negative.
+template <class C>
+concept OrdersTwo = requires(const std::remove_cvref_t<C>& certificate, double t) {
+  certificate.lower;
+  certificate.upper;
+  certificate.quick_failure_time(t, t);
+};
+
 // One concept a part of a rule, so that Kinetic can name the part that is missing.
 template <class R>
 concept NamesElement = requires {
