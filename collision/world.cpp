@@ -329,7 +329,8 @@ void World<Degree>::audit() const {
       if (!bodies_[a].entered || !bodies_[b].entered) continue;
       const PairSlot slot = find_pair(a, b);
       if (slot != no_pair) continue;
-      if ((bodies_[a].category & bodies_[b].collides_with) == 0 || (bodies_[b].category & bodies_[a].collides_with) == 0) {
+      if ((bodies_[a].category & bodies_[b].collides_with) == 0 ||
+          (bodies_[b].category & bodies_[a].collides_with) == 0) {
         continue;
       }
       if (broad_phase_->next_time() <= now_) continue;

@@ -284,7 +284,9 @@ class World final : private PairListener {
   bool volumes_overlap(BodyId a, BodyId b) const;
 
   // world_contacts.cpp: tests, contacts, response
-  ContactMode mode() const { return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved; }
+  ContactMode mode() const {
+    return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
+  }
   void test_dirty_pairs();
   void test(PairSlot slot);
   void set_contact(PairSlot slot, double time);

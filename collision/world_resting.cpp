@@ -286,7 +286,8 @@ double World<Degree>::next_contact_of_held(const Pair& pair) const {
   for (const HoldSlot slot : bodies_[pair.a].holds) {
     if (holds_[slot].b == pair.b) out += holds_[slot].normal;
   }
-  const double coordinates = a.motion.position(now_).cwiseAbs().maxCoeff() + b.motion.position(now_).cwiseAbs().maxCoeff();
+  const double coordinates =
+      a.motion.position(now_).cwiseAbs().maxCoeff() + b.motion.position(now_).cwiseAbs().maxCoeff();
   const double size = a.shape.bounding_radius + b.shape.bounding_radius;
   const Motion farther = shifted(b.motion, coordinate_slack * (size + coordinates) * out);
   return first_contact(a, MovingShape<Degree>{b.shape, farther}, now_, horizon_, ContactMode::resolved);

@@ -129,7 +129,8 @@ BallPiece<Degree> hull_of_box_and_ball(const MovingShape<Degree>& a, const Movin
 
 /// Directions that can separate two boxes: three face normals each, nine products of edges.
 template <int Degree>
-boost::container::static_vector<Vector3d, 15> separating_axes(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+boost::container::static_vector<Vector3d, 15> separating_axes(const MovingShape<Degree>& a,
+                                                              const MovingShape<Degree>& b) {
   boost::container::static_vector<Vector3d, 15> axes;
   for (int d = 0; d < 3; ++d) axes.push_back(a.shape.rotation.col(d));
   if (a.shape.rotation == b.shape.rotation) return axes;

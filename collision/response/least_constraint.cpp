@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -64,7 +65,8 @@ void snap(Rates rates, std::span<const Touch> touches, double scale) {
   std::vector<Vector3d> fixed{Vector3d::Zero()};
   std::vector<bool> is_fixed(rates.size(), false);
   for (const Touch& touch : touches) {
-    for (const auto& [place, inverse_mass] : {std::pair(touch.a, touch.inverse_mass_a), std::pair(touch.b, touch.inverse_mass_b)}) {
+    const std::array both{std::pair(touch.a, touch.inverse_mass_a), std::pair(touch.b, touch.inverse_mass_b)};
+    for (const auto& [place, inverse_mass] : both) {
       if (inverse_mass != 0 || is_fixed[place]) continue;
       is_fixed[place] = true;
       if (rates[place] != fixed.back()) fixed.push_back(rates[place]);

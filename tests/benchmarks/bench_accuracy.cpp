@@ -46,7 +46,8 @@ ExactCheck check_exactly(const Scene<Degree>& scene, const std::vector<TrueConta
   ExactCheck check;
   for (std::size_t i = 0; i < truth.size(); i += step) {
     const TrueContact& c = truth[i];
-    const auto root = oracle::first_contact(oracle::exact_body(scene.bodies[c.a]), oracle::exact_body(scene.bodies[c.b]), 0);
+    const auto root =
+        oracle::first_contact(oracle::exact_body(scene.bodies[c.a]), oracle::exact_body(scene.bodies[c.b]), 0);
     if (!root) throw std::runtime_error(scene.name + ": exact arithmetic knows no such contact");
     if (balls && root->ceiling() != c.begin) throw std::runtime_error(scene.name + ": not the first double");
     root->narrow(120);

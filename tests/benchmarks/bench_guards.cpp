@@ -4,7 +4,8 @@
 //
 // The lists are those of kinetic sweep and prune: the interval ends of 1 000 boxes at 1 % density on three axes, one
 // second of free flight, straight or curved, all motions written about one time or each about its own (as after an
-// impact). Both kinds run in turn, round by round; a ratio is the median over the rounds. The rungs of the sign ladder are counted in the certified run.
+// impact). Both kinds run in turn, round by round; a ratio is the median over the rounds. The rungs
+// of the sign ladder are counted in the certified run.
 
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"

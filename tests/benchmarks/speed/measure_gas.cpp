@@ -81,7 +81,8 @@ std::vector<Target> measure_gas(const Settings& settings) {
         const auto& before = r.best.after_setup;
         const auto each = [&](std::uint64_t end, std::uint64_t begin) { return static_cast<double>(end - begin) / made; };
         tell(file, "%g,%zu,%s,%.3f,%.0f,%.1f,%.2f,%.1f,%.2f,%.2f,%.2f,%.4f,%.4f,%d\n", packing, n, r.name.c_str(),
-             r.cut ? INFINITY : 1e6 * r.best_run / made, made, each(c.broad_phase.swaps, before.broad_phase.swaps), each(c.pair_tests, before.pair_tests),
+             r.cut ? INFINITY : 1e6 * r.best_run / made, made,
+             each(c.broad_phase.swaps, before.broad_phase.swaps), each(c.pair_tests, before.pair_tests),
              each(c.broad_phase.certificates, before.broad_phase.certificates),
              each(c.broad_phase.box_updates, before.broad_phase.box_updates), each(c.pairs_begun, before.pairs_begun),
              each(c.wall_contacts, before.wall_contacts), r.best.setup, r.best_run, r.cut);
@@ -90,7 +91,8 @@ std::vector<Target> measure_gas(const Settings& settings) {
         const Result& ours = results.front();
         const double us = ours.cut ? INFINITY : 1e6 * ours.best_run / static_cast<double>(ours.best.contacts);
         // The target is stated for 1 000; the larger ones stand beside it.
-        targets.push_back({"auto: gas of " + std::to_string(n) + " balls at packing 0.25: CPU a contact", us, '<', 2, "us"});
+        const std::string what = "auto: gas of " + std::to_string(n) + " balls at packing 0.25: CPU a contact";
+        targets.push_back({what, us, '<', 2, "us"});
       }
     }
   }

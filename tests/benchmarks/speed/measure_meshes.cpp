@@ -95,8 +95,8 @@ std::vector<Target> measure_rings(const Settings& settings) {
     if (rate < 1000) continue;
     for (const auto& [name, wanted] : {std::pair{"kinetic-sap", 10.0}, std::pair{"auto", 50.0}}) {
       for (const bool with_setup : {true, false}) {
-        targets.push_back({std::string(name) + " against own sap: 1000 rings 1 % 1000 Hz " + (seconds == 1 ? "1 s" : "10 s") +
-                               (with_setup ? " with set-up" : " run alone"),
+        targets.push_back({std::string(name) + " against own sap: 1000 rings 1 % 1000 Hz " + 
+                               (seconds == 1 ? "1 s" : "10 s") + (with_setup ? " with set-up" : " run alone"),
                            ratio(name, with_setup), '>', wanted, "x"});
       }
     }
