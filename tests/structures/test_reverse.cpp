@@ -208,7 +208,7 @@ TEST_CASE("hull, triangulation and closest pair go back the way they came", "[re
   }
 }
 
-TEST_CASE("backwards elements may be edited and saved; a structure that was left behind says so", "[reverse]") {
+TEST_CASE("backwards elements may be edited and saved, and a structure that was left behind says so", "[reverse]") {
   MovingSet<Motion<1>> set;
   set.insert(0, {{{0, 1}}, 0}, 0);
   set.insert(1, {{{1, 0}}, 0}, 0);
