@@ -5,6 +5,7 @@
 #include "kds/audit.hpp"
 #include "kds/events/place_queue.hpp"
 #include "kds/events/schedule.hpp"
+#include "kds/framework/measures.hpp"
 #include "kds/motion.hpp"
 
 #include <algorithm>
@@ -108,6 +109,10 @@ class SortedList {
   void audit(double now) const;
 
   const Counters& counters() const { return schedule_.counters(); }
+
+  /// Every event is external: it changes the order. Three certificates an event at most, two an element.
+  Measures measures() const;
+
   const Queue& queue() const { return schedule_.queue(); }
 
   /// Saves or loads all that the list knows, and its listener if that has archive(). See save() in snapshot.hpp. Lists
@@ -168,6 +173,11 @@ class SortedList {
       __builtin_prefetch(&order_[place + 2]);
     }
   }
+
+  /// To be called when elements have come.
+  void count_held() { measures_.most_held = std::max<std::uint64_t>(measures_.most_held, pairs()); }
+
+  std::size_t pairs() const { return order_.empty() ? 0 : order_.size() - 1; }
 
   /// To be called before elements are put in place at a time whose events may not all have been processed: until they
   /// are, the list need not be in order.
@@ -236,6 +246,7 @@ class SortedList {
   std::vector<std::uint32_t> position_;
   Schedule<Queue, Solver> schedule_;
   Listener listener_;
+  Measures measures_;          // what pairs and counters do not tell: touched, most_touched, most_held
   double disturbed_ = -never;  // the last time at which the list was changed amidst its events
 };
 
@@ -258,6 +269,9 @@ void SortedList<Degree, Listener, Queue, Solver>::process() {
   if (left > 0) certify_in_event(left - 1, time);
   certify_in_event(left + 1, time);
   settle();
+  const std::uint64_t touched = 1u + (left > 0) + (left + 2 < order_.size());
+  measures_.touched += touched;
+  measures_.most_touched = std::max(measures_.most_touched, touched);
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
@@ -270,38 +284,7 @@ void SortedList<Degree, Listener, Queue, Solver>::extend_horizon(double now, dou
   settle();
 }
 
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::audit(double now) const {
-  const auto fail = [](std::size_t i, const char* what) {
-    throw AuditFailure("SortedList: place " + std::to_string(i) + ": " + what);
-  };
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    const Id id = order_[i].id;
-    if (position_[id] != i) fail(i, "the element's recorded position is another");
-    double t = never;
-    if (i + 1 < order_.size()) {
-      const bool ordered = in_order(order_[i], order_[i + 1], now);
-      if (!ordered && !(schedule_.time(slot(i)) <= now)) fail(i, "greater than its right neighbour");
-      t = failure_time(pair(i), now, schedule_.horizon());
-      if (!ordered && now == disturbed_) t = now;  // a tie to be settled, perhaps
-    }
-    if constexpr (!Solver::certified) continue;  // It may be wrong about times.
-    if (schedule_.contains(slot(i)) != (t != never)) fail(i, "an event is missing or stands without cause");
-    if (schedule_.contains(slot(i)) && schedule_.time(slot(i)) != t) fail(i, "the scheduled swap has the wrong time");
-  }
-}
-
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-template <class Archive>
-void SortedList<Degree, Listener, Queue, Solver>::archive(Archive& archive) {
-  archive.tag("SortedList of degree " + std::to_string(Degree) + (by_place ? ", events by place" : ", events by id"));
-  archive(order_, position_, disturbed_, schedule_);
-  if constexpr (requires { listener_.archive(archive); }) listener_.archive(archive);
-  if constexpr (Archive::loading) settle();
-}
-
 }  // namespace kds::structures
 
+#include "structures/sorted_list_audit.hpp"
 #include "structures/sorted_list_edits.hpp"

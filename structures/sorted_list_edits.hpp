@@ -33,6 +33,7 @@ void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> 
   renumber(0);
   for (std::size_t i = 0; i < order_.size(); ++i) certify(i, now);
   settle();
+  count_held();
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
@@ -52,6 +53,7 @@ void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Deg
   if (index > 0) certify(index - 1, now);
   certify(index, now);
   settle();
+  count_held();
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>

@@ -4,8 +4,10 @@
 #include "certificates/order.hpp"
 #include "kds/audit.hpp"
 #include "kds/events/schedule.hpp"
+#include "kds/framework/measures.hpp"
 #include "kds/motion.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -18,7 +20,7 @@ namespace kds::structures {
 /// Keeps the greatest of moving values, as the winner of a binary tournament.
 ///
 /// Each match holds one certificate, "the loser is not greater than the winner"; when it fails the match is replayed
-/// and so are those above it that the old winner had won. Paper: [Basch99] section 3.2.
+/// and so are those above it, up to the first that the old winner had not won. Paper: [Basch99] section 3.2.
 ///
 /// Cost: O(log n) certificates an event or a change; an element plays in at most log2 n matches (local), n - 1
 /// certificates in all (compact).
@@ -48,6 +50,7 @@ class Tournament {
     entrants_[id] = motion;
     ++size_;
     replay_from(id, now);
+    measures_.most_held = std::max<std::uint64_t>(measures_.most_held, held());
   }
 
   void remove(Id id, double now) {
@@ -69,7 +72,16 @@ class Tournament {
   void process() {
     const auto [time, slot] = schedule_.next();
     if (!schedule_.failed(slot, match(slot), time)) return;
-    for (std::size_t node = slot; node >= 1; node /= 2) play(node, time);
+    const Id before = winner_[1];
+    std::uint64_t touched = 0;
+    bool changed = true;
+    for (std::size_t node = slot; changed && node >= 1; node /= 2) {
+      changed = play(node, time);
+      touched += is_played(node);
+    }
+    measures_.external += winner_[1] != before;
+    measures_.touched += touched;
+    measures_.most_touched = std::max(measures_.most_touched, touched);
   }
 
   void extend_horizon(double now, double horizon) {
@@ -91,11 +103,14 @@ class Tournament {
 
   const Counters& counters() const { return schedule_.counters(); }
 
+  /// An event is external if the greatest becomes another. Certificates an event and an element: log2 n at most.
+  Measures measures() const;
+
   /// Saves or loads all that the tournament knows. See save() in snapshot.hpp.
   template <class Archive>
   void archive(Archive& archive) {
     archive.tag("Tournament of degree " + std::to_string(Degree));
-    archive(entrants_, winner_, schedule_, capacity_, size_);
+    archive(entrants_, winner_, schedule_, capacity_, size_, measures_);
   }
 
  private:
@@ -113,7 +128,9 @@ class Tournament {
     return winner_[node] == left ? winner_of(2 * node + 1) : left;
   }
 
-  void play(std::size_t node, double now) {
+  /// Returns whether another than before has won.
+  bool play(std::size_t node, double now) {
+    const Id before = winner_[node];
     const Id left = winner_of(2 * node);
     const Id right = winner_of(2 * node + 1);
     if (left == nobody || right == nobody) {
@@ -123,7 +140,10 @@ class Tournament {
           sign_after(certificates::Order<Degree>{*entrants_[right], *entrants_[left]}, now) >= 0 ? left : right;
     }
     certify(node, now);
+    return winner_[node] != before;
   }
+
+  std::size_t held() const { return size_ == 0 ? 0 : size_ - 1; }
 
   /// Whether two entrants meet at the node.
   bool is_played(std::size_t node) const { return winner_of(2 * node) != nobody && winner_of(2 * node + 1) != nobody; }
@@ -165,9 +185,28 @@ class Tournament {
   std::vector<std::optional<Motion<Degree>>> entrants_;
   std::vector<Id> winner_;
   Schedule<Queue, Solver> schedule_;
+  Measures measures_;  // what size and counters do not tell
   std::size_t capacity_ = 0;
   std::size_t size_ = 0;
 };
+
+template <int Degree, EventQueue Queue, FailureTimeSolver Solver>
+Measures Tournament<Degree, Queue, Solver>::measures() const {
+  Measures result = measures_;
+  result.events = counters().events;
+  result.held = held();
+  for (Id id = 0; id < capacity_; ++id) {
+    if (!contains(id)) continue;
+    // It is in the matches on its way up, as long as it wins, and in the one that it loses.
+    std::uint64_t matches = 0;
+    for (std::size_t node = (capacity_ + id) / 2; node >= 1; node /= 2) {
+      matches += is_played(node);
+      if (winner_[node] != id) break;
+    }
+    result.most_per_element = std::max(result.most_per_element, matches);
+  }
+  return result;
+}
 
 template <int Degree, EventQueue Queue, FailureTimeSolver Solver>
 void Tournament<Degree, Queue, Solver>::audit(double now) const {

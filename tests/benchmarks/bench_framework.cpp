@@ -16,6 +16,7 @@
 #include "structures/extents.hpp"
 #include "structures/heap.hpp"
 #include "structures/sorted_list.hpp"
+#include "structures/tournament.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -24,6 +25,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -109,29 +111,52 @@ void compare_lists(Id n, int rounds) {
               static_cast<unsigned long long>(events), median(ratios));
 }
 
-/// A structure on random elements, against swaps of a tuned list.
-template <class Rule, class Make>
-void measure(const char* name, int degree, Id n, double end, int rounds, const Rule& rule, Make&& make) {
+/// What `run_once` costs, which runs a structure of n elements and returns {Cost, Measures}, against swaps of a tuned
+/// list.
+template <class Run>
+void measure(const char* name, int degree, Id n, int rounds, Run&& run_once) {
   std::vector<double> ratios;
   Measures m;
   for (int round = 0; round < rounds; ++round) {
+    const auto [cost, measures] = run_once();
+    const Cost swaps = tuned_list<1>(n, duration(n));
+    if (cost.events > 0) ratios.push_back(cost.per_event() / swaps.per_event());
+    m = measures;
+  }
+  const auto number = [](std::uint64_t x) { return static_cast<double>(x); };
+  std::printf("%s,%d,%u,%llu,%.3f,%.1f,%llu,%.2f,%llu,%.1f\n", name, degree, n,
+              static_cast<unsigned long long>(m.events), number(m.external) / number(m.events),
+              number(m.touched) / number(m.events), static_cast<unsigned long long>(m.most_touched),
+              number(m.most_held) / n, static_cast<unsigned long long>(m.most_per_element),
+              ratios.empty() ? 0 : median(ratios));
+  std::fflush(stdout);
+}
+
+/// A structure made of a rule, on random elements.
+template <class Rule, class Make>
+void measure(const char* name, int degree, Id n, double end, int rounds, const Rule& rule, Make&& make) {
+  measure(name, degree, n, rounds, [&] {
     Random random(n);
     MovingSet<typename Rule::Element> set;
     for (Id id = 0; id < n; ++id) set.insert(id, make(random), 0);
     Kinetic<Rule> structure(set, 0, rule);
     structure.extend_horizon(0, end);
     const Cost cost = run(structure, end);
-    const Cost swaps = tuned_list<1>(n, duration(n));
-    if (cost.events > 0) ratios.push_back(cost.per_event() / swaps.per_event());
-    m = structure.measures();
-  }
-  const auto number = [](std::uint64_t x) { return static_cast<double>(x); };
-  std::printf("%s,%d,%u,%llu,%.2f,%.1f,%llu,%.2f,%llu,%.1f\n", name, degree, n,
-              static_cast<unsigned long long>(m.events), number(m.external) / number(m.events),
-              number(m.touched) / number(m.events), static_cast<unsigned long long>(m.most_touched),
-              number(m.most_held) / n, static_cast<unsigned long long>(m.most_per_element),
-              ratios.empty() ? 0 : median(ratios));
-  std::fflush(stdout);
+    return std::pair(cost, structure.measures());
+  });
+}
+
+/// A structure that keeps its elements itself, on random values.
+template <class Structure>
+void measure(const char* name, Id n, double end, int rounds) {
+  measure(name, 1, n, rounds, [&] {
+    Random random(n);
+    Structure structure;
+    structure.extend_horizon(0, end);
+    for (Id id = 0; id < n; ++id) structure.insert(id, random_value<1>(random), 0);
+    const Cost cost = run(structure, end);
+    return std::pair(cost, structure.measures());
+  });
 }
 
 template <int Degree>
@@ -156,6 +181,8 @@ int main(int argc, char** argv) {
   const auto path = [](Random& random) { return random_path<1>(random); };
   using Path = certificates::PlaneMotion<1>;
   for (const Id n : {100u, 1000u, 10000u}) {
+    measure<structures::SortedList<1>>("sorted list, tuned", n, duration(n), rounds);
+    measure<structures::Tournament<1>>("tournament", n, 1, rounds);
     measure("heap", 1, n, 1, rounds, structures::HeapRule<structures::ByValue<Motion<1>>>{}, value);
     measure("extents of 4 directions", 1, n, 1, rounds,
             structures::ExtentsRule<Path, 2>({{1, 0}, {1, 1}, {0, 1}, {-1, 1}}), path);

@@ -8,7 +8,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <ostream>
@@ -144,6 +146,43 @@ TEST_CASE("the winner of lines is the upper envelope", "[tournament]") {
     CHECK(tournament.motion(*winner).position.c[1] == leads);
   }
   CHECK(leads == 15);
+}
+
+TEST_CASE("a kinetic tournament keeps to its measures", "[tournament]") {
+  const std::uint64_t seed = 320;
+  CAPTURE(seed);
+  Random random(seed);
+  for (const std::uint32_t n : {1u, 2u, 13u, 64u}) {
+    CAPTURE(n);
+    Tournament<2> tournament;
+    for (std::uint32_t id = 0; id < n; ++id) tournament.insert(id, random_motion<2>(random, Kind::generic, 0), 0);
+    Simulator simulator(0, tournament);
+    std::uint64_t events = 0, changes = 0;
+    for (auto before = tournament.winner(); simulator.step(); before = tournament.winner()) {
+      ++events;
+      changes += tournament.winner() != before;
+    }
+    const auto rounds = static_cast<std::uint64_t>(std::bit_width(n - 1));
+    const Measures m = tournament.measures();
+    CHECK(m.events == events);
+    CHECK(m.external == changes);
+    CHECK(m.touched >= m.events);
+    CHECK(m.most_touched <= rounds);  // responsive
+    CHECK(m.touched <= rounds * m.events);
+    CHECK(m.most_per_element <= rounds);  // local
+    CHECK(m.held == n - 1);               // compact
+    CHECK(m.most_held == n - 1);
+    if (n == 64) {
+      CHECK(m.events > m.external);
+      CHECK(m.external > 1);
+      CHECK(m.most_per_element == rounds);  // The winner has played in each.
+      // An event goes on only to matches that the old winner had won: two on average, if any may win.
+      CHECK(m.touched <= 3 * m.events);
+    }
+    tournament.remove(0, simulator.now());
+    CHECK(tournament.measures().held == (n < 2 ? 0 : n - 2));
+    CHECK(tournament.measures().most_held == n - 1);
+  }
 }
 
 // --- degeneracies
