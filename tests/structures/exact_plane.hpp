@@ -59,11 +59,4 @@ class ExactPlane {
   oracle::Rational now_;
 };
 
-template <int Degree>
-certificates::PlaneMotion<Degree> random_point(Random& random, Kind kind, double now) {
-  const auto x = random_motion<Degree>(random, kind, now);
-  const auto y = random_motion<Degree>(random, kind, now);
-  return {{x.position, y.position}, x.start};
-}
-
 }  // namespace kds::tests

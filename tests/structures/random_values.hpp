@@ -1,6 +1,8 @@
 // Random moving values of the kinds that are hard on a kinetic structure, and operations on them.
 #pragma once
 
+#include "certificates/plane_motion.hpp"
+#include "certificates/point_motion.hpp"
 #include "kds/motion.hpp"
 #include "tests/support/exact_models.hpp"
 #include "tests/support/random_numbers.hpp"
@@ -63,6 +65,25 @@ Motion<Degree> random_motion(Random& random, Kind kind, double now) {
     }
   }
   return motion;
+}
+
+/// The same in the plane, each axis on its own.
+template <int Degree>
+certificates::PlaneMotion<Degree> random_plane_motion(Random& random, Kind kind, double now) {
+  const auto x = random_motion<Degree>(random, kind, now);
+  return {{x.position, random_motion<Degree>(random, kind, now).position}, x.start};
+}
+
+/// The same in space, each axis on its own.
+template <int Degree>
+certificates::PointMotion<Degree> random_point_motion(Random& random, Kind kind, double now) {
+  certificates::PointMotion<Degree> path;
+  for (int d = 0; d < 3; ++d) {
+    const auto axis = random_motion<Degree>(random, kind, now);
+    for (std::size_t i = 0; i <= Degree; ++i) path.coefficients[i][d] = axis.position.c[i];
+    path.start = axis.start;
+  }
+  return path;
 }
 
 inline double random_delay(Random& random, Kind kind) {

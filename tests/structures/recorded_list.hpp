@@ -25,9 +25,15 @@ using Log = std::vector<Swap>;
 /// Ranks fall while ids rise, in steps of three, so that both settle ties.
 inline std::uint32_t rank_of(std::uint32_t id) { return 1000 - id / 3; }
 
-struct Recorder {
+/// Ties are broken by ids alone.
+struct PlainRecorder : structures::NoSwapListener {
   Log* log;
+  explicit PlainRecorder(Log* to) : log(to) {}
   void swapped(std::uint32_t left, std::uint32_t right, double t) { log->push_back({left, right, t}); }
+};
+
+struct Recorder : PlainRecorder {
+  using PlainRecorder::PlainRecorder;
   static std::uint32_t rank(std::uint32_t id) { return rank_of(id); }
 };
 

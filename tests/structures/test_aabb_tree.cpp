@@ -37,18 +37,11 @@ auto random_path(Random& random, Kind kind, double now, std::integral_constant<s
 }
 template <int Degree>
 auto random_path(Random& random, Kind kind, double now, std::integral_constant<std::size_t, 2>) {
-  const auto x = random_motion<Degree>(random, kind, now);
-  return PlaneMotion<Degree>{{x.position, random_motion<Degree>(random, kind, now).position}, x.start};
+  return random_plane_motion<Degree>(random, kind, now);
 }
 template <int Degree>
 auto random_path(Random& random, Kind kind, double now, std::integral_constant<std::size_t, 3>) {
-  PointMotion<Degree> path;
-  for (int d = 0; d < 3; ++d) {
-    const auto axis = random_motion<Degree>(random, kind, now);
-    for (std::size_t i = 0; i <= Degree; ++i) path.coefficients[i][d] = axis.position.c[i];
-    path.start = axis.start;
-  }
-  return path;
+  return random_point_motion<Degree>(random, kind, now);
 }
 
 /// Corners that move alike, grow apart, or go each its way and pass each other.

@@ -40,7 +40,7 @@ TEMPLATE_TEST_CASE_SIG("the kinetic closest pair is the closest, exactly", "[clo
       CAPTURE(Degree, static_cast<int>(kind), seed);
       std::vector<KineticEvent> log;
       const RunOptions options{10, 2 + 4 * (seed % 3), 12, seed % 2 == 0 ? never : 0.4, 3};
-      CHECK(run_structure(seed, kind, options, ClosestPairRule<PlaneMotion<Degree>>{}, random_point<Degree>,
+      CHECK(run_structure(seed, kind, options, ClosestPairRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
                           check_pair<Degree>, log) == 0);
     }
   }
@@ -52,7 +52,7 @@ TEST_CASE("the closest pair keeps to its measures", "[closest_pair]") {
   Random random(seed);
   MovingSet<PlaneMotion<1>> set;
   const std::uint64_t n = 60;
-  for (Id id = 0; id < n; ++id) set.insert(id, random_point<1>(random, Kind::generic, 0), 0);
+  for (Id id = 0; id < n; ++id) set.insert(id, random_plane_motion<1>(random, Kind::generic, 0), 0);
   Kinetic<ClosestPairRule<PlaneMotion<1>>> closest(set, 0);
   Simulator simulator(0, closest);
   simulator.advance_to(2);

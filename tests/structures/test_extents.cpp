@@ -50,17 +50,6 @@ int check_extents(const ExtentsRule<Path, Dimension>& rule, const MovingSet<Path
   return wrong;
 }
 
-template <int Degree>
-PointMotion<Degree> random_point(Random& random, Kind kind, double now) {
-  PointMotion<Degree> path;
-  for (int d = 0; d < 3; ++d) {
-    const auto axis = random_motion<Degree>(random, kind, now);
-    for (std::size_t i = 0; i <= Degree; ++i) path.coefficients[i][d] = axis.position.c[i];
-    path.start = axis.start;
-  }
-  return path;
-}
-
 }  // namespace
 
 TEMPLATE_TEST_CASE_SIG("the extents of a k-DOP are those of the extreme points, exactly", "[extents]",
@@ -71,7 +60,7 @@ TEMPLATE_TEST_CASE_SIG("the extents of a k-DOP are those of the extreme points, 
       CAPTURE(Degree, static_cast<int>(kind), k, seed);
       std::vector<KineticEvent> log;
       CHECK(run_structure(seed, kind, {8, 7, 12, k == 6 ? never : 0.5},
-                          ExtentsRule<PointMotion<Degree>, 3>(kdop_directions(k)), random_point<Degree>,
+                          ExtentsRule<PointMotion<Degree>, 3>(kdop_directions(k)), random_point_motion<Degree>,
                           check_extents<PointMotion<Degree>, 3>, log) == 0);
     }
   }
@@ -107,7 +96,7 @@ TEST_CASE("extents keep to their measures", "[extents]") {
   Random random(seed);
   MovingSet<PointMotion<2>> set;
   const Id n = 100;
-  for (Id id = 0; id < n; ++id) set.insert(id, random_point<2>(random, Kind::generic, 0), 0);
+  for (Id id = 0; id < n; ++id) set.insert(id, random_point_motion<2>(random, Kind::generic, 0), 0);
   const std::uint64_t lanes = 2 * 7;
   const auto levels = static_cast<std::uint64_t>(std::ceil(std::log2(n)));
   Kinetic<ExtentsRule<PointMotion<2>, 3>> extents(set, 0, ExtentsRule<PointMotion<2>, 3>(kdop_directions(14)));

@@ -8,8 +8,8 @@
 #include "kds/framework/snapshot.hpp"
 #include "kds/simulator.hpp"
 #include "structures/closest_pair.hpp"
-#include "structures/delaunay.hpp"
 #include "structures/heap.hpp"
+#include "tests/structures/sampled_orbits.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -160,17 +160,9 @@ TEST_CASE("a Delaunay triangulation of moving samples is that of the truth where
   CAPTURE(seed);
   Random random(seed);
   const Id n = 12;
-  std::vector<std::array<double, 4>> orbit(n);  // centre, radius, frequency: known to the sampler only
-  for (auto& o : orbit) {
-    o = {random.between(-1, 1), random.between(-1, 1), random.between(0, 0.1), random.between(-0.5, 0.5)};
-  }
-  const auto truth = [&](Id id, double t) {
-    const auto [x, y, r, w] = orbit[id];
-    return std::array{x + r * std::cos(w * t), y + r * std::sin(w * t)};
-  };
+  const Orbits orbits(random, n);  // known to the sampler only
   const auto sample = [&](Id id, double t) {
-    const auto [x, y, r, w] = orbit[id];
-    return BoundedAccelerationPoint{truth(id, t), {-r * w * std::sin(w * t), r * w * std::cos(w * t)}, r * w * w, t};
+    return BoundedAccelerationPoint{orbits.position(id, t), orbits.velocity(id, t), orbits.acceleration(id), t};
   };
   MovingSet<BoundedAccelerationPoint> set;
   const double tick = 0.02, end = 8;
@@ -179,29 +171,14 @@ TEST_CASE("a Delaunay triangulation of moving samples is that of the truth where
   Kinetic<DelaunayRule<BoundedAccelerationPoint>> delaunay(set, 0);
   Kinetic<structures::ClosestPairRule<BoundedAccelerationPoint>> pair(set, 0);
   Simulator simulator(0, delaunay, pair);
-  int wrong = 0, guaranteed = 0, edges = 0;
+  InCircleTests tests;
   for (double t = 0.125; t <= end; t += 0.125) {
     simulator.advance_to(t);
     simulator.audit();
-    const auto& mesh = delaunay.rule().mesh();
-    MovingSet<PlaneMotion<0>> real;
-    for (Id id = 0; id < n; ++id) real.insert(id, {{{{{truth(id, t)[0]}}, {{truth(id, t)[1]}}}}, t}, t);
-    for (Slot slot = 0; slot < 4 * mesh.end_triangle(); ++slot) {
-      kds::detail::with_certificate(delaunay.rule().certificate(slot, set), [&](const auto& certificate) {
-        using C = std::remove_cvref_t<decltype(certificate)>;
-        if constexpr (std::is_same_v<C, certificates::InCircle<BoundedAccelerationPoint>>) {
-          ++edges;
-          if (sign_after(Conservative<C>{certificate}, t) < 0) return;
-          ++guaranteed;
-          const auto id = [&](const BoundedAccelerationPoint& p) { return static_cast<Id>(&p - &set[0]); };
-          const Id a = id(certificate.a), b = id(certificate.b), c = id(certificate.c), d = id(certificate.d);
-          wrong += sign_after(certificates::InCircle<PlaneMotion<0>>{real[a], real[b], real[c], real[d]}, t) < 0;
-        }
-      });
-    }
+    tests.count(delaunay, set, orbits, t);
   }
-  CHECK(wrong == 0);
-  CHECK(guaranteed > 0.9 * edges);
+  CHECK(tests.wrong == 0);
+  CHECK(tests.guaranteed > 0.9 * tests.all);
   CHECK(set.samples() > n);
   CHECK(set.samples() < 0.1 * n * end / tick);  // Sampling everything every tick takes n end / tick.
   CHECK(delaunay.rule().rebuilds() == 0);

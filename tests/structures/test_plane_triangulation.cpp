@@ -4,6 +4,7 @@
 #include "structures/delaunay.hpp"
 #include "tests/structures/exact_plane.hpp"
 #include "tests/structures/run_structure.hpp"
+#include "tests/structures/sampled_orbits.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -74,7 +75,7 @@ TEMPLATE_TEST_CASE_SIG("a kinetic Delaunay triangulation is Delaunay, exactly", 
       CAPTURE(Degree, static_cast<int>(kind), seed);
       std::vector<KineticEvent> log;
       const RunOptions options{Degree == 1 ? 10 : 6, 4 + 4 * (seed % 3), 12, seed % 2 == 0 ? never : 0.4, 6};
-      CHECK(run_structure(seed, kind, options, DelaunayRule<PlaneMotion<Degree>>{}, random_point<Degree>,
+      CHECK(run_structure(seed, kind, options, DelaunayRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
                           check_triangulation<Degree, Criterion::delaunay>, log) == 0);
     }
   }
@@ -86,7 +87,7 @@ TEMPLATE_TEST_CASE_SIG("a kinetic convex hull is the hull, exactly", "[hull]", (
       CAPTURE(Degree, static_cast<int>(kind), seed);
       std::vector<KineticEvent> log;
       const RunOptions options{12, 4 + 4 * (seed % 3), 14, seed % 2 == 0 ? never : 0.4, 2};
-      CHECK(run_structure(seed, kind, options, ConvexHullRule<PlaneMotion<Degree>>{}, random_point<Degree>,
+      CHECK(run_structure(seed, kind, options, ConvexHullRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
                           check_triangulation<Degree, Criterion::hull>, log) == 0);
     }
   }
@@ -156,7 +157,7 @@ TEST_CASE("a bounce leaves a triangulation as it is, and a jump does not", "[del
   CAPTURE(seed);
   Random random(seed);
   MovingSet<PlaneMotion<1>> set;
-  for (Id id = 0; id < 60; ++id) set.insert(id, random_point<1>(random, Kind::generic, 0), 0);
+  for (Id id = 0; id < 60; ++id) set.insert(id, random_plane_motion<1>(random, Kind::generic, 0), 0);
   Delaunay1 delaunay(set, 0);
   Simulator simulator(0, delaunay);
   int other = 0, expensive = 0, wrong = 0;
@@ -356,46 +357,22 @@ TEST_CASE("a Delaunay triangulation of sampled points is that of the truth where
   CAPTURE(seed);
   Random random(seed);
   const Id n = 12;
-  std::vector<std::array<double, 4>> orbit(n);  // centre, radius, frequency: known to the sampler only
-  for (auto& o : orbit) {
-    o = {random.between(-1, 1), random.between(-1, 1), random.between(0, 0.1), random.between(-0.5, 0.5)};
-  }
-  const auto truth = [&](Id id, double t) {
-    const auto [x, y, r, w] = orbit[id];
-    return std::array{x + r * std::cos(w * t), y + r * std::sin(w * t)};
-  };
-  const auto sample = [&](Id id, double t) {
-    return BoundedPoint{truth(id, t), orbit[id][2] * std::abs(orbit[id][3]), t};
-  };
+  const Orbits orbits(random, n);  // known to the sampler only
+  const auto sample = [&](Id id, double t) { return BoundedPoint{orbits.position(id, t), orbits.speed(id), t}; };
   MovingSet<BoundedPoint> set;
   const double tick = 0.02, end = 8;
   set.sample_with(sample, tick);
   for (Id id = 0; id < n; ++id) set.insert(id, sample(id, 0), 0);
   Kinetic<DelaunayRule<BoundedPoint>> delaunay(set, 0);
   Simulator simulator(0, delaunay);
-  int wrong = 0, guaranteed = 0, edges = 0;
+  InCircleTests tests;
   for (double t = 0.125; t <= end; t += 0.125) {
     simulator.advance_to(t);
     simulator.audit();
-    const TriangleMesh& mesh = delaunay.rule().mesh();
-    MovingSet<PlaneMotion<0>> real;
-    for (Id id = 0; id < n; ++id) real.insert(id, {{{{{truth(id, t)[0]}}, {{truth(id, t)[1]}}}}, t}, t);
-    for (Slot slot = 0; slot < 4 * mesh.end_triangle(); ++slot) {
-      kds::detail::with_certificate(delaunay.rule().certificate(slot, set), [&](const auto& certificate) {
-        using C = std::remove_cvref_t<decltype(certificate)>;
-        if constexpr (std::is_same_v<C, certificates::InCircle<BoundedPoint>>) {
-          ++edges;
-          if (sign_after(Conservative<C>{certificate}, t) < 0) return;
-          ++guaranteed;
-          const auto id = [&](const BoundedPoint& p) { return static_cast<Id>(&p - &set[0]); };
-          const Id a = id(certificate.a), b = id(certificate.b), c = id(certificate.c), d = id(certificate.d);
-          wrong += sign_after(certificates::InCircle<PlaneMotion<0>>{real[a], real[b], real[c], real[d]}, t) < 0;
-        }
-      });
-    }
+    tests.count(delaunay, set, orbits, t);
   }
-  CHECK(wrong == 0);
-  CHECK(guaranteed > 0.9 * edges);
+  CHECK(tests.wrong == 0);
+  CHECK(tests.guaranteed > 0.9 * tests.all);
   CHECK(set.samples() > n);
   CHECK(set.samples() < 0.5 * n * end / tick);  // Sampling everything every tick takes n end / tick.
 }

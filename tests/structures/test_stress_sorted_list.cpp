@@ -1,7 +1,7 @@
 // The kinetic sorted list where numbers are many, large, small, equal or an ulp apart.
 #include "kds/simulator.hpp"
-#include "structures/sorted_list.hpp"
 #include "tests/structures/random_values.hpp"
+#include "tests/structures/recorded_list.hpp"
 #include "tests/support/exact_models.hpp"
 
 #include <catch2/catch.hpp>
@@ -18,26 +18,13 @@ namespace {
 
 using namespace kds;
 using namespace kds::tests;
-using structures::SortedList;
-
-struct Swap {
-  std::uint32_t left, right;
-  double time;
-  friend bool operator==(const Swap&, const Swap&) = default;
-};
-
-struct Recorder {
-  std::vector<Swap>* log;
-  void swapped(std::uint32_t left, std::uint32_t right, double t) { log->push_back({left, right, t}); }
-  static std::uint32_t rank(std::uint32_t) { return 0; }
-};
 
 template <int Degree>
-using List = SortedList<Degree, Recorder>;
+using PlainList = structures::SortedList<Degree, PlainRecorder>;
 
 template <int Degree>
-std::vector<typename List<Degree>::Entry> numbered(const std::vector<Motion<Degree>>& motions) {
-  std::vector<typename List<Degree>::Entry> entries;
+std::vector<typename PlainList<Degree>::Entry> numbered(const std::vector<Motion<Degree>>& motions) {
+  std::vector<typename PlainList<Degree>::Entry> entries;
   for (std::size_t i = 0; i < motions.size(); ++i) entries.push_back({motions[i], static_cast<std::uint32_t>(i)});
   return entries;
 }
@@ -48,7 +35,7 @@ std::vector<typename List<Degree>::Entry> numbered(const std::vector<Motion<Degr
 /// failure time, which was checked when it was set. So with whole audits before and after, looking around each swap is
 /// looking at everything after every swap. It takes O(1) where a whole audit takes O(n).
 template <int Degree>
-std::string wrong_around(const List<Degree>& list, const Swap& swap) {
+std::string wrong_around(const PlainList<Degree>& list, const Swap& swap) {
   const auto entries = list.entries();
   const std::size_t left = list.position(swap.left);
   for (std::size_t i = left == 0 ? 0 : left - 1; i < std::min(left + 2, entries.size() - 1); ++i) {
@@ -77,18 +64,11 @@ std::vector<std::uint32_t> exact_order(const std::vector<Motion<Degree>>& motion
   return ids;
 }
 
-template <class L>
-std::vector<std::uint32_t> ids(const L& list) {
-  std::vector<std::uint32_t> result;
-  for (const auto& entry : list.entries()) result.push_back(entry.id);
-  return result;
-}
-
 /// All events up to `end`, checked: around every swap, and against the exact order at each time.
 template <int Degree>
 std::vector<Swap> run_checked(const std::vector<Motion<Degree>>& motions, double end) {
   std::vector<Swap> log;
-  List<Degree> list(Recorder{&log});
+  PlainList<Degree> list(PlainRecorder{&log});
   list.assign(numbered<Degree>(motions), 0);
   list.audit(0);
   REQUIRE(ids(list) == exact_order<Degree>(motions, 0));
@@ -120,7 +100,7 @@ TEMPLATE_TEST_CASE_SIG("stress: a hundred thousand random elements, checked exac
   std::vector<Motion<Degree>> motions(n);
   for (auto& m : motions) m = random_motion<Degree>(random, Kind::generic, 0);
   std::vector<Swap> log;
-  List<Degree> list(Recorder{&log});
+  PlainList<Degree> list(PlainRecorder{&log});
   list.assign(numbered<Degree>(motions), 0);
   list.audit(0);
   Simulator simulator(0, list);
@@ -226,7 +206,7 @@ TEST_CASE("stress: motions change exactly at event times", "[sorted_list][stress
     std::vector<Motion<2>> motions(60);
     for (auto& m : motions) m = random_motion<2>(random, kind, begin);
     std::vector<Swap> log;
-    List<2> list(Recorder{&log});
+    PlainList<2> list(PlainRecorder{&log});
     list.assign(numbered<2>(motions), begin);
     Simulator simulator(begin, list);
     std::size_t edits = 0;

@@ -1,8 +1,8 @@
 // Structures on solvers that are wrong: what exact signs put right, and that no run loops.
 #include "kds/simulator.hpp"
-#include "structures/sorted_list.hpp"
 #include "structures/tournament.hpp"
 #include "tests/structures/random_values.hpp"
+#include "tests/structures/recorded_list.hpp"
 
 #ifdef KDS_WITH_GSL
 #include "kds/roots/gsl_roots.hpp"
@@ -20,18 +20,6 @@ namespace {
 
 using structures::SortedList;
 using structures::Tournament;
-
-struct Swap {
-  std::uint32_t left, right;
-  double time;
-  friend bool operator==(const Swap&, const Swap&) = default;
-};
-
-struct Recorder {
-  std::vector<Swap>* log;
-  void swapped(std::uint32_t left, std::uint32_t right, double t) { log->push_back({left, right, t}); }
-  static std::uint32_t rank(std::uint32_t) { return 0; }
-};
 
 /// Says half way to the root: early by much.
 struct HalfWay {
@@ -97,7 +85,7 @@ struct Outcome {
 template <int Degree, class Solver>
 Outcome run(const std::vector<Motion<Degree>>& motions, double end) {
   Outcome outcome;
-  SortedList<Degree, Recorder, PlaceQueue, Solver> list(Recorder{&outcome.log});
+  SortedList<Degree, PlainRecorder, PlaceQueue, Solver> list(PlainRecorder{&outcome.log});
   for (std::uint32_t id = 0; id < motions.size(); ++id) list.insert(id, motions[id], 0);
   Simulator simulator(0, list);
   std::size_t steps = 0;

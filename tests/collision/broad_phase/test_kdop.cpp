@@ -2,7 +2,7 @@
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
-#include "structures/extents.hpp"
+#include "tests/collision/broad_phase/kdop_values.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/exact_algebra.hpp"
 #include "tests/support/random_numbers.hpp"
@@ -17,19 +17,10 @@ namespace kds::collision {
 namespace {
 
 using Eigen::Vector3d;
+using namespace tests;
 using kds::tests::Random;
 using oracle::rational;
 using oracle::Rational;
-
-template <int Degree>
-oracle::Polynomial polynomial(const Motion<Degree>& motion) {
-  return oracle::Polynomial::motion({motion.position.c.begin(), motion.position.c.end()}, motion.start);
-}
-
-std::vector<KdopDirection> directions(int k) {
-  const auto all = structures::kdop_directions(k);
-  return {all.begin() + 3, all.end()};
-}
 
 /// direction . x of a path, exactly.
 template <int Degree>

@@ -1,8 +1,8 @@
 // Kinetic sweep and prune over k-DOPs, against brute force over exact numbers.
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
-#include "structures/extents.hpp"
 #include "tests/collision/broad_phase/broad_phase_stress.hpp"
+#include "tests/collision/broad_phase/kdop_values.hpp"
 #include "tests/support/exact_algebra.hpp"
 
 #include <catch2/catch.hpp>
@@ -18,16 +18,6 @@ namespace kds::collision {
 namespace {
 
 using namespace tests;
-
-template <int Degree>
-oracle::Polynomial polynomial(const Motion<Degree>& motion) {
-  return oracle::Polynomial::motion({motion.position.c.begin(), motion.position.c.end()}, motion.start);
-}
-
-std::vector<KdopDirection> directions(int k) {
-  const auto all = structures::kdop_directions(k);
-  return {all.begin() + 3, all.end()};
-}
 
 /// Bodies with random intervals about random paths, in a kinetic sweep and prune that is told of them.
 template <int Degree>
