@@ -14,6 +14,14 @@ namespace {
 
 using namespace tests;
 
+WorldOptions reporting_pairs(BroadPhaseKind kind) {
+  WorldOptions options;
+  options.broad_phase = kind;
+  options.rate = 10;
+  options.report_pairs = true;
+  return options;
+}
+
 TEST_CASE("An empty world and a world of one body run", "[world]") {
   for (const auto response : {Response::none, Response::elastic}) {
     World<1> world(with_response(response));
@@ -112,12 +120,8 @@ TEST_CASE("A motion may change inside a callback", "[world]") {
 
 TEST_CASE("A teleport ends contacts where it leaves and begins them where it arrives", "[world]") {
   for (const auto& [kind, name, what] : broad_phases) {
-    WorldOptions options;
-    options.broad_phase = kind;
-    options.rate = 10;
-    options.report_pairs = true;
     EventLog<1> log;
-    World<1> world(options, &log);
+    World<1> world(reporting_pairs(kind), &log);
     for (const auto& b : two_balls()) world.add_body(b);
     world.add_body(ball<1>(1, {100, 0, 0}));
     world.advance_to(2);
@@ -143,12 +147,8 @@ TEST_CASE("A teleport ends contacts where it leaves and begins them where it arr
 TEST_CASE("Two bodies that teleport together at one instant stay in contact", "[world]") {
   for (const auto& [kind, name, what] : broad_phases) {
     INFO(name);
-    WorldOptions options;
-    options.broad_phase = kind;
-    options.rate = 10;
-    options.report_pairs = true;
     EventLog<1> log;
-    World<1> world(options, &log);
+    World<1> world(reporting_pairs(kind), &log);
     for (auto b : two_balls()) {
       auto next = b.motion[0];
       next.coefficients[0] = b.motion[0].position(2) + Vector3d(50, 0, 0);
@@ -186,12 +186,8 @@ TEST_CASE("A body that appears inside another overlaps, and does not stop the ru
 
 TEST_CASE("Removing a body ends its pairs and contacts, with reports", "[world]") {
   for (const auto& [kind, name, what] : broad_phases) {
-    WorldOptions options;
-    options.broad_phase = kind;
-    options.rate = 10;
-    options.report_pairs = true;
     EventLog<1> log;
-    World<1> world(options, &log);
+    World<1> world(reporting_pairs(kind), &log);
     for (const auto& b : two_balls()) world.add_body(b);
     world.advance_to(2);
     REQUIRE(log.count(Kind::pair_began) == 1);
