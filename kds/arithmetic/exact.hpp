@@ -1,11 +1,7 @@
 // Exact arithmetic on the numbers that doubles generate.
 #pragma once
 
-#include <boost/multiprecision/cpp_int.hpp>
-
-#include <cmath>
-#include <cstdint>
-#include <utility>
+#include <cstddef>
 
 namespace kds {
 
@@ -16,49 +12,38 @@ namespace kds {
 /// microsecond or so an operation chain): only the last rung of the sign ladder comes here.
 class Exact {
  public:
-  Exact() = default;
+  Exact();
 
   /// The exact value of a double. Precondition: finite.
-  Exact(double value) {  // NOLINT(google-explicit-constructor): a double is exact
-    if (value == 0) return;
-    int exponent = 0;
-    const double fraction = std::frexp(value, &exponent);
-    mantissa_ = static_cast<std::int64_t>(std::ldexp(fraction, 53));
-    exponent_ = exponent - 53;
-  }
+  Exact(double value);  // NOLINT(google-explicit-constructor): a double is exact
 
-  int sign() const { return mantissa_.sign(); }
+  Exact(const Exact& other);
+  Exact(Exact&& other) noexcept;
+  Exact& operator=(const Exact& other);
+  Exact& operator=(Exact&& other) noexcept;
+  ~Exact();
+
+  int sign() const;
 
   /// Nearest double or one of its neighbours; for approximations only.
-  double approximate() const {
-    if (mantissa_.is_zero()) return 0;
-    const auto bits = static_cast<int>(boost::multiprecision::msb(boost::multiprecision::abs(mantissa_)));
-    const int excess = bits > 62 ? bits - 62 : 0;
-    const auto leading = static_cast<std::int64_t>(mantissa_ >> excess);
-    return std::ldexp(static_cast<double>(leading), exponent_ + excess);
-  }
+  double approximate() const;
 
-  friend Exact operator-(const Exact& a) { return Exact(-a.mantissa_, a.exponent_); }
-  friend Exact operator+(const Exact& a, const Exact& b) {
-    if (a.mantissa_.is_zero()) return b;
-    if (b.mantissa_.is_zero()) return a;
-    if (a.exponent_ < b.exponent_) return b + a;
-    return Exact((a.mantissa_ << (a.exponent_ - b.exponent_)) + b.mantissa_, b.exponent_);
-  }
-  friend Exact operator-(const Exact& a, const Exact& b) { return a + (-b); }
-  friend Exact operator*(const Exact& a, const Exact& b) {
-    return Exact(a.mantissa_ * b.mantissa_, a.exponent_ + b.exponent_);
-  }
+  friend Exact operator-(const Exact& a);
+  friend Exact operator+(const Exact& a, const Exact& b);
+  friend Exact operator-(const Exact& a, const Exact& b);
+  friend Exact operator*(const Exact& a, const Exact& b);
 
  private:
-  // Without expression templates: they would save nothing in operations of one step.
-  using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>, boost::multiprecision::et_off>;
+  struct Mantissa;
 
-  Exact(Integer mantissa, int exponent) : mantissa_(std::move(mantissa)), exponent_(exponent) {
-    if (mantissa_.is_zero()) exponent_ = 0;
-  }
+  Exact(Mantissa&& mantissa, int exponent);
 
-  Integer mantissa_ = 0;
+  Mantissa& mantissa();
+  const Mantissa& mantissa() const;
+
+  // An integer of Boost.Multiprecision lives here. Its headers take longer to compile than all others of this layer
+  // together, and nobody but exact.cpp sees them.
+  alignas(std::max_align_t) std::byte place_[32];
   int exponent_ = 0;
 };
 

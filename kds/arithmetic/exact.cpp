@@ -1,0 +1,84 @@
+#include "kds/arithmetic/exact.hpp"
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <utility>
+
+namespace kds {
+
+// Without expression templates: they would save nothing in operations of one step.
+struct Exact::Mantissa {
+  using Integer =
+      boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>, boost::multiprecision::et_off>;
+  Integer integer = 0;
+};
+
+Exact::Mantissa& Exact::mantissa() { return *std::launder(reinterpret_cast<Mantissa*>(place_)); }
+const Exact::Mantissa& Exact::mantissa() const { return *std::launder(reinterpret_cast<const Mantissa*>(place_)); }
+
+Exact::Exact() {
+  static_assert(sizeof(Mantissa) <= sizeof place_ && alignof(Mantissa) <= alignof(std::max_align_t));
+  new (place_) Mantissa;
+}
+
+Exact::Exact(double value) : Exact() {
+  if (value == 0) return;
+  int exponent = 0;
+  const double fraction = std::frexp(value, &exponent);
+  mantissa().integer = static_cast<std::int64_t>(std::ldexp(fraction, 53));
+  exponent_ = exponent - 53;
+}
+
+Exact::Exact(Mantissa&& mantissa, int exponent) : exponent_(mantissa.integer.is_zero() ? 0 : exponent) {
+  new (place_) Mantissa(std::move(mantissa));
+}
+
+Exact::Exact(const Exact& other) : exponent_(other.exponent_) { new (place_) Mantissa(other.mantissa()); }
+Exact::Exact(Exact&& other) noexcept : exponent_(other.exponent_) {
+  new (place_) Mantissa(std::move(other.mantissa()));
+}
+Exact& Exact::operator=(const Exact& other) {
+  mantissa() = other.mantissa();
+  exponent_ = other.exponent_;
+  return *this;
+}
+Exact& Exact::operator=(Exact&& other) noexcept {
+  mantissa() = std::move(other.mantissa());
+  exponent_ = other.exponent_;
+  return *this;
+}
+Exact::~Exact() { mantissa().~Mantissa(); }
+
+int Exact::sign() const { return mantissa().integer.sign(); }
+
+double Exact::approximate() const {
+  const auto& integer = mantissa().integer;
+  if (integer.is_zero()) return 0;
+  const auto bits = static_cast<int>(boost::multiprecision::msb(boost::multiprecision::abs(integer)));
+  const int excess = bits > 62 ? bits - 62 : 0;
+  const auto leading = static_cast<std::int64_t>(integer >> excess);
+  return std::ldexp(static_cast<double>(leading), exponent_ + excess);
+}
+
+Exact operator-(const Exact& a) { return {Exact::Mantissa{-a.mantissa().integer}, a.exponent_}; }
+
+Exact operator+(const Exact& a, const Exact& b) {
+  const auto& x = a.mantissa().integer;
+  const auto& y = b.mantissa().integer;
+  if (x.is_zero()) return b;
+  if (y.is_zero()) return a;
+  if (a.exponent_ < b.exponent_) return b + a;
+  return {Exact::Mantissa{(x << (a.exponent_ - b.exponent_)) + y}, b.exponent_};
+}
+
+Exact operator-(const Exact& a, const Exact& b) { return a + (-b); }
+
+Exact operator*(const Exact& a, const Exact& b) {
+  return {Exact::Mantissa{a.mantissa().integer * b.mantissa().integer}, a.exponent_ + b.exponent_};
+}
+
+}  // namespace kds
