@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace kds::collision {
 namespace {
 
-/// The largest integer not above x, of at most 2^62.
-std::int64_t floor_to_integer(double x) {
-  const double bounded = std::clamp(x, -0x1p62, 0x1p62);
-  const auto cut = static_cast<std::int64_t>(bounded);
-  return cut - (bounded < static_cast<double>(cut));
-}
+/// Units of the lattice in a cell, as a power of two. Finer ones leave fewer boxes that overlap on the lattice alone; but
+/// ends of a few cells have to fit a byte.
+constexpr int lattice_bits = 5;
+constexpr std::int64_t units_per_cell = 1 << lattice_bits;
 
 /// 2^exponent, without a call where it is a normal number.
 double power_of_two(int exponent) {
@@ -21,47 +22,78 @@ double power_of_two(int exponent) {
                                               : std::ldexp(1.0, exponent);
 }
 
+/// Byte i of CellTable::Ends. What is out of range is as much out of range on both sides of a comparison.
+CellTable::Ends byte(std::size_t i, std::int64_t value) {
+  const std::int64_t bounded = std::clamp(value, -CellTable::limit, CellTable::limit);
+  return static_cast<CellTable::Ends>(static_cast<std::uint8_t>(bounded)) << 8 * i;
+}
+
+/// Bytes 6 and 7: the row, modulo 16 and 8, and its complement: the one or the other exceeds that of another row. So the rows of a search, of which there are fewer, are not mistaken for each other.
+CellTable::Ends row_mark(std::int64_t y, std::int64_t z) {
+  const auto mark = static_cast<CellTable::Ends>((y & 15) | (z & 7) << 4);
+  return mark << 48 | (mark ^ 0xFF) << 56;
+}
+
 }  // namespace
 
 /// Cells are at least this much larger than a box. Larger ones are fewer to look into, and hold more.
 constexpr double roominess = 1.4;
 
-/// A block of cells of one level.
-struct BoxGrid::Cells {
-  Cells(const StaticBox& box, const Level& level) : tag(level.tag) {
+/// A box on the lattice of a level: (min, -max), like Bounds.
+struct BoxGrid::Ends {
+  Ends() = default;
+  Ends(const Bounds& box, double scale)
+      : values{on_lattice(box.xy[0] * scale), on_lattice(box.xy[1] * scale), on_lattice(box.zx[0] * scale),
+               on_lattice(box.zx[1] * scale), on_lattice(box.yz[0] * scale), on_lattice(box.yz[1] * scale)} {}
+
+  /// Monotone, and as far below zero as above.
+  static std::int64_t on_lattice(double x) { return std::llrint(std::clamp(x, -0x1p61, 0x1p61)); }
+  static std::int64_t cell_of(std::int64_t x) { return x >> lattice_bits; }
+
+  /// The cell a box is in.
+  std::int64_t cell(std::size_t d) const { return cell_of(values[d]); }
+  bool same_cell(const Ends& other) const {
+    return (((values[0] ^ other.values[0]) | (values[1] ^ other.values[1]) | (values[2] ^ other.values[2])) >>
+            lattice_bits) == 0;
+  }
+  std::size_t place(const CellTable& table, const Level& level) const {
+    return table.place(table.row(level.family, cell(1), cell(2)), cell(0));
+  }
+
+  std::int64_t span() const {
+    return std::max({-values[3] - values[0], -values[4] - values[1], -values[5] - values[2]});
+  }
+  Ends joined(const Ends& other) const {
+    Ends result;
+    for (std::size_t i = 0; i < 6; ++i) result.values[i] = std::min(values[i], other.values[i]);
+    return result;
+  }
+
+  /// Counted from the box's own cell.
+  CellTable::Ends in_cell() const {
+    CellTable::Ends ends = row_mark(cell(1), cell(2));
     for (std::size_t d = 0; d < 3; ++d) {
-      const auto i = static_cast<Eigen::Index>(d);
-      low[d] = floor_to_integer(box.min[i] * level.scale);
-      high[d] = floor_to_integer(box.max[i] * level.scale);
+      const std::int64_t corner = cell(d) << lattice_bits;
+      ends |= byte(d, values[d] - corner) | byte(d + 3, values[d + 3] + corner);
     }
+    return ends;
   }
 
-  bool holds(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return low[0] <= x && x <= high[0] && low[1] <= y && y <= high[1] && low[2] <= z && z <= high[2];
-  }
-  friend bool operator==(const Cells& a, const Cells& b) { return a.low == b.low && a.high == b.high; }
-
-  /// Calls visit(key, x, y, z). Far-away cells may have the same key, which does no harm.
-  template <class Visit>
-  void each(Visit&& visit) const {
-    const auto bits = [](std::int64_t i) { return static_cast<CellTable::Key>(i) & 0xFFFFF; };
-    for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-        for (std::int64_t x = low[0]; x <= high[0]; ++x) visit(tag ^ (bits(z) << 40 | bits(y) << 20 | bits(x)), x, y, z);
-      }
-    }
+  /// What boxes in cells of this coordinate may not exceed if they overlap.
+  CellTable::Ends limits(std::size_t d, std::int64_t cell) const {
+    const std::int64_t corner = cell << lattice_bits;
+    return byte(d, -values[d + 3] - corner) | byte(d + 3, corner - values[d]);
   }
 
-  std::array<std::int64_t, 3> low, high;
-  std::uint64_t tag;
+  std::array<std::int64_t, 6> values;
 };
 
 BoxGrid::Exponent BoxGrid::level_for(double extent) {
-  if (!(extent > 0)) return -most;
+  if (!(extent > 0)) return least;
   if (!(extent < 0x1p1023)) return most;
   int exponent = 0;
   std::frexp(roominess * extent, &exponent);  // the mantissa is below 1
-  return static_cast<Exponent>(std::clamp(exponent, -most, most));
+  return static_cast<Exponent>(std::clamp(exponent, least, most));
 }
 
 double BoxGrid::room_for(double extent) { return power_of_two(level_for(extent)) / roominess; }
@@ -74,18 +106,15 @@ std::vector<BoxGrid::Level>::iterator BoxGrid::find_level(Exponent exponent) {
 }
 
 std::vector<BoxGrid::Level>::iterator BoxGrid::add_level(std::vector<Level>::iterator place, Exponent exponent) {
-  return levels_.insert(place, Level{exponent, power_of_two(-exponent), ++tags_ << 60});
+  families_ += 0x9E6C63D0676A9A99u;
+  return levels_.insert(place, Level{exponent, power_of_two(lattice_bits - exponent), families_});
 }
 
 BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
   auto place = find_level(exponent);
   if (place != levels_.end() && place->exponent == exponent) return *place;
   place = add_level(place, exponent);
-  for (Id id = 0; id < items_.size(); ++id) {
-    if (items_[id].level == absent || items_[id].level > exponent) continue;
-    ++place->guests;
-    Cells(box(id), *place).each([&](CellTable::Key cell, auto...) { guests_.add(cell, id); });
-  }
+  restart_guests();
   return *place;
 }
 
@@ -93,40 +122,113 @@ BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
 /// as it costs to build it anew.
 void BoxGrid::drop_idle_level() {
   idle_ = false;
-  std::erase_if(levels_, [&](const Level& level) { return level.natives == 0 && level.idle > size_; });
-  guests_.clear();
+  std::erase_if(levels_, [&](const Level& level) { return level.natives.count == 0 && level.idle > size_; });
+  restart_guests();
+}
+
+void BoxGrid::restart_natives(std::size_t room) {
+  natives_.restart(room);
+  for (Level& level : levels_) level.natives = {};
   for (Id id = 0; id < items_.size(); ++id) {
-    if (items_[id].level == absent) continue;
-    for (const Level& level : levels_) {
+    if (!items_[id].entered) continue;
+    Level& level = *find_level(items_[id].level);
+    add(natives_, level, level.natives, Ends(items_[id].bounds, level.scale), id);
+  }
+}
+
+void BoxGrid::restart_guests() {
+  std::size_t guests = 0;
+  std::size_t finer = 0;
+  for (Level& level : levels_) {
+    level.guests = {};
+    guests += finer;
+    finer += level.natives.count;
+  }
+  guests_.restart(guests + guests / 2 + levels_.size());
+  if (guests == 0) return;
+  for (Id id = 0; id < items_.size(); ++id) {
+    if (!items_[id].entered) continue;
+    for (Level& level : levels_) {
       if (level.exponent <= items_[id].level) continue;
-      Cells(box(id), level).each([&](CellTable::Key cell, auto...) { guests_.add(cell, id); });
+      add(guests_, level, level.guests, Ends(items_[id].bounds, level.scale), id);
     }
   }
 }
 
-template <class Look>
-void BoxGrid::search_cell(const Level& level, bool own, CellTable::Key cell, const Look& look) const {
-  if (level.natives > 0) natives_.visit(cell, look);
-  if (own && level.guests > 0) guests_.visit(cell, look);
+void BoxGrid::count_guest(Level& level) {
+  if (level.natives.count == 0 && ++level.idle > size_) idle_ = true;
+}
+
+void BoxGrid::add(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id) {
+  if (population.count++ == 0) {
+    population.span = 0;
+    for (std::size_t d = 0; d < 3; ++d) population.low[d] = population.high[d] = ends.cell(d);
+  }
+  population.span = std::max(population.span, ends.span());
+  for (std::size_t d = 0; d < 3; ++d) {
+    population.low[d] = std::min(population.low[d], ends.cell(d));
+    population.high[d] = std::max(population.high[d], ends.cell(d));
+  }
+  table.add(ends.place(table, level), ends.in_cell(), id);
+}
+
+void BoxGrid::remove(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id) {
+  --population.count;
+  table.remove(ends.place(table, level), id);
+}
+
+void BoxGrid::replace(CellTable& table, const Level& level, Population& population, const Ends& from, const Ends& to,
+                      Id id) {
+  if (from.same_cell(to)) {
+    population.span = std::max(population.span, to.span());
+    table.replace(to.place(table, level), to.in_cell(), id);
+  } else {
+    remove(table, level, population, from, id);
+    add(table, level, population, to, id);
+  }
+}
+
+/// Appends to found_ the boxes that overlap on the lattice, and maybe some others. Precondition: the box is at most a
+/// few cells large, or the population is in few.
+void BoxGrid::search(const CellTable& table, const Level& level, const Population& population, const Ends& box) {
+  if (population.count == 0) return;
+  std::array<std::int64_t, 3> low, high;
+  for (std::size_t d = 0; d < 3; ++d) {
+    low[d] = std::max(Ends::cell_of(box.values[d] - population.span), population.low[d]);
+    high[d] = std::min(Ends::cell_of(-box.values[d + 3]), population.high[d]);
+  }
+  if (low[0] > high[0]) return;
+  std::array<CellTable::Ends, 8> along_x;
+  const auto cells = static_cast<std::size_t>(high[0] - low[0] + 1);
+  assert(cells <= along_x.size() && high[1] - low[1] < 8 && high[2] - low[2] < 8);
+  for (std::size_t i = 0; i < cells; ++i) along_x[i] = box.limits(0, low[0] + static_cast<std::int64_t>(i));
+  for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+    const CellTable::Ends limits_z = box.limits(2, z);
+    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+      const CellTable::Ends common = limits_z | box.limits(1, y) | row_mark(y, z);
+      table.find(table.row(level.family, y, z), low[0], common, {along_x.data(), cells}, found_);
+    }
+  }
 }
 
 void BoxGrid::put(Id id, const StaticBox& box, Changes& changes) {
   if (id >= items_.size()) items_.resize(std::max<std::size_t>(id + 1, items_.size() + items_.size() / 2));
-  Item& item = items_[id];
-  const StaticBox from = this->box(id);
-  const Exponent from_level = item.level;
-  Exponent level = level_for(box.extent());
+  const Exponent before = items_[id].level;
+  const double extent = box.extent();
+  Exponent level = level_for(extent);
   // A box that has become a little smaller stays at its level.
-  if (from_level != absent && level < from_level && level_for(1.125 * box.extent()) == from_level) level = from_level;
+  if (before != absent && level < before && level_for(1.125 * extent) == before) level = before;
+  if (level == before) return move(id, bounds(box), changes);
   use_level(level);
-  size_ += from_level == absent;
-  item.bounds = bounds(box);
-  item.level = level;
-  if (from_level == absent) return enter(id, changes);
-  relocate(id, from, from_level, box, changes);
+  if (before != absent) return put_anew(id, bounds(box), level, changes);
+  ++size_;
+  items_[id].bounds = bounds(box);
+  items_[id].level = level;
+  enter(id, changes);
 }
 
 void BoxGrid::announce(Id id, const StaticBox& box) {
+  if (size_ == 0) levels_.clear();  // of boxes that have gone
   Item& item = items_[id];
   item.bounds = bounds(box);
   item.level = level_for(box.extent());
@@ -135,8 +237,9 @@ void BoxGrid::announce(Id id, const StaticBox& box) {
   ++size_;
 }
 
-/// A number for a new search, which no box has been reported in.
+/// Cells of two levels may share a bucket, so a box may be found twice, or find itself.
 void BoxGrid::begin_search(Id id) {
+  found_.clear();
   if (++search_ == 0) {  // all numbers have been used
     for (Item& other : items_) other.reported = 0;
     search_ = 1;
@@ -144,100 +247,112 @@ void BoxGrid::begin_search(Id id) {
   items_[id].reported = search_;
 }
 
+/// False if it has been reported in this search.
+bool BoxGrid::report_once(Id id) { return std::exchange(items_[id].reported, search_) != search_; }
+
 void BoxGrid::enter(Id id, Changes& changes) {
+  if (natives_.size() == natives_.room()) restart_natives(2 * natives_.size());
+  if (guests_.size() + levels_.size() > guests_.room()) restart_guests();
+  items_[id].entered = true;
+  const Item item = items_[id];
+  const Bounds limits = item.bounds.limits();
   begin_search(id);
-  const StaticBox box = this->box(id);
-  const Bounds limits = BoxGrid::limits(box);
-  const auto look = [&](Id other_id) {
-    Item& other = items_[other_id];
-    if (other.reported == search_ || !other.bounds.within(limits)) return;
-    other.reported = search_;
-    changes.began.push_back(other_id);
-  };
   for (Level& level : levels_) {
-    if (level.exponent < items_[id].level) continue;
-    const Cells cells(box, level);
-    if (level.exponent == items_[id].level) {
+    if (level.exponent < item.level) continue;
+    const Ends ends(item.bounds, level.scale);
+    search(natives_, level, level.natives, ends);
+    if (level.exponent == item.level) {
       level.idle = 0;
-      ++level.natives;
-      cells.each([&](CellTable::Key cell, auto...) {
-        if (level.guests > 0) guests_.visit(cell, look);
-        natives_.add(cell, id, look);
-      });
+      search(guests_, level, level.guests, ends);
+      add(natives_, level, level.natives, ends, id);
     } else {
-      if (level.natives == 0 && ++level.idle > size_) idle_ = true;
-      ++level.guests;
-      cells.each([&](CellTable::Key cell, auto...) {
-        if (level.natives > 0) natives_.visit(cell, look);
-        guests_.add(cell, id);
-      });
+      count_guest(level);
+      add(guests_, level, level.guests, ends, id);
     }
   }
+  for (const Id other : found_.numbers()) {
+    if (items_[other].bounds.within(limits) && report_once(other)) changes.began.push_back(other);
+  }
   if (idle_) drop_idle_level();
+}
+
+/// Takes a box out of all cells and appends what it overlapped to changes.ended.
+void BoxGrid::leave(Id id, Changes& changes) {
+  items_[id].entered = false;
+  const Item item = items_[id];
+  const Bounds limits = item.bounds.limits();
+  begin_search(id);
+  for (Level& level : levels_) {
+    if (level.exponent < item.level) continue;
+    const Ends ends(item.bounds, level.scale);
+    if (level.exponent == item.level) {
+      remove(natives_, level, level.natives, ends, id);
+      search(guests_, level, level.guests, ends);
+    } else {
+      remove(guests_, level, level.guests, ends, id);
+    }
+    search(natives_, level, level.natives, ends);
+  }
+  for (const Id other : found_.numbers()) {
+    if (items_[other].bounds.within(limits) && report_once(other)) changes.ended.push_back(other);
+  }
 }
 
 void BoxGrid::remove(Id id, Changes& changes) {
-  Item& item = items_[id];
-  const StaticBox from = box(id);
-  const Exponent from_level = item.level;
+  leave(id, changes);
   --size_;
-  item.level = absent;
-  relocate(id, from, from_level, from, changes);
+  items_[id].level = absent;
 }
 
-/// Moves a box, whose new state is in place, from one set of cells to another, and compares overlaps then and now. Its
-/// new level may be `absent`.
-void BoxGrid::relocate(Id id, const StaticBox& from, Exponent from_level, const StaticBox& to, Changes& changes) {
-  const Exponent to_level = items_[id].level;
+/// Replaces a box by one of its level: if they are near each other, one search finds what overlaps either.
+void BoxGrid::move(Id id, const Bounds& to, Changes& changes) {
+  const Item item = items_[id];
+  auto level = find_level(item.level);
+  constexpr double near = 2 * units_per_cell;  // in units of the lattice; searches are then small at all levels
+  if (item.bounds.joined(to).extent() * level->scale > near) return put_anew(id, to, item.level, changes);
+  const Ends own_before(item.bounds, level->scale);
+  const Ends own_after(to, level->scale);
+  const Ends own_either = own_before.joined(own_after);
+  items_[id].bounds = to;
   begin_search(id);
-  constexpr double none = -std::numeric_limits<double>::infinity();
-  const Bounds nowhere{{none, none}, {none, none}, {none, none}};
-  const Bounds limits_before = limits(from);
-  const Bounds limits_after = to_level != absent ? limits(to) : nowhere;
-  const Bounds limits_ever = limits_before.joined(limits_after);
-  const auto look = [&](Id other_id) {
-    Item& other = items_[other_id];
-    if (!other.bounds.within(limits_ever)) return;
-    const bool after = other.bounds.within(limits_after);
-    if (other.bounds.within(limits_before) == after || other.reported == search_) return;
-    other.reported = search_;
-    (after ? changes.began : changes.ended).push_back(other_id);
-  };
-  const bool stays = from_level == to_level;
-  for (Level& level : levels_) {
-    const bool was = level.exponent >= from_level;
-    const bool is = to_level != absent && level.exponent >= to_level;
-    if (!was && !is) continue;
-    const bool was_own = level.exponent == from_level;
-    const bool is_own = level.exponent == to_level;
-    if (!stays) {
-      level.natives += is_own;
-      level.natives -= was_own;
-      level.guests += is && !is_own;
-      level.guests -= was && !was_own;
-    }
-    if (is_own) level.idle = 0;
-    if (level.natives == 0 && ++level.idle > size_) idle_ = true;
-    // Cells that are both before and after, and in the same role, need only be searched.
-    const bool same_role = was && is && was_own == is_own;
-    const Cells before(was ? from : to, level);
-    const Cells after(to, level);
-    const bool own = was_own || is_own;
-    if (is) {
-      after.each([&](CellTable::Key cell, std::int64_t x, std::int64_t y, std::int64_t z) {
-        search_cell(level, own, cell, look);
-        if (!(same_role && before.holds(x, y, z))) (is_own ? natives_ : guests_).add(cell, id);
-      });
-    }
-    if (was && !(same_role && before == after)) {
-      before.each([&](CellTable::Key cell, std::int64_t x, std::int64_t y, std::int64_t z) {
-        const bool shared = is && after.holds(x, y, z);
-        if (!shared) search_cell(level, own, cell, look);
-        if (!(same_role && shared)) (was_own ? natives_ : guests_).remove(cell, id);
-      });
-    }
+  level->idle = 0;
+  search(natives_, *level, level->natives, own_either);
+  search(guests_, *level, level->guests, own_either);
+  replace(natives_, *level, level->natives, own_before, own_after, id);
+  while (++level != levels_.end()) {
+    const Ends before(item.bounds, level->scale);
+    const Ends after(to, level->scale);
+    search(natives_, *level, level->natives, before.joined(after));
+    count_guest(*level);
+    replace(guests_, *level, level->guests, before, after, id);
+  }
+  const Bounds limits_before = item.bounds.limits();
+  const Bounds limits_after = to.limits();
+  for (const Id other : found_.numbers()) {
+    const Bounds& bounds = items_[other].bounds;
+    const bool after = bounds.within(limits_after);
+    if (bounds.within(limits_before) == after || !report_once(other)) continue;
+    (after ? changes.began : changes.ended).push_back(other);
   }
   if (idle_) drop_idle_level();
+}
+
+/// Takes a box out and puts it in anew; what overlaps both before and after has not changed.
+void BoxGrid::put_anew(Id id, const Bounds& to, Exponent level, Changes& changes) {
+  const auto ended = static_cast<std::ptrdiff_t>(changes.ended.size());
+  const auto began = static_cast<std::ptrdiff_t>(changes.began.size());
+  leave(id, changes);
+  items_[id].bounds = to;
+  items_[id].level = level;
+  enter(id, changes);
+  std::sort(changes.ended.begin() + ended, changes.ended.end());
+  std::sort(changes.began.begin() + began, changes.began.end());
+  std::vector<Id> both;
+  std::set_intersection(changes.ended.begin() + ended, changes.ended.end(), changes.began.begin() + began,
+                        changes.began.end(), std::back_inserter(both));
+  const auto is_both = [&](Id other) { return std::binary_search(both.begin(), both.end(), other); };
+  changes.ended.erase(std::remove_if(changes.ended.begin() + ended, changes.ended.end(), is_both), changes.ended.end());
+  changes.began.erase(std::remove_if(changes.began.begin() + began, changes.began.end(), is_both), changes.began.end());
 }
 
 }  // namespace kds::collision

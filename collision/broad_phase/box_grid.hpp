@@ -9,6 +9,7 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -18,14 +19,18 @@ namespace kds::collision {
 
 /// Keeps boxes by number and tells, when one comes, goes or is replaced, with which others its overlap has changed.
 ///
-/// A level of the grid has cubic cells of 2^k units. A box is a *native* of the level whose cells are just larger, where
-/// it is in at most eight cells, and a *guest* of all coarser levels in use. So two boxes of any sizes meet in cells of
-/// the larger one's level; space has no bounds, and a small box does not look at other small ones through the cells of
-/// a large one. Cells are found by hashing; different cells that share a key cost time, and nothing else, since what
-/// is found in a cell is only a hint.
+/// A level of the grid has cubic cells of 2^k units. A box is a *native* of the level whose cells are just larger, and a
+/// *guest* of all coarser levels in use; in each it is in one cell, that of its lower corner, so to move it rarely
+/// changes more than one entry. A search looks into the cells where a box that overlaps may have its corner. So two
+/// boxes of any sizes meet in cells of the larger one's level; space has no bounds, and a small box does not look at
+/// other small ones through the cells of a large one. Cells are found by hashing; different cells that share a key cost
+/// time, and nothing else, since what is found in a cell is only a hint.
 ///
-/// Sources: [Ericson05] section 7.2 for hierarchical grids, [Teschner03] for hashing cells. Differs: boxes are in all
-/// cells they overlap, so that a search looks at no others; guests have lists of their own.
+/// A cell keeps the ends of its boxes on a lattice of a 32nd of its side. To round to it is monotone, so where ends
+/// overlap they do on the lattice; most boxes that do not are left out without a look at them.
+///
+/// Sources: [Ericson05] section 7.2 for hierarchical grids, [Teschner03] for hashing cells. Differs: guests have lists of
+/// their own; ends on a lattice are in the cells.
 /// Cost: O(1) a change at bounded density, for each level in use from the box's own; a first native of a level makes all
 /// smaller boxes its guests, O(n). Memory O(n).
 class BoxGrid {
@@ -59,7 +64,7 @@ class BoxGrid {
   /// Makes room for boxes of numbers below `end`.
   void reserve(Id end) {
     items_.resize(std::max<std::size_t>(items_.size(), end));
-    natives_.reserve(2 * std::size_t{end});
+    if (end > natives_.room()) restart_natives(end);
   }
 
   /// Puts a box in, or in place of the one of that number. Appends to `changes`.
@@ -80,12 +85,13 @@ class BoxGrid {
  private:
   using Exponent = std::int16_t;
   static constexpr Exponent absent = std::numeric_limits<Exponent>::min();
-  static constexpr int most = 1023;  ///< exponents are within +-most: all space is a few cells of the coarsest
+  static constexpr int least = -1000;  ///< exponent: the scale of such cells is a number
+  static constexpr int most = 1023;    ///< all space is a few cells of this exponent
 
   /// Two doubles at a time: one SSE or NEON register.
   using Two = double __attribute__((vector_size(16)));
 
-  /// A box as six numbers (min, -max), so that boxes overlap if none of one's exceeds the same of the other's
+  /// A box as six numbers (min, -max). Boxes overlap if none of one's exceeds the same of the other's *limits*,
   /// (max, -min): three comparisons of two numbers.
   struct Bounds {
     Two xy, zx, yz;
@@ -100,51 +106,70 @@ class BoxGrid {
       return (within[0] & within[1]) != 0;
 #endif
     }
-    Bounds joined(const Bounds& b) const {
-      return {xy > b.xy ? xy : b.xy, zx > b.zx ? zx : b.zx, yz > b.yz ? yz : b.yz};
+    Bounds joined(const Bounds& other) const {
+      return {xy < other.xy ? xy : other.xy, zx < other.zx ? zx : other.zx, yz < other.yz ? yz : other.yz};
+    }
+    double extent() const { return std::max({-zx[1] - xy[0], -yz[0] - xy[1], -yz[1] - zx[0]}); }
+    Bounds limits() const {
+      return {Two{-zx[1], -yz[0]}, Two{-yz[1], -xy[0]}, Two{-xy[1], -zx[0]}};
     }
   };
   static Bounds bounds(const StaticBox& box) {
     return {Two{box.min[0], box.min[1]}, Two{box.min[2], -box.max[0]}, Two{-box.max[1], -box.max[2]}};
   }
-  static Bounds limits(const StaticBox& box) {
-    return {Two{box.max[0], box.max[1]}, Two{box.max[2], -box.min[0]}, Two{-box.min[1], -box.min[2]}};
-  }
 
-  /// What a search reads of every box it finds: one cache line.
+  /// What a search reads of every box that it finds: one cache line.
   struct alignas(64) Item {
     Bounds bounds;
     std::uint32_t reported = 0;  ///< the last search that has reported it
     Exponent level = absent;
+    bool entered = false;  ///< is in the cells; not yet if it has been announced
+  };
+
+  /// The natives or the guests of a level, and what bounds the search for them.
+  struct Population {
+    std::size_t count = 0;
+    std::int64_t span = 0;  ///< of the largest there has been since there was none, in units of the lattice
+    std::array<std::int64_t, 3> low{}, high{};  ///< of the cells in use since then
   };
 
   struct Level {
     Exponent exponent;
-    double scale;            ///< cells per unit
-    std::uint64_t tag;       ///< of the keys of its cells
-    std::size_t natives = 0;
-    std::size_t guests = 0;
-    std::size_t idle = 0;    ///< registrations of guests since the last native went
+    double scale;          ///< units of the lattice per unit of length
+    std::uint64_t family;  ///< of its cells
+    Population natives{};
+    Population guests{};
+    std::size_t idle = 0;  ///< registrations of guests since the last native went
   };
 
-  struct Cells;
+  struct Ends;
 
   static Exponent level_for(double extent);
   std::vector<Level>::iterator find_level(Exponent exponent);
   std::vector<Level>::iterator add_level(std::vector<Level>::iterator place, Exponent exponent);
   Level& use_level(Exponent exponent);
+  static void add(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id);
+  static void remove(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id);
+  static void replace(CellTable& table, const Level& level, Population& population, const Ends& from, const Ends& to,
+                      Id id);
+  void count_guest(Level& level);
   void begin_search(Id id);
-  void relocate(Id id, const StaticBox& from, Exponent from_level, const StaticBox& to, Changes& changes);
+  bool report_once(Id id);
+  void leave(Id id, Changes& changes);
+  void move(Id id, const Bounds& to, Changes& changes);
+  void put_anew(Id id, const Bounds& to, Exponent level, Changes& changes);
   void drop_idle_level();
-  template <class Look>
-  void search_cell(const Level& level, bool own, CellTable::Key cell, const Look& look) const;
+  void restart_guests();
+  void restart_natives(std::size_t room);
+  void search(const CellTable& table, const Level& level, const Population& population, const Ends& box);
 
   std::vector<Item> items_;    // by id
   std::vector<Level> levels_;  // finest first
   CellTable natives_;
   CellTable guests_;
+  CellTable::Found found_;  // by the present search
   std::uint32_t search_ = 0;
-  std::uint64_t tags_ = 0;
+  std::uint64_t families_ = 0;
   std::size_t size_ = 0;
   bool idle_ = false;  ///< some level has had too much idle work
 };

@@ -1,80 +1,130 @@
 #include "collision/broad_phase/cell_table.hpp"
 
-#include <utility>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include <cstring>
 
 namespace kds::collision {
 
-void CellTable::clear() {
-  std::fill(slots_.begin(), slots_.end(), Slot{});
-  chunks_.clear();
-  free_chunks_ = none;
-  taken_ = 0;
+void CellTable::restart(std::size_t numbers) {
+  const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(numbers, 64));
+  buckets_.assign(buckets, Bucket{});
+  chained_.clear();
+  free_ = none;
+  size_ = 0;
+  shift_ = 64 - std::countr_zero(buckets);
 }
 
-void CellTable::reserve(std::size_t cells) {
-  const std::size_t slots = std::bit_ceil(std::max<std::size_t>(2 * cells, 64));
-  if (slots > slots_.size()) rehash(slots);
-}
-
-void CellTable::grow() {
-  // Empty cells may be most of what fills the table; then it need not grow.
-  std::size_t used = 1;
-  for (const Slot& slot : slots_) used += slot.count > 0;
-  rehash(std::bit_ceil(std::max<std::size_t>(2 * used, 64)));
-}
-
-/// Precondition: there is no more room in the slot itself.
-void CellTable::add_to_chunk(Slot& slot, std::uint32_t number) {
-  if (slot.more == none || chunks_[slot.more].count == chunks_[slot.more].numbers.size()) {
-    std::uint32_t added = free_chunks_;
-    if (added != none) {
-      free_chunks_ = chunks_[added].next;
-    } else {
-      added = static_cast<std::uint32_t>(chunks_.size());
-      chunks_.emplace_back();
+void CellTable::add(std::size_t place, Ends ends, std::uint32_t number) {
+  ++size_;
+  Bucket* bucket = &buckets_[place];
+  if (bucket->count == most) {
+    if (bucket->next == none || chained_[bucket->next].count == most) {
+      std::uint32_t added = free_;
+      if (added != none) {
+        free_ = chained_[added].next;
+      } else {
+        added = static_cast<std::uint32_t>(chained_.size());
+        chained_.emplace_back();
+      }
+      chained_[added].next = bucket->next;
+      bucket->next = added;
     }
-    chunks_[added].count = 0;
-    chunks_[added].next = slot.more;
-    slot.more = added;
+    bucket = &chained_[bucket->next];
   }
-  Chunk& first = chunks_[slot.more];
-  first.numbers[first.count++] = number;
+  bucket->ends[bucket->count] = ends;
+  bucket->numbers[bucket->count++] = number;
 }
 
-void CellTable::remove(Key cell, std::uint32_t number) {
-  if (slots_.empty()) return;
-  Slot& slot = slots_[find(cell)];
-  std::uint32_t* place = std::find(slot.numbers.data(), slot.numbers.data() + slot.count, number);
-  if (place == slot.numbers.data() + slot.count) {
-    place = nullptr;
-    for (std::uint32_t c = slot.more; c != none && !place; c = chunks_[c].next) {
-      std::uint32_t* const end = chunks_[c].numbers.data() + chunks_[c].count;
-      std::uint32_t* const found = std::find(chunks_[c].numbers.data(), end, number);
-      if (found != end) place = found;
+/// All four are written, and the end is moved past those that count: which of them do cannot be predicted.
+inline std::uint32_t* CellTable::Bucket::find(Ends limits, std::uint32_t* to) const {
+#ifdef __SSE2__
+  const __m128i most_allowed = _mm_set1_epi64x(static_cast<long long>(limits));
+  const auto* const from = reinterpret_cast<const __m128i*>(ends.data());
+  const auto over = [&](const __m128i& two) {
+    return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpgt_epi8(_mm_load_si128(&two), most_allowed)));
+  };
+  const std::uint32_t first = over(from[0]);
+  const std::uint32_t second = over(from[1]);
+  const auto keep = [&to](std::uint32_t number, bool within) {
+    *to = number;
+    to += within;
+  };
+  keep(numbers[0], (first & 0xFF) == 0);
+  keep(numbers[1], first < 0x100);
+  keep(numbers[2], (second & 0xFF) == 0);
+  keep(numbers[3], second < 0x100);
+#else
+  using Bytes = signed char __attribute__((vector_size(8)));
+  Bytes most_allowed;
+  std::memcpy(&most_allowed, &limits, sizeof most_allowed);
+  for (std::size_t i = 0; i < most; ++i) {
+    Bytes bytes;
+    std::memcpy(&bytes, &ends[i], sizeof bytes);
+    const auto over = bytes > most_allowed;
+    std::uint64_t any = 0;
+    std::memcpy(&any, &over, sizeof any);
+    *to = numbers[i];
+    to += any == 0;
+  }
+#endif
+  return to;
+}
+
+void CellTable::find(std::size_t row, std::int64_t x, Ends common, std::span<const Ends> along_x,
+                     Found& found) const {
+  const Bucket* const buckets = buckets_.data();
+  const std::size_t mask = buckets_.size() - 1;
+  std::size_t at = row + static_cast<std::size_t>(x);
+  std::uint32_t* to = found.end(most * along_x.size());
+  for (std::size_t i = 0; i < along_x.size(); ++i) {
+    const Ends limits = common | along_x[i];
+    const Bucket* bucket = &buckets[at++ & mask];
+    to = bucket->find(limits, to);
+    while (bucket->next != none) {
+      bucket = &chained_[bucket->next];
+      found.end_at(to);
+      to = bucket->find(limits, found.end(most * (along_x.size() - i)));
     }
-    if (!place) return;
   }
-  // The last number takes its place.
-  if (slot.more == none) {
-    *place = slot.numbers[--slot.count];
-    return;
-  }
-  Chunk& first = chunks_[slot.more];
-  *place = first.numbers[--first.count];
-  if (first.count > 0) return;
-  const std::uint32_t empty = std::exchange(slot.more, first.next);
-  first.next = std::exchange(free_chunks_, empty);
+  found.end_at(to);
 }
 
-void CellTable::rehash(std::size_t slots) {
-  const std::vector<Slot> before = std::exchange(slots_, std::vector<Slot>(slots));
-  shift_ = 64 - std::countr_zero(slots);
-  taken_ = 0;
-  for (const Slot& slot : before) {
-    if (slot.count == 0) continue;
-    slots_[find(slot.cell)] = slot;
-    ++taken_;
+CellTable::Where CellTable::where(std::size_t place, std::uint32_t number) {
+  for (Bucket* bucket = &buckets_[place];; bucket = &chained_[bucket->next]) {
+    for (std::size_t i = 0; i < bucket->count; ++i) {
+      if (bucket->numbers[i] == number) return {bucket, i};
+    }
+    if (bucket->next == none) return {nullptr, 0};
   }
+}
+
+bool CellTable::replace(std::size_t place, Ends ends, std::uint32_t number) {
+  const auto [bucket, i] = where(place, number);
+  if (bucket) bucket->ends[i] = ends;
+  return bucket != nullptr;
+}
+
+bool CellTable::remove(std::size_t place, std::uint32_t number) {
+  const auto [bucket, i] = where(place, number);
+  if (!bucket) return false;
+  --size_;
+  // The last one takes its place.
+  Bucket& first = buckets_[place];
+  Bucket& last = first.next == none ? first : chained_[first.next];
+  const std::size_t end = --last.count;
+  bucket->ends[i] = last.ends[end];
+  bucket->numbers[i] = last.numbers[end];
+  last.ends[end] = vacant;
+  if (end == 0 && &last != &first) {
+    const std::uint32_t empty = first.next;
+    first.next = last.next;
+    last.next = free_;
+    free_ = empty;
+  }
+  return true;
 }
 
 }  // namespace kds::collision

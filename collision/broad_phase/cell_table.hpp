@@ -1,4 +1,4 @@
-// A hash table from cells of space to the bodies in them.
+// A hash table from cells of space to the boxes in them.
 #pragma once
 
 #include <algorithm>
@@ -6,101 +6,100 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace kds::collision {
 
-/// Keeps for each cell, named by 64 bits, an unordered list of numbers.
+/// Keeps for each cell an unordered list of numbers, each with eight small integers, its *ends*. A search asks for those
+/// of which none exceeds the same of eight *limits*, and compares four numbers at once.
 ///
-/// Open addressing; the first few numbers of a cell are stored in its slot of the table, so that to look into a cell of
-/// the usual size costs one cache line; further ones are in chunks. add() and remove() cost O(1) and O(numbers in the
-/// cell). A cell that has become empty is forgotten when the table is next rehashed, which adding does when the table
-/// is full, at amortised O(1).
+/// Cells are in buckets of one cache line, hashed row by row: neighbours along x are neighbours in memory. Nothing tells
+/// apart the cells that share a bucket but the ends, if so they are made; what a search gives is a hint. What does not
+/// fit a bucket is in further ones, chained to it.
+/// Cost: O(1) and O(numbers in the bucket) for each function.
 ///
-/// Paper: [Teschner03] for hashing cells.
+/// Paper: [Teschner03] for hashing cells. Differs: no key is compared.
 class CellTable {
  public:
-  using Key = std::uint64_t;
+  /// Eight signed bytes, each from -limit to limit.
+  using Ends = std::uint64_t;
+  static constexpr std::int64_t limit = 126;
 
-  void clear();
-
-  /// Room for so many cells without rehashing.
-  void reserve(std::size_t cells);
-
-  void add(Key cell, std::uint32_t number) {
-    add(cell, number, [](std::uint32_t) {});
+  /// Where a row begins. Cells are counted from there.
+  std::size_t row(std::uint64_t family, std::int64_t y, std::int64_t z) const {
+    const auto mixed = family + static_cast<std::uint64_t>(y) * 0x9E3779B97F4A7C15u +
+                       static_cast<std::uint64_t>(z) * 0xC2B2AE3D27D4EB4Fu;
+    return static_cast<std::size_t>(mixed >> shift_);
   }
 
-  /// visit() and add().
-  template <class Visit>
-  void add(Key cell, std::uint32_t number, Visit&& visit) {
-    if (4 * (taken_ + 1) > 3 * slots_.size()) grow();
-    Slot& slot = slots_[find(cell)];
-    if (!slot.taken) {
-      slot = Slot{};
-      slot.taken = true;
-      slot.cell = cell;
-      ++taken_;
+  /// The first bucket of a cell.
+  std::size_t place(std::size_t row, std::int64_t x) const {
+    return (row + static_cast<std::size_t>(x)) & (buckets_.size() - 1);
+  }
+
+  /// Empties the table, and makes room for so many numbers. Places are others from then on.
+  void restart(std::size_t numbers);
+
+  std::size_t size() const { return size_; }
+  /// More numbers than this would be faster to find after a restart.
+  std::size_t room() const { return buckets_.size(); }
+
+  void add(std::size_t place, Ends ends, std::uint32_t number);
+
+  /// Gives a number other ends; false if it is not there.
+  bool replace(std::size_t place, Ends ends, std::uint32_t number);
+
+  /// Removes one such number; false if there is none.
+  bool remove(std::size_t place, std::uint32_t number);
+
+  /// What a search finds. Keeps its memory, and writes nothing before it is used.
+  class Found {
+   public:
+    void clear() { size_ = 0; }
+    std::span<const std::uint32_t> numbers() const { return {numbers_.data(), size_}; }
+
+   private:
+    friend CellTable;
+    std::uint32_t* end(std::size_t more) {
+      if (size_ + more > numbers_.size()) numbers_.resize(2 * (size_ + more));
+      return numbers_.data() + size_;
     }
-    visit_slot(slot, visit);
-    if (slot.count < slot.numbers.size()) {
-      slot.numbers[slot.count++] = number;
-    } else {
-      add_to_chunk(slot, number);
-    }
-  }
+    void end_at(const std::uint32_t* end) { size_ = static_cast<std::size_t>(end - numbers_.data()); }
 
-  /// Removes one such number, if the cell holds any.
-  void remove(Key cell, std::uint32_t number);
+    std::vector<std::uint32_t> numbers_;
+    std::size_t size_ = 0;
+  };
 
-  /// Calls visit(number) for what is in a cell.
-  template <class Visit>
-  void visit(Key cell, Visit&& visit) const {
-    if (slots_.empty()) return;
-    visit_slot(slots_[find(cell)], visit);
-  }
+  /// Appends the numbers of a run of cells that are within the limits, and maybe some others: within `common` and, cell
+  /// by cell, those of `along_x`, whose bytes must not overlap those of `common`.
+  void find(std::size_t row, std::int64_t x, Ends common, std::span<const Ends> along_x, Found& found) const;
 
  private:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
+  static constexpr Ends vacant = 0x7F7F7F7F7F7F7F7F;  ///< exceeds all limits
+  static constexpr std::size_t most = 4;
 
-  /// One of a cell's slots, half a cache line. Vacant if it has no key.
-  struct alignas(32) Slot {
-    Key cell = 0;
-    std::uint32_t more = none;  ///< first of the chunks
-    std::uint16_t count = 0;    ///< of the numbers here; fewer than there is room for only if there are no chunks
-    bool taken = false;
-    std::array<std::uint32_t, 4> numbers;
-  };
-  struct alignas(32) Chunk {
+  struct alignas(64) Bucket {
+    std::array<Ends, most> ends{vacant, vacant, vacant, vacant};
+    std::array<std::uint32_t, most> numbers{};
     std::uint32_t next = none;
-    std::uint32_t count = 0;  ///< full but for the first of a cell
-    std::array<std::uint32_t, 6> numbers;
+    std::uint32_t count = 0;  ///< of a cell's buckets all are full but for the second, or the only one
+
+    /// Writes the numbers within the limits and returns the end.
+    std::uint32_t* find(Ends limits, std::uint32_t* to) const;
   };
 
-  /// The slot that holds a cell, or the vacant one where it would be put.
-  std::size_t find(Key cell) const {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t i = static_cast<std::size_t>(cell * 0x9E3779B97F4A7C15u >> shift_);
-    while (slots_[i].taken && slots_[i].cell != cell) i = (i + 1) & mask;
-    return i;
-  }
+  struct Where {
+    Bucket* bucket;  ///< none if it is not there
+    std::size_t i;
+  };
+  Where where(std::size_t place, std::uint32_t number);
 
-  template <class Visit>
-  void visit_slot(const Slot& slot, Visit& visit) const {
-    for (std::uint32_t i = 0; i < slot.count; ++i) visit(slot.numbers[i]);
-    for (std::uint32_t c = slot.more; c != none; c = chunks_[c].next) {
-      for (std::uint32_t i = 0; i < chunks_[c].count; ++i) visit(chunks_[c].numbers[i]);
-    }
-  }
-
-  void add_to_chunk(Slot& slot, std::uint32_t number);
-  void grow();
-  void rehash(std::size_t slots);
-
-  std::vector<Slot> slots_;  // a power of two
-  std::vector<Chunk> chunks_;
-  std::uint32_t free_chunks_ = none;
-  std::size_t taken_ = 0;
+  std::vector<Bucket> buckets_ = std::vector<Bucket>(1);  // a power of two
+  std::vector<Bucket> chained_;
+  std::uint32_t free_ = none;
+  std::size_t size_ = 0;
   int shift_ = 63;
 };
 

@@ -22,33 +22,61 @@ using kds::tests::Random;
 TEST_CASE("A cell table holds what was added and not removed", "[box_grid]") {
   Random random(11);
   CellTable table;
-  std::map<CellTable::Key, std::multiset<std::uint32_t>> expected;
-  for (int round = 0; round < 20'000; ++round) {
-    // A few keys, so that cells grow long, and among them some that differ in high bits only.
-    const CellTable::Key cell = random.below(40) << (random.one_in(2) ? 0 : 44);
-    const auto number = static_cast<std::uint32_t>(random.below(30));
-    if (random.below(5) < (round < 10'000 ? 3u : 2u)) {
-      table.add(cell, number);
-      expected[cell].insert(number);
-    } else {
-      table.remove(cell, number);  // which may not be there
-      auto& numbers = expected[cell];
-      if (const auto it = numbers.find(number); it != numbers.end()) numbers.erase(it);
+  table.restart(40);
+  std::map<std::size_t, std::map<std::uint32_t, CellTable::Ends>> expected;  // by place
+  constexpr CellTable::Ends limits = 0x4040404040404040;
+  // One byte of eight, in turn, exceeds the limits, or none.
+  const auto random_ends = [&] {
+    const auto exceeding = random.below(12);
+    CellTable::Ends ends = 0x40F03F0040400140;
+    if (exceeding < 8) ends = (ends & ~(CellTable::Ends{0xFF} << 8 * exceeding)) | CellTable::Ends{0x41} << 8 * exceeding;
+    return ends;
+  };
+  const auto exceeds = [](CellTable::Ends ends) {
+    for (int i = 0; i < 8; ++i) {
+      if (static_cast<std::int8_t>(ends >> 8 * i & 0xFF) > 0x40) return true;
     }
-    if (round % 50 != 0) continue;
-    std::multiset<std::uint32_t> found;
-    table.visit(cell, [&](std::uint32_t n) { found.insert(n); });
-    REQUIRE(found == expected[cell]);
+    return false;
+  };
+  CellTable::Found found;
+  bool right = true;
+  for (int round = 0; round < 20'000; ++round) {
+    // A few rows, so that cells grow long.
+    const std::int64_t x = random.integer(-3, 3);
+    const std::size_t row = table.row(5, random.integer(-1, 1), random.integer(0, 1));
+    const std::size_t place = table.place(row, x);
+    const auto number = static_cast<std::uint32_t>(random.below(30));
+    auto& cell = expected[place];
+    if (const auto it = cell.find(number); it != cell.end() && random.one_in(2)) {
+      it->second = random_ends();
+      right = right && table.replace(place, it->second, number);
+    } else if (it != cell.end() || random.below(5) >= (round < 10'000 ? 3u : 2u)) {
+      right = right && table.remove(place, number) == (it != cell.end());
+      if (it != cell.end()) cell.erase(it);
+    } else {
+      cell[number] = random_ends();
+      table.add(place, cell[number], number);
+    }
+    std::multiset<std::uint32_t> there, seen;
+    const std::vector<CellTable::Ends> along_x(3, 0x40 << 8 | 0x40);
+    for (std::size_t i = 0; i < along_x.size(); ++i) {
+      for (const auto& [n, ends] : expected[table.place(row, x + static_cast<std::int64_t>(i))]) {
+        if (!exceeds(ends)) there.insert(n);
+      }
+    }
+    found.clear();
+    table.find(row, x, limits & ~CellTable::Ends{0xFFFF}, along_x, found);
+    seen.insert(found.numbers().begin(), found.numbers().end());
+    right = right && there == seen;
   }
-  for (const auto& [cell, numbers] : expected) {
-    std::multiset<std::uint32_t> found;
-    table.visit(cell, [&](std::uint32_t n) { found.insert(n); });
-    REQUIRE(found == numbers);
-  }
-  table.clear();
-  std::size_t left = 0;
-  for (const auto& [cell, numbers] : expected) table.visit(cell, [&](std::uint32_t) { ++left; });
-  CHECK(left == 0);
+  CHECK(right);
+  std::size_t held = 0;
+  for (const auto& [place, cell] : expected) held += cell.size();
+  CHECK(table.size() == held);
+  table.restart(100);
+  found.clear();
+  for (int i = 0; i < 128; ++i) table.find(0, i, limits, std::vector<CellTable::Ends>{0}, found);
+  CHECK(found.numbers().empty());
 }
 
 StaticBox random_box(Random& random, double size, double side, double far) {
@@ -134,6 +162,34 @@ TEST_CASE("Boxes of no extent, and ones that fill all space, have their place in
   grid.remove(1, changes);
   std::sort(changes.ended.begin(), changes.ended.end());
   CHECK(changes.ended == std::vector<BoxGrid::Id>{0, 2, 3});
+}
+
+TEST_CASE("Boxes that jump far or come in crowds are found in a box grid", "[box_grid]") {
+  Random random(31);
+  for (const double far : {0.0, 1e5, 1e12}) {
+    BoxGrid grid;
+    std::vector<StaticBox> boxes(300, random_box(random, 1, 1, 0));
+    std::set<std::pair<BoxGrid::Id, BoxGrid::Id>> pairs;
+    BoxGrid::Changes changes;
+    for (int round = 0; round < 3000; ++round) {
+      const auto id = static_cast<BoxGrid::Id>(random.below(boxes.size()));
+      // To one of two crowds, or to one of many rows far from each other, of which some share buckets.
+      const double at = random.one_in(2) ? far * random.integer(0, 1) : far + 1024.0 * random.integer(-40, 40);
+      boxes[id] = random_box(random, 1, 3, at);
+      changes.clear();
+      grid.put(id, boxes[id], changes);
+      for (const auto other : changes.ended) REQUIRE(pairs.erase(ordered(id, other)) == 1);
+      for (const auto other : changes.began) REQUIRE(pairs.insert(ordered(id, other)).second);
+    }
+    std::set<std::pair<BoxGrid::Id, BoxGrid::Id>> expected;
+    for (BoxGrid::Id a = 0; a < boxes.size(); ++a) {
+      for (BoxGrid::Id b = a + 1; b < boxes.size(); ++b) {
+        if (grid.contains(a) && grid.contains(b) && boxes[a].overlaps(boxes[b])) expected.insert({a, b});
+      }
+    }
+    CHECK(pairs == expected);
+    CHECK(expected.size() > 30);
+  }
 }
 
 TEST_CASE("Boxes that are announced and enter in any order overlap as they do", "[box_grid]") {
