@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 namespace kds::certificates {
@@ -83,46 +85,76 @@ bool BallSeparation<PathDegree>::relative_path_is_line() const {
 /// at most 6 u of the sum of its terms' magnitudes, and the difference of two adds u; so r is known to 8 u m, where m
 /// is that sum for both bodies. Likewise the rate v to 8 u w. Then r . v is known to (8 + 8 + 4) u m . w, r . r to
 /// (16 + 4) u m . m plus products of errors, v . v likewise, and the square of the reach to 6 u of itself. All are
-/// below 2^-48 (32 u) of the sum of magnitudes, with room for the rounding of the bound. Underflow loses less than
-/// 2^-1000.
+/// below 2^-48 (32 u) of the magnitudes, with room for the rounding of the bound; and m . w is at most M W, where M and
+/// W are the sums over the axes. Underflow loses less than 2^-1000.
 template <int PathDegree>
 struct BallSeparation<PathDegree>::RelativeLine {
-  Eigen::Array3d r, v, m, w;
+  double square, product, speeds;  ///< r . r - reach^2, r . v, v . v
+  double M, W;
   double reach;
   static constexpr double unit = 0x1p-48;
   static constexpr double lost = 0x1p-1000;
   static constexpr double range = 0x1p1000;  ///< beyond, sums of opposite infinities might look like a number
 
-  RelativeLine(const BallSeparation& balls, double now) : reach(balls.radius_a + balls.radius_b) {
-    using Eigen::Array3d;
-    const auto& [a0, a1] = std::pair(balls.a.coefficients[0].array(), balls.a.coefficients[1].array());
-    const auto& [b0, b1] = std::pair(balls.b.coefficients[0].array(), balls.b.coefficients[1].array());
-    const double elapsed_a = now - balls.a.start;
-    const double elapsed_b = now - balls.b.start;
-    Array3d moved_a = a1 * elapsed_a;
-    Array3d moved_b = b1 * elapsed_b;
-    m = a0.abs() + b0.abs() + moved_a.abs() + moved_b.abs();
-    v = b1 - a1;
-    w = v.abs();
-    if constexpr (PathDegree == 2) {
-      const Array3d bend = balls.a.coefficients[2].array();
-      moved_a = (a1 + bend * elapsed_a) * elapsed_a;
-      moved_b = (b1 + bend * elapsed_b) * elapsed_b;
-      m += bend.abs() * (elapsed_a * elapsed_a + elapsed_b * elapsed_b);
-      v = (b1 + 2 * bend * elapsed_b) - (a1 + 2 * bend * elapsed_a);
-      w = b1.abs() + a1.abs() + 2 * bend.abs() * (std::abs(elapsed_a) + std::abs(elapsed_b));
+  /// Two coordinates in one register, and the third.
+  using Two = double __attribute__((vector_size(16)));
+  static Two pair(const Eigen::Vector3d& x) { return Two{x[0], x[1]}; }
+  static double third(const Eigen::Vector3d& x) { return x[2]; }
+  static Two magnitude(Two x) {
+    using Bits = std::int64_t __attribute__((vector_size(16)));
+    return reinterpret_cast<Two>(reinterpret_cast<Bits>(x) & std::numeric_limits<std::int64_t>::max());
+  }
+  static double magnitude(double x) { return std::abs(x); }
+
+  template <class X>
+  struct Part {
+    X r, v, m, w;
+
+    template <class Take>
+    [[gnu::always_inline]] inline Part(const BallSeparation& balls, double now, Take take) {
+      const X a0 = take(balls.a.coefficients[0]);
+      const X a1 = take(balls.a.coefficients[1]);
+      const X b0 = take(balls.b.coefficients[0]);
+      const X b1 = take(balls.b.coefficients[1]);
+      const double elapsed_a = now - balls.a.start;
+      const double elapsed_b = now - balls.b.start;
+      X moved_a = a1 * elapsed_a;
+      X moved_b = b1 * elapsed_b;
+      m = magnitude(a0) + magnitude(b0) + magnitude(moved_a) + magnitude(moved_b);
+      v = b1 - a1;
+      w = magnitude(v);
+      if constexpr (PathDegree == 2) {
+        const X bend = take(balls.a.coefficients[2]);
+        moved_a = (a1 + bend * elapsed_a) * elapsed_a;
+        moved_b = (b1 + bend * elapsed_b) * elapsed_b;
+        m += magnitude(bend) * (elapsed_a * elapsed_a + elapsed_b * elapsed_b);
+        v = (b1 + 2 * bend * elapsed_b) - (a1 + 2 * bend * elapsed_a);
+        w = magnitude(b1) + magnitude(a1) + 2 * magnitude(bend) * (std::abs(elapsed_a) + std::abs(elapsed_b));
+      }
+      r = (b0 + moved_b) - (a0 + moved_a);
     }
-    r = (b0 + moved_b) - (a0 + moved_a);
+  };
+
+  [[gnu::always_inline]] inline RelativeLine(const BallSeparation& balls, double now)
+      : reach(balls.radius_a + balls.radius_b) {
+    const Part<Two> xy(balls, now, pair);
+    const Part<double> z(balls, now, third);
+    const auto sum = [](Two x, double y) { return x[0] + x[1] + y; };
+    square = sum(xy.r * xy.r, z.r * z.r) - reach * reach;
+    product = sum(xy.r * xy.v, z.r * z.v);
+    speeds = sum(xy.v * xy.v, z.v * z.v);
+    M = sum(xy.m, z.m);
+    W = sum(xy.w, z.w);
   }
 
   /// f' now.
-  Ball<double> rate() const { return bounded(2 * (r * v).sum(), 2 * (m * w).sum()); }
+  Ball<double> rate() const { return bounded(2 * product, 2 * (M * W)); }
 
   Polynomial<2, Ball<double>> polynomial() const {
     Polynomial<2, Ball<double>> f;
-    f.c[0] = bounded((r * r).sum() - reach * reach, (m * m).sum() + reach * reach);
+    f.c[0] = bounded(square, M * M + reach * reach);
     f.c[1] = rate();
-    f.c[2] = bounded((v * v).sum(), (w * w).sum());
+    f.c[2] = bounded(speeds, W * W);
     return f;
   }
 
@@ -177,7 +209,9 @@ double BallSeparation<PathDegree>::first_approach(double now, double horizon) co
 }
 
 template <int PathDegree>
-auto BallSeparation<PathDegree>::estimated_first_approach(double now, double horizon) const -> Estimate {
+[[gnu::always_inline]] inline auto BallSeparation<PathDegree>::estimated_first_approach(double now,
+                                                                                        double horizon) const
+    -> Estimate {
   if (now <= horizon && relative_path_is_line()) {
     const RelativeLine line(*this, now);
     if (certain_sign(line.rate()) > 0) return {never, true};

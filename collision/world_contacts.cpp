@@ -82,7 +82,7 @@ void World<Degree>::test(PairSlot slot) {
     // Most tests by far are these, and need two cache lines.
     const Mover& a = movers_[pair.a];
     const Mover& b = movers_[pair.b];
-    if (a.ball_radius > 0 && b.ball_radius > 0 && !(at_rest(a.motion) && at_rest(b.motion))) {
+    if (a.ball_radius > 0 && b.ball_radius > 0 && !(at_rest(a.motion) && at_rest(b.motion))) [[likely]] {
       const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
       if (!pair.fresh || apart.surely_apart(now_)) {
         if (pair.let_pass == now_ && !pair.fresh) {
