@@ -1,11 +1,14 @@
 // Two convex bodies apart along a direction.
 #pragma once
 
+#include "certificates/along_axis.hpp"
 #include "certificates/point_motion.hpp"
 #include "kds/certificate.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 namespace kds::certificates {
 
@@ -42,14 +45,47 @@ struct PlaneSeparation {
 
   template <class Number>
   Polynomial<PathDegree, Number> polynomial(double epoch) const {
-    const auto r = relative_motion<Number>(a, b, epoch);
-    Polynomial<PathDegree, Number> f = (r[0] * axis[0] + r[1] * axis[1] + r[2] * axis[2]) * side;
+    if constexpr (std::is_same_v<Number, Ball<double>>) {
+      auto f = along_axis(a, b, axis, epoch) * side;
+      f.c[0] = f.c[0] - bounded_reach();
+      return f;
+    } else {
+      const auto r = relative_motion<Number>(a, b, epoch);
+      Polynomial<PathDegree, Number> f = (r[0] * axis[0] + r[1] * axis[1] + r[2] * axis[2]) * side;
+      f.c[0] = f.c[0] - reach<Number>();
+      return f;
+    }
+  }
+
+  Ball<DoubleDouble> extended_value(double t) const {
+    return extended_along_axis(a, b, axis, t) * side - reach<Ball<DoubleDouble>>();
+  }
+
+ private:
+  template <class Number>
+  Number reach() const {
     Number reach = Number(margins[0]) + margins[1];
     for (const Eigen::Vector3d* half_axis : extents) {
       if (half_axis) reach = reach + absolute(dot<Number>(axis, *half_axis));
     }
-    f.c[0] = f.c[0] - reach;
-    return f;
+    return reach;
+  }
+
+  /// The same in doubles. Error bound, with u = 2^-53: 3 u of the sum of magnitudes in each product with the axis, 8 u
+  /// in the sum; underflow less than 2^-1000.
+  Ball<double> bounded_reach() const {
+    double sum = margins[0] + margins[1];
+    double magnitudes = std::abs(margins[0]) + std::abs(margins[1]);
+    for (const Eigen::Vector3d* half_axis : extents) {
+      if (!half_axis) continue;
+      const Eigen::Vector3d& h = *half_axis;
+      const double x = axis[0] * h[0];
+      const double y = axis[1] * h[1];
+      const double z = axis[2] * h[2];
+      sum += std::abs((x + y) + z);
+      magnitudes += std::abs(x) + std::abs(y) + std::abs(z);
+    }
+    return {sum, 16 * 0x1p-53 * magnitudes + 0x1p-1000};
   }
 };
 

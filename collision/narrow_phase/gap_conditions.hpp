@@ -1,0 +1,70 @@
+// When gaps are all closed: exact signs where a filter in doubles does not know.
+#pragma once
+
+#include "kds/roots/failure_time.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace kds::collision {
+
+/// A set of certificates that hold while a gap is open, with a filter that knows most of their signs for little.
+///
+/// `surely_closed(i, t)`: certificate i is broken just after t; false says nothing. `closed_until(i, t)`: if it is
+/// broken just after t, a time not before t up to which it stays so, or `never` if it stays so for good.
+/// `failure_time(i, t, horizon)`, `recovery_time(i, t, horizon)`, `closed(i, t)`: exact.
+///
+/// The answers below are those of certificates/conjunction.hpp, bit for bit, whatever the filter knows.
+template <class Gaps>
+bool all_closed(const Gaps& gaps, double t) {
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (!gaps.surely_closed(i, t) && !gaps.closed(i, t)) return false;
+  }
+  return true;
+}
+
+/// The first double t in [now, horizon] just after which all gaps are closed, or `never`.
+template <class Gaps>
+double first_all_closed(const Gaps& gaps, double now, double horizon) {
+  double t = now;
+  std::size_t just_closed = gaps.size();
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+      if (i == just_closed || gaps.surely_closed(i, t)) continue;
+      const double failure = gaps.failure_time(i, t, horizon);
+      if (failure == never) return never;
+      if (failure == t) continue;
+      t = failure;
+      just_closed = i;
+      moved = true;
+    }
+  }
+  return t;
+}
+
+/// The first double t in [now, horizon] just after which some gap is open, or `never`. The one that is expected to open
+/// first is asked first; most others then need not be.
+template <class Gaps>
+double first_any_open(const Gaps& gaps, double now, double horizon) {
+  std::size_t earliest = gaps.size();
+  double least = never;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const double until = gaps.closed_until(i, now);
+    if (until < least) {
+      least = until;
+      earliest = i;
+    }
+  }
+  if (earliest == gaps.size()) return never;
+  double first = gaps.recovery_time(earliest, now, horizon);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (i == earliest) continue;
+    const double until = gaps.closed_until(i, now);
+    if (until >= first || until > horizon) continue;
+    first = std::min(first, gaps.recovery_time(i, now, std::min(first, horizon)));
+  }
+  return first;
+}
+
+}  // namespace kds::collision
