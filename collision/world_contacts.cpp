@@ -100,17 +100,18 @@ void World<Degree>::test(PairSlot slot) {
   const auto report_overlap = [&] {
     pending_.push_back({Pending::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_)});
   };
-  double next = never;
+  ContactEstimate next{never, true};
   if (mode() == ContactMode::transparent) {
     if (pair.fresh && in_contact(a, b, now_)) {
       pair.touching = true;
       report_overlap();
     }
     if (at_rest(a.motion) && at_rest(b.motion)) {  // Nothing will happen, but a jump may have happened.
-      next = in_contact(a, b, now_) == pair.touching ? never : now_;
+      next.time = in_contact(a, b, now_) == pair.touching ? never : now_;
+    } else if (pair.touching) {
+      next.time = first_separation(a, b, now_, horizon_);
     } else {
-      next = pair.touching ? first_separation(a, b, now_, horizon_)
-                           : first_contact(a, b, now_, horizon_, ContactMode::transparent);
+      next = estimated_first_contact(a, b, now_, horizon_, mode());
     }
   } else {
     const bool passes = pair.let_pass == now_ && !pair.fresh;
@@ -119,14 +120,21 @@ void World<Degree>::test(PairSlot slot) {
       if (pair.fresh && pair.ignored) report_overlap();
     }
     if (find_hold(pair.a, pair.b) != no_hold) {
-      next = next_contact_of_held(pair);
+      next.time = next_contact_of_held(pair);
     } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
       const double start = passes ? next_up(now_) : now_;
-      const double from = pair.ignored && start <= horizon_ ? first_separation(a, b, start, horizon_) : start;
-      if (from <= horizon_) next = first_contact(a, b, from, horizon_, ContactMode::resolved);
+      if (pair.ignored && start <= horizon_) {
+        const double from = first_separation(a, b, start, horizon_);
+        if (from <= horizon_) next.time = first_contact(a, b, from, horizon_, mode());
+      } else if (passes) {
+        if (start <= horizon_) next.time = first_contact(a, b, start, horizon_, mode());
+      } else {
+        next = estimated_first_contact(a, b, now_, horizon_, mode());
+      }
     }
   }
-  set_contact(slot, next);
+  contacts_.set(slot, next.time);
+  pair.estimated = !next.exact;
 }
 
 template <int Degree>
@@ -139,10 +147,14 @@ void World<Degree>::set_contact(PairSlot slot, double time) {
 /// first, since motions change before.
 template <int Degree>
 void World<Degree>::certify_contact(PairSlot slot) {
-  const Mover& a = movers_[pairs_[slot].a];
-  const Mover& b = movers_[pairs_[slot].b];
-  const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
-  set_contact(slot, apart.first_approach(now_, horizon_));
+  const Pair& pair = pairs_[slot];
+  const Mover& a = movers_[pair.a];
+  const Mover& b = movers_[pair.b];
+  if (a.ball_radius > 0 && b.ball_radius > 0) {
+    const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
+    return set_contact(slot, apart.first_approach(now_, horizon_));
+  }
+  set_contact(slot, first_contact(moving(pair.a), moving(pair.b), now_, horizon_, mode()));
 }
 
 template <int Degree>

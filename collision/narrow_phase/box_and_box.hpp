@@ -8,7 +8,9 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace kds::collision {
@@ -57,9 +59,10 @@ class BoxAndBox {
   /// The first double t in [now, horizon] just after which they penetrate, or `never`. `from`: where to begin.
   double first_inside(double from, double horizon) const {
     if (apart_) return never;
-    const double begin = motion_.time_before(window_.begin);
-    return first_all_closed(*this, from < begin ? begin : from, horizon);
+    return first_all_closed(*this, std::max(from, apart_until()), horizon);
   }
+  /// A time not before now before which they do not penetrate, or `never`.
+  double apart_until() const { return apart_ ? never : motion_.time_before(window_.begin); }
   bool inside(double t) const { return !apart_ && all_closed(*this, t); }
   /// Precondition: inside(t).
   double first_outside(double t, double horizon) const { return first_any_open(*this, t, horizon); }

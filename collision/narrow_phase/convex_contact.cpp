@@ -154,6 +154,19 @@ double ConvexContact<Degree>::first_contact(const Body& a, const Body& b, double
 }
 
 template <int Degree>
+double ConvexContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon) {
+  if (is_ball(a) && is_ball(b)) return t0;
+  if (is_ball(a)) return apart_until(b, a, t0, horizon);
+  if (!(t0 <= horizon)) return never;
+  if (!is_ball(b)) return BoxAndBox<Degree>(a, b, t0, horizon).apart_until();
+  double first = never;
+  BoxAndBall<Degree>(a, b, t0, horizon).earliest_pieces(horizon, [&](const auto& piece) {
+    return first = std::min(first, piece.earliest());
+  });
+  return first;
+}
+
+template <int Degree>
 bool ConvexContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
   if (is_ball(a) && is_ball(b)) return sign_after(balls_apart(a, b), t) < 0;
   if (is_ball(a)) return in_contact(b, a, t);

@@ -49,6 +49,11 @@ std::optional<MeshTouch> MeshPair<Degree>::first_contact(double tau0, double tau
 }
 
 template <int Degree>
+double MeshPair<Degree>::apart_until(double tau0, double tau1) const {
+  return ask([&](const auto& query) { return query.apart_until(tau0, tau1); });
+}
+
+template <int Degree>
 bool MeshPair<Degree>::touching(double tau) const {
   return ask([&](const auto& query) { return query.touching(tau); });
 }
@@ -113,6 +118,14 @@ double MeshContact<Degree>::first_contact(const Body& a, const Body& b, double t
   const ClockedPair<Degree> clocked(a, b);
   const auto touch = clocked.pair.first_contact(clocked.tau(t0), clocked.tau(horizon), mode);
   return touch ? clocked.clock(touch->tau, t0, horizon) : infinity;
+}
+
+template <int Degree>
+double MeshContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon) {
+  const ClockedPair<Degree> clocked(a, b);
+  const double tau = clocked.pair.apart_until(clocked.tau(t0), clocked.tau(horizon));
+  if (tau == infinity) return infinity;
+  return tau <= clocked.tau(t0) ? t0 : std::max(t0, next_down(clocked.motion.epoch + tau * (1 - 0x1p-50)));
 }
 
 template <int Degree>

@@ -53,6 +53,9 @@ class MeshPair {
   /// turns to approach, or touches anew.
   std::optional<MeshTouch> first_contact(double tau0, double tau1, ContactMode mode) const;
 
+  /// A time in [tau0, tau1] before which even the boxes around the shapes do not touch, or `never`.
+  double apart_until(double tau0, double tau1) const;
+
   /// Whether they touch at tau.
   bool touching(double tau) const;
 
@@ -84,6 +87,8 @@ struct MeshContact {
   using Body = MovingShape<Degree>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
+  /// A time in [t0, never] before which there is no contact; `never` if there is none until the horizon.
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon);
   static bool in_contact(const Body& a, const Body& b, double t);
   static double first_separation(const Body& a, const Body& b, double t0, double horizon);
   static Contact contact_at(const Body& a, const Body& b, double t);

@@ -170,6 +170,25 @@ class Query {
     return best;
   }
 
+  /// When the boxes around the whole shapes may first touch, or infinity.
+  double apart_until(double tau0, double tau1) const {
+    double first = TimeSpans::infinity;
+    slice_by_slice({tau0, tau1}, [&](const TimeSlice& slice) {
+      const SliceMotion<Degree> motion(motion_, gap_, slice, radii_);
+      StepWindow window;
+      bool near = false;
+      if constexpr (with_ball) {
+        near = BoxBallTest<Degree>(a_.pose, b_.part.radius, motion)(a_.pose.nodes[0], window);
+      } else {
+        const BoxPairTest<Degree> test(a_.pose, b_.pose, motion);
+        near = test(test.frame(a_.pose.nodes[0]), b_.pose.nodes[0], window);
+      }
+      if (near) first = in_seconds(slice, window).begin;
+      return near;
+    });
+    return first;
+  }
+
   bool touching(double tau) const { return contact_end(tau) != tau; }
 
   /// Jumps from the end of one contact to the end of another that still holds there.

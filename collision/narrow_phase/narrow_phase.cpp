@@ -2,6 +2,7 @@
 
 #include "collision/narrow_phase/convex_contact.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
+#include "kds/arithmetic/lattice.hpp"
 
 namespace kds::collision {
 namespace {
@@ -18,6 +19,16 @@ double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b,
                      ContactMode mode) {
   return has_mesh(a, b) ? MeshContact<Degree>::first_contact(a, b, t0, horizon, mode)
                         : ConvexContact<Degree>::first_contact(a, b, t0, horizon, mode);
+}
+
+template <int Degree>
+ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
+                                        double horizon, ContactMode mode) {
+  const double time = has_mesh(a, b) ? MeshContact<Degree>::apart_until(a, b, t0, horizon)
+                                     : ConvexContact<Degree>::apart_until(a, b, t0, horizon);
+  if (time == never || time > horizon) return {never, true};
+  if (time > t0) return {time, false};
+  return {first_contact(a, b, t0, horizon, mode), true};
 }
 
 template <int Degree>
@@ -38,6 +49,10 @@ Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
 
 template double first_contact(const MovingShape<1>&, const MovingShape<1>&, double, double, ContactMode);
 template double first_contact(const MovingShape<2>&, const MovingShape<2>&, double, double, ContactMode);
+template ContactEstimate estimated_first_contact(const MovingShape<1>&, const MovingShape<1>&, double, double,
+                                                 ContactMode);
+template ContactEstimate estimated_first_contact(const MovingShape<2>&, const MovingShape<2>&, double, double,
+                                                 ContactMode);
 template bool in_contact(const MovingShape<1>&, const MovingShape<1>&, double);
 template bool in_contact(const MovingShape<2>&, const MovingShape<2>&, double);
 template double first_separation(const MovingShape<1>&, const MovingShape<1>&, double, double);

@@ -33,6 +33,20 @@ template <int Degree>
 double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
                      ContactMode mode);
 
+/// A time before which a and b do not come into contact.
+struct ContactEstimate {
+  double time;
+  bool exact;  ///< it is the time of the first contact, or `never` if there is none
+};
+
+/// The same for less, mostly, or a time that is not later: the kinetic separating axis. As long as there is a direction
+/// along which the boxes around the shapes (boxes: the shapes themselves) are apart, nothing happens; the last such
+/// direction fails at a root of a polynomial of the motion's degree. Until then the pair needs no test, unless a motion
+/// changes, and then most of what a contact asks for was never asked.
+template <int Degree>
+ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
+                                        double horizon, ContactMode mode);
+
 /// Whether a and b penetrate just after t.
 template <int Degree>
 bool in_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);

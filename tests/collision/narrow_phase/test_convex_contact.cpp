@@ -170,7 +170,7 @@ class Pairs {
 TEMPLATE_TEST_CASE_SIG("Filtered contacts of boxes are those of exact signs alone", "[convex_contact]",
                        ((int Degree), Degree), 1, 2) {
   constexpr int rounds = 6000;
-  int contacts = 0, meetings = 0, partings = 0;
+  int contacts = 0, meetings = 0, partings = 0, estimates = 0;
   std::vector<std::uint64_t> wrong;  // seeds
   for (std::uint64_t seed = 1; seed <= rounds; ++seed) {
     Random random(seed);
@@ -190,8 +190,11 @@ TEMPLATE_TEST_CASE_SIG("Filtered contacts of boxes are those of exact signs alon
     const bool ordered = random.one_in(2);  // balls may come first
     const auto& x = ordered ? a : b;
     const auto& y = ordered ? b : a;
+    const ContactEstimate estimate = estimated_first_contact(x, y, t0, horizon, ContactMode::transparent);
     bool right = Tests::in_contact(x, y, t0) == inside &&
-                 Tests::first_contact(x, y, t0, horizon, ContactMode::transparent) == first;
+                 Tests::first_contact(x, y, t0, horizon, ContactMode::transparent) == first &&
+                 (estimate.exact ? estimate.time == first : estimate.time > t0 && estimate.time <= first);
+    estimates += !estimate.exact;
     contacts += inside;
     meetings += first > t0 && first != never;
     if (first != never) {
@@ -201,9 +204,10 @@ TEMPLATE_TEST_CASE_SIG("Filtered contacts of boxes are those of exact signs alon
     }
     if (!right) wrong.push_back(seed);
   }
-  CAPTURE(Degree, contacts, meetings, partings);
+  CAPTURE(Degree, contacts, meetings, partings, estimates);
   CHECK(wrong == std::vector<std::uint64_t>{});
   CHECK(contacts > 30);
   CHECK(meetings > 100);
   CHECK(partings > 100);
+  CHECK(estimates > 100);
 }
