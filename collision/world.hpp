@@ -217,6 +217,7 @@ class World final : private PairListener {
     bool ignored = false;   ///< resolved: overlaps and passes through until separated
     bool boxes_overlap = false;
     bool estimated = false;  ///< its time in contacts_ is a lower bound
+    PairMemory memory;
     double let_pass = -never;  ///< resolved: at this time decided to be ignored, whatever else happens at it
   };
 

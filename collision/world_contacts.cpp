@@ -111,7 +111,7 @@ void World<Degree>::test(PairSlot slot) {
     } else if (pair.touching) {
       next.time = first_separation(a, b, now_, horizon_);
     } else {
-      next = estimated_first_contact(a, b, now_, horizon_, mode());
+      next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory);
     }
   } else {
     const bool passes = pair.let_pass == now_ && !pair.fresh;
@@ -129,7 +129,7 @@ void World<Degree>::test(PairSlot slot) {
       } else if (passes) {
         if (start <= horizon_) next.time = first_contact(a, b, start, horizon_, mode());
       } else {
-        next = estimated_first_contact(a, b, now_, horizon_, mode());
+        next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory);
       }
     }
   }

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace kds::collision {
 
@@ -21,21 +22,20 @@ namespace kds::collision {
 /// the face normals cover: leaving one out lets a contact be reported early by at most 2^-40 of the boxes' size.
 inline constexpr double parallel_edges = 0x1p-80;
 
-/// Calls visit(axis) until it returns false.
+/// Axis number k of fifteen.
+inline Eigen::Vector3d box_axis(const PlacedShape& a, const PlacedShape& b, int k) {
+  if (k < 3) return a.rotation.col(k);
+  if (k < 6) return b.rotation.col(k - 3);
+  return cross(a.rotation.col((k - 6) / 3), b.rotation.col((k - 6) % 3));
+}
+
+/// Calls visit(axis, its number) until it returns false.
 template <class Visit>
 void every_box_axis(const PlacedShape& a, const PlacedShape& b, const Visit& visit) {
-  for (int d = 0; d < 3; ++d) {
-    if (!visit(Eigen::Vector3d(a.rotation.col(d)))) return;
-  }
-  if (a.rotation == b.rotation) return;
-  for (int d = 0; d < 3; ++d) {
-    if (!visit(Eigen::Vector3d(b.rotation.col(d)))) return;
-  }
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const Eigen::Vector3d axis = cross(a.rotation.col(i), b.rotation.col(j));
-      if (axis.squaredNorm() > parallel_edges && !visit(axis)) return;
-    }
+  const int count = a.rotation == b.rotation ? 3 : 15;
+  for (int k = 0; k < count; ++k) {
+    const Eigen::Vector3d axis = box_axis(a, b, k);
+    if ((k < 6 || axis.squaredNorm() > parallel_edges) && !visit(axis, k)) return;
   }
 }
 
@@ -53,15 +53,18 @@ class BoxAndBox {
         b_(b),
         motion_(a.motion, b.motion, now, horizon, a.shape.bounding_radius + b.shape.bounding_radius),
         window_{0, motion_.end()} {
-    every_box_axis(a.shape, b.shape, [&](const Eigen::Vector3d& axis) { return add(axis); });
+    every_box_axis(a.shape, b.shape, [&](const Eigen::Vector3d& axis, int k) { return add(axis, k); });
   }
+
+  /// A time not before now before which they do not penetrate, or `never`: until then one axis separates them, and
+  /// `memory` says which. That one is tried first, and alone if it separates them now; else the best of all is taken.
+  static double apart_until(const Body& a, const Body& b, double now, double horizon, PairMemory& memory);
 
   /// The first double t in [now, horizon] just after which they penetrate, or `never`. `from`: where to begin.
   double first_inside(double from, double horizon) const {
     if (apart_) return never;
     return first_all_closed(*this, std::max(from, apart_until()), horizon);
   }
-  /// A time not before now before which they do not penetrate, or `never`.
   double apart_until() const { return apart_ ? never : motion_.time_before(window_.begin); }
   bool inside(double t) const { return !apart_ && all_closed(*this, t); }
   /// Precondition: inside(t).
@@ -93,14 +96,28 @@ class BoxAndBox {
     double reach;
   };
 
-  bool add(const Eigen::Vector3d& direction) {
+  static Axis placed(const Body& a, const Body& b, const QuickMotion<Degree>& motion, const Eigen::Vector3d& axis) {
     double reach = 0;
-    for (const auto& half : a_.shape.half_axes) reach += std::abs(dot(direction, half));
-    for (const auto& half : b_.shape.half_axes) reach += std::abs(dot(direction, half));
-    axes_[size_] = {direction, motion_.along(direction), reach};
-    const Axis& axis = axes_[size_++];
-    const bool near = motion_.clip(axis.along, 1, reach, window_) && motion_.clip(axis.along, -1, reach, window_);
-    if (near) return true;
+    for (const auto& half : a.shape.half_axes) reach += std::abs(dot(axis, half));
+    for (const auto& half : b.shape.half_axes) reach += std::abs(dot(axis, half));
+    return {axis, motion.along(axis), reach};
+  }
+  static bool clip(const QuickMotion<Degree>& motion, const Axis& axis, TimeWindow& window) {
+    return motion.clip(axis.along, 1, axis.reach, window) && motion.clip(axis.along, -1, axis.reach, window);
+  }
+
+  bool add(const Eigen::Vector3d& direction, int number) {
+    const Axis& axis = axes_[size_++] = placed(a_, b_, motion_, direction);
+    TimeWindow near{0, motion_.end()};
+    bool meet = clip(motion_, axis, near);
+    const double until = meet ? near.begin : never;
+    if (until > separated_) {
+      separated_ = until;
+      separating_ = number;
+    }
+    window_ = {std::max(window_.begin, near.begin), std::min(window_.end, near.end)};
+    meet = meet && window_.begin <= window_.end;
+    if (meet) return true;
     if (motion_.whole()) {
       apart_ = true;
       return false;
@@ -123,8 +140,27 @@ class BoxAndBox {
   QuickMotion<Degree> motion_;
   TimeWindow window_;
   bool apart_ = false;
+  int separating_ = 0;  ///< number of the axis that separates them longest alone, as far as is known
+  double separated_ = 0;
   std::size_t size_ = 0;
   std::array<Axis, 15> axes_;
 };
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <int Degree>
+double BoxAndBox<Degree>::apart_until(const Body& a, const Body& b, double now, double horizon, PairMemory& memory) {
+  if (memory.axis != PairMemory::none) {
+    const QuickMotion<Degree> motion(a.motion, b.motion, now, horizon,
+                                     a.shape.bounding_radius + b.shape.bounding_radius);
+    TimeWindow window{0, motion.end()};
+    const bool near = clip(motion, placed(a, b, motion, box_axis(a.shape, b.shape, memory.axis)), window);
+    if (!near && motion.whole()) return never;
+    if (near && window.begin > 0) return motion.time_before(window.begin);
+  }
+  const BoxAndBox pair(a, b, now, horizon);
+  memory.axis = static_cast<std::uint8_t>(pair.separating_);
+  return pair.apart_until();
+}
 
 }  // namespace kds::collision

@@ -74,7 +74,7 @@ Contact box_box_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
   double deepest = -never;
   Contact contact;
   contact.time = t;
-  every_box_axis(a.shape, b.shape, [&](const Vector3d& axis) {
+  every_box_axis(a.shape, b.shape, [&](const Vector3d& axis, int) {
     const Vector3d n = axis.normalized() * (axis.dot(apart) < 0 ? -1.0 : 1.0);
     double gap = n.dot(apart);
     for (const auto& u : a.shape.half_axes) gap -= std::abs(n.dot(u));
@@ -154,11 +154,12 @@ double ConvexContact<Degree>::first_contact(const Body& a, const Body& b, double
 }
 
 template <int Degree>
-double ConvexContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon) {
+double ConvexContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon,
+                                          PairMemory& memory) {
   if (is_ball(a) && is_ball(b)) return t0;
-  if (is_ball(a)) return apart_until(b, a, t0, horizon);
+  if (is_ball(a)) return apart_until(b, a, t0, horizon, memory);
   if (!(t0 <= horizon)) return never;
-  if (!is_ball(b)) return BoxAndBox<Degree>(a, b, t0, horizon).apart_until();
+  if (!is_ball(b)) return BoxAndBox<Degree>::apart_until(a, b, t0, horizon, memory);
   double first = never;
   BoxAndBall<Degree>(a, b, t0, horizon).earliest_pieces(horizon, [&](const auto& piece) {
     return first = std::min(first, piece.earliest());

@@ -19,7 +19,7 @@ struct ConvexContact {
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
   /// A time in [t0, never] before which there is no contact; later than the horizon if there is none until then.
-  static double apart_until(const Body& a, const Body& b, double t0, double horizon);
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
   static bool in_contact(const Body& a, const Body& b, double t);
   static double first_separation(const Body& a, const Body& b, double t0, double horizon);
   static Contact contact_at(const Body& a, const Body& b, double t);

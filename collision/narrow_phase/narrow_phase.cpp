@@ -23,9 +23,9 @@ double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b,
 
 template <int Degree>
 ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
-                                        double horizon, ContactMode mode) {
+                                        double horizon, ContactMode mode, PairMemory& memory) {
   const double time = has_mesh(a, b) ? MeshContact<Degree>::apart_until(a, b, t0, horizon)
-                                     : ConvexContact<Degree>::apart_until(a, b, t0, horizon);
+                                     : ConvexContact<Degree>::apart_until(a, b, t0, horizon, memory);
   if (time == never || time > horizon) return {never, true};
   if (time > t0) return {time, false};
   return {first_contact(a, b, t0, horizon, mode), true};
@@ -50,9 +50,9 @@ Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
 template double first_contact(const MovingShape<1>&, const MovingShape<1>&, double, double, ContactMode);
 template double first_contact(const MovingShape<2>&, const MovingShape<2>&, double, double, ContactMode);
 template ContactEstimate estimated_first_contact(const MovingShape<1>&, const MovingShape<1>&, double, double,
-                                                 ContactMode);
+                                                 ContactMode, PairMemory&);
 template ContactEstimate estimated_first_contact(const MovingShape<2>&, const MovingShape<2>&, double, double,
-                                                 ContactMode);
+                                                 ContactMode, PairMemory&);
 template bool in_contact(const MovingShape<1>&, const MovingShape<1>&, double);
 template bool in_contact(const MovingShape<2>&, const MovingShape<2>&, double);
 template double first_separation(const MovingShape<1>&, const MovingShape<1>&, double, double);

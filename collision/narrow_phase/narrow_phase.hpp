@@ -5,6 +5,8 @@
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/shapes/shape.hpp"
 
+#include <cstdint>
+
 namespace kds::collision {
 
 /// What happens to bodies that touch.
@@ -33,6 +35,12 @@ template <int Degree>
 double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
                      ContactMode mode);
 
+/// What a pair remembers from test to test. It saves time and decides nothing.
+struct PairMemory {
+  static constexpr std::uint8_t none = 255;
+  std::uint8_t axis = none;  ///< the number of the axis that separated the two
+};
+
 /// A time before which a and b do not come into contact.
 struct ContactEstimate {
   double time;
@@ -42,10 +50,10 @@ struct ContactEstimate {
 /// The same for less, mostly, or a time that is not later: the kinetic separating axis. As long as there is a direction
 /// along which the boxes around the shapes (boxes: the shapes themselves) are apart, nothing happens; the last such
 /// direction fails at a root of a polynomial of the motion's degree. Until then the pair needs no test, unless a motion
-/// changes, and then most of what a contact asks for was never asked.
+/// changes, and then the old direction is tried first, and most of what a contact asks for was never asked.
 template <int Degree>
 ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
-                                        double horizon, ContactMode mode);
+                                        double horizon, ContactMode mode, PairMemory& memory);
 
 /// Whether a and b penetrate just after t.
 template <int Degree>

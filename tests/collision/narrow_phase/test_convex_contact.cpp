@@ -72,7 +72,7 @@ std::vector<Piece<Degree>> pieces_of(const MovingShape<Degree>& a, const MovingS
   Piece<Degree> piece;
   const auto& u = a.shape.half_axes;
   const auto& w = b.shape.half_axes;
-  every_box_axis(a.shape, b.shape, [&](const Vector3d& axis) {
+  every_box_axis(a.shape, b.shape, [&](const Vector3d& axis, int) {
     for (const double side : {1.0, -1.0}) {
       piece.planes.push_back({a.motion, b.motion, axis, side, {&u[0], &u[1], &u[2], &w[0], &w[1], &w[2]}, {}});
     }
@@ -190,7 +190,9 @@ TEMPLATE_TEST_CASE_SIG("Filtered contacts of boxes are those of exact signs alon
     const bool ordered = random.one_in(2);  // balls may come first
     const auto& x = ordered ? a : b;
     const auto& y = ordered ? b : a;
-    const ContactEstimate estimate = estimated_first_contact(x, y, t0, horizon, ContactMode::transparent);
+    PairMemory memory;
+    if (random.one_in(2)) memory.axis = static_cast<std::uint8_t>(random.below(15));
+    const ContactEstimate estimate = estimated_first_contact(x, y, t0, horizon, ContactMode::transparent, memory);
     bool right = Tests::in_contact(x, y, t0) == inside &&
                  Tests::first_contact(x, y, t0, horizon, ContactMode::transparent) == first &&
                  (estimate.exact ? estimate.time == first : estimate.time > t0 && estimate.time <= first);

@@ -57,7 +57,8 @@ TEMPLATE_TEST_CASE_SIG("Until its estimate a pair with a mesh needs no test", "[
     const MovingShape<Degree> b{swapped ? mesh : other, path_b};
     const double horizon = random.below(4) == 0 ? never : clock + random.uniform(0, 3);
     for (const ContactMode mode : {ContactMode::transparent, ContactMode::resolved}) {
-      const ContactEstimate estimate = estimated_first_contact(a, b, clock, horizon, mode);
+      PairMemory memory;
+      const ContactEstimate estimate = estimated_first_contact(a, b, clock, horizon, mode, memory);
       const double first = first_contact(a, b, clock, horizon, mode);
       if (estimate.exact) {
         if (estimate.time != first) wrong.push_back(seed);
