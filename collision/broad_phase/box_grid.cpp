@@ -11,8 +11,8 @@
 namespace kds::collision {
 namespace {
 
-/// Units of the lattice in a cell, as a power of two. Finer ones leave fewer boxes that overlap on the lattice alone; but
-/// ends of a few cells have to fit a byte.
+/// Units of the lattice in a cell, as a power of two. Finer ones leave fewer boxes that overlap on the lattice alone;
+/// but ends of a few cells have to fit a byte.
 constexpr int lattice_bits = 5;
 constexpr std::int64_t units_per_cell = 1 << lattice_bits;
 
@@ -28,10 +28,13 @@ CellTable::Ends byte(std::size_t i, std::int64_t value) {
   return static_cast<CellTable::Ends>(static_cast<std::uint8_t>(bounded)) << 8 * i;
 }
 
-/// Bytes 6 and 7: the row, modulo 16 and 8, and its complement: the one or the other exceeds that of another row. So the rows of a search, of which there are fewer, are not mistaken for each other.
-CellTable::Ends row_mark(std::int64_t y, std::int64_t z) {
-  const auto mark = static_cast<CellTable::Ends>((y & 15) | (z & 7) << 4);
-  return mark << 48 | (mark ^ 0xFF) << 56;
+/// Bytes 6 and 7: the row, modulo 16 and 8, and its complement; here what a coordinate has in them. The one or the other
+/// exceeds that of another row, so the rows of a search, of which there are fewer, are not mistaken for each other.
+CellTable::Ends row_mark(std::size_t d, std::int64_t cell) {
+  if (d == 0) return 0;
+  const CellTable::Ends bits = d == 1 ? 0x0F : 0x70;
+  const auto mark = static_cast<CellTable::Ends>(d == 1 ? cell : cell << 4) & bits;
+  return mark << 48 | (mark ^ (d == 1 ? bits : 0xF0)) << 56;
 }
 
 }  // namespace
@@ -71,10 +74,10 @@ struct BoxGrid::Ends {
 
   /// Counted from the box's own cell.
   CellTable::Ends in_cell() const {
-    CellTable::Ends ends = row_mark(cell(1), cell(2));
+    CellTable::Ends ends = 0;
     for (std::size_t d = 0; d < 3; ++d) {
       const std::int64_t corner = cell(d) << lattice_bits;
-      ends |= byte(d, values[d] - corner) | byte(d + 3, values[d + 3] + corner);
+      ends |= byte(d, values[d] - corner) | byte(d + 3, values[d + 3] + corner) | row_mark(d, cell(d));
     }
     return ends;
   }
@@ -192,23 +195,21 @@ void BoxGrid::replace(CellTable& table, const Level& level, Population& populati
 /// few cells large, or the population is in few.
 void BoxGrid::search(const CellTable& table, const Level& level, const Population& population, const Ends& box) {
   if (population.count == 0) return;
-  std::array<std::int64_t, 3> low, high;
+  CellTable::Block block;
+  block.family = level.family;
   for (std::size_t d = 0; d < 3; ++d) {
-    low[d] = std::max(Ends::cell_of(box.values[d] - population.span), population.low[d]);
-    high[d] = std::min(Ends::cell_of(-box.values[d + 3]), population.high[d]);
-  }
-  if (low[0] > high[0]) return;
-  std::array<CellTable::Ends, 8> along_x;
-  const auto cells = static_cast<std::size_t>(high[0] - low[0] + 1);
-  assert(cells <= along_x.size() && high[1] - low[1] < 8 && high[2] - low[2] < 8);
-  for (std::size_t i = 0; i < cells; ++i) along_x[i] = box.limits(0, low[0] + static_cast<std::int64_t>(i));
-  for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-    const CellTable::Ends limits_z = box.limits(2, z);
-    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-      const CellTable::Ends common = limits_z | box.limits(1, y) | row_mark(y, z);
-      table.find(table.row(level.family, y, z), low[0], common, {along_x.data(), cells}, found_);
+    const std::int64_t low = std::max(Ends::cell_of(box.values[d] - population.span), population.low[d]);
+    const std::int64_t high = std::min(Ends::cell_of(-box.values[d + 3]), population.high[d]);
+    if (low > high) return;
+    block.low[d] = low;
+    block.lengths[d] = static_cast<std::size_t>(high - low + 1);
+    assert(block.lengths[d] <= CellTable::Block::longest);
+    for (std::size_t i = 0; i < block.lengths[d]; ++i) {
+      const std::int64_t cell = low + static_cast<std::int64_t>(i);
+      block.limits[d][i] = box.limits(d, cell) | row_mark(d, cell);
     }
   }
+  table.find(block, found_);
 }
 
 void BoxGrid::put(Id id, const StaticBox& box, Changes& changes) {

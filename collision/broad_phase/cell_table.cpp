@@ -38,58 +38,51 @@ void CellTable::add(std::size_t place, Ends ends, std::uint32_t number) {
   bucket->numbers[bucket->count++] = number;
 }
 
-/// All four are written, and the end is moved past those that count: which of them do cannot be predicted.
-inline std::uint32_t* CellTable::Bucket::find(Ends limits, std::uint32_t* to) const {
+inline std::uint32_t CellTable::Bucket::within(Ends limits) const {
 #ifdef __SSE2__
   const __m128i most_allowed = _mm_set1_epi64x(static_cast<long long>(limits));
   const auto* const from = reinterpret_cast<const __m128i*>(ends.data());
-  const auto over = [&](const __m128i& two) {
+  const auto exceed = [&](const __m128i& two) {
     return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpgt_epi8(_mm_load_si128(&two), most_allowed)));
   };
-  const std::uint32_t first = over(from[0]);
-  const std::uint32_t second = over(from[1]);
-  const auto keep = [&to](std::uint32_t number, bool within) {
-    *to = number;
-    to += within;
-  };
-  keep(numbers[0], (first & 0xFF) == 0);
-  keep(numbers[1], first < 0x100);
-  keep(numbers[2], (second & 0xFF) == 0);
-  keep(numbers[3], second < 0x100);
+  const std::uint32_t over = exceed(from[0]) | exceed(from[1]) << 16;
+  return ~(((over & 0x7F7F7F7Fu) + 0x7F7F7F7Fu) | over) & 0x80808080u;  // bytes that are zero
 #else
   using Bytes = signed char __attribute__((vector_size(8)));
   Bytes most_allowed;
   std::memcpy(&most_allowed, &limits, sizeof most_allowed);
+  std::uint32_t within = 0;
   for (std::size_t i = 0; i < most; ++i) {
     Bytes bytes;
     std::memcpy(&bytes, &ends[i], sizeof bytes);
     const auto over = bytes > most_allowed;
     std::uint64_t any = 0;
     std::memcpy(&any, &over, sizeof any);
-    *to = numbers[i];
-    to += any == 0;
+    within |= std::uint32_t{any == 0} << (8 * i + 7);
   }
+  return within;
 #endif
-  return to;
 }
 
-void CellTable::find(std::size_t row, std::int64_t x, Ends common, std::span<const Ends> along_x,
-                     Found& found) const {
+void CellTable::find(const Block& block, Found& found) const {
   const Bucket* const buckets = buckets_.data();
   const std::size_t mask = buckets_.size() - 1;
-  std::size_t at = row + static_cast<std::size_t>(x);
-  std::uint32_t* to = found.end(most * along_x.size());
-  for (std::size_t i = 0; i < along_x.size(); ++i) {
-    const Ends limits = common | along_x[i];
-    const Bucket* bucket = &buckets[at++ & mask];
-    to = bucket->find(limits, to);
-    while (bucket->next != none) {
-      bucket = &chained_[bucket->next];
-      found.end_at(to);
-      to = bucket->find(limits, found.end(most * (along_x.size() - i)));
+  const auto [cells_x, cells_y, cells_z] = block.lengths;
+  std::uint64_t row_z = mixed(block.family, block.low[1], block.low[2]);
+  for (std::size_t z = 0; z < cells_z; ++z, row_z += along_z) {
+    std::uint64_t row_y = row_z;
+    for (std::size_t y = 0; y < cells_y; ++y, row_y += along_y) {
+      const Ends limits_yz = block.limits[2][z] | block.limits[1][y];
+      const std::size_t begin = static_cast<std::size_t>(row_y >> shift_) + static_cast<std::size_t>(block.low[0]);
+      for (std::size_t x = 0; x < cells_x; ++x) {
+        const Ends limits = limits_yz | block.limits[0][x];
+        for (const Bucket* bucket = &buckets[(begin + x) & mask];; bucket = &chained_[bucket->next]) {
+          found.add(bucket->numbers, bucket->within(limits));
+          if (bucket->next == none) break;
+        }
+      }
     }
   }
-  found.end_at(to);
 }
 
 CellTable::Where CellTable::where(std::size_t place, std::uint32_t number) {

@@ -28,9 +28,7 @@ class CellTable {
 
   /// Where a row begins. Cells are counted from there.
   std::size_t row(std::uint64_t family, std::int64_t y, std::int64_t z) const {
-    const auto mixed = family + static_cast<std::uint64_t>(y) * 0x9E3779B97F4A7C15u +
-                       static_cast<std::uint64_t>(z) * 0xC2B2AE3D27D4EB4Fu;
-    return static_cast<std::size_t>(mixed >> shift_);
+    return static_cast<std::size_t>(mixed(family, y, z) >> shift_);
   }
 
   /// The first bucket of a cell.
@@ -61,21 +59,45 @@ class CellTable {
 
    private:
     friend CellTable;
-    std::uint32_t* end(std::size_t more) {
-      if (size_ + more > numbers_.size()) numbers_.resize(2 * (size_ + more));
-      return numbers_.data() + size_;
+
+    /// Adds number i where bit 8 i + 7 is set: all are written, and the end is moved past those that count, since nobody
+    /// can predict which do.
+    void add(const std::array<std::uint32_t, 4>& numbers, std::uint32_t which) {
+      if (size_ + numbers.size() > numbers_.size()) numbers_.resize(2 * numbers_.size() + 64);
+      std::uint32_t* to = numbers_.data() + size_;
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        *to = numbers[i];
+        to += which >> (8 * i + 7) & 1;
+      }
+      size_ = static_cast<std::size_t>(to - numbers_.data());
     }
-    void end_at(const std::uint32_t* end) { size_ = static_cast<std::size_t>(end - numbers_.data()); }
 
     std::vector<std::uint32_t> numbers_;
     std::size_t size_ = 0;
   };
 
-  /// Appends the numbers of a run of cells that are within the limits, and maybe some others: within `common` and, cell
-  /// by cell, those of `along_x`, whose bytes must not overlap those of `common`.
-  void find(std::size_t row, std::int64_t x, Ends common, std::span<const Ends> along_x, Found& found) const;
+  /// A block of cells to search in, and the limits: for each axis, by cell along it, bytes that do not overlap those of
+  /// other axes; the limits of a cell are all three together.
+  struct Block {
+    static constexpr std::size_t longest = 8;
+
+    std::uint64_t family;
+    std::array<std::int64_t, 3> low;     ///< the first cell
+    std::array<std::size_t, 3> lengths;  ///< in cells
+    std::array<std::array<Ends, longest>, 3> limits;
+  };
+
+  /// Appends the numbers within the limits, those of other cells in the same buckets too.
+  void find(const Block& block, Found& found) const;
 
  private:
+  /// Steps from row to row, before all but the highest bits are dropped.
+  static constexpr std::uint64_t along_y = 0x9E3779B97F4A7C15;
+  static constexpr std::uint64_t along_z = 0xC2B2AE3D27D4EB4F;
+  static std::uint64_t mixed(std::uint64_t family, std::int64_t y, std::int64_t z) {
+    return family + static_cast<std::uint64_t>(y) * along_y + static_cast<std::uint64_t>(z) * along_z;
+  }
+
   static constexpr std::uint32_t none = ~std::uint32_t{0};
   static constexpr Ends vacant = 0x7F7F7F7F7F7F7F7F;  ///< exceeds all limits
   static constexpr std::size_t most = 4;
@@ -86,8 +108,8 @@ class CellTable {
     std::uint32_t next = none;
     std::uint32_t count = 0;  ///< of a cell's buckets all are full but for the second, or the only one
 
-    /// Writes the numbers within the limits and returns the end.
-    std::uint32_t* find(Ends limits, std::uint32_t* to) const;
+    /// The highest bit of byte i if number i is within the limits.
+    std::uint32_t within(Ends limits) const;
   };
 
   struct Where {

@@ -29,7 +29,17 @@ constexpr double least_part_of_coordinates = 0x1p-40;
 constexpr double least_reach_at_all = 0x1p-500;
 
 /// An old fat box is kept if it lasts this share of a new one's lifetime.
-constexpr double kept_share = 0.25;
+constexpr double kept_share = 0.15;
+
+/// A body is *jostled* if its motion changes in most of its boxes: each in which it does counts 1, up to a bound, each in
+/// which it does not takes back 2.
+constexpr int jostled_at = 3;
+constexpr int jostled_most = 6;
+
+/// For one that is, a pair that begins costs as much as so many tests; and what was spent on both within a box, in tests,
+/// that a longer reach would pay, or a shorter one (found by measuring; the minimum is flat).
+constexpr std::uint32_t tests_per_pair = 8;
+constexpr std::uint32_t little_spent = 40, much_spent = 60;
 
 /// Fewer bodies fit into the cache in any order.
 constexpr std::size_t few = 4096;
@@ -104,6 +114,20 @@ std::vector<BodyId> spatial_order(std::span<const typename BroadPhase<Degree>::E
   return order;
 }
 
+/// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not told.
+template <int Degree>
+double exit_time(const KineticBox<Degree>& box, const StaticBox& present, const StaticBox& fat) {
+  if constexpr (Degree > 1) return 0;
+  double time = never;
+  for (int d = 0; d < 3; ++d) {
+    const double down = box.min.coefficients[1][d];
+    const double up = box.max.coefficients[1][d];
+    if (down < 0) time = std::min(time, (fat.min[d] - present.min[d]) / down);
+    if (up > 0) time = std::min(time, (fat.max[d] - present.max[d]) / up);
+  }
+  return time * (1 - 0x1p-20);
+}
+
 StaticBox whole_space() {
   return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)};
 }
@@ -132,20 +156,29 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double no
   body.reach = std::max({body.reach, least_reach * size, least_part_of_coordinates * coordinates, least_reach_at_all});
   double time = lifetime(body, now);
   if (time == never) return {present, never};
+  // Where a jostled body will go nobody knows; a margin of more than its size would be mostly in vain.
+  double margin = body.jostled >= jostled_at && body.reach <= 0.5 * size ? body.reach : 0;
+  const auto swept = [&](double expiry) {
+    const StaticBox box = swept_box(body.box, now, expiry);
+    if (margin == 0) return box;
+    return StaticBox{box.min.min(present.min - margin), box.max.max(present.max + margin)};
+  };
   for (;;) {
     // Where the clock is coarse, a box lasts until its next tick at least.
     double expiry = std::max(now + time, next_up(now));
     if (expiry > largest) return {whole_space(), never};
-    StaticBox box = swept_box(body.box, now, expiry);
+    StaticBox box = swept(expiry);
     double extent = box.extent();
     if (!(extent <= largest)) return {whole_space(), never};
     ++counters_.certificates;
     // One that is just too large for a level is better cut than in the next.
     const double room_below = 0.5 * BoxGrid::room_for(extent);
     if (extent < 1.5 * room_below && size < 0.75 * room_below) {
-      time *= 0.999 * (room_below - size) / (extent - size);
+      const double cut = 0.999 * (room_below - size) / (extent - size);
+      time *= cut;
+      margin *= cut;
       expiry = std::max(now + time, next_up(now));
-      box = swept_box(body.box, now, expiry);
+      box = swept(expiry);
       extent = box.extent();
     }
     // A coarser level costs all bodies something, so it takes many to begin one; until then boxes are cut to fit.
@@ -157,16 +190,23 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double no
     }
     body.reach *= 0.75;
     time *= 0.75;
+    margin *= 0.75;
   }
 }
 
-/// A box that has lasted its time: it costs about as much as two pairs, so at one or two pairs a renewal, those begun by
+/// The reach of a jostled body is what makes its renewals cost about what pairs and their tests do. Of others, a box
+/// that has lasted its time: it costs about as much as two pairs, so at one or two pairs a renewal, those begun by
 /// others' renewals included, a longer reach and a shorter one would both cost more (found by measuring, for packings
 /// from 0.01 to 0.25). One that the body leaves early, since its motion has changed, was too long.
 template <int Degree>
 void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
   Body& body = bodies_[id];
-  if (body.expiry <= now) {
+  const bool lasted = body.expiry <= now;
+  if (body.jostled >= jostled_at) {
+    const std::uint32_t spent = tests_per_pair * body.begun + body.tests;
+    if (spent < little_spent) body.reach = std::min(1.1 * body.reach, greatest_reach);
+    if (spent > much_spent) body.reach *= 0.9;
+  } else if (lasted) {
     switch (body.begun) {
       case 0: body.reach = std::min(1.4 * body.reach, greatest_reach); break;
       case 1: body.reach = std::min(1.15 * body.reach, greatest_reach); break;
@@ -176,7 +216,14 @@ void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
   } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
     body.reach *= 0.8;
   }
+  if (body.changes > 0) {
+    body.jostled = std::min(body.jostled + 1, jostled_most);
+  } else {
+    body.jostled = std::max(body.jostled - 2, 0);
+  }
   body.begun = 0;
+  body.changes = 0;
+  body.tests = 0;
 }
 
 /// In the order of bodies, whatever cells they were found in.
@@ -184,10 +231,16 @@ template <int Degree>
 void KineticGrid<Degree>::report(BodyId id, double now, PairListener& listener) {
   std::sort(changes_.ended.begin(), changes_.ended.end());
   std::sort(changes_.began.begin(), changes_.began.end());
-  for (const BodyId other : changes_.ended) listener.pair_ended(std::min(id, other), std::max(id, other), now);
+  for (const BodyId other : changes_.ended) {
+    --bodies_[id].partners;
+    --bodies_[other].partners;
+    listener.pair_ended(std::min(id, other), std::max(id, other), now);
+  }
   for (const BodyId other : changes_.began) {
     ++bodies_[id].begun;
     ++bodies_[other].begun;
+    ++bodies_[id].partners;
+    ++bodies_[other].partners;
     listener.pair_began(std::min(id, other), std::max(id, other), now);
   }
 }
@@ -258,13 +311,16 @@ template <int Degree>
 void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
   Body& body = bodies_[id];
   body.box = box;
+  ++body.changes;
+  body.tests += body.partners;
   // The old fat box will often do for a while.
   const StaticBox present = swept_box(box, now, now);
   const StaticBox fat = fat_boxes_.box(id);
   if (fat.contains(present)) {
     const double time = lifetime(body, now);
     if (time == never) return set_expiry(id, never);
-    const double expiry = now + kept_share * time;
+    double expiry = now + kept_share * time;
+    expiry = std::max(expiry, now + exit_time(box, present, fat));
     if (expiry > now && expiry <= largest && fat.contains(swept_box(box, now, expiry))) {
       ++counters_.certificates;
       return set_expiry(id, expiry);

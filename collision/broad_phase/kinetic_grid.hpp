@@ -17,7 +17,9 @@ namespace kds::collision {
 /// in sorted lists, for all whose coordinates it passes; and one at rest pays nothing.
 ///
 /// The reach adapts, body by body: it grows while few pairs begin and shrinks while many do, which balances the cost of
-/// renewals against that of pairs, at every density, size and speed. It changes the cost, never the contacts.
+/// renewals against that of pairs, at every density, size and speed. A body whose motion changes again and again before
+/// it has left its fat box gets one that reaches to all sides, so that it stays in it whatever it does next. All that
+/// changes the cost, never the contacts.
 ///
 /// The time for which a fat box holds is not a root: a time is chosen, and the box is then what is swept until then,
 /// rounded outward. Nothing of what is scheduled needs to be exact, nor is.
@@ -57,7 +59,11 @@ class KineticGrid final : public BroadPhase<Degree> {
     double reach = 0;         ///< how far it may move in its fat box
     double fattened = 0;      ///< when its fat box was made
     double expiry = never;    ///< until when it holds
-    std::uint32_t begun = 0;  ///< pairs since its last renewal
+    std::uint32_t begun = 0;     ///< pairs since its last renewal
+    std::uint32_t partners = 0;  ///< bodies it makes pairs with
+    std::uint32_t changes = 0;   ///< of its motion since its last renewal
+    std::uint32_t tests = 0;     ///< of its pairs for these
+    int jostled = 0;             ///< boxes in which its motion changed less those in which it did not, bounded
   };
   struct FatBox {
     StaticBox box;

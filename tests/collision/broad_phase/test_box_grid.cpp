@@ -27,10 +27,10 @@ TEST_CASE("A cell table holds what was added and not removed", "[box_grid]") {
   constexpr CellTable::Ends limits = 0x4040404040404040;
   // One byte of eight, in turn, exceeds the limits, or none.
   const auto random_ends = [&] {
-    const auto exceeding = random.below(12);
+    const auto exceeding = std::min<std::size_t>(random.below(12), 8);
     CellTable::Ends ends = 0x40F03F0040400140;
-    if (exceeding < 8) ends = (ends & ~(CellTable::Ends{0xFF} << 8 * exceeding)) | CellTable::Ends{0x41} << 8 * exceeding;
-    return ends;
+    if (exceeding == 8) return ends;
+    return (ends & ~(CellTable::Ends{0xFF} << 8 * exceeding)) | CellTable::Ends{0x41} << 8 * exceeding;
   };
   const auto exceeds = [](CellTable::Ends ends) {
     for (int i = 0; i < 8; ++i) {
@@ -58,14 +58,21 @@ TEST_CASE("A cell table holds what was added and not removed", "[box_grid]") {
       table.add(place, cell[number], number);
     }
     std::multiset<std::uint32_t> there, seen;
-    const std::vector<CellTable::Ends> along_x(3, 0x40 << 8 | 0x40);
-    for (std::size_t i = 0; i < along_x.size(); ++i) {
-      for (const auto& [n, ends] : expected[table.place(row, x + static_cast<std::int64_t>(i))]) {
-        if (!exceeds(ends)) there.insert(n);
+    // Bytes of all three axes, or the limits as a whole.
+    CellTable::Block block{5, {x, -1, 0}, {3, 3, 2}, {}};
+    for (std::size_t i = 0; i < 3; ++i) block.limits[0][i] = limits & 0xFFFFu, block.limits[1][i] = limits & 0x0000FFFFFFFF0000u;
+    for (std::size_t i = 0; i < 2; ++i) block.limits[2][i] = limits & 0xFFFF000000000000u;
+    for (int z = 0; z <= 1; ++z) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int i = 0; i < 3; ++i) {
+          for (const auto& [n, ends] : expected[table.place(table.row(5, y, z), x + i)]) {
+            if (!exceeds(ends)) there.insert(n);
+          }
+        }
       }
     }
     found.clear();
-    table.find(row, x, limits & ~CellTable::Ends{0xFFFF}, along_x, found);
+    table.find(block, found);
     seen.insert(found.numbers().begin(), found.numbers().end());
     right = right && there == seen;
   }
@@ -75,7 +82,7 @@ TEST_CASE("A cell table holds what was added and not removed", "[box_grid]") {
   CHECK(table.size() == held);
   table.restart(100);
   found.clear();
-  for (int i = 0; i < 128; ++i) table.find(0, i, limits, std::vector<CellTable::Ends>{0}, found);
+  for (int i = 0; i < 128; ++i) table.find({0, {i, 0, 0}, {1, 1, 1}, {{{limits}, {0}, {0}}}}, found);
   CHECK(found.numbers().empty());
 }
 
