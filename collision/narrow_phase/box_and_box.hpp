@@ -48,12 +48,16 @@ class BoxAndBox {
  public:
   using Body = MovingShape<Degree>;
 
-  BoxAndBox(const Body& a, const Body& b, double now, double horizon)
+  /// With `faces_do` products of edges are looked at only where no face keeps the boxes apart now: the pair is for
+  /// apart_until() alone.
+  BoxAndBox(const Body& a, const Body& b, double now, double horizon, bool faces_do = false)
       : a_(a),
         b_(b),
         motion_(a.motion, b.motion, now, horizon, a.shape.bounding_radius + b.shape.bounding_radius),
         window_{0, motion_.end()} {
-    every_box_axis(a.shape, b.shape, [&](const Eigen::Vector3d& axis, int k) { return add(axis, k); });
+    every_box_axis(a.shape, b.shape, [&](const Eigen::Vector3d& axis, int k) {
+      return !(faces_do && k >= 6 && separated_ > 0) && add(axis, k);
+    });
   }
 
   /// A time not before now before which they do not penetrate, or `never`: until then one axis separates them, and
@@ -158,7 +162,7 @@ double BoxAndBox<Degree>::apart_until(const Body& a, const Body& b, double now, 
     if (!near && motion.whole()) return never;
     if (near && window.begin > 0) return motion.time_before(window.begin);
   }
-  const BoxAndBox pair(a, b, now, horizon);
+  const BoxAndBox pair(a, b, now, horizon, true);
   memory.axis = static_cast<std::uint8_t>(pair.separating_);
   return pair.apart_until();
 }
