@@ -168,11 +168,22 @@ void World<Degree>::certify_wall(BodyId id) {
   walls_.set(id, first);
 }
 
+/// Balls need not be made into shapes for it.
+template <int Degree>
+Contact World<Degree>::contact_of(BodyId a, BodyId b, double t) const {
+  const Mover& of_a = movers_[a];
+  const Mover& of_b = movers_[b];
+  if (of_a.ball_radius > 0 && of_b.ball_radius > 0) {
+    return ball_contact_at(of_a.motion, of_b.motion, of_a.ball_radius, t);
+  }
+  return contact_at(moving(a), moving(b), t);
+}
+
 template <int Degree>
 void World<Degree>::process_contact(PairSlot slot, double t) {
   contacts_.clear(slot);
   Pair& pair = pairs_[slot];
-  const PairEvent event{pair.a, pair.b, contact_at(moving(pair.a), moving(pair.b), t)};
+  const PairEvent event{pair.a, pair.b, contact_of(pair.a, pair.b, t)};
   if (mode() == ContactMode::transparent) {
     pair.touching = !pair.touching;
     mark_dirty(slot);

@@ -85,23 +85,23 @@ void CellTable::find(const Block& block, Found& found) const {
   }
 }
 
-CellTable::Where CellTable::where(std::size_t place, std::uint32_t number) {
+CellTable::Where CellTable::where(std::size_t place, Ends ends, std::uint32_t number) {
   for (Bucket* bucket = &buckets_[place];; bucket = &chained_[bucket->next]) {
     for (std::size_t i = 0; i < bucket->count; ++i) {
-      if (bucket->numbers[i] == number) return {bucket, i};
+      if (bucket->numbers[i] == number && bucket->ends[i] == ends) return {bucket, i};
     }
     if (bucket->next == none) return {nullptr, 0};
   }
 }
 
-bool CellTable::replace(std::size_t place, Ends ends, std::uint32_t number) {
-  const auto [bucket, i] = where(place, number);
-  if (bucket) bucket->ends[i] = ends;
+bool CellTable::replace(std::size_t place, Ends from, Ends to, std::uint32_t number) {
+  const auto [bucket, i] = where(place, from, number);
+  if (bucket) bucket->ends[i] = to;
   return bucket != nullptr;
 }
 
-bool CellTable::remove(std::size_t place, std::uint32_t number) {
-  const auto [bucket, i] = where(place, number);
+bool CellTable::remove(std::size_t place, Ends ends, std::uint32_t number) {
+  const auto [bucket, i] = where(place, ends, number);
   if (!bucket) return false;
   --size_;
   // The last one takes its place.

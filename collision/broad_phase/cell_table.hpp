@@ -45,11 +45,12 @@ class CellTable {
 
   void add(std::size_t place, Ends ends, std::uint32_t number);
 
-  /// Gives a number other ends; false if it is not there.
-  bool replace(std::size_t place, Ends ends, std::uint32_t number);
+  /// Gives a number that has these ends others; false if it is not there. (Without its ends it might be taken for the
+  /// same number in another cell of the bucket.)
+  bool replace(std::size_t place, Ends from, Ends to, std::uint32_t number);
 
-  /// Removes one such number; false if there is none.
-  bool remove(std::size_t place, std::uint32_t number);
+  /// Removes one such number of these ends; false if there is none.
+  bool remove(std::size_t place, Ends ends, std::uint32_t number);
 
   /// What a search finds. Keeps its memory, and writes nothing before it is used.
   class Found {
@@ -116,7 +117,7 @@ class CellTable {
     Bucket* bucket;  ///< none if it is not there
     std::size_t i;
   };
-  Where where(std::size_t place, std::uint32_t number);
+  Where where(std::size_t place, Ends ends, std::uint32_t number);
 
   std::vector<Bucket> buckets_ = std::vector<Bucket>(1);  // a power of two
   std::vector<Bucket> chained_;

@@ -29,10 +29,11 @@ constexpr double least_part_of_coordinates = 0x1p-40;
 constexpr double least_reach_at_all = 0x1p-500;
 
 /// An old fat box is kept if it lasts this share of a new one's lifetime.
-constexpr double kept_share = 0.15;
+template <int Degree>
+constexpr double kept_share = Degree == 1 ? 0.15 : 0.25;
 
 /// A body is *jostled* if its motion changes in most of its boxes: each in which it does counts 1, up to a bound, each in
-/// which it does not takes back 2.
+/// which it does not takes back 2. Only bodies on straight paths are: of these it is told when they leave a box.
 constexpr int jostled_at = 3;
 constexpr int jostled_most = 6;
 
@@ -216,7 +217,7 @@ void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
   } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
     body.reach *= 0.8;
   }
-  if (body.changes > 0) {
+  if (Degree == 1 && body.changes > 0) {
     body.jostled = std::min(body.jostled + 1, jostled_most);
   } else {
     body.jostled = std::max(body.jostled - 2, 0);
@@ -229,8 +230,8 @@ void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
 /// In the order of bodies, whatever cells they were found in.
 template <int Degree>
 void KineticGrid<Degree>::report(BodyId id, double now, PairListener& listener) {
-  std::sort(changes_.ended.begin(), changes_.ended.end());
-  std::sort(changes_.began.begin(), changes_.began.end());
+  if (changes_.ended.size() > 1) std::sort(changes_.ended.begin(), changes_.ended.end());
+  if (changes_.began.size() > 1) std::sort(changes_.began.begin(), changes_.began.end());
   for (const BodyId other : changes_.ended) {
     --bodies_[id].partners;
     --bodies_[other].partners;
@@ -319,7 +320,7 @@ void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, doubl
   if (fat.contains(present)) {
     const double time = lifetime(body, now);
     if (time == never) return set_expiry(id, never);
-    double expiry = now + kept_share * time;
+    double expiry = now + kept_share<Degree> * time;
     expiry = std::max(expiry, now + exit_time(box, present, fat));
     if (expiry > now && expiry <= largest && fat.contains(swept_box(box, now, expiry))) {
       ++counters_.certificates;

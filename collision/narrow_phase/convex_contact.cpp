@@ -56,17 +56,6 @@ Contact box_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>
   return contact;
 }
 
-template <int Degree>
-Contact ball_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
-  Contact contact;
-  contact.time = t;
-  const Vector3d centre_a = a.motion.position(t);
-  const Vector3d apart = b.motion.position(t) - centre_a;
-  if (apart.norm() > 0) contact.normal = apart.normalized();  // concentric balls: the default direction
-  contact.point = centre_a + contact.normal * radius(a);
-  return contact;
-}
-
 /// Contact of two boxes: along the axis on which they penetrate least.
 template <int Degree>
 Contact box_box_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
@@ -205,7 +194,7 @@ double ConvexContact<Degree>::first_separation(const Body& a, const Body& b, dou
 
 template <int Degree>
 Contact ConvexContact<Degree>::contact_at(const Body& a, const Body& b, double t) {
-  if (is_ball(a) && is_ball(b)) return ball_ball_contact(a, b, t);
+  if (is_ball(a) && is_ball(b)) return ball_contact_at(a.motion, b.motion, radius(a), t);
   if (is_ball(b)) return box_ball_contact(a, b, t);
   if (is_ball(a)) {
     Contact contact = box_ball_contact(b, a, t);

@@ -68,4 +68,17 @@ double first_separation(const MovingShape<Degree>& a, const MovingShape<Degree>&
 template <int Degree>
 Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
 
+/// The same of two balls, of which the first has this radius.
+template <int Degree>
+Contact ball_contact_at(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b,
+                        double radius_a, double t) {
+  Contact contact;
+  contact.time = t;
+  const Eigen::Vector3d centre_a = a.position(t);
+  const Eigen::Vector3d apart = b.position(t) - centre_a;
+  if (apart.norm() > 0) contact.normal = apart.normalized();  // concentric balls: the default direction
+  contact.point = centre_a + contact.normal * radius_a;
+  return contact;
+}
+
 }  // namespace kds::collision

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -48,10 +49,11 @@ TEST_CASE("A cell table holds what was added and not removed", "[box_grid]") {
     const auto number = static_cast<std::uint32_t>(random.below(30));
     auto& cell = expected[place];
     if (const auto it = cell.find(number); it != cell.end() && random.one_in(2)) {
-      it->second = random_ends();
-      right = right && table.replace(place, it->second, number);
+      const CellTable::Ends before = std::exchange(it->second, random_ends());
+      right = right && table.replace(place, before, it->second, number);
+      right = right && !table.remove(place, before ^ 0x8080, number);
     } else if (it != cell.end() || random.below(5) >= (round < 10'000 ? 3u : 2u)) {
-      right = right && table.remove(place, number) == (it != cell.end());
+      right = right && table.remove(place, it != cell.end() ? it->second : 0, number) == (it != cell.end());
       if (it != cell.end()) cell.erase(it);
     } else {
       cell[number] = random_ends();
@@ -196,6 +198,36 @@ TEST_CASE("Boxes that jump far or come in crowds are found in a box grid", "[box
     }
     CHECK(pairs == expected);
     CHECK(expected.size() > 30);
+  }
+}
+
+TEST_CASE("A box grid does not take a guest of one level for itself in another", "[box_grid]") {
+  // Few boxes, so few buckets, and many levels.
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Random random(seed);
+    BoxGrid grid;
+    std::map<BoxGrid::Id, StaticBox> boxes;
+    BoxGrid::Changes changes;
+    bool right = true;
+    for (int round = 0; round < 300; ++round) {
+      const auto id = static_cast<BoxGrid::Id>(random.below(12));
+      const auto before = boxes.find(id) != boxes.end() ? std::optional(boxes[id]) : std::nullopt;
+      boxes[id] = random_box(random, std::ldexp(1.0, random.integer(0, 9)), 60, 0);
+      changes.clear();
+      grid.put(id, boxes[id], changes);
+      std::set<BoxGrid::Id> began, ended;
+      for (const auto& [other, box] : boxes) {
+        const bool was = before && before->overlaps(box);
+        const bool is = boxes[id].overlaps(box);
+        if (other != id && is && !was) began.insert(other);
+        if (other != id && was && !is) ended.insert(other);
+      }
+      right = right && began == std::set<BoxGrid::Id>(changes.began.begin(), changes.began.end());
+      right = right && ended == std::set<BoxGrid::Id>(changes.ended.begin(), changes.ended.end());
+      right = right && began.size() + ended.size() == changes.began.size() + changes.ended.size();
+    }
+    INFO("seed " << seed);
+    CHECK(right);
   }
 }
 

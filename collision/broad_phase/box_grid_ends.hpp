@@ -1,0 +1,82 @@
+// Boxes of a grid as integers, which its cells keep. Included by the sources of BoxGrid alone.
+#pragma once
+
+#include "collision/broad_phase/box_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace kds::collision {
+
+/// Units of the lattice in a cell, as a power of two. Finer ones leave fewer boxes that overlap on the lattice alone;
+/// but ends of a few cells have to fit a byte.
+inline constexpr int lattice_bits = 5;
+inline constexpr std::int64_t units_per_cell = 1 << lattice_bits;
+
+/// Byte i of CellTable::Ends. What is out of range is as much out of range on both sides of a comparison.
+inline CellTable::Ends lattice_byte(std::size_t i, std::int64_t value) {
+  const std::int64_t bounded = std::clamp(value, -CellTable::limit, CellTable::limit);
+  return static_cast<CellTable::Ends>(static_cast<std::uint8_t>(bounded)) << 8 * i;
+}
+
+/// Bytes 6 and 7: the row, modulo 16 and 8, and its complement; here what a coordinate has in them. The one or the other
+/// exceeds that of another row, so the rows of a search, of which there are fewer, are not mistaken for each other.
+inline CellTable::Ends row_mark(std::size_t d, std::int64_t cell) {
+  if (d == 0) return 0;
+  const CellTable::Ends bits = d == 1 ? 0x0F : 0x70;
+  const auto mark = static_cast<CellTable::Ends>(d == 1 ? cell : cell << 4) & bits;
+  return mark << 48 | (mark ^ (d == 1 ? bits : 0xF0)) << 56;
+}
+
+/// A box on the lattice of a level: (min, -max), like Bounds.
+struct BoxGrid::Ends {
+  Ends() = default;
+  Ends(const Bounds& box, double scale)
+      : values{on_lattice(box.xy[0] * scale), on_lattice(box.xy[1] * scale), on_lattice(box.zx[0] * scale),
+               on_lattice(box.zx[1] * scale), on_lattice(box.yz[0] * scale), on_lattice(box.yz[1] * scale)} {}
+
+  /// Monotone, and as far below zero as above.
+  static std::int64_t on_lattice(double x) { return std::llrint(std::clamp(x, -0x1p61, 0x1p61)); }
+  static std::int64_t cell_of(std::int64_t x) { return x >> lattice_bits; }
+
+  /// The cell a box is in.
+  std::int64_t cell(std::size_t d) const { return cell_of(values[d]); }
+  bool same_cell(const Ends& other) const {
+    return (((values[0] ^ other.values[0]) | (values[1] ^ other.values[1]) | (values[2] ^ other.values[2])) >>
+            lattice_bits) == 0;
+  }
+  std::size_t place(const CellTable& table, const Level& level) const {
+    return table.place(table.row(level.family, cell(1), cell(2)), cell(0));
+  }
+
+  std::int64_t span() const {
+    return std::max({-values[3] - values[0], -values[4] - values[1], -values[5] - values[2]});
+  }
+  Ends joined(const Ends& other) const {
+    Ends result;
+    for (std::size_t i = 0; i < 6; ++i) result.values[i] = std::min(values[i], other.values[i]);
+    return result;
+  }
+
+  /// Counted from the box's own cell.
+  CellTable::Ends in_cell() const {
+    CellTable::Ends ends = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const std::int64_t corner = cell(d) << lattice_bits;
+      ends |= lattice_byte(d, values[d] - corner) | lattice_byte(d + 3, values[d + 3] + corner) | row_mark(d, cell(d));
+    }
+    return ends;
+  }
+
+  /// What boxes in cells of this coordinate may not exceed if they overlap.
+  CellTable::Ends limits(std::size_t d, std::int64_t cell) const {
+    const std::int64_t corner = cell << lattice_bits;
+    return lattice_byte(d, -values[d + 3] - corner) | lattice_byte(d + 3, corner - values[d]);
+  }
+
+  std::array<std::int64_t, 6> values;
+};
+
+}  // namespace kds::collision
