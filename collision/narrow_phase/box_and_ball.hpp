@@ -107,6 +107,12 @@ class BoxAndBall<Degree>::Piece {
   std::size_t size() const { return curved_ ? 7 : 6; }
   bool surely_closed(std::size_t i, double t) const;
   double closed_until(std::size_t i, double t) const;
+  double opened_by(std::size_t i) const {
+    if (i == 6) return never;
+    const std::size_t d = i / 2;
+    const Quick& motion = pair_->motion_;
+    return motion.time_after(motion.opened_by(pair_->along_[d], side(i), pair_->reach(d, place_[d])));
+  }
   double failure_time(std::size_t i, double t, double horizon) const {
     return i == 6 ? kds::failure_time(distance(), t, horizon) : kds::failure_time(plane(i), t, horizon);
   }

@@ -91,6 +91,10 @@ class BoxAndBox {
   double recovery_time(std::size_t i, double t, double horizon) const {
     return kds::recovery_time(certificate(i), t, horizon);
   }
+  double opened_by(std::size_t i) const {
+    const Axis& axis = axes_[i / 2];
+    return motion_.time_after(motion_.opened_by(axis.along, side(i), axis.reach));
+  }
   bool closed(std::size_t i, double t) const { return sign_after(certificate(i), t) < 0; }
 
  private:

@@ -101,11 +101,22 @@ double turning_time(const Contact& contact, const MovingShape<Degree>& a, const 
   return bend < 0 ? std::max(next_up(t), t + rate / -bend) : never;
 }
 
+/// Where to begin to look for a contact that counts, from t0 on: later where the bodies have just been in contact, do
+/// not approach, and part before they turn. Exact signs would say whether they overlap by a rounding, and until when.
+template <class P, int Degree, class Where>
+double after_contact(const P& piece, const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
+                     const Where& where) {
+  const double opened = opened_after_touch(piece, t0);
+  if (opened == t0) return t0;
+  const Contact contact = where(t0);
+  return !approaching(contact, a, b) && turning_time(contact, a, b) > opened ? opened : t0;
+}
+
 /// First contact of one piece. `resolved` counts only the times at which the bodies approach.
 template <class P, int Degree, class Where>
 double first_piece_contact(const P& piece, const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
                            double horizon, ContactMode mode, Where&& where) {
-  for (double t = t0;;) {
+  for (double t = mode == ContactMode::resolved ? after_contact(piece, a, b, t0, where) : t0;;) {
     t = piece.first_inside(t, horizon);
     if (t == never || mode == ContactMode::transparent) return t;
     const Contact contact = where(t);

@@ -12,6 +12,7 @@ namespace kds::collision {
 ///
 /// `surely_closed(i, t)`: certificate i is broken just after t; false says nothing. `closed_until(i, t)`: if it is
 /// broken just after t, a time not before t up to which it stays so, or `never` if it stays so for good.
+/// `opened_by(i)`: if it may touch at the start, a time by which it has surely opened and only opened, or `never`.
 /// `failure_time(i, t, horizon)`, `recovery_time(i, t, horizon)`, `closed(i, t)`: exact.
 ///
 /// The answers below are those of certificates/conjunction.hpp, bit for bit, whatever the filter knows.
@@ -41,6 +42,26 @@ double first_all_closed(const Gaps& gaps, double now, double horizon) {
     }
   }
   return t;
+}
+
+/// If all gaps are surely closed just after the start but one, which may touch there and only opens, a time by which it
+/// has opened while the others stayed closed; else the start. So gaps that are all closed at the start, by rounding if
+/// at all, cease to be so once until that time, when that one opens, and are not all closed again.
+template <class Gaps>
+double opened_after_touch(const Gaps& gaps, double start) {
+  std::size_t touching = gaps.size();
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (gaps.surely_closed(i, start)) continue;
+    if (touching != gaps.size()) return start;
+    touching = i;
+  }
+  if (touching == gaps.size()) return start;
+  const double opened = gaps.opened_by(touching);
+  if (opened == never) return start;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (i != touching && !(gaps.closed_until(i, start) > opened)) return start;
+  }
+  return opened;
 }
 
 /// The first double t in [now, horizon] just after which some gap is open, or `never`. The one that is expected to open

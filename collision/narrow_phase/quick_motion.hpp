@@ -43,6 +43,9 @@ class QuickMotion {
   /// A double not later than now + tau, by 2^-20 of tau: so far off a root that it is an ordinary root from there.
   double time_before(double tau) const;
 
+  /// A double not earlier than now + tau.
+  double time_after(double tau) const { return next_up(next_up(now_ + tau * (1 + 0x1p-20))); }
+
   /// The last tau of which anything is said; it is the horizon's if `whole`.
   double end() const { return end_; }
   bool whole() const { return whole_; }
@@ -52,6 +55,9 @@ class QuickMotion {
   bool surely_closed(const Along& p, double side, double reach, double tau) const;
   /// For a gap that is closed at t: a time before which it surely stays so, t itself, or infinity.
   double closed_until(const Along& p, double side, double reach, double t) const;
+
+  /// For a gap that may be touching now: a tau by which it has surely opened without turning, or infinity.
+  double opened_by(const Along& p, double side, double reach) const;
 
   static double value(const Along& p, double tau) {
     if constexpr (Degree == 1) {
@@ -69,6 +75,7 @@ class QuickMotion {
   double now_;
   double end_;
   double error_;
+  double rate_error_;  ///< of the derivative of a gap, now and while it changes by no more than that
   bool whole_;
 };
 
@@ -122,6 +129,7 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
   } else {
     error_ = unit * (base + end_ * most[1]);
   }
+  rate_error_ = unit * most[1];
   if (!(end_ >= 0)) end_ = 0;  // a horizon that is past: nothing will be asked
 }
 
@@ -150,6 +158,19 @@ bool QuickMotion<Degree>::clip(const Along& p, double side, double reach, TimeWi
 template <int Degree>
 bool QuickMotion<Degree>::surely_closed(const Along& p, double side, double reach, double tau) const {
   return tau <= end_ && side * value(p, tau) - reach < -error_;
+}
+
+/// Twice the error is enough; it takes more of it, so that what follows starts from an ordinary place.
+template <int Degree>
+double QuickMotion<Degree>::opened_by(const Along& p, double side, double reach) const {
+  if (side * p[0] - reach > error_) return TimeSpans::infinity;  // does not touch
+  const double rate = side * p[1];
+  const double opened = 64 * error_ / rate;
+  if (!(rate > 4 * rate_error_) || !(opened < end_)) return TimeSpans::infinity;
+  if constexpr (Degree == 2) {
+    if (!(rate + 2 * opened * std::min(side * p[2], 0.0) > 0.5 * rate)) return TimeSpans::infinity;
+  }
+  return side * value(p, opened) - reach > 2 * error_ ? opened : TimeSpans::infinity;
 }
 
 template <int Degree>
