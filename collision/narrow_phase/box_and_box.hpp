@@ -55,6 +55,10 @@ class BoxAndBox {
         b_(b),
         motion_(a.motion, b.motion, now, horizon, a.shape.bounding_radius + b.shape.bounding_radius),
         window_{0, motion_.end()} {
+    for (int k = 0; k < 3 && !motion_.whole(); ++k) {
+      const Axis axis = placed(a, b, motion_, box_axis(a.shape, b.shape, k));
+      motion_.settle(axis.along, axis.reach);
+    }
     every_box_axis(a.shape, b.shape, [&](const Eigen::Vector3d& axis, int k) {
       return !(faces_do && k >= 6 && separated_ > 0) && add(axis, k);
     });
@@ -159,10 +163,12 @@ class BoxAndBox {
 template <int Degree>
 double BoxAndBox<Degree>::apart_until(const Body& a, const Body& b, double now, double horizon, PairMemory& memory) {
   if (memory.axis != PairMemory::none) {
-    const QuickMotion<Degree> motion(a.motion, b.motion, now, horizon,
+    QuickMotion<Degree> motion(a.motion, b.motion, now, horizon,
                                      a.shape.bounding_radius + b.shape.bounding_radius);
     TimeWindow window{0, motion.end()};
-    const bool near = clip(motion, placed(a, b, motion, box_axis(a.shape, b.shape, memory.axis)), window);
+    const Axis axis = placed(a, b, motion, box_axis(a.shape, b.shape, memory.axis));
+    motion.settle(axis.along, axis.reach);
+    const bool near = clip(motion, axis, window);
     if (!near && motion.whole()) return never;
     if (near && window.begin > 0) return motion.time_before(window.begin);
   }

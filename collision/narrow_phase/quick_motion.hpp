@@ -26,7 +26,8 @@ namespace kds::collision {
 /// 20 u M_i. A value at tau adds 7 u M; roots are those of a polynomial with coefficients off by 8 u, which is 14 u M,
 /// at times off by 2 u, 4 u M. The reach is known to 33 u size, and takes part in what is rounded. That is less than
 /// 60 u (M + 2 size); charged are 128 u, so that a gap that is closed by rounding alone is never taken for one that
-/// stays open, nor the other way round. Where M would be 2^20 times what it is now the filter ends: see end().
+/// stays open, nor the other way round. T is no longer than it takes for the highest term to outgrow the others, after
+/// which boxes part for good (settle()); where M would be 2^20 times what it is now the filter ends in any case.
 template <int Degree>
 class QuickMotion {
  public:
@@ -46,9 +47,13 @@ class QuickMotion {
   /// A double not earlier than now + tau.
   double time_after(double tau) const { return next_up(next_up(now_ + tau * (1 + 0x1p-20))); }
 
-  /// The last tau of which anything is said; it is the horizon's if `whole`.
+  /// The last tau of which anything is said; if `whole` nothing happens after it until the horizon.
   double end() const { return end_; }
   bool whole() const { return whole_; }
+  /// Looks whether one side of a gap, open at the end, can only open further from there on. That makes it whole.
+  void settle(const Along& p, double reach) {
+    whole_ = whole_ || opens_for_good(p, 1, reach) || opens_for_good(p, -1, reach);
+  }
 
   /// Shrinks the window, within [0, end()], to times at which the gap may be closed; false if there are none.
   bool clip(const Along& p, double side, double reach, TimeWindow& window) const;
@@ -68,6 +73,8 @@ class QuickMotion {
   }
 
  private:
+  bool opens_for_good(const Along& p, double side, double reach) const;
+
   static constexpr double unit = 0x1p-46;
   static constexpr double most_growth = 0x1p20;
 
@@ -75,7 +82,8 @@ class QuickMotion {
   double now_;
   double end_;
   double error_;
-  double rate_error_;  ///< of the derivative of a gap, now and while it changes by no more than that
+  double rate_error_;  ///< of the derivative of a gap now
+  double bend_error_;  ///< of half its second derivative
   bool whole_;
 };
 
@@ -114,6 +122,13 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
     most[2] = greatest(r_[2]);
   }
   const double base = most[0] + 2 * size;
+  // Long enough for the highest term to outgrow the others along some axis of a box: see settle().
+  const double near = greatest(r_[0]) + 2 * size;
+  const double speed = greatest(r_[1]);
+  double settled = 16 * near / speed;
+  if constexpr (Degree == 2) {
+    if (most[2] > 0) settled = 8 * std::max(std::sqrt(near / most[2]), speed / most[2]);
+  }
   end_ = horizon - now;
   whole_ = true;
   const auto end_at = [this](double last) {
@@ -122,6 +137,7 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
     whole_ = false;
   };
   end_at(0x1p200);
+  if (settled > 0) end_at(settled);
   if (most[1] > 0) end_at(most_growth * base / most[1]);
   if constexpr (Degree == 2) {
     if (most[2] > 0) end_at(std::sqrt(most_growth * base / most[2]));
@@ -130,6 +146,7 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
     error_ = unit * (base + end_ * most[1]);
   }
   rate_error_ = unit * most[1];
+  bend_error_ = Degree == 2 ? unit * most[Degree] : 0;
   if (!(end_ >= 0)) end_ = 0;  // a horizon that is past: nothing will be asked
 }
 
@@ -158,6 +175,19 @@ bool QuickMotion<Degree>::clip(const Along& p, double side, double reach, TimeWi
 template <int Degree>
 bool QuickMotion<Degree>::surely_closed(const Along& p, double side, double reach, double tau) const {
   return tau <= end_ && side * value(p, tau) - reach < -error_;
+}
+
+template <int Degree>
+bool QuickMotion<Degree>::opens_for_good(const Along& p, double side, double reach) const {
+  if (!(side * value(p, end_) - reach > 2 * error_)) return false;
+  if constexpr (Degree == 1) {
+    return side * p[1] > rate_error_;
+  } else {
+    const double bend = side * p[2];
+    const double rate = side * p[1] + 2 * end_ * bend;
+    const bool rises = rate > 2 * (rate_error_ + end_ * bend_error_);
+    return rises && (bend > bend_error_ || bend_error_ == 0);  // no error: no bend
+  }
 }
 
 /// Twice the error is enough; it takes more of it, so that what follows starts from an ordinary place.
