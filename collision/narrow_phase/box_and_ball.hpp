@@ -108,9 +108,9 @@ class BoxAndBall<Degree>::Piece {
   bool surely_closed(std::size_t i, double t) const;
   double closed_until(std::size_t i, double t) const;
   double opened_by(std::size_t i) const {
-    if (i == 6) return never;
-    const std::size_t d = i / 2;
     const Quick& motion = pair_->motion_;
+    if (i == 6) return motion.time_after(distance_opened_by());
+    const std::size_t d = i / 2;
     return motion.time_after(motion.opened_by(pair_->along_[d], side(i), pair_->reach(d, place_[d])));
   }
   double failure_time(std::size_t i, double t, double horizon) const {
@@ -137,6 +137,8 @@ class BoxAndBall<Degree>::Piece {
   bool around(std::size_t d) const { return place_[d] == around_low || place_[d] == around_high; }
   bool possible() const { return window_.begin <= window_.end; }
   bool cut(double until);
+
+  double distance_opened_by() const;
 
   certificates::PlaneSeparation<Degree> plane(std::size_t i) const {
     const std::size_t d = i / 2;
@@ -260,6 +262,34 @@ bool BoxAndBall<Degree>::Piece::cut(double until) {
   }
   window_.begin = begin + free * length * (1 - 0x1p-40);
   return true;
+}
+
+/// As QuickMotion::opened_by(), for f = sum y^2 - r^2. f is known to E = sum (2 |y| e + e^2) and f' = 2 sum y y' to four
+/// times less than it is; in the short time until f has grown by more than 47 E its second derivative, below `bend`,
+/// takes away no more than a quarter of that.
+template <int Degree>
+double BoxAndBall<Degree>::Piece::distance_opened_by() const {
+  const double e = pair_->motion_.error();
+  double f = -pair_->radius_ * pair_->radius_, error = 0, rate = 0, rate_error = 0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    if (!around(d)) continue;
+    const Along y = pair_->from_middle(d, place_[d]);
+    f += y[0] * y[0];
+    error += (2 * std::abs(y[0]) + e) * e;
+    rate += 2 * y[0] * y[1];
+    rate_error += 2 * ((std::abs(y[0]) + e) * pair_->motion_.rate_error() + std::abs(y[1]) * e);
+  }
+  const double opened = 64 * error / rate;
+  if (f > error || !(rate > 4 * rate_error) || !(opened < pair_->motion_.end())) return TimeSpans::infinity;
+  double bend = 0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    if (!around(d)) continue;
+    const Along y = pair_->from_middle(d, place_[d]);
+    const double acceleration = Degree == 2 ? 2 * std::abs(y[Degree]) : 0;
+    const double speed = std::abs(y[1]) + acceleration * opened;
+    bend += 2 * (speed * speed + (std::abs(y[0]) + speed * opened) * acceleration);
+  }
+  return bend * opened < 0.25 * rate ? opened : TimeSpans::infinity;
 }
 
 template <int Degree>

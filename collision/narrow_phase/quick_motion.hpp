@@ -40,6 +40,7 @@ class QuickMotion {
   Along along(const Eigen::Vector3d& axis) const;
 
   double error() const { return error_; }
+  double rate_error() const { return rate_error_; }
   double tau(double t) const { return t - now_; }
   /// A double not later than now + tau, by 2^-20 of tau: so far off a root that it is an ordinary root from there.
   double time_before(double tau) const;

@@ -1,4 +1,4 @@
-// The filters of boxes with boxes and balls change no answer: the same by exact signs alone, of all certificates at once.
+// The filters of boxes with boxes and balls change no answer: the same by exact signs alone, of all certificates.
 #include "certificates/conjunction.hpp"
 #include "certificates/feature_separation.hpp"
 #include "certificates/plane_separation.hpp"
