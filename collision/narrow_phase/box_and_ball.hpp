@@ -2,7 +2,6 @@
 #pragma once
 
 #include "certificates/feature_separation.hpp"
-#include "certificates/features/positive_stretch.hpp"
 #include "certificates/plane_separation.hpp"
 #include "collision/narrow_phase/gap_conditions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
@@ -163,39 +162,6 @@ class BoxAndBall<Degree>::Piece {
 // ---------------------------------------------------------------------------------------------------------------
 
 template <int Degree>
-BoxAndBall<Degree>::BoxAndBall(const Body& box, const Body& ball, double now, double horizon)
-    : box_(box),
-      ball_(ball),
-      half_(std::get<Box>(box.shape.shape).half_extents),
-      radius_(std::get<Sphere>(ball.shape.shape).radius),
-      motion_(box.motion, ball.motion, now, horizon, box.shape.bounding_radius + radius_) {
-  TimeWindow hull{0, motion_.end()};
-  const auto clip = [this](std::size_t d, Place place, TimeWindow& window) {
-    const Along p = from_middle(d, place);
-    const double reached = reach(d, place);
-    return motion_.clip(p, 1, reached, window) && motion_.clip(p, -1, reached, window);
-  };
-  for (std::size_t d = 0; d < 3; ++d) {
-    axes_[d] = box.shape.rotation.col(static_cast<int>(d));
-    along_[d] = motion_.along(axes_[d]);
-    motion_.settle(along_[d], reach(d, grown));
-  }
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (clip(d, grown, hull)) continue;
-    apart_ = motion_.whole();
-    if (apart_) return;
-    hull = after_end();
-  }
-  for (std::size_t d = 0; d < 3; ++d) {
-    windows_[d][grown] = hull;
-    for (const Place place : {between, around_low, around_high}) {
-      windows_[d][place] = hull;
-      if (!clip(d, place, windows_[d][place])) windows_[d][place] = {1, 0};
-    }
-  }
-}
-
-template <int Degree>
 template <class Visit>
 void BoxAndBall<Degree>::every_piece(const Visit& visit) const {
   if (apart_) return;
@@ -231,92 +197,7 @@ void BoxAndBall<Degree>::earliest_pieces(double horizon, const Visit& visit) con
   }
 }
 
-/// Looks at the distance from the edge or vertex; false if the centre is not in the piece by a time.
-///
-/// Error bound: coordinates y are known to the filter's error e, which has room for the roundings of shifting them; of
-/// size Y, their squares are off by 2 Y e + e^2 and a few roundings of Y^2.
-template <int Degree>
-bool BoxAndBall<Degree>::Piece::cut(double until) {
-  if (!curved_) return true;
-  const Quick& motion = pair_->motion_;
-  const bool unknown = !motion.whole() && motion.tau(until) > motion.end();
-  const double end = std::min(window_.end, motion.tau(until) * (1 + 0x1p-40));
-  const double begin = std::min(window_.begin, end);
-  const double length = end - begin;
-  const double e = motion.error();
-  Polynomial<2 * Degree> f;
-  f.c[0] = -pair_->radius_ * pair_->radius_;
-  double margin = 0x1p-48 * pair_->radius_ * pair_->radius_;
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (!around(d)) continue;
-    Polynomial<Degree> y = taylor_shift<double>(Polynomial<Degree>{pair_->from_middle(d, place_[d])}, begin);
-    for (std::size_t i = 1; i <= Degree; ++i) y.c[i] *= i == 1 ? length : length * length;
-    const double size = certificates::norm(y);
-    f = f + square(y);
-    margin += (2 * size + e) * e + 0x1p-48 * size * size;
-  }
-  const double free = certificates::positive_until(f, 0.0, margin);
-  if (free >= 1) {
-    if (unknown) window_ = pair_->after_end();
-    return unknown;
-  }
-  window_.begin = begin + free * length * (1 - 0x1p-40);
-  return true;
-}
-
-/// As QuickMotion::opened_by(), for f = sum y^2 - r^2. f is known to E = sum (2 |y| e + e^2) and f' = 2 sum y y' to four
-/// times less than it is; in the short time until f has grown by more than 47 E its second derivative, below `bend`,
-/// takes away no more than a quarter of that.
-template <int Degree>
-double BoxAndBall<Degree>::Piece::distance_opened_by() const {
-  const double e = pair_->motion_.error();
-  double f = -pair_->radius_ * pair_->radius_, error = 0, rate = 0, rate_error = 0;
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (!around(d)) continue;
-    const Along y = pair_->from_middle(d, place_[d]);
-    f += y[0] * y[0];
-    error += (2 * std::abs(y[0]) + e) * e;
-    rate += 2 * y[0] * y[1];
-    rate_error += 2 * ((std::abs(y[0]) + e) * pair_->motion_.rate_error() + std::abs(y[1]) * e);
-  }
-  const double opened = 64 * error / rate;
-  if (f > error || !(rate > 4 * rate_error) || !(opened < pair_->motion_.end())) return TimeSpans::infinity;
-  double bend = 0;
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (!around(d)) continue;
-    const Along y = pair_->from_middle(d, place_[d]);
-    const double acceleration = Degree == 2 ? 2 * std::abs(y[Degree]) : 0;
-    const double speed = std::abs(y[1]) + acceleration * opened;
-    bend += 2 * (speed * speed + (std::abs(y[0]) + speed * opened) * acceleration);
-  }
-  return bend * opened < 0.25 * rate ? opened : TimeSpans::infinity;
-}
-
-template <int Degree>
-bool BoxAndBall<Degree>::Piece::surely_closed(std::size_t i, double t) const {
-  const Quick& motion = pair_->motion_;
-  const double tau = motion.tau(t);
-  if (i < 6) {
-    const std::size_t d = i / 2;
-    if (around(d)) return true;
-    return motion.surely_closed(pair_->along_[d], side(i), pair_->reach(d, place_[d]), tau);
-  }
-  double farthest = 0;
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (!around(d)) continue;
-    const double most = std::abs(Quick::value(pair_->from_middle(d, place_[d]), tau)) + motion.error();
-    farthest += most * most;
-  }
-  return tau <= motion.end() && farthest < pair_->radius_ * pair_->radius_;
-}
-
-template <int Degree>
-double BoxAndBall<Degree>::Piece::closed_until(std::size_t i, double t) const {
-  const std::size_t d = i / 2;
-  if (i == 6) return t;
-  if (around(d)) return TimeSpans::infinity;
-  const double reach = pair_->reach(d, place_[d]);
-  return pair_->motion_.closed_until(pair_->along_[d], side(i), reach, t);
-}
+extern template class BoxAndBall<1>;
+extern template class BoxAndBall<2>;
 
 }  // namespace kds::collision
