@@ -24,9 +24,9 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
                                                     Kdops<Degree> kdops) {
   switch (options.broad_phase) {
     case BroadPhaseKind::automatic:
-      return std::make_unique<AdaptiveBroadPhase<Degree>>();
+      return std::make_unique<AdaptiveBroadPhase<Degree>>(options.threads);
     case BroadPhaseKind::grid:
-      return std::make_unique<KineticGrid<Degree>>();
+      return std::make_unique<KineticGrid<Degree>>(options.threads);
     case BroadPhaseKind::kinetic_sap:
       return std::make_unique<KineticSweepAndPrune<Degree>>(now, ListedAxes::automatic, std::move(kdops));
     case BroadPhaseKind::sap:
@@ -204,36 +204,6 @@ bool World<Degree>::advance_for(double budget_seconds, double t) {
     if (Clock::now() >= deadline) return false;
   }
   return true;
-}
-
-template <int Degree>
-void World<Degree>::enter_new_bodies() {
-  std::vector<BodyId> entering;
-  entering.swap(entering_);
-  // What is due now among the others comes first, lest it count as what the new ones bring.
-  while (broad_phase_->advance(now_, *this)) {}
-  std::vector<typename BroadPhase<Degree>::Entry> entries;
-  std::vector<KineticBox<Degree>> boxes;
-  entries.reserve(entering.size());
-  boxes.reserve(entering.size());
-  for (const BodyId id : entering) {
-    Body& b = bodies_[id];
-    if (!b.alive || b.entered) continue;
-    b.entered = true;
-    boxes.push_back(renewed_box(id));
-    entries.push_back({id, nullptr});
-  }
-  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].box = &boxes[i];
-  inserting_ = true;
-  {
-    const Stopwatch watch(profile(), Work::update);
-    broad_phase_->insert(entries, now_, *this);
-  }
-  inserting_ = false;
-  for (const auto& entry : entries) {
-    schedule_wall(entry.id);
-    schedule_volume(entry.id);
-  }
 }
 
 /// All that are due at once: bodies that jump together are not apart in between.

@@ -4,6 +4,7 @@
 #include "collision/body_description.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
+#include "collision/earliest_wall_time.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
@@ -18,6 +19,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -244,7 +246,6 @@ class World final : private PairListener {
   // world.cpp: the clock
   void make_broad_phase();
   void reach(double limit);
-  void enter_new_bodies();
   void start_pieces();
   void renew_volume(BodyId id);
   void emit_pending();
@@ -259,6 +260,10 @@ class World final : private PairListener {
   void set_shape(BodyId id, PlacedShape placed);
   void load_pairs(const Image& image);
   std::vector<std::shared_ptr<const Mesh>> meshes() const;
+
+  // world_entry.cpp: bodies that come
+  void set_extras(BodyId id, std::span<const Motion> script, const typename Description::BoxFunction& box_function);
+  void enter_new_bodies();
 
   // world_bodies.cpp: bodies and pairs
   const Body& body(BodyId id) const;
@@ -288,8 +293,16 @@ class World final : private PairListener {
   ContactMode mode() const {
     return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
   }
+  /// What a test of two balls found: when they meet, or no later than that; or nothing.
+  struct BallTest {
+    double time = never;
+    bool exact = false;
+    bool done = false;
+  };
   void test_dirty_pairs();
-  void test(PairSlot slot);
+  void test(PairSlot slot, const BallTest& of_balls);
+  BallTest test_of_balls(const Pair& pair) const;
+  std::vector<BallTest> tests_of_balls() const;
   void set_contact(PairSlot slot, double time);
   bool certify_next(bool contact, bool wall);
   void certify_contact(PairSlot slot);
@@ -301,7 +314,9 @@ class World final : private PairListener {
   void process_wall(BodyId id, double t);
   bool respond(PairSlot slot, const Contact& contact);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
-  double earliest_wall_time(BodyId id, int wall) const;
+  double earliest_wall_time(BodyId id, int wall) const {
+    return collision::earliest_wall_time(movers_[id].motion, bodies_[id].bounding_radius, *options_.walls, wall, now_);
+  }
   double next_wall_time(BodyId id, int wall, double horizon) const;
   std::uint64_t count_meeting(BodyId a, BodyId b);
   std::uint64_t count_meeting(BodyId id);

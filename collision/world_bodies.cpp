@@ -1,5 +1,6 @@
 // Bodies and pairs of the world.
 #include "collision/profile.hpp"
+#include "collision/queue_room.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -17,34 +18,6 @@ constexpr double jump_tolerance = 0x1p-40;
 /// Room for pairs that a body gets with its first: as much as the smallest block of memory has.
 constexpr std::size_t first_pairs = 3;
 
-template <int Degree>
-void validate(const BodyDescription<Degree>& description) {
-  const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
-  if (description.motion.empty()) fail("motion: has no piece");
-  for (std::size_t i = 0; i < description.motion.size(); ++i) {
-    const auto& piece = description.motion[i];
-    if (!piece.finite()) fail("motion[" + std::to_string(i) + "]: must be finite");
-    if (i > 0 && !(piece.start > description.motion[i - 1].start)) {
-      fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
-    }
-  }
-  if (!description.fixed && (!std::isfinite(description.mass) || !(description.mass > 0))) {
-    fail("mass: must be finite and > 0");
-  }
-  if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
-}
-
-template <class Queue>
-void clear(Queue& queue, Slot slot) {
-  if (slot < queue.slots()) queue.clear(slot);
-}
-
-/// The queues grow by doubling, as vectors do.
-template <class Queue>
-void make_room(Queue& queue, std::size_t slots) {
-  if (queue.slots() < slots) queue.resize(std::max(slots, 2 * queue.slots()));
-}
-
 }  // namespace
 
 template <int Degree>
@@ -56,68 +29,6 @@ const typename World<Degree>::Body& World<Degree>::body(BodyId id) const {
 template <int Degree>
 typename World<Degree>::Body& World<Degree>::body(BodyId id) {
   return const_cast<Body&>(static_cast<const World&>(*this).body(id));
-}
-
-template <int Degree>
-BodyId World<Degree>::add_body(const Description& description) {
-  validate(description);
-  count_edit();
-  Body added;
-  const auto* const ball = std::get_if<Sphere>(&description.shape);
-  if (ball && description.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs()) {
-    require_radius(ball->radius);
-    added.bounding_radius = ball->radius;
-  } else {
-    added.shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
-    added.bounding_radius = added.shape->bounding_radius;
-  }
-  added.mass = description.mass;
-  added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
-  added.restitution = description.restitution;
-  added.category = description.category;
-  added.collides_with = description.collides_with;
-  added.volume = description.volume;
-  added.alive = true;
-  // Pieces that are over are skipped; the rest is a script, next piece last.
-  auto piece = description.motion.begin();
-  while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
-  const bool enters_now = piece->start <= now_;
-  const Mover mover{*piece, ball ? ball->radius : 0};
-  if constexpr (Degree >= 2) added.force = piece->coefficients[2];
-  if (enters_now) ++piece;
-  std::vector<Motion> script(std::make_reverse_iterator(description.motion.end()), std::make_reverse_iterator(piece));
-  if (description.box || !script.empty()) {
-    added.extras = std::make_unique<Extras>(Extras{std::move(script), description.box, {}});
-  }
-
-  BodyId id;
-  if (free_bodies_.empty()) {
-    id = static_cast<BodyId>(bodies_.size());
-    bodies_.emplace_back();
-    movers_.emplace_back();
-  } else {
-    id = free_bodies_.back();
-    free_bodies_.pop_back();
-  }
-  bodies_[id] = std::move(added);
-  movers_[id] = mover;
-  place_extents(id);
-  ++alive_;
-  if (const auto& extras = bodies_[id].extras) {
-    if (extras->box_function) make_room(volumes_, bodies_.size());
-    make_room(pieces_, bodies_.size());
-    if (!extras->script.empty()) pieces_.set(id, extras->script.back().start);
-  }
-  if (enters_now) entering_.push_back(id);
-  return id;
-}
-
-template <int Degree>
-void World<Degree>::reserve(std::size_t bodies) {
-  bodies_.reserve(bodies);
-  movers_.reserve(bodies);
-  entering_.reserve(bodies);
-  if (options_.walls && walls_.slots() < bodies) walls_.resize(bodies);
 }
 
 template <int Degree>
@@ -236,13 +147,12 @@ template <int Degree>
 void World<Degree>::schedule_wall(BodyId id) {
   if (!options_.walls) return;
   make_room(walls_, bodies_.size());
-  double earliest = never;
-  for (int axis = 0; axis < 3; ++axis) {
-    if constexpr (Degree == 1) {  // it approaches no more than one of the two
+  double earliest = now_;
+  if constexpr (Degree == 1) {
+    earliest = never;
+    for (int axis = 0; axis < 3; ++axis) {  // it approaches no more than one of the two
       const int wall = 2 * axis + (movers_[id].motion.coefficients[1][axis] > 0);
       earliest = std::min(earliest, earliest_wall_time(id, wall));
-    } else {
-      earliest = now_;
     }
   }
   bodies_[id].wall_estimated = true;

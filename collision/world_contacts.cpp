@@ -2,6 +2,7 @@
 #include "certificates/ball_separation.hpp"
 #include "certificates/conjunction.hpp"
 #include "certificates/wall_separation.hpp"
+#include "collision/parallel.hpp"
 #include "collision/profile.hpp"
 #include "collision/response/impulse.hpp"
 #include "collision/world.hpp"
@@ -63,10 +64,12 @@ void World<Degree>::test_dirty_pairs() {
   if (reports && !std::is_sorted(dirty_.begin(), dirty_.end(), earlier)) {
     std::sort(dirty_.begin(), dirty_.end(), earlier);
   }
-  for (const PairSlot slot : dirty_) {
+  const std::vector<BallTest> tests = tests_of_balls();
+  for (std::size_t i = 0; i < dirty_.size(); ++i) {
+    const PairSlot slot = dirty_[i];
     pairs_[slot].dirty = false;
     if (!pairs_[slot].alive) continue;
-    test(slot);
+    test(slot, tests.empty() ? test_of_balls(pairs_[slot]) : tests[i]);
     if (options_.report_pairs && !broad_phase_->exact()) test_boxes(slot);
     pairs_[slot].fresh = false;
   }
@@ -74,26 +77,42 @@ void World<Degree>::test_dirty_pairs() {
   std::erase_if(passing_, [&](const Passing& passing) { return !passing.let_pass || next_up(passing.at) < now_; });
 }
 
+/// Most tests by far are these, and need two cache lines. They change nothing.
 template <int Degree>
-void World<Degree>::test(PairSlot slot) {
+auto World<Degree>::test_of_balls(const Pair& pair) const -> BallTest {
+  if (pair.ignored || mode() != ContactMode::resolved || holds_.size() != free_holds_.size()) return {};
+  const Mover& a = movers_[pair.a];
+  const Mover& b = movers_[pair.b];
+  if (!(a.ball_radius > 0 && b.ball_radius > 0) || (at_rest(a.motion) && at_rest(b.motion))) return {};
+  const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
+  if (pair.fresh && !apart.surely_apart(now_)) return {};
+  if (pair.let_pass == now_ && !pair.fresh) return {apart.first_approach(next_up(now_), horizon_), true, true};
+  const auto [time, exact] = apart.estimated_first_approach(now_, horizon_);
+  return {time, exact, true};
+}
+
+/// Those of all dirty pairs, by several threads; none where they are few.
+template <int Degree>
+auto World<Degree>::tests_of_balls() const -> std::vector<BallTest> {
+  const std::size_t threads = threads_for(dirty_.size(), options_.threads);
+  if (threads == 1) return {};
+  std::vector<BallTest> tests(dirty_.size());
+  in_parts(dirty_.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (pairs_[dirty_[i]].alive) tests[i] = test_of_balls(pairs_[dirty_[i]]);
+    }
+  });
+  return tests;
+}
+
+template <int Degree>
+void World<Degree>::test(PairSlot slot, const BallTest& of_balls) {
   Pair& pair = pairs_[slot];
   ++counters_.pair_tests;
-  if (!pair.ignored && mode() == ContactMode::resolved && holds_.size() == free_holds_.size()) {
-    // Most tests by far are these, and need two cache lines.
-    const Mover& a = movers_[pair.a];
-    const Mover& b = movers_[pair.b];
-    if (a.ball_radius > 0 && b.ball_radius > 0 && !(at_rest(a.motion) && at_rest(b.motion))) [[likely]] {
-      const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
-      if (!pair.fresh || apart.surely_apart(now_)) {
-        if (pair.let_pass == now_ && !pair.fresh) {
-          return set_contact(slot, apart.first_approach(next_up(now_), horizon_));
-        }
-        const auto [time, exact] = apart.estimated_first_approach(now_, horizon_);
-        pair.estimated = !exact;
-        contacts_.set(slot, time);
-        return;
-      }
-    }
+  if (of_balls.done) [[likely]] {
+    pair.estimated = !of_balls.exact;
+    contacts_.set(slot, of_balls.time);
+    return;
   }
   const auto a = moving(pair.a);
   const auto b = moving(pair.b);
@@ -317,32 +336,6 @@ void World<Degree>::process_boxes(PairSlot slot, double t) {
   if (!undone) pending_.push_back({kind, pair.a, pair.b, {.time = t}});
   now_ = t;
   test_boxes(slot);
-}
-
-/// A time before which the ball around a body will not be outside a wall and going outward; `never` for never.
-///
-/// Error bound, for straight paths: the gap is a sum of five numbers, with a product of a time known to one rounding: at
-/// most 6 units of 2^-53 of their magnitudes. The quotient by the speed, which is a double, and the sum with the clock
-/// round by one each.
-template <int Degree>
-double World<Degree>::earliest_wall_time(BodyId id, int wall) const {
-  if constexpr (Degree == 1) {
-    const int axis = wall / 2;
-    const double out = wall % 2 != 0 ? 1 : -1;
-    const Motion& motion = movers_[id].motion;
-    const double speed = motion.coefficients[1][axis] * out;
-    if (!(speed > 0)) return never;
-    const double plane = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
-    const double moved = motion.coefficients[1][axis] * (now_ - motion.start);
-    const double radius = bodies_[id].bounding_radius;
-    const double gap = out * (plane - (motion.coefficients[0][axis] + moved)) - radius;
-    const double error =
-        0x1p-49 * (std::abs(plane) + std::abs(motion.coefficients[0][axis]) + std::abs(moved) + radius);
-    const double t = now_ + (gap - error) / speed * (1 - 0x1p-50);
-    return t - 0x1p-51 * std::abs(t);
-  } else {
-    return now_;
-  }
 }
 
 /// When the ball around a body is outside a wall and still going outward.

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -57,6 +58,9 @@ struct WorldOptions {
   std::optional<Walls> walls;
   bool report_pairs = false;            ///< tell the listener of bounding volumes that begin and cease to overlap
   bool profile = false;                 ///< measure where the time goes
+  /// Threads that share the work of thousands of bodies that come at once; 0 for as many as the machine has. All else
+  /// is done by the caller's thread, event by event. Events and counters do not depend on it.
+  std::size_t threads = 1;
   ZenoPolicy zeno;
   /// Bodies added, removed and moved by callbacks within zeno.interval of simulated time, and 64 for each body there
   /// is: more end the run by std::runtime_error, since callbacks that go on for ever at one time would never let the

@@ -37,7 +37,7 @@ template <int Degree>
 void AdaptiveBroadPhase<Degree>::change_to_grid(double now, PairListener& listener) {
   std::vector<Entry> entries;
   for (const Body& body : few_) entries.push_back({body.id, &body.box});
-  grid_ = std::make_unique<KineticGrid<Degree>>();
+  grid_ = std::make_unique<KineticGrid<Degree>>(threads_);
   grid_->extend_horizon(now, horizon_);
   NoListener known;
   grid_->insert(entries, now, known);

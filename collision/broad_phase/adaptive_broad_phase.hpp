@@ -24,6 +24,9 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   static constexpr std::size_t most_for_all_pairs = 16;
   static constexpr std::size_t few_again = 8;
 
+  /// `threads`: see KineticGrid.
+  explicit AdaptiveBroadPhase(std::size_t threads = 1) : threads_(threads) {}
+
   bool exact() const override { return false; }
   std::string_view name() const override { return chosen().name(); }
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
@@ -52,6 +55,7 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   AllPairs<Degree> all_pairs_;
   std::unique_ptr<KineticGrid<Degree>> grid_;  ///< if it is what is used
   std::vector<Body> few_;                      ///< all bodies, if not
+  std::size_t threads_;
   double horizon_ = never;
   BroadPhaseCounters done_;  ///< by grids that have been given up
 };

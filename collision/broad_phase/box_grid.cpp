@@ -4,6 +4,7 @@
 #include "collision/broad_phase/box_grid_ends.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
@@ -72,6 +73,32 @@ void BoxGrid::enter(Id id, Changes& changes) {
     if (items_[other].bounds.within(limits) && report_once(other)) changes.began.push_back(other);
   }
   if (idle_) drop_idle_level();
+}
+
+/// The boxes and cells of some ahead are fetched meanwhile: they lie anywhere in memory.
+void BoxGrid::settle(std::span<const Id> ids) {
+  if (ids.size() > natives_.room()) natives_.restart(ids.size());
+  struct Ready {
+    std::size_t place;
+    CellTable::Ends ends;
+  };
+  constexpr std::size_t ahead = 16;
+  std::array<Ready, ahead> ready;
+  auto level = levels_.begin();
+  for (std::size_t i = 0; i < ids.size() + ahead; ++i) {
+    Ready& slot = ready[i % ahead];
+    if (i >= ahead) natives_.add(slot.place, slot.ends, ids[i - ahead]);
+    if (i >= ids.size()) continue;
+    __builtin_prefetch(&items_[ids[std::min(i + ahead, ids.size() - 1)]], 1);
+    Item& item = items_[ids[i]];
+    item.entered = true;
+    if (level->exponent != item.level) level = find_level(item.level);
+    const Ends ends(item.bounds, level->scale);
+    count_in(level->natives, ends);
+    slot = {ends.place(natives_, *level), ends.in_cell()};
+    natives_.fetch(slot.place);
+  }
+  restart_guests();
 }
 
 /// Takes a box out of all cells and appends what it overlapped to changes.ended.

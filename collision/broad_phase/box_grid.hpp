@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace kds::collision {
@@ -75,6 +76,9 @@ class BoxGrid {
   void announce(Id id, const StaticBox& box);
   /// Appends to `changes` those that have entered before. Precondition: announced.
   void enter(Id id, Changes& changes);
+  /// In place of enter() for all that have been announced, where it is known what they overlap. Best in the order of
+  /// places, x fastest.
+  void settle(std::span<const Id> ids);
 
   /// Precondition: contains(id). Appends to `changes`.
   void remove(Id id, Changes& changes);
@@ -148,6 +152,7 @@ class BoxGrid {
   std::vector<Level>::iterator find_level(Exponent exponent);
   std::vector<Level>::iterator add_level(std::vector<Level>::iterator place, Exponent exponent);
   Level& use_level(Exponent exponent);
+  static void count_in(Population& population, const Ends& ends);
   static void add(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id);
   static void remove(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id);
   static void replace(CellTable& table, const Level& level, Population& population, const Ends& from, const Ends& to,

@@ -23,8 +23,9 @@ constexpr double roominess = 1.4;
 BoxGrid::Exponent BoxGrid::level_for(double extent) {
   if (!(extent > 0)) return least;
   if (!(extent < 0x1p1023)) return most;
-  int exponent = 0;
-  std::frexp(roominess * extent, &exponent);  // the mantissa is below 1
+  const double room = roominess * extent;
+  int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(room) >> 52) - 1022;  // of a mantissa below 1
+  if (exponent == -1022) std::frexp(room, &exponent);                                // not a normal number
   return static_cast<Exponent>(std::clamp(exponent, least, most));
 }
 
@@ -91,7 +92,7 @@ void BoxGrid::count_guest(Level& level) {
   if (level.natives.count == 0 && ++level.idle > size_) idle_ = true;
 }
 
-void BoxGrid::add(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id) {
+void BoxGrid::count_in(Population& population, const Ends& ends) {
   if (population.count++ == 0) {
     population.span = 0;
     for (std::size_t d = 0; d < 3; ++d) population.low[d] = population.high[d] = ends.cell(d);
@@ -101,6 +102,10 @@ void BoxGrid::add(CellTable& table, const Level& level, Population& population, 
     population.low[d] = std::min(population.low[d], ends.cell(d));
     population.high[d] = std::max(population.high[d], ends.cell(d));
   }
+}
+
+void BoxGrid::add(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id) {
+  count_in(population, ends);
   table.add(ends.place(table, level), ends.in_cell(), id);
 }
 

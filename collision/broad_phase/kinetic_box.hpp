@@ -6,6 +6,7 @@
 #include "kds/roots/failure_time.hpp"
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace kds::collision {
@@ -22,6 +23,14 @@ struct KineticBox {
   double valid_until = never;  ///< s
 };
 
+/// The double next to x, below or above by `direction` (1, -1), if `moved`; without a branch, since nobody can predict
+/// how a sum rounds. Precondition: x is not zero if moved, as a rounded sum is not.
+inline double moved_if(bool moved, double x, std::int64_t direction) {
+  const auto bits = std::bit_cast<std::int64_t>(x);
+  const std::int64_t outward = direction * (bits >> 63 | 1);  // in magnitude
+  return std::bit_cast<double>(bits + (outward & -static_cast<std::int64_t>(moved)));
+}
+
 /// The box that moves with `motion` and spans [low, high] about it, rounded outward: its real ends are never inside
 /// the exact sums.
 template <int Degree>
@@ -31,8 +40,8 @@ KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& motion, c
   for (int d = 0; d < 3; ++d) {
     const DoubleDouble lower = two_sum(motion.coefficients[0][d], low[d]);
     const DoubleDouble upper = two_sum(motion.coefficients[0][d], high[d]);
-    box.min.coefficients[0][d] = lower.low < 0 ? next_down(lower.high) : lower.high;
-    box.max.coefficients[0][d] = upper.low > 0 ? next_up(upper.high) : upper.high;
+    box.min.coefficients[0][d] = moved_if(lower.low < 0, lower.high, -1);
+    box.max.coefficients[0][d] = moved_if(upper.low > 0, upper.high, 1);
   }
   return box;
 }

@@ -3,20 +3,14 @@
 #include "kds/audit.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 
 namespace kds::collision {
 namespace {
 
 constexpr double largest = std::numeric_limits<double>::max();
-
-/// A body's reach when it comes, over the spacing of bodies.
-constexpr double reach_per_spacing = 0.25;
 
 /// At most: such that a box of this reach on both sides still has an extent.
 constexpr double greatest_reach = 0x1p1020;
@@ -42,77 +36,9 @@ constexpr int jostled_most = 6;
 constexpr std::uint32_t tests_per_pair = 8;
 constexpr std::uint32_t little_spent = 40, much_spent = 60;
 
-/// Fewer bodies fit into the cache in any order.
-constexpr std::size_t few = 4096;
-
-/// Bodies take so large a share of all before a coarser level is begun just for their reach.
-constexpr std::uint64_t share_for_level = 8;
-
 template <int Degree>
 double greatest_speed(const certificates::PointMotion<Degree>& motion, double t) {
   return motion.velocity(t).cwiseAbs().maxCoeff();
-}
-
-/// Distance between neighbours if bodies are spread evenly over the box that holds the middle half of them on each axis;
-/// told from some of them. What is far out, up to a quarter on each side, makes no difference.
-template <int Degree>
-double typical_spacing(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
-  constexpr std::size_t sample = 256;
-  const std::size_t step = std::max<std::size_t>(bodies.size() / sample, 1);
-  std::array<std::vector<double>, 3> places;
-  double size = 0;
-  for (auto& place : places) place.reserve(bodies.size() / step + 1);
-  for (std::size_t i = 0; i < bodies.size(); i += step) {
-    const StaticBox box = swept_box(*bodies[i].box, now, now);
-    size += box.extent();
-    for (std::size_t d = 0; d < 3; ++d) places[d].push_back(box.min[static_cast<Eigen::Index>(d)]);
-  }
-  size /= static_cast<double>(places[0].size());
-  double volume = 1;
-  for (auto& place : places) {
-    const auto quarter = place.begin() + static_cast<std::ptrdiff_t>(place.size() / 4);
-    const auto three_quarters = place.begin() + static_cast<std::ptrdiff_t>(place.size() * 3 / 4);
-    std::nth_element(place.begin(), quarter, place.end());
-    const double low = *quarter;
-    std::nth_element(quarter, three_quarters, place.end());
-    volume *= std::max(2 * (*three_quarters - low), size);
-  }
-  const double spacing = std::cbrt(volume / static_cast<double>(bodies.size()));
-  return std::isfinite(spacing) ? spacing : size;
-}
-
-/// The order in which to put in many bodies that come at once: by blocks of space, along [Morton66]'s curve, so that
-/// what a body meets, and the cells it is in, have just been used and are in the cache.
-template <int Degree>
-std::vector<BodyId> spatial_order(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
-  constexpr std::size_t bodies_per_block = 8;
-  const auto place = [&](std::size_t i) { return swept_box(*bodies[i].box, now, now).min; };
-  Eigen::Array3d low = place(0);
-  Eigen::Array3d high = low;
-  for (std::size_t i = 1; i < bodies.size(); ++i) {
-    const Eigen::Array3d at = place(i);
-    low = low.min(at);
-    high = high.max(at);
-  }
-  const int levels = (std::bit_width(bodies.size() / bodies_per_block) - 1) / 3;
-  const Eigen::Array3d scale = std::ldexp(1.0, levels) / (high - low);
-  const double last = std::ldexp(1.0, levels) - 1;
-  const auto block_of = [&](std::size_t i) {
-    const Eigen::Array3d x = (place(i) - low) * scale;
-    std::size_t block = 0;
-    for (int d = 0; d < 3; ++d) {
-      const auto along = x[d] > 0 ? static_cast<std::size_t>(std::min(x[d], last)) : 0;
-      for (int bit = 0; bit < levels; ++bit) block |= (along >> bit & 1) << (3 * bit + d);
-    }
-    return static_cast<std::uint32_t>(block);
-  };
-  std::vector<std::uint32_t> blocks(bodies.size());
-  std::vector<std::uint32_t> places((std::size_t{1} << 3 * levels) + 1, 0);
-  for (std::size_t i = 0; i < bodies.size(); ++i) ++places[(blocks[i] = block_of(i)) + 1];
-  std::partial_sum(places.begin(), places.end(), places.begin());
-  std::vector<BodyId> order(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) order[places[blocks[i]]++] = bodies[i].id;
-  return order;
 }
 
 /// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not told.
@@ -148,9 +74,11 @@ double KineticGrid<Degree>::lifetime(const Body& body, double now) {
   return time;
 }
 
+/// `may_begin()`: whether a level coarser than `coarsest` may be begun just for the body's reach.
 template <int Degree>
-auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double now) -> FatBox {
-  Body& body = bodies_[id];
+template <class MayBegin>
+auto KineticGrid<Degree>::fat_box(Body& body, const StaticBox& present, double now, double coarsest,
+                                  MayBegin&& may_begin) -> FatBox {
   body.fattened = now;
   const double size = present.extent();
   const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
@@ -164,14 +92,14 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double no
     if (margin == 0) return box;
     return StaticBox{box.min.min(present.min - margin), box.max.max(present.max + margin)};
   };
-  for (;;) {
+  for (std::uint32_t certificates = 0;;) {
     // Where the clock is coarse, a box lasts until its next tick at least.
     double expiry = std::max(now + time, next_up(now));
-    if (expiry > largest) return {whole_space(), never};
+    if (expiry > largest) return {whole_space(), never, certificates};
     StaticBox box = swept(expiry);
     double extent = box.extent();
-    if (!(extent <= largest)) return {whole_space(), never};
-    ++counters_.certificates;
+    if (!(extent <= largest)) return {whole_space(), never, certificates};
+    ++certificates;
     // One that is just too large for a level is better cut than in the next.
     const double room_below = 0.5 * BoxGrid::room_for(extent);
     if (extent < 1.5 * room_below && size < 0.75 * room_below) {
@@ -183,16 +111,31 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double no
       extent = box.extent();
     }
     // A coarser level costs all bodies something, so it takes many to begin one; until then boxes are cut to fit.
-    const double room = fat_boxes_.coarsest() - size;
-    if (extent - size <= room || room < 0.25 * size || expiry == next_up(now)) return {box, expiry};
-    if (++wishes_ * share_for_level > fat_boxes_.size()) {
-      wishes_ = 0;
-      return {box, expiry};
+    const double room = coarsest - size;
+    if (extent - size <= room || room < 0.25 * size || expiry == next_up(now) || may_begin()) {
+      return {box, expiry, certificates};
     }
     body.reach *= 0.75;
     time *= 0.75;
     margin *= 0.75;
   }
+}
+
+template <int Degree>
+auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double now) -> FatBox {
+  const FatBox fat = fat_box(bodies_[id], present, now, fat_boxes_.coarsest(), [&] {
+    if (++wishes_ * share_for_level <= fat_boxes_.size()) return false;
+    wishes_ = 0;
+    return true;
+  });
+  counters_.certificates += fat.certificates;
+  return fat;
+}
+
+/// One that fits into a level, unless the body does not.
+template <int Degree>
+auto KineticGrid<Degree>::fitting_box(Body& body, double now, double coarsest) -> FatBox {
+  return fat_box(body, box_at(body.box, now), now, coarsest, [] { return false; });
 }
 
 /// The reach of a jostled body is what makes its renewals cost about what pairs and their tests do. Of others, a box
@@ -237,13 +180,16 @@ void KineticGrid<Degree>::report(BodyId id, double now, PairListener& listener) 
     --bodies_[other].partners;
     listener.pair_ended(std::min(id, other), std::max(id, other), now);
   }
-  for (const BodyId other : changes_.began) {
+  for (const BodyId other : changes_.began) report_pair(id, other, now, listener);
+}
+
+template <int Degree>
+void KineticGrid<Degree>::report_pair(BodyId a, BodyId b, double now, PairListener& listener) {
+  for (const BodyId id : {a, b}) {
     ++bodies_[id].begun;
-    ++bodies_[other].begun;
     ++bodies_[id].partners;
-    ++bodies_[other].partners;
-    listener.pair_began(std::min(id, other), std::max(id, other), now);
   }
+  listener.pair_began(std::min(a, b), std::max(a, b), now);
 }
 
 template <int Degree>
@@ -269,38 +215,6 @@ void KineticGrid<Degree>::renew(BodyId id, const StaticBox& present, double now,
 }
 
 template <int Degree>
-void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
-  BodyId end = 0;
-  for (const Entry& entry : bodies) end = std::max(end, entry.id + 1);
-  if (end > bodies_.size()) {
-    const std::size_t room = bodies_.empty() ? end : std::max<std::size_t>(end, 2 * bodies_.size());
-    bodies_.resize(room);
-    expiry_.resize(room);
-  }
-  fat_boxes_.reserve(end);
-  if (fat_boxes_.size() == 0 && !bodies.empty()) first_reach_ = reach_per_spacing * typical_spacing<Degree>(bodies, now);
-  if (fat_boxes_.size() > 0 || bodies.size() < few) {
-    for (const Entry& entry : bodies) {
-      bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
-      renew(entry.id, swept_box(*entry.box, now, now), now, listener);
-    }
-    return;
-  }
-  for (const Entry& entry : bodies) {
-    bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
-    ++counters_.box_updates;
-    const FatBox fat = fat_box(entry.id, swept_box(*entry.box, now, now), now);
-    set_expiry(entry.id, fat.expiry);
-    fat_boxes_.announce(entry.id, fat.box);
-  }
-  for (const BodyId id : spatial_order<Degree>(bodies, now)) {
-    changes_.clear();
-    fat_boxes_.enter(id, changes_);
-    report(id, now, listener);
-  }
-}
-
-template <int Degree>
 void KineticGrid<Degree>::remove(BodyId id, double now, PairListener& listener) {
   changes_.clear();
   fat_boxes_.remove(id, changes_);
@@ -315,7 +229,7 @@ void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, doubl
   ++body.changes;
   body.tests += body.partners;
   // The old fat box will often do for a while.
-  const StaticBox present = swept_box(box, now, now);
+  const StaticBox present = box_at(box, now);
   const StaticBox fat = fat_boxes_.box(id);
   if (fat.contains(present)) {
     const double time = lifetime(body, now);
@@ -337,7 +251,7 @@ bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
     const auto [time, id] = expiry_.top();
     if (time > limit) return false;
     adapt_reach(id, time);
-    renew(id, swept_box(bodies_[id].box, time, time), time, listener);
+    renew(id, box_at(bodies_[id].box, time), time, listener);
     if (!changes_.began.empty() || !changes_.ended.empty()) return true;
   }
   return false;
@@ -348,7 +262,7 @@ void KineticGrid<Degree>::audit(double now) const {
   for (BodyId id = 0; id < fat_boxes_.end(); ++id) {
     if (!fat_boxes_.contains(id)) continue;
     if (bodies_[id].expiry <= now) continue;  // due
-    const StaticBox present = swept_box(bodies_[id].box, now, now);
+    const StaticBox present = box_at(bodies_[id].box, now);
     // The margins of rounding differ from those of the whole span.
     const double slack = 0x1p-45 * std::max(present.min.abs().maxCoeff(), present.max.abs().maxCoeff());
     StaticBox inner = present;

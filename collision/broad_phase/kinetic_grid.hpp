@@ -29,6 +29,9 @@ class KineticGrid final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
+  /// Bodies that come many at once are shared out among so many threads.
+  explicit KineticGrid(std::size_t threads = 1) : threads_(threads) {}
+
   bool exact() const override { return false; }
   std::string_view name() const override { return "grid"; }
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
@@ -54,6 +57,9 @@ class KineticGrid final : public BroadPhase<Degree> {
   }
 
  private:
+  /// A coarser level is begun just for the reach of bodies if they are one in so many.
+  static constexpr std::uint64_t share_for_level = 8;
+
   struct Body {
     KineticBox<Degree> box;
     double reach = 0;         ///< how far it may move in its fat box
@@ -68,9 +74,17 @@ class KineticGrid final : public BroadPhase<Degree> {
   struct FatBox {
     StaticBox box;
     double expiry;
+    std::uint32_t certificates = 0;  ///< tries
   };
 
+  template <class MayBegin>
+  static FatBox fat_box(Body& body, const StaticBox& present, double now, double coarsest, MayBegin&& may_begin);
   FatBox fat_box(BodyId id, const StaticBox& present, double now);
+  static FatBox fitting_box(Body& body, double now, double coarsest);
+  void insert_first(std::span<const Entry> bodies, double now, PairListener& listener);
+  void make_boxes(std::span<const Entry> bodies, std::span<StaticBox> boxes, std::size_t threads, double now);
+  void cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now);
+  void report_pair(BodyId a, BodyId b, double now, PairListener& listener);
   static double lifetime(const Body& body, double now);
   void adapt_reach(BodyId id, double now);
   void renew(BodyId id, const StaticBox& present, double now, PairListener& listener);
@@ -80,6 +94,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   std::vector<Body> bodies_;  // by id
   BoxGrid fat_boxes_;
   CalendarQueue<> expiry_;    // slots are bodies; none later than the horizon
+  std::size_t threads_;
   double horizon_ = never;
   BoxGrid::Changes changes_;
   double first_reach_ = 0;    ///< of a body that comes

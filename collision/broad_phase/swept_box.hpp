@@ -63,29 +63,64 @@ StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double fr
   return swept;
 }
 
+/// Whether both corners of a box move alike, as they do unless a caller gives the box.
+inline bool corners_move_alike(const KineticBox<1>& box) {
+  const Eigen::Vector3d& v = box.min.coefficients[1];
+  const Eigen::Vector3d& w = box.max.coefficients[1];
+  return box.min.start == box.max.start && v[0] == w[0] && v[1] == w[1] && v[2] == w[2];
+}
+
 /// A box that holds a kinetic box over [from, to], also one whose ends have passed each other.
 ///
-/// Corners that move alike, as they do unless a caller gives the box, share what they move by; the sums then have one
-/// rounding more, and the same margin covers them.
+/// Corners that move alike share what they move by; the sums then have one rounding more, and the same margin covers
+/// them.
 template <int Degree>
 StaticBox swept_box(const KineticBox<Degree>& box, double from, double to) {
   if constexpr (Degree == 1) {
-    using Eigen::Array3d;
-    if (box.min.start == box.max.start && box.min.coefficients[1] == box.max.coefficients[1]) {
-      const Array3d velocity = box.min.coefficients[1].array();
-      const Array3d at_begin = velocity * (from - box.min.start);
-      const Array3d at_end = velocity * (to - box.min.start);
-      const Array3d low = box.min.coefficients[0].array();
-      const Array3d high = box.max.coefficients[0].array();
-      const Array3d first = at_begin.min(at_end);
-      const Array3d last = at_begin.max(at_end);
-      const Array3d margin = 8 * 0x1p-53 * (low.abs().max(high.abs()) + first.abs().max(last.abs()));
-      return {low.min(high) + first - margin, low.max(high) + last + margin};
+    if (corners_move_alike(box)) {
+      const double begin = from - box.min.start;
+      const double end = to - box.min.start;
+      StaticBox swept;
+      for (int d = 0; d < 3; ++d) {  // plain numbers: arrays of three are not computed any faster
+        const double velocity = box.min.coefficients[1][d];
+        const double at_begin = velocity * begin;
+        const double at_end = velocity * end;
+        const double low = box.min.coefficients[0][d];
+        const double high = box.max.coefficients[0][d];
+        const double first = std::min(at_begin, at_end);
+        const double last = std::max(at_begin, at_end);
+        const double magnitude = std::max(std::abs(low), std::abs(high)) + std::max(std::abs(first), std::abs(last));
+        const double margin = 8 * 0x1p-53 * magnitude;
+        swept.min[d] = std::min(low, high) + first - margin;
+        swept.max[d] = std::max(low, high) + last + margin;
+      }
+      return swept;
     }
   }
   const StaticBox low = swept_point(box.min, from, to);
   const StaticBox high = swept_point(box.max, from, to);
   return {low.min.min(high.min), low.max.max(high.max)};
+}
+
+/// swept_box(box, t, t), bit for bit.
+template <int Degree>
+StaticBox box_at(const KineticBox<Degree>& box, double t) {
+  if constexpr (Degree == 1) {
+    if (corners_move_alike(box)) {
+      const double elapsed = t - box.min.start;
+      StaticBox at;
+      for (int d = 0; d < 3; ++d) {
+        const double moved = box.min.coefficients[1][d] * elapsed;
+        const double low = box.min.coefficients[0][d];
+        const double high = box.max.coefficients[0][d];
+        const double margin = 8 * 0x1p-53 * (std::max(std::abs(low), std::abs(high)) + std::abs(moved));
+        at.min[d] = std::min(low, high) + moved - margin;
+        at.max[d] = std::max(low, high) + moved + margin;
+      }
+      return at;
+    }
+  }
+  return swept_box(box, t, t);
 }
 
 }  // namespace kds::collision

@@ -69,6 +69,8 @@ void describe(CLI::App& app, Arguments& arguments) {
       ->type_name("T");
   app.add_option("--rate", arguments.run.rate, "Ask for results so many times a second (sap needs it); 0 = not at all")
       ->type_name("HZ");
+  app.add_option("--threads", arguments.run.threads, "Threads that take in the bodies of large scenes; 0 = all")
+      ->type_name("N");
   app.add_flag("--pairs", arguments.run.pairs, "Write events of kinetic bounding volumes too");
   app.add_option("--view", arguments.view, "Write a replay that any browser shows")->type_name("FILE.html");
   app.add_flag("--quiet", arguments.quiet, "No progress and no summary on standard error");

@@ -113,6 +113,7 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   world_options.rate = options.rate;
   world_options.report_pairs = options.pairs;
   world_options.profile = options.profile;
+  world_options.threads = options.threads;
   if (scene.end_time > scene.begin_time) world_options.window = scene.end_time - scene.begin_time;
   if (scene.domain && scene.domain->walls == Walls::reflect) {
     world_options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};

@@ -5,6 +5,7 @@
 #include "examples/kds-collide/events.hpp"
 #include "examples/kds-collide/scene.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct RunOptions {
   bool pairs = false;                ///< tell of bounding volumes too
   bool steady_progress = false;      ///< call on_time at least a hundred times
   bool profile = false;              ///< measure where the time goes
+  std::size_t threads = 1;           ///< that take in bodies, where there are many; 0 is all that the machine has
 };
 
 /// What a run took and did.

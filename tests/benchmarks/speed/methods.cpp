@@ -99,6 +99,7 @@ Outcome run_method(const BallScene& scene, const Method& method, const Drive& dr
   const HardwareCounters hardware;
   const double begin = thread_seconds();
   kds::collision::World<1> world(world_options(scene, method, drive), &hasher);
+  world.reserve(scene.balls.size());
   for (const BallScene::Ball& ball : scene.balls) world.add_body(description(ball));
   world.advance_to(scene.start_time);
   outcome.after_setup = world.counters();

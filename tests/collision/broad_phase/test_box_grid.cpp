@@ -273,5 +273,79 @@ TEST_CASE("Boxes that are announced and enter in any order overlap as they do", 
   }
 }
 
+TEST_CASE("Boxes that settle are found by those that come and move", "[box_grid]") {
+  std::size_t wrong = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Random random(seed);
+    const auto count = static_cast<BoxGrid::Id>(1 + random.below(60));
+    const auto random_box = [&] {
+      StaticBox box;
+      for (int d = 0; d < 3; ++d) {
+        box.min[d] = random.between(-5, 5);
+        box.max[d] = box.min[d] + std::exp(random.between(-2, 2));
+      }
+      return box;
+    };
+    BoxGrid settled, entered;
+    settled.reserve(count);
+    entered.reserve(count);
+    std::vector<BoxGrid::Id> ids;
+    BoxGrid::Changes changes, expected;
+    for (BoxGrid::Id id = 0; id < count; ++id) {
+      const StaticBox box = random_box();
+      ids.push_back(id);
+      settled.announce(id, box);
+      entered.put(id, box, expected);
+    }
+    settled.settle(ids);
+    for (int step = 0; step < 100; ++step) {
+      changes.clear(), expected.clear();
+      const auto id = static_cast<BoxGrid::Id>(random.below(count + 1));
+      const StaticBox box = random_box();
+      settled.put(id, box, changes);
+      entered.put(id, box, expected);
+      for (auto* list : {&changes.began, &changes.ended, &expected.began, &expected.ended}) {
+        std::sort(list->begin(), list->end());
+      }
+      wrong += changes.began != expected.began || changes.ended != expected.ended;
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("Boxes of many levels that share the buckets of a small table", "[box_grid]") {
+  constexpr BoxGrid::Id count = 24;
+  std::size_t wrong = 0;
+  std::size_t changed = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    Random random(seed);
+    BoxGrid grid;
+    std::vector<StaticBox> boxes(count);
+    std::set<std::pair<BoxGrid::Id, BoxGrid::Id>> overlapping;
+    BoxGrid::Changes changes;
+    for (BoxGrid::Id step = 0; step < 200; ++step) {
+      const auto id = step < count ? step : static_cast<BoxGrid::Id>(random.below(count));
+      const bool anew = step < count || random.one_in(2);
+      for (int d = 0; d < 3; ++d) {
+        const double size = anew ? std::exp(random.between(-2, 2)) : boxes[id].max[d] - boxes[id].min[d];
+        const double low = anew ? random.between(-5, 5) : boxes[id].min[d] + random.between(-0.3, 0.3);
+        boxes[id].min[d] = low;
+        boxes[id].max[d] = low + size;
+      }
+      changes.clear();
+      grid.put(id, boxes[id], changes);
+      for (const auto other : changes.ended) wrong += overlapping.erase(std::minmax(id, other)) != 1;
+      for (const auto other : changes.began) wrong += !overlapping.insert(std::minmax(id, other)).second;
+      changed += changes.began.size() + changes.ended.size();
+      for (BoxGrid::Id other = 0; other < std::min(step, count); ++other) {
+        if (other == id) continue;
+        wrong += boxes[id].overlaps(boxes[other]) != overlapping.contains(std::minmax(id, other));
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(changed > 10'000);
+}
+
 }  // namespace
 }  // namespace kds::collision

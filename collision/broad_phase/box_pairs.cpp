@@ -1,0 +1,144 @@
+#include "collision/broad_phase/box_pairs.hpp"
+
+#include "collision/parallel.hpp"
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace kds::collision {
+namespace {
+
+/// At most so many cells a box. More have fewer boxes to compare, and take time themselves.
+constexpr double cells_per_box = 4;
+
+/// Cells are at least this much larger than boxes: more than the roundings of coordinates in cells.
+constexpr double room = 1 + 0x1p-20;
+
+/// Comparisons of a box within its cell, on average, above which a finer division is called for.
+constexpr std::size_t crowd = 4;
+
+}  // namespace
+
+inline bool BoxPairs::overlap(const Rough& a, const Rough& b) {
+#ifdef __SSE2__
+  return _mm_movemask_ps(_mm_and_ps(_mm_cmple_ps(a.low, b.high), _mm_cmple_ps(b.low, a.high))) == 0xF;
+#else
+  const auto overlap = (a.low <= b.high) & (b.low <= a.high);
+  return (overlap[0] & overlap[1] & overlap[2]) != 0;
+#endif
+}
+
+bool BoxPairs::choose_cells(std::span<const StaticBox> boxes) {
+  corner_ = boxes[0].min;
+  Eigen::Array3d end = corner_;
+  Eigen::Array3d size = boxes[0].max - corner_;
+  for (const StaticBox& box : boxes) {
+    corner_ = corner_.min(box.min);
+    end = end.max(box.min);
+    size = size.max(box.max - box.min);
+  }
+  const Eigen::Array3d span = end - corner_;
+  double cell = room * size.maxCoeff();
+  if (!(span.maxCoeff() < 0x1p1000 && cell < 0x1p1000 && cell > 0x1p-1000)) return false;
+  const double most = cells_per_box * static_cast<double>(boxes.size()) + 64;
+  for (;; cell *= 1.25) {
+    const Eigen::Array3d count = (span / cell).floor() + 1;
+    if (count.prod() > most) continue;
+    for (std::size_t d = 0; d < 3; ++d) cells_[d] = static_cast<std::size_t>(count[static_cast<Eigen::Index>(d)]);
+    break;
+  }
+  scale_ = 1 / cell;
+  return true;
+}
+
+/// By counting; in a cell in the order of numbers.
+bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
+  const std::size_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
+  std::vector<Index> cells(boxes.size());
+  in_parts(boxes.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const Eigen::Array3d at = (boxes[i].min - corner_) * scale_;
+      const std::size_t x = std::min(static_cast<std::size_t>(at[0]), nx - 1);
+      const std::size_t y = std::min(static_cast<std::size_t>(at[1]), ny - 1);
+      const std::size_t z = std::min(static_cast<std::size_t>(at[2]), nz - 1);
+      cells[i] = static_cast<Index>((z * ny + y) * nx + x);
+    }
+  });
+  begin_.assign(nx * ny * nz + 1, 0);
+  std::size_t comparisons = 0;
+  for (const Index cell : cells) comparisons += begin_[cell]++;
+  if (comparisons > crowd * boxes.size()) return false;
+  Index end = 0;
+  for (Index& cell : begin_) cell = end += cell;  // first the ends, which then go down to the beginnings
+  order_.resize(boxes.size());
+  for (std::size_t i = boxes.size(); i-- > 0;) order_[--begin_[cells[i]]] = static_cast<Index>(i);
+  rough_.resize(boxes.size());
+  in_parts(boxes.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t place = first; place < last; ++place) {
+      const StaticBox& box = boxes[order_[place]];
+      for (int d = 0; d < 3; ++d) {
+        rough_[place].low[d] = static_cast<float>(box.min[d] - corner_[d]);
+        rough_[place].high[d] = static_cast<float>(box.max[d] - corner_[d]);
+      }
+      rough_[place].low[3] = rough_[place].high[3] = 0;
+    }
+  });
+  return true;
+}
+
+/// Pairs of which one box is in these rows of cells, the other in the same cell or a later one.
+void BoxPairs::search(std::span<const StaticBox> boxes, std::size_t first_row, std::size_t last_row,
+                      std::vector<Pair>& found) const {
+  const std::size_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
+  for (std::size_t row = first_row; row < last_row; ++row) {
+    const std::size_t y = row % ny;
+    const bool top = row / ny + 1 == nz;
+    // Rows that come later: the next one of this layer, and three of the next layer.
+    std::array<const Index*, 4> later;
+    std::size_t rows = 0;
+    const auto add_row = [&](std::size_t other) { later[rows++] = begin_.data() + other * nx; };
+    if (y + 1 < ny) add_row(row + 1);
+    if (!top && y > 0) add_row(row + ny - 1);
+    if (!top) add_row(row + ny);
+    if (!top && y + 1 < ny) add_row(row + ny + 1);
+    const Index* const own = begin_.data() + row * nx;
+    for (std::size_t x = 0; x < nx; ++x) {
+      const std::size_t from = x - (x > 0);
+      const std::size_t to = std::min(x + 2, nx);
+      for (Index i = own[x]; i < own[x + 1]; ++i) {
+        const Rough& box = rough_[i];
+        const auto compare = [&](Index begin, Index end) {
+          for (Index j = begin; j < end; ++j) {
+            if (!overlap(box, rough_[j])) continue;
+            const Index a = order_[i], b = order_[j];
+            if (boxes[a].overlaps(boxes[b])) found.push_back({a, b});
+          }
+        };
+        compare(i + 1, own[to]);
+        for (std::size_t k = 0; k < rows; ++k) compare(later[k][from], later[k][to]);
+      }
+    }
+  }
+}
+
+bool BoxPairs::find(std::span<const StaticBox> boxes, std::size_t threads) {
+  pairs_.clear();
+  if (boxes.empty() || !choose_cells(boxes)) return false;
+  threads = threads_for(boxes.size(), threads);
+  if (!sort(boxes, threads)) return false;
+  std::vector<std::vector<Pair>> found(threads);
+  in_parts(cells_[1] * cells_[2], threads, [&](std::size_t part, std::size_t first_row, std::size_t last_row) {
+    search(boxes, first_row, last_row, found[part]);
+  });
+  pairs_ = std::move(found[0]);
+  for (std::size_t part = 1; part < threads; ++part) pairs_.insert(pairs_.end(), found[part].begin(), found[part].end());
+  return true;
+}
+
+}  // namespace kds::collision

@@ -1,0 +1,202 @@
+// How bodies come into the kinetic grid.
+#include "collision/broad_phase/box_pairs.hpp"
+#include "collision/broad_phase/kinetic_grid.hpp"
+#include "collision/parallel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace kds::collision {
+namespace {
+
+/// A body's reach when it comes, over the spacing of bodies.
+constexpr double reach_per_spacing = 0.25;
+
+/// Fewer bodies fit into the cache in any order.
+constexpr std::size_t few = 4096;
+
+/// Distance between neighbours if bodies are spread evenly over the box that holds the middle half of them on each axis;
+/// told from some of them. What is far out, up to a quarter on each side, makes no difference.
+template <int Degree>
+double typical_spacing(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
+  constexpr std::size_t sample = 256;
+  const std::size_t step = std::max<std::size_t>(bodies.size() / sample, 1);
+  std::array<std::vector<double>, 3> places;
+  double size = 0;
+  for (auto& place : places) place.reserve(bodies.size() / step + 1);
+  for (std::size_t i = 0; i < bodies.size(); i += step) {
+    const StaticBox box = box_at(*bodies[i].box, now);
+    size += box.extent();
+    for (std::size_t d = 0; d < 3; ++d) places[d].push_back(box.min[static_cast<Eigen::Index>(d)]);
+  }
+  size /= static_cast<double>(places[0].size());
+  double volume = 1;
+  for (auto& place : places) {
+    const auto quarter = place.begin() + static_cast<std::ptrdiff_t>(place.size() / 4);
+    const auto three_quarters = place.begin() + static_cast<std::ptrdiff_t>(place.size() * 3 / 4);
+    std::nth_element(place.begin(), quarter, place.end());
+    const double low = *quarter;
+    std::nth_element(quarter, three_quarters, place.end());
+    volume *= std::max(2 * (*three_quarters - low), size);
+  }
+  const double spacing = std::cbrt(volume / static_cast<double>(bodies.size()));
+  return std::isfinite(spacing) ? spacing : size;
+}
+
+/// The order in which to put in many bodies that come at once: by blocks of space, along [Morton66]'s curve, so that
+/// what a body meets, and the cells it is in, have just been used and are in the cache.
+template <int Degree>
+std::vector<BodyId> spatial_order(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
+  constexpr std::size_t bodies_per_block = 8;
+  const auto place = [&](std::size_t i) { return box_at(*bodies[i].box, now).min; };
+  Eigen::Array3d low = place(0);
+  Eigen::Array3d high = low;
+  for (std::size_t i = 1; i < bodies.size(); ++i) {
+    const Eigen::Array3d at = place(i);
+    low = low.min(at);
+    high = high.max(at);
+  }
+  const int levels = (std::bit_width(bodies.size() / bodies_per_block) - 1) / 3;
+  const Eigen::Array3d scale = std::ldexp(1.0, levels) / (high - low);
+  const double last = std::ldexp(1.0, levels) - 1;
+  const auto block_of = [&](std::size_t i) {
+    const Eigen::Array3d x = (place(i) - low) * scale;
+    std::size_t block = 0;
+    for (int d = 0; d < 3; ++d) {
+      const auto along = x[d] > 0 ? static_cast<std::size_t>(std::min(x[d], last)) : 0;
+      for (int bit = 0; bit < levels; ++bit) block |= (along >> bit & 1) << (3 * bit + d);
+    }
+    return static_cast<std::uint32_t>(block);
+  };
+  std::vector<std::uint32_t> blocks(bodies.size());
+  std::vector<std::uint32_t> places((std::size_t{1} << 3 * levels) + 1, 0);
+  for (std::size_t i = 0; i < bodies.size(); ++i) ++places[(blocks[i] = block_of(i)) + 1];
+  std::partial_sum(places.begin(), places.end(), places.begin());
+  std::vector<BodyId> order(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) order[places[blocks[i]]++] = bodies[i].id;
+  return order;
+}
+
+}  // namespace
+
+template <int Degree>
+void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
+  BodyId end = 0;
+  for (const Entry& entry : bodies) end = std::max(end, entry.id + 1);
+  if (end > bodies_.size()) {
+    const std::size_t room = bodies_.empty() ? end : std::max<std::size_t>(end, 2 * bodies_.size());
+    bodies_.resize(room);
+    expiry_.resize(room);
+  }
+  fat_boxes_.reserve(end);
+  if (fat_boxes_.size() == 0 && !bodies.empty()) {
+    first_reach_ = reach_per_spacing * typical_spacing<Degree>(bodies, now);
+    return insert_first(bodies, now, listener);
+  }
+  for (const Entry& entry : bodies) {
+    bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
+    renew(entry.id, box_at(*entry.box, now), now, listener);
+  }
+}
+
+/// All that come together into an empty grid: first the boxes of all, then pairs.
+template <int Degree>
+void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now, PairListener& listener) {
+  std::vector<StaticBox> boxes(bodies.size());
+  const std::size_t threads = threads_for(bodies.size(), threads_);
+  counters_.box_updates += bodies.size();
+  if (bodies.size() < few) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const BodyId id = bodies[i].id;
+      bodies_[id] = {*bodies[i].box, first_reach_, now, never, 0};
+      const FatBox fat = fat_box(id, box_at(*bodies[i].box, now), now);
+      boxes[i] = fat.box;
+      set_expiry(id, fat.expiry);
+      fat_boxes_.announce(id, fat.box);
+    }
+  } else {
+    make_boxes(bodies, boxes, threads, now);
+    cut_to_levels(bodies, boxes, now);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      set_expiry(bodies[i].id, bodies_[bodies[i].id].expiry);
+      fat_boxes_.announce(bodies[i].id, boxes[i]);
+    }
+  }
+  BoxPairs pairs;
+  if (pairs.find(boxes, threads)) {
+    std::vector<BodyId> order;
+    order.reserve(bodies.size());
+    for (const BoxPairs::Index i : pairs.order()) order.push_back(bodies[i].id);
+    fat_boxes_.settle(order);
+    if (bodies.size() >= few) {
+      for (const auto& [i, j] : pairs.pairs()) report_pair(bodies[i].id, bodies[j].id, now, listener);
+      return;
+    }
+    // In the order in which they would be found by bodies that come one by one.
+    std::vector<std::uint64_t> found;
+    for (const auto& [i, j] : pairs.pairs()) found.push_back(std::uint64_t{std::max(i, j)} << 32 | bodies[std::min(i, j)].id);
+    std::sort(found.begin(), found.end());
+    for (const std::uint64_t pair : found) report_pair(bodies[pair >> 32].id, static_cast<BodyId>(pair), now, listener);
+    return;
+  }
+  const auto enter = [&](BodyId id) {
+    changes_.clear();
+    fat_boxes_.enter(id, changes_);
+    report(id, now, listener);
+  };
+  if (bodies.size() < few) {
+    for (const Entry& entry : bodies) enter(entry.id);
+  } else {
+    for (const BodyId id : spatial_order<Degree>(bodies, now)) enter(id);
+  }
+}
+
+/// The boxes of many, as if each were alone: they do not depend on each other.
+template <int Degree>
+void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<StaticBox> boxes, std::size_t threads,
+                                     double now) {
+  std::vector<std::uint64_t> certificates(threads, 0);
+  in_parts(bodies.size(), threads, [&](std::size_t part, std::size_t first, std::size_t last) {
+    std::uint64_t tries = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      Body& body = bodies_[bodies[i].id];
+      body = {*bodies[i].box, first_reach_, now, never, 0};
+      const FatBox fat = fitting_box(body, now, std::numeric_limits<double>::max());
+      boxes[i] = fat.box;
+      body.expiry = fat.expiry;
+      tries += fat.certificates;
+    }
+    certificates[part] = tries;
+  });
+  for (const std::uint64_t tries : certificates) counters_.certificates += tries;
+}
+
+/// Where a level would be used by few, and just for their reach, boxes are cut to fit the next that is used by more.
+template <int Degree>
+void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now) {
+  std::vector<double> extents;
+  extents.reserve(boxes.size());
+  for (const StaticBox& box : boxes) extents.push_back(box.extent());
+  const auto [least, most] = std::minmax_element(extents.begin(), extents.end());
+  if (BoxGrid::room_for(*least) == BoxGrid::room_for(*most)) return;
+  const auto last = extents.end() - 1 - static_cast<std::ptrdiff_t>(boxes.size() / share_for_level);
+  std::nth_element(extents.begin(), last, extents.end());
+  const double coarsest = BoxGrid::room_for(*last);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    Body& body = bodies_[bodies[i].id];
+    if (!(boxes[i].extent() > coarsest) || body.expiry == never) continue;
+    const FatBox fat = fitting_box(body, now, coarsest);
+    boxes[i] = fat.box;
+    body.expiry = fat.expiry;
+    counters_.certificates += fat.certificates;
+  }
+}
+
+template class KineticGrid<1>;
+template class KineticGrid<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,140 @@
+// How bodies come into the world.
+#include "collision/parallel.hpp"
+#include "collision/profile.hpp"
+#include "collision/queue_room.hpp"
+#include "collision/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace kds::collision {
+namespace {
+
+template <int Degree>
+void validate(const BodyDescription<Degree>& description) {
+  const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
+  if (description.motion.empty()) fail("motion: has no piece");
+  for (std::size_t i = 0; i < description.motion.size(); ++i) {
+    const auto& piece = description.motion[i];
+    if (!piece.finite()) fail("motion[" + std::to_string(i) + "]: must be finite");
+    if (i > 0 && !(piece.start > description.motion[i - 1].start)) {
+      fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
+    }
+  }
+  if (!description.fixed && (!std::isfinite(description.mass) || !(description.mass > 0))) {
+    fail("mass: must be finite and > 0");
+  }
+  if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
+}
+
+}  // namespace
+
+template <int Degree>
+BodyId World<Degree>::add_body(const Description& description) {
+  validate(description);
+  count_edit();
+  const auto* const ball = std::get_if<Sphere>(&description.shape);
+  const bool placed = ball && description.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs();
+  std::shared_ptr<const PlacedShape> shape;
+  if (placed) {
+    require_radius(ball->radius);
+  } else {
+    shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
+  }
+  // Pieces that are over are skipped; the rest is a script.
+  auto piece = description.motion.begin();
+  while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
+  const BodyId id = free_bodies_.empty() ? static_cast<BodyId>(bodies_.size()) : free_bodies_.back();
+  if (free_bodies_.empty()) {
+    bodies_.emplace_back();
+    movers_.emplace_back();
+  } else {
+    free_bodies_.pop_back();
+  }
+  Body& added = bodies_[id];
+  added.bounding_radius = placed ? ball->radius : shape->bounding_radius;
+  added.shape = std::move(shape);
+  added.mass = description.mass;
+  added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
+  added.restitution = description.restitution;
+  added.category = description.category;
+  added.collides_with = description.collides_with;
+  added.volume = description.volume;
+  added.alive = true;
+  movers_[id] = {*piece, ball ? ball->radius : 0};
+  if constexpr (Degree >= 2) added.force = piece->coefficients[2];
+  place_extents(id);
+  ++alive_;
+  const bool enters_now = piece->start <= now_;
+  if (enters_now) {
+    entering_.push_back(id);
+    ++piece;
+  }
+  if (description.box || piece != description.motion.end()) {
+    set_extras(id, {piece, description.motion.end()}, description.box);
+  }
+  return id;
+}
+
+/// Pieces of motion to come, and a box function, which may be empty.
+template <int Degree>
+void World<Degree>::set_extras(BodyId id, std::span<const Motion> script,
+                               const typename Description::BoxFunction& box_function) {
+  Extras extras{{script.rbegin(), script.rend()}, box_function, {}};  // next piece last
+  if (box_function) make_room(volumes_, bodies_.size());
+  make_room(pieces_, bodies_.size());
+  if (!script.empty()) pieces_.set(id, script.front().start);
+  bodies_[id].extras = std::make_unique<Extras>(std::move(extras));
+}
+
+template <int Degree>
+void World<Degree>::reserve(std::size_t bodies) {
+  bodies_.reserve(bodies);
+  movers_.reserve(bodies);
+  entering_.reserve(bodies);
+  if (options_.walls && walls_.slots() < bodies) walls_.resize(bodies);
+}
+
+template <int Degree>
+void World<Degree>::enter_new_bodies() {
+  std::vector<BodyId> entering;
+  entering.swap(entering_);
+  // What is due now among the others comes first, lest it count as what the new ones bring.
+  while (broad_phase_->advance(now_, *this)) {}
+  std::vector<typename BroadPhase<Degree>::Entry> entries;
+  entries.reserve(entering.size());
+  for (const BodyId id : entering) {
+    Body& b = bodies_[id];
+    if (!b.alive || b.entered) continue;
+    b.entered = true;
+    entries.push_back({id, nullptr});
+  }
+  std::vector<KineticBox<Degree>> boxes(entries.size());
+  // The functions of callers are called by their own thread, and in order.
+  const bool functions = volumes_.slots() > 0;
+  const std::size_t threads = functions ? 1 : threads_for(entries.size(), options_.threads);
+  in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      boxes[i] = renewed_box(entries[i].id);
+      entries[i].box = &boxes[i];
+    }
+  });
+  inserting_ = true;
+  {
+    const Stopwatch watch(profile(), Work::update);
+    broad_phase_->insert(entries, now_, *this);
+  }
+  inserting_ = false;
+  for (const auto& entry : entries) {
+    schedule_wall(entry.id);
+    schedule_volume(entry.id);
+  }
+}
+
+template class World<1>;
+template class World<2>;
+
+}  // namespace kds::collision
