@@ -138,7 +138,9 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
     }
     // In the order in which they would be found by bodies that come one by one.
     std::vector<std::uint64_t> found;
-    for (const auto& [i, j] : pairs.pairs()) found.push_back(std::uint64_t{std::max(i, j)} << 32 | bodies[std::min(i, j)].id);
+    for (const auto& [i, j] : pairs.pairs()) {
+      found.push_back(std::uint64_t{std::max(i, j)} << 32 | bodies[std::min(i, j)].id);
+    }
     std::sort(found.begin(), found.end());
     for (const std::uint64_t pair : found) report_pair(bodies[pair >> 32].id, static_cast<BodyId>(pair), now, listener);
     return;
