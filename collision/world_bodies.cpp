@@ -144,22 +144,6 @@ void World<Degree>::schedule_volume(BodyId id) {
 }
 
 template <int Degree>
-void World<Degree>::schedule_wall(BodyId id) {
-  if (!options_.walls) return;
-  make_room(walls_, bodies_.size());
-  double earliest = now_;
-  if constexpr (Degree == 1) {
-    earliest = never;
-    for (int axis = 0; axis < 3; ++axis) {  // it approaches no more than one of the two
-      const int wall = 2 * axis + (movers_[id].motion.coefficients[1][axis] > 0);
-      earliest = std::min(earliest, earliest_wall_time(id, wall));
-    }
-  }
-  bodies_[id].wall_estimated = true;
-  walls_.set(id, earliest <= horizon_ ? std::max(earliest, now_) : never);
-}
-
-template <int Degree>
 void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   const Stopwatch watch(profile(), Work::prune);
   now_ = t;

@@ -1,0 +1,198 @@
+// Dynamic tests: when the bodies of a pair will touch, and when their boxes will overlap.
+#include "certificates/ball_separation.hpp"
+#include "certificates/conjunction.hpp"
+#include "collision/parallel.hpp"
+#include "collision/profile.hpp"
+#include "collision/world.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Vector3d;
+
+template <int Degree>
+bool at_rest(const certificates::PointMotion<Degree>& motion) {
+  for (std::size_t i = 1; i <= Degree; ++i) {
+    if (!motion.coefficients[i].isZero(0)) return false;
+  }
+  return true;
+}
+
+/// Bodies that have been put so near that nothing but rounding is between them, this times their coordinates: they
+/// touch, and so meet if they approach, and rest if they are pressed together. Larger takes more for a touch.
+constexpr double touch_rounding = 0x1p-40;
+
+/// Whether bodies in contact at t only touch: at rest in their places, and a rounding farther apart, they are free.
+template <int Degree>
+bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+  const Contact contact = contact_at(a, b, t);
+  certificates::PointMotion<Degree> place_a = a.motion.restarted(t);
+  certificates::PointMotion<Degree> place_b = b.motion.restarted(t);
+  for (std::size_t i = 1; i <= Degree; ++i) place_a.coefficients[i] = place_b.coefficients[i] = Vector3d::Zero();
+  const double size = place_a.coefficients[0].cwiseAbs().maxCoeff() + place_b.coefficients[0].cwiseAbs().maxCoeff() +
+                      std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+  place_b.coefficients[0] += touch_rounding * size * contact.normal;
+  return !in_contact(MovingShape<Degree>{a.shape, place_a}, MovingShape<Degree>{b.shape, place_b}, t);
+}
+
+}  // namespace
+
+template <int Degree>
+void World<Degree>::test_dirty_pairs() {
+  const Stopwatch watch(profile(), Work::test);
+  // In the order of the bodies, whatever the broad phase, so that reports are made in one order.
+  const bool reports = (options_.report_pairs && !broad_phase_->exact()) ||
+                       std::any_of(dirty_.begin(), dirty_.end(), [&](PairSlot slot) { return pairs_[slot].fresh; });
+  const auto earlier = [&](PairSlot x, PairSlot y) {
+    return std::pair(pairs_[x].a, pairs_[x].b) < std::pair(pairs_[y].a, pairs_[y].b);
+  };
+  if (reports && !std::is_sorted(dirty_.begin(), dirty_.end(), earlier)) {
+    std::sort(dirty_.begin(), dirty_.end(), earlier);
+  }
+  const std::vector<BallTest> tests = tests_of_balls();
+  for (std::size_t i = 0; i < dirty_.size(); ++i) {
+    const PairSlot slot = dirty_[i];
+    pairs_[slot].dirty = false;
+    if (!pairs_[slot].alive) continue;
+    test(slot, tests.empty() ? test_of_balls(pairs_[slot]) : tests[i]);
+    if (options_.report_pairs && !broad_phase_->exact()) test_boxes(slot);
+    pairs_[slot].fresh = false;
+  }
+  dirty_.clear();
+  std::erase_if(passing_, [&](const Passing& passing) { return !passing.let_pass || next_up(passing.at) < now_; });
+}
+
+/// Most tests by far are these, and need two cache lines. They change nothing.
+template <int Degree>
+auto World<Degree>::test_of_balls(const Pair& pair) const -> BallTest {
+  if (pair.ignored || mode() != ContactMode::resolved || holds_.size() != free_holds_.size()) return {};
+  const Mover& a = movers_[pair.a];
+  const Mover& b = movers_[pair.b];
+  if (!(a.ball_radius > 0 && b.ball_radius > 0) || (at_rest(a.motion) && at_rest(b.motion))) return {};
+  const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
+  if (pair.fresh && !apart.surely_apart(now_)) return {};
+  if (pair.let_pass == now_ && !pair.fresh) return {apart.first_approach(next_up(now_), horizon_), true, true};
+  const auto [time, exact] = apart.estimated_first_approach(now_, horizon_);
+  return {time, exact, true};
+}
+
+/// Those of all dirty pairs, by several threads; none where they are few.
+template <int Degree>
+auto World<Degree>::tests_of_balls() const -> std::vector<BallTest> {
+  const std::size_t threads = threads_for(dirty_.size(), options_.threads);
+  if (threads == 1) return {};
+  std::vector<BallTest> tests(dirty_.size());
+  in_parts(dirty_.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (pairs_[dirty_[i]].alive) tests[i] = test_of_balls(pairs_[dirty_[i]]);
+    }
+  });
+  return tests;
+}
+
+template <int Degree>
+void World<Degree>::test(PairSlot slot, const BallTest& of_balls) {
+  Pair& pair = pairs_[slot];
+  ++counters_.pair_tests;
+  if (of_balls.done) [[likely]] {
+    pair.estimated = !of_balls.exact;
+    contacts_.set(slot, of_balls.time);
+    return;
+  }
+  const auto a = moving(pair.a);
+  const auto b = moving(pair.b);
+  const auto report_overlap = [&] {
+    pending_.push_back({Pending::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_)});
+  };
+  ContactEstimate next{never, true};
+  if (mode() == ContactMode::transparent) {
+    if (pair.fresh && in_contact(a, b, now_)) {
+      pair.touching = true;
+      report_overlap();
+    }
+    if (at_rest(a.motion) && at_rest(b.motion)) {  // Nothing will happen, but a jump may have happened.
+      next.time = in_contact(a, b, now_) == pair.touching ? never : now_;
+    } else if (pair.touching) {
+      next.time = first_separation(a, b, now_, horizon_);
+    } else {
+      next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory);
+    }
+  } else {
+    const bool passes = pair.let_pass == now_ && !pair.fresh;
+    if ((pair.fresh || pair.ignored) && !passes) {
+      pair.ignored = in_contact(a, b, now_) && !(pair.fresh && only_touching(a, b, now_));
+      if (pair.fresh && pair.ignored) report_overlap();
+    }
+    if (find_hold(pair.a, pair.b) != no_hold) {
+      next.time = next_contact_of_held(pair);
+    } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
+      const double start = passes ? next_up(now_) : now_;
+      if (pair.ignored && start <= horizon_) {
+        const double from = first_separation(a, b, start, horizon_);
+        if (from <= horizon_) next.time = first_contact(a, b, from, horizon_, mode());
+      } else if (passes) {
+        if (start <= horizon_) next.time = first_contact(a, b, start, horizon_, mode());
+      } else {
+        next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory);
+      }
+    }
+  }
+  contacts_.set(slot, next.time);
+  pair.estimated = !next.exact;
+}
+
+template <int Degree>
+void World<Degree>::set_contact(PairSlot slot, double time) {
+  pairs_[slot].estimated = false;
+  contacts_.set(slot, time);
+}
+
+/// What comes first is no more than a lower bound: finds the exact time, which may be later. Most estimates never come
+/// first, since motions change before.
+template <int Degree>
+void World<Degree>::certify_contact(PairSlot slot) {
+  const Pair& pair = pairs_[slot];
+  const Mover& a = movers_[pair.a];
+  const Mover& b = movers_[pair.b];
+  if (a.ball_radius > 0 && b.ball_radius > 0) {
+    const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
+    return set_contact(slot, apart.first_approach(now_, horizon_));
+  }
+  set_contact(slot, first_contact(moving(pair.a), moving(pair.b), now_, horizon_, mode()));
+}
+
+template <int Degree>
+void World<Degree>::test_boxes(PairSlot slot) {
+  Pair& pair = pairs_[slot];
+  const BoxOverlap<Degree> boxes(bounding_box(pair.a), bounding_box(pair.b));
+  const auto apart = boxes.separations();
+  const std::span<const typename BoxOverlap<Degree>::Apart> sides(apart);
+  // A change of motion may leave boxes that touch for good: they do not overlap, although no side has a gap.
+  const double next = !pair.boxes_overlap                         ? certificates::first_all_broken(now_, horizon_, sides)
+                      : certificates::all_broken(now_, sides) ? certificates::first_any_holds(now_, horizon_, sides)
+                                                                  : now_;
+  boxes_.set(slot, next);
+  if (next == now_) process_boxes(slot, now_);
+}
+
+template <int Degree>
+void World<Degree>::process_boxes(PairSlot slot, double t) {
+  Pair& pair = pairs_[slot];
+  pair.boxes_overlap = !pair.boxes_overlap;
+  const auto kind = pair.boxes_overlap ? Pending::Kind::pair_began : Pending::Kind::pair_ended;
+  // Moved in turn, two bodies may have parted and met again at one instant.
+  const bool undone = pair.boxes_overlap && !pair.fresh && take_back(Pending::Kind::pair_ended, pair.a, pair.b, t);
+  if (!undone) pending_.push_back({kind, pair.a, pair.b, {.time = t}});
+  now_ = t;
+  test_boxes(slot);
+}
+
+template class World<1>;
+template class World<2>;
+
+}  // namespace kds::collision
