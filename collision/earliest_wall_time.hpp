@@ -8,12 +8,12 @@
 
 namespace kds::collision {
 
-/// A time before which a ball will not be outside a wall and going outward; `never` for never. Wall 2 d is the lower one
-/// on axis d, 2 d + 1 the upper.
+/// A time before which a ball will not be outside a wall and going outward; `never` for never. Wall 2 d is the lower
+/// one on axis d, 2 d + 1 the upper.
 ///
-/// Error bound, for straight paths: the gap is a sum of five numbers, with a product of a time known to one rounding: at
-/// most 6 units of 2^-53 of their magnitudes. The quotient by the speed, which is a double, and the sum with the clock
-/// round by one each.
+/// Error bound, for straight paths: the gap is a sum of five numbers, with a product of a time known to one rounding:
+/// at most 6 units of 2^-53 of their magnitudes. The quotient by the speed, which is a double, and the sum with the
+/// clock round by one each.
 template <int Degree>
 double earliest_wall_time(const certificates::PointMotion<Degree>& motion, double radius, const Walls& walls, int wall,
                           double now) {

@@ -193,7 +193,8 @@ void World<Degree>::advance_to(double t) {
     throw std::invalid_argument("World::advance_to: " + std::to_string(t) + " is not a finite time from now on (" +
                                 std::to_string(now_) + ")");
   }
-  while (step(t)) {}
+  while (step(t)) {
+  }
 }
 
 template <int Degree>
@@ -270,8 +271,8 @@ void World<Degree>::emit_pending() {
   }
 }
 
-/// A caller who moves two bodies in turn parts them with the first move, but they separate where the second leaves them:
-/// so whether the broad phase told of it at once makes no difference.
+/// A caller who moves two bodies in turn parts them with the first move, but they separate where the second leaves
+/// them: so whether the broad phase told of it at once makes no difference.
 template <int Degree>
 void World<Degree>::fill_in(Pending& separation) const {
   if (separation.placed) return;

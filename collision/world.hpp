@@ -28,8 +28,8 @@ namespace kds::collision {
 
 struct WorldCounters {
   BroadPhaseCounters broad_phase;
-  std::uint64_t pairs_begun = 0;     ///< pairs handed on by the broad phase
-  std::uint64_t pair_tests = 0;      ///< dynamic intersection tests
+  std::uint64_t pairs_begun = 0;  ///< pairs handed on by the broad phase
+  std::uint64_t pair_tests = 0;   ///< dynamic intersection tests
   std::uint64_t contacts = 0;
   std::uint64_t separations = 0;
   std::uint64_t overlaps = 0;
@@ -136,7 +136,7 @@ class World final : private PairListener {
   struct Extras {
     std::vector<Motion> script;  ///< pieces to come, last first
     typename Description::BoxFunction box_function;
-    KineticBox<Degree> box;      ///< the last it gave
+    KineticBox<Degree> box;  ///< the last it gave
   };
 
   /// A pair as one of its bodies sees it.
@@ -189,7 +189,7 @@ class World final : private PairListener {
     BodyId b = no_body;  ///< of a wall
     int wall = -1;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
-    double push = 0;     ///< relative acceleration that it gives
+    double push = 0;                                   ///< relative acceleration that it gives
     bool alive = false;
     bool fresh = false;  ///< its approach is still to be taken out
   };
@@ -214,7 +214,7 @@ class World final : private PairListener {
     std::uint32_t place_in_a = 0, place_in_b = 0;
     bool alive = false;
     bool dirty = false;
-    bool fresh = false;  ///< one of the bodies has entered or jumped at this instant
+    bool fresh = false;     ///< one of the bodies has entered or jumped at this instant
     bool touching = false;  ///< mode none: in contact
     bool ignored = false;   ///< resolved: overlaps and passes through until separated
     bool boxes_overlap = false;
@@ -351,7 +351,7 @@ class World final : private PairListener {
   std::vector<Pair> pairs_;
   std::vector<PairSlot> free_pairs_;
   std::vector<PairSlot> dirty_;
-  std::vector<KdopDirection> directions_;      // beyond the axes
+  std::vector<KdopDirection> directions_;       // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction
   /// Ignored pairs that have ended at this instant: motions that change in turn may part boxes that touch and bring
   /// them together again.

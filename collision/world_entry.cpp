@@ -103,7 +103,8 @@ void World<Degree>::enter_new_bodies() {
   std::vector<BodyId> entering;
   entering.swap(entering_);
   // What is due now among the others comes first, lest it count as what the new ones bring.
-  while (broad_phase_->advance(now_, *this)) {}
+  while (broad_phase_->advance(now_, *this)) {
+  }
   std::vector<typename BroadPhase<Degree>::Entry> entries;
   entries.reserve(entering.size());
   for (const BodyId id : entering) {

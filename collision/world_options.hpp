@@ -46,18 +46,18 @@ struct Walls {
 };
 
 struct WorldOptions {
-  double start_time = 0;                ///< s; keep it near 0: events are as fine as doubles near the clock
-  double window = never;                ///< s; how far ahead events are predicted at a time
+  double start_time = 0;  ///< s; keep it near 0: events are as fine as doubles near the clock
+  double window = never;  ///< s; how far ahead events are predicted at a time
   Response response = Response::none;
   BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
-  double rate = 0;                      ///< Hz; frames of the swept boxes, needed by `sap` alone
+  double rate = 0;  ///< Hz; frames of the swept boxes, needed by `sap` alone
   /// Bounding volumes of kinetic sweep and prune: 6, boxes; 14, 18 or 26, k-DOPs, tighter around what is long, thin or
   /// round, and more to compute (docs/kdops.md). Other broad phases know boxes alone. Contacts are the same; the pairs
   /// reported are those whose volumes overlap.
   int kdop = 6;
   std::optional<Walls> walls;
-  bool report_pairs = false;            ///< tell the listener of bounding volumes that begin and cease to overlap
-  bool profile = false;                 ///< measure where the time goes
+  bool report_pairs = false;  ///< tell the listener of bounding volumes that begin and cease to overlap
+  bool profile = false;       ///< measure where the time goes
   /// Threads that share the work of thousands of bodies that come at once; 0 for as many as the machine has. All else
   /// is done by the caller's thread, event by event. Events and counters do not depend on it.
   std::size_t threads = 1;

@@ -173,9 +173,9 @@ void World<Degree>::test_boxes(PairSlot slot) {
   const auto apart = boxes.separations();
   const std::span<const typename BoxOverlap<Degree>::Apart> sides(apart);
   // A change of motion may leave boxes that touch for good: they do not overlap, although no side has a gap.
-  const double next = !pair.boxes_overlap                         ? certificates::first_all_broken(now_, horizon_, sides)
+  const double next = !pair.boxes_overlap                     ? certificates::first_all_broken(now_, horizon_, sides)
                       : certificates::all_broken(now_, sides) ? certificates::first_any_holds(now_, horizon_, sides)
-                                                                  : now_;
+                                                              : now_;
   boxes_.set(slot, next);
   if (next == now_) process_boxes(slot, now_);
 }

@@ -46,7 +46,7 @@ struct NoSwapListener {
 /// uncertified solver: as far as Schedule promises).
 template <int Degree, class Listener = NoSwapListener, class Queue = PlaceQueue,
           FailureTimeSolver Solver = CertifiedSolver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 class SortedList {
  public:
   using Id = std::uint32_t;
@@ -253,7 +253,7 @@ class SortedList {
 // ---------------------------------------------------------------------------------------------------------------
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::process() {
   const auto [time, top] = schedule_.next();
   const std::size_t left = left_of(top);
@@ -275,7 +275,7 @@ void SortedList<Degree, Listener, Queue, Solver>::process() {
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::extend_horizon(double now, double horizon) {
   schedule_.set_horizon(horizon);
   for (std::size_t i = 0; i < order_.size(); ++i) {

@@ -11,7 +11,7 @@
 namespace kds::structures {
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> entries, double now) {
   Id greatest = 0;
   for (const Entry& entry : entries) {
@@ -37,7 +37,7 @@ void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> 
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Degree>& motion, double now) {
   require_legal(id, motion);
   if (contains(id)) refuse_twice(id);
@@ -57,7 +57,7 @@ void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Deg
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::remove(Id id, double now) {
   require(id);
   expect_disorder(now);
@@ -75,7 +75,7 @@ void SortedList<Degree, Listener, Queue, Solver>::remove(Id id, double now) {
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Degree>& motion, double now) {
   require(id);
   require_finite(id, motion);
@@ -105,7 +105,7 @@ void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Deg
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 void SortedList<Degree, Listener, Queue, Solver>::turn_round(double now, double horizon) {
   for (Entry& entry : order_) entry.motion = reversed(entry.motion);
   schedule_.set_horizon(horizon);

@@ -20,8 +20,8 @@ namespace kds::collision {
 
 /// Keeps boxes by number and tells, when one comes, goes or is replaced, with which others its overlap has changed.
 ///
-/// A level of the grid has cubic cells of 2^k units. A box is a *native* of the level whose cells are just larger, and a
-/// *guest* of all coarser levels in use; in each it is in one cell, that of its lower corner, so to move it rarely
+/// A level of the grid has cubic cells of 2^k units. A box is a *native* of the level whose cells are just larger, and
+/// a *guest* of all coarser levels in use; in each it is in one cell, that of its lower corner, so to move it rarely
 /// changes more than one entry. A search looks into the cells where a box that overlaps may have its corner. So two
 /// boxes of any sizes meet in cells of the larger one's level; space has no bounds, and a small box does not look at
 /// other small ones through the cells of a large one. Cells are found by hashing; different cells that share a key cost
@@ -30,10 +30,11 @@ namespace kds::collision {
 /// A cell keeps the ends of its boxes on a lattice of a 32nd of its side. To round to it is monotone, so where ends
 /// overlap they do on the lattice; most boxes that do not are left out without a look at them.
 ///
-/// Sources: [Ericson05] section 7.2 for hierarchical grids, [Teschner03] for hashing cells. Differs: guests have lists of
-/// their own; ends on a lattice are in the cells.
-/// Cost: O(1) a change at bounded density, for each level in use from the box's own; a first native of a level makes all
-/// smaller boxes its guests, O(n). Memory O(n).
+/// Sources: [Ericson05] section 7.2 for hierarchical grids, [Teschner03] for hashing cells. Differs: guests have lists
+/// of their own; ends on a lattice are in the cells.
+///
+/// Cost: O(1) a change at bounded density, for each level in use from the box's own; a first native of a level makes
+/// all smaller boxes its guests, O(n). Memory O(n).
 class BoxGrid {
  public:
   using Id = std::uint32_t;
@@ -102,8 +103,8 @@ class BoxGrid {
 
     bool within(const Bounds& limits) const {
 #ifdef __SSE2__
-      const Two within = _mm_and_pd(_mm_and_pd(_mm_cmple_pd(xy, limits.xy), _mm_cmple_pd(zx, limits.zx)),
-                                    _mm_cmple_pd(yz, limits.yz));
+      const Two within =
+          _mm_and_pd(_mm_and_pd(_mm_cmple_pd(xy, limits.xy), _mm_cmple_pd(zx, limits.zx)), _mm_cmple_pd(yz, limits.yz));
       return _mm_movemask_pd(within) == 3;
 #else
       const auto within = (xy <= limits.xy) & (zx <= limits.zx) & (yz <= limits.yz);
@@ -114,9 +115,7 @@ class BoxGrid {
       return {xy < other.xy ? xy : other.xy, zx < other.zx ? zx : other.zx, yz < other.yz ? yz : other.yz};
     }
     double extent() const { return std::max({-zx[1] - xy[0], -yz[0] - xy[1], -yz[1] - zx[0]}); }
-    Bounds limits() const {
-      return {Two{-zx[1], -yz[0]}, Two{-yz[1], -xy[0]}, Two{-xy[1], -zx[0]}};
-    }
+    Bounds limits() const { return {Two{-zx[1], -yz[0]}, Two{-yz[1], -xy[0]}, Two{-xy[1], -zx[0]}}; }
   };
   static Bounds bounds(const StaticBox& box) {
     return {Two{box.min[0], box.min[1]}, Two{box.min[2], -box.max[0]}, Two{-box.max[1], -box.max[2]}};

@@ -21,8 +21,9 @@ inline CellTable::Ends lattice_byte(std::size_t i, std::int64_t value) {
   return static_cast<CellTable::Ends>(static_cast<std::uint8_t>(bounded)) << 8 * i;
 }
 
-/// Bytes 6 and 7: the row, modulo 16 and 8, and its complement; here what a coordinate has in them. The one or the other
-/// exceeds that of another row, so the rows of a search, of which there are fewer, are not mistaken for each other.
+/// Bytes 6 and 7: the row, modulo 16 and 8, and its complement; here what a coordinate has in them. The one or the
+/// other exceeds that of another row, so the rows of a search, of which there are fewer, are not mistaken for each
+/// other.
 inline CellTable::Ends row_mark(std::size_t d, std::int64_t cell) {
   if (d == 0) return 0;
   const CellTable::Ends bits = d == 1 ? 0x0F : 0x70;

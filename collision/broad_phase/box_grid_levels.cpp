@@ -51,8 +51,8 @@ BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
   return *place;
 }
 
-/// Levels come and go with the sizes of boxes; one without natives is given up when as much has been spent on its guests
-/// as it costs to build it anew.
+/// Levels come and go with the sizes of boxes; one without natives is given up when as much has been spent on its
+/// guests as it costs to build it anew.
 void BoxGrid::drop_idle_level() {
   idle_ = false;
   std::erase_if(levels_, [&](const Level& level) { return level.natives.count == 0 && level.idle > size_; });

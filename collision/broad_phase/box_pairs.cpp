@@ -137,7 +137,8 @@ bool BoxPairs::find(std::span<const StaticBox> boxes, std::size_t threads) {
     search(boxes, first_row, last_row, found[part]);
   });
   pairs_ = std::move(found[0]);
-  for (std::size_t part = 1; part < threads; ++part) pairs_.insert(pairs_.end(), found[part].begin(), found[part].end());
+  for (std::size_t part = 1; part < threads; ++part)
+    pairs_.insert(pairs_.end(), found[part].begin(), found[part].end());
   return true;
 }
 

@@ -11,12 +11,13 @@
 
 namespace kds::collision {
 
-/// Finds the pairs among many boxes of sizes that are not too different, by sorting them into cells that are larger than
-/// the largest of them: what a box overlaps begins in its own cell or in one of the 26 around it, and of each two cells
-/// one looks into the other. In memory the cells of a row follow each other, so a box looks at five stretches.
+/// Finds the pairs among many boxes of sizes that are not too different, by sorting them into cells that are larger
+/// than the largest of them: what a box overlaps begins in its own cell or in one of the 26 around it, and of each two
+/// cells one looks into the other. In memory the cells of a row follow each other, so a box looks at five stretches.
 ///
-/// Cost: O(n) for n boxes of bounded density, some 150 instructions a box; memory 40 bytes a box. Which pairs there are,
-/// and their order, does not depend on the number of threads.
+/// Cost: O(n) for n boxes of bounded density, some 150 instructions a box; memory 40 bytes a box. Which pairs there
+/// are, and their order, does not depend on the number of threads.
+///
 /// Source: [Ericson05] section 7.1, for uniform grids by sorting.
 class BoxPairs {
  public:
@@ -46,12 +47,12 @@ class BoxPairs {
   void search(std::span<const StaticBox> boxes, std::size_t first_row, std::size_t last_row,
               std::vector<Pair>& found) const;
 
-  Eigen::Array3d corner_;                 ///< least coordinates
-  double scale_ = 0;                      ///< cells per unit
-  std::array<std::size_t, 3> cells_{};    ///< along each axis
-  std::vector<Index> begin_;              ///< first place of each cell, x fastest, and the end
+  Eigen::Array3d corner_;               ///< least coordinates
+  double scale_ = 0;                    ///< cells per unit
+  std::array<std::size_t, 3> cells_{};  ///< along each axis
+  std::vector<Index> begin_;            ///< first place of each cell, x fastest, and the end
   std::vector<Index> order_;
-  std::vector<Rough> rough_;              ///< in order
+  std::vector<Rough> rough_;  ///< in order
   std::vector<Pair> pairs_;
 };
 

@@ -11,12 +11,13 @@
 
 namespace kds::collision {
 
-/// Keeps for each cell an unordered list of numbers, each with eight small integers, its *ends*. A search asks for those
-/// of which none exceeds the same of eight *limits*, and compares four numbers at once.
+/// Keeps for each cell an unordered list of numbers, each with eight small integers, its *ends*. A search asks for
+/// those of which none exceeds the same of eight *limits*, and compares four numbers at once.
 ///
-/// Cells are in buckets of one cache line, hashed row by row: neighbours along x are neighbours in memory. Nothing tells
-/// apart the cells that share a bucket but the ends, if so they are made; what a search gives is a hint. What does not
-/// fit a bucket is in further ones, chained to it.
+/// Cells are in buckets of one cache line, hashed row by row: neighbours along x are neighbours in memory. Nothing
+/// tells apart the cells that share a bucket but the ends, if so they are made; what a search gives is a hint. What
+/// does not fit a bucket is in further ones, chained to it.
+///
 /// Cost: O(1) and O(numbers in the bucket) for each function.
 ///
 /// Paper: [Teschner03] for hashing cells. Differs: no key is compared.
@@ -64,8 +65,8 @@ class CellTable {
    private:
     friend CellTable;
 
-    /// Adds number i where bit 8 i + 7 is set: all are written, and the end is moved past those that count, since nobody
-    /// can predict which do.
+    /// Adds number i where bit 8 i + 7 is set: all are written, and the end is moved past those that count, since
+    /// nobody can predict which do.
     void add(const std::array<std::uint32_t, 4>& numbers, std::uint32_t which) {
       if (size_ + numbers.size() > numbers_.size()) numbers_.resize(2 * numbers_.size() + 64);
       std::uint32_t* to = numbers_.data() + size_;

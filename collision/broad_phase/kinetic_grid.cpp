@@ -26,13 +26,13 @@ constexpr double least_reach_at_all = 0x1p-500;
 template <int Degree>
 constexpr double kept_share = Degree == 1 ? 0.15 : 0.25;
 
-/// A body is *jostled* if its motion changes in most of its boxes: each in which it does counts 1, up to a bound, each in
-/// which it does not takes back 2. Only bodies on straight paths are: of these it is told when they leave a box.
+/// A body is *jostled* if its motion changes in most of its boxes: each in which it does counts 1, up to a bound, each
+/// in which it does not takes back 2. Only bodies on straight paths are: of these it is told when they leave a box.
 constexpr int jostled_at = 3;
 constexpr int jostled_most = 6;
 
-/// For one that is, a pair that begins costs as much as so many tests; and what was spent on both within a box, in tests,
-/// that a longer reach would pay, or a shorter one (found by measuring; the minimum is flat).
+/// For one that is, a pair that begins costs as much as so many tests; and what was spent on both within a box, in
+/// tests, that a longer reach would pay, or a shorter one (found by measuring; the minimum is flat).
 constexpr std::uint32_t tests_per_pair = 8;
 constexpr std::uint32_t little_spent = 40, much_spent = 60;
 
@@ -41,7 +41,8 @@ double greatest_speed(const certificates::PointMotion<Degree>& motion, double t)
   return motion.velocity(t).cwiseAbs().maxCoeff();
 }
 
-/// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not told.
+/// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not
+/// told.
 template <int Degree>
 double exit_time(const KineticBox<Degree>& box, const StaticBox& present, const StaticBox& fat) {
   if constexpr (Degree > 1) return 0;
@@ -55,9 +56,7 @@ double exit_time(const KineticBox<Degree>& box, const StaticBox& present, const 
   return time * (1 - 0x1p-20);
 }
 
-StaticBox whole_space() {
-  return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)};
-}
+StaticBox whole_space() { return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)}; }
 
 }  // namespace
 
@@ -152,10 +151,16 @@ void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
     if (spent > much_spent) body.reach *= 0.9;
   } else if (lasted) {
     switch (body.begun) {
-      case 0: body.reach = std::min(1.4 * body.reach, greatest_reach); break;
-      case 1: body.reach = std::min(1.15 * body.reach, greatest_reach); break;
-      case 2: break;
-      default: body.reach *= body.begun < 8 ? 0.8 : 0.5;
+      case 0:
+        body.reach = std::min(1.4 * body.reach, greatest_reach);
+        break;
+      case 1:
+        body.reach = std::min(1.15 * body.reach, greatest_reach);
+        break;
+      case 2:
+        break;
+      default:
+        body.reach *= body.begun < 8 ? 0.8 : 0.5;
     }
   } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
     body.reach *= 0.8;

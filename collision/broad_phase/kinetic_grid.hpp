@@ -62,9 +62,9 @@ class KineticGrid final : public BroadPhase<Degree> {
 
   struct Body {
     KineticBox<Degree> box;
-    double reach = 0;         ///< how far it may move in its fat box
-    double fattened = 0;      ///< when its fat box was made
-    double expiry = never;    ///< until when it holds
+    double reach = 0;            ///< how far it may move in its fat box
+    double fattened = 0;         ///< when its fat box was made
+    double expiry = never;       ///< until when it holds
     std::uint32_t begun = 0;     ///< pairs since its last renewal
     std::uint32_t partners = 0;  ///< bodies it makes pairs with
     std::uint32_t changes = 0;   ///< of its motion since its last renewal
@@ -93,7 +93,7 @@ class KineticGrid final : public BroadPhase<Degree> {
 
   std::vector<Body> bodies_;  // by id
   BoxGrid fat_boxes_;
-  CalendarQueue<> expiry_;    // slots are bodies; none later than the horizon
+  CalendarQueue<> expiry_;  // slots are bodies; none later than the horizon
   std::size_t threads_;
   double horizon_ = never;
   BoxGrid::Changes changes_;

@@ -19,8 +19,8 @@ constexpr double reach_per_spacing = 0.25;
 /// Fewer bodies fit into the cache in any order.
 constexpr std::size_t few = 4096;
 
-/// Distance between neighbours if bodies are spread evenly over the box that holds the middle half of them on each axis;
-/// told from some of them. What is far out, up to a quarter on each side, makes no difference.
+/// Distance between neighbours if bodies are spread evenly over the box that holds the middle half of them on each
+/// axis; told from some of them. What is far out, up to a quarter on each side, makes no difference.
 template <int Degree>
 double typical_spacing(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
   constexpr std::size_t sample = 256;

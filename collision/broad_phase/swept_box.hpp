@@ -15,12 +15,8 @@ struct StaticBox {
   Eigen::Array3d min;
   Eigen::Array3d max;
 
-  bool overlaps(const StaticBox& other) const {
-    return (min <= other.max).all() && (other.min <= max).all();
-  }
-  bool contains(const StaticBox& other) const {
-    return (min <= other.min).all() && (other.max <= max).all();
-  }
+  bool overlaps(const StaticBox& other) const { return (min <= other.max).all() && (other.min <= max).all(); }
+  bool contains(const StaticBox& other) const { return (min <= other.min).all() && (other.max <= max).all(); }
   double extent() const { return (max - min).maxCoeff(); }
 };
 

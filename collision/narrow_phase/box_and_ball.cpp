@@ -71,9 +71,9 @@ bool BoxAndBall<Degree>::Piece::cut(double until) {
   return true;
 }
 
-/// As QuickMotion::opened_by(), for f = sum y^2 - r^2. f is known to E = sum (2 |y| e + e^2) and f' = 2 sum y y' to four
-/// times less than it is; in the short time until f has grown by more than 47 E its second derivative, below `bend`,
-/// takes away no more than a quarter of that.
+/// As QuickMotion::opened_by(), for f = sum y^2 - r^2. f is known to E = sum (2 |y| e + e^2) and f' = 2 sum y y' to
+/// four times less than it is; in the short time until f has grown by more than 47 E its second derivative, below
+/// `bend`, takes away no more than a quarter of that.
 template <int Degree>
 double BoxAndBall<Degree>::Piece::distance_opened_by() const {
   const double e = pair_->motion_.error();

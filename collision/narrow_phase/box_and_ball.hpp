@@ -142,8 +142,7 @@ class BoxAndBall<Degree>::Piece {
   certificates::PlaneSeparation<Degree> plane(std::size_t i) const {
     const std::size_t d = i / 2;
     const double margin = place_[d] == grown ? pair_->radius_ : 0.0;
-    return {pair_->box_.motion, pair_->ball_.motion, pair_->axes_[d], side(i), {},
-            {pair_->half(d), margin}};
+    return {pair_->box_.motion, pair_->ball_.motion, pair_->axes_[d], side(i), {}, {pair_->half(d), margin}};
   }
   certificates::FeatureSeparation<Degree> distance() const {
     std::array<double, 3> offset{};

@@ -143,8 +143,7 @@ class BoxAndBox {
   certificates::PlaneSeparation<Degree> certificate(std::size_t i) const {
     const auto& u = a_.shape.half_axes;
     const auto& w = b_.shape.half_axes;
-    return {a_.motion, b_.motion,
-            axes_[i / 2].direction, side(i), {&u[0], &u[1], &u[2], &w[0], &w[1], &w[2]}, {}};
+    return {a_.motion, b_.motion, axes_[i / 2].direction, side(i), {&u[0], &u[1], &u[2], &w[0], &w[1], &w[2]}, {}};
   }
 
   const Body& a_;
@@ -163,8 +162,7 @@ class BoxAndBox {
 template <int Degree>
 double BoxAndBox<Degree>::apart_until(const Body& a, const Body& b, double now, double horizon, PairMemory& memory) {
   if (memory.axis != PairMemory::none) {
-    QuickMotion<Degree> motion(a.motion, b.motion, now, horizon,
-                                     a.shape.bounding_radius + b.shape.bounding_radius);
+    QuickMotion<Degree> motion(a.motion, b.motion, now, horizon, a.shape.bounding_radius + b.shape.bounding_radius);
     TimeWindow window{0, motion.end()};
     const Axis axis = placed(a, b, motion, box_axis(a.shape, b.shape, memory.axis));
     motion.settle(axis.along, axis.reach);

@@ -135,8 +135,7 @@ BallSeparation<Degree> balls_apart(const MovingShape<Degree>& a, const MovingSha
 }  // namespace
 
 template <int Degree>
-double ConvexContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon,
-                                            ContactMode mode) {
+double ConvexContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode) {
   if (is_ball(a) && is_ball(b)) {
     const auto apart = balls_apart(a, b);
     return mode == ContactMode::transparent ? failure_time(apart, t0, horizon) : apart.first_approach(t0, horizon);
@@ -154,8 +153,7 @@ double ConvexContact<Degree>::first_contact(const Body& a, const Body& b, double
 }
 
 template <int Degree>
-double ConvexContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon,
-                                          PairMemory& memory) {
+double ConvexContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory) {
   if (is_ball(a) && is_ball(b)) return t0;
   if (is_ball(a)) return apart_until(b, a, t0, horizon, memory);
   if (!(t0 <= horizon)) return never;

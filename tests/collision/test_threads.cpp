@@ -77,9 +77,11 @@ TEST_CASE("Parts of an array are worked on once each, and what one throws is thr
       for (std::size_t i = first; i < last; ++i) ++touched[i];
     });
     CHECK(std::count(touched.begin(), touched.end(), 1) == 1003);
-    CHECK_THROWS_AS(in_parts(100, threads, [](std::size_t, std::size_t first, std::size_t last) {
-      if (first <= 50 && 50 < last) throw std::runtime_error("50");
-    }), std::runtime_error);
+    CHECK_THROWS_AS(in_parts(100, threads,
+                             [](std::size_t, std::size_t first, std::size_t last) {
+                               if (first <= 50 && 50 < last) throw std::runtime_error("50");
+                             }),
+                    std::runtime_error);
   }
   CHECK(threads_for(1000, 8) == 1);
   CHECK(threads_for(100'000, 1) == 1);

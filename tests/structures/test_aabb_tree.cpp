@@ -249,10 +249,10 @@ TEST_CASE("a kinetic AABB tree keeps to its measures", "[aabb_tree]") {
   simulator.advance_to(10);
   const Measures m = tree.measures();
   CHECK(m.held == 6 * n);
-  CHECK(m.most_held == 6 * n);       // compact
-  CHECK(m.most_per_element == 6);    // local
-  CHECK(m.most_touched == 6);        // responsive
-  CHECK(m.events <= 20 * n);         // once in 0.5 s each
+  CHECK(m.most_held == 6 * n);     // compact
+  CHECK(m.most_per_element == 6);  // local
+  CHECK(m.most_touched == 6);      // responsive
+  CHECK(m.events <= 20 * n);       // once in 0.5 s each
   CHECK(m.events >= 19 * n);
   CHECK(tree.rule().tree().depth() < 4 * std::log2(n));
 

@@ -35,9 +35,7 @@ struct Swing {
   double position(double t) const { return middle + width * std::sin(frequency * t); }
   double velocity(double t) const { return width * frequency * std::cos(frequency * t); }
 
-  BoundedAcceleration moving(double t) const {
-    return {position(t), velocity(t), width * frequency * frequency, t};
-  }
+  BoundedAcceleration moving(double t) const { return {position(t), velocity(t), width * frequency * frequency, t}; }
   Bounded resting(double t) const { return {position(t), width * frequency, t}; }
 };
 

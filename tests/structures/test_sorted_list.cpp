@@ -217,9 +217,9 @@ TEST_CASE("a sorted list keeps to its measures", "[sorted_list]") {
     CHECK(m.external == log.size());  // efficient
     CHECK(m.touched == certificates - before);
     CHECK(m.most_touched == most);
-    CHECK(most <= 3);  // responsive
+    CHECK(most <= 3);                                                // responsive
     CHECK(m.most_per_element == std::min<std::uint64_t>(pairs, 2));  // local
-    CHECK(m.held == pairs);  // compact
+    CHECK(m.held == pairs);                                          // compact
     CHECK(m.most_held == pairs);
     if (n == 40) CHECK(log.size() > 100);
     if (n == 0) continue;

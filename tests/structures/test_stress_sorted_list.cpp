@@ -184,7 +184,8 @@ TEST_CASE("stress: parabolas that touch with discriminant 0 and an ulp to either
       if (dips) {
         // sqrt(ulp) to either side of m.
         const double half = std::sqrt(c0 - shifted);
-        const bool placed = std::abs(log[0].time - (m - half)) <= 1e-15 * m && std::abs(log[1].time - (m + half)) <= 1e-15 * m;
+        const bool placed =
+            std::abs(log[0].time - (m - half)) <= 1e-15 * m && std::abs(log[1].time - (m + half)) <= 1e-15 * m;
         if (!placed) FAIL("swaps at " << log[0].time << " and " << log[1].time << ", m = " << m);
       }
       crossed += dips;
@@ -217,10 +218,17 @@ TEST_CASE("stress: motions change exactly at event times", "[sorted_list][stress
       for (const std::uint32_t id : {log.back().left, log.back().right, static_cast<std::uint32_t>(random.below(60))}) {
         Motion<2> changed = restarted(motions[id], now);
         switch (random.below(4)) {
-          case 0: changed.position.c[1] = -changed.position.c[1]; break;
-          case 1: changed = random_motion<2>(random, kind, now); break;
-          case 2: changed = motions[random.below(60)]; break;
-          default: break;
+          case 0:
+            changed.position.c[1] = -changed.position.c[1];
+            break;
+          case 1:
+            changed = random_motion<2>(random, kind, now);
+            break;
+          case 2:
+            changed = motions[random.below(60)];
+            break;
+          default:
+            break;
         }
         motions[id] = changed;
         list.update(id, changed, now);

@@ -62,7 +62,8 @@ TEST_CASE("A cell table holds what was added and not removed", "[box_grid]") {
     std::multiset<std::uint32_t> there, seen;
     // Bytes of all three axes, or the limits as a whole.
     CellTable::Block block{5, {x, -1, 0}, {3, 3, 2}, {}};
-    for (std::size_t i = 0; i < 3; ++i) block.limits[0][i] = limits & 0xFFFFu, block.limits[1][i] = limits & 0x0000FFFFFFFF0000u;
+    for (std::size_t i = 0; i < 3; ++i)
+      block.limits[0][i] = limits & 0xFFFFu, block.limits[1][i] = limits & 0x0000FFFFFFFF0000u;
     for (std::size_t i = 0; i < 2; ++i) block.limits[2][i] = limits & 0xFFFF000000000000u;
     for (int z = 0; z <= 1; ++z) {
       for (int y = -1; y <= 1; ++y) {
@@ -118,7 +119,8 @@ void compare_with_brute_force(std::uint64_t seed, int sizes, double far) {
       boxes.erase(id);
       REQUIRE(changes.began.empty());
     } else {
-      StaticBox box = random_box(random, std::ldexp(1.0, -static_cast<int>(random.below(static_cast<std::size_t>(sizes) + 1))), 2, far);
+      StaticBox box = random_box(
+          random, std::ldexp(1.0, -static_cast<int>(random.below(static_cast<std::size_t>(sizes) + 1))), 2, far);
       if (round % 2 == 0) {
         box.min = (box.min * 8).round() / 8;
         box.max = (box.max * 8).round() / 8;

@@ -32,8 +32,7 @@ struct Dops {
       : random(seed),
         coarse(coarse_numbers),
         more(directions(k)),
-        broad_phase(0, listed,
-                    {more, [this](BodyId id, std::size_t i, double) { return bodies.at(id).slabs[i]; }}) {
+        broad_phase(0, listed, {more, [this](BodyId id, std::size_t i, double) { return bodies.at(id).slabs[i]; }}) {
     broad_phase.extend_horizon(0, never);
   }
 

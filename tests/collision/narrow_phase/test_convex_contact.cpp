@@ -123,8 +123,7 @@ class Pairs {
 
   PlacedShape box() {
     const Eigen::Quaterniond turned = Eigen::Quaterniond(number(0, 1), number(-1, 1), number(-1, 1), 1).normalized();
-    return place(Box{{length(), length(), length()}},
-                 random_.one_in(3) ? Eigen::Quaterniond::Identity() : turned);
+    return place(Box{{length(), length(), length()}}, random_.one_in(3) ? Eigen::Quaterniond::Identity() : turned);
   }
   PlacedShape other() { return with_ball_ ? placed_ball(length()) : box(); }
 

@@ -21,10 +21,14 @@ PlacedShape random_shape(Random& random, std::uint32_t kind) {
   static const auto cube = samples::cuboid();
   const double size = random.uniform(0.3, 1);
   switch (kind) {
-    case 0: return place(MeshShape{ring, size}, random.orientation());
-    case 1: return place(MeshShape{cube, size}, random.orientation());
-    case 2: return place(Box{{size, 0.5 * size, 0.7 * size}}, random.orientation());
-    default: return placed_ball(size);
+    case 0:
+      return place(MeshShape{ring, size}, random.orientation());
+    case 1:
+      return place(MeshShape{cube, size}, random.orientation());
+    case 2:
+      return place(Box{{size, 0.5 * size, 0.7 * size}}, random.orientation());
+    default:
+      return placed_ball(size);
   }
 }
 
