@@ -13,8 +13,8 @@ namespace kds::collision {
 /// All pairs while there are few bodies, the kinetic grid from then on, and back when most have gone. A change reports
 /// just the pairs that one has and the other has not, so no contact is lost.
 ///
-/// These two are enough: from some twenty bodies on the grid is the cheapest at nearly all sizes, densities and rates that
-/// were measured (docs/speed.md).
+/// These two are enough: from some twenty bodies on the grid is the cheapest at nearly all sizes, densities and rates
+/// that were measured (docs/speed.md).
 template <int Degree>
 class AdaptiveBroadPhase final : public BroadPhase<Degree> {
  public:
