@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/order_parabola.hpp"
+#include "certificates/order_together.hpp"
 #include "kds/arithmetic/unrolled.hpp"
 #include "kds/certificate.hpp"
 #include "kds/motion.hpp"
@@ -74,6 +75,13 @@ struct Order {
   /// (straight motions, and those that share their accelerations) or a parabola.
   double quick_failure_time(double now, double horizon) const
     requires(Degree >= 1);
+
+  /// Of two pairs together: see order_together.hpp.
+  static TwoTimes quick_failure_times(const Order& first, const Order& second, double now, double horizon)
+    requires(Degree == 1)
+  {
+    return certificates::quick_failure_times(first.lower, first.upper, second.lower, second.upper, now, horizon);
+  }
 
   /// The same for failure_time_after_turn().
   double quick_failure_time_after_turn(double now, double horizon) const

@@ -261,6 +261,15 @@ void SortedList<Degree, Listener, Queue, Solver>::process() {
   exchange(left);
   listener_.swapped(order_[left].id, order_[left + 1].id, time);
   // Certified anew: the pair itself, whose sign has just turned, and the two pairs around it.
+  if constexpr (by_place && Solver::certified) {
+    if (left > 0 && left + 2 < order_.size() && time != disturbed_) {
+      schedule_.certify_three(slot(left), pair(left - 1), pair(left), pair(left + 1), time);
+      settle();
+      measures_.touched += 3;
+      measures_.most_touched = 3;
+      return;
+    }
+  }
   if (time == disturbed_) {  // It may have been a tie.
     certify(left, time);
   } else {

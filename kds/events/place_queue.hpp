@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/arithmetic/lattice.hpp"
+#include "kds/events/eight_times.hpp"
 #include "kds/events/event_queue.hpp"
 
 #include <algorithm>
@@ -16,18 +17,21 @@ namespace kds {
 
 /// The least of a row of times, and where it stands.
 ///
-/// Slots are places in a row: insert_slot() and erase_slot() shift those behind. Eight of them, a cache line, are a
-/// group whose least is kept; so are eight groups, and so on up to one. A change is written down at once and counts
-/// after the next settle(), which brings the groups of the places changed since the last one up to date: for
-/// neighbours, one group on each level, log8(n) of them.
+/// Slots are places in a row: insert_slot() and erase_slot() shift those behind. Eight of them, a cache line, have
+/// their least kept; four such lines are a group, whose least is kept too; so are four groups, and so on up to one. A
+/// change is written down at once and counts after the next settle(), which brings lines and groups of the places
+/// changed since the last one up to date: for neighbours, one group on each level, log4(n / 8) of them.
 ///
 /// Made for lists whose swaps change three neighbouring slots: what a heap or a calendar decides by branches that
 /// nobody can foresee, this does by conditional moves, in the same few dozens of cycles each time, whatever the times
-/// are. Times are kept as their place among all doubles, and "no event" as a number of each slot's own behind them, so
-/// that only events of one time are ever equal, and to look at ranks is a branch that is hardly ever taken.
+/// are. On the way up the first of the other three of a group, which have not changed, is known before the changed one
+/// is, so that each level adds one comparison to the wait for the next event.
+///
+/// In groups times are kept as their place among all doubles, and "no event" as a number of each one's own behind them,
+/// so that only events of one time are ever equal, and to look at ranks is a branch that is hardly ever taken.
 ///
 /// Cost: set, clear O(1); settle O(log n + distance between the first and the last place changed / 8); insert_slot,
-/// erase_slot O(n) moves of memory, and the groups behind.
+/// erase_slot O(n) moves of memory, and all groups.
 class PlaceQueue {
  public:
   void resize(std::size_t slots);
@@ -39,153 +43,245 @@ class PlaceQueue {
   /// Precondition: not NaN, nor -infinity. Infinity clears.
   void set(Slot place, double time) {
     assert(place < size_ && time > -detail::no_event);
-    if (time == detail::no_event) return clear(place);
-    keys_[0][place] = lattice_index(time);
+    times_[place] = time + 0.0;  // never -0
     touch(place, place);
   }
-  void clear(Slot place) {
-    keys_[0][place] = no_event(place);
-    touch(place, place);
+  /// The same for a place and those on its left and right, which must be there.
+  void set_three(Slot place, double left, double middle, double right) {
+    assert(place > 0 && place + std::size_t{1} < size_);
+    times_[place - 1] = left + 0.0;
+    times_[place] = middle + 0.0;
+    times_[place + 1] = right + 0.0;
+    touch(place - 1, place + 1);
   }
+  void clear(Slot place) { set(place, detail::no_event); }
 
-  bool contains(Slot place) const { return keys_[0][place] <= latest; }
-  double time(Slot place) const { return time_of(keys_[0][place]); }
+  bool contains(Slot place) const { return time(place) != detail::no_event; }
+  double time(Slot place) const { return times_[place]; }
   std::size_t slots() const { return size_; }
 
   /// Number of events; counts them.
-  std::size_t size() const {
-    return static_cast<std::size_t>(
-        std::count_if(keys_[0].begin(), keys_[0].end(), [](Key key) { return key <= latest; }));
-  }
+  std::size_t size() const;
 
   /// Of events of one time the one with the least rank(place) goes first, then the first place. Ranks of places that
   /// have not changed must not have changed either.
   template <class Rank>
   void settle(Rank&& rank);
 
-  /// Precondition, of these two: settled.
-  bool empty() const { return size_ == 0 || keys_.back()[0] > latest; }
+  // Precondition of these: settled.
+
+  bool empty() const { return top_.time == detail::no_event; }
+  /// Time of the first event, infinity if there is none.
+  double next_time() const { return top_.time; }
+  /// Precondition: not empty.
+  QueuedEvent top() const { return top_; }
   /// One of the next few events, probably, which has just become one: worth fetching into the cache.
   Slot candidate() const { return candidate_; }
-  QueuedEvent top() const { return {time_of(keys_.back()[0]), places_.back()[0]}; }
 
  private:
   using Key = std::int64_t;
-  static constexpr std::size_t group = 8;
+  static constexpr std::size_t line = 8;
+  static constexpr std::size_t group = 4;
+  static constexpr std::size_t most_levels = 16;  ///< of groups: Slot has 32 bits
+
+  struct Event {
+    Key key;
+    Slot place;
+  };
+  /// By conditional moves: compilers take a branch for two choices by one condition unless told that it is no use.
+  static Event lesser(Event a, Event b) {
+    Slot place = a.place;
+    const Key key = std::min(a.key, b.key);
+    if (__builtin_expect_with_probability(b.key < a.key, 1, 0.5)) place = b.place;
+    return {key, place};
+  }
+  /// Four events, each the first of a line or of a group of the level below; in a cache line.
+  struct alignas(64) Group {
+    std::array<Key, group> keys;
+    std::array<Slot, group> places;
+
+    Event at(std::size_t i) const { return {keys[i], places[i]}; }
+    /// The first of the other three; false where times are equal.
+    bool first_without(std::size_t i, Event& first) const {
+      first = at(i ^ 1);
+      for (const std::size_t j : {i ^ 2, i ^ 3}) {
+        const Event other = at(j);
+        if (__builtin_expect(other.key == first.key, 0)) return false;
+        first = lesser(first, other);
+      }
+      return true;
+    }
+    void put(std::size_t i, Event event) {
+      keys[i] = event.key;
+      places[i] = event.place;
+    }
+  };
 
   inline static const Key latest = lattice_index(std::numeric_limits<double>::max());
-  static Key no_event(std::size_t place) { return std::numeric_limits<Key>::max() - static_cast<Key>(place); }
-  static double time_of(Key key) { return key <= latest ? lattice_point(key) : detail::no_event; }
+  static Key no_event(std::size_t number) { return std::numeric_limits<Key>::max() - static_cast<Key>(number); }
+
+  static Key key_of(double time, std::size_t i) {
+    return time < detail::no_event ? lattice_index(time) : no_event(i);
+  }
 
   void touch(std::size_t first, std::size_t last) {
     first_ = std::min(first_, first);
     last_ = std::max(last_, last);
   }
+  void make_groups();
+  void set_top(Event event) { top_ = {event.key <= latest ? lattice_point(event.key) : detail::no_event, event.place}; }
 
-  template <std::size_t Count, class Rank>
-  static void least(const Key* keys, const Slot* places, Key& key, Slot& place, Rank& rank);
+  template <class Rank>
+  static bool earlier(Event a, Event b, Rank& rank);
+  /// By conditional moves.
+  template <class Rank>
+  static Event first_of(Event a, Event b, Rank& rank) {
+    const bool second = earlier(b, a, rank);
+    return {second ? b.key : a.key, second ? b.place : a.place};
+  }
+  template <class Rank>
+  Event first_in_line(std::size_t i, Rank& rank) const;
+  bool settle_line(std::size_t i);
+  template <class Rank>
+  void settle_lines(std::size_t first, std::size_t last, Rank& rank);
 
-  // Level 0 are the places themselves, filled up to a multiple of eight; on level k + 1 there is the least of each
-  // group of level k, and in places_ where it stands. The last has one.
-  std::vector<std::vector<Key>> keys_{{}};
-  std::vector<std::vector<Slot>> places_{{}};
+  std::vector<double, detail::LineAllocator<double>> times_;  ///< of all places; filled up with no events
+  /// On level 0 those of the lines, on level k + 1 those of level k; the last level has one.
+  std::vector<Group> groups_;
+  std::array<std::size_t, most_levels> begins_{};  ///< of levels among them
+  std::size_t levels_ = 0;
   std::size_t size_ = 0;
+  QueuedEvent top_;
   Slot candidate_ = 0;
-  std::size_t first_ = std::numeric_limits<std::size_t>::max();  // of the places changed since the last settle()
+  std::size_t first_ = std::numeric_limits<std::size_t>::max();  ///< of the places changed since the last settle()
   std::size_t last_ = 0;
 };
 
 // ---------------------------------------------------------------------------------------------------------------
 
 inline void PlaceQueue::resize(std::size_t slots) {
-  auto& row = keys_[0];
-  const std::size_t before = std::min(slots, size_);
-  std::size_t count = (slots + group - 1) / group * group;
-  row.resize(count);
-  places_[0].resize(count);
-  for (std::size_t i = before; i < count; ++i) row[i] = no_event(i);
-  for (std::size_t i = 0; i < count; ++i) places_[0][i] = static_cast<Slot>(i);
+  const std::size_t filled = (slots + line - 1) / line * line;
+  const bool changed = filled != times_.size();
+  times_.resize(filled, detail::no_event);
+  for (std::size_t i = slots; i < std::min(size_, filled); ++i) times_[i] = detail::no_event;
   size_ = slots;
-  std::size_t levels = 1;
-  while (count > 1) {
-    count /= group;
-    const std::size_t filled = count > 1 ? (count + group - 1) / group * group : count;
-    if (levels == keys_.size()) keys_.emplace_back(), places_.emplace_back();
-    keys_[levels].resize(filled);
-    places_[levels].resize(filled);
-    for (std::size_t i = count; i < filled; ++i) {
-      keys_[levels][i] = no_event((levels << 34) + i);  // unlike those of the places
-      places_[levels][i] = 0;
-    }
-    ++levels;
-    count = filled;
-  }
-  keys_.resize(levels);
-  places_.resize(levels);
+  if (changed) make_groups();
   if (slots > 0) touch(0, slots - 1);
+}
+
+inline void PlaceQueue::make_groups() {
+  std::size_t count = times_.size() / line;
+  groups_.clear();
+  top_ = {};
+  for (levels_ = 0; count > (levels_ > 0 ? 1 : 0); ++levels_) {
+    count = (count + group - 1) / group;
+    begins_[levels_] = groups_.size();
+    Group none{};
+    for (std::size_t i = 0; i < group; ++i) none.keys[i] = no_event(((levels_ + 1) << 34) + i);  // unlike a line's
+    groups_.resize(groups_.size() + count, none);
+  }
 }
 
 inline void PlaceQueue::insert_slot(Slot place) {
   resize(size_ + 1);
-  auto& row = keys_[0];
-  for (std::size_t i = size_ - 1; i > place; --i) row[i] = row[i - 1] <= latest ? row[i - 1] : no_event(i);
-  row[place] = no_event(place);
+  const auto at = times_.begin() + static_cast<std::ptrdiff_t>(place);
+  const auto end = times_.begin() + static_cast<std::ptrdiff_t>(size_);
+  std::move_backward(at, end - 1, end);
+  *at = detail::no_event;
 }
 
 inline void PlaceQueue::erase_slot(Slot place) {
-  auto& row = keys_[0];
-  for (std::size_t i = place; i + 1 < size_; ++i) row[i] = row[i + 1] <= latest ? row[i + 1] : no_event(i);
+  const auto at = times_.begin() + static_cast<std::ptrdiff_t>(place);
+  std::move(at + 1, times_.begin() + static_cast<std::ptrdiff_t>(size_), at);
   resize(size_ - 1);
 }
 
 inline void PlaceQueue::move_slot(Slot from, Slot to) {
   if (from == to) return;
-  auto& row = keys_[0];
-  const Key moved = row[from];
-  const std::size_t step = from < to ? 1 : std::size_t(-1);
-  for (std::size_t i = from; i != to; i += step) row[i] = row[i + step] <= latest ? row[i + step] : no_event(i);
-  row[to] = moved <= latest ? moved : no_event(to);
-  touch(std::min(from, to), std::max(from, to));
+  const auto [first, last] = std::minmax(from, to);
+  const auto begin = times_.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto end = times_.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+  std::rotate(begin, from < to ? begin + 1 : end - 1, end);
+  touch(first, last);
 }
 
-/// Knock-out: the lesser of each two, and its place, by conditional moves.
-template <std::size_t Count, class Rank>
-inline void PlaceQueue::least(const Key* keys, const Slot* places, Key& key, Slot& place, Rank& rank) {
-  if constexpr (Count == 1) {
-    key = keys[0];
-    place = places[0];
-  } else {
-    constexpr std::size_t half = Count / 2;
-    Key other_key;
-    Slot other_place;
-    least<half>(keys, places, key, place, rank);
-    least<half>(keys + half, places + half, other_key, other_place, rank);
-    bool other = other_key < key;
-    if (__builtin_expect(other_key == key, 0)) other = rank(other_place) < rank(place);
-    key = other ? other_key : key;
-    place = other ? other_place : place;
+/// What is behind the last slot is no event.
+inline std::size_t PlaceQueue::size() const {
+  return times_.size() - static_cast<std::size_t>(std::count(times_.begin(), times_.end(), detail::no_event));
+}
+
+template <class Rank>
+[[gnu::always_inline]] inline bool PlaceQueue::earlier(Event a, Event b, Rank& rank) {
+  if (__builtin_expect(a.key == b.key, 0)) {
+    const auto rank_a = rank(a.place);
+    const auto rank_b = rank(b.place);
+    return rank_a != rank_b ? rank_a < rank_b : a.place < b.place;
   }
+  return a.key < b.key;
+}
+
+template <class Rank>
+[[gnu::always_inline]] inline PlaceQueue::Event PlaceQueue::first_in_line(std::size_t i, Rank& rank) const {
+  const detail::LeastTime least = detail::least_of_eight(&times_[line * i]);
+  Event first{key_of(least.time, i), static_cast<Slot>(line * i + least.first())};
+  if (__builtin_expect(least.shared(), 0)) {
+    for (std::size_t j = least.first() + 1; j < line; ++j) {
+      if (least.has(j)) first = first_of(first, {first.key, static_cast<Slot>(line * i + j)}, rank);
+    }
+  }
+  return first;
 }
 
 template <class Rank>
 inline void PlaceQueue::settle(Rank&& rank) {
   if (first_ > last_ || size_ == 0) return;
-  std::size_t first = first_;
-  std::size_t last = std::min(last_, size_ - 1);
+  const std::size_t first = first_ / line;
+  const std::size_t last = std::min(last_, size_ - 1) / line;
   first_ = std::numeric_limits<std::size_t>::max();
   last_ = 0;
-  for (std::size_t level = 0; level + 1 < keys_.size(); ++level) {
-    candidate_ = places_[level][first];
+  const bool settled = last <= first + 1 && (first == last || settle_line(first)) && settle_line(last);
+  if (!settled) settle_lines(first, last, rank);
+}
+
+/// False where two times are equal, so that ranks count; then nothing is settled.
+inline bool PlaceQueue::settle_line(std::size_t i) {
+  const detail::LeastTime least = detail::least_of_eight(&times_[line * i]);
+  if (__builtin_expect(least.shared(), 0)) return false;
+  Event event{key_of(least.time, i), static_cast<Slot>(line * i + least.first())};
+  Group& of_lines = groups_[i / group];
+  of_lines.put(i % group, event);
+  Event other;
+  if (__builtin_expect(!of_lines.first_without(i % group, other), 0)) return false;
+  if (__builtin_expect(other.key == event.key, 0)) return false;
+  event = lesser(event, other);
+  for (std::size_t level = 1; level < levels_; ++level) {
+    i /= group;
+    Group& on_level = groups_[begins_[level] + i / group];
+    on_level.put(i % group, event);
+    candidate_ = event.place;
+    if (__builtin_expect(!on_level.first_without(i % group, other), 0)) return false;
+    if (__builtin_expect(other.key == event.key, 0)) return false;
+    event = lesser(event, other);
+  }
+  set_top(event);
+  return true;
+}
+
+template <class Rank>
+void PlaceQueue::settle_lines(std::size_t first, std::size_t last, Rank& rank) {
+  for (std::size_t i = first; i <= last; ++i) groups_[i / group].put(i % group, first_in_line(i, rank));
+  for (std::size_t level = 0; level < levels_; ++level) {
     first /= group;
     last /= group;
-    const Key* keys = keys_[level].data();
-    const Slot* places = places_[level].data();
     for (std::size_t i = first; i <= last; ++i) {
-      Key key;
-      Slot place;
-      least<group>(keys + group * i, places + group * i, key, place, rank);
-      keys_[level + 1][i] = key;
-      places_[level + 1][i] = place;
+      const Group& four = groups_[begins_[level] + i];
+      const Event event =
+          first_of(first_of(four.at(0), four.at(1), rank), first_of(four.at(2), four.at(3), rank), rank);
+      if (level + 1 < levels_) {
+        groups_[begins_[level + 1] + i / group].put(i % group, event);
+      } else {
+        set_top(event);
+      }
     }
   }
 }

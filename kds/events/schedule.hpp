@@ -8,8 +8,10 @@
 #include "kds/roots/solver.hpp"
 #include "kds/statistics.hpp"
 
+#include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace kds {
@@ -51,7 +53,10 @@ class Schedule {
   double time(Slot slot) const { return queue_.time(slot); }
 
   /// Time of the next failure within the horizon, `never` if there is none, and its slot.
-  double next_time() const { return queue_.empty() ? never : queue_.top().time; }
+  double next_time() const {
+    if constexpr (std::same_as<Queue, PlaceQueue>) return queue_.next_time();
+    return queue_.empty() ? never : queue_.top().time;
+  }
   QueuedEvent next() const { return queue_.top(); }
 
   double horizon() const { return horizon_; }
@@ -93,6 +98,27 @@ class Schedule {
     } else {
       certify(slot, certificate, now);
     }
+  }
+
+  /// After a swap, of places in a row: the certificate at `middle` has just turned from - to +, those on its left and
+  /// right are new. As certify() and certify_turned() would do, for less.
+  template <Certificate C>
+  void certify_three(Slot middle, const C& left, const C& turned, const C& right, double now)
+    requires std::same_as<Queue, PlaceQueue> && Solver::certified
+  {
+    counters_.certificates += 3;
+    double before = std::numeric_limits<double>::quiet_NaN();
+    double after = before;
+    if constexpr (requires { C::quick_failure_times(left, right, now, horizon_); }) {
+      if (now <= horizon_) {
+        const auto [first, second] = C::quick_failure_times(left, right, now, horizon_);
+        before = first;
+        after = second;
+      }
+    }
+    if (__builtin_expect(std::isnan(before), 0)) before = solver_(left, now, horizon_);
+    if (__builtin_expect(std::isnan(after), 0)) after = solver_(right, now, horizon_);
+    queue_.set_three(middle, before, solver_.after_turn(turned, now, horizon_), after);
   }
 
   /// Schedules a slot by hand; `never` clears it.
