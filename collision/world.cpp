@@ -125,10 +125,6 @@ bool World<Degree>::step(double limit) {
     if (!entering_.empty()) enter_new_bodies();
     if (!disturbed_.empty()) settle();
     if (!dirty_.empty() || !passing_.empty()) test_dirty_pairs();
-    if (!pending_.empty()) {
-      emit_pending();
-      return true;
-    }
     const auto time_of = [](const auto& queue) { return queue.empty() ? never : queue.top().time; };
     const double piece = time_of(pieces_);
     const double boxes = time_of(boxes_);
@@ -136,8 +132,10 @@ bool World<Degree>::step(double limit) {
     const double wall = time_of(walls_);
     const double let_go = time_of(releases_);
     const double contact = time_of(contacts_);
+    // What is pending is of this instant, all of which has to be known before any of it is told.
+    const bool reports = !pending_.empty();
     // Nothing is known beyond the horizon: look that far, then farther.
-    const double next = std::min({limit, horizon_, piece, boxes, volume, wall, let_go, contact});
+    const double next = std::min({reports ? now_ : limit, horizon_, piece, boxes, volume, wall, let_go, contact});
     if (next < never && certify_next(contact == next, wall == next)) continue;
     // A piece that starts now is the motion at t+, so the broad phase may not run past it under the old one.
     const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
@@ -154,6 +152,9 @@ bool World<Degree>::step(double limit) {
     now_ = std::max(now_, next);
     if (boxes == next) {
       process_boxes(boxes_.top().slot, next);
+    } else if (reports && !pending_.begin()->waits()) {
+      report_next();
+      return true;
     } else if (volume == next) {
       renew_volume(volumes_.top().slot);
       return true;
@@ -162,8 +163,11 @@ bool World<Degree>::step(double limit) {
       return true;
     } else if (let_go == next) {
       release(releases_.top().slot);
-    } else if (contact == next) {
+    } else if (contact == next && !(reports && separates_before(pairs_[contacts_.top().slot]))) {
       process_contact(contacts_.top().slot, next);
+      return true;
+    } else if (reports) {
+      report_next();
       return true;
     } else if (next < limit) {
       reach(limit == never ? horizon_ + options_.window : limit);
@@ -244,40 +248,6 @@ void World<Degree>::renew_volume(BodyId id) {
     for (const Link& link : bodies_[id].pairs) mark_dirty(link.slot);
   }
   schedule_volume(id);
-}
-
-template <int Degree>
-void World<Degree>::emit_pending() {
-  Pending event = pending_.front();
-  pending_.pop_front();
-  fill_in(event);
-  const PairEvent pair{event.a, event.b, event.contact};
-  switch (event.kind) {
-    case Pending::Kind::overlap:
-      if (!contains(event.a) || !contains(event.b)) return;
-      ++counters_.overlaps;
-      return listener_->overlap(*this, pair);
-    case Pending::Kind::separation:
-      ++counters_.separations;
-      return listener_->separation(*this, pair);
-    case Pending::Kind::held:
-      return listener_->held(*this, pair);
-    case Pending::Kind::moved:
-      return contains(event.a) ? listener_->moved(*this, event.a) : void();
-    case Pending::Kind::pair_began:
-      return listener_->pair_began(*this, event.a, event.b, event.contact.time);
-    case Pending::Kind::pair_ended:
-      return listener_->pair_ended(*this, event.a, event.b, event.contact.time);
-  }
-}
-
-/// A caller who moves two bodies in turn parts them with the first move, but they separate where the second leaves
-/// them: so whether the broad phase told of it at once makes no difference.
-template <int Degree>
-void World<Degree>::fill_in(Pending& separation) const {
-  if (separation.placed) return;
-  separation.contact = contact_at(moving(separation.a), moving(separation.b), separation.contact.time);
-  separation.placed = true;
 }
 
 template <int Degree>

@@ -16,9 +16,9 @@
 #include "kds/events/dary_queue.hpp"
 
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -43,7 +43,8 @@ struct WorldCounters {
 /// Runs bodies through time and reports their contacts at exact times.
 ///
 /// [Paper] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
-/// broad phase, bounding volumes that expire, walls, held pairs let go, contacts by (a, b). Dynamic test results are
+/// broad phase, bounding volumes that expire, walls, held pairs let go, contacts and separations by (a, b). Which broad
+/// phase finds them makes no difference: WorldListener says in what order they are reported. Dynamic test results are
 /// kept until a motion changes; then only the pairs of that body that are active are tested again.
 ///
 /// Degree 1 (straight paths) never pays for degree 2.
@@ -226,7 +227,8 @@ class World final : private PairListener {
   struct Passing {
     BodyId a, b;
     double at;      ///< when its pair ended
-    bool let_pass;  ///< at that time; else only until the next tests
+    bool let_pass;  ///< at that time, whatever happens
+    bool moved;     ///< one of the two has moved otherwise since: then only until the next tests
   };
 
   struct PairRank {
@@ -236,11 +238,15 @@ class World final : private PairListener {
     }
   };
 
+  /// A report to be made at this instant. They are in the order in which WorldListener is told of them.
   struct Pending {
-    enum class Kind { overlap, separation, pair_began, pair_ended, held, moved } kind;
+    enum class Kind { held, moved, pair_ended, pair_began, separation, overlap } kind;
     BodyId a, b;
     Contact contact;
-    bool placed = true;  ///< the contact is filled in; else that is done when it is reported, or a body removed
+    bool removed = false;  ///< one of the bodies has been removed since: nothing undoes it
+
+    bool waits() const { return kind == Kind::separation && !removed; }
+    bool operator<(const Pending& other) const;
   };
 
   // world.cpp: the clock
@@ -248,8 +254,16 @@ class World final : private PairListener {
   void reach(double limit);
   void start_pieces();
   void renew_volume(BodyId id);
-  void emit_pending();
-  void fill_in(Pending& separation) const;
+
+  // world_reports.cpp: what is told at one instant, in one order
+  void report_next();
+  void report(typename Pending::Kind kind, BodyId a, BodyId b, const Contact& contact) {
+    pending_.insert({kind, a, b, contact});
+  }
+  void report_pair(bool began, BodyId a, BodyId b);
+  bool take_back(typename Pending::Kind kind, BodyId a, BodyId b);
+  bool separates_before(const Pair& pair) const;
+  void keep_reports_of(BodyId removed);
 
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }
 
@@ -271,7 +285,6 @@ class World final : private PairListener {
   void pair_began(BodyId a, BodyId b, double t) override;
   void pair_ended(BodyId a, BodyId b, double t) override;
   PairSlot find_pair(BodyId a, BodyId b) const;
-  bool take_back(typename Pending::Kind kind, BodyId a, BodyId b, double t);
   void release_pair(PairSlot slot);
   void mark_dirty(PairSlot slot);
   void let_pass(BodyId a, BodyId b);
@@ -354,12 +367,12 @@ class World final : private PairListener {
   std::vector<KdopDirection> directions_;       // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction
   /// Ignored pairs that have ended at this instant: motions that change in turn may part boxes that touch and bring
-  /// them together again.
+  /// them together again, or keep together what would have parted.
   std::vector<Passing> passing_;
   std::vector<Hold> holds_;
   std::vector<HoldSlot> free_holds_;
   std::vector<BodyId> disturbed_;
-  std::deque<Pending> pending_;
+  std::multiset<Pending> pending_;
   // Queues that a scene does not need have no slots.
   DaryQueue<> pieces_;                // slots are bodies
   DaryQueue<> volumes_;               // slots are bodies

@@ -47,9 +47,7 @@ void World<Degree>::remove_body(BodyId id) {
   }
   // Pairs the broad phase does not know of any more.
   while (!removed.pairs.empty()) release_pair(removed.pairs.back().slot);
-  for (Pending& event : pending_) {
-    if (event.a == id || event.b == id) fill_in(event);
-  }
+  if (!pending_.empty()) keep_reports_of(id);
   removed = Body{};
   free_bodies_.push_back(id);
   --alive_;
@@ -94,6 +92,7 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
   movers_[id].motion = motion;
   inserting_ = jumped && mode() == ContactMode::resolved;
   broad_phase_->update(id, renewed_box(id), now_, *this);
+  for (Passing& passing : passing_) passing.moved = passing.moved || passing.a == id || passing.b == id;
   for (const Link& link : b.pairs) {
     mark_dirty(link.slot);
     pairs_[link.slot].fresh = pairs_[link.slot].fresh || inserting_;
@@ -178,14 +177,12 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
     if (body->pairs.capacity() == 0) body->pairs.reserve(first_pairs);
   }
   // A jump may part two bodies and another one bring them together at the same instant.
-  pair.touching = take_back(Pending::Kind::separation, a, b, t);
+  pair.touching = take_back(Pending::Kind::separation, a, b);
   body_a.pairs.push_back({b, slot});
   body_b.pairs.push_back({a, slot});
   ++counters_.pairs_begun;
   mark_dirty(slot);
-  if (options_.report_pairs && broad_phase_->exact() && !take_back(Pending::Kind::pair_ended, a, b, t)) {
-    pending_.push_back({Pending::Kind::pair_began, a, b, {.time = t}});
-  }
+  if (options_.report_pairs && broad_phase_->exact()) report_pair(true, a, b);
 }
 
 template <int Degree>
@@ -207,28 +204,11 @@ typename World<Degree>::PairSlot World<Degree>::find_pair(BodyId a, BodyId b) co
   return no_pair;
 }
 
-/// Forgets a report that has been undone before it was made; false if there is none. Bodies that enter, perhaps under
-/// the id of one that has been removed, undo nothing.
-template <int Degree>
-bool World<Degree>::take_back(typename Pending::Kind kind, BodyId a, BodyId b, double t) {
-  if (inserting_) return false;
-  const auto it = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& event) {
-    return event.kind == kind && event.a == a && event.b == b && event.contact.time == t;
-  });
-  if (it == pending_.end()) return false;
-  pending_.erase(it);
-  return true;
-}
-
 template <int Degree>
 void World<Degree>::release_pair(PairSlot slot) {
   Pair& pair = pairs_[slot];
-  if (pair.touching) {
-    pending_.push_back({Pending::Kind::separation, pair.a, pair.b, {.time = now_}, false});
-  }
-  if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) {
-    pending_.push_back({Pending::Kind::pair_ended, pair.a, pair.b, {.time = now_}});
-  }
+  if (pair.touching) report(Pending::Kind::separation, pair.a, pair.b, {.time = now_});
+  if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) report_pair(false, pair.a, pair.b);
   // Each body's list closes up with its last entry.
   for (const BodyId id : {pair.a, pair.b}) {
     auto& list = bodies_[id].pairs;
@@ -238,7 +218,7 @@ void World<Degree>::release_pair(PairSlot slot) {
     list.pop_back();
     (id < moved.other ? pairs_[moved.slot].place_in_a : pairs_[moved.slot].place_in_b) = place;
   }
-  if (pair.ignored) passing_.push_back({pair.a, pair.b, now_, pair.let_pass == now_});
+  if (pair.ignored) passing_.push_back({pair.a, pair.b, now_, pair.let_pass == now_, false});
   contacts_.clear(slot);
   if (slot < boxes_.slots()) boxes_.clear(slot);
   pair.alive = false;
@@ -250,7 +230,7 @@ void World<Degree>::release_pair(PairSlot slot) {
 template <int Degree>
 void World<Degree>::let_pass(BodyId a, BodyId b) {
   const PairSlot slot = find_pair(a, b);
-  if (slot == no_pair) return passing_.push_back({a, b, now_, true});
+  if (slot == no_pair) return passing_.push_back({a, b, now_, true, false});
   pairs_[slot].ignored = true;
   pairs_[slot].let_pass = now_;
   mark_dirty(slot);
@@ -266,8 +246,12 @@ void World<Degree>::mark_dirty(PairSlot slot) {
 template <int Degree>
 bool World<Degree>::touching(BodyId a, BodyId b) const {
   body(a), body(b);
-  const PairSlot slot = find_pair(std::min(a, b), std::max(a, b));
-  return slot != no_pair && pairs_[slot].touching;
+  if (a > b) std::swap(a, b);
+  const PairSlot slot = find_pair(a, b);
+  if (slot != no_pair) return pairs_[slot].touching;
+  // Whether the broad phase has forgotten the pair before its separation is told makes no difference.
+  return std::any_of(pending_.begin(), pending_.end(),
+                     [&](const Pending& event) { return event.waits() && event.a == a && event.b == b; });
 }
 
 template class World<1>;

@@ -23,8 +23,17 @@ struct WallEvent {
 template <int Degree>
 class World;
 
-/// Told of events in order of time. Every callback may change motions, add and remove bodies, the ones concerned
-/// included; the world is consistent when it is called.
+/// Told of events in order of time, and of those at one time in an order that does not depend on the broad phase. What
+/// follows from an event, or from what callers do, comes before the next event, in this order:
+/// 1. `held`, by (a, b), then `moved`, by body;
+/// 2. `pair_began` and `pair_ended`, by (a, b); volumes that part and meet again at one instant have done neither;
+/// 3. separations of bodies that have been removed, by (a, b);
+/// 4. overlaps, by (a, b).
+/// Events at one time are in this order: pairs that begin and end as the bodies move on, by (a, b), with all of the
+/// above; walls, by body; contacts and separations, by (a, b).
+///
+/// Every callback may change motions, add and remove bodies, the ones concerned included; the world is consistent when
+/// it is called, and what is still to be told of the instant is told of the world as it is then.
 template <int Degree>
 class WorldListener {
  public:

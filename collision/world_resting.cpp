@@ -140,7 +140,7 @@ bool World<Degree>::settle_island(BodyId id) {
       if (motions[i] == before[i]) continue;
       ++counters_.motion_updates;
       set_motion(island.bodies[i], motions[i], false);
-      pending_.push_back({Pending::Kind::moved, island.bodies[i], no_body, {.time = now_}});
+      report(Pending::Kind::moved, island.bodies[i], no_body, {.time = now_});
     }
   };
   if constexpr (Degree >= 2) {
@@ -267,7 +267,7 @@ bool World<Degree>::let_pass_worst(const Island& island, const std::vector<Vecto
   drop_hold(worst);
   if (!hold.fresh) {  // else the event that made it is about to be reported
     ++counters_.held;
-    pending_.push_back({Pending::Kind::held, hold.a, hold.b, contact_at(moving(hold.a), moving(hold.b), now_)});
+    report(Pending::Kind::held, hold.a, hold.b, contact_at(moving(hold.a), moving(hold.b), now_));
   }
   return true;
 }

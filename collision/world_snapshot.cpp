@@ -118,13 +118,13 @@ void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shar
     archive(p.a, p.b, p.dirty, p.fresh, p.touching, p.ignored, p.boxes_overlap, p.estimated, p.let_pass, image.contact,
             image.boxes);
   });
-  each(archive, passing, [&](Passing& p) { archive(p.a, p.b, p.at, p.let_pass); });
+  each(archive, passing, [&](Passing& p) { archive(p.a, p.b, p.at, p.let_pass, p.moved); });
   each(archive, holds, [&](Hold& h) {
     archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh);
     vector(archive, h.normal);
   });
   each(archive, pending, [&](Pending& p) {
-    archive(p.kind, p.a, p.b, p.placed, p.contact.time);
+    archive(p.kind, p.a, p.b, p.removed, p.contact.time);
     for (Feature* f : {&p.contact.feature_a, &p.contact.feature_b}) archive(f->kind, f->first, f->second);
     vector(archive, p.contact.point), vector(archive, p.contact.normal);
   });
@@ -202,7 +202,7 @@ void World<Degree>::become(const Image& image) {
   edits_ = image.edits, edits_start_ = image.edits_start;
   free_bodies_ = image.free_bodies, entering_ = image.entering, disturbed_ = image.disturbed;
   passing_ = image.passing;
-  pending_.assign(image.pending.begin(), image.pending.end());
+  pending_ = {image.pending.begin(), image.pending.end()};
   const std::size_t count = image.bodies.size();
   bodies_.clear(), movers_.clear();
   bodies_.resize(count), movers_.resize(count);

@@ -45,15 +45,6 @@ bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
 template <int Degree>
 void World<Degree>::test_dirty_pairs() {
   const Stopwatch watch(profile(), Work::test);
-  // In the order of the bodies, whatever the broad phase, so that reports are made in one order.
-  const bool reports = (options_.report_pairs && !broad_phase_->exact()) ||
-                       std::any_of(dirty_.begin(), dirty_.end(), [&](PairSlot slot) { return pairs_[slot].fresh; });
-  const auto earlier = [&](PairSlot x, PairSlot y) {
-    return std::pair(pairs_[x].a, pairs_[x].b) < std::pair(pairs_[y].a, pairs_[y].b);
-  };
-  if (reports && !std::is_sorted(dirty_.begin(), dirty_.end(), earlier)) {
-    std::sort(dirty_.begin(), dirty_.end(), earlier);
-  }
   const std::vector<BallTest> tests = tests_of_balls();
   for (std::size_t i = 0; i < dirty_.size(); ++i) {
     const PairSlot slot = dirty_[i];
@@ -64,7 +55,9 @@ void World<Degree>::test_dirty_pairs() {
     pairs_[slot].fresh = false;
   }
   dirty_.clear();
-  std::erase_if(passing_, [&](const Passing& passing) { return !passing.let_pass || next_up(passing.at) < now_; });
+  std::erase_if(passing_, [&](const Passing& passing) {
+    return passing.let_pass ? next_up(passing.at) < now_ : passing.moved || passing.at < now_;
+  });
 }
 
 /// Most tests by far are these, and need two cache lines. They change nothing.
@@ -107,7 +100,7 @@ void World<Degree>::test(PairSlot slot, const BallTest& of_balls) {
   const auto a = moving(pair.a);
   const auto b = moving(pair.b);
   const auto report_overlap = [&] {
-    pending_.push_back({Pending::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_)});
+    report(Pending::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_));
   };
   ContactEstimate next{never, true};
   if (mode() == ContactMode::transparent) {
@@ -184,11 +177,8 @@ template <int Degree>
 void World<Degree>::process_boxes(PairSlot slot, double t) {
   Pair& pair = pairs_[slot];
   pair.boxes_overlap = !pair.boxes_overlap;
-  const auto kind = pair.boxes_overlap ? Pending::Kind::pair_began : Pending::Kind::pair_ended;
-  // Moved in turn, two bodies may have parted and met again at one instant.
-  const bool undone = pair.boxes_overlap && !pair.fresh && take_back(Pending::Kind::pair_ended, pair.a, pair.b, t);
-  if (!undone) pending_.push_back({kind, pair.a, pair.b, {.time = t}});
   now_ = t;
+  report_pair(pair.boxes_overlap, pair.a, pair.b);
   test_boxes(slot);
 }
 

@@ -85,8 +85,8 @@ inline bool in_order_of_time(const std::vector<Event>& events) {
 
 inline bool is_pair_event(const Event& e) { return e.kind == Kind::pair_began || e.kind == Kind::pair_ended; }
 
-/// Sorted by time, kind and bodies: what must not depend on the broad phase, which is free to choose the order of
-/// what happens at one time.
+/// Sorted by time and bodies, to compare logs with what is found by other means. Broad phases are compared without it:
+/// the order of what happens at one time does not depend on them.
 inline std::vector<Event> sorted(std::vector<Event> events) {
   std::stable_sort(events.begin(), events.end(), [](const Event& x, const Event& y) {
     return std::tuple(x.time(), x.a, x.b, is_pair_event(x)) < std::tuple(y.time(), y.a, y.b, is_pair_event(y));

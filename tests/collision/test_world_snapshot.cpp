@@ -17,14 +17,14 @@ using namespace tests;
 
 /// Everything but the pairs of bounding volumes, from some place on.
 std::vector<Event> contacts_from(const std::vector<Event>& events, std::size_t first) {
-  std::vector<Event> result;
-  for (std::size_t i = first; i < events.size(); ++i) {
-    if (!is_pair_event(events[i])) result.push_back(events[i]);
-  }
-  return sorted(std::move(result));
+  std::vector<Event> result(events.begin() + static_cast<std::ptrdiff_t>(first), events.end());
+  std::erase_if(result, is_pair_event);
+  return result;
 }
 std::vector<Event> pairs_from(const std::vector<Event>& events, std::size_t first) {
-  return lasting_pairs({events.begin() + static_cast<std::ptrdiff_t>(first), events.end()});
+  std::vector<Event> result(events.begin() + static_cast<std::ptrdiff_t>(first), events.end());
+  std::erase_if(result, [](const Event& e) { return !is_pair_event(e); });
+  return result;
 }
 
 /// What the counters say of events, not of work.

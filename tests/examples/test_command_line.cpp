@@ -109,13 +109,22 @@ TEST_CASE("command line: all broad phases write the same events of generated sce
     CHECK(outcome.err.empty());
     return outcome.out;
   };
-  const std::string expected = events("");
-  CHECK(lines_of(expected).size() > 2);
-  CHECK(events("--broad-phase kinetic-sap --rate 60") == expected);
-  CHECK(events("--broad-phase kinetic-sap --kdop 26 --rate 60") == expected);
-  CHECK(events("--broad-phase sap --rate 60") == expected);
-  CHECK(events("--broad-phase sap --rate 1000") == expected);
-  CHECK(events("--broad-phase all-pairs") == expected);
+  for (const std::string pairs : {"", " --pairs"}) {
+    const std::string expected = events(pairs);
+    CHECK(lines_of(expected).size() > 2);
+    const bool grid = events("--broad-phase grid" + pairs) == expected;
+    const bool kinetic_sap = events("--broad-phase kinetic-sap --rate 60" + pairs) == expected;
+    const bool sap = events("--broad-phase sap --rate 60" + pairs) == expected;
+    const bool sap_often = events("--broad-phase sap --rate 1000" + pairs) == expected;
+    const bool all_pairs = events("--broad-phase all-pairs" + pairs) == expected;
+    CHECK(grid);
+    CHECK(kinetic_sap);
+    CHECK(sap);
+    CHECK(sap_often);
+    CHECK(all_pairs);
+  }
+  // K-DOPs begin and cease to overlap at other times than boxes.
+  CHECK(events("--broad-phase kinetic-sap --kdop 26 --rate 60") == events(""));
 }
 
 TEST_CASE("command line: --pairs adds the events of bounding volumes") {

@@ -1,10 +1,10 @@
 // Hashes the event logs of fixed scenes, and compares them with what they shall be.
 //
-// event_log_hash                prints a line `NAME RECORDS HASH` for each scene
-// event_log_hash GOLDEN         compares these lines with a file, says what differs, and exits 1 where something does
-// event_log_hash --log NAME     prints the events of one scene, numbers in hexadecimal, for diff
+// event_log_hash                  prints a line `NAME RECORDS HASH` for each scene
+// event_log_hash GOLDEN           compares these lines with a file, says what differs, and exits 1 where something does
+// event_log_hash --log NAME WAY   prints the events of one scene, numbers in hexadecimal, for diff
 //
-// The file in the repository is made by the first form: event_log_hash > tests/replay/golden.txt
+// Each scene is run in several ways, with every broad phase or queue, and all must give the line of the file. The file in the repository is made by the first form: event_log_hash > tests/replay/golden.txt
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
 #include "kds/events/pairing_queue.hpp"
@@ -31,9 +31,14 @@
 namespace kds::replay {
 namespace {
 
+/// A scene, and what must give one and the same log of it.
 struct Replay {
+  struct Way {
+    std::string name;
+    std::function<void(EventHash&)> run;
+  };
   std::string name;
-  std::function<void(EventHash&)> run;
+  std::vector<Way> ways;
 };
 
 // --- sorted lists
@@ -69,22 +74,28 @@ void add_lists(std::vector<Replay>& replays) {
   constexpr std::array kinds{"generic", "lattice", "mixed", "resting", "scales", "late"};
   for (const kds::tests::Kind kind : kds::tests::all_kinds) {
     const std::string name = "list/" + std::to_string(Degree) + '/' + kinds[static_cast<std::size_t>(kind)];
-    replays.push_back({name, [=](EventHash& hash) {
-      run_list<Degree, CalendarQueue<>>(kind, hash);
-      for (const auto run : {run_list<Degree, DaryQueue<>>, run_list<Degree, PairingQueue<>>}) {
-        EventHash other(false);
-        run(kind, other);
-        if (other.value() != hash.value()) throw std::runtime_error(name + ": the queues disagree");
-      }
-    }});
+    replays.push_back({name,
+                       {{"calendar", [=](EventHash& hash) { run_list<Degree, CalendarQueue<>>(kind, hash); }},
+                        {"dary", [=](EventHash& hash) { run_list<Degree, DaryQueue<>>(kind, hash); }},
+                        {"pairing", [=](EventHash& hash) { run_list<Degree, PairingQueue<>>(kind, hash); }}}});
   }
 }
 
 // --- worlds
 
-template <int Degree>
-void hash_run(const Scene<Degree>& scene, const WorldOptions& options, EventHash& hash) {
-  for (const Event& e : run(scene, options)) hash.event(e);
+/// A scene run with each broad phase. All events are hashed in the order in which they are reported.
+template <int Degree, class MakeScene>
+Replay with_each_broad_phase(std::string name, const WorldOptions& options, const MakeScene& scene) {
+  Replay replay{std::move(name), {}};
+  for (const auto& [method, method_name, what] : broad_phases) {
+    WorldOptions chosen = options;
+    chosen.broad_phase = method;
+    chosen.rate = method == BroadPhaseKind::sap ? 30 : 0;
+    replay.ways.push_back({std::string(method_name), [=](EventHash& hash) {
+      for (const Event& e : run<Degree>(scene(), chosen)) hash.event(e);
+    }});
+  }
+  return replay;
 }
 
 /// Names are words, so that lines are easily taken apart.
@@ -100,37 +111,25 @@ void add_worlds(std::vector<Replay>& replays) {
   for (const Shapes shapes : all_shapes) {
     for (const Numbers numbers : {Numbers::fine, Numbers::coarse}) {
       for (const Response response : {Response::none, Response::elastic}) {
-        for (const auto& [method, method_name, what] : broad_phases) {
-          const bool elastic = response == Response::elastic;
-          const std::string name = "world/" + std::to_string(Degree) + '/' + word(collision::tests::name(shapes)) + '/' +
-                                   (numbers == Numbers::fine ? "fine/" : "coarse/") + (elastic ? "elastic/" : "none/") +
-                                   std::string(method_name);
-          replays.push_back({name, [=, method = method](EventHash& hash) {
-            WorldOptions options;
-            options.response = response;
-            options.broad_phase = method;
-            options.rate = method == BroadPhaseKind::sap ? 30 : 0;
-            options.report_pairs = true;
-            if (elastic) options.walls = Walls{Vector3d::Constant(-2), Vector3d::Constant(8)};
-            const SceneOptions scene{.shapes = shapes, .numbers = numbers, .scripts = !elastic, .heterogeneous = elastic};
-            hash_run(random_scene<Degree>(scene, 5), options, hash);
-          }});
-        }
+        const bool elastic = response == Response::elastic;
+        const std::string name = "world/" + std::to_string(Degree) + '/' + word(collision::tests::name(shapes)) + '/' +
+                                 (numbers == Numbers::fine ? "fine/" : "coarse/") + (elastic ? "elastic" : "none");
+        WorldOptions options;
+        options.response = response;
+        options.report_pairs = true;
+        if (elastic) options.walls = Walls{Vector3d::Constant(-2), Vector3d::Constant(8)};
+        const SceneOptions scene{.shapes = shapes, .numbers = numbers, .scripts = !elastic, .heterogeneous = elastic};
+        replays.push_back(
+            with_each_broad_phase<Degree>(name, options, [=] { return random_scene<Degree>(scene, 5); }));
       }
     }
   }
 }
 
 void add_bounces(std::vector<Replay>& replays) {
-  for (const auto& [method, method_name, what] : broad_phases) {
-    replays.push_back({"bounces/" + std::string(method_name), [method = method](EventHash& hash) {
-      WorldOptions options;
-      options.response = Response::elastic;
-      options.broad_phase = method;
-      options.rate = method == BroadPhaseKind::sap ? 30 : 0;
-      hash_run(bouncing_scene(), options, hash);
-    }});
-  }
+  WorldOptions options;
+  options.response = Response::elastic;
+  replays.push_back(with_each_broad_phase<2>("bounces", options, [] { return bouncing_scene(); }));
 }
 
 std::vector<Replay> all_replays() {
@@ -143,9 +142,9 @@ std::vector<Replay> all_replays() {
   return replays;
 }
 
-std::string line_of(const Replay& replay) {
+std::string line_of(const Replay& replay, const Replay::Way& way) {
   EventHash hash(false);
-  replay.run(hash);
+  way.run(hash);
   char text[64];
   std::snprintf(text, sizeof text, " %" PRIu64 " %016" PRIx64, hash.records(), hash.value());
   return replay.name + text;
@@ -157,25 +156,39 @@ int compare(const char* file) {
   std::string expected;
   int differences = 0;
   for (const Replay& replay : all_replays()) {
-    const std::string found = line_of(replay);
     if (!std::getline(golden, expected)) expected = "(nothing)";
-    if (found == expected) continue;
-    ++differences;
-    std::printf("differs: %s\n  golden: %s\n", found.c_str(), expected.c_str());
+    for (const Replay::Way& way : replay.ways) {
+      const std::string found = line_of(replay, way);
+      if (found == expected) continue;
+      ++differences;
+      std::printf("differs: %s, %s\n golden: %s\n", found.c_str(), way.name.c_str(), expected.c_str());
+    }
   }
   for (; std::getline(golden, expected); ++differences) std::printf("not run: %s\n", expected.c_str());
   std::printf("%d differences from %s\n", differences, file);
   return differences == 0 ? 0 : 1;
 }
 
-int print_log(const std::string_view name) {
+int print_log(std::string_view name, std::string_view way_name) {
   for (const Replay& replay : all_replays()) {
-    if (replay.name != name) continue;
-    EventHash hash(true);
-    replay.run(hash);
-    return 0;
+    for (const Replay::Way& way : replay.ways) {
+      if (replay.name != name || way.name != way_name) continue;
+      EventHash hash(true);
+      way.run(hash);
+      return 0;
+    }
   }
-  throw std::runtime_error("there is no scene of this name");
+  throw std::runtime_error("there is no scene of this name, or no such way to run it");
+}
+
+void print_lines() {
+  for (const Replay& replay : all_replays()) {
+    const std::string line = line_of(replay, replay.ways.front());
+    for (const Replay::Way& way : replay.ways) {
+      if (line_of(replay, way) != line) throw std::runtime_error(replay.name + ": " + way.name + " disagrees");
+    }
+    std::printf("%s\n", line.c_str());
+  }
 }
 
 }  // namespace
@@ -184,9 +197,9 @@ int print_log(const std::string_view name) {
 int main(int argc, char** argv) {
   try {
     if (argc == 2) return kds::replay::compare(argv[1]);
-    if (argc == 3 && std::string_view(argv[1]) == "--log") return kds::replay::print_log(argv[2]);
-    if (argc != 1) throw std::runtime_error("usage: event_log_hash [GOLDEN | --log NAME]");
-    for (const auto& replay : kds::replay::all_replays()) std::printf("%s\n", kds::replay::line_of(replay).c_str());
+    if (argc == 4 && std::string_view(argv[1]) == "--log") return kds::replay::print_log(argv[2], argv[3]);
+    if (argc != 1) throw std::runtime_error("usage: event_log_hash [GOLDEN | --log NAME WAY]");
+    kds::replay::print_lines();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "event_log_hash: %s\n", error.what());
     return 1;

@@ -1,0 +1,120 @@
+// What the world tells of one instant: all of it in one order, whatever the broad phase.
+#include "collision/world.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+
+/// As WorldListener says. Where a pair ended with a body that was removed, and began again with the next of its id, the
+/// end comes first.
+template <int Degree>
+bool World<Degree>::Pending::operator<(const Pending& other) const {
+  const auto key = [](const Pending& event) {
+    const auto stage = [&] {
+      switch (event.kind) {
+        case Kind::held:
+          return 0;
+        case Kind::moved:
+          return 1;
+        case Kind::pair_ended:
+        case Kind::pair_began:
+          return 2;
+        case Kind::separation:
+          return event.waits() ? 5 : 3;
+        case Kind::overlap:
+          return 4;
+      }
+      return 5;
+    };
+    return std::tuple(stage(), event.a, event.b, event.kind);
+  };
+  return key(*this) < key(other);
+}
+
+template <int Degree>
+void World<Degree>::report_next() {
+  const Pending event = *pending_.begin();
+  pending_.erase(pending_.begin());
+  PairEvent pair{event.a, event.b, event.contact};
+  switch (event.kind) {
+    case Pending::Kind::overlap:
+      ++counters_.overlaps;
+      return listener_->overlap(*this, pair);
+    case Pending::Kind::separation:
+      ++counters_.separations;
+      // A caller who moves two bodies in turn parts them with the first move, but they separate where the second leaves
+      // them: so whether the broad phase told of it at once makes no difference.
+      if (event.waits()) pair.contact = contact_of(event.a, event.b, event.contact.time);
+      return listener_->separation(*this, pair);
+    case Pending::Kind::held:
+      return listener_->held(*this, pair);
+    case Pending::Kind::moved:
+      return listener_->moved(*this, event.a);
+    case Pending::Kind::pair_began:
+      return listener_->pair_began(*this, event.a, event.b, event.contact.time);
+    case Pending::Kind::pair_ended:
+      return listener_->pair_ended(*this, event.a, event.b, event.contact.time);
+  }
+}
+
+/// Bounding volumes that meet and part at one instant, or part and meet (bodies that are moved in turn, lists of ends
+/// that are brought into order one after the other), have done neither.
+template <int Degree>
+void World<Degree>::report_pair(bool began, BodyId a, BodyId b) {
+  using Kind = typename Pending::Kind;
+  if (take_back(began ? Kind::pair_ended : Kind::pair_began, a, b)) return;
+  report(began ? Kind::pair_began : Kind::pair_ended, a, b, {.time = now_});
+}
+
+/// Forgets a report that has been undone before it was made; false if there is none.
+template <int Degree>
+bool World<Degree>::take_back(typename Pending::Kind kind, BodyId a, BodyId b) {
+  if (pending_.empty()) return false;
+  const auto it = pending_.find({kind, a, b, {}});
+  if (it == pending_.end() || it->removed) return false;
+  pending_.erase(it);
+  return true;
+}
+
+/// Whether a separation that the broad phase told of, by ending its pair, comes before the contact of another pair at
+/// the same time. Precondition: nothing is pending but separations that wait.
+template <int Degree>
+bool World<Degree>::separates_before(const Pair& pair) const {
+  const Pending& event = *pending_.begin();
+  return std::pair(event.a, event.b) < std::pair(pair.a, pair.b);
+}
+
+/// A body has been removed, and has no pairs any more: its separations are told as they were, and what would be told of
+/// a body that is there is not.
+template <int Degree>
+void World<Degree>::keep_reports_of(BodyId removed) {
+  using Kind = typename Pending::Kind;
+  std::vector<Pending> reports;
+  std::erase_if(pending_, [&](const Pending& event) {
+    if (event.a != removed && event.b != removed) return false;
+    reports.push_back(event);
+    return true;
+  });
+  const auto overlaps_too = [&](const Pending& separation) {
+    return std::any_of(reports.begin(), reports.end(), [&](const Pending& event) {
+      return event.kind == Kind::overlap && event.a == separation.a && event.b == separation.b;
+    });
+  };
+  for (Pending event : reports) {
+    if (event.kind == Kind::overlap || event.kind == Kind::moved) continue;
+    if (event.waits()) {
+      if (overlaps_too(event)) continue;
+      event.contact = contact_of(event.a, event.b, event.contact.time);
+    }
+    event.removed = true;
+    pending_.insert(event);
+  }
+}
+
+template class World<1>;
+template class World<2>;
+
+}  // namespace kds::collision
