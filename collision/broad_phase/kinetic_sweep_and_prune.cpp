@@ -40,17 +40,18 @@ bool KineticSweepAndPrune<Degree>::overlap_where_listed(BodyId a, BodyId b) cons
   return true;
 }
 
+/// A minimum and a maximum have swapped; perhaps their bodies overlap on the other axes.
 template <int Degree>
-void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::uint32_t left, std::uint32_t right, double t) {
+void KineticSweepAndPrune<Degree>::intervals_changed(std::size_t axis, std::uint32_t left, std::uint32_t right,
+                                                     double t) {
   const BodyId left_body = left / 2;
   const BodyId right_body = right / 2;
   // After the swap a minimum on the left means that the two intervals have met, a maximum that they have parted.
   const bool met = is_min(left);
-  if (!all_listed() && axis == sweep_axis_) {
-    open_[sweep_list().position(left)] += met ? 2 : -2;
-    if (left_body == right_body) inverted_ += met ? std::size_t(-1) : 1;
+  if (left_body == right_body) {
+    if (!all_listed() && axis == sweep_axis_) inverted_ += met ? std::size_t(-1) : 1;
+    return;
   }
-  if (left_body == right_body) return;
   const BodyId a = std::min(left_body, right_body);
   const BodyId b = std::max(left_body, right_body);
   if (updating_) {

@@ -66,8 +66,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
     std::size_t axis;  ///< or other direction
 
     void swapped(std::uint32_t left, std::uint32_t right, double t) {
-      // An end's id is twice its body's, plus one for a maximum: two ends of a kind never matter.
-      if (((left ^ right) & 1) != 0) owner->ends_swapped(axis, left, right, t);
+      owner->ends_swapped(axis, left, right, t);
     }
     // Maxima before minima: intervals that touch for good are apart.
     static std::uint32_t rank(std::uint32_t id) { return ~id & 1; }
@@ -127,10 +126,12 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   }
   bool overlap_where_listed(BodyId a, BodyId b) const;
   bool overlap_on(const List& list, BodyId a, BodyId b) const {
-    return list.position(min_end(a)) < list.position(max_end(b)) &&
-           list.position(min_end(b)) < list.position(max_end(a));
+    const bool a_begins = list.position(min_end(a)) < list.position(max_end(b));
+    const bool b_begins = list.position(min_end(b)) < list.position(max_end(a));
+    return a_begins & b_begins;
   }
   void ends_swapped(std::size_t axis, std::uint32_t left, std::uint32_t right, double t);
+  void intervals_changed(std::size_t axis, std::uint32_t left, std::uint32_t right, double t);
 
   // kinetic_sweep_and_prune_axes.cpp: which axes have lists, and who overlaps on them
   unsigned best_axes(std::span<const Entry> bodies, double now) const;
@@ -177,6 +178,28 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   std::uint64_t box_updates_ = 0;
   std::uint64_t update_swaps_ = 0;
 };
+
+// ---------------------------------------------------------------------------------------------------------------
+
+/// An end's id is twice its body's, plus one for a maximum: two ends of a kind never matter. Of the others most belong
+/// to bodies far from each other in some other direction. Which are of a kind nobody can foresee, so both are looked at
+/// before there is a branch, which is hardly ever taken.
+template <int Degree>
+inline void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::uint32_t left, std::uint32_t right,
+                                                       double t) {
+  const std::uint32_t kinds_differ = (left ^ right) & 1;
+  bool near;
+  if (all_listed()) {
+    near = overlap_on(lists_.all[axis + 1 < lists_.all.size() ? axis + 1 : 0], left / 2, right / 2);
+  } else {
+    near = unlisted_.hulls_meet(left / 2, right / 2);
+    // A minimum on the left has met the other's maximum: one more is open between them, where one less was.
+    const auto more = static_cast<std::int32_t>(kinds_differ * (2 - 4 * (left & 1)));
+    if (axis == sweep_axis_) open_[sweep_list().position(left)] += more;
+  }
+  const bool one_body = (left ^ right) == 1;
+  if ((kinds_differ != 0) & (near | one_body | updating_)) intervals_changed(axis, left, right, t);
+}
 
 extern template class KineticSweepAndPrune<1>;
 extern template class KineticSweepAndPrune<2>;

@@ -60,9 +60,10 @@ class UnlistedAxes {
   std::size_t bodies() const { return boxes_.size(); }
 
   /// Whether the pair may overlap here before the horizon: the first filter alone.
-  bool near(BodyId a, BodyId b) const {
-    return hulls_[a].meets(hulls_[b]) && (more_.empty() || near_on_more(a, b));
-  }
+  bool near(BodyId a, BodyId b) const { return hulls_meet(a, b) && (more_.empty() || near_on_more(a, b)); }
+
+  /// The same on the first two directions alone, without a branch.
+  bool hulls_meet(BodyId a, BodyId b) const { return hulls_[a].meets(hulls_[b]); }
 
   /// The boxes of a pair have met on all axes with a list; a < b. Returns whether they overlap on these axes too.
   bool met(BodyId a, BodyId b, double now) { return near(a, b) && add(a, b, now); }
@@ -102,7 +103,9 @@ class UnlistedAxes {
     std::array<float, 2> high{0, 0};
 
     bool meets(const Hull& other) const {
-      return high[0] >= other.low[0] && other.high[0] >= low[0] && high[1] >= other.low[1] && other.high[1] >= low[1];
+      const bool on_first = (high[0] >= other.low[0]) & (other.high[0] >= low[0]);
+      const bool on_second = (high[1] >= other.low[1]) & (other.high[1] >= low[1]);
+      return on_first & on_second;
     }
   };
 

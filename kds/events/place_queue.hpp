@@ -120,9 +120,7 @@ class PlaceQueue {
   inline static const Key latest = lattice_index(std::numeric_limits<double>::max());
   static Key no_event(std::size_t number) { return std::numeric_limits<Key>::max() - static_cast<Key>(number); }
 
-  static Key key_of(double time, std::size_t i) {
-    return time < detail::no_event ? lattice_index(time) : no_event(i);
-  }
+  static Key key_of(double time, std::size_t i) { return time < detail::no_event ? lattice_index(time) : no_event(i); }
 
   void touch(std::size_t first, std::size_t last) {
     first_ = std::min(first_, first);
@@ -141,7 +139,9 @@ class PlaceQueue {
   }
   template <class Rank>
   Event first_in_line(std::size_t i, Rank& rank) const;
+  bool find_first_in_line(std::size_t i, Event& first) const;
   bool settle_line(std::size_t i);
+  bool settle_two_lines(std::size_t first);
   template <class Rank>
   void settle_lines(std::size_t first, std::size_t last, Rank& rank);
 
@@ -239,32 +239,41 @@ inline void PlaceQueue::settle(Rank&& rank) {
   const std::size_t last = std::min(last_, size_ - 1) / line;
   first_ = std::numeric_limits<std::size_t>::max();
   last_ = 0;
-  const bool settled = last <= first + 1 && (first == last || settle_line(first)) && settle_line(last);
+  const bool settled = first == last ? settle_line(first) : last == first + 1 && settle_two_lines(first);
   if (!settled) settle_lines(first, last, rank);
 }
 
-/// False where two times are equal, so that ranks count; then nothing is settled.
-inline bool PlaceQueue::settle_line(std::size_t i) {
+/// False where two times are equal, so that ranks count.
+inline bool PlaceQueue::find_first_in_line(std::size_t i, Event& first) const {
   const detail::LeastTime least = detail::least_of_eight(&times_[line * i]);
-  if (__builtin_expect(least.shared(), 0)) return false;
-  Event event{key_of(least.time, i), static_cast<Slot>(line * i + least.first())};
-  Group& of_lines = groups_[i / group];
-  of_lines.put(i % group, event);
-  Event other;
-  if (__builtin_expect(!of_lines.first_without(i % group, other), 0)) return false;
-  if (__builtin_expect(other.key == event.key, 0)) return false;
-  event = lesser(event, other);
-  for (std::size_t level = 1; level < levels_; ++level) {
-    i /= group;
+  first = {key_of(least.time, i), static_cast<Slot>(line * i + least.first())};
+  return !least.shared();
+}
+
+/// Of a line and all groups above it, or of two neighbours; false where two times are equal, so that ranks count: then
+/// nothing is settled.
+inline bool PlaceQueue::settle_line(std::size_t i) {
+  Event event;
+  if (__builtin_expect(!find_first_in_line(i, event), 0)) return false;
+  for (std::size_t level = 0; level < levels_; ++level, i /= group) {
     Group& on_level = groups_[begins_[level] + i / group];
     on_level.put(i % group, event);
     candidate_ = event.place;
+    Event other;
     if (__builtin_expect(!on_level.first_without(i % group, other), 0)) return false;
     if (__builtin_expect(other.key == event.key, 0)) return false;
     event = lesser(event, other);
   }
   set_top(event);
   return true;
+}
+
+inline bool PlaceQueue::settle_two_lines(std::size_t first) {
+  if (first % group + 1 == group) return settle_line(first) && settle_line(first + 1);
+  Event event;
+  if (__builtin_expect(!find_first_in_line(first, event), 0)) return false;
+  groups_[first / group].put(first % group, event);
+  return settle_line(first + 1);
 }
 
 template <class Rank>

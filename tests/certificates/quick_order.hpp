@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -46,6 +47,7 @@ struct Comparison {
   int undecided = 0;
   int failures = 0;  ///< failure times found
   int wrong = 0;
+  int undecided_together = 0;  ///< pairs in order from a common start with a quick answer, but not beside another pair
   std::string example;
 
   template <int Degree>
@@ -67,6 +69,11 @@ struct Comparison {
     ++asked;
     failures += expected < never;
     undecided += std::isnan(quick);
+    if constexpr (Degree == 1) {
+      if (!turned && !ask_together(lower, upper, now, horizon, expected, quick) && wrong++ == 0) {
+        example = describe(lower, upper, now, horizon) + ", together";
+      }
+    }
     if (answer == expected && (std::isnan(quick) || quick == expected)) return;
     if (wrong++ == 0) example = describe(lower, upper, now, horizon) + (turned ? ", turned" : "");
   }
@@ -85,12 +92,29 @@ struct Comparison {
     ask(upper, lower, t, never);
   }
 
+  /// As first and as second of two.
+  bool ask_together(const Motion<1>& lower, const Motion<1>& upper, double now, double horizon, double expected,
+                    double quick) {
+    const Order<1> order{lower, upper};
+    const Order<1> other{before_[0], before_[1]};
+    const double first = Order<1>::quick_failure_times(order, other, now, horizon).first;
+    const double second = Order<1>::quick_failure_times(other, order, now, horizon).second;
+    if (lower.start == upper.start) {
+      before_ = {lower, upper};
+      undecided_together += quick > now && (std::isnan(first) || std::isnan(second));
+    }
+    return (std::isnan(first) || first == expected) && (std::isnan(second) || second == expected);
+  }
+
   void report() const {
     INFO("asked " << asked << ", failures " << failures << ", undecided " << undecided << ", wrong " << wrong << ": "
                   << example);
     CHECK(wrong == 0);
     CHECK(failures > asked / 5);
   }
+
+ private:
+  std::array<Motion<1>, 2> before_;
 };
 
 enum class Starts { common, different };

@@ -53,6 +53,7 @@ TEMPLATE_TEST_CASE_SIG("ordinary lines swap at the quick answer", "[order]", EAC
   }
   comparison.report();
   CHECK(undecided <= 4);
+  CHECK(comparison.undecided_together <= 4);
 }
 
 TEMPLATE_TEST_CASE_SIG("lines of all sizes and at all clocks", "[order]", EACH_DEGREE_AND_START) {
