@@ -191,27 +191,8 @@ class SortedList {
     position_[order_[left + 1].id] = static_cast<std::uint32_t>(left + 1);
   }
 
-  /// Fills order_. Values in doubles decide most comparisons; they are computed once each.
-  void sort(std::span<const Entry> entries, double now) {
-    struct Key {
-      double value, margin;
-      std::uint32_t entry;
-    };
-    std::vector<Key> keys(entries.size());
-    for (std::uint32_t i = 0; i < keys.size(); ++i) {
-      const auto [value, margin] = certificates::Order<Degree>::rough_value(entries[i].motion, now);
-      keys[i] = {value, margin, i};
-    }
-    std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
-      const double gap = b.value - a.value;
-      const double margin = a.margin + b.margin;
-      if (gap > margin || -gap > margin) return gap > 0;
-      return a.entry != b.entry && in_order(entries[a.entry], entries[b.entry], now);
-    });
-    order_.clear();
-    order_.reserve(entries.size());
-    for (const Key& key : keys) order_.push_back(entries[key.entry]);
-  }
+  void sort(std::span<const Entry> entries, double now);
+  void certify_all(double now);
 
   void renumber(std::size_t first) {
     for (std::size_t i = first; i < order_.size(); ++i) position_[order_[i].id] = static_cast<std::uint32_t>(i);

@@ -1,10 +1,13 @@
 // How elements come into a kinetic sorted list, leave it, and take up other motions.
 #pragma once
 
+#include "structures/rough_sort.hpp"
 #include "structures/sorted_list.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,9 +34,51 @@ void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> 
   if constexpr (by_place) schedule_.resize(entries.size());
   sort(entries, now);
   renumber(0);
-  for (std::size_t i = 0; i < order_.size(); ++i) certify(i, now);
+  certify_all(now);
   settle();
   count_held();
+}
+
+/// Fills order_. Values in doubles, computed once each, decide where neighbours differ by more than their margins; what
+/// they leave to be told are runs, of one each as a rule.
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+void SortedList<Degree, Listener, Queue, Solver>::sort(std::span<const Entry> entries, double now) {
+  std::vector<RoughPlace> places(entries.size());
+  double margin = 0;
+  double size = 0;
+  for (std::uint32_t i = 0; i < places.size(); ++i) {
+    const auto rough = certificates::Order<Degree>::rough_value(entries[i].motion, now);
+    places[i] = {rough.value, i};
+    margin = std::max(margin, rough.margin);
+    size += std::abs(rough.value);  // infinite or not a number if one is
+  }
+  if (size < never) sort_roughly(places);
+  for (std::size_t begin = 0, end; begin < places.size(); begin = end) {
+    end = begin + 1;
+    while (end < places.size() && !(places[end].value - places[end - 1].value > 2 * margin && size < never)) ++end;
+    if (end == begin + 1) continue;
+    std::sort(places.data() + begin, places.data() + end, [&](const RoughPlace& a, const RoughPlace& b) {
+      return a.entry != b.entry && in_order(entries[a.entry], entries[b.entry], now);
+    });
+  }
+  order_.clear();
+  order_.reserve(entries.size());
+  for (const RoughPlace& place : places) order_.push_back(entries[place.entry]);
+}
+
+template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+void SortedList<Degree, Listener, Queue, Solver>::certify_all(double now) {
+  std::size_t i = 0;
+  if constexpr (Solver::certified) {
+    if (now != disturbed_) {
+      for (; i + 2 < order_.size(); i += 2) {
+        schedule_.certify_two(slot(i), pair(i), slot(i + 1), pair(i + 1), now);
+      }
+    }
+  }
+  for (; i < order_.size(); ++i) certify(i, now);
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
@@ -110,7 +155,7 @@ void SortedList<Degree, Listener, Queue, Solver>::turn_round(double now, double 
   for (Entry& entry : order_) entry.motion = reversed(entry.motion);
   schedule_.set_horizon(horizon);
   disturbed_ = now;  // It may have been amidst the events of a time.
-  for (std::size_t i = 0; i < order_.size(); ++i) certify(i, now);
+  certify_all(now);
   settle();
 }
 

@@ -111,8 +111,8 @@ auto KineticSweepAndPrune<Degree>::pairs_on_lists() const -> std::vector<BodyPai
     if (!all_listed() && !unlisted_.near(a, b)) return;
     if (overlap_where_listed(a, b)) pairs.emplace_back(std::min(a, b), std::max(a, b));
   };
-  std::vector<BodyId> open;
   if (inverted_ > 0) {
+    std::vector<BodyId> open;
     for (const auto& end : sweep_list().entries()) {
       if (!is_min(end.id)) continue;
       open.clear();
@@ -122,15 +122,24 @@ auto KineticSweepAndPrune<Degree>::pairs_on_lists() const -> std::vector<BodyPai
       }
     }
   } else {
+    using Hull = typename UnlistedAxes<Degree>::Hull;
+    struct Open {
+      Hull hull;
+      BodyId id;
+    };
+    std::vector<Open> open;
     std::vector<std::uint32_t> place(unlisted_.bodies());
     for (const auto& end : sweep_list().entries()) {
       const BodyId id = end.id / 2;
       if (is_min(end.id)) {
-        for (const BodyId other : open) add(other, id);
+        const Hull hull = all_listed() ? Hull::everywhere() : unlisted_.hull(id);
+        for (const Open& other : open) {
+          if (other.hull.meets(hull)) add(other.id, id);
+        }
         place[id] = static_cast<std::uint32_t>(open.size());
-        open.push_back(id);
-      } else if (place[id] < open.size() && open[place[id]] == id) {  // else it has not begun: it is inverted
-        place[open.back()] = place[id];
+        open.push_back({hull, id});
+      } else if (place[id] < open.size() && open[place[id]].id == id) {  // else it has not begun: it is inverted
+        place[open.back().id] = place[id];
         open[place[id]] = open.back();
         open.pop_back();
       }

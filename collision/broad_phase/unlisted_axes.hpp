@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,22 @@ struct PairChange {
 template <int Degree>
 class UnlistedAxes {
  public:
+  /// What a box covers from some time to the horizon, rounded outward to floats, which are half as much to fetch.
+  struct Hull {
+    std::array<float, 2> low{0, 0};
+    std::array<float, 2> high{0, 0};
+
+    static Hull everywhere() {
+      constexpr float far = std::numeric_limits<float>::infinity();
+      return {{-far, -far}, {far, far}};
+    }
+    bool meets(const Hull& other) const {
+      const bool on_first = (high[0] >= other.low[0]) & (other.high[0] >= low[0]);
+      const bool on_second = (high[1] >= other.low[1]) & (other.high[1] >= low[1]);
+      return on_first & on_second;
+    }
+  };
+
   /// Changes found by process() are appended to `changes`. There are 3 directions, or more.
   UnlistedAxes(std::vector<PairChange>& changes, std::size_t directions)
       : changes_(&changes), directions_(directions), queue_(PairRank{&pairs_}) {}
@@ -62,7 +79,8 @@ class UnlistedAxes {
   /// Whether the pair may overlap here before the horizon: the first filter alone.
   bool near(BodyId a, BodyId b) const { return hulls_meet(a, b) && (more_.empty() || near_on_more(a, b)); }
 
-  /// The same on the first two directions alone, without a branch.
+  const Hull& hull(BodyId id) const { return hulls_[id]; }
+  /// Near on the first two directions, without a branch.
   bool hulls_meet(BodyId a, BodyId b) const { return hulls_[a].meets(hulls_[b]); }
 
   /// The boxes of a pair have met on all axes with a list; a < b. Returns whether they overlap on these axes too.
@@ -96,18 +114,6 @@ class UnlistedAxes {
  private:
   using PairSlot = std::uint32_t;
   static constexpr PairSlot no_pair = ~PairSlot{0};
-
-  /// What a box covers from some time to the horizon, rounded outward to floats, which are half as much to fetch.
-  struct Hull {
-    std::array<float, 2> low{0, 0};
-    std::array<float, 2> high{0, 0};
-
-    bool meets(const Hull& other) const {
-      const bool on_first = (high[0] >= other.low[0]) & (other.high[0] >= low[0]);
-      const bool on_second = (high[1] >= other.low[1]) & (other.high[1] >= low[1]);
-      return on_first & on_second;
-    }
-  };
 
   struct Pair {
     BodyId a, b;

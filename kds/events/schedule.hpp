@@ -12,6 +12,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace kds {
@@ -107,18 +108,19 @@ class Schedule {
     requires std::same_as<Queue, PlaceQueue> && Solver::certified
   {
     counters_.certificates += 3;
-    double before = std::numeric_limits<double>::quiet_NaN();
-    double after = before;
-    if constexpr (requires { C::quick_failure_times(left, right, now, horizon_); }) {
-      if (now <= horizon_) {
-        const auto [first, second] = C::quick_failure_times(left, right, now, horizon_);
-        before = first;
-        after = second;
-      }
-    }
-    if (__builtin_expect(std::isnan(before), 0)) before = solver_(left, now, horizon_);
-    if (__builtin_expect(std::isnan(after), 0)) after = solver_(right, now, horizon_);
+    const auto [before, after] = solve_two(left, right, now);
     queue_.set_three(middle, before, solver_.after_turn(turned, now, horizon_), after);
+  }
+
+  /// Of two slots: what certify() would do for each.
+  template <Certificate C>
+  void certify_two(Slot first, const C& a, Slot second, const C& b, double now)
+    requires Solver::certified
+  {
+    counters_.certificates += 2;
+    const auto [at_first, at_second] = solve_two(a, b, now);
+    set(first, at_first);
+    set(second, at_second);
   }
 
   /// Schedules a slot by hand; `never` clears it.
@@ -178,6 +180,22 @@ class Schedule {
       if (!(t > now)) return next_up(now) <= horizon_ ? next_up(now) : never;  // also a NaN: asked again then, exactly
       return t <= horizon_ ? t : never;
     }
+  }
+
+  template <Certificate C>
+  std::pair<double, double> solve_two(const C& a, const C& b, double now) const {
+    double first = std::numeric_limits<double>::quiet_NaN();
+    double second = first;
+    if constexpr (requires { C::quick_failure_times(a, b, now, horizon_); }) {
+      if (now <= horizon_) {
+        const auto quick = C::quick_failure_times(a, b, now, horizon_);
+        first = quick.first;
+        second = quick.second;
+      }
+    }
+    if (__builtin_expect(std::isnan(first), 0)) first = solver_(a, now, horizon_);
+    if (__builtin_expect(std::isnan(second), 0)) second = solver_(b, now, horizon_);
+    return {first, second};
   }
 
   Queue queue_;
