@@ -3,6 +3,7 @@
 #include "kds/audit.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -44,6 +45,7 @@ bool KineticSweepAndPrune<Degree>::overlap_where_listed(BodyId a, BodyId b) cons
 template <int Degree>
 void KineticSweepAndPrune<Degree>::intervals_changed(std::size_t axis, std::uint32_t left, std::uint32_t right,
                                                      double t) {
+  looked_ = true;
   const BodyId left_body = left / 2;
   const BodyId right_body = right / 2;
   // After the swap a minimum on the left means that the two intervals have met, a maximum that they have parted.
@@ -201,7 +203,15 @@ void KineticSweepAndPrune<Degree>::update_listed_pairs(BodyId id, double now, Pa
 
 template <int Degree>
 bool KineticSweepAndPrune<Degree>::advance(double limit, PairListener& listener) {
-  while (simulator_.step(limit)) {
+  for (;;) {
+    // Lists come first, up to the next event where there are none, which what is looked at may bring nearer.
+    const double until = std::min({limit, unlisted_.next_time(), std::numeric_limits<double>::max()});
+    looked_ = false;
+    for (double t; !looked_ && (t = lists_.next_time()) <= until;) {
+      simulator_.set_clock(t);
+      lists_.process();
+    }
+    if (!looked_ && !simulator_.step(limit)) return false;
     if (changes_.empty()) continue;
     const PairChange change = changes_.front();
     changes_.clear();
@@ -212,7 +222,6 @@ bool KineticSweepAndPrune<Degree>::advance(double limit, PairListener& listener)
     }
     return true;
   }
-  return false;
 }
 
 template <int Degree>

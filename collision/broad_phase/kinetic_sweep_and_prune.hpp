@@ -165,6 +165,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   /// in turn.
   std::vector<PairChange> changes_;
   bool updating_ = false;
+  bool looked_ = false;  ///< at a pair, since advance() has asked for the next event where there is no list
 
   // Of the sweep list, kept only where some axis has no list: how many intervals are open just after each place, and
   // how many have their maximum before their minimum.

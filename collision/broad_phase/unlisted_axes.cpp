@@ -5,7 +5,9 @@
 #include "kds/audit.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -57,7 +59,11 @@ float below(double x) {
   if (x > 0x1p127) return 0x1p127f;
   if (x < -0x1p127) return -infinity;
   const auto rounded = static_cast<float>(x);
-  return static_cast<double>(rounded) <= x ? rounded : std::nextafter(rounded, -infinity);
+  if (!(static_cast<double>(rounded) > x)) return rounded;
+  // The next below: floats of one sign are in the order of their bits.
+  if (rounded == 0) return -std::numeric_limits<float>::denorm_min();
+  const auto bits = std::bit_cast<std::uint32_t>(rounded);
+  return std::bit_cast<float>(rounded > 0 ? bits - 1 : bits + 1);
 }
 
 }  // namespace
