@@ -5,13 +5,17 @@
 // Boxes of sizes 1-3 at 1 % density in free flight for one second, by number and by listed axes. Rounds run in turn, so
 // that a change of the machine's pace hits all alike; figures are medians. `baseline` is the time against three lists
 // of the same scene in the same round. Instructions are those of this thread in user mode, where the kernel counts them
-// (perf_event_open), else the column is empty. Every round checks that all ways report the same pairs at the same
-// times.
+// (perf_event_open), else the column is empty. Reference cycles (x86 alone) are ticks of the time-stamp counter: its rate
+// is one whatever the clock's, and it goes on while others have the processor, so they are the least of the rounds.
+// Every round checks that all ways report the same pairs at the same times.
 
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/support/random_numbers.hpp"
 
+#ifdef __x86_64__
+#include <x86intrin.h>
+#endif
 #include <linux/perf_event.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -59,6 +63,14 @@ class Instructions {
   int file_ = -1;
 };
 
+#ifdef __x86_64__
+constexpr bool ticks_known = true;
+double ticks() { return static_cast<double>(__rdtsc()); }
+#else
+constexpr bool ticks_known = false;
+double ticks() { return 0; }
+#endif
+
 std::vector<KineticBox<1>> make_scene(std::size_t bodies) {
   Random random(1);
   const double side = std::cbrt(4.19 * static_cast<double>(bodies) / 0.01);
@@ -89,7 +101,7 @@ struct Log final : PairListener {
 };
 
 struct Result {
-  double setup = 0, run = 0, instructions = 0;
+  double setup = 0, run = 0, instructions = 0, ticks = 0;
   BroadPhaseCounters work;
   Log log;
 };
@@ -104,8 +116,10 @@ Result run(const std::vector<KineticBox<1>>& boxes, ListedAxes listed, const Ins
   broad_phase.insert(entries, 0, result.log);
   const double start = benchmarks::thread_seconds();
   const double before = instructions.now();
+  const double first_tick = ticks();
   while (broad_phase.advance(1, result.log)) {
   }
+  result.ticks = ticks() - first_tick;
   result.instructions = instructions.now() - before;
   const double end = benchmarks::thread_seconds();
   result.setup = start - begin;
@@ -125,7 +139,7 @@ bool measure(std::size_t bodies, int rounds, const Instructions& instructions) {
   const auto boxes = make_scene(bodies);
   constexpr std::array ways{ListedAxes::all, ListedAxes::two, ListedAxes::one};
   struct Samples {
-    std::vector<double> setup, run, whole, ratio, instructions;
+    std::vector<double> setup, run, whole, ratio, instructions, ticks;
   };
   std::array<Samples, 3> samples;
   std::array<BroadPhaseCounters, 3> work;
@@ -137,6 +151,7 @@ bool measure(std::size_t bodies, int rounds, const Instructions& instructions) {
       samples[i].run.push_back(result.run);
       samples[i].whole.push_back(result.setup + result.run);
       samples[i].instructions.push_back(result.instructions);
+      samples[i].ticks.push_back(result.ticks);
       work[i] = result.work;
       if (i == 0)
         three = std::move(result);
@@ -150,6 +165,10 @@ bool measure(std::size_t bodies, int rounds, const Instructions& instructions) {
     std::printf("%zu,%d,%.0f,%.2f,%.1f,", bodies, static_cast<int>(ways[i]), swaps,
                 static_cast<double>(work[i].certificates) / swaps, 1e9 * median(samples[i].run) / swaps);
     if (instructions.known()) std::printf("%.0f", median(samples[i].instructions) / swaps);
+    std::putchar(',');
+    if (ticks_known) {
+      std::printf("%.0f", *std::min_element(samples[i].ticks.begin(), samples[i].ticks.end()) / swaps);
+    }
     std::printf(",%.6f,%.6f,%.3f\n", median(samples[i].setup), median(samples[i].whole), median(samples[i].ratio));
     std::fflush(stdout);
   }
@@ -162,7 +181,9 @@ int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 7;
   if (rounds < 1) return std::fputs("usage: bench_swaps [ROUNDS]\n", stderr), 2;
   const Instructions instructions;
-  std::puts("bodies,listed_axes,swaps,certificates_per_swap,ns_per_swap,instructions_per_swap,setup_s,all_s,baseline");
+  std::puts(
+      "bodies,listed_axes,swaps,certificates_per_swap,ns_per_swap,instructions_per_swap,reference_cycles_per_swap,"
+      "setup_s,all_s,baseline");
   for (const std::size_t bodies : {1000, 4000, 16000}) {
     if (!measure(bodies, rounds, instructions)) {
       std::fputs("bench_swaps: the ways to list axes report different pairs\n", stderr);
