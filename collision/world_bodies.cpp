@@ -15,8 +15,10 @@ namespace {
 /// body's size, is a jump: far above what restarting a motion rounds, far below what a caller would mean as one.
 constexpr double jump_tolerance = 0x1p-40;
 
-/// Room for pairs that a body gets with its first: as much as the smallest block of memory has.
+/// Room for pairs that a body gets with its first: as much as the smallest block of memory has; where there are few
+/// bodies, for all.
 constexpr std::size_t first_pairs = 3;
+constexpr std::size_t few_pairs = 8;
 
 }  // namespace
 
@@ -152,6 +154,7 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   PairSlot slot;
   if (free_pairs_.empty()) {
     slot = static_cast<PairSlot>(pairs_.size());
+    if (pairs_.capacity() == 0) pairs_.reserve(first_slots), dirty_.reserve(first_slots);
     pairs_.emplace_back();
     make_room(contacts_, pairs_.size());
     if (options_.report_pairs && !broad_phase_->exact()) make_room(boxes_, pairs_.size());
@@ -174,7 +177,7 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
     if (passing.let_pass && passing.at == t) pair.let_pass = t;
   }
   for (Body* const body : {&body_a, &body_b}) {
-    if (body->pairs.capacity() == 0) body->pairs.reserve(first_pairs);
+    if (body->pairs.capacity() == 0) body->pairs.reserve(alive_ <= few_pairs + 1 ? few_pairs : first_pairs);
   }
   // A jump may part two bodies and another one bring them together at the same instant.
   pair.touching = take_back(Pending::Kind::separation, a, b);

@@ -39,6 +39,7 @@ void AdaptiveBroadPhase<Degree>::change_to_grid(double now, PairListener& listen
   for (const Body& body : few_) entries.push_back({body.id, &body.box});
   grid_ = std::make_unique<KineticGrid<Degree>>(threads_);
   grid_->extend_horizon(now, horizon_);
+  if (few_.empty()) return;
   NoListener known;
   grid_->insert(entries, now, known);
   each_unpaired([&](BodyId a, BodyId b) { listener.pair_ended(a, b, now); });

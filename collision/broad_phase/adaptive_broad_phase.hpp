@@ -13,16 +13,16 @@ namespace kds::collision {
 /// All pairs while there are few bodies, the kinetic grid from then on, and back when most have gone. A change reports
 /// just the pairs that one has and the other has not, so no contact is lost.
 ///
-/// These two are enough: from some twenty bodies on the grid is the cheapest at nearly all sizes, densities and rates
-/// that were measured (docs/speed.md).
+/// These two are enough: from some ten bodies on the grid is the cheapest at nearly all sizes, densities and rates that
+/// were measured (docs/speed.md).
 template <int Degree>
 class AdaptiveBroadPhase final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
   /// At most so many bodies are compared pair by pair at first, and when others have gone.
-  static constexpr std::size_t most_for_all_pairs = 16;
-  static constexpr std::size_t few_again = 8;
+  static constexpr std::size_t most_for_all_pairs = 8;
+  static constexpr std::size_t few_again = 4;
 
   /// `threads`: see KineticGrid.
   explicit AdaptiveBroadPhase(std::size_t threads = 1) : threads_(threads) {}
