@@ -116,6 +116,11 @@ void World<Degree>::reach(double limit) {
 
 template <int Degree>
 bool World<Degree>::step(double limit) {
+  if (limit < idle_until_) {
+    now_ = std::max(now_, limit);
+    return false;
+  }
+  idle_until_ = -never;
   if (std::isnan(limit)) throw std::invalid_argument("World::step: the limit is not a number");
   if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
     throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
@@ -172,6 +177,9 @@ bool World<Degree>::step(double limit) {
     } else if (next < limit) {
       reach(limit == never ? horizon_ + options_.window : limit);
     } else {
+      if (passing_.empty()) {
+        idle_until_ = std::min({horizon_, piece, boxes, volume, wall, let_go, contact, broad_phase_->next_time()});
+      }
       return false;
     }
   }

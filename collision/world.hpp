@@ -317,12 +317,13 @@ class World final : private PairListener {
   BallTest test_of_balls(const Pair& pair) const;
   std::vector<BallTest> tests_of_balls() const;
   void set_contact(PairSlot slot, double time);
+  void remember(PairSlot slot, const FoundTouch& found);
   bool certify_next(bool contact, bool wall);
   void certify_contact(PairSlot slot);
   void certify_wall(BodyId id);
   void test_boxes(PairSlot slot);
   void process_boxes(PairSlot slot, double t);
-  Contact contact_of(BodyId a, BodyId b, double t) const;
+  Contact contact_of(PairSlot slot, double t) const;
   void process_contact(PairSlot slot, double t);
   void process_wall(BodyId id, double t);
   bool respond(PairSlot slot, const Contact& contact);
@@ -364,6 +365,7 @@ class World final : private PairListener {
   std::vector<Pair> pairs_;
   std::vector<PairSlot> free_pairs_;
   std::vector<PairSlot> dirty_;
+  std::vector<FoundTouch> found_;               // by pair, as far as known; of no use once a motion has changed
   std::vector<KdopDirection> directions_;       // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction
   /// Ignored pairs that have ended at this instant: motions that change in turn may part boxes that touch and bring
@@ -384,6 +386,7 @@ class World final : private PairListener {
   Profile profile_;
   double now_;
   double horizon_;
+  double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
   std::size_t alive_ = 0;
   bool inserting_ = false;
   bool stepping_ = false;

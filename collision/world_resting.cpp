@@ -341,6 +341,7 @@ typename World<Degree>::Motion World<Degree>::free_motion(BodyId id) const {
 
 template <int Degree>
 void World<Degree>::count_edit() {
+  idle_until_ = -never;
   if (!stepping_) return;
   if (now_ - edits_start_ > options_.zeno.interval) {
     edits_start_ = now_;

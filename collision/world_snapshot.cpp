@@ -199,6 +199,7 @@ void World<Degree>::set_shape(BodyId id, PlacedShape placed) {
 template <int Degree>
 void World<Degree>::become(const Image& image) {
   now_ = image.now, horizon_ = image.horizon;
+  idle_until_ = -never;
   edits_ = image.edits, edits_start_ = image.edits_start;
   free_bodies_ = image.free_bodies, entering_ = image.entering, disturbed_ = image.disturbed;
   passing_ = image.passing;
@@ -253,7 +254,7 @@ void World<Degree>::load_pairs(const Image& image) {
   broad_phase_->insert(entries, now_, found);
   std::sort(found.pairs.begin(), found.pairs.end());
 
-  pairs_.clear(), free_pairs_.clear(), dirty_.clear();
+  pairs_.clear(), free_pairs_.clear(), dirty_.clear(), found_.clear();
   contacts_.resize(0), boxes_.resize(0);
   contacts_.resize(image.pairs.size());
   if (options_.report_pairs && !broad_phase_->exact()) boxes_.resize(image.pairs.size());

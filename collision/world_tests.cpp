@@ -99,6 +99,7 @@ void World<Degree>::test(PairSlot slot, const BallTest& of_balls) {
   }
   const auto a = moving(pair.a);
   const auto b = moving(pair.b);
+  FoundTouch found;
   const auto report_overlap = [&] {
     report(Pending::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_));
   };
@@ -113,7 +114,7 @@ void World<Degree>::test(PairSlot slot, const BallTest& of_balls) {
     } else if (pair.touching) {
       next.time = first_separation(a, b, now_, horizon_);
     } else {
-      next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory);
+      next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory, &found);
     }
   } else {
     const bool passes = pair.let_pass == now_ && !pair.fresh;
@@ -131,12 +132,23 @@ void World<Degree>::test(PairSlot slot, const BallTest& of_balls) {
       } else if (passes) {
         if (start <= horizon_) next.time = first_contact(a, b, start, horizon_, mode());
       } else {
-        next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory);
+        next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory, &found);
       }
     }
   }
   contacts_.set(slot, next.time);
   pair.estimated = !next.exact;
+  remember(slot, found);
+}
+
+/// For the contact, if nothing comes before it.
+template <int Degree>
+void World<Degree>::remember(PairSlot slot, const FoundTouch& found) {
+  if (slot >= found_.size()) {
+    if (found.time == never) return;
+    found_.resize(pairs_.capacity());
+  }
+  found_[slot] = found;
 }
 
 template <int Degree>
@@ -156,7 +168,9 @@ void World<Degree>::certify_contact(PairSlot slot) {
     const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
     return set_contact(slot, apart.first_approach(now_, horizon_));
   }
-  set_contact(slot, first_contact(moving(pair.a), moving(pair.b), now_, horizon_, mode()));
+  FoundTouch found;
+  set_contact(slot, first_contact(moving(pair.a), moving(pair.b), now_, horizon_, mode(), &found));
+  remember(slot, found);
 }
 
 template <int Degree>

@@ -41,29 +41,23 @@ class ConvexTouch {
  public:
   ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap)
       : a_(a), b_(b), motion_(motion), gap_(gap) {
-    double enter = -TimeSpans::infinity;
-    double leave = TimeSpans::infinity;
     every_condition([&](const Condition& condition) {
-      const auto& p = condition.separation;
       if constexpr (Degree == 1) {
-        const double c0 = p[0] - gap.c[0];
-        const double c1 = p[1] - gap.c[1];
-        if (c1 > 0) {
-          leave = std::min(leave, -c0 / c1);
-        } else if (c1 < 0) {
-          const double begin = -c0 / c1;
-          if (begin > enter) {
-            enter = begin;
-            entry_speed_ = -p[1];
-          }
-        } else if (c0 >= 0) {
-          leave = -TimeSpans::infinity;
-        }
+        add(condition);
       } else {
+        const auto& p = condition.separation;
         near_[size_++] = negative_spans(p[0] - gap.c[0], p[1] - gap.c[1], p[2] - gap.c[2]);
       }
     });
-    if constexpr (Degree == 1) near_[size_++] = TimeSpans::between(enter, leave);
+    if constexpr (Degree == 1) near_[size_++] = TimeSpans::between(enter_, leave_);
+  }
+
+  /// The same where only what happens within a window is of interest, for less. Precondition: if the two touch in the
+  /// window, they do not before it, or what happens at its begin alone is asked.
+  ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap,
+              const TimeWindow& interest) requires(Degree == 1)
+      : a_(a), b_(b), motion_(motion), gap_(gap) {
+    near_[size_++] = add_within(interest) ? TimeSpans::between(enter_, leave_) : TimeSpans{};
   }
 
   /// The first time >= tau at which they touch, or infinity.
@@ -171,19 +165,70 @@ class ConvexTouch {
   template <class Visit>
   void every_condition(const Visit& visit) const {
     every_axis(a_, b_, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
-      const double length = std::sqrt(dot(axis, axis));
-      if (!(length > vanishing_axis)) return true;
-      const double inverse = 1 / length;
-      const Eigen::Vector3d normal = axis * inverse;
-      Condition condition{{}, normal};
-      for (std::size_t i = 0; i <= Degree; ++i) condition.separation[i] = dot(normal, motion_.coefficients[i]);
-      Condition opposite{{}, -normal};
-      for (std::size_t i = 0; i <= Degree; ++i) opposite.separation[i] = -condition.separation[i];
-      condition.separation[0] -= (of_a.high - of_b.low) * inverse;
-      opposite.separation[0] -= (of_b.high - of_a.low) * inverse;
-      visit(condition);
-      visit(opposite);
+      both_sides(axis, of_a, of_b, visit);
       return true;
+    });
+  }
+
+  template <class Visit>
+  void both_sides(const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b, const Visit& visit) const {
+    const double length = std::sqrt(dot(axis, axis));
+    if (!(length > vanishing_axis)) return;
+    const double inverse = 1 / length;
+    const Eigen::Vector3d normal = axis * inverse;
+    Condition condition{{}, normal};
+    for (std::size_t i = 0; i <= Degree; ++i) condition.separation[i] = dot(normal, motion_.coefficients[i]);
+    Condition opposite{{}, -normal};
+    for (std::size_t i = 0; i <= Degree; ++i) opposite.separation[i] = -condition.separation[i];
+    condition.separation[0] -= (of_a.high - of_b.low) * inverse;
+    opposite.separation[0] -= (of_b.high - of_a.low) * inverse;
+    visit(condition);
+    visit(opposite);
+  }
+
+  /// Degree 1: the two are near from enter_ to leave_.
+  void add(const Condition& condition) {
+    const double c0 = condition.separation[0] - gap_.c[0];
+    const double c1 = condition.separation[1] - gap_.c[1];
+    if (c1 > 0) {
+      leave_ = std::min(leave_, -c0 / c1);
+    } else if (c1 < 0) {
+      const double begin = -c0 / c1;
+      if (begin > enter_) {
+        enter_ = begin;
+        entry_speed_ = -condition.separation[1];
+      }
+    } else if (c0 >= 0) {
+      leave_ = -TimeSpans::infinity;
+    }
+  }
+
+  /// Adds the conditions that may change within the window; false if one surely never holds there. What a condition
+  /// does is mostly told by its sign at both ends, on the axis as it is, without square root or quotient, and with
+  /// `quick_margin` gaps to spare (as in may_touch). The window shrinks with what is known.
+  bool add_within(TimeWindow window) {
+    return every_axis(a_, b_, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
+      const double length = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
+      if (!(length > vanishing_axis)) return true;
+      const double p0 = dot(axis, motion_.coefficients[0]);
+      const double p1 = dot(axis, motion_.coefficients[1]);
+      const double high = of_a.high - of_b.low;
+      const double low = of_a.low - of_b.high;
+      const double at_begin = p0 + p1 * window.begin;
+      const double at_end = p0 + p1 * window.end;
+      const double spare = quick_margin * length;
+      const double spare_begin = spare * gap_(window.begin);
+      const double spare_end = spare * gap_(window.end);
+      if (std::min(at_begin - spare_begin, at_end - spare_end) >= high) return false;
+      if (std::max(at_begin + spare_begin, at_end + spare_end) <= low) return false;
+      if (std::max(at_begin + spare_begin, at_end + spare_end) < high &&
+          std::min(at_begin - spare_begin, at_end - spare_end) > low) {
+        return true;
+      }
+      both_sides(axis, of_a, of_b, [this](const Condition& condition) { add(condition); });
+      window.begin = std::max(window.begin, enter_);
+      window.end = std::min(window.end, leave_);
+      return window.begin <= window.end;
     });
   }
 
@@ -213,7 +258,10 @@ class ConvexTouch {
   ContactGap<Degree> gap_;
   std::array<TimeSpans, Degree == 1 ? 1 : capacity> near_;  ///< when each separation is below the gap
   std::size_t size_ = 0;
-  double entry_speed_ = 0;  ///< degree 1: along the axis on which they come within the gap last
+  // Degree 1:
+  double enter_ = -TimeSpans::infinity;
+  double leave_ = TimeSpans::infinity;
+  double entry_speed_ = 0;  ///< along the axis on which they come within the gap last
 };
 
 }  // namespace kds::collision

@@ -64,8 +64,8 @@ double MeshPair<Degree>::first_free_time(double tau, double limit) const {
 }
 
 template <int Degree>
-MeshTouchPlace MeshPair<Degree>::where(double tau) const {
-  return ask([&](const auto& query) { return query.where(tau); });
+MeshTouchPlace MeshPair<Degree>::where(double tau, const MeshTouch* known) const {
+  return ask([&](const auto& query) { return query.where(tau, known); });
 }
 
 template class MeshPair<1>;
@@ -114,10 +114,14 @@ struct ClockedPair {
 }  // namespace
 
 template <int Degree>
-double MeshContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode) {
+double MeshContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
+                                          FoundTouch* found) {
   const ClockedPair<Degree> clocked(a, b);
   const auto touch = clocked.pair.first_contact(clocked.tau(t0), clocked.tau(horizon), mode);
-  return touch ? clocked.clock(touch->tau, t0, horizon) : infinity;
+  if (!touch) return infinity;
+  const double time = clocked.clock(touch->tau, t0, horizon);
+  if (found && touch->foremost) *found = {time, touch->tau, touch->triangle_a, touch->triangle_b};
+  return time;
 }
 
 template <int Degree>
@@ -141,9 +145,10 @@ double MeshContact<Degree>::first_separation(const Body& a, const Body& b, doubl
 }
 
 template <int Degree>
-Contact MeshContact<Degree>::contact_at(const Body& a, const Body& b, double t) {
+Contact MeshContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch& found) {
   const ClockedPair<Degree> clocked(a, b);
-  const auto where = clocked.pair.where(clocked.tau(t));
+  const MeshTouch known{found.tau, found.triangle_a, found.triangle_b, true};
+  const auto where = clocked.pair.where(clocked.tau(t), found.time == t ? &known : nullptr);
   Contact contact{t, clocked.a.motion.position(t) + where.point, where.normal, where.feature_a, where.feature_b};
   if (clocked.swapped) {
     contact.normal = -contact.normal;

@@ -17,6 +17,8 @@ struct MeshTouch {
   double tau;  ///< s, from the motion's epoch
   std::uint32_t triangle_a;
   std::uint32_t triangle_b;  ///< 0 unless b is a mesh
+  /// Found by first_contact: no other pair of triangles that touches just after tau has touched before it.
+  bool foremost = false;
 };
 
 /// Where and how they touch.
@@ -63,8 +65,9 @@ class MeshPair {
   double first_free_time(double tau, double limit) const;
 
   /// How they touch at tau. Of several touching pairs of triangles: one that approaches, the earliest to touch, the
-  /// lowest. At a time when they have just ceased to touch: the pair that was last.
-  MeshTouchPlace where(double tau) const;
+  /// lowest. At a time when they have just ceased to touch: the pair that was last. `known`: what first_contact has
+  /// found, if tau is that time, rounded to the clock; the answer is the same, for less.
+  MeshTouchPlace where(double tau, const MeshTouch* known = nullptr) const;
 
  private:
   template <class Question>
@@ -86,12 +89,13 @@ template <int Degree>
 struct MeshContact {
   using Body = MovingShape<Degree>;
 
-  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
+                              FoundTouch* found = nullptr);
   /// A time in [t0, never] before which there is no contact; `never` if there is none until the horizon.
   static double apart_until(const Body& a, const Body& b, double t0, double horizon);
   static bool in_contact(const Body& a, const Body& b, double t);
   static double first_separation(const Body& a, const Body& b, double t0, double horizon);
-  static Contact contact_at(const Body& a, const Body& b, double t);
+  static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch& found = {});
 };
 
 extern template struct MeshContact<1>;

@@ -5,10 +5,11 @@
 #include "collision/narrow_phase/contact_patch.hpp"
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
+#include "collision/narrow_phase/mesh_partners.hpp"
+#include "collision/narrow_phase/near_spans.hpp"
 #include "collision/narrow_phase/obb_descent.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
-#include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
 
 #include <Eigen/Core>
@@ -20,13 +21,8 @@
 #include <optional>
 #include <tuple>
 #include <type_traits>
-#include <variant>
-#include <vector>
 
 namespace kds::collision::detail {
-
-/// Gaps by which boxes and quick tests are widened, see BoxPairTest.
-inline constexpr double quick_margin = 4;
 
 /// s; contacts that lie farther ahead than 10^60 are none. Keeps polynomials of the time from overflowing.
 inline constexpr double farthest = 0x1p200;
@@ -35,103 +31,6 @@ inline constexpr double farthest = 0x1p200;
 /// straight path gets there only if its speed is nothing but rounding (bodies that move alike), a curved one if it goes
 /// out 2^43 radii and comes back. Larger predicts more of such contacts, and more slowly.
 inline constexpr double widest_gap = 0x1p-4;
-
-// ---- The three kinds of b ------------------------------------------------------------------------------------------
-
-/// A mesh in the orientation and scale of its body.
-struct PlacedMesh {
-  explicit PlacedMesh(const PlacedShape& shape)
-      : PlacedMesh(*std::get<MeshShape>(shape.shape).mesh, shape.rotation, std::get<MeshShape>(shape.shape).scale) {}
-  PlacedMesh(const Mesh& m, const Eigen::Matrix3d& rotation, double s)
-      : mesh(m), scale(s), pose{m.tree().nodes(), s * m.tree().unit(), rotation} {}
-
-  using Part = PlacedTriangle;
-  static constexpr bool solid = false;
-
-  PlacedTriangle triangle(const LeafTriangle& leaf) const {
-    PlacedTriangle placed;
-    for (std::size_t i = 0; i < 3; ++i) {
-      placed.vertices[i] = placed_vertex(pose.rotation, scale, mesh.vertices()[leaf.vertices[i]]);
-    }
-    return placed;
-  }
-
-  template <class Visit>
-  void each(const ObbNode& leaf, const Visit& visit) const {
-    for (const LeafTriangle& each : mesh.tree().leaf_triangles().subspan(leaf.first, leaf.count)) {
-      visit(each.index, triangle(each));
-    }
-  }
-
-  const Mesh& mesh;
-  double scale;
-  TreePose pose;
-};
-
-/// A box: a tree of one node, measured in its own radius.
-struct BoxPartner {
-  explicit BoxPartner(const PlacedShape& shape)
-      : part{shape.half_axes, shape.rotation},
-        node(node_of(std::get<Box>(shape.shape).half_extents / shape.bounding_radius)),
-        pose{{&node, 1}, shape.bounding_radius, shape.rotation} {}
-  BoxPartner(const BoxPartner&) = delete;  // pose refers to node
-  BoxPartner& operator=(const BoxPartner&) = delete;
-
-  using Part = PlacedBox;
-  static constexpr bool solid = true;
-
-  static ObbNode node_of(const Eigen::Vector3d& half_extents) {
-    const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-    return {{lanes(axes.row(0)), lanes(axes.row(1)), lanes(axes.row(2))}, Lanes{}, lanes(half_extents), 1, 0, 1};
-  }
-
-  template <class Visit>
-  void each(const ObbNode&, const Visit& visit) const {
-    visit(0u, part);
-  }
-
-  PlacedBox part;
-  ObbNode node;
-  TreePose pose;
-};
-
-struct BallPartner {
-  explicit BallPartner(const PlacedShape& shape) : part{std::get<Sphere>(shape.shape).radius} {}
-
-  using Part = PlacedBall;
-
-  PlacedBall part;
-};
-
-// ---- Supporting features -------------------------------------------------------------------------------------------
-
-/// The vertices of a triangle farthest along a direction, up to `tolerance`.
-struct Support {
-  Feature feature;
-  std::vector<Eigen::Vector3d> vertices;
-};
-inline Support triangle_support(const PlacedTriangle& placed, const LeafTriangle& leaf,
-                                const Eigen::Vector3d& direction, double tolerance) {
-  const double farthest_out = placed.project(direction).high;
-  Support support;
-  std::vector<std::uint32_t> names;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (dot(direction, placed.vertices[i]) < farthest_out - tolerance) continue;
-    support.vertices.push_back(placed.vertices[i]);
-    names.push_back(leaf.vertices[i]);
-  }
-  support.feature = names.size() == 1   ? Feature::vertex(names[0])
-                    : names.size() == 2 ? Feature::edge(names[0], names[1])
-                                        : Feature::face(leaf.index);
-  return support;
-}
-
-inline Feature nearest_feature(const NearestPoint& nearest, const LeafTriangle& leaf) {
-  if (nearest.dimension == 2) return Feature::face(leaf.index);
-  const std::uint32_t first = leaf.vertices[nearest.index];
-  if (nearest.dimension == 0) return Feature::vertex(first);
-  return Feature::edge(first, leaf.vertices[(nearest.index + 1) % 3]);
-}
 
 // ---- Questions -----------------------------------------------------------------------------------------------------
 
@@ -151,6 +50,8 @@ class Query {
 
   std::optional<MeshTouch> first_contact(double tau0, double tau1, ContactMode mode) const {
     std::optional<MeshTouch> best;
+    double passed_over = -TimeSpans::infinity;  // until then triangles touch that were passed over
+    bool sliced = false;
     slice_by_slice({tau0, tau1}, [&](const TimeSlice& slice) {
       EarliestFirst goal;
       if (best) goal.best = in_steps(slice, best->tau);
@@ -158,15 +59,18 @@ class Query {
            [&](std::uint32_t i, const PlacedTriangle& triangle, std::uint32_t j, const Part& part, TimeWindow window) {
              const bool lower = best && std::tuple(i, j) < std::tuple(best->triangle_a, best->triangle_b);
              if (best && (best->tau < window.begin || (best->tau == window.begin && !lower))) return;
-             if (!may_touch(triangle, part, motion_, margin_, window)) return;
-             const double tau = first_time(touching_of(triangle, part, window), tau0, window.end, mode);
+             // Before the window nothing touches, unless in an earlier slice.
+             if (sliced) window.begin = tau0;
+             const double tau = first_time(triangle, part, window, tau0, mode, passed_over);
              // The window reaches a little past the best hit.
              if (tau == TimeSpans::infinity || (best && (tau > best->tau || (tau == best->tau && !lower)))) return;
              best = MeshTouch{tau, i, j};
              goal.best = std::min(goal.best, in_steps(slice, tau));
            });
+      sliced = true;
       return best && best->tau <= slice.end;
     });
+    if (best) best->foremost = best->tau > tau0 && !(passed_over > best->tau);
     return best;
   }
 
@@ -201,7 +105,10 @@ class Query {
     return TimeSpans::infinity;
   }
 
-  MeshTouchPlace where(double tau) const {
+  MeshTouchPlace where(double tau, const MeshTouch* known) const {
+    if (known) {
+      if (const auto place = where_foremost(tau, *known)) return *place;
+    }
     // Ranked: touches and approaches, touches, is near; then by when it began (near: by how near), then by triangle.
     using Rank = std::tuple<int, double, std::uint32_t, std::uint32_t>;
     std::optional<Rank> best;
@@ -319,15 +226,51 @@ class Query {
     }
   }
 
-  /// The first contact in [tau, limit], or TimeSpans::infinity.
-  static double first_time(const Touching& touch, double tau, double limit, ContactMode mode) {
+  /// The first contact in [tau, limit], or TimeSpans::infinity. Raises `passed_over` to the ends of those before it.
+  static double first_time(const Touching& touch, double tau, double limit, ContactMode mode, double& passed_over) {
     for (;;) {
       tau = touch.first_inside(tau);
       if (tau > limit) return TimeSpans::infinity;
       if (mode == ContactMode::transparent || touch.approaching(tau)) return tau;
-      tau = touch.turning(tau, touch.leave(tau));
+      const double end = touch.leave(tau);
+      passed_over = std::max(passed_over, end);
+      tau = touch.turning(tau, end);
       if (tau == TimeSpans::infinity) return tau;
     }
+  }
+
+  /// The same of two parts that touch, if at all, within a window.
+  double first_time(const PlacedTriangle& triangle, const Part& part, TimeWindow window, double tau0, ContactMode mode,
+                    double& passed_over) const {
+    if constexpr (Degree == 1 && !with_ball) {
+      return first_time(Touching(triangle, part, motion_, gap_, window), tau0, window.end, mode, passed_over);
+    } else {
+      if (!may_touch(triangle, part, motion_, margin_, window)) return TimeSpans::infinity;
+      return first_time(touching_of(triangle, part, window), tau0, window.end, mode, passed_over);
+    }
+  }
+
+  /// The answer of where() from a contact that first_contact has found to be `foremost`: the first of all that hold at
+  /// tau, if it still holds and approaches. No other need be looked for then. Else nothing.
+  std::optional<MeshTouchPlace> where_foremost(double tau, const MeshTouch& known) const {
+    if (!known.foremost) return std::nullopt;
+    bool near = false;
+    slice_by_slice({tau, tau}, [&](const TimeSlice&) { return near = true; });
+    if (!near) return std::nullopt;
+    const PlacedTriangle triangle = a_.triangle({a_.mesh.triangles()[known.triangle_a], known.triangle_a});
+    std::optional<MeshTouchPlace> place;
+    const auto look = [&](const Part& part) {
+      const Touching touch = touching_of(triangle, part, {0, last_});
+      if (touch.first_inside(tau) != tau || touch.enter(tau) != known.tau) return;
+      const TouchDirection here = touch.direction(tau);
+      if (here.approaching) place = describe(tau, here, known.triangle_a, known.triangle_b);
+    };
+    if constexpr (std::is_same_v<Part, PlacedTriangle>) {
+      look(b_.triangle({b_.mesh.triangles()[known.triangle_b], known.triangle_b}));
+    } else {
+      look(b_.part);
+    }
+    return place;
   }
 
   /// The end of some contact that holds at tau, preferably a late one; tau itself if there is none.

@@ -4,6 +4,7 @@
 #include "certificates/point_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/shapes/shape.hpp"
+#include "kds/arithmetic/lattice.hpp"
 
 #include <cstdint>
 
@@ -22,6 +23,14 @@ struct MovingShape {
   const certificates::PointMotion<Degree>& motion;
 };
 
+/// The triangles of two shapes that touch first, and when: what contact_at would look for again. It saves time and
+/// decides nothing.
+struct FoundTouch {
+  double time = never;  ///< on the clock; `never`: nothing is known
+  double tau = 0;       ///< s, from the epoch of the pair
+  std::uint32_t triangle_a = 0, triangle_b = 0;
+};
+
 /// The first time t in [t0, horizon] at which a and b come into contact, or `never`.
 ///
 /// Spheres and boxes: the first double just after which they penetrate, by exact signs (for boxes and spheres against
@@ -31,9 +40,11 @@ struct MovingShape {
 ///
 /// Mode `resolved`: shapes that overlap at t0 by rounding (an impulse has just been applied) are in contact only if
 /// they approach. Mode `transparent`: t0 itself where they overlap there.
+///
+/// `found`, where it is wanted, is told which triangles touch, if that is a help to contact_at; else it stays.
 template <int Degree>
 double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
-                     ContactMode mode);
+                     ContactMode mode, FoundTouch* found = nullptr);
 
 /// What a pair remembers from test to test. It saves time and decides nothing.
 struct PairMemory {
@@ -53,7 +64,8 @@ struct ContactEstimate {
 /// changes, and then the old direction is tried first, and most of what a contact asks for was never asked.
 template <int Degree>
 ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
-                                        double horizon, ContactMode mode, PairMemory& memory);
+                                        double horizon, ContactMode mode, PairMemory& memory,
+                                        FoundTouch* found = nullptr);
 
 /// Whether a and b penetrate just after t.
 template <int Degree>
@@ -64,9 +76,10 @@ template <int Degree>
 double first_separation(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon);
 
 /// Point, normal and features of the contact at t, a time that first_contact or in_contact has named. In doubles:
-/// accurate to some ulps of the coordinates.
+/// accurate to some ulps of the coordinates. `found`: by first_contact, of the same motions; the contact is the same
+/// without it.
 template <int Degree>
-Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t, const FoundTouch& found = {});
 
 /// The same of two balls, of which the first has this radius.
 template <int Degree>

@@ -133,6 +133,9 @@ bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
 /// parallel edges alone, and squares of projections do not underflow.
 inline constexpr double vanishing_axis = 0x1p-320;
 
+/// Gaps by which boxes and quick tests are widened, see BoxPairTest.
+inline constexpr double quick_margin = 4;
+
 /// Cheap test: shrinks the window to times at which a and b may touch, with b moving; false if there are none.
 /// Projections are widened by `margin` as in BoxPairTest, times the 1-norm of the axis, which is not below its length.
 template <int Degree, class A, class B>

@@ -1,0 +1,117 @@
+// What a query about a mesh works on: the mesh, the other shape of each kind, and the features by which they touch.
+#pragma once
+
+#include "collision/narrow_phase/ball_touch.hpp"
+#include "collision/narrow_phase/feature.hpp"
+#include "collision/narrow_phase/obb_descent.hpp"
+#include "collision/narrow_phase/separating_axes.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "collision/shapes/shape.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+namespace kds::collision::detail {
+
+// ---- The three kinds of b ------------------------------------------------------------------------------------------
+
+/// A mesh in the orientation and scale of its body.
+struct PlacedMesh {
+  explicit PlacedMesh(const PlacedShape& shape)
+      : PlacedMesh(*std::get<MeshShape>(shape.shape).mesh, shape.rotation, std::get<MeshShape>(shape.shape).scale) {}
+  PlacedMesh(const Mesh& m, const Eigen::Matrix3d& rotation, double s)
+      : mesh(m), scale(s), pose{m.tree().nodes(), s * m.tree().unit(), rotation} {}
+
+  using Part = PlacedTriangle;
+  static constexpr bool solid = false;
+
+  PlacedTriangle triangle(const LeafTriangle& leaf) const {
+    PlacedTriangle placed;
+    for (std::size_t i = 0; i < 3; ++i) {
+      placed.vertices[i] = placed_vertex(pose.rotation, scale, mesh.vertices()[leaf.vertices[i]]);
+    }
+    return placed;
+  }
+
+  template <class Visit>
+  void each(const ObbNode& leaf, const Visit& visit) const {
+    for (const LeafTriangle& each : mesh.tree().leaf_triangles().subspan(leaf.first, leaf.count)) {
+      visit(each.index, triangle(each));
+    }
+  }
+
+  const Mesh& mesh;
+  double scale;
+  TreePose pose;
+};
+
+/// A box: a tree of one node, measured in its own radius.
+struct BoxPartner {
+  explicit BoxPartner(const PlacedShape& shape)
+      : part{shape.half_axes, shape.rotation},
+        node(node_of(std::get<Box>(shape.shape).half_extents / shape.bounding_radius)),
+        pose{{&node, 1}, shape.bounding_radius, shape.rotation} {}
+  BoxPartner(const BoxPartner&) = delete;  // pose refers to node
+  BoxPartner& operator=(const BoxPartner&) = delete;
+
+  using Part = PlacedBox;
+  static constexpr bool solid = true;
+
+  static ObbNode node_of(const Eigen::Vector3d& half_extents) {
+    const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+    return {{lanes(axes.row(0)), lanes(axes.row(1)), lanes(axes.row(2))}, Lanes{}, lanes(half_extents), 1, 0, 1};
+  }
+
+  template <class Visit>
+  void each(const ObbNode&, const Visit& visit) const {
+    visit(0u, part);
+  }
+
+  PlacedBox part;
+  ObbNode node;
+  TreePose pose;
+};
+
+struct BallPartner {
+  explicit BallPartner(const PlacedShape& shape) : part{std::get<Sphere>(shape.shape).radius} {}
+
+  using Part = PlacedBall;
+
+  PlacedBall part;
+};
+
+// ---- Supporting features -------------------------------------------------------------------------------------------
+
+/// The vertices of a triangle farthest along a direction, up to `tolerance`.
+struct Support {
+  Feature feature;
+  std::vector<Eigen::Vector3d> vertices;
+};
+inline Support triangle_support(const PlacedTriangle& placed, const LeafTriangle& leaf,
+                                const Eigen::Vector3d& direction, double tolerance) {
+  const double farthest_out = placed.project(direction).high;
+  Support support;
+  std::vector<std::uint32_t> names;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (dot(direction, placed.vertices[i]) < farthest_out - tolerance) continue;
+    support.vertices.push_back(placed.vertices[i]);
+    names.push_back(leaf.vertices[i]);
+  }
+  support.feature = names.size() == 1   ? Feature::vertex(names[0])
+                    : names.size() == 2 ? Feature::edge(names[0], names[1])
+                                        : Feature::face(leaf.index);
+  return support;
+}
+
+inline Feature nearest_feature(const NearestPoint& nearest, const LeafTriangle& leaf) {
+  if (nearest.dimension == 2) return Feature::face(leaf.index);
+  const std::uint32_t first = leaf.vertices[nearest.index];
+  if (nearest.dimension == 0) return Feature::vertex(first);
+  return Feature::edge(first, leaf.vertices[(nearest.index + 1) % 3]);
+}
+
+}  // namespace kds::collision::detail
