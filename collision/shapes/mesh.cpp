@@ -66,6 +66,10 @@ std::vector<Mesh::Triangle> checked(std::span<const Vector3d> vertices, std::vec
   return triangles;
 }
 
+using Two = VertexPair::Two;
+
+Two both(double x) { return Two{x, x}; }
+
 }  // namespace
 
 Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
@@ -75,12 +79,20 @@ Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
   for (const Vector3d& v : vertices_) bounding_radius_ = std::max(bounding_radius_, v.norm());
   bounding_radius_ *= 1 + 0x1p-50;  // three roundings of the norm, upward
   std::vector<bool> used(vertices_.size());
+  std::size_t count = 0;
   for (const Triangle& triangle : triangles_) {
     for (const std::uint32_t index : triangle) {
-      if (!used[index]) used_.push_back(index);
+      if (used[index]) continue;
       used[index] = true;
+      const Vector3d& v = vertices_[index];
+      if (count++ % 2 == 0) {
+        used_.push_back({both(v[0]), both(v[1]), both(v[2])});
+      } else {
+        used_.back().x[1] = v[0], used_.back().y[1] = v[1], used_.back().z[1] = v[2];
+      }
     }
   }
+  used_.shrink_to_fit();
 }
 
 std::vector<Vector3d> Mesh::placed_vertices(const Eigen::Matrix3d& rotation, double scale) const {
@@ -90,21 +102,41 @@ std::vector<Vector3d> Mesh::placed_vertices(const Eigen::Matrix3d& rotation, dou
   return placed;
 }
 
+/// Two vertices at a time, in the arithmetic of placed_vertex.
 void Mesh::extents(const Eigen::Matrix3d& rotation, double scale, Vector3d& low, Vector3d& high) const {
-  low.setConstant(std::numeric_limits<double>::infinity());
-  high = -low;
-  for (const std::uint32_t index : used_) {
-    const Vector3d v = placed_vertex(rotation, scale, vertices_[index]);
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::array<Two, 3> least, most;
+  least.fill(both(infinity));
+  most.fill(both(-infinity));
+  std::array<std::array<Two, 3>, 3> turn;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      turn[i][j] = both(rotation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    }
+  }
+  for (const VertexPair& pair : used_) {
+    const Two x = both(scale) * pair.x;
+    const Two y = both(scale) * pair.y;
+    const Two z = both(scale) * pair.z;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Two v = turn[i][0] * x + turn[i][1] * y + turn[i][2] * z;
+      least[i] = v < least[i] ? v : least[i];
+      most[i] = v > most[i] ? v : most[i];
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    low[static_cast<Eigen::Index>(i)] = std::min(least[i][0], least[i][1]);
+    high[static_cast<Eigen::Index>(i)] = std::max(most[i][0], most[i][1]);
   }
 }
 
 std::array<double, 2> Mesh::extent(const Eigen::Matrix3d& rotation, double scale, const Vector3d& direction) const {
   std::array<double, 2> ends{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const std::uint32_t index : used_) {
-    const double along = direction.dot(placed_vertex(rotation, scale, vertices_[index]));
-    ends = {std::min(ends[0], along), std::max(ends[1], along)};
+  for (const VertexPair& pair : used_) {
+    for (int i = 0; i < 2; ++i) {
+      const double along = direction.dot(placed_vertex(rotation, scale, {pair.x[i], pair.y[i], pair.z[i]}));
+      ends = {std::min(ends[0], along), std::max(ends[1], along)};
+    }
   }
   return ends;
 }

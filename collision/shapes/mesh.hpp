@@ -42,6 +42,12 @@ inline Eigen::Vector3d placed_vertex(const Eigen::Matrix3d& rotation, double sca
           rotation(2, 0) * x + rotation(2, 1) * y + rotation(2, 2) * z};
 }
 
+/// Two vertices, as the compiler's own vectors.
+struct VertexPair {
+  using Two = double __attribute__((vector_size(16)));
+  Two x, y, z;
+};
+
 /// A triangle surface with its tree of oriented boxes. Coordinates in units of length about the model's origin, which
 /// is the centre of the bodies that use it. It need not be closed, connected or consistently wound.
 class Mesh {
@@ -79,7 +85,7 @@ class Mesh {
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<Triangle> triangles_;
   ObbTree tree_;
-  std::vector<std::uint32_t> used_;  // vertices that triangles use, each once
+  std::vector<VertexPair> used_;  // vertices that triangles use, each once; of an odd number the last one twice
   double bounding_radius_ = 0;
 };
 

@@ -101,6 +101,15 @@ TEST_CASE("Extents and radius of a mesh hold its placed vertices tightly") {
   CHECK(mesh->bounding_radius() == Approx(1.0).epsilon(1e-14));
 }
 
+TEST_CASE("Extents of an odd number of vertices leave out those that no triangle uses") {
+  const Mesh mesh({{9, 9, 9}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}, {-9, -9, -9}}, {{1, 2, 3}});
+  Vector3d low, high;
+  mesh.extents(Eigen::Matrix3d::Identity(), 2, low, high);
+  CHECK(low == Vector3d(0, 0, 0));
+  CHECK(high == Vector3d(2, 4, 6));
+  CHECK(mesh.extent(Eigen::Matrix3d::Identity(), 1, {0, 1, -1}) == std::array<double, 2>{-3, 2});
+}
+
 TEST_CASE("Features print as the event file wants them") {
   CHECK(to_string(Feature{}) == "-");
   CHECK(to_string(Feature::vertex(12)) == "v12");
