@@ -50,7 +50,7 @@ void BoxGrid::begin_search(Id id) {
 bool BoxGrid::report_once(Id id) { return std::exchange(items_[id].reported, search_) != search_; }
 
 void BoxGrid::enter(Id id, Changes& changes) {
-  if (natives_.size() == natives_.room()) restart_natives(2 * natives_.size());
+  if (natives_.size() == natives_.room()) grow();
   if (guests_.size() + levels_.size() > guests_.room()) restart_guests();
   items_[id].entered = true;
   const Item item = items_[id];
@@ -72,7 +72,7 @@ void BoxGrid::enter(Id id, Changes& changes) {
   for (const Id other : found_.numbers()) {
     if (items_[other].bounds.within(limits) && report_once(other)) changes.began.push_back(other);
   }
-  if (idle_) drop_idle_level();
+  tidy();
 }
 
 /// The boxes and cells of some ahead are fetched meanwhile: they lie anywhere in memory.
@@ -159,7 +159,7 @@ void BoxGrid::move(Id id, const Bounds& to, Changes& changes) {
     if (bounds.within(limits_before) == after || !report_once(other)) continue;
     (after ? changes.began : changes.ended).push_back(other);
   }
-  if (idle_) drop_idle_level();
+  tidy();
 }
 
 /// Takes a box out and puts it in anew; what overlaps both before and after has not changed.

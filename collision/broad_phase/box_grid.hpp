@@ -20,7 +20,8 @@ namespace kds::collision {
 
 /// Keeps boxes by number and tells, when one comes, goes or is replaced, with which others its overlap has changed.
 ///
-/// A level of the grid has cubic cells of 2^k units. A box is a *native* of the level whose cells are just larger, and
+/// A level of the grid has cubic cells, of sides that double from level to level; the smallest hold a few boxes each on
+/// average, since to look into empty cells would take longer. A box is a *native* of the level whose cells are just larger, and
 /// a *guest* of all coarser levels in use; in each it is in one cell, that of its lower corner, so to move it rarely
 /// changes more than one entry. A search looks into the cells where a box that overlaps may have its corner. So two
 /// boxes of any sizes meet in cells of the larger one's level; space has no bounds, and a small box does not look at
@@ -61,13 +62,19 @@ class BoxGrid {
   Id end() const { return static_cast<Id>(items_.size()); }
 
   /// Greatest extent of a box of the same level as one of this extent.
-  static double room_for(double extent);
+  double room_for(double extent) const;
 
   /// Makes room for boxes of numbers below `end`.
   void reserve(Id end) {
     items_.resize(std::max<std::size_t>(items_.size(), end));
-    if (end > natives_.room()) restart_natives(end);
+    if (end > natives_.room()) restart(end);
   }
+
+  /// Chooses the smallest cells, for boxes so far apart; best before any come. Later the grid chooses by itself.
+  void choose_cells(double spacing);
+
+  /// Side of the smallest cells there may be.
+  double least_cell() const { return cell_side(finest_); }
 
   /// Puts a box in, or in place of the one of that number. Appends to `changes`.
   void put(Id id, const StaticBox& box, Changes& changes);
@@ -83,6 +90,9 @@ class BoxGrid {
 
   /// Precondition: contains(id). Appends to `changes`.
   void remove(Id id, Changes& changes);
+
+  /// The same of the next finer level; 0 if there is none.
+  double room_below(double extent) const;
 
   /// Greatest extent of a box for which a level is in use.
   double coarsest() const;
@@ -147,7 +157,8 @@ class BoxGrid {
 
   struct Ends;
 
-  static Exponent level_for(double extent);
+  double cell_side(int exponent) const;
+  Exponent level_for(double extent) const;
   std::vector<Level>::iterator find_level(Exponent exponent);
   std::vector<Level>::iterator add_level(std::vector<Level>::iterator place, Exponent exponent);
   Level& use_level(Exponent exponent);
@@ -164,7 +175,10 @@ class BoxGrid {
   void put_anew(Id id, const Bounds& to, Exponent level, Changes& changes);
   void drop_idle_level();
   void restart_guests();
-  void restart_natives(std::size_t room);
+  void tidy();
+  void grow();
+  void restart(std::size_t room);
+  void refine();
   void search(const CellTable& table, const Level& level, const Population& population, const Ends& box);
 
   std::vector<Item> items_;    // by id
@@ -175,6 +189,9 @@ class BoxGrid {
   std::uint32_t search_ = 0;
   std::uint64_t families_ = 0;
   std::size_t size_ = 0;
+  double unit_ = 1;          ///< side of a cell of exponent 0, in [1, 2)
+  Exponent finest_ = least;  ///< no box is native of a finer level
+  std::int64_t crowding_ = 0;  ///< buckets that searches have walked on chains, less some a cell
   bool idle_ = false;  ///< some level has had too much idle work
 };
 

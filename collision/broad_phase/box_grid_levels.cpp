@@ -1,10 +1,12 @@
 // The levels of a box grid: what is in their cells, and the search in them.
 #include "collision/broad_phase/box_grid_ends.hpp"
+#include "collision/broad_phase/typical_spacing.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <vector>
 
 namespace kds::collision {
 namespace {
@@ -20,18 +22,42 @@ double power_of_two(int exponent) {
 /// Cells are at least this much larger than a box. Larger ones are fewer to look into, and hold more.
 constexpr double roominess = 1.4;
 
-BoxGrid::Exponent BoxGrid::level_for(double extent) {
-  if (!(extent > 0)) return least;
+/// Side of the smallest cells over the spacing of boxes (found by measuring; the minimum is flat).
+constexpr double cell_per_spacing = 2;
+
+/// Where searches walk more chained buckets a cell than this on average, smaller cells would do.
+constexpr std::int64_t crowded_chain = 4;
+
+BoxGrid::Exponent BoxGrid::level_for(double extent) const {
+  if (!(extent > 0)) return finest_;
   if (!(extent < 0x1p1023)) return most;
-  const double room = roominess * extent;
+  const double room = roominess / unit_ * extent;
   int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(room) >> 52) - 1022;  // of a mantissa below 1
   if (exponent == -1022) std::frexp(room, &exponent);                                // not a normal number
-  return static_cast<Exponent>(std::clamp(exponent, least, most));
+  return static_cast<Exponent>(std::clamp<int>(exponent, finest_, most));
 }
 
-double BoxGrid::room_for(double extent) { return power_of_two(level_for(extent)) / roominess; }
+double BoxGrid::cell_side(int exponent) const { return unit_ * power_of_two(exponent); }
 
-double BoxGrid::coarsest() const { return levels_.empty() ? 0 : power_of_two(levels_.back().exponent) / roominess; }
+double BoxGrid::room_for(double extent) const { return cell_side(level_for(extent)) / roominess; }
+
+double BoxGrid::room_below(double extent) const {
+  const Exponent level = level_for(extent);
+  return level == finest_ ? 0 : cell_side(level - 1) / roominess;
+}
+
+/// Precondition: empty, or restart() is next.
+void BoxGrid::choose_cells(double spacing) {
+  unit_ = 1;
+  finest_ = least;
+  const double side = cell_per_spacing * spacing;
+  if (side > 0x1p-900 && side < 0x1p900) {  // of others, boxes alone decide
+    finest_ = static_cast<Exponent>(std::ilogb(side));
+    unit_ = side / power_of_two(finest_);
+  }
+}
+
+double BoxGrid::coarsest() const { return levels_.empty() ? 0 : cell_side(levels_.back().exponent) / roominess; }
 
 std::vector<BoxGrid::Level>::iterator BoxGrid::find_level(Exponent exponent) {
   return std::lower_bound(levels_.begin(), levels_.end(), exponent,
@@ -40,7 +66,7 @@ std::vector<BoxGrid::Level>::iterator BoxGrid::find_level(Exponent exponent) {
 
 std::vector<BoxGrid::Level>::iterator BoxGrid::add_level(std::vector<Level>::iterator place, Exponent exponent) {
   families_ += 0x9E6C63D0676A9A99u;
-  return levels_.insert(place, Level{exponent, power_of_two(lattice_bits - exponent), families_});
+  return levels_.insert(place, Level{exponent, power_of_two(lattice_bits - exponent) / unit_, families_});
 }
 
 BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
@@ -51,22 +77,53 @@ BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
   return *place;
 }
 
-/// Levels come and go with the sizes of boxes; one without natives is given up when as much has been spent on its
-/// guests as it costs to build it anew.
+/// What has cost more for nothing than to build it anew is built anew.
+void BoxGrid::tidy() {
+  if (idle_) drop_idle_level();
+  if (crowding_ > static_cast<std::int64_t>(16 * size_)) refine();
+}
+
+/// Levels come and go with the sizes of boxes; one without natives is given up.
 void BoxGrid::drop_idle_level() {
   idle_ = false;
   std::erase_if(levels_, [&](const Level& level) { return level.natives.count == 0 && level.idle > size_; });
   restart_guests();
 }
 
-void BoxGrid::restart_natives(std::size_t room) {
+/// Puts all into new cells of the levels that fit them now, with room for so many.
+void BoxGrid::restart(std::size_t room) {
+  levels_.clear();
   natives_.restart(room);
-  for (Level& level : levels_) level.natives = {};
   for (Id id = 0; id < items_.size(); ++id) {
-    if (!items_[id].entered) continue;
-    Level& level = *find_level(items_[id].level);
-    add(natives_, level, level.natives, Ends(items_[id].bounds, level.scale), id);
+    Item& item = items_[id];
+    if (item.level == absent) continue;
+    item.level = level_for(item.bounds.extent());
+    auto level = find_level(item.level);
+    if (level == levels_.end() || level->exponent != item.level) level = add_level(level, item.level);
+    if (item.entered) add(natives_, *level, level->natives, Ends(item.bounds, level->scale), id);
   }
+  restart_guests();
+}
+
+/// More boxes, which may be elsewhere, call for other cells.
+void BoxGrid::grow() {
+  std::vector<Id> present;
+  for (Id id = 0; id < items_.size(); ++id) {
+    if (contains(id)) present.push_back(id);
+  }
+  choose_cells(typical_spacing(present.size(), [&](std::size_t i) { return box(present[i]); }));
+  restart(2 * natives_.size());
+}
+
+/// Makes the smallest cells smaller if most boxes fit, as where boxes have gathered.
+void BoxGrid::refine() {
+  crowding_ = 0;
+  std::size_t fitting = 0;
+  const double finer = 0.5 * least_cell() / roominess;
+  for (const Item& item : items_) fitting += item.level == finest_ && item.bounds.extent() < finer;
+  if (2 * fitting < size_ || finest_ == least) return;
+  --finest_;
+  restart(natives_.room());
 }
 
 void BoxGrid::restart_guests() {
@@ -143,7 +200,9 @@ void BoxGrid::search(const CellTable& table, const Level& level, const Populatio
       block.limits[d][i] = box.limits(d, cell) | row_mark(d, cell);
     }
   }
-  table.find(block, found_);
+  const auto cells = static_cast<std::int64_t>(block.lengths[0] * block.lengths[1] * block.lengths[2]);
+  const auto walked = static_cast<std::int64_t>(table.find(block, found_));
+  crowding_ = std::max<std::int64_t>(crowding_ + walked - crowded_chain * cells, 0);
 }
 
 }  // namespace kds::collision

@@ -64,7 +64,8 @@ inline std::uint32_t CellTable::Bucket::within(Ends limits) const {
 #endif
 }
 
-void CellTable::find(const Block& block, Found& found) const {
+std::size_t CellTable::find(const Block& block, Found& found) const {
+  std::size_t walked = 0;
   const Bucket* const buckets = buckets_.data();
   const std::size_t mask = buckets_.size() - 1;
   const auto [cells_x, cells_y, cells_z] = block.lengths;
@@ -76,13 +77,14 @@ void CellTable::find(const Block& block, Found& found) const {
       const std::size_t begin = static_cast<std::size_t>(row_y >> shift_) + static_cast<std::size_t>(block.low[0]);
       for (std::size_t x = 0; x < cells_x; ++x) {
         const Ends limits = limits_yz | block.limits[0][x];
-        for (const Bucket* bucket = &buckets[(begin + x) & mask];; bucket = &chained_[bucket->next]) {
+        for (const Bucket* bucket = &buckets[(begin + x) & mask];; bucket = &chained_[bucket->next], ++walked) {
           found.add(bucket->numbers, bucket->within(limits));
           if (bucket->next == none) break;
         }
       }
     }
   }
+  return walked;
 }
 
 CellTable::Where CellTable::where(std::size_t place, Ends ends, std::uint32_t number) {

@@ -92,8 +92,9 @@ class CellTable {
     std::array<std::array<Ends, longest>, 3> limits;
   };
 
-  /// Appends the numbers within the limits, those of other cells in the same buckets too.
-  void find(const Block& block, Found& found) const;
+  /// Appends the numbers within the limits, those of other cells in the same buckets too. Returns how many buckets it
+  /// has walked beyond the first of each cell.
+  std::size_t find(const Block& block, Found& found) const;
 
  private:
   /// Steps from row to row, before all but the highest bits are dropped.

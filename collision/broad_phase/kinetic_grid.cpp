@@ -77,7 +77,7 @@ double KineticGrid<Degree>::lifetime(const Body& body, double now) {
 template <int Degree>
 template <class MayBegin>
 auto KineticGrid<Degree>::fat_box(Body& body, const StaticBox& present, double now, double coarsest,
-                                  MayBegin&& may_begin) -> FatBox {
+                                  MayBegin&& may_begin) const -> FatBox {
   body.fattened = now;
   const double size = present.extent();
   const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
@@ -100,7 +100,7 @@ auto KineticGrid<Degree>::fat_box(Body& body, const StaticBox& present, double n
     if (!(extent <= largest)) return {whole_space(), never, certificates};
     ++certificates;
     // One that is just too large for a level is better cut than in the next.
-    const double room_below = 0.5 * BoxGrid::room_for(extent);
+    const double room_below = fat_boxes_.room_below(extent);
     if (extent < 1.5 * room_below && size < 0.75 * room_below) {
       const double cut = 0.999 * (room_below - size) / (extent - size);
       time *= cut;
@@ -133,7 +133,7 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double no
 
 /// One that fits into a level, unless the body does not.
 template <int Degree>
-auto KineticGrid<Degree>::fitting_box(Body& body, double now, double coarsest) -> FatBox {
+auto KineticGrid<Degree>::fitting_box(Body& body, double now, double coarsest) const -> FatBox {
   return fat_box(body, box_at(body.box, now), now, coarsest, [] { return false; });
 }
 

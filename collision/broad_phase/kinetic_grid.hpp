@@ -78,9 +78,9 @@ class KineticGrid final : public BroadPhase<Degree> {
   };
 
   template <class MayBegin>
-  static FatBox fat_box(Body& body, const StaticBox& present, double now, double coarsest, MayBegin&& may_begin);
+  FatBox fat_box(Body& body, const StaticBox& present, double now, double coarsest, MayBegin&& may_begin) const;
   FatBox fat_box(BodyId id, const StaticBox& present, double now);
-  static FatBox fitting_box(Body& body, double now, double coarsest);
+  FatBox fitting_box(Body& body, double now, double coarsest) const;
   void insert_first(std::span<const Entry> bodies, double now, PairListener& listener);
   void make_boxes(std::span<const Entry> bodies, std::span<StaticBox> boxes, std::size_t threads, double now);
   void cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now);

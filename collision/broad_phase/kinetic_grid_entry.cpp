@@ -1,6 +1,7 @@
 // How bodies come into the kinetic grid.
 #include "collision/broad_phase/box_pairs.hpp"
 #include "collision/broad_phase/kinetic_grid.hpp"
+#include "collision/broad_phase/typical_spacing.hpp"
 #include "collision/parallel.hpp"
 
 #include <algorithm>
@@ -18,34 +19,6 @@ constexpr double reach_per_spacing = 0.25;
 
 /// Fewer bodies fit into the cache in any order.
 constexpr std::size_t few = 4096;
-
-/// Distance between neighbours if bodies are spread evenly over the box that holds the middle half of them on each
-/// axis; told from some of them. What is far out, up to a quarter on each side, makes no difference.
-template <int Degree>
-double typical_spacing(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
-  constexpr std::size_t sample = 256;
-  const std::size_t step = std::max<std::size_t>(bodies.size() / sample, 1);
-  std::array<std::vector<double>, 3> places;
-  double size = 0;
-  for (auto& place : places) place.reserve(bodies.size() / step + 1);
-  for (std::size_t i = 0; i < bodies.size(); i += step) {
-    const StaticBox box = box_at(*bodies[i].box, now);
-    size += box.extent();
-    for (std::size_t d = 0; d < 3; ++d) places[d].push_back(box.min[static_cast<Eigen::Index>(d)]);
-  }
-  size /= static_cast<double>(places[0].size());
-  double volume = 1;
-  for (auto& place : places) {
-    const auto quarter = place.begin() + static_cast<std::ptrdiff_t>(place.size() / 4);
-    const auto three_quarters = place.begin() + static_cast<std::ptrdiff_t>(place.size() * 3 / 4);
-    std::nth_element(place.begin(), quarter, place.end());
-    const double low = *quarter;
-    std::nth_element(quarter, three_quarters, place.end());
-    volume *= std::max(2 * (*three_quarters - low), size);
-  }
-  const double spacing = std::cbrt(volume / static_cast<double>(bodies.size()));
-  return std::isfinite(spacing) ? spacing : size;
-}
 
 /// The order in which to put in many bodies that come at once: by blocks of space, along [Morton66]'s curve, so that
 /// what a body meets, and the cells it is in, have just been used and are in the cache.
@@ -94,7 +67,10 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   }
   fat_boxes_.reserve(end);
   if (fat_boxes_.size() == 0 && !bodies.empty()) {
-    first_reach_ = reach_per_spacing * typical_spacing<Degree>(bodies, now);
+    const double spacing =
+        typical_spacing(bodies.size(), [&](std::size_t i) { return box_at(*bodies[i].box, now); });
+    first_reach_ = reach_per_spacing * spacing;
+    fat_boxes_.choose_cells(spacing);
     return insert_first(bodies, now, listener);
   }
   for (const Entry& entry : bodies) {
@@ -184,10 +160,10 @@ void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span
   extents.reserve(boxes.size());
   for (const StaticBox& box : boxes) extents.push_back(box.extent());
   const auto [least, most] = std::minmax_element(extents.begin(), extents.end());
-  if (BoxGrid::room_for(*least) == BoxGrid::room_for(*most)) return;
+  if (fat_boxes_.room_for(*least) == fat_boxes_.room_for(*most)) return;
   const auto last = extents.end() - 1 - static_cast<std::ptrdiff_t>(boxes.size() / share_for_level);
   std::nth_element(extents.begin(), last, extents.end());
-  const double coarsest = BoxGrid::room_for(*last);
+  const double coarsest = fat_boxes_.room_for(*last);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     Body& body = bodies_[bodies[i].id];
     if (!(boxes[i].extent() > coarsest) || body.expiry == never) continue;
