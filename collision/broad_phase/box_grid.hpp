@@ -143,7 +143,7 @@ class BoxGrid {
   struct Population {
     std::size_t count = 0;
     std::int64_t span = 0;  ///< of the largest there has been since there was none, in units of the lattice
-    std::array<std::int64_t, 3> low{}, high{};  ///< of the cells in use since then
+    std::array<std::int64_t, 3> low{}, high{};  ///< of the lower corners since then, in the same
   };
 
   struct Level {

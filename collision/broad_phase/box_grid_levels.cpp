@@ -152,12 +152,12 @@ void BoxGrid::count_guest(Level& level) {
 void BoxGrid::count_in(Population& population, const Ends& ends) {
   if (population.count++ == 0) {
     population.span = 0;
-    for (std::size_t d = 0; d < 3; ++d) population.low[d] = population.high[d] = ends.cell(d);
+    for (std::size_t d = 0; d < 3; ++d) population.low[d] = population.high[d] = ends.values[d];
   }
   population.span = std::max(population.span, ends.span());
   for (std::size_t d = 0; d < 3; ++d) {
-    population.low[d] = std::min(population.low[d], ends.cell(d));
-    population.high[d] = std::max(population.high[d], ends.cell(d));
+    population.low[d] = std::min(population.low[d], ends.values[d]);
+    population.high[d] = std::max(population.high[d], ends.values[d]);
   }
 }
 
@@ -189,8 +189,8 @@ void BoxGrid::search(const CellTable& table, const Level& level, const Populatio
   CellTable::Block block;
   block.family = level.family;
   for (std::size_t d = 0; d < 3; ++d) {
-    const std::int64_t low = std::max(Ends::cell_of(box.values[d] - population.span), population.low[d]);
-    const std::int64_t high = std::min(Ends::cell_of(-box.values[d + 3]), population.high[d]);
+    const std::int64_t low = Ends::cell_of(std::max(box.values[d] - population.span, population.low[d]));
+    const std::int64_t high = Ends::cell_of(std::min(-box.values[d + 3], population.high[d]));
     if (low > high) return;
     block.low[d] = low;
     block.lengths[d] = static_cast<std::size_t>(high - low + 1);

@@ -23,25 +23,32 @@ struct KineticBox {
   double valid_until = never;  ///< s
 };
 
-/// The double next to x, below or above by `direction` (1, -1), if `moved`; without a branch, since nobody can predict
-/// how a sum rounds. Precondition: x is not zero if moved, as a rounded sum is not.
-inline double moved_if(bool moved, double x, std::int64_t direction) {
-  const auto bits = std::bit_cast<std::int64_t>(x);
-  const std::int64_t outward = direction * (bits >> 63 | 1);  // in magnitude
-  return std::bit_cast<double>(bits + (outward & -static_cast<std::int64_t>(moved)));
-}
-
 /// The box that moves with `motion` and spans [low, high] about it, rounded outward: its real ends are never inside
 /// the exact sums.
+///
+/// Both ends at once, and without a branch, since nobody can predict how a sum rounds: where the rounding error points
+/// outward, the next double. A rounded sum is never zero.
 template <int Degree>
 KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& motion, const Eigen::Vector3d& low,
                               const Eigen::Vector3d& high) {
+  using Two = double __attribute__((vector_size(16)));
+  using TwoBits = std::int64_t __attribute__((vector_size(16)));
+  constexpr Two outward{-1, 1};
+  constexpr TwoBits step{-1, 1};
   KineticBox<Degree> box{motion, motion};
   for (int d = 0; d < 3; ++d) {
-    const DoubleDouble lower = two_sum(motion.coefficients[0][d], low[d]);
-    const DoubleDouble upper = two_sum(motion.coefficients[0][d], high[d]);
-    box.min.coefficients[0][d] = moved_if(lower.low < 0, lower.high, -1);
-    box.max.coefficients[0][d] = moved_if(upper.low > 0, upper.high, 1);
+    const double at = motion.coefficients[0][d];
+    const Two centre{at, at};
+    const Two reach{low[d], high[d]};
+    const Two sum = centre + reach;
+    const Two part = sum - centre;
+    const Two error = (centre - (sum - part)) + (reach - part);
+    const TwoBits negative = sum < 0;  // all bits set
+    const TwoBits away = (step ^ negative) - negative;  // in magnitude
+    const TwoBits moved = std::bit_cast<TwoBits>(sum) + (away & (error * outward > 0));
+    const Two ends = std::bit_cast<Two>(moved);
+    box.min.coefficients[0][d] = ends[0];
+    box.max.coefficients[0][d] = ends[1];
   }
   return box;
 }

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 namespace kds::collision {
@@ -82,25 +83,15 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
 /// All that come together into an empty grid: first the boxes of all, then pairs.
 template <int Degree>
 void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now, PairListener& listener) {
-  std::vector<StaticBox> boxes(bodies.size());
+  const auto made = std::make_unique_for_overwrite<StaticBox[]>(bodies.size());
+  const std::span<StaticBox> boxes(made.get(), bodies.size());
   const std::size_t threads = threads_for(bodies.size(), threads_);
   counters_.box_updates += bodies.size();
-  if (bodies.size() < few) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const BodyId id = bodies[i].id;
-      bodies_[id] = {*bodies[i].box, first_reach_, now, never, 0};
-      const FatBox fat = fat_box(id, box_at(*bodies[i].box, now), now);
-      boxes[i] = fat.box;
-      set_expiry(id, fat.expiry);
-      fat_boxes_.announce(id, fat.box);
-    }
-  } else {
-    make_boxes(bodies, boxes, threads, now);
-    cut_to_levels(bodies, boxes, now);
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      set_expiry(bodies[i].id, bodies_[bodies[i].id].expiry);
-      fat_boxes_.announce(bodies[i].id, boxes[i]);
-    }
+  make_boxes(bodies, boxes, threads, now);
+  cut_to_levels(bodies, boxes, now);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    set_expiry(bodies[i].id, bodies_[bodies[i].id].expiry);
+    fat_boxes_.announce(bodies[i].id, boxes[i]);
   }
   BoxPairs pairs;
   if (pairs.find(boxes, threads)) {
