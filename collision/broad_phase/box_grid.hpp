@@ -20,13 +20,13 @@ namespace kds::collision {
 
 /// Keeps boxes by number and tells, when one comes, goes or is replaced, with which others its overlap has changed.
 ///
-/// A level of the grid has cubic cells, of sides that double from level to level; the smallest hold a few boxes each on
-/// average, since to look into empty cells would take longer. A box is a *native* of the level whose cells are just larger, and
-/// a *guest* of all coarser levels in use; in each it is in one cell, that of its lower corner, so to move it rarely
-/// changes more than one entry. A search looks into the cells where a box that overlaps may have its corner. So two
-/// boxes of any sizes meet in cells of the larger one's level; space has no bounds, and a small box does not look at
-/// other small ones through the cells of a large one. Cells are found by hashing; different cells that share a key cost
-/// time, and nothing else, since what is found in a cell is only a hint.
+/// A level of the grid has cubic cells, of sides that double from level to level; the smallest hold a few boxes on
+/// average, since to look into empty cells is dearer than to look at some boxes in vain. A box is a *native* of the
+/// level whose cells are just larger, and a *guest* of all coarser levels in use; in each it is in one cell, that of
+/// its lower corner, so to move it rarely changes more than one entry. A search looks into the cells where a box that
+/// overlaps may have its corner. So two boxes of any sizes meet in cells of the larger one's level; space has no
+/// bounds, and a small box does not look at other small ones through the cells of a large one. Cells are found by
+/// hashing; different cells that share a key cost time, and nothing else, since what is found in a cell is only a hint.
 ///
 /// A cell keeps the ends of its boxes on a lattice of a 32nd of its side. To round to it is monotone, so where ends
 /// overlap they do on the lattice; most boxes that do not are left out without a look at them.
@@ -70,7 +70,7 @@ class BoxGrid {
     if (end > natives_.room()) restart(end);
   }
 
-  /// Chooses the smallest cells, for boxes so far apart; best before any come. Later the grid chooses by itself.
+  /// Chooses the smallest cells, for boxes so far apart. Precondition: empty. Later the grid chooses by itself.
   void choose_cells(double spacing);
 
   /// Side of the smallest cells there may be.
@@ -189,10 +189,10 @@ class BoxGrid {
   std::uint32_t search_ = 0;
   std::uint64_t families_ = 0;
   std::size_t size_ = 0;
-  double unit_ = 1;          ///< side of a cell of exponent 0, in [1, 2)
-  Exponent finest_ = least;  ///< no box is native of a finer level
+  double unit_ = 1;            ///< side of a cell of exponent 0, in [1, 2)
+  Exponent finest_ = least;    ///< no box is native of a finer level
   std::int64_t crowding_ = 0;  ///< buckets that searches have walked on chains, less some a cell
-  bool idle_ = false;  ///< some level has had too much idle work
+  bool idle_ = false;          ///< some level has had too much idle work
 };
 
 }  // namespace kds::collision

@@ -43,7 +43,7 @@ KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& motion, c
     const Two sum = centre + reach;
     const Two part = sum - centre;
     const Two error = (centre - (sum - part)) + (reach - part);
-    const TwoBits negative = sum < 0;  // all bits set
+    const TwoBits negative = sum < 0;                   // all bits set
     const TwoBits away = (step ^ negative) - negative;  // in magnitude
     const TwoBits moved = std::bit_cast<TwoBits>(sum) + (away & (error * outward > 0));
     const Two ends = std::bit_cast<Two>(moved);

@@ -68,8 +68,7 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   }
   fat_boxes_.reserve(end);
   if (fat_boxes_.size() == 0 && !bodies.empty()) {
-    const double spacing =
-        typical_spacing(bodies.size(), [&](std::size_t i) { return box_at(*bodies[i].box, now); });
+    const double spacing = typical_spacing(bodies.size(), [&](std::size_t i) { return box_at(*bodies[i].box, now); });
     first_reach_ = reach_per_spacing * spacing;
     fat_boxes_.choose_cells(spacing);
     return insert_first(bodies, now, listener);
@@ -99,17 +98,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
     order.reserve(bodies.size());
     for (const BoxPairs::Index i : pairs.order()) order.push_back(bodies[i].id);
     fat_boxes_.settle(order);
-    if (bodies.size() >= few) {
-      for (const auto& [i, j] : pairs.pairs()) report_pair(bodies[i].id, bodies[j].id, now, listener);
-      return;
-    }
-    // In the order in which they would be found by bodies that come one by one.
-    std::vector<std::uint64_t> found;
-    for (const auto& [i, j] : pairs.pairs()) {
-      found.push_back(std::uint64_t{std::max(i, j)} << 32 | bodies[std::min(i, j)].id);
-    }
-    std::sort(found.begin(), found.end());
-    for (const std::uint64_t pair : found) report_pair(bodies[pair >> 32].id, static_cast<BodyId>(pair), now, listener);
+    for (const auto& [i, j] : pairs.pairs()) report_pair(bodies[i].id, bodies[j].id, now, listener);
     return;
   }
   const auto enter = [&](BodyId id) {

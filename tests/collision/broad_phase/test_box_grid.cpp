@@ -203,6 +203,59 @@ TEST_CASE("Boxes that jump far or come in crowds are found in a box grid", "[box
   }
 }
 
+/// Puts boxes of at most this size about a centre, in turn; false if what it tells is not what brute force gives.
+bool put_all(BoxGrid& grid, std::map<BoxGrid::Id, StaticBox>& boxes, BoxGrid::Id count, Random& random, double size,
+             double side) {
+  std::set<std::pair<BoxGrid::Id, BoxGrid::Id>> before, pairs, after;
+  const auto overlapping = [&](auto& found) {
+    for (auto a = boxes.begin(); a != boxes.end(); ++a) {
+      for (auto b = std::next(a); b != boxes.end(); ++b) {
+        if (a->second.overlaps(b->second)) found.emplace(a->first, b->first);
+      }
+    }
+  };
+  overlapping(pairs);
+  BoxGrid::Changes changes;
+  bool right = true;
+  for (BoxGrid::Id id = 0; id < count; ++id) {
+    boxes[id] = random_box(random, size, side, 0);
+    changes.clear();
+    grid.put(id, boxes[id], changes);
+    for (const auto other : changes.ended) right = pairs.erase(ordered(id, other)) == 1 && right;
+    for (const auto other : changes.began) right = pairs.insert(ordered(id, other)).second && right;
+  }
+  overlapping(after);
+  return right && pairs == after;
+}
+
+TEST_CASE("The cells of a box grid follow the spacing of its boxes", "[box_grid]") {
+  Random random(47);
+  BoxGrid grid;
+  std::map<BoxGrid::Id, StaticBox> boxes;
+  grid.choose_cells(1e-3);
+  const double fine = grid.least_cell();
+  CHECK(fine > 1e-3);
+  CHECK(fine < 1e-2);
+  // More than it had room for, and far from each other: their spacing is 200 / 10, not that of the first.
+  CHECK(put_all(grid, boxes, 1000, random, 1, 100));
+  const double coarse = grid.least_cell();
+  CHECK(coarse > 20);
+  CHECK(coarse < 80);
+  // They gather in a corner of what was one cell.
+  for (int round = 0; round < 30; ++round) CHECK(put_all(grid, boxes, 1000, random, 0.01, 0.5));
+  CHECK(grid.least_cell() < 0.1 * coarse);
+  // And scatter.
+  CHECK(put_all(grid, boxes, 1000, random, 1, 100));
+}
+
+TEST_CASE("Cells are not made smaller than crowded boxes that would not fit", "[box_grid]") {
+  Random random(53);
+  BoxGrid grid;
+  std::map<BoxGrid::Id, StaticBox> boxes;
+  for (int round = 0; round < 20; ++round) CHECK(put_all(grid, boxes, 500, random, 1, 0.1));  // all overlap
+  CHECK(grid.least_cell() > 0.1);
+}
+
 TEST_CASE("A box grid does not take a guest of one level for itself in another", "[box_grid]") {
   // Few boxes, so few buckets, and many levels.
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
