@@ -323,7 +323,7 @@ class World final : private PairListener {
   void certify_wall(BodyId id);
   void test_boxes(PairSlot slot);
   void process_boxes(PairSlot slot, double t);
-  Contact contact_of(PairSlot slot, double t) const;
+  Contact contact_of(BodyId a, BodyId b, double t, const FoundTouch& found = {}) const;
   void process_contact(PairSlot slot, double t);
   void process_wall(BodyId id, double t);
   bool respond(PairSlot slot, const Contact& contact);

@@ -25,21 +25,21 @@ double parting(const Contact& contact, const certificates::PointMotion<Degree>& 
 
 /// Balls need not be made into shapes for it.
 template <int Degree>
-Contact World<Degree>::contact_of(PairSlot slot, double t) const {
-  const auto [a, b] = std::pair(pairs_[slot].a, pairs_[slot].b);
+Contact World<Degree>::contact_of(BodyId a, BodyId b, double t, const FoundTouch& found) const {
   const Mover& of_a = movers_[a];
   const Mover& of_b = movers_[b];
   if (of_a.ball_radius > 0 && of_b.ball_radius > 0) {
     return ball_contact_at(of_a.motion, of_b.motion, of_a.ball_radius, t);
   }
-  return contact_at(moving(a), moving(b), t, slot < found_.size() ? found_[slot] : FoundTouch{});
+  return contact_at(moving(a), moving(b), t, found);
 }
 
 template <int Degree>
 void World<Degree>::process_contact(PairSlot slot, double t) {
   contacts_.clear(slot);
   Pair& pair = pairs_[slot];
-  const PairEvent event{pair.a, pair.b, contact_of(slot, t)};
+  const FoundTouch found = slot < found_.size() ? found_[slot] : FoundTouch{};
+  const PairEvent event{pair.a, pair.b, contact_of(pair.a, pair.b, t, found)};
   if (mode() == ContactMode::transparent) {
     pair.touching = !pair.touching;
     mark_dirty(slot);
