@@ -208,20 +208,29 @@ double BallSeparation<PathDegree>::first_approach(double now, double horizon) co
   return first_all_broken<BallSeparation, Parting>(now, horizon, {this, 1}, {&parting, 1});
 }
 
+/// Along a line f is convex: it has its first root where it falls, at c / (p + sqrt(p^2 - c s)) with c = f now, p half
+/// its rate downward and s that of v . v. Bounds in place of c, p and the discriminant give a lower bound of that, and
+/// whether it is a root at all need not be known.
 template <int PathDegree>
 [[gnu::always_inline]] inline auto BallSeparation<PathDegree>::estimated_first_approach(double now,
                                                                                         double horizon) const
     -> Estimate {
+  using Line = RelativeLine;
   if (now <= horizon && relative_path_is_line()) {
-    const RelativeLine line(*this, now);
-    if (certain_sign(line.rate()) > 0) return {never, true};
-    const auto f = line.polynomial();
-    if (certain_sign(f.c[0]) > 0 && certain_sign(f.c[1]) < 0) {
-      const Ball<double> square = kds::detail::discriminant(f);
-      const int real = certain_sign(square);
-      if (real < 0) return {never, true};
-      if (const auto root = kds::detail::quadratic_root(f, square); real > 0 && root.error < never) {
-        const double t = next_down(now + (root.x - root.error) * (1 - 0x1p-50));
+    const Line line(*this, now);
+    const double most = line.M + line.W + line.reach;
+    if (most * most < Line::range) {
+      const double error = Line::unit * (line.M * line.W) + Line::lost;  // of p
+      if (line.product > error) return {never, true};
+      const double size = line.M * line.M + line.reach * line.reach;
+      const double least = line.square - (Line::unit * size + Line::lost);
+      if (least > 0 && line.product < -error) {
+        // The discriminant is off by unit W^2 (4 M^2 + 2 reach^2), and by its own rounding.
+        const double spare = 8 * Line::unit * (line.W * line.W) * size + Line::lost;
+        const double discriminant = line.product * line.product - line.square * line.speeds + spare;
+        if (discriminant < 0) return {never, true};
+        const double root = least / (std::sqrt(discriminant) - line.product + error);
+        const double t = next_down(now + root * (1 - 0x1p-50));
         return t > horizon ? Estimate{never, true} : Estimate{std::max(t, now), false};
       }
     }

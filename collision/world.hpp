@@ -313,7 +313,8 @@ class World final : private PairListener {
     bool done = false;
   };
   void test_dirty_pairs();
-  void test(PairSlot slot, const BallTest& of_balls);
+  void test(PairSlot slot);
+  bool balls_are_quick() const;
   BallTest test_of_balls(const Pair& pair) const;
   std::vector<BallTest> tests_of_balls() const;
   void set_contact(PairSlot slot, double time);

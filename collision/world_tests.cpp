@@ -43,27 +43,14 @@ bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
 }  // namespace
 
 template <int Degree>
-void World<Degree>::test_dirty_pairs() {
-  const Stopwatch watch(profile(), Work::test);
-  const std::vector<BallTest> tests = tests_of_balls();
-  for (std::size_t i = 0; i < dirty_.size(); ++i) {
-    const PairSlot slot = dirty_[i];
-    pairs_[slot].dirty = false;
-    if (!pairs_[slot].alive) continue;
-    test(slot, tests.empty() ? test_of_balls(pairs_[slot]) : tests[i]);
-    if (options_.report_pairs && !broad_phase_->exact()) test_boxes(slot);
-    pairs_[slot].fresh = false;
-  }
-  dirty_.clear();
-  std::erase_if(passing_, [&](const Passing& passing) {
-    return passing.let_pass ? next_up(passing.at) < now_ : passing.moved || passing.at < now_;
-  });
+bool World<Degree>::balls_are_quick() const {
+  return mode() == ContactMode::resolved && holds_.size() == free_holds_.size();
 }
 
-/// Most tests by far are these, and need two cache lines. They change nothing.
+/// Most tests by far are these, and need two cache lines. They change nothing. Precondition: balls_are_quick().
 template <int Degree>
 auto World<Degree>::test_of_balls(const Pair& pair) const -> BallTest {
-  if (pair.ignored || mode() != ContactMode::resolved || holds_.size() != free_holds_.size()) return {};
+  if (pair.ignored) return {};
   const Mover& a = movers_[pair.a];
   const Mover& b = movers_[pair.b];
   if (!(a.ball_radius > 0 && b.ball_radius > 0) || (at_rest(a.motion) && at_rest(b.motion))) return {};
@@ -80,6 +67,7 @@ auto World<Degree>::tests_of_balls() const -> std::vector<BallTest> {
   const std::size_t threads = threads_for(dirty_.size(), options_.threads);
   if (threads == 1) return {};
   std::vector<BallTest> tests(dirty_.size());
+  if (!balls_are_quick()) return tests;
   in_parts(dirty_.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (pairs_[dirty_[i]].alive) tests[i] = test_of_balls(pairs_[dirty_[i]]);
@@ -89,14 +77,37 @@ auto World<Degree>::tests_of_balls() const -> std::vector<BallTest> {
 }
 
 template <int Degree>
-void World<Degree>::test(PairSlot slot, const BallTest& of_balls) {
-  Pair& pair = pairs_[slot];
-  ++counters_.pair_tests;
-  if (of_balls.done) [[likely]] {
-    pair.estimated = !of_balls.exact;
-    contacts_.set(slot, of_balls.time);
-    return;
+void World<Degree>::test_dirty_pairs() {
+  const Stopwatch watch(profile(), Work::test);
+  const std::vector<BallTest> tests = tests_of_balls();
+  const bool boxes = options_.report_pairs && !broad_phase_->exact();
+  const bool quick = balls_are_quick();
+  for (std::size_t i = 0; i < dirty_.size(); ++i) {
+    const PairSlot slot = dirty_[i];
+    Pair& pair = pairs_[slot];
+    pair.dirty = false;
+    if (!pair.alive) continue;
+    ++counters_.pair_tests;
+    const BallTest of_balls = !tests.empty() ? tests[i] : (quick ? test_of_balls(pair) : BallTest{});
+    if (of_balls.done) [[likely]] {
+      pair.estimated = !of_balls.exact;
+      if (of_balls.time != never || contacts_.contains(slot)) contacts_.set(slot, of_balls.time);
+    } else {
+      test(slot);
+    }
+    if (boxes) test_boxes(slot);
+    pairs_[slot].fresh = false;
   }
+  dirty_.clear();
+  if (passing_.empty()) return;
+  std::erase_if(passing_, [&](const Passing& passing) {
+    return passing.let_pass ? next_up(passing.at) < now_ : passing.moved || passing.at < now_;
+  });
+}
+
+template <int Degree>
+void World<Degree>::test(PairSlot slot) {
+  Pair& pair = pairs_[slot];
   const auto a = moving(pair.a);
   const auto b = moving(pair.b);
   FoundTouch found;
