@@ -6,7 +6,7 @@
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
 #include "collision/narrow_phase/mesh_partners.hpp"
-#include "collision/narrow_phase/near_spans.hpp"
+#include "collision/narrow_phase/mesh_times.hpp"
 #include "collision/narrow_phase/obb_descent.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
@@ -24,29 +24,16 @@
 
 namespace kds::collision::detail {
 
-/// s; contacts that lie farther ahead than 10^60 are none. Keeps polynomials of the time from overflowing.
-inline constexpr double farthest = 0x1p200;
-
-/// Nor are contacts predicted for times at which the contact gap has grown to this part of the radii, and fourfold. A
-/// straight path gets there only if its speed is nothing but rounding (bodies that move alike), a curved one if it goes
-/// out 2^43 radii and comes back. Larger predicts more of such contacts, and more slowly.
-inline constexpr double widest_gap = 0x1p-4;
-
-// ---- Questions -----------------------------------------------------------------------------------------------------
-
 /// The answers for one kind of b and one degree of motion.
 template <int Degree, class Partner>
-class Query {
+class Query : private PairTimes<Degree> {
  public:
   using Part = typename Partner::Part;
   static constexpr bool with_ball = std::is_same_v<Part, PlacedBall>;
   using Touching = std::conditional_t<with_ball, BallTouch<Degree>, ConvexTouch<Degree, Part>>;
 
   Query(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap)
-      : a_(a), b_(b), shape_b_(b), motion_(motion), gap_(gap), radii_(a.bounding_radius + b.bounding_radius) {
-    for (std::size_t i = 0; i <= Degree; ++i) margin_[i] = quick_margin * gap.c[i];
-    last_ = last_time();
-  }
+      : PairTimes<Degree>(motion, gap, a.bounding_radius + b.bounding_radius), a_(a), b_(b), shape_b_(b) {}
 
   std::optional<MeshTouch> first_contact(double tau0, double tau1, ContactMode mode) const {
     std::optional<MeshTouch> best;
@@ -134,66 +121,6 @@ class Query {
   }
 
  private:
-  /// A time after which there is nothing to look for; a function of shapes and motion alone. By then even the bounding
-  /// balls are apart for good, or the gap has become so wide that it tells nothing: see `widest_gap`.
-  double last_time() const {
-    const auto& g = gap_.c;
-    const double excess = g[0] - std::max(4 * g[0], widest_gap * radii_);
-    if constexpr (Degree == 1) {
-      return g[1] > 0 ? std::min(-excess / g[1], farthest) : farthest;
-    } else {
-      double last = farthest;
-      if (g[1] > 0 || g[2] > 0) last = std::min(last, quadratic_roots(excess, g[1], g[2]).rising);
-      // By the triangle inequality: |r2| tau^2 <= |r0| + |r1| tau + reach.
-      const auto& r = motion_.coefficients;
-      const double c2 = r[2].norm() - margin_[2];
-      if (!(c2 > 0)) return last;
-      const auto roots = quadratic_roots(-(r[0].norm() + radii_ + margin_[0]), -(r[1].norm() + margin_[1]), c2);
-      return std::min(roots.rising * (1 + ContactGap<Degree>::roundings), last);
-    }
-  }
-
-  /// Calls run(slice) for the parts of the window in which the bounding balls are in reach of each other, in order,
-  /// until it returns true. In each the margin is about the same and the path about straight, see `slice_end`.
-  template <class Run>
-  void slice_by_slice(const TimeWindow& window, const Run& run) const {
-    std::array<double, Degree + 1> reach = margin_;
-    reach[0] += radii_;
-    const TimeSpans spans = near_spans(motion_.coefficients, reach, last_);
-    for (std::size_t i = 0; i < 2; ++i) {
-      double begin = std::max(window.begin, spans.begin[i]);
-      const double end = std::min({window.end, spans.end[i], last_});
-      while (begin <= end) {
-        const TimeSlice slice{begin, slice_end(begin, end)};
-        if (run(slice)) return;
-        if (slice.end >= end || !(slice.end > begin)) break;
-        begin = slice.end;
-      }
-    }
-  }
-
-  /// A slice ends before the margin has grown both twofold and to a large part of the shapes (that is, soon only where
-  /// bodies hardly move but their speeds are known less well than they are slow), and before a curved path is too far
-  /// from its chord for the box tests to be any use. At rest there is nothing but the present.
-  double slice_end(double begin, double end) const {
-    constexpr double large = 0x1p-8;
-    constexpr double most_bend = 0x1p-3;
-    const auto& r = motion_.coefficients;
-    if constexpr (Degree == 1) {
-      if (r[1].isZero(0) && gap_.c[1] == 0) return begin;
-    } else {
-      const double bend = r[2].norm();
-      if (bend > 0) end = std::min(end, begin + std::sqrt(4 * most_bend * radii_ / bend));
-    }
-    const double most = std::max(2 * gap_(begin), large * radii_);
-    while (gap_(end) > most) {
-      const double earlier = begin + (end - begin) / 4;
-      if (!(earlier > begin)) break;
-      end = earlier;
-    }
-    return end;
-  }
-
   /// Calls visit(triangle, placed triangle, triangle or 0, part, window) where they may touch within the slice.
   template <class Goal, class Visit>
   void walk(Goal& goal, const TimeSlice& slice, const Visit& visit) const {
@@ -329,14 +256,16 @@ class Query {
             {}};
   }
 
+  using PairTimes<Degree>::slice_by_slice;
+  using PairTimes<Degree>::motion_;
+  using PairTimes<Degree>::gap_;
+  using PairTimes<Degree>::margin_;
+  using PairTimes<Degree>::radii_;
+  using PairTimes<Degree>::last_;
+
   PlacedMesh a_;
   Partner b_;
   const PlacedShape& shape_b_;
-  RelativeMotion<Degree> motion_;
-  ContactGap<Degree> gap_;
-  std::array<double, Degree + 1> margin_;
-  double radii_;
-  double last_;
 };
 
 }  // namespace kds::collision::detail
