@@ -126,9 +126,9 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   }
   bool overlap_where_listed(BodyId a, BodyId b) const;
   bool overlap_on(const List& list, BodyId a, BodyId b) const {
-    const bool a_begins = list.position(min_end(a)) < list.position(max_end(b));
-    const bool b_begins = list.position(min_end(b)) < list.position(max_end(a));
-    return a_begins & b_begins;
+    const unsigned a_begins = list.position(min_end(a)) < list.position(max_end(b));
+    const unsigned b_begins = list.position(min_end(b)) < list.position(max_end(a));
+    return (a_begins & b_begins) != 0;  // without a branch
   }
   void ends_swapped(std::size_t axis, std::uint32_t left, std::uint32_t right, double t);
   void intervals_changed(std::size_t axis, std::uint32_t left, std::uint32_t right, double t);
@@ -189,7 +189,7 @@ template <int Degree>
 inline void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::uint32_t left, std::uint32_t right,
                                                        double t) {
   const std::uint32_t kinds_differ = (left ^ right) & 1;
-  bool near;
+  unsigned near;
   if (all_listed()) {
     near = overlap_on(lists_.all[axis + 1 < lists_.all.size() ? axis + 1 : 0], left / 2, right / 2);
   } else {
@@ -198,8 +198,8 @@ inline void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::ui
     const auto more = static_cast<std::int32_t>(kinds_differ * (2 - 4 * (left & 1)));
     if (axis == sweep_axis_) open_[sweep_list().position(left)] += more;
   }
-  const bool one_body = (left ^ right) == 1;
-  if ((kinds_differ != 0) & (near | one_body | updating_)) intervals_changed(axis, left, right, t);
+  const unsigned one_body = (left ^ right) == 1;
+  if ((kinds_differ & (near | one_body | unsigned{updating_})) != 0) intervals_changed(axis, left, right, t);
 }
 
 extern template class KineticSweepAndPrune<1>;

@@ -100,8 +100,8 @@ void UnlistedAxes<Degree>::set_hulls(BodyId id, double now) {
   };
   for (std::size_t i = 0; i < 2; ++i) {
     const auto [low, high] = span(boxes_[id].min.axis(axes_[i]), boxes_[id].max.axis(axes_[i]));
-    hulls_[id].low[i] = low;
-    hulls_[id].high[i] = high;
+    hulls_[id].ends[i] = low;
+    hulls_[id].ends[i + 2] = high;
   }
   for (std::size_t i = 0; i < more_.size(); ++i) {
     const auto [low, high] = span(slab(id, more_[i]).min, slab(id, more_[i]).max);

@@ -14,6 +14,10 @@
 #include <span>
 #include <vector>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 namespace kds::collision {
 
 /// A pair of bodies, a < b, whose boxes begin or cease to overlap.
@@ -41,17 +45,28 @@ class UnlistedAxes {
  public:
   /// What a box covers from some time to the horizon, rounded outward to floats, which are half as much to fetch.
   struct Hull {
-    std::array<float, 2> low{0, 0};
-    std::array<float, 2> high{0, 0};
+    std::array<float, 4> ends{0, 0, 0, 0};  ///< low on two axes, then high
 
     static Hull everywhere() {
       constexpr float far = std::numeric_limits<float>::infinity();
-      return {{-far, -far}, {far, far}};
+      return {{-far, -far, far, far}};
     }
+    /// Without a branch.
     bool meets(const Hull& other) const {
-      const bool on_first = (high[0] >= other.low[0]) & (other.high[0] >= low[0]);
-      const bool on_second = (high[1] >= other.low[1]) & (other.high[1] >= low[1]);
-      return on_first & on_second;
+#ifdef __SSE2__
+      const __m128 mine = _mm_loadu_ps(ends.data());
+      const __m128 others = _mm_loadu_ps(other.ends.data());
+      const __m128 crossed = _mm_shuffle_ps(others, others, _MM_SHUFFLE(1, 0, 3, 2));  // its high ones first
+      const __m128 begin = _mm_cmple_ps(mine, crossed);
+      const __m128 end = _mm_cmple_ps(crossed, mine);
+      return _mm_movemask_ps(_mm_shuffle_ps(begin, end, _MM_SHUFFLE(3, 2, 1, 0))) == 0xF;
+#else
+      unsigned meet = 1;
+      for (std::size_t i = 0; i < 2; ++i) {
+        meet &= unsigned{ends[i] <= other.ends[i + 2]} & unsigned{other.ends[i] <= ends[i + 2]};
+      }
+      return meet != 0;
+#endif
     }
   };
 
