@@ -83,6 +83,9 @@ std::uint64_t change(Random& random, PlaceQueue& queue, Row& row) {
     row.ranks.erase(row.ranks.begin() + at);
     row.times.insert(row.times.begin() + static_cast<std::ptrdiff_t>(to), time);
     row.ranks.insert(row.ranks.begin() + static_cast<std::ptrdiff_t>(to), rank);
+  } else if (what < 12 && place > 0 && place + 1 < size) {
+    for (Slot i = place - 1; i <= place + 1; ++i) row.times[i] = random_time(random);
+    queue.set_three(place, row.times[place - 1], row.times[place], row.times[place + 1]);
   } else {  // neighbours
     for (Slot i = place; i < std::min(size, place + 3); ++i) {
       row.times[i] = random_time(random);
