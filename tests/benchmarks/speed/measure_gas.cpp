@@ -35,7 +35,7 @@ BallScene equilibrium(std::size_t n, double packing) {
   Drive drive;
   drive.duration = contacts_a_ball / contact_rate(packing);
   kds::collision::World<1> world(world_options(scene, methods().front(), drive));
-  for (const BallScene::Ball& ball : scene.balls) world.add_body(description(ball));
+  add_balls(world, scene);
   world.advance_to(drive.duration);
   for (kds::collision::BodyId i = 0; i < n; ++i) {
     const auto& motion = world.motion(i);
@@ -52,8 +52,9 @@ BallScene equilibrium(std::size_t n, double packing) {
 
 std::vector<Target> measure_gas(const Settings& settings) {
   auto file = open_csv(settings.folder, "speed-gas.csv");
-  tell(file, "packing,balls,method,us_a_contact,contacts,swaps_a_contact,tests_a_contact,certificates_a_contact,"
-             "box_updates_a_contact,pairs_a_contact,walls_a_contact,setup_cpu,run_cpu,cut\n");
+  tell(file,
+       "packing,balls,method,us_a_contact,contacts,swaps_a_contact,tests_a_contact,certificates_a_contact,"
+       "box_updates_a_contact,pairs_a_contact,walls_a_contact,setup_cpu,run_cpu,cut\n");
   std::vector<Target> targets;
   for (const double packing : {0.25, 0.01}) {
     for (const std::size_t n : {std::size_t{1000}, std::size_t{10'000}, std::size_t{100'000}}) {
@@ -79,11 +80,12 @@ std::vector<Target> measure_gas(const Settings& settings) {
         const double made = std::max(1.0, static_cast<double>(r.best.contacts));
         const auto& c = r.best.counters;
         const auto& before = r.best.after_setup;
-        const auto each = [&](std::uint64_t end, std::uint64_t begin) { return static_cast<double>(end - begin) / made; };
+        const auto each = [&](std::uint64_t end, std::uint64_t begin) {
+          return static_cast<double>(end - begin) / made;
+        };
         tell(file, "%g,%zu,%s,%.3f,%.0f,%.1f,%.2f,%.1f,%.2f,%.2f,%.2f,%.4f,%.4f,%d\n", packing, n, r.name.c_str(),
-             r.cut ? INFINITY : 1e6 * r.best_run / made, made,
-             each(c.broad_phase.swaps, before.broad_phase.swaps), each(c.pair_tests, before.pair_tests),
-             each(c.broad_phase.certificates, before.broad_phase.certificates),
+             r.cut ? INFINITY : 1e6 * r.best_run / made, made, each(c.broad_phase.swaps, before.broad_phase.swaps),
+             each(c.pair_tests, before.pair_tests), each(c.broad_phase.certificates, before.broad_phase.certificates),
              each(c.broad_phase.box_updates, before.broad_phase.box_updates), each(c.pairs_begun, before.pairs_begun),
              each(c.wall_contacts, before.wall_contacts), r.best.setup, r.best_run, r.cut);
       }

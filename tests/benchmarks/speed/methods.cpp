@@ -86,11 +86,15 @@ kds::collision::WorldOptions world_options(const BallScene& scene, const Method&
   return options;
 }
 
-kds::collision::BodyDescription<1> description(const BallScene::Ball& ball) {
+void add_balls(kds::collision::World<1>& world, const BallScene& scene) {
+  world.reserve(scene.balls.size());
   kds::collision::BodyDescription<1> body;
-  body.shape = kds::collision::Sphere{ball.radius};
-  body.motion = {{{ball.position, ball.velocity}, ball.start}};
-  return body;
+  body.motion.resize(1);
+  for (const BallScene::Ball& ball : scene.balls) {
+    body.shape = kds::collision::Sphere{ball.radius};
+    body.motion[0] = {{ball.position, ball.velocity}, ball.start};
+    world.add_body(body);
+  }
 }
 
 Outcome run_method(const BallScene& scene, const Method& method, const Drive& drive, std::vector<Meeting>* meetings) {
@@ -99,8 +103,7 @@ Outcome run_method(const BallScene& scene, const Method& method, const Drive& dr
   const HardwareCounters hardware;
   const double begin = thread_seconds();
   kds::collision::World<1> world(world_options(scene, method, drive), &hasher);
-  world.reserve(scene.balls.size());
-  for (const BallScene::Ball& ball : scene.balls) world.add_body(description(ball));
+  add_balls(world, scene);
   world.advance_to(scene.start_time);
   outcome.after_setup = world.counters();
   const double middle = thread_seconds();

@@ -24,8 +24,8 @@ const std::vector<Method>& methods();
 const Method& method(const std::string& name);
 
 struct Drive {
-  double rate = 60;      ///< Hz; results are asked for so often, and swept boxes renewed
-  double duration = 1;   ///< s of simulated time
+  double rate = 60;     ///< Hz; results are asked for so often, and swept boxes renewed
+  double duration = 1;  ///< s of simulated time
 };
 
 /// A contact, to compare with others'.
@@ -52,6 +52,7 @@ Outcome run_method(const BallScene& scene, const Method& method, const Drive& dr
 
 /// The world's options for a scene and a method.
 kds::collision::WorldOptions world_options(const BallScene& scene, const Method& method, const Drive& drive);
-kds::collision::BodyDescription<1> description(const BallScene::Ball& ball);
+/// Puts the balls of a scene in; one description serves all.
+void add_balls(kds::collision::World<1>& world, const BallScene& scene);
 
 }  // namespace speed
