@@ -23,6 +23,9 @@ constexpr double room = 1 + 0x1p-20;
 /// Comparisons of a box within its cell, on average, above which a finer division is called for.
 constexpr std::size_t crowd = 4;
 
+/// So many boxes are compared all with all in less time than they take to enter the cells one by one.
+constexpr std::size_t small = 256;
+
 }  // namespace
 
 inline bool BoxPairs::overlap(const Rough& a, const Rough& b) {
@@ -73,7 +76,7 @@ bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
   begin_.assign(nx * ny * nz + 1, 0);
   std::size_t comparisons = 0;
   for (const Index cell : cells) comparisons += begin_[cell]++;
-  if (comparisons > crowd * boxes.size()) return false;
+  if (comparisons > crowd * boxes.size() && boxes.size() > small) return false;
   Index end = 0;
   for (Index& cell : begin_) cell = end += cell;  // first the ends, which then go down to the beginnings
   order_.resize(boxes.size());

@@ -26,7 +26,7 @@ class BoxPairs {
     Index a, b;  ///< in no order
   };
 
-  /// False if that would not pay: boxes of too different sizes, too crowded, or without bounds.
+  /// False if that would not pay: boxes without bounds, or many of too different sizes or too crowded.
   bool find(std::span<const StaticBox> boxes, std::size_t threads = 1);
 
   /// In spatial order.

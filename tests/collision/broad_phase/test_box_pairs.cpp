@@ -93,7 +93,18 @@ TEST_CASE("Boxes that sorting would be slow for are refused", "[box_pairs]") {
   boxes[7].max[1] = 1e308;
   boxes[7].min[1] = -1e308;
   CHECK(!pairs.find(boxes));
-  CHECK(!pairs.find(std::vector<StaticBox>(100, {Eigen::Array3d::Zero(), Eigen::Array3d::Zero()})));
+  CHECK(!pairs.find(std::vector<StaticBox>(300, {Eigen::Array3d::Zero(), Eigen::Array3d::Zero()})));
+}
+
+TEST_CASE("Few boxes are compared however crowded they are", "[box_pairs]") {
+  Random random(6);
+  auto boxes = random_boxes(random, 100, {50, 50, 50}, 1, false);
+  boxes[7].max[1] += 1e6;
+  BoxPairs pairs;
+  REQUIRE(pairs.find(boxes));
+  CHECK(sorted(pairs.pairs()) == brute_force(boxes));
+  REQUIRE(pairs.find(std::vector<StaticBox>(100, {Eigen::Array3d::Zero(), Eigen::Array3d::Zero()})));
+  CHECK(pairs.pairs().size() == 100 * 99 / 2);
 }
 
 TEST_CASE("Any number of threads finds the same pairs in the same order", "[box_pairs]") {
