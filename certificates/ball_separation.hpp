@@ -95,6 +95,7 @@ struct BallSeparation<PathDegree>::RelativeLine {
   static constexpr double unit = 0x1p-48;
   static constexpr double lost = 0x1p-1000;
   static constexpr double range = 0x1p1000;  ///< beyond, sums of opposite infinities might look like a number
+  static constexpr double small = 0x1p240;   ///< the fourth power of it is within that range
 
   /// Two coordinates in one register, and the third.
   using Two = double __attribute__((vector_size(16)));
@@ -218,8 +219,7 @@ template <int PathDegree>
   using Line = RelativeLine;
   if (now <= horizon && relative_path_is_line()) {
     const Line line(*this, now);
-    const double most = line.M + line.W + line.reach;
-    if (most * most < Line::range) {
+    if (line.M + line.W + line.reach < Line::small) {
       const double error = Line::unit * (line.M * line.W) + Line::lost;  // of p
       if (line.product > error) return {never, true};
       const double size = line.M * line.M + line.reach * line.reach;
