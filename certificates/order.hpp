@@ -73,24 +73,20 @@ struct Order {
 
   /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows pairs that differ by a line
   /// (straight motions, and those that share their accelerations) or a parabola.
-  double quick_failure_time(double now, double horizon) const
-    requires(Degree >= 1);
+  double quick_failure_time(double now, double horizon) const requires(Degree >= 1);
 
   /// Of two pairs together: see order_together.hpp.
-  static TwoTimes quick_failure_times(const Order& first, const Order& second, double now, double horizon)
-    requires(Degree == 1)
-  {
+  static TwoTimes quick_failure_times(const Order& first, const Order& second, double now,
+                                      double horizon) requires(Degree == 1) {
     return certificates::quick_failure_times(first.lower, first.upper, second.lower, second.upper, now, horizon);
   }
 
   /// The same for failure_time_after_turn().
-  double quick_failure_time_after_turn(double now, double horizon) const
-    requires(Degree >= 2);
+  double quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 2);
 
  private:
   /// The same for straight motions.
-  double quick_straight_failure_time(double now, double horizon) const
-    requires(Degree == 1);
+  double quick_straight_failure_time(double now, double horizon) const requires(Degree == 1);
 
   /// Whether the difference is known to be a parabola or less.
   bool at_most_quadratic() const {
@@ -111,9 +107,7 @@ struct Order {
 };
 
 template <int Degree>
-double Order<Degree>::quick_failure_time(double now, double horizon) const
-  requires(Degree >= 1)
-{
+double Order<Degree>::quick_failure_time(double now, double horizon) const requires(Degree >= 1) {
   if constexpr (Degree == 1) {
     return quick_straight_failure_time(now, horizon);
   } else {
@@ -127,9 +121,7 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const
 }
 
 template <int Degree>
-double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) const
-  requires(Degree >= 2)
-{
+double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 2) {
   if (!at_most_quadratic()) return std::numeric_limits<double>::quiet_NaN();
   if (lower.position.c[2] == upper.position.c[2]) return never;  // a line that has risen through zero
   return quick_parabola_failure_time<true>(now, horizon);
@@ -145,9 +137,7 @@ double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) 
 /// a difference of doubles, so its sign is exact; it, its product and the time left are rounded by u each, for which
 /// the last factor is more than enough.
 template <int Degree>
-double Order<Degree>::quick_straight_failure_time(double now, double horizon) const
-  requires(Degree == 1)
-{
+double Order<Degree>::quick_straight_failure_time(double now, double horizon) const requires(Degree == 1) {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
   const auto& [low, low_rate] = lower.position.c;
   const auto& [high, high_rate] = upper.position.c;

@@ -67,8 +67,8 @@ inline TwoSums two_sums(Two a, Two b) {
 
   const Two size_g = magnitude(g.high);
   const Two size_r = magnitude(r.high);
-  const TwoBits told = (margin > error) & (size_g > 0x1p-450) & (size_r > 0x1p-450) & (size_g < 0x1p450) &
-                       (size_r < 0x1p450);
+  const TwoBits told =
+      (margin > error) & (size_g > 0x1p-450) & (size_r > 0x1p-450) & (size_g < 0x1p450) & (size_r < 0x1p450);
   return told ? t : both(std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -93,8 +93,8 @@ inline TwoSums two_sums(Two a, Two b) {
   const auto in_order = surely > 0.0;
   const auto apart = (fall <= 0.0) | (surely > fall * ((horizon - now) * (1 + 0x1p-50)));
 
-  const Two t = detail::first_doubles_after_lines(detail::two_sums(high, -low), detail::two_sums(high_rate, -low_rate),
-                                                  start);
+  const Two t =
+      detail::first_doubles_after_lines(detail::two_sums(high, -low), detail::two_sums(high_rate, -low_rate), start);
   Two result = (apart | (t > horizon)) ? detail::both(never) : t;
   result = in_order ? result : detail::both(undecided);
   return {result[0], result[1]};

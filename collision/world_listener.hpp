@@ -44,7 +44,7 @@ class WorldListener {
   virtual void wall(World<Degree>&, const WallEvent&) {}
   virtual void pair_began(World<Degree>&, BodyId, BodyId, double) {}
   virtual void pair_ended(World<Degree>&, BodyId, BodyId, double) {}
-  virtual void held(World<Degree>&, const PairEvent&) {}        ///< the Zeno policy has acted on a pair
+  virtual void held(World<Degree>&, const PairEvent&) {}  ///< the Zeno policy has acted on a pair
   virtual void held_at_wall(World<Degree>&, const WallEvent&) {}
   /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
   virtual void moved(World<Degree>&, BodyId) {}

@@ -121,7 +121,8 @@ void World<Degree>::settle() {
     if (bodies_[id].inverse_mass == 0) {
       for (const HoldSlot slot : bodies_[id].holds) disturb(holds_[slot].a == id ? holds_[slot].b : holds_[slot].a);
     } else {
-      while (!settle_island(id)) {}
+      while (!settle_island(id)) {
+      }
     }
   }
 }
@@ -272,9 +273,9 @@ bool World<Degree>::let_pass_worst(const Island& island, const std::vector<Vecto
   return true;
 }
 
-/// Convex bodies that are held are on either side of a plane through the touch and stay there, so they cannot meet again
-/// before they are let go. A mesh may have something else in the way; where rounding makes it the held touch that is
-/// found, that is left behind by some roundings.
+/// Convex bodies that are held are on either side of a plane through the touch and stay there, so they cannot meet
+/// again before they are let go. A mesh may have something else in the way; where rounding makes it the held touch that
+/// is found, that is left behind by some roundings.
 template <int Degree>
 double World<Degree>::next_contact_of_held(const Pair& pair) const {
   const auto a = moving(pair.a);

@@ -62,8 +62,8 @@ void World<Degree>::Image::mesh(Archive& archive, std::shared_ptr<const Mesh>& m
   archive(triangles);
   if constexpr (Archive::loading) {
     const auto same = std::find_if(known.begin(), known.end(), [&](const auto& other) {
-      return equal(other->vertices(), vertices) && std::equal(triangles.begin(), triangles.end(),
-                                                              other->triangles().begin(), other->triangles().end());
+      return equal(other->vertices(), vertices) &&
+             std::equal(triangles.begin(), triangles.end(), other->triangles().begin(), other->triangles().end());
     });
     mesh = same != known.end() ? *same : std::make_shared<const Mesh>(std::move(vertices), std::move(triangles));
   }
@@ -175,9 +175,8 @@ typename World<Degree>::Image World<Degree>::image() const {
     to.contact = contacts_.time(slot);
     if (slot < boxes_.slots()) to.boxes = boxes_.time(slot);
   }
-  std::sort(image.pairs.begin(), image.pairs.end(), [](const auto& x, const auto& y) {
-    return std::pair(x.pair.a, x.pair.b) < std::pair(y.pair.a, y.pair.b);
-  });
+  std::sort(image.pairs.begin(), image.pairs.end(),
+            [](const auto& x, const auto& y) { return std::pair(x.pair.a, x.pair.b) < std::pair(y.pair.a, y.pair.b); });
   image.holds = holds_, image.free_holds = free_holds_;
   for (HoldSlot slot = 0; slot < holds_.size(); ++slot) image.releases.push_back(releases_.time(slot));
   image.free_bodies = free_bodies_, image.entering = entering_, image.disturbed = disturbed_;

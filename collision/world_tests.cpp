@@ -111,9 +111,7 @@ void World<Degree>::test(PairSlot slot) {
   const auto a = moving(pair.a);
   const auto b = moving(pair.b);
   FoundTouch found;
-  const auto report_overlap = [&] {
-    report(Pending::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_));
-  };
+  const auto report_overlap = [&] { report(Pending::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_)); };
   ContactEstimate next{never, true};
   if (mode() == ContactMode::transparent) {
     if (pair.fresh && in_contact(a, b, now_)) {

@@ -65,9 +65,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
     KineticSweepAndPrune* owner;
     std::size_t axis;  ///< or other direction
 
-    void swapped(std::uint32_t left, std::uint32_t right, double t) {
-      owner->ends_swapped(axis, left, right, t);
-    }
+    void swapped(std::uint32_t left, std::uint32_t right, double t) { owner->ends_swapped(axis, left, right, t); }
     // Maxima before minima: intervals that touch for good are apart.
     static std::uint32_t rank(std::uint32_t id) { return ~id & 1; }
   };

@@ -121,8 +121,8 @@ bool UnlistedAxes<Degree>::near_on_more(BodyId a, BodyId b) const {
 }
 
 template <int Degree>
-void UnlistedAxes<Degree>::set_box(BodyId id, const KineticBox<Degree>& box,
-                                   std::span<const KineticSlab<Degree>> slabs, double now) {
+void UnlistedAxes<Degree>::set_box(BodyId id, const KineticBox<Degree>& box, std::span<const KineticSlab<Degree>> slabs,
+                                   double now) {
   if (id >= boxes_.size()) {
     boxes_.resize(id + 1);
     hulls_.resize(id + 1);

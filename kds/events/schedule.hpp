@@ -34,7 +34,7 @@ namespace kds {
 /// with the certified solver.
 /// A queue of places (PlaceQueue) will do as well; then settle() is to be called after changes.
 template <class Queue = DefaultEventQueue, FailureTimeSolver Solver = CertifiedSolver>
-  requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 class Schedule {
  public:
   void resize(std::size_t slots) { queue_.resize(slots); }
@@ -104,9 +104,8 @@ class Schedule {
   /// After a swap, of places in a row: the certificate at `middle` has just turned from - to +, those on its left and
   /// right are new. As certify() and certify_turned() would do, for less.
   template <Certificate C>
-  void certify_three(Slot middle, const C& left, const C& turned, const C& right, double now)
-    requires std::same_as<Queue, PlaceQueue> && Solver::certified
-  {
+  void certify_three(Slot middle, const C& left, const C& turned, const C& right,
+                     double now) requires std::same_as<Queue, PlaceQueue> && Solver::certified {
     counters_.certificates += 3;
     const auto [before, after] = solve_two(left, right, now);
     queue_.set_three(middle, before, solver_.after_turn(turned, now, horizon_), after);
@@ -114,9 +113,7 @@ class Schedule {
 
   /// Of two slots: what certify() would do for each.
   template <Certificate C>
-  void certify_two(Slot first, const C& a, Slot second, const C& b, double now)
-    requires Solver::certified
-  {
+  void certify_two(Slot first, const C& a, Slot second, const C& b, double now) requires Solver::certified {
     counters_.certificates += 2;
     const auto [at_first, at_second] = solve_two(a, b, now);
     set(first, at_first);

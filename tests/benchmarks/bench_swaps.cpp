@@ -5,9 +5,9 @@
 // Boxes of sizes 1-3 at 1 % density in free flight for one second, by number and by listed axes. Rounds run in turn, so
 // that a change of the machine's pace hits all alike; figures are medians. `baseline` is the time against three lists
 // of the same scene in the same round. Instructions are those of this thread in user mode, where the kernel counts them
-// (perf_event_open), else the column is empty. Reference cycles (x86 alone) are ticks of the time-stamp counter: its rate
-// is one whatever the clock's, and it goes on while others have the processor, so they are the least of the rounds.
-// Every round checks that all ways report the same pairs at the same times.
+// (perf_event_open), else the column is empty. Reference cycles (x86 alone) are ticks of the time-stamp counter: its
+// rate is one whatever the clock's, and it goes on while others have the processor, so they are the least of the
+// rounds. Every round checks that all ways report the same pairs at the same times.
 
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "tests/benchmarks/thread_time.hpp"

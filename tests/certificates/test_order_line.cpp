@@ -35,8 +35,9 @@ Pair<Degree> random_pair(Random& random, Starts starts, double place, double rat
 
 }  // namespace
 
-#define EACH_DEGREE_AND_START ((int Degree, Starts starts), Degree, starts), (1, Starts::common), \
-    (1, Starts::different), (2, Starts::common), (2, Starts::different), (3, Starts::common), (3, Starts::different)
+#define EACH_DEGREE_AND_START                                                                                      \
+  ((int Degree, Starts starts), Degree, starts), (1, Starts::common), (1, Starts::different), (2, Starts::common), \
+      (2, Starts::different), (3, Starts::common), (3, Starts::different)
 
 TEMPLATE_TEST_CASE_SIG("ordinary lines swap at the quick answer", "[order]", EACH_DEGREE_AND_START) {
   const std::uint64_t seed = 190;

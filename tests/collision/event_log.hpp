@@ -75,7 +75,6 @@ struct EventLog final : WorldListener<Degree> {
     return result;
   }
   std::size_t count(Kind kind) const { return of(kind).size(); }
-
 };
 
 inline bool in_order_of_time(const std::vector<Event>& events) {

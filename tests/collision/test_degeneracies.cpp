@@ -25,8 +25,8 @@ WorldOptions with(Response response, BroadPhaseKind broad_phase = BroadPhaseKind
   return options;
 }
 
-constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap,
-                                 BroadPhaseKind::all_pairs};
+constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap,
+                                 BroadPhaseKind::sap, BroadPhaseKind::all_pairs};
 
 std::size_t count(const std::vector<Event>& events, Kind kind) {
   return static_cast<std::size_t>(
@@ -99,13 +99,13 @@ TEST_CASE("Many ends at one time: two lattices meet face to face", "[degenerate]
 TEST_CASE("A touch without crossing: a ball grazes another exactly", "[degenerate]") {
   for (const auto method : all_methods) {
     for (const auto response : {Response::none, Response::elastic}) {
-      const auto events = run_audited<1>({ball<1>(1, {0, 0, 0}), ball<1>(1, {-4, 2, 0}, {1, 0, 0})},
-                                         with(response, method), 9);
+      const auto events =
+          run_audited<1>({ball<1>(1, {0, 0, 0}), ball<1>(1, {-4, 2, 0}, {1, 0, 0})}, with(response, method), 9);
       for (const Event& e : events) CHECK(is_pair_event(e));
     }
     // An ulp nearer and they meet.
     const auto events = run_audited<1>({ball<1>(1, {0, 0, 0}), ball<1>(1, {-4, next_down(2.0), 0}, {1, 0, 0})},
-                                    with(Response::none, method), 9);
+                                       with(Response::none, method), 9);
     CHECK(count(events, Kind::contact) == 1);
   }
 }
@@ -147,7 +147,7 @@ TEST_CASE("A swap at time zero", "[degenerate]") {
     // They touch at the start and close in, or part.
     for (const double speed : {-1.0, 1.0}) {
       const auto events = run_audited<1>({box<1>({1, 1, 1}, {0, 0, 0}), box<1>({1, 1, 1}, {2, 0, 0}, {speed, 0, 0})},
-                                      with(Response::none, method), 1);
+                                         with(Response::none, method), 1);
       REQUIRE(count(events, Kind::overlap) == (speed < 0 ? 1 : 0));
       CHECK(count(events, Kind::contact) == 0);
       CHECK(count_at(events, 0) == events.size());
@@ -181,8 +181,8 @@ TEST_CASE("Bodies exactly coincident overlap once and part when they part", "[de
         const auto b = body<1>(shape, motion<1>({1, 2, 3}, {1, 0, 0}));
         const auto events = run_audited<1>({a, b}, with(response, method), 5);
         CHECK(count(events, Kind::overlap) == 1);
-        const auto parted = std::find_if(events.begin(), events.end(),
-                                         [](const Event& e) { return e.kind == Kind::separation; });
+        const auto parted =
+            std::find_if(events.begin(), events.end(), [](const Event& e) { return e.kind == Kind::separation; });
         REQUIRE((parted != events.end()) == (response == Response::none));
         if (parted != events.end()) CHECK(parted->time() == Approx(2).epsilon(1e-12));
       }
@@ -194,7 +194,7 @@ TEST_CASE("Meeting at a corner: boxes corner to corner", "[degenerate]") {
   for (const auto method : all_methods) {
     const auto meet = [&](const Vector3d& velocity) {
       const auto events = run_audited<1>({box<1>({1, 1, 1}, {0, 0, 0}), box<1>({1, 1, 1}, {4, 4, 4}, velocity)},
-                                      with(Response::none, method), 3);
+                                         with(Response::none, method), 3);
       const std::vector<Event> contacts = contacts_of(events);
       return contacts;
     };
@@ -325,8 +325,8 @@ TEST_CASE("Bodies of size 1e-6 next to bodies of size 1e6", "[degenerate]") {
         // Specks fly at the large body and arrive at nearly the same place one after another.
         auto wall = fixed_body<1>(large, motion<1>({-1e6, 0, 0}));
         const auto events = run_audited<1>({wall, body<1>(small, motion<1>({1, 0, 0}, {-1, 0, 0})),
-                                         body<1>(small, motion<1>({1 + 1e-5, 0, 0}, {-1, 0, 0}))},
-                                        with(Response::elastic, method), 3);
+                                            body<1>(small, motion<1>({1 + 1e-5, 0, 0}, {-1, 0, 0}))},
+                                           with(Response::elastic, method), 3);
         const std::vector<Event> contacts = contacts_of(events);
         // First at the wall, the two at each other, the second, now in front... the first at the wall again.
         REQUIRE(contacts.size() == 3);
@@ -378,10 +378,10 @@ TEST_CASE("Sliding in exact touch is no contact", "[degenerate]") {
 TEST_CASE("Resting on each other in free fall is no contact", "[degenerate]") {
   for (const auto method : all_methods) {
     for (const auto response : {Response::none, Response::elastic}) {
-      const auto events = run_audited<2>({box<2>({1, 1, 1}, {0, 0, 0}, {0, 0, 3}, {0, 0, -5}),
-                                       box<2>({1, 1, 1}, {0, 0, 2}, {0, 0, 3}, {0, 0, -5}),
-                                       ball<2>(1, {0, 0, 4}, {0, 0, 3}, {0, 0, -5})},
-                                      with(response, method), 10);
+      const auto events = run_audited<2>(
+          {box<2>({1, 1, 1}, {0, 0, 0}, {0, 0, 3}, {0, 0, -5}), box<2>({1, 1, 1}, {0, 0, 2}, {0, 0, 3}, {0, 0, -5}),
+           ball<2>(1, {0, 0, 4}, {0, 0, 3}, {0, 0, -5})},
+          with(response, method), 10);
       CHECK(events.empty());
     }
   }

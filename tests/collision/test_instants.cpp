@@ -39,8 +39,8 @@ std::vector<Event> with_each_broad_phase(bool pairs, const Act& act, const React
 /// Kind and bodies of each, for short.
 std::vector<std::string> told(const std::vector<Event>& events) {
   std::vector<std::string> result;
-  for (const Event& e : events) result.push_back(std::string(name(e.kind)) + ' ' + std::to_string(e.a) + ' ' +
-                                                 std::to_string(e.b));
+  for (const Event& e : events)
+    result.push_back(std::string(name(e.kind)) + ' ' + std::to_string(e.a) + ' ' + std::to_string(e.b));
   return result;
 }
 using Told = std::vector<std::string>;
@@ -113,8 +113,8 @@ TEST_CASE("Pairs that begin at one time are told by their bodies, then their con
     world.add_body(small({2.5, 0, 0}, {-1, 0, 0}));
     world.advance_to(1);
   });
-  CHECK(told(log) == Told{"pair_began 0 2", "pair_began 1 2", "pair_began 2 3", "contact 0 2", "contact 1 2",
-                          "contact 2 3"});
+  CHECK(told(log) ==
+        Told{"pair_began 0 2", "pair_began 1 2", "pair_began 2 3", "contact 0 2", "contact 1 2", "contact 2 3"});
 }
 
 TEST_CASE("A jump ends what touched in the order of the bodies, contacts among it", "[instants]") {
@@ -137,17 +137,20 @@ TEST_CASE("A jump ends what touched in the order of the bodies, contacts among i
 TEST_CASE("A callback takes a body away before all of its overlaps are told, and gives its id to another",
           "[instants]") {
   // Three balls overlap. When that of 0 and 1 is told, 1 goes and a smaller ball comes in its place.
-  const auto log = with_each_broad_phase(true, [](World<1>& world) {
-    world.add_body(ball<1>(1, {0, 0, 0}));
-    world.add_body(ball<1>(1, {1, 0, 0}));
-    world.add_body(ball<1>(1, {0, 1, 0}));
-    world.advance_to(1);
-  }, [](World<1>& world, const Event& e) {
-    if (e.kind != Kind::overlap || e.b != 1 || world.size() < 3) return;
-    if (world.shape(1).bounding_radius < 1) return;
-    world.remove_body(1);
-    CHECK(world.add_body(ball<1>(0.5, {1, 0, 0})) == 1);
-  });
+  const auto log = with_each_broad_phase(
+      true,
+      [](World<1>& world) {
+        world.add_body(ball<1>(1, {0, 0, 0}));
+        world.add_body(ball<1>(1, {1, 0, 0}));
+        world.add_body(ball<1>(1, {0, 1, 0}));
+        world.advance_to(1);
+      },
+      [](World<1>& world, const Event& e) {
+        if (e.kind != Kind::overlap || e.b != 1 || world.size() < 3) return;
+        if (world.shape(1).bounding_radius < 1) return;
+        world.remove_body(1);
+        CHECK(world.add_body(ball<1>(0.5, {1, 0, 0})) == 1);
+      });
   CHECK(told(log) == Told{"pair_began 0 1", "pair_began 0 2", "pair_began 1 2", "overlap 0 1",  // then it goes
                           "pair_ended 0 1", "pair_began 0 1", "pair_ended 1 2", "pair_began 1 2", "separation 0 1",
                           "overlap 0 1", "overlap 0 2", "overlap 1 2"});
@@ -156,16 +159,20 @@ TEST_CASE("A callback takes a body away before all of its overlaps are told, and
 TEST_CASE("Bodies are said to touch until their separation is told", "[instants]") {
   // 1 jumps away from 0 and 2; the box of 1 parts from theirs at once.
   std::vector<bool> touching;
-  const auto log = with_each_broad_phase(false, [](World<1>& world) {
-    world.add_body(ball<1>(1, {0, 0, 0}));
-    auto jumping = ball<1>(1, {1, 0, 0});
-    jumping.motion.push_back(motion<1>({51, 0, 0}, zero, zero, 0.3));
-    world.add_body(jumping);
-    world.add_body(ball<1>(1, {0, 1.5, 0}));
-    world.advance_to(1);
-  }, [&](World<1>& world, const Event& e) {
-    if (e.kind == Kind::separation) touching.push_back(world.touching(1, 0)), touching.push_back(world.touching(1, 2));
-  });
+  const auto log = with_each_broad_phase(
+      false,
+      [](World<1>& world) {
+        world.add_body(ball<1>(1, {0, 0, 0}));
+        auto jumping = ball<1>(1, {1, 0, 0});
+        jumping.motion.push_back(motion<1>({51, 0, 0}, zero, zero, 0.3));
+        world.add_body(jumping);
+        world.add_body(ball<1>(1, {0, 1.5, 0}));
+        world.advance_to(1);
+      },
+      [&](World<1>& world, const Event& e) {
+        if (e.kind == Kind::separation)
+          touching.push_back(world.touching(1, 0)), touching.push_back(world.touching(1, 2));
+      });
   CHECK(log.back().kind == Kind::separation);
   REQUIRE(touching.size() == 4 * broad_phases.size());
   for (std::size_t i = 0; i < touching.size(); ++i) CHECK(touching[i] == (i % 4 == 1));

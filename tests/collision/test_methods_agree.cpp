@@ -11,8 +11,8 @@ namespace {
 
 using namespace tests;
 
-constexpr std::array all_shapes{Shapes::spheres,    Shapes::boxes, Shapes::turned_boxes, Shapes::tetrahedra,
-                                Shapes::cubes, Shapes::rings, Shapes::mixture};
+constexpr std::array all_shapes{Shapes::spheres, Shapes::boxes, Shapes::turned_boxes, Shapes::tetrahedra,
+                                Shapes::cubes,   Shapes::rings, Shapes::mixture};
 
 /// Everything but the pairs of bounding volumes.
 std::vector<Event> contacts(std::vector<Event> events) {
@@ -115,8 +115,7 @@ void for_scenes(const SceneOptions& base, int seeds, F&& f) {
 TEMPLATE_TEST_CASE_SIG("Methods agree where bodies pass through each other", "[methods]", ((int Degree), Degree), 1,
                        2) {
   Compared compared;
-  for_scenes<Degree>({.scripts = true}, 12,
-                     [&](const Scene<Degree>& scene) { compare_methods(scene, {}, compared); });
+  for_scenes<Degree>({.scripts = true}, 12, [&](const Scene<Degree>& scene) { compare_methods(scene, {}, compared); });
   CHECK(compared.contacts > 1000);
   CHECK(compared.pairs > 1000);
 }
@@ -146,8 +145,7 @@ TEMPLATE_TEST_CASE_SIG("It does not matter how often the world is asked, nor how
                        ((int Degree), Degree), 1, 2) {
   Compared compared;
   SECTION("passing through") {
-    for_scenes<Degree>({.scripts = true}, 2,
-                       [&](const Scene<Degree>& scene) { compare_drives(scene, {}, compared); });
+    for_scenes<Degree>({.scripts = true}, 2, [&](const Scene<Degree>& scene) { compare_drives(scene, {}, compared); });
   }
   SECTION("bouncing") {
     for_scenes<Degree>({.heterogeneous = true}, 2, [&](const Scene<Degree>& scene) {

@@ -16,8 +16,8 @@ namespace {
 
 using namespace tests;
 
-constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap,
-                                 BroadPhaseKind::all_pairs};
+constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap,
+                                 BroadPhaseKind::sap, BroadPhaseKind::all_pairs};
 
 WorldOptions with(Response response, double rate = 16) {
   WorldOptions options;
@@ -45,7 +45,8 @@ std::vector<Event> run_all(const std::vector<BodyDescription<Degree>>& bodies, W
     if (method == all_methods.front()) {
       first = std::move(events);
     } else {
-      INFO("method " << static_cast<int>(method) << ", " << events.size() << " events, " << first.size() << " expected");
+      INFO("method " << static_cast<int>(method) << ", " << events.size() << " events, " << first.size()
+                     << " expected");
       const bool same = events == first;
       CHECK(same);
     }
@@ -145,7 +146,8 @@ TEST_CASE("stress: balls in a box whose six sides close in: reported, and the ru
       bodies.push_back(fixed_body<1>(Box{half}, motion<1>(5.0 * out, -1.0 * out)));
     }
     for (int i = 0; i < 8; ++i) {
-      bodies.push_back(ball<1>(0.5, {i % 2 * 2.0 - 1, i / 2 % 2 * 2.0 - 1, i / 4 * 2.0 - 1}, {0.5 - i % 3, 0.25 * i, 1}));
+      bodies.push_back(
+          ball<1>(0.5, {i % 2 * 2.0 - 1, i / 2 % 2 * 2.0 - 1, i / 4 * 2.0 - 1}, {0.5 - i % 3, 0.25 * i, 1}));
       bodies.back().restitution = e;
     }
     // Only balls count; the sides pass through each other.
@@ -165,8 +167,8 @@ TEST_CASE("stress: near-parallel motions that cross at 1e-15", "[world][stress]"
   CAPTURE(seed);
   Random random(seed);
   for (int round = 0; round < 40; ++round) {
-    // Both at speed about 1; the relative speed is some ulps, the gap some 1e-15. Coordinates are multiples of 2^-52, so
-    // the times are quotients of small integers.
+    // Both at speed about 1; the relative speed is some ulps, the gap some 1e-15. Coordinates are multiples of 2^-52,
+    // so the times are quotients of small integers.
     const int ulps = random.integer(1, 9);
     const int gap = random.integer(0, 20);
     const double slow = 1;
@@ -204,9 +206,8 @@ TEST_CASE("stress: paths that touch with discriminant 0 and an ulp to either sid
       // A ball is thrown up under a ball or box, 4 high, and turns at that distance.
       for (const Shape& target : {Shape(Sphere{radius}), Shape(Box{{radius, radius, radius}})}) {
         for (const auto response : {Response::none, Response::elastic}) {
-          const std::vector<BodyDescription<2>> thrown{
-              fixed_body<2>(target, motion<2>({0, 0, 4 + distance})),
-              ball<2>(other, {0, 0, 0}, {0, 0, 4}, {0, 0, -1})};
+          const std::vector<BodyDescription<2>> thrown{fixed_body<2>(target, motion<2>({0, 0, 4 + distance})),
+                                                       ball<2>(other, {0, 0, 0}, {0, 0, 4}, {0, 0, -1})};
           // The target's place is rounded: it may be that of another distance.
           const bool reaches = (4 + distance) - 4 < reach;
           const auto events = run_all<2>(thrown, with(response), 5);
@@ -224,8 +225,11 @@ TEST_CASE("stress: motions that callbacks change exactly at event times", "[worl
   for (std::uint64_t round = 0; round < 4; ++round) {
     const auto numbers = round % 2 == 0 ? Numbers::coarse : Numbers::fine;
     Random random(seed + round);
-    SceneMaker maker(random, {.shapes = round < 2 ? Shapes::spheres : Shapes::boxes, .numbers = numbers, .bodies = 24,
-                              .side = 6, .end_time = 6});
+    SceneMaker maker(random, {.shapes = round < 2 ? Shapes::spheres : Shapes::boxes,
+                              .numbers = numbers,
+                              .bodies = 24,
+                              .side = 6,
+                              .end_time = 6});
     const auto scene = maker.scene<1>();
     std::vector<Event> first;
     for (const auto method : all_methods) {
@@ -289,7 +293,8 @@ TEST_CASE("stress: scenes whose numbers are all tiny, all huge, or equal", "[wor
     CHECK(same);
   }
   // All equal: bodies in one place with one motion.
-  const std::vector<BodyDescription<2>> equal(20, box<2>({0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}));
+  const std::vector<BodyDescription<2>> equal(
+      20, box<2>({0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}));
   const auto one = run_all<2>(equal, with(Response::none), 10);
   CHECK(count(one, Kind::overlap) == 20 * 19 / 2);
   CHECK(one.size() == 20 * 19 / 2);

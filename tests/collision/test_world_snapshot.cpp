@@ -109,8 +109,9 @@ void run_again(const Scene<Degree>& scene, WorldOptions options, bool edits, boo
   std::stringstream file;
   write(file, middle);
   for (const BroadPhaseKind kind : {options.broad_phase, BroadPhaseKind::kinetic_sap, BroadPhaseKind::all_pairs}) {
-    if (options.report_pairs && (kind == BroadPhaseKind::kinetic_sap) !=
-                                    (options.broad_phase == BroadPhaseKind::kinetic_sap)) continue;
+    if (options.report_pairs &&
+        (kind == BroadPhaseKind::kinetic_sap) != (options.broad_phase == BroadPhaseKind::kinetic_sap))
+      continue;
     WorldOptions changed = options;
     changed.broad_phase = kind;
     EventLog<Degree> other_log;
@@ -168,19 +169,18 @@ TEMPLATE_TEST_CASE_SIG("A world with walls and callbacks that edit and contacts 
     for (const bool edits : {false, true}) {
       SceneOptions base{.bodies = 20, .heterogeneous = true};
       if (Degree == 2) base.bodies = 10, base.side = 3, base.end_time = 1.5;
-      for_scenes<Degree>(base, 3, {Numbers::fine},
-                         [&](Scene<Degree> scene, std::uint64_t seed, Done& done) {
-                           WorldOptions options;
-                           options.broad_phase = kind;
-                           options.response = seed == 3 && edits ? Response::callback : Response::elastic;
-                           options.walls = Walls{Vector3d::Constant(-2), Vector3d::Constant(8)};
-                           options.walls->restitution = seed == 2 ? 0 : 0.5;
-                           for (auto& b : scene.bodies) b.restitution = seed == 2 ? 0 : 0.5;
-                           options.report_pairs = seed == 1;
-                           run_again(scene, options, edits, seed == 1, seed, done);
-                           after += done.after;
-                           held += done.held;
-                         });
+      for_scenes<Degree>(base, 3, {Numbers::fine}, [&](Scene<Degree> scene, std::uint64_t seed, Done& done) {
+        WorldOptions options;
+        options.broad_phase = kind;
+        options.response = seed == 3 && edits ? Response::callback : Response::elastic;
+        options.walls = Walls{Vector3d::Constant(-2), Vector3d::Constant(8)};
+        options.walls->restitution = seed == 2 ? 0 : 0.5;
+        for (auto& b : scene.bodies) b.restitution = seed == 2 ? 0 : 0.5;
+        options.report_pairs = seed == 1;
+        run_again(scene, options, edits, seed == 1, seed, done);
+        after += done.after;
+        held += done.held;
+      });
     }
   }
   CHECK(after > (Degree == 1 ? 500 : 50));

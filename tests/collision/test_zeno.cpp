@@ -14,8 +14,8 @@ namespace {
 
 using namespace tests;
 
-constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap,
-                                 BroadPhaseKind::all_pairs};
+constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap,
+                                 BroadPhaseKind::sap, BroadPhaseKind::all_pairs};
 
 const Vector3d weight{0, 0, -5};  // half the acceleration
 

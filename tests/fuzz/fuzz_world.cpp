@@ -101,8 +101,10 @@ class Scenario {
     if (options_.response == Response::none && bytes_.one_in(3)) {  // a script, perhaps one that begins later
       auto next = path();
       next.start += 0.25 * bytes_.integer(1, 8);
-      if (bytes_.one_in(4)) result.motion = {next};
-      else result.motion.push_back(next);
+      if (bytes_.one_in(4))
+        result.motion = {next};
+      else
+        result.motion.push_back(next);
     }
     return result;
   }
@@ -198,8 +200,10 @@ class Scenario {
 
 std::string shown(const std::vector<Event>& events, std::size_t at) {
   std::ostringstream text;
-  if (at < events.size()) text << events[at];
-  else text << "nothing";
+  if (at < events.size())
+    text << events[at];
+  else
+    text << "nothing";
   return text.str();
 }
 
@@ -214,8 +218,8 @@ void compare_broad_phases(const Bytes& bytes, const Options& options) {
     const auto [f, e] = std::mismatch(found.begin(), found.end(), expected.begin(), expected.end());
     if (f == found.end() && e == expected.end()) continue;
     const auto at = static_cast<std::size_t>(f - found.begin());
-    throw Failure(std::string(name) + " against all-pairs: event " +
-                  std::to_string(at) + ": " + shown(found, at) + "\n  instead of " + shown(expected, at));
+    throw Failure(std::string(name) + " against all-pairs: event " + std::to_string(at) + ": " + shown(found, at) +
+                  "\n  instead of " + shown(expected, at));
   }
 }
 

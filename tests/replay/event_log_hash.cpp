@@ -4,7 +4,8 @@
 // event_log_hash GOLDEN           compares these lines with a file, says what differs, and exits 1 where something does
 // event_log_hash --log NAME WAY   prints the events of one scene, numbers in hexadecimal, for diff
 //
-// Each scene is run in several ways, with every broad phase or queue, and all must give the line of the file. The file in the repository is made by the first form: event_log_hash > tests/replay/golden.txt
+// Each scene is run in several ways, with every broad phase or queue, and all must give the line of the file. The file
+// in the repository is made by the first form: event_log_hash > tests/replay/golden.txt
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
 #include "kds/events/pairing_queue.hpp"
@@ -92,8 +93,8 @@ Replay with_each_broad_phase(std::string name, const WorldOptions& options, cons
     chosen.broad_phase = method;
     chosen.rate = method == BroadPhaseKind::sap ? 30 : 0;
     replay.ways.push_back({std::string(method_name), [=](EventHash& hash) {
-      for (const Event& e : run<Degree>(scene(), chosen)) hash.event(e);
-    }});
+                             for (const Event& e : run<Degree>(scene(), chosen)) hash.event(e);
+                           }});
   }
   return replay;
 }
@@ -106,8 +107,8 @@ std::string word(std::string name) {
 
 template <int Degree>
 void add_worlds(std::vector<Replay>& replays) {
-  constexpr std::array all_shapes{Shapes::spheres,    Shapes::boxes, Shapes::turned_boxes, Shapes::tetrahedra,
-                                  Shapes::cubes, Shapes::rings, Shapes::mixture};
+  constexpr std::array all_shapes{Shapes::spheres, Shapes::boxes, Shapes::turned_boxes, Shapes::tetrahedra,
+                                  Shapes::cubes,   Shapes::rings, Shapes::mixture};
   for (const Shapes shapes : all_shapes) {
     for (const Numbers numbers : {Numbers::fine, Numbers::coarse}) {
       for (const Response response : {Response::none, Response::elastic}) {
@@ -119,8 +120,7 @@ void add_worlds(std::vector<Replay>& replays) {
         options.report_pairs = true;
         if (elastic) options.walls = Walls{Vector3d::Constant(-2), Vector3d::Constant(8)};
         const SceneOptions scene{.shapes = shapes, .numbers = numbers, .scripts = !elastic, .heterogeneous = elastic};
-        replays.push_back(
-            with_each_broad_phase<Degree>(name, options, [=] { return random_scene<Degree>(scene, 5); }));
+        replays.push_back(with_each_broad_phase<Degree>(name, options, [=] { return random_scene<Degree>(scene, 5); }));
       }
     }
   }

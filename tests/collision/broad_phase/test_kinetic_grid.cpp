@@ -82,7 +82,8 @@ TEST_CASE("A body at rest costs nothing while time goes on, and starts when it i
   CHECK(!grid.advance(1e9, pairs));
   grid.update(1, cube({10, 0, 0}, {-1, 0, 0}, 5), 5, pairs);
   CHECK(grid.next_time() < never);
-  while (grid.advance(20, pairs)) {}
+  while (grid.advance(20, pairs)) {
+  }
   CHECK(pairs.reports == 2);  // it has passed the other
   CHECK(pairs.now.empty());
 }
@@ -95,7 +96,8 @@ TEST_CASE("Bodies that fly apart are soon left alone", "[broad_phase]") {
   std::vector<KineticGrid<1>::Entry> entries;
   for (BodyId id = 0; id < 20; ++id) entries.push_back({id, &boxes[id]});
   grid.insert(entries, 0, pairs);
-  while (grid.advance(1e6, pairs)) {}
+  while (grid.advance(1e6, pairs)) {
+  }
   // Fat boxes are the longer the farther there is nothing: far fewer renewals than lengths travelled.
   CHECK(grid.counters().box_updates < 5000);
   while (grid.next_time() < never) grid.advance(grid.next_time(), pairs);  // to the end of time
@@ -111,7 +113,8 @@ TEST_CASE("Clocks so large that a body moves by its size between two doubles do 
   const auto target = cube({5000, 0, 0}, Vector3d::Zero(), now);
   const std::vector<KineticGrid<1>::Entry> entries{{0, &fast}, {1, &target}};
   grid.insert(entries, now, pairs);
-  while (grid.advance(now + 8192, pairs)) {}
+  while (grid.advance(now + 8192, pairs)) {
+  }
   CHECK(pairs.since.contains({0, 1}));
   CHECK(pairs.now.empty());
 }
@@ -126,7 +129,8 @@ TEST_CASE("Boxes without extent move on in the kinetic grid too", "[broad_phase]
   const KineticBox<1> other{path, path};
   const std::vector<KineticGrid<1>::Entry> entries{{0, &point}, {1, &other}};
   grid.insert(entries, 0, pairs);
-  while (grid.advance(10, pairs)) {}
+  while (grid.advance(10, pairs)) {
+  }
   CHECK(pairs.since.contains({0, 1}));
   CHECK(grid.counters().box_updates < 5000);
 }
@@ -187,7 +191,8 @@ TEST_CASE("Thousands that come at once have the pairs of their fat boxes", "[bro
     CHECK(found.twice == 0);
   };
   check();
-  while (grid.advance(0.5, found)) {}
+  while (grid.advance(0.5, found)) {
+  }
   grid.audit(0.5);
   check();
 }
