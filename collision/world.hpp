@@ -8,20 +8,17 @@
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
-#include "collision/response/least_constraint.hpp"
-#include "collision/shapes/shape.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
+#include "collision/world_records.hpp"
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <set>
 #include <span>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 namespace kds::collision {
@@ -121,133 +118,24 @@ class World final : private PairListener {
   void archive(Archive& archive);
 
  private:
-  using PairSlot = std::uint32_t;
-  using HoldSlot = std::uint32_t;
-  static constexpr PairSlot no_pair = ~PairSlot{0};
-  static constexpr HoldSlot no_hold = ~HoldSlot{0};
-  static constexpr BodyId no_body = ~BodyId{0};
-
-  /// What the tests of balls read of a body: one cache line at degree 1.
-  struct alignas(64) Mover {
-    Motion motion;
-    double ball_radius = 0;  ///< of a body that is a ball, else 0
-  };
-
-  /// What few bodies have.
-  struct Extras {
-    std::vector<Motion> script;  ///< pieces to come, last first
-    typename Description::BoxFunction box_function;
-    KineticBox<Degree> box;  ///< the last it gave
-  };
-
-  /// A pair as one of its bodies sees it.
-  struct Link {
-    BodyId other;
-    PairSlot slot;
-  };
-
-  /// Half the acceleration that callers gave. At degree 1 there is none.
-  struct Force {
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  };
-  struct NoForce {};
-
-  struct Body : std::conditional_t<Degree >= 2, Force, NoForce> {
-    std::vector<Link> pairs;
-    double inverse_mass = 1;
-    double restitution = 1;
-    double mass = 1;
-    double bounding_radius = 0;
-    std::uint32_t category = 1;
-    std::uint32_t collides_with = ~0u;
-    BoundingVolume volume = BoundingVolume::shape;
-    bool alive = false;
-    bool entered = false;         ///< is in the broad phase
-    bool disturbed = false;       ///< is in disturbed_
-    bool wall_estimated = false;  ///< its time in walls_ is a lower bound
-    std::uint64_t meetings = 0;   ///< contacts since burst_start (Zeno)
-    double burst_start = -never;
-    std::shared_ptr<const PlacedShape> shape;  ///< none if it is placed_ball(bounding_radius)
-    std::unique_ptr<Extras> extras;
-    std::vector<HoldSlot> holds;
-    std::uint64_t island = 0;        ///< the last it was seen in
-    std::uint32_t island_place = 0;  ///< scratch
-  };
-
-  /// A body for the narrow phase; the shape of a ball is made for the occasion.
-  class Moving : private std::optional<PlacedShape>, public MovingShape<Degree> {
-   public:
-    Moving(const Body& body, const Motion& motion)
-        : std::optional<PlacedShape>(body.shape ? std::nullopt : std::optional(placed_ball(body.bounding_radius))),
-          MovingShape<Degree>{body.shape ? *body.shape : **this, motion} {}
-    Moving(const Moving&) = delete;
-    Moving& operator=(const Moving&) = delete;
-  };
-
-  /// Two bodies, or a body (a) and a wall, that stay in touch.
-  struct Hold {
-    BodyId a = 0;
-    BodyId b = no_body;  ///< of a wall
-    int wall = -1;
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
-    double push = 0;                                   ///< relative acceleration that it gives
-    bool alive = false;
-    bool fresh = false;  ///< its approach is still to be taken out
-  };
-
-  struct HoldRank {
-    const std::vector<Hold>* holds = nullptr;
-    std::uint64_t operator()(std::uint32_t slot) const {
-      return std::uint64_t{(*holds)[slot].a} << 32 | (*holds)[slot].b;
-    }
-  };
-
-  /// Bodies that lean on each other, in the arithmetic of least_constraint.
-  struct Island {
-    std::vector<BodyId> bodies;  ///< fixed ones last
-    std::size_t free = 0;        ///< how many are not fixed
-    std::vector<HoldSlot> holds;
-    std::vector<Touch> touches;  ///< of the holds
-  };
-
-  struct Pair {
-    BodyId a = 0, b = 0;
-    std::uint32_t place_in_a = 0, place_in_b = 0;
-    bool alive = false;
-    bool dirty = false;
-    bool fresh = false;     ///< one of the bodies has entered or jumped at this instant
-    bool touching = false;  ///< mode none: in contact
-    bool ignored = false;   ///< resolved: overlaps and passes through until separated
-    bool boxes_overlap = false;
-    bool estimated = false;  ///< its time in contacts_ is a lower bound
-    PairMemory memory;
-    double let_pass = -never;  ///< resolved: at this time decided to be ignored, whatever else happens at it
-  };
-
-  struct Passing {
-    BodyId a, b;
-    double at;      ///< when its pair ended
-    bool let_pass;  ///< at that time, whatever happens
-    bool moved;     ///< one of the two has moved otherwise since: then only until the next tests
-  };
-
-  struct PairRank {
-    const std::vector<Pair>* pairs = nullptr;
-    std::uint64_t operator()(std::uint32_t slot) const {
-      return std::uint64_t{(*pairs)[slot].a} << 32 | (*pairs)[slot].b;
-    }
-  };
-
-  /// A report to be made at this instant. They are in the order in which WorldListener is told of them.
-  struct Pending {
-    enum class Kind { held, moved, pair_ended, pair_began, separation, overlap } kind;
-    BodyId a, b;
-    Contact contact;
-    bool removed = false;  ///< one of the bodies has been removed since: nothing undoes it
-
-    bool waits() const { return kind == Kind::separation && !removed; }
-    bool operator<(const Pending& other) const;
-  };
+  using PairSlot = detail::PairSlot;
+  using HoldSlot = detail::HoldSlot;
+  static constexpr PairSlot no_pair = detail::no_pair;
+  static constexpr HoldSlot no_hold = detail::no_hold;
+  static constexpr BodyId no_body = detail::no_body;
+  // world_records.hpp
+  using Mover = detail::Mover<Degree>;
+  using Extras = detail::Extras<Degree>;
+  using Link = detail::Link;
+  using Body = detail::Body<Degree>;
+  using Moving = detail::Moving<Degree>;
+  using Hold = detail::Hold;
+  using HoldRank = detail::HoldRank;
+  using Island = detail::Island;
+  using Pair = detail::Pair;
+  using Passing = detail::Passing;
+  using PairRank = detail::PairRank;
+  using Pending = detail::Pending;
 
   // world.cpp: the clock
   void make_broad_phase();

@@ -10,8 +10,7 @@ namespace kds::collision {
 
 /// As WorldListener says. Where a pair ended with a body that was removed, and began again with the next of its id, the
 /// end comes first.
-template <int Degree>
-bool World<Degree>::Pending::operator<(const Pending& other) const {
+bool detail::Pending::operator<(const Pending& other) const {
   const auto key = [](const Pending& event) {
     const auto stage = [&] {
       switch (event.kind) {
