@@ -18,7 +18,9 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes) {
   // A box that has become a little smaller stays at its level.
   if (before != absent && level < before && level_for(1.125 * extent) == before) level = before;
   if (level == before) return move(id, bounds(box), changes);
+  const std::size_t levels = levels_.size();
   use_level(level);
+  if (levels_.size() > levels) restart_guests();
   if (before != absent) return put_anew(id, bounds(box), level, changes);
   ++size_;
   items_[id].bounds = bounds(box);
@@ -31,8 +33,7 @@ void BoxGrid::announce(Id id, const StaticBox& box) {
   Item& item = items_[id];
   item.bounds = bounds(box);
   item.level = level_for(box.extent());
-  const auto place = find_level(item.level);
-  if (place == levels_.end() || place->exponent != item.level) add_level(place, item.level);
+  use_level(item.level);
   ++size_;
 }
 

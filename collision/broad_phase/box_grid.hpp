@@ -160,7 +160,6 @@ class BoxGrid {
   double cell_side(int exponent) const;
   Exponent level_for(double extent) const;
   std::vector<Level>::iterator find_level(Exponent exponent);
-  std::vector<Level>::iterator add_level(std::vector<Level>::iterator place, Exponent exponent);
   Level& use_level(Exponent exponent);
   static void count_in(Population& population, const Ends& ends);
   static void add(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id);

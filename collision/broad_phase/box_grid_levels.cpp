@@ -64,17 +64,12 @@ std::vector<BoxGrid::Level>::iterator BoxGrid::find_level(Exponent exponent) {
                           [](const Level& level, Exponent e) { return level.exponent < e; });
 }
 
-std::vector<BoxGrid::Level>::iterator BoxGrid::add_level(std::vector<Level>::iterator place, Exponent exponent) {
-  families_ += 0x9E6C63D0676A9A99u;
-  return levels_.insert(place, Level{exponent, power_of_two(lattice_bits - exponent) / unit_, families_});
-}
-
+/// Finds or makes it; one that is new has no guests yet.
 BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
-  auto place = find_level(exponent);
+  const auto place = find_level(exponent);
   if (place != levels_.end() && place->exponent == exponent) return *place;
-  place = add_level(place, exponent);
-  restart_guests();
-  return *place;
+  families_ += 0x9E6C63D0676A9A99u;
+  return *levels_.insert(place, Level{exponent, power_of_two(lattice_bits - exponent) / unit_, families_});
 }
 
 /// What has cost more for nothing than to build it anew is built anew.
@@ -98,9 +93,8 @@ void BoxGrid::restart(std::size_t room) {
     Item& item = items_[id];
     if (item.level == absent) continue;
     item.level = level_for(item.bounds.extent());
-    auto level = find_level(item.level);
-    if (level == levels_.end() || level->exponent != item.level) level = add_level(level, item.level);
-    if (item.entered) add(natives_, *level, level->natives, Ends(item.bounds, level->scale), id);
+    Level& level = use_level(item.level);
+    if (item.entered) add(natives_, level, level.natives, Ends(item.bounds, level.scale), id);
   }
   restart_guests();
 }

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -258,6 +257,8 @@ TEST_CASE("Cells are not made smaller than crowded boxes that would not fit", "[
 
 TEST_CASE("A box grid does not take a guest of one level for itself in another", "[box_grid]") {
   // Few boxes, so few buckets, and many levels.
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const StaticBox nowhere{Eigen::Array3d::Constant(infinity), Eigen::Array3d::Constant(-infinity)};
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Random random(seed);
     BoxGrid grid;
@@ -266,13 +267,13 @@ TEST_CASE("A box grid does not take a guest of one level for itself in another",
     bool right = true;
     for (int round = 0; round < 300; ++round) {
       const auto id = static_cast<BoxGrid::Id>(random.below(12));
-      const auto before = boxes.find(id) != boxes.end() ? std::optional(boxes[id]) : std::nullopt;
+      const StaticBox before = boxes.contains(id) ? boxes[id] : nowhere;
       boxes[id] = random_box(random, std::ldexp(1.0, random.integer(0, 9)), 60, 0);
       changes.clear();
       grid.put(id, boxes[id], changes);
       std::set<BoxGrid::Id> began, ended;
       for (const auto& [other, box] : boxes) {
-        const bool was = before && before->overlaps(box);
+        const bool was = before.overlaps(box);
         const bool is = boxes[id].overlaps(box);
         if (other != id && is && !was) began.insert(other);
         if (other != id && was && !is) ended.insert(other);
