@@ -2,7 +2,9 @@
 #pragma once
 
 #include "certificates/conjunction.hpp"
+#include "certificates/line_distance.hpp"
 #include "certificates/point_motion.hpp"
+#include "certificates/relative_line.hpp"
 #include "kds/certificate.hpp"
 #include "kds/roots/failure_time.hpp"
 
@@ -10,9 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <utility>
 
 namespace kds::certificates {
 
@@ -35,6 +34,7 @@ struct BallSeparation {
   }
 
   Ball<DoubleDouble> extended_value(double t) const {
+    if constexpr (PathDegree == 1) return extended_square_gap(a, b, radius_a, radius_b, t);
     const Ball<DoubleDouble> reach = Ball<DoubleDouble>(radius_a) + radius_b;
     Ball<DoubleDouble> f = -(reach * reach);
     for (int d = 0; d < 3; ++d) {
@@ -51,119 +51,25 @@ struct BallSeparation {
   /// The first double t in [now, horizon] just after which the balls penetrate and approach, or `never`.
   double first_approach(double now, double horizon) const;
 
-  /// The same, or for less a time that is not later.
-  struct Estimate {
-    double time;
-    bool exact;
-  };
-  Estimate estimated_first_approach(double now, double horizon) const;
-
   /// f > 0 at t, by a quick test that knows the paths that quick_failure_time() knows; false says nothing.
   bool surely_apart(double t) const;
 
+  /// Whether the path of b as seen from a is a line.
+  bool relative_path_is_line() const {
+    if constexpr (PathDegree == 1) {
+      return true;
+    } else {
+      static_assert(PathDegree == 2);
+      return a.coefficients[2] == b.coefficients[2];
+    }
+  }
+
  private:
-  struct RelativeLine;
-  bool relative_path_is_line() const;
+  using RelativeLine = detail::RelativeLine<double>;
   double quick_root(const Polynomial<2, Ball<double>>& f, double now, double horizon) const;
 };
 
 // ---------------------------------------------------------------------------------------------------------------
-
-template <int PathDegree>
-bool BallSeparation<PathDegree>::relative_path_is_line() const {
-  if constexpr (PathDegree == 1) {
-    return true;
-  } else {
-    static_assert(PathDegree == 2);
-    return a.coefficients[2] == b.coefficients[2];
-  }
-}
-
-/// The path of b as seen from a, about now, if that is a line: r + v (t - now).
-///
-/// Error bounds, with u = 2^-53. A coordinate at `now` is evaluated by Horner's rule with an elapsed time known to u:
-/// at most 6 u of the sum of its terms' magnitudes, and the difference of two adds u; so r is known to 8 u m, where m
-/// is that sum for both bodies. Likewise the rate v to 8 u w. Then r . v is known to (8 + 8 + 4) u m . w, r . r to
-/// (16 + 4) u m . m plus products of errors, v . v likewise, and the square of the reach to 6 u of itself. All are
-/// below 2^-48 (32 u) of the magnitudes, with room for the rounding of the bound; and m . w is at most M W, where M and
-/// W are the sums over the axes. Underflow loses less than 2^-1000.
-template <int PathDegree>
-struct BallSeparation<PathDegree>::RelativeLine {
-  double square, product, speeds;  ///< r . r - reach^2, r . v, v . v
-  double M, W;
-  double reach;
-  static constexpr double unit = 0x1p-48;
-  static constexpr double lost = 0x1p-1000;
-  static constexpr double range = 0x1p1000;  ///< beyond, sums of opposite infinities might look like a number
-  static constexpr double small = 0x1p240;   ///< the fourth power of it is within that range
-
-  /// Two coordinates in one register, and the third.
-  using Two = double __attribute__((vector_size(16)));
-  static Two pair(const Eigen::Vector3d& x) { return Two{x[0], x[1]}; }
-  static double third(const Eigen::Vector3d& x) { return x[2]; }
-  static Two magnitude(Two x) {
-    using Bits = std::int64_t __attribute__((vector_size(16)));
-    return reinterpret_cast<Two>(reinterpret_cast<Bits>(x) & std::numeric_limits<std::int64_t>::max());
-  }
-  static double magnitude(double x) { return std::abs(x); }
-
-  template <class X>
-  struct Part {
-    X r, v, m, w;
-
-    template <class Take>
-    [[gnu::always_inline]] inline Part(const BallSeparation& balls, double now, Take take) {
-      const X a0 = take(balls.a.coefficients[0]);
-      const X a1 = take(balls.a.coefficients[1]);
-      const X b0 = take(balls.b.coefficients[0]);
-      const X b1 = take(balls.b.coefficients[1]);
-      const double elapsed_a = now - balls.a.start;
-      const double elapsed_b = now - balls.b.start;
-      X moved_a = a1 * elapsed_a;
-      X moved_b = b1 * elapsed_b;
-      m = magnitude(a0) + magnitude(b0) + magnitude(moved_a) + magnitude(moved_b);
-      v = b1 - a1;
-      w = magnitude(v);
-      if constexpr (PathDegree == 2) {
-        const X bend = take(balls.a.coefficients[2]);
-        moved_a = (a1 + bend * elapsed_a) * elapsed_a;
-        moved_b = (b1 + bend * elapsed_b) * elapsed_b;
-        m += magnitude(bend) * (elapsed_a * elapsed_a + elapsed_b * elapsed_b);
-        v = (b1 + 2 * bend * elapsed_b) - (a1 + 2 * bend * elapsed_a);
-        w = magnitude(b1) + magnitude(a1) + 2 * magnitude(bend) * (std::abs(elapsed_a) + std::abs(elapsed_b));
-      }
-      r = (b0 + moved_b) - (a0 + moved_a);
-    }
-  };
-
-  [[gnu::always_inline]] inline RelativeLine(const BallSeparation& balls, double now)
-      : reach(balls.radius_a + balls.radius_b) {
-    const Part<Two> xy(balls, now, pair);
-    const Part<double> z(balls, now, third);
-    const auto sum = [](Two x, double y) { return x[0] + x[1] + y; };
-    square = sum(xy.r * xy.r, z.r * z.r) - reach * reach;
-    product = sum(xy.r * xy.v, z.r * z.v);
-    speeds = sum(xy.v * xy.v, z.v * z.v);
-    M = sum(xy.m, z.m);
-    W = sum(xy.w, z.w);
-  }
-
-  /// f' now.
-  Ball<double> rate() const { return bounded(2 * product, 2 * (M * W)); }
-
-  Polynomial<2, Ball<double>> polynomial() const {
-    Polynomial<2, Ball<double>> f;
-    f.c[0] = bounded(square, M * M + reach * reach);
-    f.c[1] = rate();
-    f.c[2] = bounded(speeds, W * W);
-    return f;
-  }
-
- private:
-  static Ball<double> bounded(double value, double magnitude) {
-    return {value, magnitude < range ? unit * magnitude + lost : never};
-  }
-};
 
 /// f > 0 now, and falls: when it reaches zero.
 template <int PathDegree>
@@ -207,35 +113,6 @@ double BallSeparation<PathDegree>::first_approach(double now, double horizon) co
   using Parting = DerivativeCertificate<BallSeparation>;
   const Parting parting{*this};
   return first_all_broken<BallSeparation, Parting>(now, horizon, {this, 1}, {&parting, 1});
-}
-
-/// Along a line f is convex: it has its first root where it falls, at c / (p + sqrt(p^2 - c s)) with c = f now, p half
-/// its rate downward and s that of v . v. Bounds in place of c, p and the discriminant give a lower bound of that, and
-/// whether it is a root at all need not be known.
-template <int PathDegree>
-[[gnu::always_inline]] inline auto BallSeparation<PathDegree>::estimated_first_approach(double now,
-                                                                                        double horizon) const
-    -> Estimate {
-  using Line = RelativeLine;
-  if (now <= horizon && relative_path_is_line()) {
-    const Line line(*this, now);
-    if (line.M + line.W + line.reach < Line::small) {
-      const double error = Line::unit * (line.M * line.W) + Line::lost;  // of p
-      if (line.product > error) return {never, true};
-      const double size = line.M * line.M + line.reach * line.reach;
-      const double least = line.square - (Line::unit * size + Line::lost);
-      if (least > 0 && line.product < -error) {
-        // The discriminant is off by unit W^2 (4 M^2 + 2 reach^2), and by its own rounding.
-        const double spare = 8 * Line::unit * (line.W * line.W) * size + Line::lost;
-        const double discriminant = line.product * line.product - line.square * line.speeds + spare;
-        if (discriminant < 0) return {never, true};
-        const double root = least / (std::sqrt(discriminant) - line.product + error);
-        const double t = next_down(now + root * (1 - 0x1p-50));
-        return t > horizon ? Estimate{never, true} : Estimate{std::max(t, now), false};
-      }
-    }
-  }
-  return {first_approach(now, horizon), true};
 }
 
 template <int PathDegree>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/arithmetic/lattice.hpp"
+#include "kds/arithmetic/two.hpp"
 #include "kds/motion.hpp"
 
 #include <cstdint>
@@ -25,29 +26,8 @@ TwoTimes quick_failure_times(const Motion<1>& lower_1, const Motion<1>& upper_1,
 
 namespace detail {
 
-/// Two numbers: an SSE or NEON register, or two of the compiler's.
-using Two = double __attribute__((vector_size(16)));
-using TwoBits = std::int64_t __attribute__((vector_size(16)));
-
-inline Two both(double x) { return Two{x, x}; }
-inline TwoBits bits(Two x) { return reinterpret_cast<TwoBits>(x); }
-inline Two number(TwoBits x) { return reinterpret_cast<Two>(x); }
-inline Two magnitude(Two x) { return number(bits(x) & std::numeric_limits<std::int64_t>::max()); }
-inline Two lesser(Two x, Two y) { return x < y ? x : y; }
-
-struct TwoSums {
-  Two high, low;
-};
-
-inline TwoSums two_sums(Two a, Two b) {
-  const Two sum = a + b;
-  const Two b_part = sum - a;
-  const Two a_part = sum - b_part;
-  return {sum, (a - a_part) + (b - b_part)};
-}
-
 /// See first_double_after_line(); NaN where it does not tell.
-[[gnu::always_inline]] inline Two first_doubles_after_lines(TwoSums g, TwoSums r, Two epoch) {
+[[gnu::always_inline]] inline Two first_doubles_after_lines(TwoDoubleDoubles g, TwoDoubleDoubles r, Two epoch) {
   constexpr std::int64_t first_26_bits = ~((std::int64_t{1} << 27) - 1);
   constexpr std::int64_t exponent = 0x7ff0000000000000;
   const Two inverse = 1.0 / r.high;
@@ -57,7 +37,7 @@ inline TwoSums two_sums(Two a, Two b) {
   const Two v = ((g.high + c * r_c) + c * (r.high - r_c)) + (g.low + c * r.low);
   const Two d = -v * inverse;
 
-  const TwoSums place = two_sums(epoch, c);
+  const TwoDoubleDoubles place = two_sum(epoch, c);
   const Two low = place.low + d;
   const Two half_spacing = number((bits(place.high) & exponent) - (std::int64_t{53} << 52));
   const Two t = place.high + (d + (place.low + half_spacing));
@@ -77,7 +57,6 @@ inline TwoSums two_sums(Two a, Two b) {
 [[gnu::always_inline]] inline TwoTimes quick_failure_times(const Motion<1>& lower_1, const Motion<1>& upper_1,
                                                            const Motion<1>& lower_2, const Motion<1>& upper_2,
                                                            double now, double horizon) {
-  using detail::Two;
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
   if (lower_1.start != upper_1.start || lower_2.start != upper_2.start) return {undecided, undecided};
   const Two low{lower_1.position.c[0], lower_2.position.c[0]};
@@ -89,14 +68,14 @@ inline TwoSums two_sums(Two a, Two b) {
   const Two fall = low_rate - high_rate;
   const Two run = fall * (now - start);
   const Two gap = (high - low) - run;
-  const Two surely = gap - (0x1p-50 * (detail::magnitude(high - low) + detail::magnitude(run)) + 0x1p-1000);
+  const Two surely = gap - (0x1p-50 * (magnitude(high - low) + magnitude(run)) + 0x1p-1000);
   const auto in_order = surely > 0.0;
   const auto apart = (fall <= 0.0) | (surely > fall * ((horizon - now) * (1 + 0x1p-50)));
 
   const Two t =
-      detail::first_doubles_after_lines(detail::two_sums(high, -low), detail::two_sums(high_rate, -low_rate), start);
-  Two result = (apart | (t > horizon)) ? detail::both(never) : t;
-  result = in_order ? result : detail::both(undecided);
+      detail::first_doubles_after_lines(two_sum(high, -low), two_sum(high_rate, -low_rate), start);
+  Two result = (apart | (t > horizon)) ? both(never) : t;
+  result = in_order ? result : both(undecided);
   return {result[0], result[1]};
 }
 

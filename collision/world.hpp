@@ -194,17 +194,11 @@ class World final : private PairListener {
   ContactMode mode() const {
     return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
   }
-  /// What a test of two balls found: when they meet, or no later than that; or nothing.
-  struct BallTest {
-    double time = never;
-    bool exact = false;
-    bool done = false;
-  };
   void test_dirty_pairs();
   void test(PairSlot slot);
   bool balls_are_quick() const;
-  BallTest test_of_balls(const Pair& pair) const;
-  std::vector<BallTest> tests_of_balls() const;
+  void estimate_dirty_pairs();
+  void estimate_balls(std::size_t first, std::size_t last);
   void set_contact(PairSlot slot, double time);
   void remember(PairSlot slot, const FoundTouch& found);
   bool certify_next(bool contact, bool wall);
@@ -254,6 +248,7 @@ class World final : private PairListener {
   std::vector<Pair> pairs_;
   std::vector<PairSlot> free_pairs_;
   std::vector<PairSlot> dirty_;
+  std::vector<double> estimates_;               // by place in dirty_: see estimate_balls()
   std::vector<FoundTouch> found_;               // by pair, as far as known; of no use once a motion has changed
   std::vector<KdopDirection> directions_;       // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction

@@ -92,6 +92,10 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   Body& b = bodies_[id];
   movers_[id].motion = motion;
+  for (const Link& link : b.pairs) {
+    __builtin_prefetch(&pairs_[link.slot], 1);
+    __builtin_prefetch(&movers_[link.other]);
+  }
   inserting_ = jumped && mode() == ContactMode::resolved;
   broad_phase_->update(id, renewed_box(id), now_, *this);
   for (Passing& passing : passing_) passing.moved = passing.moved || passing.a == id || passing.b == id;

@@ -1,19 +1,22 @@
 // Dynamic tests: when the bodies of a pair will touch, and when their boxes will overlap.
 #include "certificates/ball_separation.hpp"
+#include "certificates/balls_together.hpp"
 #include "certificates/conjunction.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <span>
-#include <utility>
-#include <vector>
 
 namespace kds::collision {
 namespace {
 
 using Eigen::Vector3d;
+
+constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
 
 template <int Degree>
 bool at_rest(const certificates::PointMotion<Degree>& motion) {
@@ -47,51 +50,57 @@ bool World<Degree>::balls_are_quick() const {
   return mode() == ContactMode::resolved && holds_.size() == free_holds_.size();
 }
 
-/// Most tests by far are these, and need two cache lines. They change nothing. Precondition: balls_are_quick().
+/// Most tests by far are these, and need two cache lines. They change nothing but estimates_: for some of the dirty
+/// pairs, a time before which the balls do not meet, or a NaN where test() is called for. Precondition:
+/// balls_are_quick().
 template <int Degree>
-auto World<Degree>::test_of_balls(const Pair& pair) const -> BallTest {
-  if (pair.ignored) return {};
-  const Mover& a = movers_[pair.a];
-  const Mover& b = movers_[pair.b];
-  if (!(a.ball_radius > 0 && b.ball_radius > 0) || (at_rest(a.motion) && at_rest(b.motion))) return {};
-  const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
-  if (pair.fresh && !apart.surely_apart(now_)) return {};
-  if (pair.let_pass == now_ && !pair.fresh) return {apart.first_approach(next_up(now_), horizon_), true, true};
-  const auto [time, exact] = apart.estimated_first_approach(now_, horizon_);
-  return {time, exact, true};
+void World<Degree>::estimate_balls(std::size_t first, std::size_t last) {
+  using Balls = certificates::BallSeparation<Degree>;
+  const auto balls = [&](const Pair& pair) {
+    const Mover& a = movers_[pair.a];
+    const Mover& b = movers_[pair.b];
+    return Balls{a.motion, b.motion, a.ball_radius, b.ball_radius};
+  };
+  for (std::size_t i = first; i < last; i += 2) {
+    const std::size_t next = std::min(i + 1, last - 1);
+    const Pair& one = pairs_[dirty_[i]];
+    const Pair& other = pairs_[dirty_[next]];
+    const Balls of_one = balls(one);
+    const Balls of_other = balls(other);
+    const certificates::TwoApproaches found = certificates::earliest_approaches(of_one, of_other, now_, horizon_);
+    const auto estimate = [&](const Pair& pair, const Balls& two, int lane) {
+      const bool simple = !pair.ignored && pair.let_pass != now_ && two.radius_a > 0 && two.radius_b > 0 &&
+                          (!pair.fresh || found.apart[lane] != 0);
+      return simple ? found.earliest[lane] : undecided;
+    };
+    estimates_[next] = estimate(other, of_other, 1);
+    estimates_[i] = estimate(one, of_one, 0);
+  }
 }
 
-/// Those of all dirty pairs, by several threads; none where they are few.
 template <int Degree>
-auto World<Degree>::tests_of_balls() const -> std::vector<BallTest> {
-  const std::size_t threads = threads_for(dirty_.size(), options_.threads);
-  if (threads == 1) return {};
-  std::vector<BallTest> tests(dirty_.size());
-  if (!balls_are_quick()) return tests;
-  in_parts(dirty_.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      if (pairs_[dirty_[i]].alive) tests[i] = test_of_balls(pairs_[dirty_[i]]);
-    }
-  });
-  return tests;
+void World<Degree>::estimate_dirty_pairs() {
+  if (!balls_are_quick()) return estimates_.assign(dirty_.size(), undecided);
+  estimates_.resize(dirty_.size());
+  in_parts(dirty_.size(), threads_for(dirty_.size(), options_.threads),
+           [&](std::size_t, std::size_t first, std::size_t last) { estimate_balls(first, last); });
 }
 
 template <int Degree>
 void World<Degree>::test_dirty_pairs() {
   const Stopwatch watch(profile(), Work::test);
-  const std::vector<BallTest> tests = tests_of_balls();
   const bool boxes = options_.report_pairs && !broad_phase_->exact();
-  const bool quick = balls_are_quick();
+  estimate_dirty_pairs();
   for (std::size_t i = 0; i < dirty_.size(); ++i) {
     const PairSlot slot = dirty_[i];
     Pair& pair = pairs_[slot];
     pair.dirty = false;
     if (!pair.alive) continue;
     ++counters_.pair_tests;
-    const BallTest of_balls = !tests.empty() ? tests[i] : (quick ? test_of_balls(pair) : BallTest{});
-    if (of_balls.done) [[likely]] {
-      pair.estimated = !of_balls.exact;
-      if (of_balls.time != never || contacts_.contains(slot)) contacts_.set(slot, of_balls.time);
+    const double estimate = estimates_[i];
+    if (!std::isnan(estimate)) [[likely]] {
+      pair.estimated = estimate != never;
+      if (pair.estimated || contacts_.contains(slot)) contacts_.set(slot, estimate);
     } else {
       test(slot);
     }

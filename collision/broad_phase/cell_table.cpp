@@ -38,34 +38,67 @@ void CellTable::add(std::size_t place, Ends ends, std::uint32_t number) {
   bucket->numbers[bucket->count++] = number;
 }
 
-inline std::uint32_t CellTable::Bucket::within(Ends limits) const {
+inline std::uint64_t CellTable::Bucket::within(Ends limits) const {
 #ifdef __SSE2__
   const __m128i most_allowed = _mm_set1_epi64x(static_cast<long long>(limits));
   const auto* const from = reinterpret_cast<const __m128i*>(ends.data());
-  const auto exceed = [&](const __m128i& two) {
-    return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpgt_epi8(_mm_load_si128(&two), most_allowed)));
-  };
-  const std::uint32_t over = exceed(from[0]) | exceed(from[1]) << 16;
-  return ~(((over & 0x7F7F7F7Fu) + 0x7F7F7F7Fu) | over) & 0x80808080u;  // bytes that are zero
+  const auto exceed = [&](const __m128i& two) { return _mm_cmpgt_epi8(_mm_load_si128(&two), most_allowed); };
+  const __m128i four = _mm_packs_epi32(exceed(from[0]), exceed(from[1]));  // zero remains zero, and nothing else
+  const __m128i none_exceeds = _mm_cmpeq_epi32(four, _mm_setzero_si128());
+  return static_cast<std::uint64_t>(_mm_movemask_ps(_mm_castsi128_ps(none_exceeds)));
 #else
   using Bytes = signed char __attribute__((vector_size(8)));
   Bytes most_allowed;
   std::memcpy(&most_allowed, &limits, sizeof most_allowed);
-  std::uint32_t within = 0;
+  std::uint64_t within = 0;
   for (std::size_t i = 0; i < most; ++i) {
     Bytes bytes;
     std::memcpy(&bytes, &ends[i], sizeof bytes);
     const auto over = bytes > most_allowed;
     std::uint64_t any = 0;
     std::memcpy(&any, &over, sizeof any);
-    within |= std::uint32_t{any == 0} << (8 * i + 7);
+    within |= std::uint64_t{any == 0} << i;
   }
   return within;
 #endif
 }
 
+/// Which numbers of a bucket count nobody can predict; so they are gathered as bits, and taken from those of many
+/// buckets in one loop.
+class CellTable::Gathering {
+ public:
+  explicit Gathering(Found& found) : found_(found) {}
+  Gathering(const Gathering&) = delete;
+  Gathering& operator=(const Gathering&) = delete;
+
+  void look(const Bucket& bucket, Ends limits) {
+    bits_ = bits_ >> most | bucket.within(limits) << (64 - most);
+    buckets_[count_++] = &bucket;
+    if (count_ == buckets_.size()) take();
+  }
+
+  void take() {
+    if (count_ == 0) return;
+    std::uint32_t* to = found_.room_for(64);
+    for (std::uint64_t left = bits_ >> (64 - most * count_); left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(left));
+      *to++ = buckets_[i / most]->numbers[i % most];
+    }
+    found_.end_at(to);
+    count_ = 0;
+    bits_ = 0;
+  }
+
+ private:
+  Found& found_;
+  std::uint64_t bits_ = 0;  ///< a group for each bucket, the last one highest
+  std::size_t count_ = 0;
+  std::array<const Bucket*, 64 / most> buckets_;
+};
+
 std::size_t CellTable::find(const Block& block, Found& found) const {
   std::size_t walked = 0;
+  Gathering gathering(found);
   const Bucket* const buckets = buckets_.data();
   const std::size_t mask = buckets_.size() - 1;
   const auto [cells_x, cells_y, cells_z] = block.lengths;
@@ -78,12 +111,13 @@ std::size_t CellTable::find(const Block& block, Found& found) const {
       for (std::size_t x = 0; x < cells_x; ++x) {
         const Ends limits = limits_yz | block.limits[0][x];
         for (const Bucket* bucket = &buckets[(begin + x) & mask];; bucket = &chained_[bucket->next], ++walked) {
-          found.add(bucket->numbers, bucket->within(limits));
+          gathering.look(*bucket, limits);
           if (bucket->next == none) break;
         }
       }
     }
   }
+  gathering.take();
   return walked;
 }
 

@@ -65,17 +65,12 @@ class CellTable {
    private:
     friend CellTable;
 
-    /// Adds number i where bit 8 i + 7 is set: all are written, and the end is moved past those that count, since
-    /// nobody can predict which do.
-    void add(const std::array<std::uint32_t, 4>& numbers, std::uint32_t which) {
-      if (size_ + numbers.size() > numbers_.size()) numbers_.resize(2 * numbers_.size() + 64);
-      std::uint32_t* to = numbers_.data() + size_;
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        *to = numbers[i];
-        to += which >> (8 * i + 7) & 1;
-      }
-      size_ = static_cast<std::size_t>(to - numbers_.data());
+    /// To be written to from there on; the end is told afterwards.
+    std::uint32_t* room_for(std::size_t count) {
+      if (size_ + count > numbers_.size()) numbers_.resize(2 * numbers_.size() + count);
+      return numbers_.data() + size_;
     }
+    void end_at(const std::uint32_t* end) { size_ = static_cast<std::size_t>(end - numbers_.data()); }
 
     std::vector<std::uint32_t> numbers_;
     std::size_t size_ = 0;
@@ -114,9 +109,10 @@ class CellTable {
     std::uint32_t next = none;
     std::uint32_t count = 0;  ///< of a cell's buckets all are full but for the second, or the only one
 
-    /// The highest bit of byte i if number i is within the limits.
-    std::uint32_t within(Ends limits) const;
+    /// Bit i if number i is within the limits.
+    std::uint64_t within(Ends limits) const;
   };
+  class Gathering;
 
   struct Where {
     Bucket* bucket;  ///< none if it is not there
