@@ -258,34 +258,27 @@ void World<Degree>::renew_volume(BodyId id) {
   schedule_volume(id);
 }
 
+/// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are
+/// counted, so that a run ends.
+template <int Degree>
+void World<Degree>::count_edit() {
+  idle_until_ = -never;
+  if (!stepping_) return;
+  if (now_ - edits_start_ > options_.zeno.interval) {
+    edits_start_ = now_;
+    edits_ = 0;
+  }
+  if (++edits_ <= std::max<std::uint64_t>(options_.most_edits, 64 * alive_)) return;
+  throw std::runtime_error("World: callbacks have changed bodies " + std::to_string(edits_) + " times within " +
+                           std::to_string(now_ - edits_start_) + " s, at " + std::to_string(now_) +
+                           " s; WorldOptions.most_edits allows no more");
+}
+
 template <int Degree>
 WorldCounters World<Degree>::counters() const {
   WorldCounters counters = counters_;
   counters.broad_phase = counters_.broad_phase + broad_phase_->counters();  // and those of before it was loaded
   return counters;
-}
-
-template <int Degree>
-void World<Degree>::audit() const {
-  broad_phase_->audit(now_);
-  const auto fail = [](BodyId a, BodyId b, const char* what) {
-    throw AuditFailure("World: bodies " + std::to_string(a) + " and " + std::to_string(b) + ": " + what);
-  };
-  if (!entering_.empty() || !dirty_.empty()) return;  // Work of this instant is still to be done.
-  if (disturbed_.empty()) audit_holds();
-  for (BodyId a = 0; a < bodies_.size(); ++a) {
-    for (BodyId b = a + 1; b < bodies_.size(); ++b) {
-      if (!bodies_[a].entered || !bodies_[b].entered) continue;
-      const PairSlot slot = find_pair(a, b);
-      if (slot != no_pair) continue;
-      if ((bodies_[a].category & bodies_[b].collides_with) == 0 ||
-          (bodies_[b].category & bodies_[a].collides_with) == 0) {
-        continue;
-      }
-      if (broad_phase_->next_time() <= now_) continue;
-      if (volumes_overlap(a, b)) fail(a, b, "the bounding volumes overlap and the pair is not active");
-    }
-  }
 }
 
 template class World<1>;

@@ -23,6 +23,7 @@
 
 namespace kds::collision {
 
+/// What a world has done so far.
 struct WorldCounters {
   BroadPhaseCounters broad_phase;
   std::uint64_t pairs_begun = 0;  ///< pairs handed on by the broad phase
@@ -44,7 +45,8 @@ struct WorldCounters {
 /// phase finds them makes no difference: WorldListener says in what order they are reported. Dynamic test results are
 /// kept until a motion changes; then only the pairs of that body that are active are tested again.
 ///
-/// Degree 1 (straight paths) never pays for degree 2.
+/// Degree 1 (straight paths) never pays for degree 2. Lengths and masses are in units of the caller's own, times in
+/// seconds. An id that names no body throws std::out_of_range.
 template <int Degree>
 class World final : private PairListener {
  public:
@@ -72,14 +74,15 @@ class World final : private PairListener {
   /// std::invalid_argument for a motion that is not finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
 
-  /// Processes everything up to and including t.
+  /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,
+  /// and std::runtime_error as WorldOptions::most_edits says.
   void advance_to(double t);
 
   /// Processes the next event not later than `limit`, if there is one. False if not; then the clock is at `limit`
-  /// if that is finite.
+  /// if that is finite. Throws as advance_to(), but not for the past; `sap`, whose frames never end, needs a limit.
   bool step(double limit = never);
 
-  /// Processes events up to t for as long as the wall-clock budget lasts; true if t was reached.
+  /// Processes events up to t for as long as the wall-clock budget lasts, but one at least; true if t was reached.
   bool advance_for(double budget_seconds, double t);
 
   double now() const { return now_; }
@@ -142,6 +145,7 @@ class World final : private PairListener {
   void reach(double limit);
   void start_pieces();
   void renew_volume(BodyId id);
+  void count_edit();
 
   // world_reports.cpp: what is told at one instant, in one order
   void report_next();
@@ -155,7 +159,7 @@ class World final : private PairListener {
 
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }
 
-  // world_snapshot.cpp: saving and loading
+  // world_snapshot.cpp: saving and loading; world_image.cpp: what is saved, written and read
   struct Image;
   Image image() const;
   void become(const Image& image);
@@ -219,11 +223,16 @@ class World final : private PairListener {
   std::uint64_t count_meeting(BodyId id);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
-  // world_resting.cpp: contacts that are held
+  // world_holds.cpp: contacts that are held
   HoldSlot find_hold(BodyId a, BodyId b, int wall = -1) const;
   void add_hold(const Hold& hold);
   void drop_hold(HoldSlot slot);
   void drop_holds(BodyId id);
+  double next_contact_of_held(const Pair& pair) const;
+  void schedule_release(HoldSlot slot);
+  void release(HoldSlot slot);
+
+  // world_islands.cpp: bodies that lean on each other
   void disturb(BodyId id);
   void settle();
   bool settle_island(BodyId id);
@@ -231,11 +240,9 @@ class World final : private PairListener {
   bool drop_broken(const Island& island);
   bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
   bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
-  double next_contact_of_held(const Pair& pair) const;
-  void schedule_release(HoldSlot slot);
-  void release(HoldSlot slot);
-  void count_edit();
-  void audit_holds() const;  ///< world_audit.cpp
+
+  // world_audit.cpp
+  void audit_holds() const;
 
   WorldOptions options_;
   Listener* listener_;

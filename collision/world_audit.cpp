@@ -1,4 +1,4 @@
-// What the world checks of contacts that are held.
+// What the world checks of itself: pairs, and contacts that are held.
 #include "collision/world.hpp"
 #include "kds/audit.hpp"
 
@@ -7,6 +7,29 @@
 #include <string>
 
 namespace kds::collision {
+
+template <int Degree>
+void World<Degree>::audit() const {
+  broad_phase_->audit(now_);
+  const auto fail = [](BodyId a, BodyId b, const char* what) {
+    throw AuditFailure("World: bodies " + std::to_string(a) + " and " + std::to_string(b) + ": " + what);
+  };
+  if (!entering_.empty() || !dirty_.empty()) return;  // Work of this instant is still to be done.
+  if (disturbed_.empty()) audit_holds();
+  for (BodyId a = 0; a < bodies_.size(); ++a) {
+    for (BodyId b = a + 1; b < bodies_.size(); ++b) {
+      if (!bodies_[a].entered || !bodies_[b].entered) continue;
+      const PairSlot slot = find_pair(a, b);
+      if (slot != no_pair) continue;
+      if ((bodies_[a].category & bodies_[b].collides_with) == 0 ||
+          (bodies_[b].category & bodies_[a].collides_with) == 0) {
+        continue;
+      }
+      if (broad_phase_->next_time() <= now_) continue;
+      if (volumes_overlap(a, b)) fail(a, b, "the bounding volumes overlap and the pair is not active");
+    }
+  }
+}
 
 /// Each hold is of two bodies that are there (or one and a wall), is listed with them and no others, and is held: along
 /// its normal the two have no relative velocity but for rounding, as drop_broken() measures it, and accelerations that

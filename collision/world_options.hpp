@@ -62,9 +62,9 @@ struct WorldOptions {
   /// is done by the caller's thread, event by event. Events and counters do not depend on it.
   std::size_t threads = 1;
   ZenoPolicy zeno;
-  /// Bodies added, removed and moved by callbacks within zeno.interval of simulated time, and 64 for each body there
-  /// is: more end the run by std::runtime_error, since callbacks that go on for ever at one time would never let the
-  /// clock move. Without callbacks a run always ends.
+  /// So many times, or 64 for each body if that is more, callbacks may add, remove and move bodies within zeno.interval
+  /// of simulated time. One more throws std::runtime_error: callbacks that go on for ever at one time would never let
+  /// the clock move. Without callbacks a run always ends.
   std::uint64_t most_edits = 1'000'000;
 };
 

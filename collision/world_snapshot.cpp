@@ -1,11 +1,9 @@
 // Worlds saved, and loaded again.
-#include "collision/world_snapshot.hpp"
+#include "collision/world_image.hpp"
 
 #include "collision/shapes/mesh.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -36,10 +34,6 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact) 
   if (options.report_pairs) same("broad_phase, which reports its pairs", std::uint32_t{exact});
 }
 
-bool equal(std::span<const Eigen::Vector3d> a, const std::vector<Eigen::Vector3d>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end());
-}
-
 struct PairCollector final : PairListener {
   std::vector<std::pair<BodyId, BodyId>> pairs;
   void pair_began(BodyId a, BodyId b, double) override { pairs.emplace_back(a, b); }
@@ -47,88 +41,6 @@ struct PairCollector final : PairListener {
 };
 
 }  // namespace
-
-template <int Degree>
-template <class Archive>
-void World<Degree>::Image::mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
-                                const std::vector<std::shared_ptr<const Mesh>>& known) {
-  std::vector<Eigen::Vector3d> vertices;
-  std::vector<Mesh::Triangle> triangles;
-  if (mesh) {
-    vertices.assign(mesh->vertices().begin(), mesh->vertices().end());
-    triangles.assign(mesh->triangles().begin(), mesh->triangles().end());
-  }
-  each(archive, vertices, [&](Eigen::Vector3d& v) { vector(archive, v); });
-  archive(triangles);
-  if constexpr (Archive::loading) {
-    const auto same = std::find_if(known.begin(), known.end(), [&](const auto& other) {
-      return equal(other->vertices(), vertices) &&
-             std::equal(triangles.begin(), triangles.end(), other->triangles().begin(), other->triangles().end());
-    });
-    mesh = same != known.end() ? *same : std::make_shared<const Mesh>(std::move(vertices), std::move(triangles));
-  }
-}
-
-template <int Degree>
-template <class Archive>
-void World<Degree>::Image::shape(Archive& archive, BodyImage& body) const {
-  PlacedShape& placed = body.placed;
-  std::uint32_t kind = static_cast<std::uint32_t>(placed.shape.index());
-  archive(kind);
-  if constexpr (Archive::loading) {
-    if (kind > 2) throw std::runtime_error("snapshot: it is damaged");
-    if (kind == 0) placed.shape = Sphere{0};
-    if (kind == 1) placed.shape = Box{Eigen::Vector3d::Zero()};
-    if (kind == 2) placed.shape = MeshShape{};
-  }
-  if (auto* const sphere = std::get_if<Sphere>(&placed.shape)) archive(sphere->radius);
-  if (auto* const box = std::get_if<Box>(&placed.shape)) {
-    vector(archive, box->half_extents);
-    for (Eigen::Vector3d& half : placed.half_axes) vector(archive, half);
-  }
-  if (auto* const mesh = std::get_if<MeshShape>(&placed.shape)) {
-    archive(body.mesh, mesh->scale);
-    mesh->mesh = meshes.at(body.mesh);
-  }
-  for (double& entry : placed.rotation.reshaped()) archive(entry);
-  vector(archive, placed.low), vector(archive, placed.high);
-  archive(placed.bounding_radius);
-}
-
-template <int Degree>
-template <class Archive>
-void World<Degree>::Image::body(Archive& archive, BodyImage& body) const {
-  archive(body.alive);
-  if (!body.alive) return;
-  shape(archive, body);
-  archive(body.entered, body.motion, body.script, body.mass, body.inverse_mass, body.restitution, body.category,
-          body.collides_with, body.volume, body.meetings, body.burst_start, body.holds);
-  vector(archive, body.force);
-}
-
-template <int Degree>
-template <class Archive>
-void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
-  archive(now, horizon, counters, edits, edits_start);
-  each(archive, meshes, [&](auto& one) { mesh(archive, one, known); });
-  each(archive, bodies, [&](BodyImage& one) { body(archive, one); });
-  archive(free_bodies, entering, disturbed, free_holds, releases);
-  each(archive, pairs, [&](PairImage& image) {
-    Pair& p = image.pair;
-    archive(p.a, p.b, p.dirty, p.fresh, p.touching, p.ignored, p.boxes_overlap, p.estimated, p.let_pass, image.contact,
-            image.boxes);
-  });
-  each(archive, passing, [&](Passing& p) { archive(p.a, p.b, p.at, p.let_pass, p.moved); });
-  each(archive, holds, [&](Hold& h) {
-    archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh);
-    vector(archive, h.normal);
-  });
-  each(archive, pending, [&](Pending& p) {
-    archive(p.kind, p.a, p.b, p.removed, p.contact.time);
-    for (Feature* f : {&p.contact.feature_a, &p.contact.feature_b}) archive(f->kind, f->first, f->second);
-    vector(archive, p.contact.point), vector(archive, p.contact.normal);
-  });
-}
 
 template <int Degree>
 std::vector<std::shared_ptr<const Mesh>> World<Degree>::meshes() const {
