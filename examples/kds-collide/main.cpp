@@ -1,27 +1,21 @@
 // kds-collide: a scene in, events out.
 #include "collision/broad_phase/broad_phase_kind.hpp"
+#include "examples/kds-collide/arguments.hpp"
 #include "examples/kds-collide/event_csv.hpp"
-#include "examples/kds-collide/generator.hpp"
 #include "examples/kds-collide/output_file.hpp"
 #include "examples/kds-collide/progress_bar.hpp"
 #include "examples/kds-collide/replay.hpp"
-#include "examples/kds-collide/run.hpp"
 #include "examples/kds-collide/scene_reader.hpp"
 #include "examples/kds-collide/stats_json.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace {
 
@@ -31,24 +25,6 @@ constexpr int done = 0;
 constexpr int run_failed = 1;
 constexpr int bad_input = 2;
 
-struct Arguments {
-  std::string scene;
-  std::string events;
-  std::string stats;
-  std::string view;
-  std::optional<double> until;
-  RunOptions run;
-  bool quiet = false;
-  bool generate = false;
-  GeneratorOptions generator;
-  std::string output;
-};
-
-/// What is wrong with the arguments, as "WHERE: what is wrong".
-struct ArgumentError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 int complain(const std::string& line, int code) {
   std::string text = line;
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -56,91 +32,14 @@ int complain(const std::string& line, int code) {
   return code;
 }
 
-void describe(CLI::App& app, Arguments& arguments) {
-  app.add_option("SCENE", arguments.scene, "Scene file (JSON)");
-  app.add_option("--events", arguments.events, "Write events as CSV; - is standard output")->type_name("FILE|-");
-  app.add_option("--stats", arguments.stats, "Write what the run took as JSON; - is standard output")
-      ->type_name("FILE|-");
-  app.add_option("--broad-phase", arguments.run.broad_phase, "How pairs are found; \"list\" names the ways")
-      ->type_name("NAME");
-  app.add_option("--kdop", arguments.run.kdop, "Bounding volumes of kinetic-sap: 6 (boxes), 14, 18 or 26 sides")
-      ->type_name("K");
-  app.add_option("--until", arguments.until, "End the run at T, in seconds, instead of the scene's end_time")
-      ->type_name("T");
-  app.add_option("--rate", arguments.run.rate, "Ask for results so many times a second (sap needs it); 0 = not at all")
-      ->type_name("HZ");
-  app.add_option("--threads", arguments.run.threads, "Threads that take in the bodies of large scenes; 0 = all")
-      ->type_name("N");
-  app.add_flag("--pairs", arguments.run.pairs, "Write events of kinetic bounding volumes too");
-  app.add_option("--view", arguments.view, "Write a replay that any browser shows")->type_name("FILE.html");
-  app.add_flag("--quiet", arguments.quiet, "No progress and no summary on standard error");
-
-  const std::string group = "Making a scene instead of running one";
-  auto* kind = app.add_option("--generate", arguments.generator.kind, "rings, models, spheres or boxes")
-                   ->type_name("KIND")
-                   ->group(group);
-  const auto add = [&](const char* name, auto& value, const char* what) {
-    return app.add_option(name, value, what)->needs(kind)->group(group);
-  };
-  add("--bodies", arguments.generator.bodies, "How many")->check(CLI::NonNegativeNumber)->capture_default_str();
-  add("--density", arguments.generator.density, "Volume of their bounding balls over that of the domain")
-      ->capture_default_str();
-  add("--seed", arguments.generator.seed, "One seed, one scene, on every machine")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  add("--output", arguments.output, "Scene file to write, meshes beside it (default: KIND.json)")->type_name("FILE");
-  app.callback([&arguments, kind] { arguments.generate = kind->count() > 0; });
-  app.set_version_flag("--version", "kds-collide " KDS_VERSION);
-}
-
-/// Two outputs in one file, or an output in place of the scene, would destroy what is wanted.
-void check_files_differ(const Arguments& arguments) {
-  const std::vector<std::pair<const char*, std::string>> files{{"SCENE", arguments.scene},
-                                                               {"--events", arguments.events},
-                                                               {"--stats", arguments.stats},
-                                                               {"--view", arguments.view}};
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (files[i].second.empty() || files[j].second.empty()) continue;
-      std::error_code ignored;
-      const bool same = files[i].second == files[j].second ||
-                        (std::filesystem::is_regular_file(files[i].second, ignored) &&
-                         std::filesystem::equivalent(files[i].second, files[j].second, ignored));
-      if (same) throw ArgumentError(std::string(files[i].first) + ": is the same file as " + files[j].first);
-    }
-  }
-}
-
-void check(const Arguments& arguments) {
-  if (arguments.generate) {
-    if (!arguments.scene.empty()) throw ArgumentError("SCENE: with --generate nothing is run; give --output");
-    return;
-  }
-  if (arguments.scene.empty()) throw ArgumentError("SCENE: is missing");
-  const RunOptions& run = arguments.run;
-  if (!std::isfinite(run.rate) || run.rate < 0) throw ArgumentError("--rate: must be finite and >= 0");
-  if (arguments.until && !std::isfinite(*arguments.until)) throw ArgumentError("--until: must be finite");
-  const auto& known = kds::collision::broad_phases;
-  if (std::none_of(known.begin(), known.end(), [&](const auto& b) { return b.name == run.broad_phase; })) {
-    std::string names;
-    for (const auto& b : known) names += (names.empty() ? "" : ", ") + std::string(b.name);
-    throw ArgumentError("--broad-phase: there is no \"" + run.broad_phase + "\"; there are " + names);
-  }
-  if (run.kdop != 6 && run.kdop != 14 && run.kdop != 18 && run.kdop != 26) {
-    throw ArgumentError("--kdop: must be 6, 14, 18 or 26");
-  }
-  if (run.kdop != 6 && run.broad_phase != "kinetic-sap") {
-    throw ArgumentError("--kdop: more than 6 is for --broad-phase kinetic-sap alone");
-  }
-  if (run.broad_phase == "sap" && run.rate == 0) throw ArgumentError("--rate: must be > 0 for the broad phase \"sap\"");
-  check_files_differ(arguments);
-}
-
 int list_broad_phases() {
+  OutputFile out("-");
   for (const auto& b : kds::collision::broad_phases) {
-    std::printf("%-12.*s %.*s\n", static_cast<int>(b.name.size()), b.name.data(), static_cast<int>(b.what.size()),
-                b.what.data());
+    std::string line(b.name);
+    line.resize(std::max<std::size_t>(line.size(), 12), ' ');
+    out.write(line + ' ' + std::string(b.what) + '\n');
   }
+  out.commit();
   return done;
 }
 
@@ -157,6 +56,9 @@ int generate(const Arguments& arguments) {
     out.write(text);
     out.commit();
   };
+  for (const auto& mesh : scene.meshes) {
+    if (file.filename() == mesh.name) throw ArgumentError("--output: is the name of the mesh " + mesh.name + " too");
+  }
   // Meshes first: the scene is there only when all it names is.
   for (const auto& mesh : scene.meshes) write(file.parent_path() / mesh.name, mesh.text);
   write(file, scene.json);
@@ -185,20 +87,12 @@ void print_summary(const RunResult& result) {
   std::fputc('\n', stderr);
 }
 
-Scene load(const Arguments& arguments) {
-  Scene scene = read_scene(arguments.scene);
-  if (arguments.until) {
-    if (*arguments.until < scene.begin_time) throw ArgumentError("--until: is before the motion begins");
-    scene.end_time = *arguments.until;
-  }
-  return scene;
-}
-
 int simulate(Arguments arguments) {
   const std::clock_t read_start = std::clock();
-  const Scene scene = load(arguments);
+  const Scene scene = read_scene(arguments.scene, arguments.until);
   const double read_seconds = static_cast<double>(std::clock() - read_start) / CLOCKS_PER_SEC;
 
+  check(arguments, scene);
   // All that can go wrong outside the run goes wrong before it: outputs are opened, three.js is read.
   EventSinks sinks;
   std::optional<EventCsv> events;

@@ -28,7 +28,7 @@ extern "C" void remove_temporaries(int signal) {
 
 int remember(const std::string& name) {
   [[maybe_unused]] static const bool installed = [] {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
       // What is ignored stays so: nohup.
       if (std::signal(signal, remove_temporaries) == SIG_IGN) std::signal(signal, SIG_IGN);
     }

@@ -16,8 +16,9 @@ struct OutputError : std::runtime_error {
 };
 
 /// Writes to a temporary file beside `path`, which commit() renames; until then nothing is at `path`, or what was there
-/// before. Destroyed without commit(), and when the process is told to stop (SIGINT, SIGTERM, SIGHUP), the temporary
-/// file is removed. "-" is standard output, and pipes and devices are written as they are.
+/// before. Destroyed without commit(), and when the process is told to stop (SIGINT, SIGTERM, SIGHUP) or nobody reads
+/// its standard output any more (SIGPIPE), the temporary file is removed. "-" is standard output, and pipes and devices
+/// are written as they are.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);

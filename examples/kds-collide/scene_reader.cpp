@@ -163,13 +163,13 @@ void check_range(const JsonNode& node, const SceneBody& body, const Scene& scene
       const auto& c = piece.coefficients;
       const double reach = std::abs(c[0][d]) + elapsed * (std::abs(c[1][d]) + elapsed * std::abs(c[2][d]));
       if (reach <= largest_number) continue;
-      pieces[p]["position"].fail("may reach a magnitude of " + about(reach) + " before end_time; at most " +
+      pieces[p]["position"].fail("may reach a magnitude of " + about(reach) + " by t = " + about(end) + "; at most " +
                                  number_text(largest_number) + " is supported");
     }
   }
 }
 
-Scene read_document(const JsonNode& root, const std::filesystem::path& folder) {
+Scene read_document(const JsonNode& root, const std::filesystem::path& folder, std::optional<double> until) {
   root.object({"scene", "end_time", "response", "restitution", "domain", "meshes", "bodies"});
   if (!root["scene"].is(1)) root["scene"].fail("must be 1, the only format there is");
   Scene scene;
@@ -199,6 +199,7 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder) {
   if (scene.end_time < scene.begin_time) {
     root["end_time"].fail("must be >= " + number_text(scene.begin_time) + ", where the motion begins");
   }
+  scene.end_time = until.value_or(scene.end_time);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     check_range(bodies[i], scene.bodies[i], scene);
     if (scene.domain && scene.domain->walls == Walls::reflect) {
@@ -210,16 +211,16 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder) {
 
 }  // namespace
 
-Scene parse_scene(std::string_view json_text, const std::filesystem::path& file) {
+Scene parse_scene(std::string_view json_text, const std::filesystem::path& file, std::optional<double> until) {
   try {
     const json document = parse_json(json_text);
-    return read_document(JsonNode(document, ""), file.parent_path());
+    return read_document(JsonNode(document, ""), file.parent_path(), until);
   } catch (const JsonError& error) {
     throw SceneError(file.string(), error.where, error.what());
   }
 }
 
-Scene read_scene(const std::filesystem::path& file) {
+Scene read_scene(const std::filesystem::path& file, std::optional<double> until) {
   const auto fail = [&](const std::string& why) { throw SceneError(file.string(), "file", "cannot be read: " + why); };
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) fail("Is a directory");
@@ -228,7 +229,7 @@ Scene read_scene(const std::filesystem::path& file) {
   std::ostringstream content;
   if (in.peek() != std::ifstream::traits_type::eof()) content << in.rdbuf();
   if (in.bad() || !content) fail("read error");
-  return parse_scene(content.view(), file);
+  return parse_scene(content.view(), file, until);
 }
 
 }  // namespace kds_collide

@@ -21,13 +21,13 @@ struct Outcome {
   std::string err;
 };
 
-/// Runs the tool in the folder.
-Outcome kds_collide_in(const TemporaryFolder& folder, const std::string& arguments) {
+/// Runs the tool in the folder, `by` another program if one is named.
+Outcome kds_collide_in(const TemporaryFolder& folder, const std::string& arguments, const std::string& by = "") {
   const TemporaryFolder streams;
   const std::string out = (streams / "out").string();
   const std::string err = (streams / "err").string();
-  const std::string command = "cd '" + (folder / "").string() + "' && '" KDS_COLLIDE_PROGRAM "' " + arguments + " >" +
-                              out + " 2>" + err + " </dev/null";
+  const std::string command = "cd '" + (folder / "").string() + "' && " + by + " '" KDS_COLLIDE_PROGRAM "' " +
+                              arguments + " >" + out + " 2>" + err + " </dev/null";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
 }
@@ -183,11 +183,22 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"scene.json --events e.csv --stats none/s.json", "none/s.json: file: cannot be written: "},
       {"scene.json --events scene.json", "kds-collide: --events: is the same file as SCENE"},
       {"scene.json --events x --stats x", "kds-collide: --stats: is the same file as --events"},
+      {"scene.json --events ./x --view x", "kds-collide: --view: is the same file as --events"},
+      {"scene.json --events ''", "kds-collide: arguments: --events: names no file"},
+      {"scene.json --rate 1e300", "kds-collide: --rate: asks for more than 1e12 results"},
+      {"scene.json --threads -1", "kds-collide: arguments: --threads: \"-1\" is not a whole number from 0 to 1844"},
+      {"scene.json --until 1e300",
+       "scene.json: bodies[0].motion[0].position: may reach a magnitude of 1e+300 by t = 1e+300"},
       {"scene.json --generate rings", "kds-collide: SCENE: with --generate nothing is run; give --output"},
+      {"--generate rings --events e.csv", "kds-collide: arguments: --events excludes --generate"},
+      {"--generate rings --until 5", "kds-collide: arguments: --until excludes --generate"},
+      {"--generate rings --bodies 2 --output ring.obj", "kds-collide: --output: is the name of the mesh ring.obj too"},
       {"--generate cubes", "kds-collide: --generate: there is no \"cubes\""},
       {"--generate rings --density 2", "kds-collide: --density: must be > 0 and at most 0.3"},
       {"--generate rings --bodies 0", "kds-collide: --bodies: must be > 0"},
-      {"--generate rings --bodies -5", "kds-collide: arguments: --bodies: "},
+      {"--generate rings --bodies -5", "kds-collide: arguments: --bodies: \"-5\" is not a whole number from 0 to "},
+      {"--generate rings --seed 18446744073709551616",
+       "kds-collide: arguments: --seed: \"18446744073709551616\" is not a whole number from 0 to 18446744073709551615"},
       {"--generate rings --bodies 99999999999", "kds-collide: --bodies: must be at most 10000000"},
       {"scene.json --bodies 5", "kds-collide: arguments: --bodies requires --generate"},
   }));
@@ -198,6 +209,39 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
   CHECK_THAT(outcome.err, Catch::StartsWith(error));
   CHECK(lines_of(outcome.err).size() == 1);
   CHECK(folder.file_count() == 2);
+}
+
+TEST_CASE("command line: no output takes the place of a mesh of the scene") {
+  const TemporaryFolder folder;
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  folder.write("plate.obj", mesh);
+  folder.write("scene.json",
+               R"({"scene": 1, "end_time": 1, "meshes": {"plate": {"file": "plate.obj"}}, "bodies": []})");
+  const Outcome outcome = kds_collide_in(folder, "scene.json --events ../$(basename \"$PWD\")/plate.obj");
+  CHECK(outcome.code == 2);
+  CHECK(outcome.err == "kds-collide: --events: is the same file as meshes.plate.file of the scene\n");
+  CHECK(read_file(folder / "plate.obj") == mesh);
+}
+
+TEST_CASE("command line: outputs may share a device, and one that is full ends the run with 1") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  CHECK(kds_collide_in(folder, "scene.json --quiet --events /dev/null --stats /dev/null").code == 0);
+  const Outcome full = kds_collide_in(folder, "scene.json --quiet --stats s.json --events /dev/full");
+  CHECK(full.code == 1);
+  CHECK(full.err == "/dev/full: file: cannot be written: No space left on device\n");
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("command line: a run that is ended by a signal leaves nothing behind") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  const std::string signal = GENERATE("INT", "TERM", "HUP", "PIPE");
+  INFO(signal);
+  const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --events e.csv --stats s.json --rate 1e11",
+                                         "timeout --signal=" + signal + " 0.3");
+  CHECK(outcome.code == 124);  // of timeout: it had to
+  CHECK(folder.file_count() == 1);
 }
 
 TEST_CASE("command line: scenes at the edge of what makes sense run") {

@@ -223,7 +223,7 @@ TEST_CASE("scene reader: each bad value is named with its place") {
        "bodies[0].motion[0].position[1][2]: must be at most 1e+30 in magnitude"},
       {"/bodies/0/motion/0/start", "-1e29",
        "bodies[0].motion[0].position: may reach a magnitude of 4.9e+58 "
-       "before end_time; at most 1e+30 is supported"},
+       "by t = 1; at most 1e+30 is supported"},
       {"/bodies/2/motion/1/start", "0",
        "bodies[2].motion[1].start: must be later than the start of the piece before, 0"},
       {"/bodies/2/motion/1/position/0/0", "79",

@@ -1,0 +1,163 @@
+#include "examples/kds-collide/arguments.hpp"
+
+#include "collision/broad_phase/broad_phase_kind.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace kds_collide {
+namespace {
+
+/// A run that is asked for more results than this would take hours: each is some 6 ns.
+constexpr double most_results = 1e12;
+
+/// Without it -1, and what is too great, would be read as the greatest number there is.
+CLI::Validator whole_number() {
+  const auto check = [](std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc() && stop == end) return "";
+    return "\"" + text + "\" is not a whole number from 0 to " +
+           std::to_string(std::numeric_limits<std::uint64_t>::max());
+  };
+  return {check, ""};
+}
+
+/// An empty name, of a variable that was not set, say, would be an output that is silently not written.
+CLI::Validator not_empty() {
+  return {[](std::string& text) -> std::string { return text.empty() ? "names no file" : ""; }, ""};
+}
+
+/// The files that a run writes, by option; empty where it does not.
+std::vector<std::pair<const char*, std::string>> outputs(const Arguments& arguments) {
+  return {{"--events", arguments.events}, {"--stats", arguments.stats}, {"--view", arguments.view}};
+}
+
+/// Whether to write to one is to change the other. A device or a pipe may be written to by several.
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (a.empty() || b.empty()) return false;
+  if (a == "-" || b == "-") return a == b;
+  std::error_code ignored;
+  if (std::filesystem::is_other(a, ignored)) return false;
+  if (std::filesystem::equivalent(a, b, ignored)) return true;
+  const auto plain = [&](const std::filesystem::path& path) {  // also of a file that is not there yet
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+  };
+  return plain(a) == plain(b);
+}
+
+/// Two outputs in one file, or an output in place of the scene, would destroy what is wanted.
+void check_files_differ(const Arguments& arguments) {
+  std::vector<std::pair<const char*, std::string>> files{{"SCENE", arguments.scene}};
+  for (auto& output : outputs(arguments)) {
+    for (const auto& [name, path] : files) {
+      if (same_file(path, output.second)) {
+        throw ArgumentError(std::string(output.first) + ": is the same file as " + name);
+      }
+    }
+    files.push_back(std::move(output));
+  }
+}
+
+}  // namespace
+
+void describe(CLI::App& app, Arguments& arguments) {
+  app.add_option("SCENE", arguments.scene, "Scene file (JSON)");
+  app.add_option("--events", arguments.events, "Write events as CSV; - is standard output")
+      ->type_name("FILE|-")
+      ->check(not_empty());
+  app.add_option("--stats", arguments.stats, "Write what the run took as JSON; - is standard output")
+      ->type_name("FILE|-")
+      ->check(not_empty());
+  app.add_option("--broad-phase", arguments.run.broad_phase, "How pairs are found; \"list\" names the ways")
+      ->type_name("NAME");
+  app.add_option("--kdop", arguments.run.kdop, "Bounding volumes of kinetic-sap: 6 (boxes), 14, 18 or 26 sides")
+      ->type_name("K");
+  app.add_option("--until", arguments.until, "End the run at T, in seconds, instead of the scene's end_time")
+      ->type_name("T");
+  app.add_option("--rate", arguments.run.rate, "Ask for results so many times a second (sap needs it); 0 = not at all")
+      ->type_name("HZ");
+  app.add_option("--threads", arguments.run.threads, "Threads that take in the bodies of large scenes; 0 = all")
+      ->type_name("N")
+      ->check(whole_number());
+  app.add_flag("--pairs", arguments.run.pairs, "Write events of kinetic bounding volumes too");
+  app.add_option("--view", arguments.view, "Write a replay that any browser shows")
+      ->type_name("FILE.html")
+      ->check(not_empty());
+  const std::vector<CLI::Option*> of_a_run = app.get_options([](const CLI::Option* o) { return o->nonpositional(); });
+  app.add_flag("--quiet", arguments.quiet, "No progress and no summary on standard error");
+
+  const std::string group = "Making a scene instead of running one";
+  auto* kind = app.add_option("--generate", arguments.generator.kind, "rings, models, spheres or boxes")
+                   ->type_name("KIND")
+                   ->group(group);
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->needs(kind)->group(group);
+  };
+  add("--bodies", arguments.generator.bodies, "How many")->check(whole_number())->capture_default_str();
+  add("--density", arguments.generator.density, "Volume of their bounding balls over that of the domain")
+      ->capture_default_str();
+  add("--seed", arguments.generator.seed, "One seed, one scene, on every machine")
+      ->check(whole_number())
+      ->capture_default_str();
+  add("--output", arguments.output, "Scene file to write, meshes beside it (default: KIND.json)")
+      ->type_name("FILE")
+      ->check(not_empty());
+  for (CLI::Option* option : of_a_run) {
+    if (option != app.get_help_ptr()) option->excludes(kind);
+  }
+  app.callback([&arguments, kind] { arguments.generate = kind->count() > 0; });
+  app.set_version_flag("--version", "kds-collide " KDS_VERSION);
+}
+
+void check(const Arguments& arguments) {
+  if (arguments.generate) {
+    if (!arguments.scene.empty()) throw ArgumentError("SCENE: with --generate nothing is run; give --output");
+    return;
+  }
+  if (arguments.scene.empty()) throw ArgumentError("SCENE: is missing");
+  const RunOptions& run = arguments.run;
+  if (!std::isfinite(run.rate) || run.rate < 0) throw ArgumentError("--rate: must be finite and >= 0");
+  if (arguments.until && !std::isfinite(*arguments.until)) throw ArgumentError("--until: must be finite");
+  const auto& known = kds::collision::broad_phases;
+  if (std::none_of(known.begin(), known.end(), [&](const auto& b) { return b.name == run.broad_phase; })) {
+    std::string names;
+    for (const auto& b : known) names += (names.empty() ? "" : ", ") + std::string(b.name);
+    throw ArgumentError("--broad-phase: there is no \"" + run.broad_phase + "\"; there are " + names);
+  }
+  if (run.kdop != 6 && run.kdop != 14 && run.kdop != 18 && run.kdop != 26) {
+    throw ArgumentError("--kdop: must be 6, 14, 18 or 26");
+  }
+  if (run.kdop != 6 && run.broad_phase != "kinetic-sap") {
+    throw ArgumentError("--kdop: more than 6 is for --broad-phase kinetic-sap alone");
+  }
+  if (run.broad_phase == "sap" && run.rate == 0) throw ArgumentError("--rate: must be > 0 for the broad phase \"sap\"");
+  check_files_differ(arguments);
+}
+
+void check(const Arguments& arguments, const Scene& scene) {
+  if (arguments.until && *arguments.until < scene.begin_time) {
+    throw ArgumentError("--until: is before the motion begins");
+  }
+  if (arguments.run.rate * (scene.end_time - scene.begin_time) > most_results) {
+    throw ArgumentError("--rate: asks for more than 1e12 results");
+  }
+  const std::filesystem::path folder = std::filesystem::path(arguments.scene).parent_path();
+  for (const SceneMesh& mesh : scene.meshes) {
+    for (const auto& [option, path] : outputs(arguments)) {
+      if (same_file(folder / mesh.file, path)) {
+        throw ArgumentError(std::string(option) + ": is the same file as meshes." + mesh.name + ".file of the scene");
+      }
+    }
+  }
+}
+
+}  // namespace kds_collide

@@ -1,0 +1,43 @@
+// What the tool is asked to do: its command line.
+#pragma once
+
+#include "examples/kds-collide/generator.hpp"
+#include "examples/kds-collide/run.hpp"
+#include "examples/kds-collide/scene.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace kds_collide {
+
+struct Arguments {
+  std::string scene;
+  std::string events;
+  std::string stats;
+  std::string view;
+  std::optional<double> until;  ///< s
+  RunOptions run;
+  bool quiet = false;
+  bool generate = false;
+  GeneratorOptions generator;
+  std::string output;
+};
+
+/// What is wrong with the arguments, as "WHERE: what is wrong".
+struct ArgumentError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Tells `app` the options; its parse() fills in `arguments`.
+void describe(CLI::App& app, Arguments& arguments);
+
+/// Throws ArgumentError for arguments that make no sense, or contradict each other.
+void check(const Arguments& arguments);
+
+/// Throws ArgumentError for those that make none with this scene.
+void check(const Arguments& arguments, const Scene& scene);
+
+}  // namespace kds_collide
