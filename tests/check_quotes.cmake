@@ -1,5 +1,6 @@
 cmake_minimum_required(VERSION 3.23)
-# Code in the documentation is code that is compiled: each block after "quoted from FILE" stands in that file as it is.
+# What the documentation quotes is what is compiled, run and tested: each block after "quoted from FILE" stands in that
+# file as it is.
 file(GLOB pages "${ROOT}/README.md" "${ROOT}/docs/*.md" "${ROOT}/examples/*.md")
 set(mark "<!-- quoted from ")
 set(count 0)
@@ -11,7 +12,7 @@ foreach(page IN LISTS pages)
       break()
     endif()
     string(SUBSTRING "${rest}" ${begin} -1 rest)
-    string(REGEX MATCH "^<!-- quoted from ([^ ]+) -->\n```cpp\n" head "${rest}")
+    string(REGEX MATCH "^<!-- quoted from ([^ ]+) -->\n```[a-z]+\n" head "${rest}")
     if(head STREQUAL "")
       message(FATAL_ERROR "${page}: after a quotation mark there is no block of code")
     endif()

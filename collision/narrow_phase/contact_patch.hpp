@@ -16,8 +16,7 @@ namespace kds::collision {
 /// A vertex, edge or face of a box: per axis +1 or -1 for a side, 0 for "anywhere along it".
 using BoxSide = Eigen::Matrix<int, 3, 1>;
 
-/// Features of a box are numbered like this: vertex i has coordinate d at +half extent where bit d of i is set; face
-/// 2 d is the one at -half extent on axis d, face 2 d + 1 the opposite one.
+/// Numbered as Feature says.
 Feature box_feature(const BoxSide& side);
 
 /// The part of a box farthest along a direction.

@@ -61,9 +61,14 @@ void EventCsv::on_event(const Event& event) {
   buffer_.clear();
 }
 
-void EventCsv::commit() {
-  file_.write(buffer_);
+void EventCsv::close() {
+  if (!buffer_.empty()) file_.write(buffer_);
   buffer_.clear();
+  file_.close();
+}
+
+void EventCsv::commit() {
+  close();
   file_.commit();
 }
 

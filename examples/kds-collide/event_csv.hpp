@@ -14,11 +14,12 @@ inline constexpr std::string_view event_csv_header = "time,kind,a,b,px,py,pz,nx,
 /// they hold a comma or a quote (RFC 4180). Point and normal of pair_begin and pair_end are empty.
 void append_csv_line(std::string& text, const Event& event, const Scene& scene);
 
-/// Writes every event to a file; commit() makes it whole.
+/// Writes every event to a file; close() and commit() are those of OutputFile.
 class EventCsv final : public EventSink {
  public:
   EventCsv(const std::string& path, const Scene& scene);
   void on_event(const Event& event) override;
+  void close();
   void commit();
 
  private:

@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <list>
 #include <optional>
 #include <string>
 
@@ -51,10 +52,11 @@ int generate(const Arguments& arguments) {
     throw ArgumentError(error.what());
   }
   const std::filesystem::path file = arguments.output.empty() ? arguments.generator.kind + ".json" : arguments.output;
-  const auto write = [](const std::filesystem::path& path, const std::string& text) {
-    OutputFile out(path.string());
-    out.write(text);
-    out.commit();
+  std::list<OutputFile> outputs;
+  const auto write = [&outputs](const std::filesystem::path& path, const std::string& text) {
+    OutputFile& output = outputs.emplace_back(path.string());
+    output.write(text);
+    output.close();
   };
   for (const auto& mesh : scene.meshes) {
     if (file.filename() == mesh.name) throw ArgumentError("--output: is the name of the mesh " + mesh.name + " too");
@@ -62,6 +64,7 @@ int generate(const Arguments& arguments) {
   // Meshes first: the scene is there only when all it names is.
   for (const auto& mesh : scene.meshes) write(file.parent_path() / mesh.name, mesh.text);
   write(file, scene.json);
+  for (OutputFile& output : outputs) output.commit();
   if (!arguments.quiet) {
     std::fprintf(stderr, "%s: %zu %s, density %g, seed %llu\n", file.c_str(), arguments.generator.bodies,
                  arguments.generator.kind.c_str(), arguments.generator.density,
@@ -114,16 +117,18 @@ int simulate(Arguments arguments) {
 
   const RunResult result = run(scene, arguments.run, sinks);
   progress.reset();
-  if (events) events->commit();
   if (view) {
     view->write(replay_page(recorder->to_json(std::filesystem::path(arguments.scene).filename().string()),
                             default_three_folder()));
-    view->commit();
   }
-  if (stats) {
-    stats->write(to_json(result, arguments.run, read_seconds));
-    stats->commit();
-  }
+  if (stats) stats->write(to_json(result, arguments.run, read_seconds));
+  const auto each_output = [&](auto&& what) {
+    if (events) what(*events);
+    if (view) what(*view);
+    if (stats) what(*stats);
+  };
+  each_output([](auto& output) { output.close(); });  // All are whole before one appears.
+  each_output([](auto& output) { output.commit(); });
   if (!arguments.quiet) print_summary(result);
   return done;
 }

@@ -91,12 +91,17 @@ void OutputFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno);
 }
 
-void OutputFile::commit() {
+void OutputFile::close() {
+  if (!file_) return;
   if (std::fflush(file_) != 0) fail(errno);
   if (file_ == stdout) return;
   std::FILE* file = file_;
   file_ = nullptr;
   if (std::fclose(file) != 0) fail(errno);
+}
+
+void OutputFile::commit() {
+  close();
   if (temporary_.empty()) return;
   std::error_code error;
   std::filesystem::rename(temporary_, target_, error);

@@ -27,6 +27,9 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   void write(std::string_view text);
+  /// Ends the writing, and throws if it failed. Called of several files before the first commit(), it makes all of them
+  /// appear or none.
+  void close();
   void commit();
 
  private:

@@ -58,6 +58,15 @@ TEST_CASE("command line: a scene in, events out") {
         "3,separation,a,b,2,0,0,-1,0,0,-,-\n");
 }
 
+TEST_CASE("command line: the scene of the documentation has the events of the documentation") {
+  const TemporaryFolder folder;
+  const std::filesystem::path example = KDS_COLLIDE_EXAMPLE;
+  const Outcome outcome = kds_collide_in(folder, "'" + (example / "scene.json").string() + "' --events - --quiet");
+  CHECK(outcome.code == 0);
+  CHECK(outcome.err.empty());
+  CHECK(outcome.out == read_file(example / "events.csv"));
+}
+
 TEST_CASE("command line: --until, --stats and the summary") {
   const TemporaryFolder folder;
   folder.write("scene.json", head_on);
@@ -230,6 +239,7 @@ TEST_CASE("command line: outputs may share a device, and one that is full ends t
   const Outcome full = kds_collide_in(folder, "scene.json --quiet --stats s.json --events /dev/full");
   CHECK(full.code == 1);
   CHECK(full.err == "/dev/full: file: cannot be written: No space left on device\n");
+  CHECK(kds_collide_in(folder, "scene.json --quiet --stats /dev/full --events e.csv").code == 1);
   CHECK(folder.file_count() == 1);
 }
 
