@@ -1,109 +1,18 @@
-// Failure times against their definition: the first double just after which the exact sign is negative. The answer is
-// found again by isolating all roots over the rationals, so that a missed crossing shows as surely as a wrong one.
-#include "kds/roots/failure_time.hpp"
-#include "tests/kds/roots/polynomial_families.hpp"
-#include "tests/support/exact_failure_time.hpp"
-#include "tests/support/random_numbers.hpp"
+// Failure times by hand, at the limits of the doubles, of certificates that are not one motion; and their relatives.
+#include "tests/kds/roots/check_failure_time.hpp"
 
 #include <catch2/catch.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <sstream>
-#include <string>
-#include <vector>
+#include <cstdint>
 
 namespace {
 
 using namespace kds;
-using kds::tests::polynomial_from_roots;
-using kds::tests::Random;
-
-constexpr double largest = std::numeric_limits<double>::max();
-constexpr double least = std::numeric_limits<double>::denorm_min();
-
-template <int Degree>
-using Value = PolynomialCertificate<Degree>;
-
-template <int Degree>
-std::vector<oracle::Rational> exact(const Polynomial<Degree>& p) {
-  std::vector<oracle::Rational> c;
-  for (const double x : p.c) c.push_back(oracle::rational(x));
-  return c;
-}
-
-template <int Degree>
-double expected_failure_time(const Motion<Degree>& f, double now, double horizon = never) {
-  return oracle::failure_time(exact(f.position), oracle::rational(f.start), now, horizon);
-}
-
-template <int Degree>
-std::string describe(const Motion<Degree>& f, double now, double horizon) {
-  std::ostringstream text;
-  text << std::hexfloat << "c =";
-  for (const double c : f.position.c) text << ' ' << c;
-  text << ", start = " << f.start << ", now = " << now << ", horizon = " << horizon;
-  return text.str();
-}
-
-/// The failure time, checked in full. Returns it, so that families can ask for more.
-template <int Degree>
-double check(const Motion<Degree>& f, double now, double horizon = never) {
-  const double t = failure_time(Value<Degree>{f}, now, horizon);
-  const double expected = expected_failure_time(f, now, horizon);
-  bool right = t == expected;
-  if (t != never) {
-    // The definition on both sides of the answer, in other words than those of the expected answer.
-    const auto sign = [&](double x) { return oracle::sign_after(exact(f.position), oracle::rational(f.start), x); };
-    right = right && now <= t && t <= horizon && sign(t) < 0 && (t == now || sign(next_down(t)) >= 0);
-  }
-  if (!right) {
-    INFO(describe(f, now, horizon));
-    CHECK(t == expected);
-    CHECK(right);
-  }
-  return t;
-}
-
-/// At the failure time itself, one step before it and one step after it, as clock and as horizon.
-template <int Degree>
-void check_around(const Motion<Degree>& f, double now) {
-  const double t = check(f, now);
-  if (t == never) return;
-  for (const double near : {next_down(t), t, next_up(t)}) {
-    if (near >= now && near < never) {
-      check(f, now, near);
-      check(f, near);
-      check(f, near, next_up(near));
-    }
-  }
-}
-
-template <int Degree>
-Motion<Degree> random_motion(Random& random) {
-  Motion<Degree> f;
-  for (double& c : f.position.c) c = random.between(-1, 1);
-  f.start = random.between(-2, 2);
-  return f;
-}
-
-template <int Degree, class Family>
-void run(std::uint64_t seed, int rounds, Family&& family) {
-  CAPTURE(Degree, seed);
-  Random random(seed + Degree);
-  for (int round = 0; round < rounds; ++round) {
-    INFO("round " << round);
-    family(random);
-  }
-}
+using namespace kds::tests;
 
 }  // namespace
-
-#define FOR_EACH_DEGREE ((int Degree), Degree), 1, 2, 3, 4, 5, 6, 7, 8
-
-// --- by hand
 
 TEST_CASE("the failure time of a line is the first double not before its root", "[failure_time]") {
   CHECK(failure_time(Value<1>{{{{1, -1}}, 0}}, 0) == 1);                    // a root that is a double: fails there
@@ -139,146 +48,6 @@ TEST_CASE("a horizon before the clock, or no number, sees nothing", "[failure_ti
   CHECK(failure_time(falling, 1, 0.5) == never);
   CHECK(failure_time(falling, 1, std::nan("")) == never);
   CHECK(failure_time(falling, 1, 1) == 1);
-}
-
-// --- the definition, family by family
-
-TEMPLATE_TEST_CASE_SIG("failure times of random polynomials", "[failure_time]", FOR_EACH_DEGREE) {
-  run<Degree>(100, 60, [](Random& random) {
-    const auto f = random_motion<Degree>(random);
-    const double now = random.between(-2, 2);
-    const double t = check(f, now);
-    check(f, now, now + random.between(0, 3));
-    if (Degree <= 4) {  // once more from the roots, isolated by the chain of Sturm
-      const auto p = oracle::Polynomial::motion({f.position.c.begin(), f.position.c.end()}, f.start);
-      CHECK(t == oracle::first_double({{p}, [&](const oracle::Rational& x) { return p(x) < 0; }}, now));
-    }
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times where few bits make roots doubles and signs vanish", "[failure_time]",
-                       FOR_EACH_DEGREE) {
-  run<Degree>(200, 60, [](Random& random) {
-    Motion<Degree> f;
-    if (random.one_in(2)) {
-      for (double& c : f.position.c) c = random.coarse();
-    } else {
-      std::array<double, Degree> roots;
-      for (double& root : roots) root = random.integer(-2, 2);
-      f = polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, 0);
-    }
-    f.start = random.integer(-2, 2);
-    check_around(f, random.integer(-3, 3));
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times of clustered roots", "[failure_time]", FOR_EACH_DEGREE) {
-  run<Degree>(300, 60, [](Random& random) {
-    const double spread = std::pow(10.0, random.between(-12, -3));
-    const double middle = random.one_in(2) ? 1 : random.between(-2, 2);
-    std::array<double, Degree> roots;
-    for (double& root : roots) root = middle + spread * random.between(-1, 1);
-    const double start = random.one_in(2) ? middle : random.between(-2, 2);
-    const auto f = polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, start);
-    check(f, middle - 2 * spread);
-    check(f, middle);
-    check(f, -4);
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times of double, nearly double and triple roots", "[failure_time]", FOR_EACH_DEGREE) {
-  run<Degree>(400, 60, [](Random& random) {
-    std::array<double, Degree> roots;
-    for (double& root : roots) root = random.integer(-16, 16) / 8.0;
-    const std::size_t multiplicity = std::min<std::size_t>(Degree, 2 + random.below(2));
-    for (std::size_t i = 1; i < multiplicity; ++i) roots[i] = roots[0];
-    auto f = polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, random.one_in(2) ? 0 : 0.5);
-    if (random.one_in(2)) {
-      double& c = f.position.c[random.below(Degree + 1)];
-      c = random.one_in(2) ? next_up(c) : next_down(c);
-    }
-    check(f, -3);
-    check(f, roots[0]);
-    check(f, next_down(roots[0]));
-    check(f, -3, roots[0]);
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times where the leading coefficients are nearly zero", "[failure_time]",
-                       FOR_EACH_DEGREE) {
-  run<Degree>(500, 40, [](Random& random) {
-    auto f = random_motion<Degree>(random);
-    const std::size_t vanishing = 1 + random.below(Degree);
-    for (std::size_t i = Degree + 1 - vanishing; i <= Degree; ++i) {
-      const std::array<double, 6> small{0.0, -0.0, 1e-20, 1e-300, least, 1e-9};
-      f.position.c[i] *= small[random.below(small.size())];
-    }
-    check(f, random.between(-2, 2));
-    check(f, 0, 1e10);
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times of huge, tiny and mixed numbers", "[failure_time]", FOR_EACH_DEGREE) {
-  run<Degree>(600, 25, [](Random& random) {
-    Motion<Degree> f;
-    const int scale = random.integer(-900, 900);
-    const int spread = random.one_in(2) ? 2 : 90;
-    for (double& c : f.position.c) c = random.scaled(scale - spread, scale + spread);
-    f.start = random.one_in(2) ? 0 : random.scaled(-60, 60);
-    check(f, f.start);
-    check(f, random.scaled(-60, 60));
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times of numbers from the whole range of doubles", "[failure_time]",
-                       FOR_EACH_DEGREE) {
-  run<Degree>(650, Degree < 4 ? 60 : 12, [](Random& random) {
-    Motion<Degree> f;
-    for (double& c : f.position.c) c = random.scaled(-1000, 1000);
-    f.start = random.one_in(2) ? 0 : random.scaled(-1000, 1000);
-    const double now = random.one_in(3) ? 0 : random.scaled(-1000, 1000);
-    check(f, now);
-    check(f, now, std::max(now, std::abs(random.scaled(-1000, 1000))));
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times among subnormal numbers", "[failure_time]", FOR_EACH_DEGREE) {
-  run<Degree>(700, 25, [](Random& random) {
-    Motion<Degree> f;
-    for (double& c : f.position.c) c = random.integer(-40, 40) * least;
-    if (random.one_in(2)) f.position.c[Degree] = random.between(-1, 1);
-    check(f, 0);
-    check(f, random.integer(-40, 40) * least);
-    check(f, random.between(-2, 2));
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times with the clock at, just before and just after a root", "[failure_time]",
-                       FOR_EACH_DEGREE) {
-  run<Degree>(800, 25, [](Random& random) {
-    const auto f = random_motion<Degree>(random);
-    check_around(f, -2);
-    // Also where f rises: those are the failure times of -f.
-    check_around(Motion<Degree>{-f.position, f.start}, -2);
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times at clock 1e9", "[failure_time]", FOR_EACH_DEGREE) {
-  run<Degree>(900, 30, [](Random& random) {
-    auto f = random_motion<Degree>(random);
-    f.start = 1e9 + random.between(-1, 1);
-    check_around(f, f.start);
-    check(f, 1e9 - 2, 1e9 + 2);
-  });
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times of a motion whose start is far away", "[failure_time]", FOR_EACH_DEGREE) {
-  run<Degree>(1000, 30, [](Random& random) {
-    auto f = random_motion<Degree>(random);
-    f.start = random.scaled(0, 40);
-    check(f, random.between(-2, 2));
-    check(f, -2, 2);
-  });
 }
 
 TEST_CASE("failure times of Wilkinson's polynomials", "[failure_time]") {
@@ -317,25 +86,6 @@ TEST_CASE("a dip that starts between two doubles is seen at the next one", "[fai
     check(f, 0);
     check(f, 1, 2);
   }
-}
-
-TEMPLATE_TEST_CASE_SIG("failure times of roots a few steps of the lattice apart", "[failure_time]",
-                       FOR_EACH_DEGREE) {
-  run<Degree>(1100, 60, [](Random& random) {
-    const double u = 0x1p-52;
-    std::array<double, Degree> roots;
-    for (double& root : roots) root = 1 + random.integer(-3, 3) * u;
-    auto f = polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, 1);
-    for (std::size_t i = 0; i <= Degree; ++i) f.position.c[i] += random.between(-1, 1) * 0x1p-3 * f.position.c[i];
-    check(f, 1 - 5 * u);
-    check(f, 1);
-    check(f, 0, 1 + 5 * u);
-    for (std::size_t i = 0; i <= Degree; ++i) {
-      f.position.c[i] = random.between(-1, 1) * std::pow(u, Degree - static_cast<double>(i));
-    }
-    check(f, 1);
-    check(f, 0);
-  });
 }
 
 TEST_CASE("failure times at the far end of the doubles", "[failure_time]") {

@@ -1,12 +1,11 @@
 // Failure times on every family of hard polynomials: two solvers that share only the signs agree bit for bit, and with
 // the exact ones; the certified enclosures hold; and the expensive rungs stay rare where they should.
 #include "kds/roots/enclosed_failure_time.hpp"
-#include "tests/kds/roots/polynomial_families.hpp"
-#include "tests/support/exact_failure_time.hpp"
+#include "tests/kds/roots/check_failure_time.hpp"
 
 #include <catch2/catch.hpp>
 
-#include <sstream>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,22 +13,6 @@ namespace {
 
 using namespace kds;
 using namespace kds::tests;
-
-template <int Degree>
-std::string describe(const FailureCase<Degree>& x) {
-  std::ostringstream text;
-  text << std::hexfloat << "c =";
-  for (const double c : x.value.position.c) text << ' ' << c;
-  text << ", start = " << x.value.start << ", now = " << x.now << ", horizon = " << x.horizon;
-  return text.str();
-}
-
-template <int Degree>
-std::vector<oracle::Rational> exact(const Polynomial<Degree>& p) {
-  std::vector<oracle::Rational> c;
-  for (const double x : p.c) c.push_back(oracle::rational(x));
-  return c;
-}
 
 /// By exact signs and derivatives alone.
 template <int Degree>
@@ -48,7 +31,8 @@ void for_all_families(std::uint64_t seed, int rounds, Check&& holds) {
     int count = 0;
     for (int round = 0; round < rounds; ++round) {
       const auto x = next_case<Degree>(family, random);
-      if (!holds(x) && count++ == 0) refused = "round " + std::to_string(round) + ": " + describe(x);
+      if (!holds(x) && count++ == 0)
+        refused = "round " + std::to_string(round) + ": " + describe(x.value, x.now, x.horizon);
     }
     CAPTURE(Degree, seed, name(family), refused);
     CHECK(count == 0);
@@ -56,8 +40,6 @@ void for_all_families(std::uint64_t seed, int rounds, Check&& holds) {
 }
 
 }  // namespace
-
-#define FOR_EACH_DEGREE ((int Degree), Degree), 1, 2, 3, 4, 5, 6, 7, 8
 
 TEMPLATE_TEST_CASE_SIG("the quick and the slow solver agree bit for bit on every family", "[failure_time][families]",
                        FOR_EACH_DEGREE) {
@@ -98,8 +80,8 @@ TEMPLATE_TEST_CASE_SIG("enclosures hold the root, and are as narrow as they say"
   for_all_families<Degree>(2300, 60, [](const FailureCase<Degree>& x) {
     const PolynomialCertificate<Degree> f{x.value};
     const double t = failure_time(f, x.now, x.horizon);
-    for (const FailureTime& found : {certified_failure_time(f, x.now, x.horizon),
-                                     enclosed_failure_time(f, x.now, x.horizon)}) {
+    for (const FailureTime& found :
+         {certified_failure_time(f, x.now, x.horizon), enclosed_failure_time(f, x.now, x.horizon)}) {
       const FailureStatus expected =
           t == never ? FailureStatus::holds : (t == x.now ? FailureStatus::fails_at_once : FailureStatus::root);
       if (found.status != expected || (found.time == never) != (t == never)) return false;
@@ -118,8 +100,7 @@ TEMPLATE_TEST_CASE_SIG("enclosures hold the root, and are as narrow as they say"
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("the root lies in the enclosure, to the last bit", "[failure_time][families]",
-                       FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("the root lies in the enclosure, to the last bit", "[failure_time][families]", FOR_EACH_DEGREE) {
   for_all_families<Degree>(2400, 4, [](const FailureCase<Degree>& x) {
     const PolynomialCertificate<Degree> f{x.value};
     const FailureTime found = enclosed_failure_time(f, x.now, x.horizon);
@@ -162,9 +143,6 @@ SignCounters asked(const C& certificate, double now = 0) {
   failure_time(certificate, now);
   return sign_counters;
 }
-
-template <int Degree>
-using Value = PolynomialCertificate<Degree>;
 
 }  // namespace
 
