@@ -1,20 +1,14 @@
-// The framework, with the list of the examples: against the exact order, with edits, pieces, samples and snapshots.
-#include "examples/list_in_forty_lines.hpp"
+// The framework, with the list of the examples: against the exact order, with edits and audits.
 #include "kds/events/dary_queue.hpp"
 #include "kds/events/pairing_queue.hpp"
-#include "kds/framework/snapshot.hpp"
-#include "kds/pieces.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
+#include "tests/structures/logged_lists.hpp"
 #include "tests/structures/random_values.hpp"
 
 #include <catch2/catch.hpp>
 
-#include <cmath>
-#include <memory>
-#include <sstream>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 namespace {
@@ -22,19 +16,6 @@ namespace {
 using namespace kds;
 using namespace kds::tests;
 using examples::ListRule;
-
-using Log = std::vector<KineticEvent>;
-
-struct ToLog {
-  Log* log;
-  template <class Rule>
-  void operator()(const Rule&, const KineticEvent& event) const {
-    log->push_back(event);
-  }
-};
-
-template <int Degree, class Queue = DefaultEventQueue>
-using List = Kinetic<ListRule<Motion<Degree>>, ToLog, Queue>;
 
 std::uint32_t no_rank(std::uint32_t) { return 0; }
 
@@ -254,204 +235,4 @@ TEST_CASE("an audit finds a clock that has run past an event", "[framework]") {
   list.process();
   CHECK_NOTHROW(list.audit(2));
   CHECK_THROWS_AS(list.audit(0), AuditFailure);
-}
-
-// --- pieces
-
-TEST_CASE("a zigzag in pieces is that of edits by hand", "[framework][pieces]") {
-  const auto zigzag = [](bool planned) {
-    MovingSet<Motion<1>> set;
-    Log log;
-    List<1> list(set, 0, {}, {&log});
-    Pieces<Motion<1>> pieces(set);
-    set.insert(0, {{{0.5, 0}}, 0}, 0);
-    set.insert(1, {{{0, 1}}, 0}, 0);
-    Simulator simulator(0, pieces, list);
-    for (int k = 1; k < 8; ++k) {
-      const Motion<1> motion{{{k % 2 == 1 ? 1.0 : 0.0, k % 2 == 1 ? -1.0 : 1.0}}, 1.0 * k};
-      if (planned) {
-        pieces.plan(1, k, motion, simulator.now());
-      } else {
-        simulator.advance_to(k);
-        set.update(1, motion, k);
-      }
-    }
-    while (simulator.step()) simulator.audit();
-    CHECK(pieces.counters().events == (planned ? 7 : 0));
-    return log;
-  };
-  const Log log = zigzag(true);
-  CHECK(log.size() == 8);
-  CHECK(log == zigzag(false));
-}
-
-TEST_CASE("plans are refused out of order, and go with their element", "[framework][pieces]") {
-  MovingSet<Motion<1>> set;
-  Pieces<Motion<1>> pieces(set);
-  set.insert(0, {}, 0);
-  pieces.plan(0, 2, {{{0, 1}}, 2}, 0);
-  CHECK_THROWS_AS(pieces.plan(0, 2, {}, 0), std::invalid_argument);
-  CHECK_THROWS_AS(pieces.plan(0, 1, {}, 0), std::invalid_argument);
-  CHECK_THROWS_AS(pieces.plan(0, never, {}, 0), std::invalid_argument);
-  CHECK_THROWS_AS(pieces.plan(3, 4, {}, 0), std::out_of_range);
-  CHECK_THROWS_AS(pieces.plan(0, 4, {{{0, never}}, 0}, 0), std::invalid_argument);
-  CHECK(pieces.planned(0) == 1);
-  CHECK_THROWS_AS(set.update(0, {}, 3), std::logic_error);  // It would pass over a seam.
-  set.remove(0, 1);
-  CHECK(pieces.planned(0) == 0);
-  CHECK(pieces.next_time() == never);
-}
-
-TEST_CASE("a thousand seams at one time need no deep stack and leave the right order", "[framework][pieces]") {
-  MovingSet<Motion<1>> set;
-  Pieces<Motion<1>> pieces(set);
-  const Id n = 1000;
-  Log log;
-  List<1> list(set, 0, {}, {&log});
-  for (Id id = 0; id < n; ++id) {
-    set.insert(id, {{{1.0 * id, 0}}, 0}, 0);
-    pieces.plan(id, 1, {{{1.0 * id, -2.0 * id}}, 1}, 0);
-  }
-  Simulator simulator(0, list, pieces);
-  simulator.advance_to(1);
-  CHECK(log.empty());
-  simulator.advance_to(2);
-  simulator.audit();
-  CHECK(list.rule().order.front() == n - 1);
-  CHECK(log.size() == n * (n - 1) / 2);
-}
-
-// --- samples
-
-TEST_CASE("sampled values: never out of order for longer than a tick, and resampled only when they may meet",
-          "[framework][bounded]") {
-  const std::uint64_t seed = 520;
-  CAPTURE(seed);
-  Random random(seed);
-  const Id n = 12;
-  std::vector<std::array<double, 3>> swing(n);  // middle, width, frequency: known to the sampler only
-  for (auto& s : swing) s = {random.between(-4, 4), random.between(0, 0.6), random.between(0.1, 2)};
-  const auto truth = [&](Id id, double t) { return swing[id][0] + swing[id][1] * std::sin(swing[id][2] * t); };
-  const double tick = 0.01;
-  MovingSet<Bounded> set;
-  const auto sample = [&](Id id, double t) { return Bounded{truth(id, t), swing[id][1] * swing[id][2], t}; };
-  set.sample_with(sample, tick);
-  for (Id id = 0; id < n; ++id) set.insert(id, sample(id, 0), 0);
-  Kinetic<ListRule<Bounded>> list(set, 0);
-  Simulator simulator(0, list);
-  const double end = 10;
-  int wrong = 0;
-  for (double t = 0.05; t < end; t += 0.05) {
-    simulator.advance_to(t);
-    list.audit(t);
-    const auto& order = list.rule().order;
-    for (std::size_t i = 0; i + 1 < n; ++i) {
-      // What two values can do to their distance within a tick.
-      const double slack = tick * (set[order[i]].speed + set[order[i + 1]].speed) * (1 + 1e-9);
-      wrong += truth(order[i], t) > truth(order[i + 1], t) + slack;
-    }
-  }
-  CHECK(wrong == 0);
-  CHECK(set.samples() > 2 * n);
-  CHECK(set.samples() < 0.3 * n * end / tick);  // Sampling everything every tick takes n end / tick.
-  CHECK(list.measures().events > n);
-}
-
-TEST_CASE("sampled values need a sampler with a tick", "[framework][bounded]") {
-  MovingSet<Bounded> set;
-  CHECK_THROWS_AS(set.sample_with([](Id, double) { return Bounded{}; }, 0), std::invalid_argument);
-  CHECK_THROWS_AS(set.insert(0, {0, -1, 0}, 0), std::invalid_argument);
-  set.insert(0, {0, 1, 0}, 0);
-  set.insert(1, {1, 1, 0}, 0);
-  Kinetic<ListRule<Bounded>> list(set, 0);
-  CHECK(list.next_time() == 0.5);
-  CHECK_THROWS_AS(list.process(), std::logic_error);
-}
-
-// --- snapshots
-
-namespace {
-
-struct Run {
-  MovingSet<Motion<2>> set;
-  Log log;
-  Pieces<Motion<2>> pieces{set};
-  List<2> list;
-  List<2, PairingQueue<>> other;
-  Simulator<Pieces<Motion<2>>, List<2>, List<2, PairingQueue<>>> simulator{0, pieces, list, other};
-
-  explicit Run(std::uint64_t seed, Id n) : list(set, 0, {}, {&log}), other(set, 0, {}, {&log}) {
-    Random random(seed);
-    for (Id id = 0; id < n; ++id) {
-      set.insert(id, random_motion<2>(random, Kind::generic, 0), 0);
-      pieces.plan(id, 1 + random.unit(), random_motion<2>(random, Kind::generic, 1), 0);
-    }
-  }
-  /// Ten edits and the events between.
-  void go_on(std::uint64_t seed) {
-    Random random(seed);
-    for (int i = 0; i < 10; ++i) {
-      simulator.advance_to(simulator.now() + random.between(0, 0.3));
-      const Id id = static_cast<Id>(random.below(set.end_id()));
-      set.update(id, random_motion<2>(random, Kind::generic, simulator.now()), simulator.now());
-    }
-    simulator.audit();
-  }
-};
-
-}  // namespace
-
-TEST_CASE("rolled back and run again, and loaded elsewhere, a simulator makes the same events bit for bit",
-          "[framework][snapshot]") {
-  const std::uint64_t seed = 530;
-  CAPTURE(seed);
-  Run run(seed, 40);
-  run.simulator.set_window(0.7);
-  run.go_on(1);
-  const Snapshot middle = save(run.simulator, run.set);
-  const std::size_t before = run.log.size();
-  run.go_on(2);
-  const Snapshot end = save(run.simulator, run.set);
-  const Log expected(run.log.begin() + static_cast<std::ptrdiff_t>(before), run.log.end());
-  REQUIRE(expected.size() > 100);
-
-  run.log.clear();
-  restore(middle, run.simulator, run.set);
-  CHECK(save(run.simulator, run.set) == middle);
-  run.simulator.audit();
-  run.go_on(2);
-  CHECK(run.log == expected);
-  CHECK(save(run.simulator, run.set) == end);
-
-  std::stringstream file;
-  write(file, middle);
-  Run elsewhere(seed + 1, 3);  // of the same types, and another past
-  restore(read_snapshot(file), elsewhere.simulator, elsewhere.set);
-  elsewhere.log.clear();
-  elsewhere.go_on(2);
-  CHECK(elsewhere.log == expected);
-  CHECK(save(elsewhere.simulator, elsewhere.set) == end);
-  CHECK(elsewhere.list.measures() == run.list.measures());
-  CHECK(elsewhere.simulator.counters() == run.simulator.counters());
-}
-
-TEST_CASE("snapshots that are damaged, cut or of other parts are refused", "[framework][snapshot]") {
-  Run run(540, 5);
-  const Snapshot good = save(run.simulator, run.set);
-  std::stringstream file;
-  write(file, good);
-  const std::string letters = file.str();
-  for (const std::size_t at : {std::size_t{2}, std::size_t{9}, letters.size() / 2, letters.size() - 1}) {
-    std::string bad = letters;
-    bad[at] = static_cast<char>(bad[at] ^ 4);
-    std::stringstream in(bad);
-    CHECK_THROWS_AS(read_snapshot(in), std::runtime_error);
-  }
-  for (const std::size_t length : {std::size_t{0}, std::size_t{12}, letters.size() - 1}) {
-    std::stringstream in(letters.substr(0, length));
-    CHECK_THROWS_AS(read_snapshot(in), std::runtime_error);
-  }
-  CHECK_THROWS_WITH(restore(good, run.set), Catch::Contains("expected MovingSet, found Simulator"));
-  CHECK_THROWS_AS(restore(good, run.simulator), std::runtime_error);
-  CHECK_THROWS_AS(restore(save(run.set), run.set, run.set), std::runtime_error);
 }
