@@ -15,8 +15,8 @@ namespace kds::structures {
 /// each of its neighbours (not local in the worst case, six neighbours on average); but for edges of the hull that come
 /// to lead another way every event is a change of the triangulation (efficient). Insertion O(sqrt n) for the walk and
 /// O(neighbours); removal O(neighbours^2); a new motion that keeps the triangles around it O(neighbours), any other a
-/// removal and an insertion. Number of events: at most nearly
-/// cubic [Guibas91], nearly quadratic where all move at one speed [Rubin15].
+/// removal and an insertion. Number of events: at most nearly cubic [Guibas91], nearly quadratic where all move at one
+/// speed [Rubin15].
 template <class Path>
 using DelaunayRule = PlaneTriangulationRule<Path, Criterion::delaunay>;
 

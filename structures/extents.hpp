@@ -31,9 +31,8 @@ inline std::vector<std::array<double, 3>> kdop_directions(int k) {
 
 /// Keeps, for each of m directions, the foremost and the hindmost of moving points: the extents that bound the set.
 ///
-/// A binary tournament for each end of each direction. When a match's certificate fails it is
-/// played again, and so are those above it as long as the winner is another. Papers: [Basch99] section 3.2; for k-DOPs
-/// that move [Coming08].
+/// A binary tournament for each end of each direction. When a match's certificate fails it is played again, and so are
+/// those above it as long as the winner is another. Papers: [Basch99] section 3.2; for k-DOPs that move [Coming08].
 ///
 /// Cost for m directions: a change O(m log n), an event O(log n) certificates (responsive); an element plays in at most
 /// 2 m log2 n matches (local); 2 m (n - 1) certificates (compact). External events are changes of an extreme point.

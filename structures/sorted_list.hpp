@@ -80,6 +80,9 @@ class SortedList {
   /// is not finite, and then changes nothing.
   void assign(std::span<const Entry> entries, double now);
 
+  // Changes throw std::invalid_argument for an id that is used or reserved (the greatest) and for a motion that is not
+  // finite, std::out_of_range for an id that is not there, and then change nothing.
+
   /// Inserts an element; its neighbours are found by binary search. No swap is reported.
   void insert(Id id, const Motion<Degree>& motion, double now);
 

@@ -34,8 +34,8 @@ struct BroadPhaseCounters {
 
 /// Reports, at the right times and in order, which pairs of bodies have to be tested.
 ///
-/// Semantic laws: (1) a pair is reported as begun no later than the instant its bounding volumes overlap (kinetic boxes,
-/// or k-DOPs, see WorldOptions.kdop), and as ended not before they cease to; (2) where `exact()` is true, at exactly
+/// Semantic laws: (1) a pair is reported as begun no later than the instant its bounding volumes overlap (kinetic
+/// boxes, or k-DOPs, see WorldOptions.kdop), and as ended not before they cease to; (2) where `exact()` is true, at exactly
 /// those instants; (3) reports alternate for each pair, beginning with pair_began, and removing a body ends its pairs;
 /// (4) a broad phase never reports a time before the last it was given. Swapping one broad phase for another changes
 /// neither contacts nor their times.
@@ -55,8 +55,10 @@ class BroadPhase {
   /// As in broad_phase_kind.hpp.
   virtual std::string_view name() const = 0;
 
-  /// Adds bodies; cheapest when all come in one call. Pairs that overlap are reported.
+  /// Adds bodies; cheapest when all come in one call. Pairs that overlap are reported. Preconditions, here and below:
+  /// `now` is not before the last time given, what is added is not there yet, and what is removed or updated is.
   virtual void insert(std::span<const Entry> bodies, double now, PairListener& listener) = 0;
+  /// Takes a body out. Its pairs end, and are reported.
   virtual void remove(BodyId id, double now, PairListener& listener) = 0;
 
   /// Gives a body another box, which may be a jump.

@@ -11,7 +11,7 @@
 
 namespace kds {
 
-/// A pairing heap; amortised O(log n) for pop and clear, O(1) or nearly so for set of an empty slot.
+/// A pairing heap [Stasko87]; amortised O(log n) for pop and clear, O(1) or nearly so for set of an empty slot.
 ///
 /// Paper: section 4.5. Differs: the paper's is the "auxiliary" variant, which gathers insertions in a list of their own
 /// until the next pop; Boost's links them to the root at once. A node is allocated for each entry, when it is set and

@@ -28,7 +28,7 @@ namespace kds {
 ///     fails after now;
 ///  2. an event whose certificate still holds (it proves early) is not processed, but rescheduled to the certified
 ///     failure time: an event proves early once at most;
-///  3. an event that comes late leaves its structure to be repaired late, by exact signs: the certificates that
+///  3. an event that comes late [Abam11] leaves its structure to be repaired late, by exact signs: certificates that
 ///     appear then, and have failed before, fail at once. They are counted.
 /// A failure the solver misses altogether is not found. Counters: `rescheduled` (2), `repaired` (3); both stay zero
 /// with the certified solver.

@@ -136,7 +136,7 @@ class MovingSet {
     --size_;
   }
 
-  /// Gives an element another motion, continuously or with a jump.
+  /// Gives an element another motion, continuously or with a jump. Throws as insert() and remove() do.
   void update(Id id, const Element& element, double now) {
     require(id);
     require_finite(id, element);

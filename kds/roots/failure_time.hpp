@@ -15,7 +15,7 @@ namespace kds {
 /// The first double t in [now, horizon] with sign_after(certificate, t) < 0, or `never`.
 ///
 /// This is the library's definition of an event time. It has three consequences. It is within one ulp above the true
-/// root, and the enclosure is (previous double, t]. It is a function of the certificate alone: every solver, queue,
+/// root, and the enclosure is (previous double, t]. It is a function of certificate and now alone: each solver, queue,
 /// broad phase and compiler gives the same bits. And when the clock stands at t the certificate *has* failed,
 /// exactly, so an event never proves early.
 ///
