@@ -6,6 +6,7 @@
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -147,6 +148,10 @@ class SceneMaker {
   Random& random_;
   SceneOptions options_;
 };
+
+/// Every broad phase: what a test asks of one it asks of all.
+inline constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap,
+                                        BroadPhaseKind::sap, BroadPhaseKind::all_pairs};
 
 /// Two unit balls that meet at t = 1 and, in mode none, part at t = 3.
 template <int Degree = 1>

@@ -1,13 +1,8 @@
 // What must not happen by chance happens here on purpose.
-#include "tests/collision/random_scenes.hpp"
+#include "tests/collision/counted_runs.hpp"
 
 #include <catch2/catch.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <memory>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,34 +10,6 @@ namespace kds::collision {
 namespace {
 
 using namespace tests;
-
-WorldOptions with(Response response, BroadPhaseKind broad_phase = BroadPhaseKind::kinetic_sap) {
-  WorldOptions options;
-  options.response = response;
-  options.broad_phase = broad_phase;
-  options.rate = 16;
-  options.report_pairs = true;
-  return options;
-}
-
-constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap,
-                                 BroadPhaseKind::sap, BroadPhaseKind::all_pairs};
-
-std::size_t count(const std::vector<Event>& events, Kind kind) {
-  return static_cast<std::size_t>(
-      std::count_if(events.begin(), events.end(), [kind](const Event& e) { return e.kind == kind; }));
-}
-std::size_t count_at(const std::vector<Event>& events, double t) {
-  return static_cast<std::size_t>(
-      std::count_if(events.begin(), events.end(), [t](const Event& e) { return e.time() == t; }));
-}
-std::vector<Event> contacts_of(const std::vector<Event>& events) {
-  std::vector<Event> result;
-  for (const Event& e : events) {
-    if (e.kind == Kind::contact) result.push_back(e);
-  }
-  return result;
-}
 
 /// n^3 bodies of size one on the integers.
 template <int Degree>
@@ -54,12 +21,6 @@ std::vector<BodyDescription<Degree>> lattice(int n, const Shape& shape, const Ve
     result.push_back(body<Degree>(shape, motion<Degree>(corner + cell, velocity)));
   }
   return result;
-}
-
-template <int Degree>
-std::vector<Event> run_audited(const std::vector<BodyDescription<Degree>>& bodies, const WorldOptions& options,
-                               double end) {
-  return run(Scene<Degree>{bodies, end}, options, {.audit = true});
 }
 
 TEST_CASE("Many ends at one value: a lattice of touching boxes or balls moves as one", "[degenerate]") {
@@ -255,91 +216,6 @@ TEST_CASE("Aligned equal cubes face to face, as boxes and as meshes", "[degenera
   }
 }
 
-TEST_CASE("Clock at 1e9: as at 0, to the resolution of the clock", "[degenerate]") {
-  constexpr double late = 1e9;
-  constexpr double tick = 0x1p-23;  // s; spacing of doubles at 1e9
-  for (const auto shapes : {Shapes::spheres, Shapes::boxes, Shapes::cubes}) {
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      INFO(name(shapes) << ", seed " << seed);
-      Random random(seed);
-      SceneMaker maker(random, {.shapes = shapes, .bodies = 12, .side = 8, .end_time = 4});
-      auto scene = maker.scene<2>();
-      const auto early_events = run(scene, with(Response::none));
-      for (auto& b : scene.bodies) b.motion[0].start = late;
-      for (const auto method : all_methods) {
-        WorldOptions options = with(Response::none, method);
-        options.start_time = late;
-        auto late_events = run(scene, options);
-        const auto contacts = [](const std::vector<Event>& events, double zero_time) {
-          std::map<std::tuple<Kind, BodyId, BodyId>, std::vector<double>> times;
-          for (const Event& e : events) {
-            if (!is_pair_event(e)) times[{e.kind, e.a, e.b}].push_back(e.time() - zero_time);
-          }
-          return times;
-        };
-        const auto expected = contacts(early_events, 0);
-        const auto found = contacts(late_events, late);
-        REQUIRE(expected.size() >= 3);
-        REQUIRE(found.size() == expected.size());
-        for (const auto& [what, times] : expected) {
-          const auto it = found.find(what);
-          REQUIRE(it != found.end());
-          REQUIRE(it->second.size() == times.size());
-          for (std::size_t i = 0; i < times.size(); ++i) {
-            // Meshes count as touching when they are as near as they come in four ticks; where they graze each
-            // other that takes longer.
-            const double early = shapes == Shapes::cubes ? 1000 * tick : 0;
-            CHECK(it->second[i] >= times[i] - early);
-            CHECK(it->second[i] <= times[i] + tick + early);
-          }
-        }
-      }
-    }
-  }
-}
-
-TEST_CASE("Clock at 1e9: bounces go on and the run ends", "[degenerate]") {
-  WorldOptions options = with(Response::elastic);
-  options.start_time = 1e9;
-  options.walls = Walls{{-5, -5, -5}, {5, 5, 5}};
-  EventLog<1> log;
-  World<1> world(options, &log);
-  for (int i = 0; i < 8; ++i) {
-    auto b = ball<1>(1, {i % 2 * 4.0 - 2, i / 2 % 2 * 4.0 - 2, i / 4 * 4.0 - 2}, {1.0 + i, 2.0 - i, 0.5 * i});
-    b.motion[0].start = 1e9;
-    world.add_body(b);
-  }
-  world.advance_to(1e9 + 20);
-  world.audit();
-  CHECK(log.count(Kind::contact) + log.count(Kind::wall) > 100);
-  CHECK(log.count(Kind::held) == 0);
-  for (BodyId id = 0; id < 8; ++id) {
-    CHECK(world.motion(id).position(world.now()).cwiseAbs().maxCoeff() < 4 + 1e-5);
-  }
-}
-
-TEST_CASE("Bodies of size 1e-6 next to bodies of size 1e6", "[degenerate]") {
-  for (const auto method : all_methods) {
-    for (const Shape& large : {Shape(Box{{1e6, 1e6, 1e6}}), Shape(Sphere{1e6})}) {
-      for (const Shape& small : {Shape(Box{{1e-6, 1e-6, 1e-6}}), Shape(Sphere{1e-6})}) {
-        // Specks fly at the large body and arrive at nearly the same place one after another.
-        auto wall = fixed_body<1>(large, motion<1>({-1e6, 0, 0}));
-        const auto events = run_audited<1>({wall, body<1>(small, motion<1>({1, 0, 0}, {-1, 0, 0})),
-                                            body<1>(small, motion<1>({1 + 1e-5, 0, 0}, {-1, 0, 0}))},
-                                           with(Response::elastic, method), 3);
-        const std::vector<Event> contacts = contacts_of(events);
-        // First at the wall, the two at each other, the second, now in front... the first at the wall again.
-        REQUIRE(contacts.size() == 3);
-        CHECK(contacts[0].time() == Approx(1 - 1e-6).epsilon(1e-10));
-        CHECK(contacts[1].a == 1);
-        CHECK(contacts[2].a == 0);
-        CHECK(contacts[2].b == 1);
-        CHECK(in_order_of_time(events));
-      }
-    }
-  }
-}
-
 TEST_CASE("Newton's cradle: the last ball leaves with the first one's speed", "[degenerate]") {
   for (const auto method : all_methods) {
     for (int in = 1; in <= 3; ++in) {
@@ -384,80 +260,6 @@ TEST_CASE("Resting on each other in free fall is no contact", "[degenerate]") {
           with(response, method), 10);
       CHECK(events.empty());
     }
-  }
-}
-
-TEST_CASE("A ball pressed on the floor by its weight is held, which is reported, and the run ends", "[degenerate]") {
-  for (const auto method : all_methods) {
-    for (const Shape& shape : {Shape(Sphere{1}), Shape(Box{{1, 1, 1}})}) {
-      EventLog<2> log;
-      World<2> world(with(Response::elastic, method), &log);
-      world.add_body(fixed_body<2>(Box{{10, 10, 1}}, motion<2>({0, 0, -1})));
-      world.add_body(body<2>(shape, motion<2>({0, 0, 1})));
-      world.advance_to(0);
-      world.update_motion(1, motion<2>({0, 0, 1}, {1, 0, 0}, {0, 0, -5}));
-      world.advance_to(5);
-      world.audit();
-      CHECK(log.count(Kind::held) == 1);
-      CHECK(world.counters().held == 1);
-      CHECK(world.motion(1).position(5) == Vector3d(5, 0, 1));
-    }
-  }
-}
-
-TEST_CASE("Bounces that pile up are held at the contact that the policy names", "[degenerate]") {
-  for (const auto method : all_methods) {
-    for (const Shape& shape : {Shape(Sphere{1}), Shape(Box{{1, 1, 1}})}) {
-      EventLog<1> log;
-      WorldOptions options = with(Response::elastic, method);
-      options.zeno = {.contacts = 10, .interval = 100};
-      World<1> world(options, &log);
-      world.add_body(fixed_body<1>(Box{{1, 90, 90}}, motion<1>({-3, 0, 0})));
-      world.add_body(fixed_body<1>(Box{{1, 90, 90}}, motion<1>({3, 0, 0})));
-      world.add_body(body<1>(shape, motion<1>({0, 0, 0}, {2, 1, 0})));  // to and fro in a second
-      world.advance_to(50);
-      CHECK(log.count(Kind::contact) == 11);
-      REQUIRE(log.count(Kind::held) == 1);
-      CHECK(log.of(Kind::held)[0].time() == 10.5);
-      CHECK(world.motion(2).velocity(50) == Vector3d(0, 1, 0));
-    }
-  }
-}
-
-TEST_CASE("A ball between two fixed bodies that close in: the run ends", "[degenerate]") {
-  for (const auto method : all_methods) {
-    for (const Shape& shape : {Shape(Sphere{1}), Shape(Box{{1, 1, 1}})}) {
-      EventLog<1> log;
-      WorldOptions options = with(Response::elastic, method);
-      options.zeno.interval = 1e-6;  // collapses soon
-      World<1> world(options, &log);
-      world.add_body(fixed_body<1>(Box{{1, 5, 5}}, motion<1>({-4, 0, 0}, {1, 0, 0})));
-      world.add_body(fixed_body<1>(Box{{1, 5, 5}}, motion<1>({4, 0, 0}, {-1, 0, 0})));
-      world.add_body(body<1>(shape, motion<1>({0.25, 0, 0}, {1, 0, 0})));
-      world.advance_to(10);
-      world.audit();
-      CHECK(log.count(Kind::held) > 0);
-      CHECK(log.count(Kind::contact) > 100);
-      CHECK(log.count(Kind::contact) < 100000);
-      CHECK(in_order_of_time(log.events));
-    }
-  }
-}
-
-TEST_CASE("A body crushed between a wall and a fixed body: the run ends", "[degenerate]") {
-  for (const auto method : all_methods) {
-    EventLog<1> log;
-    WorldOptions options = with(Response::elastic, method);
-    options.walls = Walls{{-5, -5, -5}, {5, 5, 5}};
-    options.zeno.interval = 1e-6;
-    World<1> world(options, &log);
-    auto piston = fixed_body<1>(Box{{1, 1, 1}}, motion<1>({0, 0, 0}, {-1, 0, 0}));
-    world.add_body(piston);
-    world.add_body(ball<1>(0.5, {-3, 0, 0}, {-1, 0, 0}));
-    world.advance_to(4.25);
-    world.audit();
-    CHECK(world.counters().held > 0);
-    CHECK(log.count(Kind::contact) < 100000);
   }
 }
 

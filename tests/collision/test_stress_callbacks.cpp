@@ -1,5 +1,5 @@
 // A run cannot loop: listeners that keep changing things where a contact has just been.
-#include "tests/collision/event_log.hpp"
+#include "tests/collision/random_scenes.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -12,9 +12,6 @@ namespace kds::collision {
 namespace {
 
 using namespace tests;
-
-constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap, BroadPhaseKind::sap,
-                                 BroadPhaseKind::all_pairs};
 
 WorldOptions with(Response response, BroadPhaseKind method) {
   WorldOptions options;

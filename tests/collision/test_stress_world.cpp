@@ -16,9 +16,6 @@ namespace {
 
 using namespace tests;
 
-constexpr std::array all_methods{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap,
-                                 BroadPhaseKind::sap, BroadPhaseKind::all_pairs};
-
 WorldOptions with(Response response, double rate = 16) {
   WorldOptions options;
   options.response = response;

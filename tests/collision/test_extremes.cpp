@@ -1,0 +1,102 @@
+// Large clocks, and sizes that are far apart.
+#include "tests/collision/counted_runs.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <vector>
+
+namespace kds::collision {
+namespace {
+
+using namespace tests;
+
+TEST_CASE("Clock at 1e9: as at 0, to the resolution of the clock", "[degenerate]") {
+  constexpr double late = 1e9;
+  constexpr double tick = 0x1p-23;  // s; spacing of doubles at 1e9
+  for (const auto shapes : {Shapes::spheres, Shapes::boxes, Shapes::cubes}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      INFO(name(shapes) << ", seed " << seed);
+      Random random(seed);
+      SceneMaker maker(random, {.shapes = shapes, .bodies = 12, .side = 8, .end_time = 4});
+      auto scene = maker.scene<2>();
+      const auto early_events = run(scene, with(Response::none));
+      for (auto& b : scene.bodies) b.motion[0].start = late;
+      for (const auto method : all_methods) {
+        WorldOptions options = with(Response::none, method);
+        options.start_time = late;
+        auto late_events = run(scene, options);
+        const auto contacts = [](const std::vector<Event>& events, double zero_time) {
+          std::map<std::tuple<Kind, BodyId, BodyId>, std::vector<double>> times;
+          for (const Event& e : events) {
+            if (!is_pair_event(e)) times[{e.kind, e.a, e.b}].push_back(e.time() - zero_time);
+          }
+          return times;
+        };
+        const auto expected = contacts(early_events, 0);
+        const auto found = contacts(late_events, late);
+        REQUIRE(expected.size() >= 3);
+        REQUIRE(found.size() == expected.size());
+        for (const auto& [what, times] : expected) {
+          const auto it = found.find(what);
+          REQUIRE(it != found.end());
+          REQUIRE(it->second.size() == times.size());
+          for (std::size_t i = 0; i < times.size(); ++i) {
+            // Meshes count as touching when they are as near as they come in four ticks; where they graze each
+            // other that takes longer.
+            const double early = shapes == Shapes::cubes ? 1000 * tick : 0;
+            CHECK(it->second[i] >= times[i] - early);
+            CHECK(it->second[i] <= times[i] + tick + early);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("Clock at 1e9: bounces go on and the run ends", "[degenerate]") {
+  WorldOptions options = with(Response::elastic);
+  options.start_time = 1e9;
+  options.walls = Walls{{-5, -5, -5}, {5, 5, 5}};
+  EventLog<1> log;
+  World<1> world(options, &log);
+  for (int i = 0; i < 8; ++i) {
+    auto b = ball<1>(1, {i % 2 * 4.0 - 2, i / 2 % 2 * 4.0 - 2, i / 4 * 4.0 - 2}, {1.0 + i, 2.0 - i, 0.5 * i});
+    b.motion[0].start = 1e9;
+    world.add_body(b);
+  }
+  world.advance_to(1e9 + 20);
+  world.audit();
+  CHECK(log.count(Kind::contact) + log.count(Kind::wall) > 100);
+  CHECK(log.count(Kind::held) == 0);
+  for (BodyId id = 0; id < 8; ++id) {
+    CHECK(world.motion(id).position(world.now()).cwiseAbs().maxCoeff() < 4 + 1e-5);
+  }
+}
+
+TEST_CASE("Bodies of size 1e-6 next to bodies of size 1e6", "[degenerate]") {
+  for (const auto method : all_methods) {
+    for (const Shape& large : {Shape(Box{{1e6, 1e6, 1e6}}), Shape(Sphere{1e6})}) {
+      for (const Shape& small : {Shape(Box{{1e-6, 1e-6, 1e-6}}), Shape(Sphere{1e-6})}) {
+        // Specks fly at the large body and arrive at nearly the same place one after another.
+        auto wall = fixed_body<1>(large, motion<1>({-1e6, 0, 0}));
+        const auto events = run_audited<1>({wall, body<1>(small, motion<1>({1, 0, 0}, {-1, 0, 0})),
+                                            body<1>(small, motion<1>({1 + 1e-5, 0, 0}, {-1, 0, 0}))},
+                                           with(Response::elastic, method), 3);
+        const std::vector<Event> contacts = contacts_of(events);
+        // First at the wall, the two at each other, the second, now in front... the first at the wall again.
+        REQUIRE(contacts.size() == 3);
+        CHECK(contacts[0].time() == Approx(1 - 1e-6).epsilon(1e-10));
+        CHECK(contacts[1].a == 1);
+        CHECK(contacts[2].a == 0);
+        CHECK(contacts[2].b == 1);
+        CHECK(in_order_of_time(events));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kds::collision
