@@ -114,9 +114,8 @@ class World final : private PairListener {
   void audit() const;
 
   /// Saves or loads all that decides the events to come: see save() and restore() in kds/framework/snapshot.hpp. A
-  /// world that is loaded, with the same options (broad phase and window may be others), makes the same contacts at the
-  /// same times, bit for bit; see docs/framework.md for the rest. Throws std::invalid_argument for a body with a box
-  /// function, std::logic_error from within a callback.
+  /// world that is loaded, with the same options (but see docs/framework.md), makes the same contacts at the same
+  /// times, bit for bit. Throws std::invalid_argument for a body with a box function, std::logic_error in a callback.
   template <class Archive>
   void archive(Archive& archive);
 

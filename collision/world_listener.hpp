@@ -6,7 +6,7 @@
 
 namespace kds::collision {
 
-/// Something of two bodies: contact, overlap or separation.
+/// Something of two bodies a < b: contact, overlap, separation, or being held.
 struct PairEvent {
   BodyId a;
   BodyId b;
@@ -41,11 +41,12 @@ class WorldListener {
   virtual void contact(World<Degree>&, const PairEvent&) {}     ///< penetration begins; motions are as after response
   virtual void separation(World<Degree>&, const PairEvent&) {}  ///< `none` alone: penetration ends
   virtual void overlap(World<Degree>&, const PairEvent&) {}     ///< in contact when entering the world or after a jump
-  virtual void wall(World<Degree>&, const WallEvent&) {}
+  virtual void wall(World<Degree>&, const WallEvent&) {}        ///< motions are as after response
+  /// With WorldOptions.report_pairs: the bounding volumes of a < b begin and cease to overlap at a time in s.
   virtual void pair_began(World<Degree>&, BodyId, BodyId, double) {}
   virtual void pair_ended(World<Degree>&, BodyId, BodyId, double) {}
-  virtual void held(World<Degree>&, const PairEvent&) {}  ///< the Zeno policy has acted on a pair
-  virtual void held_at_wall(World<Degree>&, const WallEvent&) {}
+  virtual void held(World<Degree>&, const PairEvent&) {}          ///< the Zeno policy has acted on a pair
+  virtual void held_at_wall(World<Degree>&, const WallEvent&) {}  ///< or on a body and a wall
   /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
   virtual void moved(World<Degree>&, BodyId) {}
 };

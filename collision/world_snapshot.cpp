@@ -12,7 +12,7 @@
 namespace kds::collision {
 namespace {
 
-/// Options that decide events. Broad phase, window and profile may be others.
+/// Options that decide events. Broad phase, window, threads and profile may be others.
 template <class Archive>
 void archive_options(Archive& archive, const WorldOptions& options, bool exact) {
   const auto same = [&](const char* what, auto value) {
@@ -31,7 +31,9 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact) 
   same("zeno.contacts", options.zeno.contacts);
   same("zeno.interval", options.zeno.interval);
   same("report_pairs", std::uint32_t{options.report_pairs});
-  if (options.report_pairs) same("broad_phase, which reports its pairs", std::uint32_t{exact});
+  if (!options.report_pairs) return;
+  same("broad_phase, which reports its pairs", std::uint32_t{exact});
+  same("kdop, whose pairs are reported", options.kdop);
 }
 
 struct PairCollector final : PairListener {

@@ -240,6 +240,16 @@ TEST_CASE("Worlds refuse snapshots of other worlds, and keep what they have", "[
   changed.zeno.contacts = 7;
   World<1> patient(changed);
   CHECK_THROWS_WITH(restore(before, patient), Catch::Contains("zeno.contacts"));
+  changed = options;
+  changed.broad_phase = BroadPhaseKind::kinetic_sap;
+  changed.kdop = 18;
+  World<1> slabs(changed);
+  CHECK_NOTHROW(restore(before, slabs));
+  changed.report_pairs = true;
+  World<1> slabs_told(changed);
+  changed.kdop = 6;
+  World<1> boxes_told(changed);
+  CHECK_THROWS_WITH(restore(save(slabs_told), boxes_told), Catch::Contains("other options: kdop"));
   std::vector<char> cut(before.bytes().begin(), before.bytes().end() - 3);
   CHECK_THROWS_AS(restore(Snapshot(cut), world), std::runtime_error);
   CHECK(save(world) == before);
