@@ -21,14 +21,18 @@ void add(BroadPhaseCounters& sum, const BroadPhaseCounters& work) {
 
 }  // namespace
 
-/// Calls report(a, b) for the pairs of the few that the grid has not.
+/// The pairs that one has and the other has not.
 template <int Degree>
-template <class Report>
-void AdaptiveBroadPhase<Degree>::each_unpaired(Report&& report) const {
-  for (std::size_t i = 0; i < few_.size(); ++i) {
+template <class From, class To>
+void AdaptiveBroadPhase<Degree>::report_changes(std::span<const Entry> bodies, const From& from, const To& to, double now,
+                                                PairListener& listener) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const auto [a, b] = std::minmax(few_[i].id, few_[j].id);
-      if (!grid_->paired(a, b)) report(a, b);
+      const auto [a, b] = std::minmax(bodies[i].id, bodies[j].id);
+      const bool was = from.paired(a, b);
+      const bool is = to.paired(a, b);
+      if (was && !is) listener.pair_ended(a, b, now);
+      if (is && !was) listener.pair_began(a, b, now);
     }
   }
 }
@@ -36,64 +40,59 @@ void AdaptiveBroadPhase<Degree>::each_unpaired(Report&& report) const {
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::change_to_grid(double now, PairListener& listener) {
   std::vector<Entry> entries;
-  for (const Body& body : few_) entries.push_back({body.id, &body.box});
+  few_.visit([&](BodyId id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
   grid_ = std::make_unique<KineticGrid<Degree>>(threads_);
   grid_->extend_horizon(now, horizon_);
-  if (few_.empty()) return;
+  if (entries.empty()) return;
   NoListener known;
   grid_->insert(entries, now, known);
-  each_unpaired([&](BodyId a, BodyId b) { listener.pair_ended(a, b, now); });
-  for (const Body& body : few_) all_pairs_.remove(body.id, now, known);
+  report_changes(entries, few_, *grid_, now, listener);
   few_.clear();
 }
 
 template <int Degree>
-void AdaptiveBroadPhase<Degree>::change_to_all_pairs(double now, PairListener& listener) {
+void AdaptiveBroadPhase<Degree>::change_to_few(double now, PairListener& listener) {
   std::vector<Entry> entries;
-  grid_->visit([&](BodyId id, const KineticBox<Degree>& box) { few_.push_back({id, box}); });
-  for (const Body& body : few_) entries.push_back({body.id, &body.box});
+  grid_->visit([&](BodyId id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
   NoListener known;
-  all_pairs_.insert(entries, now, known);
-  each_unpaired([&](BodyId a, BodyId b) { listener.pair_began(a, b, now); });
+  few_.extend_horizon(now, horizon_);
+  few_.insert(entries, now, known);
+  report_changes(entries, *grid_, few_, now, listener);
   add(done_, grid_->counters());
   grid_.reset();
 }
 
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
-  if (!grid_ && few_.size() + bodies.size() > most_for_all_pairs) change_to_grid(now, listener);
+  if (!grid_ && few_.size() + bodies.size() > most_for_few_) change_to_grid(now, listener);
   if (grid_) return grid_->insert(bodies, now, listener);
-  for (const Entry& body : bodies) few_.push_back({body.id, *body.box});
-  all_pairs_.insert(bodies, now, listener);
+  few_.insert(bodies, now, listener);
 }
 
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::remove(BodyId id, double now, PairListener& listener) {
-  if (!grid_) {
-    std::erase_if(few_, [id](const Body& body) { return body.id == id; });
-    return all_pairs_.remove(id, now, listener);
-  }
+  if (!grid_) return few_.remove(id, now, listener);
   grid_->remove(id, now, listener);
-  if (grid_->size() <= few_again) change_to_all_pairs(now, listener);
+  if (grid_->size() <= most_for_few_ / 2) change_to_few(now, listener);
 }
 
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
   if (grid_) return grid_->update(id, box, now, listener);
-  std::find_if(few_.begin(), few_.end(), [id](const Body& body) { return body.id == id; })->box = box;
-  all_pairs_.update(id, box, now, listener);
+  few_.update(id, box, now, listener);
 }
 
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::extend_horizon(double now, double horizon) {
   horizon_ = horizon;
-  if (grid_) grid_->extend_horizon(now, horizon);
+  if (grid_) return grid_->extend_horizon(now, horizon);
+  few_.extend_horizon(now, horizon);
 }
 
 template <int Degree>
 BroadPhaseCounters AdaptiveBroadPhase<Degree>::counters() const {
   BroadPhaseCounters sum = done_;
-  add(sum, all_pairs_.counters());
+  add(sum, few_.counters());
   if (grid_) add(sum, grid_->counters());
   return sum;
 }

@@ -52,7 +52,7 @@ class BroadPhase {
   /// Whether pairs are exactly those whose bounding volumes overlap.
   virtual bool exact() const = 0;
 
-  /// As in broad_phase_kind.hpp.
+  /// As in broad_phase_kind.hpp, or `few-boxes`: the default's for a few bodies.
   virtual std::string_view name() const = 0;
 
   /// Adds bodies; cheapest when all come in one call. Pairs that overlap are reported. Preconditions, here and below:

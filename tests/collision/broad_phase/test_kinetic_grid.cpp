@@ -20,7 +20,7 @@ using namespace tests;
 
 template <int Degree>
 std::unique_ptr<BroadPhase<Degree>> make(bool chooses) {
-  if (chooses) return std::make_unique<AdaptiveBroadPhase<Degree>>();
+  if (chooses) return std::make_unique<AdaptiveBroadPhase<Degree>>(1, 8);
   return std::make_unique<KineticGrid<Degree>>();
 }
 

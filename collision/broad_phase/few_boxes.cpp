@@ -1,0 +1,236 @@
+#include "collision/broad_phase/few_boxes.hpp"
+
+#include "kds/audit.hpp"
+#include "kds/roots/failure_time.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace kds::collision {
+namespace {
+
+constexpr double largest = std::numeric_limits<double>::max();
+
+/// How far bodies move in the first span, over their size.
+constexpr double first_reach = 2;
+
+/// A pair costs as much as so many comparisons of boxes, with its test.
+constexpr std::uint64_t comparisons_per_pair = 16;
+
+/// The first so many bits.
+constexpr std::uint64_t first_places(std::size_t count) { return count == 64 ? ~0ull : (1ull << count) - 1; }
+
+StaticBox whole_space() { return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)}; }
+
+}  // namespace
+
+template <int Degree>
+std::size_t FewBoxes<Degree>::place_of(BodyId id) const {
+  std::size_t place = 0;
+  while (bodies_[place].id != id) ++place;
+  return place;
+}
+
+template <int Degree>
+StaticBox FewBoxes<Degree>::swept(const KineticBox<Degree>& box, double now) const {
+  // No body moves on from where it is if the clock stands at the end of the span.
+  const double until = std::max(now, until_);
+  if (!(until <= largest)) {
+    const auto still = [](const certificates::PointMotion<Degree>& end) {
+      for (std::size_t i = 1; i <= Degree; ++i) {
+        if (!end.coefficients[i].isZero(0)) return false;
+      }
+      return true;
+    };
+    if (!(still(box.min) && still(box.max))) return whole_space();
+    return box_at(box, now);
+  }
+  const StaticBox swept = swept_box(box, now, until);
+  return (swept.min >= -largest).all() && (swept.max <= largest).all() ? swept : whole_space();
+}
+
+template <int Degree>
+void FewBoxes<Degree>::put(std::size_t place, const StaticBox& box) {
+  ++counters_.box_updates;
+  for (int d = 0; d < 3; ++d) {
+    const auto axis = static_cast<std::size_t>(d);
+    min_[axis][place / 2][place % 2] = box.min[d];
+    max_[axis][place / 2][place % 2] = box.max[d];
+  }
+}
+
+template <int Degree>
+StaticBox FewBoxes<Degree>::box(std::size_t place) const {
+  StaticBox box;
+  for (int d = 0; d < 3; ++d) {
+    const auto axis = static_cast<std::size_t>(d);
+    box.min[d] = min_[axis][place / 2][place % 2];
+    box.max[d] = max_[axis][place / 2][place % 2];
+  }
+  return box;
+}
+
+/// Which of the first `count` boxes overlap this one; itself too, if it is one of them.
+template <int Degree>
+auto FewBoxes<Degree>::overlaps(const StaticBox& box, std::size_t count) const -> Row {
+  TwoBits row{};
+  TwoBits bit{1, 2};
+  const auto both = [](double x) { return Two{x, x}; };
+  const Two low[] = {both(box.min[0]), both(box.min[1]), both(box.min[2])};
+  const Two high[] = {both(box.max[0]), both(box.max[1]), both(box.max[2])};
+  for (std::size_t i = 0; i < (count + 1) / 2; ++i, bit <<= 2) {
+    TwoBits hit = bit;
+    for (std::size_t d = 0; d < 3; ++d) hit &= (min_[d][i] <= high[d]) & (low[d] <= max_[d][i]);
+    row |= hit;
+  }
+  return static_cast<Row>(row[0] | row[1]) & first_places(count);
+}
+
+/// Reports what has changed among the first `count` bodies, and keeps it.
+template <int Degree>
+void FewBoxes<Degree>::change(std::size_t place, Row row, std::size_t count, double now, PairListener& listener) {
+  const Row considered = first_places(count) & ~(Row{1} << place);
+  const Row changed = (partners_[place] ^ row) & considered;
+  partners_[place] ^= changed;
+  const BodyId id = bodies_[place].id;
+  for (Row rest = changed; rest != 0; rest &= rest - 1) {
+    const auto other_place = static_cast<std::size_t>(std::countr_zero(rest));
+    const BodyId other = bodies_[other_place].id;
+    partners_[other_place] ^= Row{1} << place;
+    const auto [a, b] = std::minmax(id, other);
+    if ((row >> other_place & 1) != 0) {
+      ++spent_;
+      listener.pair_began(a, b, now);
+    } else {
+      listener.pair_ended(a, b, now);
+    }
+  }
+}
+
+/// Seconds in which those bodies that move do so by about their size.
+template <int Degree>
+double FewBoxes<Degree>::first_span(double now) const {
+  double size = 0, speed = 0, bend = 0;
+  for (const auto& [id, box] : bodies_) {
+    const double velocity = box.min.velocity(now).cwiseAbs().maxCoeff();
+    double force = 0;
+    if constexpr (Degree >= 2) force = box.min.coefficients[2].cwiseAbs().maxCoeff();
+    if (velocity == 0 && force == 0) continue;
+    size += (box.max.coefficients[0] - box.min.coefficients[0]).maxCoeff();
+    speed += velocity;
+    bend += force;
+  }
+  const double reach = first_reach * size;
+  double span = speed > 0 ? reach / speed : largest;
+  if (bend > 0) span = std::min(span, std::sqrt(reach / bend));
+  return span > 0 ? span : largest;
+}
+
+template <int Degree>
+void FewBoxes<Degree>::begin_span(double now, double limit) {
+  until_ = std::min(limit, std::max(now + span_, next_up(now)));
+  spent_ = 0;
+  ++counters_.certificates;
+}
+
+template <int Degree>
+void FewBoxes<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
+  const std::size_t before = bodies_.size();
+  if (before + bodies.size() > most) throw std::length_error("FewBoxes: more than 64 bodies");
+  bodies_.reserve(before + bodies.size());
+  for (const Entry& body : bodies) bodies_.push_back({body.id, *body.box});
+  if (before == 0) {
+    span_ = first_span(now);
+    begin_span(now, horizon_);  // many a run is not longer
+  }
+  for (std::size_t place = before; place < bodies_.size(); ++place) {
+    const StaticBox box = swept(bodies_[place].box, now);
+    put(place, box);
+    partners_[place] = 0;
+    change(place, overlaps(box, place), place, now, listener);
+  }
+}
+
+template <int Degree>
+void FewBoxes<Degree>::remove(BodyId id, double now, PairListener& listener) {
+  const std::size_t place = place_of(id);
+  change(place, 0, bodies_.size(), now, listener);
+  const std::size_t last = bodies_.size() - 1;
+  if (place != last) {  // the last takes its place
+    const StaticBox moved = box(last);
+    for (Row rest = partners_[last]; rest != 0; rest &= rest - 1) {
+      Row& row = partners_[static_cast<std::size_t>(std::countr_zero(rest))];
+      row = (row & ~(Row{1} << last)) | Row{1} << place;
+    }
+    partners_[place] = partners_[last];
+    bodies_[place] = bodies_[last];
+    put(place, moved);
+  }
+  bodies_.pop_back();
+}
+
+template <int Degree>
+void FewBoxes<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
+  const std::size_t place = place_of(id);
+  bodies_[place].box = box;
+  const StaticBox fat = swept(box, now);
+  put(place, fat);
+  change(place, overlaps(fat, bodies_.size()), bodies_.size(), now, listener);
+  spent_ += static_cast<std::uint64_t>(std::popcount(partners_[place]));
+}
+
+/// Begins the next span; true if it reported a pair.
+template <int Degree>
+bool FewBoxes<Degree>::renew(double now, PairListener& listener) {
+  const std::uint64_t compared = bodies_.size() * bodies_.size() / 2;
+  span_ = std::min(span_ * (comparisons_per_pair * spent_ > compared ? 0.75 : 1.5), largest);
+  begin_span(now, never);
+  for (std::size_t place = 0; place < bodies_.size(); ++place) put(place, swept(bodies_[place].box, now));
+  bool any = false;
+  for (std::size_t place = 1; place < bodies_.size(); ++place) {
+    const Row row = overlaps(box(place), place);
+    const Row below = first_places(place);
+    any = any || ((partners_[place] ^ row) & below) != 0;
+    change(place, row, place, now, listener);
+  }
+  return any;
+}
+
+template <int Degree>
+bool FewBoxes<Degree>::advance(double limit, PairListener& listener) {
+  while (next_time() <= limit) {
+    if (renew(until_, listener)) return true;
+  }
+  return false;
+}
+
+template <int Degree>
+void FewBoxes<Degree>::audit(double now) const {
+  if (next_time() <= now) return;  // due
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const StaticBox present = box_at(bodies_[i].box, now);
+    // The margins of rounding differ from those of the whole span.
+    const double slack = 0x1p-45 * std::max(present.min.abs().maxCoeff(), present.max.abs().maxCoeff());
+    StaticBox inner = present;
+    inner.min += slack;
+    inner.max -= slack;
+    const std::string who = "FewBoxes: body " + std::to_string(bodies_[i].id);
+    if (!box(i).contains(inner)) throw AuditFailure(who + " is outside its swept box");
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool paired = (partners_[i] >> j & 1) != 0;
+      if (paired != ((partners_[j] >> i & 1) != 0) || paired != box(i).overlaps(box(j))) {
+        throw AuditFailure(who + " and " + std::to_string(bodies_[j].id) + ": a pair that is not, or none that is");
+      }
+    }
+  }
+}
+
+template class FewBoxes<1>;
+template class FewBoxes<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,90 @@
+// A few boxes, each compared with all others: a broad phase without a structure.
+#pragma once
+
+#include "collision/broad_phase/broad_phase.hpp"
+#include "collision/broad_phase/swept_box.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace kds::collision {
+
+/// For some dozen bodies: pairs are those whose boxes, swept over one *span* of time for all, overlap; when it is over,
+/// all get new ones. To compare a box with all others costs less than to find the few it might overlap, and there is
+/// nothing to set up.
+///
+/// The span ends at the horizon, if that is near. Else it is what balances the cost of new boxes and that of pairs: the
+/// next is longer if fewer pairs came, or had their motions changed, than boxes were compared, and shorter if more. All
+/// that changes the cost, never the contacts.
+/// Cost: O(n) a motion change, with a small constant; O(n^2) a span. No queue, no allocation once the bodies are there.
+template <int Degree>
+class FewBoxes final : public BroadPhase<Degree> {
+ public:
+  using Entry = typename BroadPhase<Degree>::Entry;
+
+  /// So many bodies at most: those that a body is paired with are bits of one number.
+  static constexpr std::size_t most = 64;
+
+  bool exact() const override { return false; }
+  std::string_view name() const override { return "few-boxes"; }
+  /// Throws std::length_error if there would be too many.
+  void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
+  void remove(BodyId id, double now, PairListener& listener) override;
+  void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
+  bool advance(double limit, PairListener& listener) override;
+  double next_time() const override { return !bodies_.empty() && until_ < horizon_ ? until_ : never; }
+  void extend_horizon(double, double horizon) override { horizon_ = horizon; }
+  void audit(double now) const override;
+  BroadPhaseCounters counters() const override { return counters_; }
+
+  std::size_t size() const { return bodies_.size(); }
+
+  /// Whether two bodies are a pair. Precondition: both are here.
+  bool paired(BodyId a, BodyId b) const { return (partners_[place_of(a)] >> place_of(b) & 1) != 0; }
+
+  /// Calls visit(id, box) for each body.
+  template <class Visit>
+  void visit(Visit&& visit) const {
+    for (const Body& body : bodies_) visit(body.id, body.box);
+  }
+
+  /// Forgets all bodies, and reports nothing.
+  void clear() { bodies_.clear(); }
+
+ private:
+  using Row = std::uint64_t;  ///< of places, the lowest bit first
+  using Two = double __attribute__((vector_size(16)));
+  using TwoBits = std::int64_t __attribute__((vector_size(16)));
+
+  struct Body {
+    BodyId id;
+    KineticBox<Degree> box;
+  };
+
+  std::size_t place_of(BodyId id) const;
+  void begin_span(double now, double limit);
+  double first_span(double now) const;
+  StaticBox swept(const KineticBox<Degree>& box, double now) const;
+  void put(std::size_t place, const StaticBox& box);
+  StaticBox box(std::size_t place) const;
+  Row overlaps(const StaticBox& box, std::size_t count) const;
+  void change(std::size_t place, Row row, std::size_t count, double now, PairListener& listener);
+  bool renew(double now, PairListener& listener);
+
+  std::vector<Body> bodies_;
+  std::array<Row, most> partners_{};                    ///< of each body
+  std::array<std::array<Two, most / 2>, 3> min_{}, max_{};  ///< ends of swept boxes, by axis and place
+  double until_ = -never;                               ///< for how long these hold
+  double horizon_ = never;
+  double span_ = 0;          ///< s; 0 for none yet
+  std::uint64_t spent_ = 0;  ///< pairs that began or had to be tested, in this span
+  BroadPhaseCounters counters_;
+};
+
+extern template class FewBoxes<1>;
+extern template class FewBoxes<2>;
+
+}  // namespace kds::collision
