@@ -253,7 +253,7 @@ template <int Degree>
 void World<Degree>::renew_volume(BodyId id) {
   broad_phase_->update(id, renewed_box(id), now_, *this);
   if (options_.report_pairs && !broad_phase_->exact()) {  // when its box meets others is to be found anew
-    for (const Link& link : bodies_[id].pairs) mark_dirty(link.slot);
+    for (const Link& link : links_.items(bodies_[id].pairs)) mark_dirty(link.slot);
   }
   schedule_volume(id);
 }

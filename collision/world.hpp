@@ -252,6 +252,7 @@ class World final : private PairListener {
   std::vector<BodyId> free_bodies_;
   std::vector<BodyId> entering_;
   std::vector<Pair> pairs_;
+  ListArena<Link> links_;  // pairs of each body
   std::vector<PairSlot> free_pairs_;
   std::vector<PairSlot> dirty_;
   std::vector<double> estimates_;               // by place in dirty_: see estimate_balls()

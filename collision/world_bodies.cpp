@@ -15,10 +15,9 @@ namespace {
 /// body's size, is a jump: far above what restarting a motion rounds, far below what a caller would mean as one.
 constexpr double jump_tolerance = 0x1p-40;
 
-/// Room for pairs that a body gets with its first: as much as the smallest block of memory has; where there are few
-/// bodies, for all.
-constexpr std::size_t first_pairs = 3;
-constexpr std::size_t few_pairs = 8;
+/// Room for pairs that a body gets with its first; where there are few bodies, for all.
+constexpr std::uint32_t first_pairs = 4;
+constexpr std::uint32_t few_pairs = 8;
 
 }  // namespace
 
@@ -48,7 +47,8 @@ void World<Degree>::remove_body(BodyId id) {
     std::erase(entering_, id);  // or the next of this id would enter in its stead
   }
   // Pairs the broad phase does not know of any more.
-  while (!removed.pairs.empty()) release_pair(removed.pairs.back().slot);
+  while (!removed.pairs.empty()) release_pair(links_.items(removed.pairs).back().slot);
+  links_.free(removed.pairs);
   if (!pending_.empty()) keep_reports_of(id);
   removed = Body{};
   free_bodies_.push_back(id);
@@ -99,7 +99,7 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
   inserting_ = jumped && mode() == ContactMode::resolved;
   broad_phase_->update(id, renewed_box(id), now_, *this);
   for (Passing& passing : passing_) passing.moved = passing.moved || passing.a == id || passing.b == id;
-  for (const Link& link : b.pairs) {
+  for (const Link& link : links_.items(b.pairs)) {
     mark_dirty(link.slot);
     pairs_[link.slot].fresh = pairs_[link.slot].fresh || inserting_;
   }
@@ -170,8 +170,8 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   pair = Pair{};
   pair.a = a;
   pair.b = b;
-  pair.place_in_a = static_cast<std::uint32_t>(body_a.pairs.size());
-  pair.place_in_b = static_cast<std::uint32_t>(body_b.pairs.size());
+  pair.place_in_a = body_a.pairs.size;
+  pair.place_in_b = body_b.pairs.size;
   pair.alive = true;
   pair.fresh = inserting_;
   for (const Passing& passing : passing_) {
@@ -180,13 +180,11 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
     pair.ignored = pair.ignored || passing.at == t || (passing.let_pass && next_up(passing.at) == t);
     if (passing.let_pass && passing.at == t) pair.let_pass = t;
   }
-  for (Body* const body : {&body_a, &body_b}) {
-    if (body->pairs.capacity() == 0) body->pairs.reserve(alive_ <= few_pairs + 1 ? few_pairs : first_pairs);
-  }
   // A jump may part two bodies and another one bring them together at the same instant.
   pair.touching = take_back(Pending::Kind::separation, a, b);
-  body_a.pairs.push_back({b, slot});
-  body_b.pairs.push_back({a, slot});
+  const std::uint32_t first_room = alive_ <= few_pairs + 1 ? few_pairs : first_pairs;
+  links_.push_back(body_a.pairs, {b, slot}, first_room);
+  links_.push_back(body_b.pairs, {a, slot}, first_room);
   ++counters_.pairs_begun;
   mark_dirty(slot);
   if (options_.report_pairs && broad_phase_->exact()) report_pair(true, a, b);
@@ -203,9 +201,9 @@ void World<Degree>::pair_ended(BodyId a, BodyId b, double t) {
 
 template <int Degree>
 typename World<Degree>::PairSlot World<Degree>::find_pair(BodyId a, BodyId b) const {
-  const bool from_a = bodies_[a].pairs.size() <= bodies_[b].pairs.size();
+  const bool from_a = bodies_[a].pairs.size <= bodies_[b].pairs.size;
   const BodyId other = from_a ? b : a;
-  for (const Link& link : bodies_[from_a ? a : b].pairs) {
+  for (const Link& link : links_.items(bodies_[from_a ? a : b].pairs)) {
     if (link.other == other) return link.slot;
   }
   return no_pair;
@@ -218,11 +216,11 @@ void World<Degree>::release_pair(PairSlot slot) {
   if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) report_pair(false, pair.a, pair.b);
   // Each body's list closes up with its last entry.
   for (const BodyId id : {pair.a, pair.b}) {
-    auto& list = bodies_[id].pairs;
+    const auto links = links_.items(bodies_[id].pairs);
     const std::uint32_t place = id == pair.a ? pair.place_in_a : pair.place_in_b;
-    const Link moved = list.back();
-    list[place] = moved;
-    list.pop_back();
+    const Link moved = links.back();
+    links[place] = moved;
+    links_.pop_back(bodies_[id].pairs);
     (id < moved.other ? pairs_[moved.slot].place_in_a : pairs_[moved.slot].place_in_b) = place;
   }
   if (pair.ignored) passing_.push_back({pair.a, pair.b, now_, pair.let_pass == now_, false});

@@ -64,7 +64,8 @@ BodyId World<Degree>::add_body(const Description& description) {
   added.collides_with = description.collides_with;
   added.volume = description.volume;
   added.alive = true;
-  movers_[id] = {*piece, ball ? ball->radius : 0};
+  movers_[id].motion = *piece;
+  movers_[id].ball_radius = ball ? ball->radius : 0;
   if constexpr (Degree >= 2) added.force = piece->coefficients[2];
   place_extents(id);
   ++alive_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/body_description.hpp"
+#include "collision/list_arena.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/response/least_constraint.hpp"
@@ -53,13 +54,16 @@ struct NoForce {};
 
 template <int Degree>
 struct Body : std::conditional_t<Degree >= 2, Force, NoForce> {
-  std::vector<Link> pairs;
+  Body() {}  // not the implicit one, for which all is set to zero first
+
   double inverse_mass = 1;
   double restitution = 1;
   double mass = 1;
   double bounding_radius = 0;
+  ListArena<Link>::List pairs;
   std::uint32_t category = 1;
   std::uint32_t collides_with = ~0u;
+  std::uint32_t island_place = 0;  ///< scratch
   BoundingVolume volume = BoundingVolume::shape;
   bool alive = false;
   bool entered = false;         ///< is in the broad phase
@@ -70,8 +74,7 @@ struct Body : std::conditional_t<Degree >= 2, Force, NoForce> {
   std::shared_ptr<const PlacedShape> shape;  ///< none if it is placed_ball(bounding_radius)
   std::unique_ptr<Extras<Degree>> extras;
   std::vector<HoldSlot> holds;
-  std::uint64_t island = 0;        ///< the last it was seen in
-  std::uint32_t island_place = 0;  ///< scratch
+  std::uint64_t island = 0;  ///< the last it was seen in
 };
 
 /// A body for the narrow phase; the shape of a ball is made for the occasion.

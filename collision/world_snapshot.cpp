@@ -118,7 +118,7 @@ void World<Degree>::become(const Image& image) {
   passing_ = image.passing;
   pending_ = {image.pending.begin(), image.pending.end()};
   const std::size_t count = image.bodies.size();
-  bodies_.clear(), movers_.clear();
+  bodies_.clear(), movers_.clear(), links_.clear();
   bodies_.resize(count), movers_.resize(count);
   alive_ = 0;
   islands_ = 0;
@@ -175,10 +175,10 @@ void World<Degree>::load_pairs(const Image& image) {
     const auto slot = static_cast<PairSlot>(pairs_.size());
     Pair& pair = pairs_.emplace_back(from.pair);
     pair.alive = true, pair.dirty = false;
-    pair.place_in_a = static_cast<std::uint32_t>(bodies_[pair.a].pairs.size());
-    pair.place_in_b = static_cast<std::uint32_t>(bodies_[pair.b].pairs.size());
-    bodies_[pair.a].pairs.push_back({pair.b, slot});
-    bodies_[pair.b].pairs.push_back({pair.a, slot});
+    pair.place_in_a = bodies_[pair.a].pairs.size;
+    pair.place_in_b = bodies_[pair.b].pairs.size;
+    links_.push_back(bodies_[pair.a].pairs, {pair.b, slot});
+    links_.push_back(bodies_[pair.b].pairs, {pair.a, slot});
     contacts_.set(slot, from.contact);
     if (slot < boxes_.slots()) boxes_.set(slot, from.boxes);
     if (from.pair.dirty) mark_dirty(slot);

@@ -16,11 +16,7 @@ void World<Degree>::schedule_wall(BodyId id) {
   make_room(walls_, bodies_.size());
   double earliest = now_;
   if constexpr (Degree == 1) {
-    earliest = never;
-    for (int axis = 0; axis < 3; ++axis) {  // it approaches no more than one of the two
-      const int wall = 2 * axis + (movers_[id].motion.coefficients[1][axis] > 0);
-      earliest = std::min(earliest, earliest_wall_time(id, wall));
-    }
+    earliest = earliest_wall_time_of_all(movers_[id].motion, bodies_[id].bounding_radius, *options_.walls, now_);
   }
   bodies_[id].wall_estimated = true;
   walls_.set(id, earliest <= horizon_ ? std::max(earliest, now_) : never);

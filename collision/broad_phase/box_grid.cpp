@@ -28,15 +28,6 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes) {
   enter(id, changes);
 }
 
-void BoxGrid::announce(Id id, const StaticBox& box) {
-  if (size_ == 0) levels_.clear();  // of boxes that have gone
-  Item& item = items_[id];
-  item.bounds = bounds(box);
-  item.level = level_for(box.extent());
-  use_level(item.level);
-  ++size_;
-}
-
 /// Cells of two levels may share a bucket, so a box may be found twice, or find itself.
 void BoxGrid::begin_search(Id id) {
   found_.clear();
@@ -76,6 +67,32 @@ void BoxGrid::enter(Id id, Changes& changes) {
   tidy();
 }
 
+/// Counts boxes in, many at once: their ends are compared as they are, and the extremes rounded, which is monotone.
+struct BoxGrid::Census {
+  void add(const Bounds& box, const Ends& ends) {
+    ++count;
+    span = std::max(span, ends.span());
+    low_xy = box.xy < low_xy ? box.xy : low_xy;
+    low_zx = box.zx < low_zx ? box.zx : low_zx;
+    high_xy = box.xy > high_xy ? box.xy : high_xy;
+    high_zx = box.zx > high_zx ? box.zx : high_zx;
+  }
+  Population population(double scale) const {
+    if (count == 0) return {};
+    const auto rounded = [&](double x) { return Ends::on_lattice(x * scale); };
+    return {count,
+            span,
+            {rounded(low_xy[0]), rounded(low_xy[1]), rounded(low_zx[0])},
+            {rounded(high_xy[0]), rounded(high_xy[1]), rounded(high_zx[0])}};
+  }
+
+  static constexpr double beyond = std::numeric_limits<double>::infinity();
+  std::size_t count = 0;
+  std::int64_t span = 0;
+  Two low_xy{beyond, beyond}, low_zx{beyond, beyond};
+  Two high_xy{-beyond, -beyond}, high_zx{-beyond, -beyond};
+};
+
 /// The boxes and cells of some ahead are fetched meanwhile: they lie anywhere in memory.
 void BoxGrid::settle(std::span<const Id> ids) {
   if (ids.size() > natives_.room()) natives_.restart(ids.size());
@@ -85,7 +102,8 @@ void BoxGrid::settle(std::span<const Id> ids) {
   };
   constexpr std::size_t ahead = 16;
   std::array<Ready, ahead> ready;
-  auto level = levels_.begin();
+  std::vector<Census> censuses(levels_.size());
+  std::size_t level = 0;
   for (std::size_t i = 0; i < ids.size() + ahead; ++i) {
     Ready& slot = ready[i % ahead];
     if (i >= ahead) natives_.add(slot.place, slot.ends, ids[i - ahead]);
@@ -93,12 +111,15 @@ void BoxGrid::settle(std::span<const Id> ids) {
     __builtin_prefetch(&items_[ids[std::min(i + ahead, ids.size() - 1)]], 1);
     Item& item = items_[ids[i]];
     item.entered = true;
-    if (level->exponent != item.level) level = find_level(item.level);
-    const Ends ends(item.bounds, level->scale);
-    count_in(level->natives, ends);
-    slot = {ends.place(natives_, *level), ends.in_cell()};
+    if (levels_[level].exponent != item.level) {
+      level = static_cast<std::size_t>(find_level(item.level) - levels_.begin());
+    }
+    const Ends ends(item.bounds, levels_[level].scale);
+    censuses[level].add(item.bounds, ends);
+    slot = {ends.place(natives_, levels_[level]), ends.in_cell()};
     natives_.fetch(slot.place);
   }
+  for (std::size_t i = 0; i < levels_.size(); ++i) levels_[i].natives = censuses[i].population(levels_[i].scale);
   restart_guests();
 }
 

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -81,7 +83,14 @@ class BoxGrid {
 
   /// To put many into an empty grid in whatever order suits the cache: first all are announced, then each one enters.
   /// Nothing else may be asked in between. Precondition: id below the end reserved; none has entered.
-  void announce(Id id, const StaticBox& box);
+  void announce(Id id, const StaticBox& box) {
+    if (size_ == 0) levels_.clear();  // of boxes that have gone
+    Item& item = items_[id];
+    item.bounds = bounds(box);
+    item.level = level_for(item.bounds.extent());
+    if (levels_.empty() || levels_.back().exponent != item.level) use_level(item.level);
+    ++size_;
+  }
   /// Appends to `changes` those that have entered before. Precondition: announced.
   void enter(Id id, Changes& changes);
   /// In place of enter() for all that have been announced, where it is known what they overlap. Best in the order of
@@ -92,7 +101,10 @@ class BoxGrid {
   void remove(Id id, Changes& changes);
 
   /// The same of the next finer level; 0 if there is none.
-  double room_below(double extent) const;
+  double room_below(double extent) const {
+    const Exponent level = level_for(extent);
+    return level == finest_ ? 0 : cell_side(level - 1) / roominess;
+  }
 
   /// Greatest extent of a box for which a level is in use.
   double coarsest() const;
@@ -156,9 +168,20 @@ class BoxGrid {
   };
 
   struct Ends;
+  struct Census;
+
+  /// Cells are at least this much larger than a box. Larger ones are fewer to look into, and hold more.
+  static constexpr double roominess = 1.4;
 
   double cell_side(int exponent) const;
-  Exponent level_for(double extent) const;
+  Exponent level_for(double extent) const {
+    if (!(extent > 0)) return finest_;
+    if (!(extent < 0x1p1023)) return most;
+    const double room = roominess / unit_ * extent;
+    int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(room) >> 52) - 1022;  // of a mantissa below 1
+    if (exponent == -1022) std::frexp(room, &exponent);                                // not a normal number
+    return static_cast<Exponent>(std::clamp<int>(exponent, finest_, most));
+  }
   std::vector<Level>::iterator find_level(Exponent exponent);
   Level& use_level(Exponent exponent);
   static void count_in(Population& population, const Ends& ends);

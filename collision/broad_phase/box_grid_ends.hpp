@@ -34,12 +34,22 @@ inline CellTable::Ends row_mark(std::size_t d, std::int64_t cell) {
 /// A box on the lattice of a level: (min, -max), like Bounds.
 struct BoxGrid::Ends {
   Ends() = default;
-  Ends(const Bounds& box, double scale)
-      : values{on_lattice(box.xy[0] * scale), on_lattice(box.xy[1] * scale), on_lattice(box.zx[0] * scale),
-               on_lattice(box.zx[1] * scale), on_lattice(box.yz[0] * scale), on_lattice(box.yz[1] * scale)} {}
+  Ends(const Bounds& box, double scale) {
+    std::size_t i = 0;
+    for (const Two& two : {box.xy, box.zx, box.yz}) {
+      const Two bounded = clamped(two * scale);
+      values[i++] = std::llrint(bounded[0]);
+      values[i++] = std::llrint(bounded[1]);
+    }
+  }
 
   /// Monotone, and as far below zero as above.
-  static std::int64_t on_lattice(double x) { return std::llrint(std::clamp(x, -0x1p61, 0x1p61)); }
+  static std::int64_t on_lattice(double x) { return std::llrint(clamped(Two{x, x})[0]); }
+  static Two clamped(Two x) {
+    constexpr Two most{0x1p61, 0x1p61};
+    x = x < most ? x : most;
+    return x > -most ? x : -most;
+  }
   static std::int64_t cell_of(std::int64_t x) { return x >> lattice_bits; }
 
   /// The cell a box is in.
@@ -61,14 +71,20 @@ struct BoxGrid::Ends {
     return result;
   }
 
-  /// Counted from the box's own cell.
+  /// Counted from the box's own cell: of natives and guests, none of which is larger than a cell, all fit a byte.
   CellTable::Ends in_cell() const {
-    CellTable::Ends ends = 0;
-    for (std::size_t d = 0; d < 3; ++d) {
-      const std::int64_t corner = cell(d) << lattice_bits;
-      ends |= lattice_byte(d, values[d] - corner) | lattice_byte(d + 3, values[d + 3] + corner) | row_mark(d, cell(d));
-    }
-    return ends;
+    // Three bytes at once, modulo 256, as far as that goes.
+    const auto bytes = [&](std::size_t i) {
+      const auto byte = [&](std::size_t j) { return CellTable::Ends{static_cast<std::uint8_t>(values[j])}; };
+      return byte(i) | byte(i + 1) << 8 | byte(i + 2) << 16;
+    };
+    const CellTable::Ends low = bytes(0);
+    const CellTable::Ends minus_high = bytes(3);
+    constexpr CellTable::Ends within = 0x010101 * (units_per_cell - 1);
+    const CellTable::Ends corner = low & ~within;
+    constexpr CellTable::Ends carries = 0x7F7F7F;
+    const CellTable::Ends sum = ((minus_high & carries) + (corner & carries)) ^ ((minus_high ^ corner) & ~carries);
+    return (low & within) | sum << 24 | row_mark(1, cell(1)) | row_mark(2, cell(2));
   }
 
   /// What boxes in cells of this coordinate may not exceed if they overlap.

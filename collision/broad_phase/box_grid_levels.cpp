@@ -19,32 +19,15 @@ double power_of_two(int exponent) {
 
 }  // namespace
 
-/// Cells are at least this much larger than a box. Larger ones are fewer to look into, and hold more.
-constexpr double roominess = 1.4;
-
 /// Side of the smallest cells over the spacing of boxes (found by measuring; the minimum is flat).
 constexpr double cell_per_spacing = 2;
 
 /// Where searches walk more chained buckets a cell than this on average, smaller cells would do.
 constexpr std::int64_t crowded_chain = 4;
 
-BoxGrid::Exponent BoxGrid::level_for(double extent) const {
-  if (!(extent > 0)) return finest_;
-  if (!(extent < 0x1p1023)) return most;
-  const double room = roominess / unit_ * extent;
-  int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(room) >> 52) - 1022;  // of a mantissa below 1
-  if (exponent == -1022) std::frexp(room, &exponent);                                // not a normal number
-  return static_cast<Exponent>(std::clamp<int>(exponent, finest_, most));
-}
-
 double BoxGrid::cell_side(int exponent) const { return unit_ * power_of_two(exponent); }
 
 double BoxGrid::room_for(double extent) const { return cell_side(level_for(extent)) / roominess; }
-
-double BoxGrid::room_below(double extent) const {
-  const Exponent level = level_for(extent);
-  return level == finest_ ? 0 : cell_side(level - 1) / roominess;
-}
 
 /// Precondition: empty, or restart() is next.
 void BoxGrid::choose_cells(double spacing) {

@@ -36,11 +36,6 @@ constexpr int jostled_most = 6;
 constexpr std::uint32_t tests_per_pair = 8;
 constexpr std::uint32_t little_spent = 40, much_spent = 60;
 
-template <int Degree>
-double greatest_speed(const certificates::PointMotion<Degree>& motion, double t) {
-  return motion.velocity(t).cwiseAbs().maxCoeff();
-}
-
 /// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not
 /// told.
 template <int Degree>
@@ -62,11 +57,11 @@ StaticBox whole_space() { return {Eigen::Array3d::Constant(-largest), Eigen::Arr
 
 /// Seconds until a box has moved by its reach, `never` if it is at rest; exact for straight paths, up to rounding.
 template <int Degree>
-double KineticGrid<Degree>::lifetime(const Body& body, double now) {
-  const KineticBox<Degree>& box = body.box;
-  const double speed = std::max(greatest_speed(box.min, now), greatest_speed(box.max, now));
+inline double KineticGrid<Degree>::lifetime(const Body& body, const BoxSweep<Degree>& sweep) {
+  const double speed = sweep.speed();
   double time = speed > 0 ? std::min(body.reach / speed, largest) : never;
   if constexpr (Degree >= 2) {
+    const KineticBox<Degree>& box = body.box;
     const double bend = box.min.coefficients[2].cwiseAbs().cwiseMax(box.max.coefficients[2].cwiseAbs()).maxCoeff();
     if (bend > 0) time = std::min(time, std::sqrt(body.reach / bend));
   }
@@ -76,18 +71,18 @@ double KineticGrid<Degree>::lifetime(const Body& body, double now) {
 /// `may_begin()`: whether a level coarser than `coarsest` may be begun just for the body's reach.
 template <int Degree>
 template <class MayBegin>
-auto KineticGrid<Degree>::fat_box(Body& body, const StaticBox& present, double now, double coarsest,
-                                  MayBegin&& may_begin) const -> FatBox {
+inline auto KineticGrid<Degree>::fat_box(Body& body, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
+                                         double coarsest, MayBegin&& may_begin) const -> FatBox {
   body.fattened = now;
   const double size = present.extent();
   const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
   body.reach = std::max({body.reach, least_reach * size, least_part_of_coordinates * coordinates, least_reach_at_all});
-  double time = lifetime(body, now);
+  double time = lifetime(body, sweep);
   if (time == never) return {present, never};
   // Where a jostled body will go nobody knows; a margin of more than its size would be mostly in vain.
   double margin = body.jostled >= jostled_at && body.reach <= 0.5 * size ? body.reach : 0;
   const auto swept = [&](double expiry) {
-    const StaticBox box = swept_box(body.box, now, expiry);
+    const StaticBox box = sweep.until(expiry);
     if (margin == 0) return box;
     return StaticBox{box.min.min(present.min - margin), box.max.max(present.max + margin)};
   };
@@ -121,8 +116,9 @@ auto KineticGrid<Degree>::fat_box(Body& body, const StaticBox& present, double n
 }
 
 template <int Degree>
-auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double now) -> FatBox {
-  const FatBox fat = fat_box(bodies_[id], present, now, fat_boxes_.coarsest(), [&] {
+auto KineticGrid<Degree>::fat_box(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now)
+    -> FatBox {
+  const FatBox fat = fat_box(bodies_[id], sweep, present, now, fat_boxes_.coarsest(), [&] {
     if (++wishes_ * share_for_level <= fat_boxes_.size()) return false;
     wishes_ = 0;
     return true;
@@ -134,7 +130,8 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const StaticBox& present, double no
 /// One that fits into a level, unless the body does not.
 template <int Degree>
 auto KineticGrid<Degree>::fitting_box(Body& body, double now, double coarsest) const -> FatBox {
-  return fat_box(body, box_at(body.box, now), now, coarsest, [] { return false; });
+  const BoxSweep<Degree> sweep(body.box, now);
+  return fat_box(body, sweep, sweep.begin(), now, coarsest, [] { return false; });
 }
 
 /// The reach of a jostled body is what makes its renewals cost about what pairs and their tests do. Of others, a box
@@ -210,9 +207,10 @@ void KineticGrid<Degree>::extend_horizon(double, double horizon) {
 }
 
 template <int Degree>
-void KineticGrid<Degree>::renew(BodyId id, const StaticBox& present, double now, PairListener& listener) {
+void KineticGrid<Degree>::renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
+                                PairListener& listener) {
   ++counters_.box_updates;
-  const FatBox fat = fat_box(id, present, now);
+  const FatBox fat = fat_box(id, sweep, present, now);
   set_expiry(id, fat.expiry);
   changes_.clear();
   fat_boxes_.put(id, fat.box, changes_);
@@ -234,20 +232,21 @@ void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, doubl
   ++body.changes;
   body.tests += body.partners;
   // The old fat box will often do for a while.
-  const StaticBox present = box_at(box, now);
+  const BoxSweep<Degree> sweep(body.box, now);
+  const StaticBox present = sweep.begin();
   const StaticBox fat = fat_boxes_.box(id);
   if (fat.contains(present)) {
-    const double time = lifetime(body, now);
+    const double time = lifetime(body, sweep);
     if (time == never) return set_expiry(id, never);
     double expiry = now + kept_share<Degree> * time;
     expiry = std::max(expiry, now + exit_time(box, present, fat));
-    if (expiry > now && expiry <= largest && fat.contains(swept_box(box, now, expiry))) {
+    if (expiry > now && expiry <= largest && fat.contains(sweep.until(expiry))) {
       ++counters_.certificates;
       return set_expiry(id, expiry);
     }
   }
   adapt_reach(id, now);
-  renew(id, present, now, listener);
+  renew(id, sweep, present, now, listener);
 }
 
 template <int Degree>
@@ -256,7 +255,8 @@ bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
     const auto [time, id] = expiry_.top();
     if (time > limit) return false;
     adapt_reach(id, time);
-    renew(id, box_at(bodies_[id].box, time), time, listener);
+    const BoxSweep<Degree> sweep(bodies_[id].box, time);
+    renew(id, sweep, sweep.begin(), time, listener);
     if (!changes_.began.empty() || !changes_.ended.empty()) return true;
   }
   return false;

@@ -78,16 +78,17 @@ class KineticGrid final : public BroadPhase<Degree> {
   };
 
   template <class MayBegin>
-  FatBox fat_box(Body& body, const StaticBox& present, double now, double coarsest, MayBegin&& may_begin) const;
-  FatBox fat_box(BodyId id, const StaticBox& present, double now);
+  FatBox fat_box(Body& body, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, double coarsest,
+                 MayBegin&& may_begin) const;
+  FatBox fat_box(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
   FatBox fitting_box(Body& body, double now, double coarsest) const;
   void insert_first(std::span<const Entry> bodies, double now, PairListener& listener);
   void make_boxes(std::span<const Entry> bodies, std::span<StaticBox> boxes, std::size_t threads, double now);
   void cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now);
   void report_pair(BodyId a, BodyId b, double now, PairListener& listener);
-  static double lifetime(const Body& body, double now);
+  static double lifetime(const Body& body, const BoxSweep<Degree>& sweep);
   void adapt_reach(BodyId id, double now);
-  void renew(BodyId id, const StaticBox& present, double now, PairListener& listener);
+  void renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
   void set_expiry(BodyId id, double expiry);
   void report(BodyId id, double now, PairListener& listener);
 

@@ -75,7 +75,8 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   }
   for (const Entry& entry : bodies) {
     bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
-    renew(entry.id, box_at(*entry.box, now), now, listener);
+    const BoxSweep<Degree> sweep(bodies_[entry.id].box, now);
+    renew(entry.id, sweep, sweep.begin(), now, listener);
   }
 }
 

@@ -66,57 +66,120 @@ inline bool corners_move_alike(const KineticBox<1>& box) {
   return box.min.start == box.max.start && v[0] == w[0] && v[1] == w[1] && v[2] == w[2];
 }
 
-/// A box that holds a kinetic box over [from, to], also one whose ends have passed each other.
+namespace detail {
+
+/// A coordinate, or two in a register, of a box whose corners move alike.
+template <class Number>
+struct AlikeEnds {
+  static Number least(Number a, Number b) { return b < a ? b : a; }
+  static Number most(Number a, Number b) { return a < b ? b : a; }
+
+  AlikeEnds(Number from_low, Number from_high, Number at_velocity, double elapsed)
+      : low(least(from_low, from_high)),
+        high(most(from_low, from_high)),
+        size(most(high, -low)),
+        velocity(at_velocity),
+        moved(at_velocity * elapsed) {}
+
+  struct Span {
+    Number min, max;
+  };
+  /// On the way from where it has moved to `elapsed` already to where it will have moved to then.
+  Span until(Number then) const {
+    const Number first = least(moved, then);
+    const Number last = most(moved, then);
+    const Number margin = 8 * 0x1p-53 * (size + most(last, -first));
+    return {low + first - margin, high + last + margin};
+  }
+
+  Number low, high;  ///< at the start of the motion
+  Number size;       ///< the greater magnitude of these
+  Number velocity;
+  Number moved;
+};
+
+}  // namespace detail
+
+/// What a kinetic box sweeps from an instant on, also one whose ends have passed each other. Refers to the box.
 ///
 /// Corners that move alike share what they move by; the sums then have one rounding more, and the same margin covers
 /// them.
 template <int Degree>
-StaticBox swept_box(const KineticBox<Degree>& box, double from, double to) {
-  if constexpr (Degree == 1) {
-    if (corners_move_alike(box)) {
-      const double begin = from - box.min.start;
-      const double end = to - box.min.start;
-      StaticBox swept;
-      for (int d = 0; d < 3; ++d) {  // plain numbers: arrays of three are not computed any faster
-        const double velocity = box.min.coefficients[1][d];
-        const double at_begin = velocity * begin;
-        const double at_end = velocity * end;
-        const double low = box.min.coefficients[0][d];
-        const double high = box.max.coefficients[0][d];
-        const double first = std::min(at_begin, at_end);
-        const double last = std::max(at_begin, at_end);
-        const double magnitude = std::max(std::abs(low), std::abs(high)) + std::max(std::abs(first), std::abs(last));
-        const double margin = 8 * 0x1p-53 * magnitude;
-        swept.min[d] = std::min(low, high) + first - margin;
-        swept.max[d] = std::max(low, high) + last + margin;
-      }
-      return swept;
-    }
+class BoxSweep {
+ public:
+  BoxSweep(const KineticBox<Degree>& box, double from) : box_(box), from_(from) {}
+
+  /// A box that holds it over [from, to].
+  StaticBox until(double to) const {
+    const StaticBox low = swept_point(box_.min, from_, to);
+    const StaticBox high = swept_point(box_.max, from_, to);
+    return {low.min.min(high.min), low.max.max(high.max)};
   }
-  const StaticBox low = swept_point(box.min, from, to);
-  const StaticBox high = swept_point(box.max, from, to);
-  return {low.min.min(high.min), low.max.max(high.max)};
+  /// until(from).
+  StaticBox begin() const { return until(from_); }
+  /// The greatest of its velocities at first, by magnitude.
+  double speed() const {
+    return std::max(box_.min.velocity(from_).cwiseAbs().maxCoeff(), box_.max.velocity(from_).cwiseAbs().maxCoeff());
+  }
+
+ private:
+  const KineticBox<Degree>& box_;
+  double from_;
+};
+
+template <>
+class BoxSweep<1> {
+ public:
+  BoxSweep(const KineticBox<1>& box, double from)
+      : box_(box),
+        from_(from),
+        alike_(corners_move_alike(box)),
+        xy_(xy(box.min.coefficients[0]), xy(box.max.coefficients[0]), xy(box.min.coefficients[1]),
+            from - box.min.start),
+        z_(box.min.coefficients[0][2], box.max.coefficients[0][2], box.min.coefficients[1][2], from - box.min.start) {}
+
+  StaticBox until(double to) const {
+    if (!alike_) return until_by_corners(to);
+    const double elapsed = to - box_.min.start;
+    return joined(xy_.until(xy_.velocity * elapsed), z_.until(z_.velocity * elapsed));
+  }
+  StaticBox begin() const { return alike_ ? joined(xy_.until(xy_.moved), z_.until(z_.moved)) : until_by_corners(from_); }
+  double speed() const {
+    const auto greatest = [](const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff(); };
+    const double speed = greatest(box_.min.coefficients[1]);
+    return alike_ ? speed : std::max(speed, greatest(box_.max.coefficients[1]));
+  }
+
+ private:
+  /// Arrays of three would be computed one by one.
+  using Two = double __attribute__((vector_size(16)));
+  static Two xy(const Eigen::Vector3d& v) { return Two{v[0], v[1]}; }
+  static StaticBox joined(const detail::AlikeEnds<Two>::Span& xy, const detail::AlikeEnds<double>::Span& z) {
+    return {{xy.min[0], xy.min[1], z.min}, {xy.max[0], xy.max[1], z.max}};
+  }
+  StaticBox until_by_corners(double to) const {
+    const StaticBox low = swept_point(box_.min, from_, to);
+    const StaticBox high = swept_point(box_.max, from_, to);
+    return {low.min.min(high.min), low.max.max(high.max)};
+  }
+
+  const KineticBox<1>& box_;
+  double from_;
+  bool alike_;
+  detail::AlikeEnds<Two> xy_;
+  detail::AlikeEnds<double> z_;
+};
+
+/// A box that holds a kinetic box over [from, to].
+template <int Degree>
+StaticBox swept_box(const KineticBox<Degree>& box, double from, double to) {
+  return BoxSweep<Degree>(box, from).until(to);
 }
 
 /// swept_box(box, t, t), bit for bit.
 template <int Degree>
 StaticBox box_at(const KineticBox<Degree>& box, double t) {
-  if constexpr (Degree == 1) {
-    if (corners_move_alike(box)) {
-      const double elapsed = t - box.min.start;
-      StaticBox at;
-      for (int d = 0; d < 3; ++d) {
-        const double moved = box.min.coefficients[1][d] * elapsed;
-        const double low = box.min.coefficients[0][d];
-        const double high = box.max.coefficients[0][d];
-        const double margin = 8 * 0x1p-53 * (std::max(std::abs(low), std::abs(high)) + std::abs(moved));
-        at.min[d] = std::min(low, high) + moved - margin;
-        at.max[d] = std::max(low, high) + moved + margin;
-      }
-      return at;
-    }
-  }
-  return swept_box(box, t, t);
+  return BoxSweep<Degree>(box, t).begin();
 }
 
 }  // namespace kds::collision

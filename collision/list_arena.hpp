@@ -1,0 +1,78 @@
+// Many short lists in one block of memory.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kds::collision {
+
+/// Lists that grow and shrink at their end, of room for a power of two each. To make one, or to let it grow, costs a
+/// few instructions instead of a call of malloc(); all are gone with the arena, at once.
+///
+/// Room that a list has outgrown, or that is given back, serves the next one of that room. Memory: twice the room of
+/// all lists, at most, and what has been given back.
+/// Cost: O(1), amortised where a list or the arena grows.
+template <class T>
+class ListArena {
+ public:
+  /// A list is told by this; to copy it does not copy the list. Spans are good until the next push_back().
+  struct List {
+    std::uint32_t begin = 0;
+    std::uint32_t size = 0;
+    std::uint32_t room = 0;
+
+    bool empty() const { return size == 0; }
+  };
+
+  std::span<T> items(const List& list) { return {memory_.data() + list.begin, list.size}; }
+  std::span<const T> items(const List& list) const { return {memory_.data() + list.begin, list.size}; }
+
+  /// A list without room gets some for so many at first.
+  void push_back(List& list, const T& item, std::uint32_t first_room = 4) {
+    if (list.size == list.room) grow(list, list.room == 0 ? std::bit_ceil(first_room) : 2 * list.room);
+    memory_[list.begin + list.size++] = item;
+  }
+
+  /// Precondition: not empty.
+  void pop_back(List& list) { --list.size; }
+
+  /// Gives back its room; it is empty then.
+  void free(List& list) {
+    if (list.room > 0) free_[place(list.room)].push_back(list.begin);
+    list = {};
+  }
+
+  /// All lists are lost.
+  void clear() {
+    memory_.clear();
+    for (auto& free : free_) free.clear();
+  }
+
+ private:
+  static std::size_t place(std::uint32_t room) { return static_cast<std::size_t>(std::countr_zero(room)); }
+
+  void grow(List& list, std::uint32_t room) {
+    auto& free = free_[place(room)];
+    auto begin = static_cast<std::uint32_t>(memory_.size());
+    if (free.empty()) {
+      memory_.resize(memory_.size() + room);
+    } else {
+      begin = free.back();
+      free.pop_back();
+    }
+    std::copy_n(memory_.begin() + list.begin, list.size, memory_.begin() + begin);
+    const std::uint32_t size = list.size;
+    this->free(list);
+    list = {begin, size, room};
+  }
+
+  std::vector<T> memory_;
+  std::array<std::vector<std::uint32_t>, 32> free_;  ///< beginnings, by the logarithm of their room
+};
+
+}  // namespace kds::collision
