@@ -92,7 +92,7 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   Body& b = bodies_[id];
   movers_[id].motion = motion;
-  for (const Link& link : b.pairs) {
+  for (const Link& link : links_.items(b.pairs)) {  // while the broad phase is at work
     __builtin_prefetch(&pairs_[link.slot], 1);
     __builtin_prefetch(&movers_[link.other]);
   }

@@ -19,6 +19,8 @@ void World<Degree>::schedule_wall(BodyId id) {
     earliest = earliest_wall_time_of_all(movers_[id].motion, bodies_[id].bounding_radius, *options_.walls, now_);
   }
   bodies_[id].wall_estimated = true;
+  // An earlier one is a lower bound as well: most are replaced again before they are due.
+  if (walls_.contains(id) && walls_.time(id) > now_ && walls_.time(id) <= earliest) return;
   walls_.set(id, earliest <= horizon_ ? std::max(earliest, now_) : never);
 }
 

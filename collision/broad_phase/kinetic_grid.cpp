@@ -194,16 +194,18 @@ void KineticGrid<Degree>::report_pair(BodyId a, BodyId b, double now, PairListen
   listener.pair_began(std::min(a, b), std::max(a, b), now);
 }
 
+/// An earlier entry stays: most are replaced again before they are due.
 template <int Degree>
-void KineticGrid<Degree>::set_expiry(BodyId id, double expiry) {
+void KineticGrid<Degree>::set_expiry(BodyId id, double expiry, double now) {
   bodies_[id].expiry = expiry;
+  if (expiry_.contains(id) && expiry_.time(id) > now && expiry_.time(id) <= expiry) return;
   expiry_.set(id, expiry <= horizon_ ? expiry : never);
 }
 
 template <int Degree>
-void KineticGrid<Degree>::extend_horizon(double, double horizon) {
+void KineticGrid<Degree>::extend_horizon(double now, double horizon) {
   horizon_ = horizon;
-  visit([&](BodyId id, const KineticBox<Degree>&) { set_expiry(id, bodies_[id].expiry); });
+  visit([&](BodyId id, const KineticBox<Degree>&) { set_expiry(id, bodies_[id].expiry, now); });
 }
 
 template <int Degree>
@@ -211,7 +213,7 @@ void KineticGrid<Degree>::renew(BodyId id, const BoxSweep<Degree>& sweep, const 
                                 PairListener& listener) {
   ++counters_.box_updates;
   const FatBox fat = fat_box(id, sweep, present, now);
-  set_expiry(id, fat.expiry);
+  set_expiry(id, fat.expiry, now);
   changes_.clear();
   fat_boxes_.put(id, fat.box, changes_);
   report(id, now, listener);
@@ -237,12 +239,12 @@ void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, doubl
   const StaticBox fat = fat_boxes_.box(id);
   if (fat.contains(present)) {
     const double time = lifetime(body, sweep);
-    if (time == never) return set_expiry(id, never);
+    if (time == never) return set_expiry(id, never, now);
     double expiry = now + kept_share<Degree> * time;
     expiry = std::max(expiry, now + exit_time(box, present, fat));
     if (expiry > now && expiry <= largest && fat.contains(sweep.until(expiry))) {
       ++counters_.certificates;
-      return set_expiry(id, expiry);
+      return set_expiry(id, expiry, now);
     }
   }
   adapt_reach(id, now);
@@ -254,6 +256,10 @@ bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
   while (!expiry_.empty()) {
     const auto [time, id] = expiry_.top();
     if (time > limit) return false;
+    if (bodies_[id].expiry > time) {
+      set_expiry(id, bodies_[id].expiry, time);
+      continue;
+    }
     adapt_reach(id, time);
     const BoxSweep<Degree> sweep(bodies_[id].box, time);
     renew(id, sweep, sweep.begin(), time, listener);

@@ -89,7 +89,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   static double lifetime(const Body& body, const BoxSweep<Degree>& sweep);
   void adapt_reach(BodyId id, double now);
   void renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
-  void set_expiry(BodyId id, double expiry);
+  void set_expiry(BodyId id, double expiry, double now);
   void report(BodyId id, double now, PairListener& listener);
 
   std::vector<Body> bodies_;  // by id

@@ -90,7 +90,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   make_boxes(bodies, boxes, threads, now);
   cut_to_levels(bodies, boxes, now);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    set_expiry(bodies[i].id, bodies_[bodies[i].id].expiry);
+    set_expiry(bodies[i].id, bodies_[bodies[i].id].expiry, now);
     fat_boxes_.announce(bodies[i].id, boxes[i]);
   }
   BoxPairs pairs;
