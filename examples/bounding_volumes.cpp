@@ -42,8 +42,8 @@ int main() {
   simulator.audit();  // both, against the motions, with exact signs
 
   const auto [low, high] = dop.rule().extent(2, points, simulator.now());
-  std::cout << "the 14-DOP has changed its extreme points " << changes << " times; it reaches from z = " << low << " to "
-            << high << '\n';
+  std::cout << "the 14-DOP has changed its extreme points " << changes << " times; it reaches from z = " << low
+            << " to " << high << '\n';
 
   // Who is above z = 1 now? Exactly, not just by fat boxes.
   const structures::TreeBox<3> above{{-never, -never, 1}, {never, never, never}};

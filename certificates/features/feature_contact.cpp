@@ -10,7 +10,8 @@
 #include <cmath>
 #include <optional>
 
-// All of a query in one function saves a sixth of its time. Sanitizers would make more of that than a compiler can take.
+// All of a query in one function saves a sixth of its time. Sanitizers would make more of that than a compiler can
+// take.
 #if defined(__SANITIZE_ADDRESS__)
 #define KDS_FLATTEN
 #elif defined(__has_feature)

@@ -117,7 +117,9 @@ void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double no
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::sort(ends_[axis].begin(), ends_[axis].end(), before);
-    for (std::size_t i = 0; i < ends_[axis].size(); ++i) places_[axis][ends_[axis][i].id] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < ends_[axis].size(); ++i) {
+      places_[axis][ends_[axis][i].id] = static_cast<std::uint32_t>(i);
+    }
   }
   // One sweep along x finds all overlaps; those known already are passed over.
   std::vector<BodyId> open;
@@ -143,7 +145,9 @@ void SweptSweepAndPrune<Degree>::remove(BodyId id, double now, PairListener& lis
   bodies_.erase(std::find(bodies_.begin(), bodies_.end(), id));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::erase_if(ends_[axis], [id](const End& end) { return end.id / 2 == id; });
-    for (std::size_t i = 0; i < ends_[axis].size(); ++i) places_[axis][ends_[axis][i].id] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < ends_[axis].size(); ++i) {
+      places_[axis][ends_[axis][i].id] = static_cast<std::uint32_t>(i);
+    }
   }
   for (const BodyId other : bodies_) drop_pair(std::min(id, other), std::max(id, other), now, listener);
 }

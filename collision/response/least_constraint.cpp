@@ -84,8 +84,8 @@ void snap(Rates rates, std::span<const Touch> touches, double scale) {
   if (holds(snapped, touches, 0)) std::copy(snapped.begin(), snapped.end(), rates.begin());
 }
 
-/// [Lawson74], chapter 23: the touches that push are found one by one, each time solving for those that do. Unknowns are
-/// pushes over the root of the sum of the inverse masses, which makes the matrix symmetric with a diagonal of ones.
+/// [Lawson74], chapter 23: the touches that push are found one by one, each time solving for those that do. Unknowns
+/// are pushes over the root of the sum of the inverse masses, which makes the matrix symmetric with a diagonal of ones.
 class ActiveSet {
  public:
   ActiveSet(Rates rates, Touches touches, double target, double scale)

@@ -22,8 +22,8 @@ struct Touch {
 /// touch normal . (rate_b - rate_a) >= 0. Pushes are frictionless, along the normals, equal and opposite.
 /// Returns whether that was possible; if not (a body between two that close in), some touches are left violated.
 ///
-/// Paper: [Gauss1829]; the sign conditions make it the linear complementarity problem of [Baraff94]. Up to 64 touches it
-/// is solved by active sets [Lawson74], above that by projected successive over-relaxation [Cryer71]; neither needs
+/// Paper: [Gauss1829]; the sign conditions make it the linear complementarity problem of [Baraff94]. Up to 64 touches
+/// it is solved by active sets [Lawson74], above that by projected successive over-relaxation [Cryer71]; neither needs
 /// touches to be independent of each other.
 ///
 /// Rounding: along the axes (all normals are unit vectors of an axis) bodies at rest come out at rest, exactly.

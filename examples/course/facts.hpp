@@ -17,8 +17,8 @@
 namespace kds::course {
 
 /// What a certificate says, of the elements of a set. One overload for each kind that is known; a certificate of yours
-/// may have a function fact(certificate, name) beside it, where name(element) gives the element's name, else it is called
-/// by its members.
+/// may have a function fact(certificate, name) beside it, where name(element) gives the element's name, else it is
+/// called by its members.
 template <class Element>
 class Facts {
  public:
