@@ -105,7 +105,7 @@ class World final : private PairListener {
   bool held_at_wall(BodyId a, int wall) const;
 
   WorldCounters counters() const;
-  /// The broad phase in use: a name of broad_phase_kind.hpp, but never "auto".
+  /// The broad phase in use: a name of broad_phase_kind.hpp; "auto" is "grid", or "few-boxes" with few bodies.
   std::string_view broad_phase() const { return broad_phase_->name(); }
   /// All zero but for `other` unless WorldOptions.profile is set.
   const Profile& work_profile() const { return profile_; }

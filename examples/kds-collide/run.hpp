@@ -24,7 +24,7 @@ struct RunOptions {
 
 /// What a run took and did.
 struct RunResult {
-  std::string broad_phase;       ///< the one used; never "auto"
+  std::string broad_phase;       ///< the one used, as World::broad_phase() names it
   double setup_cpu_seconds = 0;  ///< from the scene to the first instant
   double run_cpu_seconds = 0;    ///< from there on
   double sim_seconds = 0;        ///< simulated time

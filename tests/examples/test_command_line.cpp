@@ -83,7 +83,7 @@ TEST_CASE("command line: --until, --stats and the summary") {
   }
   CHECK(stats["sim_seconds"] == 2);
   CHECK(stats["contacts"] == 1);
-  CHECK(stats["broad_phase"] == "all-pairs");  // of two bodies
+  CHECK(stats["broad_phase"] == "few-boxes");  // what auto is with two bodies
   CHECK(stats["peak_memory_bytes"] > 100'000);
 }
 
