@@ -24,8 +24,8 @@ void add(BroadPhaseCounters& sum, const BroadPhaseCounters& work) {
 /// The pairs that one has and the other has not.
 template <int Degree>
 template <class From, class To>
-void AdaptiveBroadPhase<Degree>::report_changes(std::span<const Entry> bodies, const From& from, const To& to, double now,
-                                                PairListener& listener) {
+void AdaptiveBroadPhase<Degree>::report_changes(std::span<const Entry> bodies, const From& from, const To& to,
+                                                double now, PairListener& listener) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const auto [a, b] = std::minmax(bodies[i].id, bodies[j].id);

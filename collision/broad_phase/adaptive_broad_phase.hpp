@@ -9,19 +9,19 @@
 
 namespace kds::collision {
 
-/// A few boxes compared each with all others, the kinetic grid from 65 bodies on, and back when most have gone. A change
-/// reports just the pairs that one has and the other has not, so no contact is lost.
+/// A few boxes compared each with all others, the kinetic grid from 65 bodies on, and back when most have gone. A
+/// change reports just the pairs that one has and the other has not, so no contact is lost.
 ///
-/// These two are enough: of some thousands of random scenes of 4 to 64 bodies (docs/speed.md) none was cheaper in the
-/// grid, and by all pairs but some of four, by a few hundredths; the grid is the cheapest of the others at nearly all
-/// sizes, densities and rates that were measured.
+/// These two are enough. Of some thousands of random scenes of 4 to 64 balls of all sizes, speeds, densities and rates
+/// none was cheaper in the grid, and with sorted lists or all pairs a few of under ten, by some hundredths. Among the
+/// others the grid is the cheapest in nearly all that were measured (docs/speed.md).
 template <int Degree>
 class AdaptiveBroadPhase final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  /// `threads`: see KineticGrid. At most `most_for_few` bodies, itself at most FewBoxes::most, are compared each with all
-  /// others at first, and half as many when others have gone.
+  /// `threads`: see KineticGrid. At most `most_for_few` bodies, itself at most FewBoxes::most, are compared each with
+  /// all others at first, and half as many when others have gone.
   explicit AdaptiveBroadPhase(std::size_t threads = 1, std::size_t most_for_few = FewBoxes<Degree>::most)
       : most_for_few_(most_for_few), threads_(threads) {}
 

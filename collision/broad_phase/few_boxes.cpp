@@ -19,8 +19,13 @@ constexpr double largest = std::numeric_limits<double>::max();
 /// How far bodies move in the first span, over their size.
 constexpr double first_reach = 2;
 
-/// A pair costs as much as so many comparisons of boxes, with its test.
+/// A pair costs as much as so many comparisons of boxes, with its test; and a new box.
 constexpr std::uint64_t comparisons_per_pair = 16;
+constexpr std::uint64_t comparisons_per_box = 12;
+
+/// What pairs may cost in a span, over what new boxes for all do: less makes the next longer, more shorter. Some pairs
+/// are there whatever the span, so it is not 1. Far more ends the span at once: its length was told from other motions.
+constexpr std::uint64_t little = 1, much = 3, far_too_much = 12;
 
 /// The first so many bits.
 constexpr std::uint64_t first_places(std::size_t count) { return count == 64 ? ~0ull : (1ull << count) - 1; }
@@ -131,9 +136,16 @@ double FewBoxes<Degree>::first_span(double now) const {
   return span > 0 ? span : largest;
 }
 
+/// New boxes for all, in comparisons.
 template <int Degree>
-void FewBoxes<Degree>::begin_span(double now, double limit) {
-  until_ = std::min(limit, std::max(now + span_, next_up(now)));
+std::uint64_t FewBoxes<Degree>::cost_of_span() const {
+  return (bodies_.size() / 2 + comparisons_per_box) * bodies_.size();
+}
+
+/// `latest`: when it has to end.
+template <int Degree>
+void FewBoxes<Degree>::begin_span(double now, double latest) {
+  until_ = std::min(latest, std::max(now + span_, next_up(now)));
   spent_ = 0;
   ++counters_.certificates;
 }
@@ -144,10 +156,9 @@ void FewBoxes<Degree>::insert(std::span<const Entry> bodies, double now, PairLis
   if (before + bodies.size() > most) throw std::length_error("FewBoxes: more than 64 bodies");
   bodies_.reserve(before + bodies.size());
   for (const Entry& body : bodies) bodies_.push_back({body.id, *body.box});
-  if (before == 0) {
-    span_ = first_span(now);
-    begin_span(now, horizon_);  // many a run is not longer
-  }
+  // Many a run is not longer than the first horizon. What holds for longer than the span holds for the span.
+  span_ = before == 0 ? first_span(now) : std::min(span_, first_span(now));
+  begin_span(now, before == 0 ? horizon_ : until_);
   for (std::size_t place = before; place < bodies_.size(); ++place) {
     const StaticBox box = swept(bodies_[place].box, now);
     put(place, box);
@@ -182,13 +193,18 @@ void FewBoxes<Degree>::update(BodyId id, const KineticBox<Degree>& box, double n
   put(place, fat);
   change(place, overlaps(fat, bodies_.size()), bodies_.size(), now, listener);
   spent_ += static_cast<std::uint64_t>(std::popcount(partners_[place]));
+  if (comparisons_per_pair * spent_ <= far_too_much * cost_of_span() || !(until_ > now)) return;
+  span_ = std::min(span_, first_span(now));
+  until_ = now;
 }
 
 /// Begins the next span; true if it reported a pair.
 template <int Degree>
 bool FewBoxes<Degree>::renew(double now, PairListener& listener) {
-  const std::uint64_t compared = bodies_.size() * bodies_.size() / 2;
-  span_ = std::min(span_ * (comparisons_per_pair * spent_ > compared ? 0.75 : 1.5), largest);
+  const std::uint64_t spent = comparisons_per_pair * spent_;
+  const std::uint64_t cost = cost_of_span();
+  if (spent > much * cost) span_ *= 0.75;
+  if (spent < little * cost) span_ = std::min(span_ * (8 * spent < cost ? 4 : 1.5), largest);
   begin_span(now, never);
   for (std::size_t place = 0; place < bodies_.size(); ++place) put(place, swept(bodies_[place].box, now));
   bool any = false;

@@ -17,9 +17,10 @@ namespace kds::collision {
 /// nothing to set up.
 ///
 /// The span ends at the horizon, if that is near. Else it is what balances the cost of new boxes and that of pairs: the
-/// next is longer if fewer pairs came, or had their motions changed, than boxes were compared, and shorter if more. All
-/// that changes the cost, never the contacts.
-/// Cost: O(n) a motion change, with a small constant; O(n^2) a span. No queue, no allocation once the bodies are there.
+/// next is longer if pairs, by their tests, cost less than new boxes for all do, and shorter if more. All that changes
+/// the cost, never the contacts.
+/// Cost: O(n) a motion change and O(n^2) a span, both with a small constant: two boxes are compared at a time, without
+/// a branch. No queue, and no allocation once the bodies are there.
 template <int Degree>
 class FewBoxes final : public BroadPhase<Degree> {
  public:
@@ -65,7 +66,8 @@ class FewBoxes final : public BroadPhase<Degree> {
   };
 
   std::size_t place_of(BodyId id) const;
-  void begin_span(double now, double limit);
+  std::uint64_t cost_of_span() const;
+  void begin_span(double now, double latest);
   double first_span(double now) const;
   StaticBox swept(const KineticBox<Degree>& box, double now) const;
   void put(std::size_t place, const StaticBox& box);
