@@ -100,7 +100,9 @@ Ratio measure(const Cell& cell, const Settings& settings, std::ofstream& file) {
     entrants.push_back({m.name, [&scene, &drive, &m] { return to_run(run_method(scene, m, drive)); }});
   }
   RaceOptions options;
-  options.rounds = settings.quick ? 1 : 7;
+  options.rounds = settings.quick ? 1 : 5;
+  options.most_rounds = settings.quick ? 1 : 50;
+  options.least = 0.01;  // so that all have their turns within a short time
   options.patience = 4;
   const auto results = race(entrants, options);
   check_agreement(results, name(cell));

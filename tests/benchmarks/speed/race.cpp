@@ -13,9 +13,9 @@
 namespace speed {
 namespace {
 
-/// The run of median length of some, after one that is not counted: a new process has its memory still to get. It keeps
-/// what it got: whether the C library gives memory back to the system between runs, to get it anew page by page, would
-/// depend on the sizes of an entrant's blocks.
+/// Of some runs that than which a tenth are shorter, after one that is not counted: a new process has its memory still
+/// to get. It keeps what it got: whether the C library gives memory back to the system between runs, to get it anew page
+/// by page, would depend on the sizes of an entrant's blocks.
 Run repeated(const Entrant& entrant, std::size_t times) {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
@@ -24,9 +24,9 @@ Run repeated(const Entrant& entrant, std::size_t times) {
   entrant.run();
   std::vector<Run> runs;
   for (std::size_t k = 0; k < times; ++k) runs.push_back(entrant.run());
-  const auto middle = runs.begin() + static_cast<std::ptrdiff_t>(runs.size() / 2);
-  std::nth_element(runs.begin(), middle, runs.end(), [](const Run& x, const Run& y) { return x.total() < y.total(); });
-  return *middle;
+  const auto tenth = runs.begin() + static_cast<std::ptrdiff_t>(runs.size() / 10);
+  std::nth_element(runs.begin(), tenth, runs.end(), [](const Run& x, const Run& y) { return x.total() < y.total(); });
+  return *tenth;
 }
 
 }  // namespace
@@ -62,16 +62,24 @@ std::vector<Result> race(const std::vector<Entrant>& entrants, const RaceOptions
     }
     results.push_back(std::move(result));
   }
-  for (int round = 1; round < options.rounds; ++round) {
-    for (std::size_t i = 0; i < entrants.size(); ++i) {
+  const double hopeless = options.hopeless * best;  // of first runs, which have their memory still to get
+  int last_gain = 0;  // the round in which somebody's best has become better
+  for (int round = 1; round < std::max(options.rounds, options.most_rounds); ++round) {
+    const bool extra = round >= options.rounds;
+    if (extra && round - last_gain > settled_rounds) break;
+    for (std::size_t k = 0; k < entrants.size(); ++k) {
+      const std::size_t i = round % 2 == 0 ? k : entrants.size() - 1 - k;
       Result& result = results[i];
       const double once = result.best.total();
-      if (result.cut || once > options.hopeless * best || once * round > options.patience) continue;
+      if (result.cut || once > hopeless || once * round > options.patience) continue;
+      if (extra && once > options.far * best) continue;
       const auto times = static_cast<std::size_t>(std::clamp(options.least / once, 1.0, 1000.0));
       const auto run = isolated(std::numeric_limits<double>::infinity(), [&] { return repeated(entrants[i], times); });
       if (!run) throw std::runtime_error(entrants[i].name + ": a run was ended");
+      if (run->total() < (1 - settled_part) * once) last_gain = round;
       result.best_run = std::min(result.best_run, run->run);
       if (run->total() < once) result.best = *run;
+      best = std::min(best, result.best.total());
     }
   }
   return results;

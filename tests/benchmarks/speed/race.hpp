@@ -37,13 +37,19 @@ struct Entrant {
 
 struct RaceOptions {
   int rounds = 5;            ///< of each that is not too slow; the best counts
+  int most_rounds = 0;       ///< if more: they go on, up to so many, until all have settled
   double hopeless = 20;      ///< times the best so far: ended there and not run again
+  double far = 2;            ///< times the best so far: no more than `rounds`
   double floor = 0.25;       ///< CPU s that everybody gets
   double cap = 20;           ///< CPU s that nobody gets more of
-  double least = 0.02;       ///< CPU s a round is filled with by repeating short runs, of which the median counts; each
-                             ///< round begins with a run that does not count, but for the first, which is that alone
+  double least = 0.02;       ///< CPU s a round is filled with by repeating short runs, of which the lower tenth counts;
+                             ///< each round begins with a run that does not count, but for the first, which is that
   double patience = 8;       ///< CPU s after which an entrant has no further rounds
 };
+
+/// All have settled when in so many rounds nobody's best has fallen by more than this part.
+inline constexpr int settled_rounds = 6;
+inline constexpr double settled_part = 0.01;
 
 struct Result {
   std::string name;
@@ -52,7 +58,11 @@ struct Result {
   double best_run = 0; ///< the least `run` of all rounds, set-up aside
 };
 
-/// Runs all in turn, round by round, each run in a process of its own. Results in the order of the entrants.
+/// Runs all in turn, round by round, each run in a process of its own; every other round in the reverse order. Results
+/// in the order of the entrants.
+///
+/// What else the machine does only lengthens a run. So the best of all counts, and is found when it has not become any
+/// better for some rounds: a rule that looks at no ratio, and treats all near the best alike.
 std::vector<Result> race(const std::vector<Entrant>& entrants, const RaceOptions& options);
 
 /// Throws std::runtime_error where two that were not cut found other events.

@@ -7,8 +7,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <tuple>
 #include <vector>
 
@@ -159,4 +162,36 @@ TEST_CASE("speed race: what takes too long is ended, and different events are no
   CHECK_NOTHROW(check_agreement({results[0], results[2]}, "test"));
   CHECK_THROWS_AS(isolated(1, []() -> int { throw std::runtime_error("a run that fails, on purpose"); }),
                   std::runtime_error);
+}
+
+TEST_CASE("speed race: rounds go on until nobody becomes better", "[speed]") {
+  // Counts runs of all processes; each of which says how long it has taken.
+  void* memory = mmap(nullptr, 2 * sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  REQUIRE(memory != MAP_FAILED);
+  int* const runs = new (memory) int[2]{0, 0};
+  const auto entrant = [&](int which, int better_for, double start) {
+    return [=] {
+      Run run;
+      run.run = start * std::pow(0.95, std::min(++runs[which], better_for));
+      return run;
+    };
+  };
+  RaceOptions options;
+  options.rounds = 3;
+  options.most_rounds = 40;
+  options.least = 0;
+  const auto rounds_of = [&](int which) { return (runs[which] + 1) / 2; };  // of two runs each, but for the first
+  race({{"steady", entrant(0, 0, 1e-3)}, {"far", entrant(1, 0, 3e-3)}}, options);
+  CHECK(rounds_of(0) == 1 + settled_rounds);
+  CHECK(rounds_of(1) == 3);
+  runs[0] = runs[1] = 0;
+  const auto results = race({{"steady", entrant(0, 0, 1e-3)}, {"better", entrant(1, 10, 1.1e-3)}}, options);
+  CHECK(rounds_of(1) >= 5 + settled_rounds);
+  CHECK(rounds_of(1) < 40);
+  CHECK(rounds_of(0) == rounds_of(1));
+  CHECK(results[1].best.total() == Approx(1.1e-3 * std::pow(0.95, 10)));
+  runs[0] = runs[1] = 0;
+  race({{"steady", entrant(0, 0, 1e-3)}, {"endless", entrant(1, 1000, 1.1e-3)}}, options);
+  CHECK(rounds_of(1) == 40);
+  munmap(memory, 2 * sizeof(int));
 }
