@@ -14,10 +14,10 @@
 namespace kds::collision {
 namespace {
 
-constexpr double largest = std::numeric_limits<double>::max();
+constexpr double greatest_double = std::numeric_limits<double>::max();
 
 /// How far bodies move in the first span, over their size.
-constexpr double first_reach = 2;
+constexpr double first_reach_per_size = 2;
 
 /// A pair costs as much as so many comparisons of boxes, with its test; and a new box.
 constexpr std::uint64_t comparisons_per_pair = 16;
@@ -25,12 +25,10 @@ constexpr std::uint64_t comparisons_per_box = 12;
 
 /// What pairs may cost in a span, over what new boxes for all do: less makes the next longer, more shorter. Some pairs
 /// are there whatever the span, so it is not 1. Far more ends the span at once: its length was told from other motions.
-constexpr std::uint64_t little = 1, much = 3, far_too_much = 12;
+constexpr std::uint64_t little_cost = 1, much_cost = 3, far_too_much_cost = 12;
 
 /// The first so many bits.
 constexpr std::uint64_t first_places(std::size_t count) { return count == 64 ? ~0ull : (1ull << count) - 1; }
-
-StaticBox whole_space() { return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)}; }
 
 }  // namespace
 
@@ -45,7 +43,7 @@ template <int Degree>
 StaticBox FewBoxes<Degree>::swept(const KineticBox<Degree>& box, double now) const {
   // No body moves on from where it is if the clock stands at the end of the span.
   const double until = std::max(now, until_);
-  if (!(until <= largest)) {
+  if (!(until <= greatest_double)) {
     const auto still = [](const certificates::PointMotion<Degree>& end) {
       for (std::size_t i = 1; i <= Degree; ++i) {
         if (!end.coefficients[i].isZero(0)) return false;
@@ -56,7 +54,7 @@ StaticBox FewBoxes<Degree>::swept(const KineticBox<Degree>& box, double now) con
     return box_at(box, now);
   }
   const StaticBox swept = swept_box(box, now, until);
-  return (swept.min >= -largest).all() && (swept.max <= largest).all() ? swept : whole_space();
+  return (swept.min >= -greatest_double).all() && (swept.max <= greatest_double).all() ? swept : whole_space();
 }
 
 template <int Degree>
@@ -130,10 +128,10 @@ double FewBoxes<Degree>::first_span(double now) const {
     speed += velocity;
     bend += force;
   }
-  const double reach = first_reach * size;
-  double span = speed > 0 ? reach / speed : largest;
+  const double reach = first_reach_per_size * size;
+  double span = speed > 0 ? reach / speed : greatest_double;
   if (bend > 0) span = std::min(span, std::sqrt(reach / bend));
-  return span > 0 ? span : largest;
+  return span > 0 ? span : greatest_double;
 }
 
 /// New boxes for all, in comparisons.
@@ -193,7 +191,7 @@ void FewBoxes<Degree>::update(BodyId id, const KineticBox<Degree>& box, double n
   put(place, fat);
   change(place, overlaps(fat, bodies_.size()), bodies_.size(), now, listener);
   spent_ += static_cast<std::uint64_t>(std::popcount(partners_[place]));
-  if (comparisons_per_pair * spent_ <= far_too_much * cost_of_span() || !(until_ > now)) return;
+  if (comparisons_per_pair * spent_ <= far_too_much_cost * cost_of_span() || !(until_ > now)) return;
   span_ = std::min(span_, first_span(now));
   until_ = now;
 }
@@ -203,8 +201,8 @@ template <int Degree>
 bool FewBoxes<Degree>::renew(double now, PairListener& listener) {
   const std::uint64_t spent = comparisons_per_pair * spent_;
   const std::uint64_t cost = cost_of_span();
-  if (spent > much * cost) span_ *= 0.75;
-  if (spent < little * cost) span_ = std::min(span_ * (8 * spent < cost ? 4 : 1.5), largest);
+  if (spent > much_cost * cost) span_ *= 0.75;
+  if (spent < little_cost * cost) span_ = std::min(span_ * (8 * spent < cost ? 4 : 1.5), greatest_double);
   begin_span(now, never);
   for (std::size_t place = 0; place < bodies_.size(); ++place) put(place, swept(bodies_[place].box, now));
   bool any = false;

@@ -51,8 +51,6 @@ double exit_time(const KineticBox<Degree>& box, const StaticBox& present, const 
   return time * (1 - 0x1p-20);
 }
 
-StaticBox whole_space() { return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)}; }
-
 }  // namespace
 
 /// Seconds until a box has moved by its reach, `never` if it is at rest; exact for straight paths, up to rounding.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kds::collision {
 
@@ -19,6 +20,12 @@ struct StaticBox {
   bool contains(const StaticBox& other) const { return (min <= other.min).all() && (other.max <= max).all(); }
   double extent() const { return (max - min).maxCoeff(); }
 };
+
+/// Holds all boxes of finite numbers.
+inline StaticBox whole_space() {
+  constexpr double largest = std::numeric_limits<double>::max();
+  return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)};
+}
 
 /// Extremes of a moving point's coordinates over [from, to], rounded outward.
 ///
