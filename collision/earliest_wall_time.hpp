@@ -53,7 +53,7 @@ inline double earliest_wall_time_of_all(const certificates::PointMotion<1>& moti
     const Two error = 0x1p-49 * (size(speed > 0 ? high : low) + size(at) + size(moved) + radius);
     const Two time = (gap - error) / size(speed);
     constexpr Two nothing{never, never};
-    return (speed != 0) & (time < never) ? time : nothing;
+    return ((speed != 0) & (time < never)) ? time : nothing;
   };
   const Two xy = wait(0, 1);
   const Two z = wait(2, 2);

@@ -50,6 +50,7 @@ class ListArena {
   /// All lists are lost.
   void clear() {
     memory_.clear();
+    used_ = 0;
     for (auto& free : free_) free.clear();
   }
 
@@ -57,21 +58,30 @@ class ListArena {
   static std::size_t place(std::uint32_t room) { return static_cast<std::size_t>(std::countr_zero(room)); }
 
   void grow(List& list, std::uint32_t room) {
-    auto& free = free_[place(room)];
-    auto begin = static_cast<std::uint32_t>(memory_.size());
-    if (free.empty()) {
-      memory_.resize(memory_.size() + room);
-    } else {
-      begin = free.back();
-      free.pop_back();
-    }
-    std::copy_n(memory_.begin() + list.begin, list.size, memory_.begin() + begin);
+    const std::uint32_t begin = block(room);
     const std::uint32_t size = list.size;
-    this->free(list);
+    if (list.room > 0) {
+      std::copy_n(memory_.begin() + list.begin, size, memory_.begin() + begin);
+      free(list);
+    }
     list = {begin, size, room};
   }
 
+  /// Where there is so much room.
+  std::uint32_t block(std::uint32_t room) {
+    if (auto& free = free_[place(room)]; !free.empty()) {
+      const std::uint32_t begin = free.back();
+      free.pop_back();
+      return begin;
+    }
+    const std::size_t begin = used_;
+    used_ += room;
+    if (used_ > memory_.size()) memory_.resize(std::max<std::size_t>(2 * memory_.size(), used_ + 16 * room));
+    return static_cast<std::uint32_t>(begin);
+  }
+
   std::vector<T> memory_;
+  std::size_t used_ = 0;                             ///< of memory_: lists and what has been given back
   std::array<std::vector<std::uint32_t>, 32> free_;  ///< beginnings, by the logarithm of their room
 };
 

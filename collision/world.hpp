@@ -249,10 +249,10 @@ class World final : private PairListener {
   std::unique_ptr<BroadPhase<Degree>> broad_phase_;
   std::vector<Mover> movers_;  // by body
   std::vector<Body> bodies_;
+  ListArena<Link> links_;  // pairs of each body
   std::vector<BodyId> free_bodies_;
   std::vector<BodyId> entering_;
   std::vector<Pair> pairs_;
-  ListArena<Link> links_;  // pairs of each body
   std::vector<PairSlot> free_pairs_;
   std::vector<PairSlot> dirty_;
   std::vector<double> estimates_;               // by place in dirty_: see estimate_balls()

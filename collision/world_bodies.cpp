@@ -110,14 +110,12 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
 
 /// The bounding volume as it is: what the caller's function gave last, or what the motion gives.
 template <int Degree>
-KineticBox<Degree> World<Degree>::bounding_box(BodyId id) const {
+inline KineticBox<Degree> World<Degree>::bounding_box(BodyId id) const {
   const Body& b = bodies_[id];
   if (b.extras && b.extras->box_function) return b.extras->box;
-  if (!b.shape || b.volume == BoundingVolume::sphere) {
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
-    return box_around(movers_[id].motion, -reach, reach);
-  }
-  return box_around(movers_[id].motion, b.shape->low, b.shape->high);
+  const bool sphere = !b.shape || b.volume == BoundingVolume::sphere;
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
+  return box_around<Degree>(movers_[id].motion, sphere ? -reach : b.shape->low, sphere ? reach : b.shape->high);
 }
 
 /// A bounding volume for the present motion.

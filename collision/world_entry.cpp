@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -114,14 +116,13 @@ void World<Degree>::enter_new_bodies() {
     b.entered = true;
     entries.push_back({id, nullptr});
   }
-  std::vector<KineticBox<Degree>> boxes(entries.size());
+  const auto boxes = std::make_unique_for_overwrite<KineticBox<Degree>[]>(entries.size());
   // The functions of callers are called by their own thread, and in order.
   const bool functions = volumes_.slots() > 0;
   const std::size_t threads = functions ? 1 : threads_for(entries.size(), options_.threads);
   in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      boxes[i] = renewed_box(entries[i].id);
-      entries[i].box = &boxes[i];
+      entries[i].box = new (&boxes[i]) KineticBox<Degree>(renewed_box(entries[i].id));  // not copied there
     }
   });
   inserting_ = true;

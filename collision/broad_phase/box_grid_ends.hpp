@@ -31,6 +31,12 @@ inline CellTable::Ends row_mark(std::size_t d, std::int64_t cell) {
   return mark << 48 | (mark ^ (d == 1 ? bits : 0xF0)) << 56;
 }
 
+/// The marks of both coordinates.
+inline CellTable::Ends row_marks(std::int64_t y, std::int64_t z) {
+  const auto mark = static_cast<CellTable::Ends>((y & 0xF) | (z & 0x7) << 4);
+  return (mark | (mark ^ 0xFF) << 8) << 48;
+}
+
 /// A box on the lattice of a level: (min, -max), like Bounds.
 struct BoxGrid::Ends {
   Ends() = default;
@@ -47,8 +53,12 @@ struct BoxGrid::Ends {
   static std::int64_t on_lattice(double x) { return std::llrint(clamped(Two{x, x})[0]); }
   static Two clamped(Two x) {
     constexpr Two most{0x1p61, 0x1p61};
+#ifdef __SSE2__
+    return _mm_max_pd(_mm_min_pd(x, most), -most);
+#else
     x = x < most ? x : most;
     return x > -most ? x : -most;
+#endif
   }
   static std::int64_t cell_of(std::int64_t x) { return x >> lattice_bits; }
 
@@ -84,7 +94,7 @@ struct BoxGrid::Ends {
     const CellTable::Ends corner = low & ~within;
     constexpr CellTable::Ends carries = 0x7F7F7F;
     const CellTable::Ends sum = ((minus_high & carries) + (corner & carries)) ^ ((minus_high ^ corner) & ~carries);
-    return (low & within) | sum << 24 | row_mark(1, cell(1)) | row_mark(2, cell(2));
+    return (low & within) | sum << 24 | row_marks(cell(1), cell(2));
   }
 
   /// What boxes in cells of this coordinate may not exceed if they overlap.

@@ -64,12 +64,13 @@ bool BoxPairs::choose_cells(std::span<const StaticBox> boxes) {
 bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
   const std::size_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
   std::vector<Index> cells(boxes.size());
+  const auto whole = [](double x) { return static_cast<std::size_t>(static_cast<std::int64_t>(x)); };
   in_parts(boxes.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Eigen::Array3d at = (boxes[i].min - corner_) * scale_;
-      const std::size_t x = std::min(static_cast<std::size_t>(at[0]), nx - 1);
-      const std::size_t y = std::min(static_cast<std::size_t>(at[1]), ny - 1);
-      const std::size_t z = std::min(static_cast<std::size_t>(at[2]), nz - 1);
+      const std::size_t x = std::min(whole(at[0]), nx - 1);
+      const std::size_t y = std::min(whole(at[1]), ny - 1);
+      const std::size_t z = std::min(whole(at[2]), nz - 1);
       cells[i] = static_cast<Index>((z * ny + y) * nx + x);
     }
   });
@@ -81,15 +82,19 @@ bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
   for (Index& cell : begin_) cell = end += cell;  // first the ends, which then go down to the beginnings
   order_.resize(boxes.size());
   for (std::size_t i = boxes.size(); i-- > 0;) order_[--begin_[cells[i]]] = static_cast<Index>(i);
+  cell_.resize(boxes.size());
   rough_.resize(boxes.size());
+  const Eigen::Array3d corner = corner_;
   in_parts(boxes.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t place = first; place < last; ++place) {
+      cell_[place] = cells[order_[place]];
       const StaticBox& box = boxes[order_[place]];
+      Rough rough{};
       for (int d = 0; d < 3; ++d) {
-        rough_[place].low[d] = static_cast<float>(box.min[d] - corner_[d]);
-        rough_[place].high[d] = static_cast<float>(box.max[d] - corner_[d]);
+        rough.low[d] = static_cast<float>(box.min[d] - corner[d]);
+        rough.high[d] = static_cast<float>(box.max[d] - corner[d]);
       }
-      rough_[place].low[3] = rough_[place].high[3] = 0;
+      rough_[place] = rough;
     }
   });
   return true;
@@ -99,6 +104,8 @@ bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
 void BoxPairs::search(std::span<const StaticBox> boxes, std::size_t first_row, std::size_t last_row,
                       std::vector<Pair>& found) const {
   const std::size_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
+  const Rough* const rough = rough_.data();  // lest they be looked up each time
+  const Index* const cell = cell_.data();
   for (std::size_t row = first_row; row < last_row; ++row) {
     const std::size_t y = row % ny;
     const bool top = row / ny + 1 == nz;
@@ -111,21 +118,20 @@ void BoxPairs::search(std::span<const StaticBox> boxes, std::size_t first_row, s
     if (!top) add_row(row + ny);
     if (!top && y + 1 < ny) add_row(row + ny + 1);
     const Index* const own = begin_.data() + row * nx;
-    for (std::size_t x = 0; x < nx; ++x) {
+    for (Index i = own[0]; i < own[nx]; ++i) {
+      const std::size_t x = cell[i] - row * nx;
       const std::size_t from = x - (x > 0);
       const std::size_t to = std::min(x + 2, nx);
-      for (Index i = own[x]; i < own[x + 1]; ++i) {
-        const Rough& box = rough_[i];
-        const auto compare = [&](Index begin, Index end) {
-          for (Index j = begin; j < end; ++j) {
-            if (!overlap(box, rough_[j])) continue;
-            const Index a = order_[i], b = order_[j];
-            if (boxes[a].overlaps(boxes[b])) found.push_back({a, b});
-          }
-        };
-        compare(i + 1, own[to]);
-        for (std::size_t k = 0; k < rows; ++k) compare(later[k][from], later[k][to]);
-      }
+      const Rough box = rough[i];
+      const auto compare = [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j) {
+          if (!overlap(box, rough[j])) continue;
+          const Index a = order_[i], b = order_[j];
+          if (boxes[a].overlaps(boxes[b])) found.push_back({a, b});
+        }
+      };
+      compare(i + 1, own[to]);
+      for (std::size_t k = 0; k < rows; ++k) compare(later[k][from], later[k][to]);
     }
   }
 }

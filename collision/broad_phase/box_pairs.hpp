@@ -15,7 +15,7 @@ namespace kds::collision {
 /// than the largest of them: what a box overlaps begins in its own cell or in one of the 26 around it, and of each two
 /// cells one looks into the other. In memory the cells of a row follow each other, so a box looks at five stretches.
 ///
-/// Cost: O(n) for n boxes of bounded density, some 150 instructions a box; memory 40 bytes a box. Which pairs there
+/// Cost: O(n) for n boxes of bounded density, some 300 instructions a box; memory 44 bytes a box. Which pairs there
 /// are, and their order, does not depend on the number of threads.
 ///
 /// Source: [Ericson05] section 7.1, for uniform grids by sorting.
@@ -52,6 +52,7 @@ class BoxPairs {
   std::array<std::size_t, 3> cells_{};  ///< along each axis
   std::vector<Index> begin_;            ///< first place of each cell, x fastest, and the end
   std::vector<Index> order_;
+  std::vector<Index> cell_;  ///< of each place
   std::vector<Rough> rough_;  ///< in order
   std::vector<Pair> pairs_;
 };

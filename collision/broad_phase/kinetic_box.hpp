@@ -29,13 +29,15 @@ struct KineticBox {
 /// Both ends at once, and without a branch, since nobody can predict how a sum rounds: where the rounding error points
 /// outward, the next double. A rounded sum is never zero.
 template <int Degree>
-KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& motion, const Eigen::Vector3d& low,
+inline KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& motion, const Eigen::Vector3d& low,
                               const Eigen::Vector3d& high) {
   using Two = double __attribute__((vector_size(16)));
   using TwoBits = std::int64_t __attribute__((vector_size(16)));
   constexpr Two outward{-1, 1};
   constexpr TwoBits step{-1, 1};
-  KineticBox<Degree> box{motion, motion};
+  KineticBox<Degree> box;
+  box.min.start = box.max.start = motion.start;
+  for (std::size_t i = 1; i <= Degree; ++i) box.min.coefficients[i] = box.max.coefficients[i] = motion.coefficients[i];
   for (int d = 0; d < 3; ++d) {
     const double at = motion.coefficients[0][d];
     const Two centre{at, at};

@@ -69,8 +69,8 @@ inline double KineticGrid<Degree>::lifetime(const Body& body, const BoxSweep<Deg
 /// `may_begin()`: whether a level coarser than `coarsest` may be begun just for the body's reach.
 template <int Degree>
 template <class MayBegin>
-inline auto KineticGrid<Degree>::fat_box(Body& body, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
-                                         double coarsest, MayBegin&& may_begin) const -> FatBox {
+inline auto KineticGrid<Degree>::fat_box(Body& body, const BoxSweep<Degree>& sweep, const StaticBox& present,
+                                         double now, double coarsest, MayBegin&& may_begin) const -> FatBox {
   body.fattened = now;
   const double size = present.extent();
   const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();

@@ -61,6 +61,15 @@ class KineticGrid final : public BroadPhase<Degree> {
   static constexpr std::uint64_t share_for_level = 8;
 
   struct Body {
+    /// As one that comes.
+    void begin(const KineticBox<Degree>& its_box, double its_reach) {
+      box = its_box;
+      reach = its_reach;
+      expiry = never;
+      begun = partners = changes = tests = 0;
+      jostled = 0;
+    }
+
     KineticBox<Degree> box;
     double reach = 0;            ///< how far it may move in its fat box
     double fattened = 0;         ///< when its fat box was made

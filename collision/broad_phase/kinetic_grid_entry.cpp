@@ -74,7 +74,7 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
     return insert_first(bodies, now, listener);
   }
   for (const Entry& entry : bodies) {
-    bodies_[entry.id] = {*entry.box, first_reach_, now, never, 0};
+    bodies_[entry.id].begin(*entry.box, first_reach_);
     const BoxSweep<Degree> sweep(bodies_[entry.id].box, now);
     renew(entry.id, sweep, sweep.begin(), now, listener);
   }
@@ -123,7 +123,7 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
     std::uint64_t tries = 0;
     for (std::size_t i = first; i < last; ++i) {
       Body& body = bodies_[bodies[i].id];
-      body = {*bodies[i].box, first_reach_, now, never, 0};
+      body.begin(*bodies[i].box, first_reach_);
       const FatBox fat = fitting_box(body, now, std::numeric_limits<double>::max());
       boxes[i] = fat.box;
       body.expiry = fat.expiry;
@@ -137,11 +137,16 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
 /// Where a level would be used by few, and just for their reach, boxes are cut to fit the next that is used by more.
 template <int Degree>
 void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now) {
+  double least = boxes[0].extent();
+  double most = least;
+  for (const StaticBox& box : boxes) {
+    least = std::min(least, box.extent());
+    most = std::max(most, box.extent());
+  }
+  if (fat_boxes_.room_for(least) == fat_boxes_.room_for(most)) return;
   std::vector<double> extents;
   extents.reserve(boxes.size());
   for (const StaticBox& box : boxes) extents.push_back(box.extent());
-  const auto [least, most] = std::minmax_element(extents.begin(), extents.end());
-  if (fat_boxes_.room_for(*least) == fat_boxes_.room_for(*most)) return;
   const auto last = extents.end() - 1 - static_cast<std::ptrdiff_t>(boxes.size() / share_for_level);
   std::nth_element(extents.begin(), last, extents.end());
   const double coarsest = fat_boxes_.room_for(*last);

@@ -105,6 +105,14 @@ struct AlikeEnds {
   Number moved;
 };
 
+/// A box that holds a kinetic box over [from, to].
+template <int Degree>
+StaticBox swept_by_corners(const KineticBox<Degree>& box, double from, double to) {
+  const StaticBox low = swept_point(box.min, from, to);
+  const StaticBox high = swept_point(box.max, from, to);
+  return {low.min.min(high.min), low.max.max(high.max)};
+}
+
 }  // namespace detail
 
 /// What a kinetic box sweeps from an instant on, also one whose ends have passed each other. Refers to the box.
@@ -117,11 +125,7 @@ class BoxSweep {
   BoxSweep(const KineticBox<Degree>& box, double from) : box_(box), from_(from) {}
 
   /// A box that holds it over [from, to].
-  StaticBox until(double to) const {
-    const StaticBox low = swept_point(box_.min, from_, to);
-    const StaticBox high = swept_point(box_.max, from_, to);
-    return {low.min.min(high.min), low.max.max(high.max)};
-  }
+  StaticBox until(double to) const { return detail::swept_by_corners(box_, from_, to); }
   /// until(from).
   StaticBox begin() const { return until(from_); }
   /// The greatest of its velocities at first, by magnitude.
@@ -146,11 +150,14 @@ class BoxSweep<1> {
         z_(box.min.coefficients[0][2], box.max.coefficients[0][2], box.min.coefficients[1][2], from - box.min.start) {}
 
   StaticBox until(double to) const {
-    if (!alike_) return until_by_corners(to);
+    if (!alike_) return detail::swept_by_corners(box_, from_, to);
     const double elapsed = to - box_.min.start;
     return joined(xy_.until(xy_.velocity * elapsed), z_.until(z_.velocity * elapsed));
   }
-  StaticBox begin() const { return alike_ ? joined(xy_.until(xy_.moved), z_.until(z_.moved)) : until_by_corners(from_); }
+  StaticBox begin() const {
+    if (!alike_) return detail::swept_by_corners(box_, from_, from_);
+    return joined(xy_.until(xy_.moved), z_.until(z_.moved));
+  }
   double speed() const {
     const auto greatest = [](const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff(); };
     const double speed = greatest(box_.min.coefficients[1]);
@@ -163,11 +170,6 @@ class BoxSweep<1> {
   static Two xy(const Eigen::Vector3d& v) { return Two{v[0], v[1]}; }
   static StaticBox joined(const detail::AlikeEnds<Two>::Span& xy, const detail::AlikeEnds<double>::Span& z) {
     return {{xy.min[0], xy.min[1], z.min}, {xy.max[0], xy.max[1], z.max}};
-  }
-  StaticBox until_by_corners(double to) const {
-    const StaticBox low = swept_point(box_.min, from_, to);
-    const StaticBox high = swept_point(box_.max, from_, to);
-    return {low.min.min(high.min), low.max.max(high.max)};
   }
 
   const KineticBox<1>& box_;

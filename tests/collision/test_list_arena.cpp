@@ -1,0 +1,68 @@
+// Lists in one memory against vectors.
+#include "collision/list_arena.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace kds::collision {
+namespace {
+
+TEST_CASE("Lists in an arena hold what vectors hold", "[list_arena]") {
+  constexpr std::uint64_t seed = 1;
+  tests::Random random(seed);
+  ListArena<int> arena;
+  constexpr std::size_t lists = 20;
+  std::vector<ListArena<int>::List> list(lists);
+  std::vector<std::vector<int>> model(lists);
+  std::size_t differences = 0;
+  std::size_t longest = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    const std::size_t i = random.below(lists);
+    const auto dice = random.below(1000);
+    if (dice == 0 && round % 7 == 0) {
+      arena.clear();
+      std::fill(list.begin(), list.end(), ListArena<int>::List{});
+      for (auto& values : model) values.clear();
+    } else if (dice < 5) {
+      arena.free(list[i]);
+      model[i].clear();
+    } else if (dice < 450 && !model[i].empty()) {
+      arena.pop_back(list[i]);
+      model[i].pop_back();
+    } else {
+      arena.push_back(list[i], round, static_cast<std::uint32_t>(1 + random.below(9)));
+      model[i].push_back(round);
+    }
+    longest = std::max(longest, model[i].size());
+    for (std::size_t k = 0; k < lists; ++k) {
+      const auto items = arena.items(list[k]);
+      differences += !std::equal(items.begin(), items.end(), model[k].begin(), model[k].end());
+      differences += list[k].empty() != model[k].empty();
+    }
+  }
+  INFO("seed " << seed);
+  CHECK(differences == 0);
+  CHECK(longest > 32);
+}
+
+TEST_CASE("Room that was given back is used again", "[list_arena]") {
+  ListArena<int> arena;
+  ListArena<int>::List first;
+  arena.push_back(first, 1, 3);
+  const auto* const place = arena.items(first).data();
+  CHECK(first.room == 4);
+  arena.free(first);
+  CHECK(first.room == 0);
+  ListArena<int>::List second, third;
+  arena.push_back(second, 2);
+  arena.push_back(third, 3);
+  CHECK(arena.items(second).data() == place);
+  CHECK(arena.items(third).data() != place);
+}
+
+}  // namespace
+}  // namespace kds::collision
