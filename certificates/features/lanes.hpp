@@ -1,20 +1,20 @@
 // Four doubles at a time.
 #pragma once
 
+#include "kds/arithmetic/two.hpp"
+
 #include <cstddef>
-#include <cstdint>
 
 namespace kds::certificates {
 
-/// The compiler's own vectors, two of two: one SSE or NEON register each, or two numbers where there are none.
-struct Lanes {
-  using Pair = double __attribute__((vector_size(16)));
-  using PairBits = std::int64_t __attribute__((vector_size(16)));
+using kds::greater;
+using kds::lesser;
 
-  Pair low, high;
+struct Lanes {
+  Two low, high;
 
   Lanes() = default;
-  Lanes(Pair l, Pair h) : low(l), high(h) {}
+  Lanes(Two l, Two h) : low(l), high(h) {}
   Lanes(double a, double b, double c, double d) : low{a, b}, high{c, d} {}
   explicit Lanes(double x) : low{x, x}, high{x, x} {}
 
@@ -27,15 +27,7 @@ struct Lanes {
   friend Lanes operator/(Lanes a, Lanes b) { return {a.low / b.low, a.high / b.high}; }
 };
 
-inline Lanes absolute(Lanes x) {
-  const Lanes::PairBits mask{0x7fffffffffffffff, 0x7fffffffffffffff};
-  return {reinterpret_cast<Lanes::Pair>(reinterpret_cast<Lanes::PairBits>(x.low) & mask),
-          reinterpret_cast<Lanes::Pair>(reinterpret_cast<Lanes::PairBits>(x.high) & mask)};
-}
-
-/// Lane by lane; where one is not a number the second.
-inline Lanes::Pair lesser(Lanes::Pair x, Lanes::Pair y) { return x < y ? x : y; }
-inline Lanes::Pair greater(Lanes::Pair x, Lanes::Pair y) { return x > y ? x : y; }
+inline Lanes absolute(Lanes x) { return {magnitude(x.low), magnitude(x.high)}; }
 inline Lanes lesser(Lanes x, Lanes y) { return {lesser(x.low, y.low), lesser(x.high, y.high)}; }
 inline Lanes greater(Lanes x, Lanes y) { return {greater(x.low, y.low), greater(x.high, y.high)}; }
 
@@ -50,15 +42,15 @@ inline Lanes next(Lanes x) {
 }
 
 inline double sum_of(Lanes x) {
-  const Lanes::Pair sums = x.low + x.high;
+  const Two sums = x.low + x.high;
   return sums[0] + sums[1];
 }
 inline double lowest(Lanes x) {
-  const Lanes::Pair m = lesser(x.low, x.high);
+  const Two m = lesser(x.low, x.high);
   return m[0] < m[1] ? m[0] : m[1];
 }
 inline double highest(Lanes x) {
-  const Lanes::Pair m = greater(x.low, x.high);
+  const Two m = greater(x.low, x.high);
   return m[0] > m[1] ? m[0] : m[1];
 }
 

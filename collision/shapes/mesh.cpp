@@ -66,10 +66,6 @@ std::vector<Mesh::Triangle> checked(std::span<const Vector3d> vertices, std::vec
   return triangles;
 }
 
-using Two = VertexPair::Two;
-
-Two both(double x) { return Two{x, x}; }
-
 }  // namespace
 
 Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/obb_tree.hpp"
+#include "kds/arithmetic/two.hpp"
 
 #include <Eigen/Core>
 
@@ -42,9 +43,8 @@ inline Eigen::Vector3d placed_vertex(const Eigen::Matrix3d& rotation, double sca
           rotation(2, 0) * x + rotation(2, 1) * y + rotation(2, 2) * z};
 }
 
-/// Two vertices, as the compiler's own vectors.
+/// Two vertices.
 struct VertexPair {
-  using Two = double __attribute__((vector_size(16)));
   Two x, y, z;
 };
 

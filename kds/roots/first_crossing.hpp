@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/arithmetic/ball.hpp"
+#include "kds/arithmetic/two.hpp"
 #include "kds/arithmetic/unrolled.hpp"
 #include "kds/polynomial.hpp"
 
@@ -62,9 +63,6 @@ struct ProjectivePoint {
   double w;
   double v;
 };
-
-/// The compiler's own vectors: an SSE or NEON register, or two numbers where there are none.
-using Pair = double __attribute__((vector_size(16)));
 
 enum class Pattern { positive, falls_once, other };
 
@@ -155,13 +153,13 @@ struct BernsteinPiece {
     error += 2.1 * Degree * 0x1p-53 * largest;
     // Two numbers at a time. What a stage makes of the number behind its last one is of no use, and not used.
     constexpr std::size_t pairs = Degree / 2 + 1;
-    std::array<Pair, pairs> row;
+    std::array<Two, pairs> row;
     unrolled<pairs>([&](auto j) {
       constexpr std::size_t second = 2 * j + 1;
-      row[j] = Pair{b[2 * j], second <= Degree ? b[std::min<std::size_t>(second, Degree)] : 0};
+      row[j] = Two{b[2 * j], second <= Degree ? b[std::min<std::size_t>(second, Degree)] : 0};
     });
-    const Pair near{mu, mu};
-    const Pair far{lambda, lambda};
+    const Two near = both(mu);
+    const Two far = both(lambda);
     unrolled<Degree>([&](auto k) {
       constexpr std::size_t last = Degree - k;
       left.b[k] = row[0][0];
