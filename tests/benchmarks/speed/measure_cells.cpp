@@ -101,7 +101,7 @@ Ratio measure(const Cell& cell, const Settings& settings, std::ofstream& file) {
   }
   RaceOptions options;
   options.rounds = settings.quick ? 1 : 5;
-  options.most_rounds = settings.quick ? 1 : 50;
+  options.most_rounds = settings.quick ? 1 : 80;
   options.least = 0.01;  // so that all have their turns within a short time
   options.patience = 4;
   const auto results = race(entrants, options);
