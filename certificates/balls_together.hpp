@@ -45,7 +45,7 @@ template <int PathDegree>
 
   TwoBits known = line.M + line.W + line.reach < Line::small;
   if constexpr (PathDegree > 1) known &= TwoBits{-one.relative_path_is_line(), -other.relative_path_is_line()};
-  const TwoBits parts = line.product > error;
+  const TwoBits parts = (line.product > error) | (line.W == 0.0);  // or one stands as seen from the other
   const TwoBits comes = (line.product < -error) & (least > 0.0);
   Two earliest = t <= horizon ? greater(t, both(now)) : both(never);  // t is a NaN where there is no root
   earliest = comes ? earliest : undecided;

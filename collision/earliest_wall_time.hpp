@@ -3,6 +3,7 @@
 
 #include "certificates/point_motion.hpp"
 #include "collision/world_options.hpp"
+#include "kds/arithmetic/two.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,11 +39,9 @@ double earliest_wall_time(const certificates::PointMotion<Degree>& motion, doubl
 /// The earliest of all walls'. Without a branch, since nobody can predict which walls bodies approach.
 inline double earliest_wall_time_of_all(const certificates::PointMotion<1>& motion, double radius, const Walls& walls,
                                         double now) {
-  using Two = double __attribute__((vector_size(16)));
   // As above, on two axes; `never` where a body does not move, or a wall is nowhere.
   const auto wait = [&](int d, int e) {
     const auto two = [&](const Eigen::Vector3d& v) { return Two{v[d], v[e]}; };
-    const auto size = [](Two x) { return x > -x ? x : -x; };
     const Two at = two(motion.coefficients[0]);
     const Two speed = two(motion.coefficients[1]);
     const Two low = two(walls.min);
@@ -50,10 +49,9 @@ inline double earliest_wall_time_of_all(const certificates::PointMotion<1>& moti
     const Two moved = speed * (now - motion.start);
     const Two position = at + moved;
     const Two gap = (speed > 0 ? high - position : position - low) - radius;
-    const Two error = 0x1p-49 * (size(speed > 0 ? high : low) + size(at) + size(moved) + radius);
-    const Two time = (gap - error) / size(speed);
-    constexpr Two nothing{never, never};
-    return ((speed != 0) & (time < never)) ? time : nothing;
+    const Two error = 0x1p-49 * (magnitude(speed > 0 ? high : low) + magnitude(at) + magnitude(moved) + radius);
+    const Two time = (gap - error) / magnitude(speed);
+    return ((speed != 0) & (time < never)) ? time : both(never);
   };
   const Two xy = wait(0, 1);
   const Two z = wait(2, 2);

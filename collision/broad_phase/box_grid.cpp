@@ -72,10 +72,10 @@ struct BoxGrid::Census {
   void add(const Bounds& box, const Ends& ends) {
     ++count;
     span = std::max(span, ends.span());
-    low_xy = box.xy < low_xy ? box.xy : low_xy;
-    low_zx = box.zx < low_zx ? box.zx : low_zx;
-    high_xy = box.xy > high_xy ? box.xy : high_xy;
-    high_zx = box.zx > high_zx ? box.zx : high_zx;
+    low_xy = lesser(box.xy, low_xy);
+    low_zx = lesser(box.zx, low_zx);
+    high_xy = greater(box.xy, high_xy);
+    high_zx = greater(box.zx, high_zx);
   }
   Population population(double scale) const {
     if (count == 0) return {};

@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/cell_table.hpp"
 #include "collision/broad_phase/swept_box.hpp"
+#include "kds/arithmetic/two.hpp"
 
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -115,9 +116,6 @@ class BoxGrid {
   static constexpr int least = -1000;  ///< exponent: the scale of such cells is a number
   static constexpr int most = 1023;    ///< all space is a few cells of this exponent
 
-  /// Two doubles at a time: one SSE or NEON register.
-  using Two = double __attribute__((vector_size(16)));
-
   /// A box as six numbers (min, -max). Boxes overlap if none of one's exceeds the same of the other's *limits*,
   /// (max, -min): three comparisons of two numbers.
   struct Bounds {
@@ -134,7 +132,7 @@ class BoxGrid {
 #endif
     }
     Bounds joined(const Bounds& other) const {
-      return {xy < other.xy ? xy : other.xy, zx < other.zx ? zx : other.zx, yz < other.yz ? yz : other.yz};
+      return {lesser(xy, other.xy), lesser(zx, other.zx), lesser(yz, other.yz)};
     }
     double extent() const { return std::max({-zx[1] - xy[0], -yz[0] - xy[1], -yz[1] - zx[0]}); }
     Bounds limits() const { return {Two{-zx[1], -yz[0]}, Two{-yz[1], -xy[0]}, Two{-xy[1], -zx[0]}}; }

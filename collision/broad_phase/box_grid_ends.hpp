@@ -50,7 +50,7 @@ struct BoxGrid::Ends {
   }
 
   /// Monotone, and as far below zero as above.
-  static std::int64_t on_lattice(double x) { return std::llrint(clamped(Two{x, x})[0]); }
+  static std::int64_t on_lattice(double x) { return std::llrint(clamped(both(x))[0]); }
   static Two clamped(Two x) {
     constexpr Two most{0x1p61, 0x1p61};
 #ifdef __SSE2__

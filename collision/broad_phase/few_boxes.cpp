@@ -83,7 +83,6 @@ template <int Degree>
 auto FewBoxes<Degree>::overlaps(const StaticBox& box, std::size_t count) const -> Row {
   TwoBits row{};
   TwoBits bit{1, 2};
-  const auto both = [](double x) { return Two{x, x}; };
   const Two low[] = {both(box.min[0]), both(box.min[1]), both(box.min[2])};
   const Two high[] = {both(box.max[0]), both(box.max[1]), both(box.max[2])};
   for (std::size_t i = 0; i < (count + 1) / 2; ++i, bit <<= 2) {

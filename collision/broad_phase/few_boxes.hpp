@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/swept_box.hpp"
+#include "kds/arithmetic/two.hpp"
 
 #include <array>
 #include <cstddef>
@@ -57,8 +58,6 @@ class FewBoxes final : public BroadPhase<Degree> {
 
  private:
   using Row = std::uint64_t;  ///< of places, the lowest bit first
-  using Two = double __attribute__((vector_size(16)));
-  using TwoBits = std::int64_t __attribute__((vector_size(16)));
 
   struct Body {
     BodyId id;

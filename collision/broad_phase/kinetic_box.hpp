@@ -3,6 +3,7 @@
 
 #include "certificates/order.hpp"
 #include "certificates/point_motion.hpp"
+#include "kds/arithmetic/two.hpp"
 #include "kds/roots/failure_time.hpp"
 
 #include <array>
@@ -31,8 +32,6 @@ struct KineticBox {
 template <int Degree>
 inline KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& motion, const Eigen::Vector3d& low,
                               const Eigen::Vector3d& high) {
-  using Two = double __attribute__((vector_size(16)));
-  using TwoBits = std::int64_t __attribute__((vector_size(16)));
   constexpr Two outward{-1, 1};
   constexpr TwoBits step{-1, 1};
   KineticBox<Degree> box;
@@ -40,15 +39,15 @@ inline KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& mo
   for (std::size_t i = 1; i <= Degree; ++i) box.min.coefficients[i] = box.max.coefficients[i] = motion.coefficients[i];
   for (int d = 0; d < 3; ++d) {
     const double at = motion.coefficients[0][d];
-    const Two centre{at, at};
+    const Two centre = both(at);
     const Two reach{low[d], high[d]};
     const Two sum = centre + reach;
     const Two part = sum - centre;
     const Two error = (centre - (sum - part)) + (reach - part);
     const TwoBits negative = sum < 0;                   // all bits set
     const TwoBits away = (step ^ negative) - negative;  // in magnitude
-    const TwoBits moved = std::bit_cast<TwoBits>(sum) + (away & (error * outward > 0));
-    const Two ends = std::bit_cast<Two>(moved);
+    const TwoBits moved = bits(sum) + (away & (error * outward > 0));
+    const Two ends = number(moved);
     box.min.coefficients[0][d] = ends[0];
     box.max.coefficients[0][d] = ends[1];
   }

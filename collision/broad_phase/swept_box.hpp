@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "kds/arithmetic/two.hpp"
 
 #include <Eigen/Core>
 
@@ -166,7 +167,6 @@ class BoxSweep<1> {
 
  private:
   /// Arrays of three would be computed one by one.
-  using Two = double __attribute__((vector_size(16)));
   static Two xy(const Eigen::Vector3d& v) { return Two{v[0], v[1]}; }
   static StaticBox joined(const detail::AlikeEnds<Two>::Span& xy, const detail::AlikeEnds<double>::Span& z) {
     return {{xy.min[0], xy.min[1], z.min}, {xy.max[0], xy.max[1], z.max}};

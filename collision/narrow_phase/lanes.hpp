@@ -1,6 +1,9 @@
 // Four floats at a time: three coordinates or axes, and a fourth that is left 0.
 #pragma once
 
+#include "kds/arithmetic/double_double.hpp"
+#include "kds/arithmetic/two.hpp"
+
 #include <array>
 #include <cstdint>
 
@@ -16,6 +19,11 @@ template <class Vector>
 Lanes lanes(const Vector& v) {
   return Lanes{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), 0};
 }
+
+// Not to be hidden by those below.
+using kds::greater;
+using kds::lesser;
+using kds::magnitude;
 
 inline Lanes magnitude(Lanes x) {
   const LaneBits without_sign{0x7fffffff, 0x7fffffff, 0x7fffffff, 0x7fffffff};

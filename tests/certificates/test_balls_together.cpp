@@ -70,6 +70,18 @@ TEST_CASE("the earliest approach of balls head on is near the meeting", "[balls_
   CHECK(certificates::earliest_approaches(head_on, parting, 0.5, 1.5).earliest[0] == never);
 }
 
+TEST_CASE("balls that stand as seen from each other never meet", "[balls_together]") {
+  const PointMotion<1> one{{Vector3d(5, 0, 0), Vector3d(1, 2, 3)}, 0};
+  const PointMotion<1> other{{Vector3d(0, 0, 0), Vector3d(1, 2, 3)}, 0.25};
+  const BallSeparation<1> apart{one, other, 1, 2};
+  const BallSeparation<1> together{one, other, 4, 2};
+  const TwoApproaches found = certificates::earliest_approaches(apart, together, 1, never);
+  CHECK(found.earliest[0] == never);
+  CHECK(found.earliest[1] == never);
+  CHECK(found.apart[0] != 0);
+  CHECK(found.apart[1] == 0);
+}
+
 TEST_CASE("balls that touch, and balls on curves that are not alike, take more care", "[balls_together]") {
   const PointMotion<2> rest{{Vector3d(2, 0, 0), Vector3d::Zero(), Vector3d::Zero()}, 0};
   const PointMotion<2> coming{{Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d::Zero()}, 0};
