@@ -72,8 +72,7 @@ namespace detail {
   const auto in_order = surely > 0.0;
   const auto apart = (fall <= 0.0) | (surely > fall * ((horizon - now) * (1 + 0x1p-50)));
 
-  const Two t =
-      detail::first_doubles_after_lines(two_sum(high, -low), two_sum(high_rate, -low_rate), start);
+  const Two t = detail::first_doubles_after_lines(two_sum(high, -low), two_sum(high_rate, -low_rate), start);
   Two result = (apart | (t > horizon)) ? both(never) : t;
   result = in_order ? result : both(undecided);
   return {result[0], result[1]};

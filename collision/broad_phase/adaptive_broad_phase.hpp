@@ -39,9 +39,7 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   BroadPhaseCounters counters() const override;
 
  private:
-  const BroadPhase<Degree>& chosen() const {
-    return grid_ ? static_cast<const BroadPhase<Degree>&>(*grid_) : few_;
-  }
+  const BroadPhase<Degree>& chosen() const { return grid_ ? static_cast<const BroadPhase<Degree>&>(*grid_) : few_; }
   void change_to_grid(double now, PairListener& listener);
   void change_to_few(double now, PairListener& listener);
   template <class From, class To>

@@ -52,7 +52,7 @@ class BoxPairs {
   std::array<std::size_t, 3> cells_{};  ///< along each axis
   std::vector<Index> begin_;            ///< first place of each cell, x fastest, and the end
   std::vector<Index> order_;
-  std::vector<Index> cell_;  ///< of each place
+  std::vector<Index> cell_;   ///< of each place
   std::vector<Rough> rough_;  ///< in order
   std::vector<Pair> pairs_;
 };

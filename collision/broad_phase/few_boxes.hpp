@@ -76,9 +76,9 @@ class FewBoxes final : public BroadPhase<Degree> {
   bool renew(double now, PairListener& listener);
 
   std::vector<Body> bodies_;
-  std::array<Row, most> partners_{};                    ///< of each body
+  std::array<Row, most> partners_{};                        ///< of each body
   std::array<std::array<Two, most / 2>, 3> min_{}, max_{};  ///< ends of swept boxes, by axis and place
-  double until_ = -never;                               ///< for how long these hold
+  double until_ = -never;                                   ///< for how long these hold
   double horizon_ = never;
   double span_ = 0;          ///< s; 0 for none yet
   std::uint64_t spent_ = 0;  ///< pairs that began or had to be tested, in this span

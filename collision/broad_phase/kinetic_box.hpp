@@ -31,7 +31,7 @@ struct KineticBox {
 /// outward, the next double. A rounded sum is never zero.
 template <int Degree>
 inline KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& motion, const Eigen::Vector3d& low,
-                              const Eigen::Vector3d& high) {
+                                     const Eigen::Vector3d& high) {
   constexpr Two outward{-1, 1};
   constexpr TwoBits step{-1, 1};
   KineticBox<Degree> box;

@@ -190,9 +190,7 @@ struct BernsteinPiece {
 };
 
 /// Exponent of a double: floor(log2 |x|) for normal numbers, less for others.
-inline int exponent_of(double x) {
-  return static_cast<int>((std::bit_cast<std::uint64_t>(x) >> 52) & 0x7ff) - 1023;
-}
+inline int exponent_of(double x) { return static_cast<int>((std::bit_cast<std::uint64_t>(x) >> 52) & 0x7ff) - 1023; }
 /// 2^e for -1022 <= e <= 1023.
 inline double power_of_two(int e) { return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52); }
 
