@@ -1,6 +1,5 @@
 # kds_add_layer(NAME [LINK target...] [EXCLUDE name...]): the library of one layer, from the files of its folder but
 # those of the names to exclude.
-# KDS_UNITY_LAYERS: compiled in a few pieces, for builds that are made anew each time.
 # A folder without .cpp files gives an INTERFACE library, so that a layer may begin as headers and grow sources.
 function(kds_add_layer name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "LINK;EXCLUDE")
@@ -27,10 +26,6 @@ function(kds_add_layer name)
   endif()
   add_library(kds::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-  if(KDS_UNITY_LAYERS AND sources)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
-  endif()
 
   target_sources(${target} ${scope}
     FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${headers})
