@@ -12,9 +12,9 @@ namespace kds::collision {
 /// A few boxes compared each with all others, the kinetic grid from 65 bodies on, and back when most have gone. A
 /// change reports just the pairs that one has and the other has not, so no contact is lost.
 ///
-/// These two are enough. Of some thousands of random scenes of 4 to 64 balls of all sizes, speeds, densities and rates
-/// none was cheaper in the grid, and with sorted lists or all pairs a few of under ten, by some hundredths. Among the
-/// others the grid is the cheapest in nearly all that were measured (docs/speed.md).
+/// These two are enough: of random scenes of 4 to 64 balls of all sizes, speeds, densities and rates hardly any was
+/// cheaper in the grid, with sorted lists or by all pairs, and of those of more the grid is the cheapest in nearly all
+/// that were measured (docs/speed.md).
 template <int Degree>
 class AdaptiveBroadPhase final : public BroadPhase<Degree> {
  public:
