@@ -51,9 +51,6 @@ struct BallSeparation {
   /// The first double t in [now, horizon] just after which the balls penetrate and approach, or `never`.
   double first_approach(double now, double horizon) const;
 
-  /// f > 0 at t, by a quick test that knows the paths that quick_failure_time() knows; false says nothing.
-  bool surely_apart(double t) const;
-
   /// Whether the path of b as seen from a is a line.
   bool relative_path_is_line() const {
     if constexpr (PathDegree == 1) {
@@ -113,11 +110,6 @@ double BallSeparation<PathDegree>::first_approach(double now, double horizon) co
   using Parting = DerivativeCertificate<BallSeparation>;
   const Parting parting{*this};
   return first_all_broken<BallSeparation, Parting>(now, horizon, {this, 1}, {&parting, 1});
-}
-
-template <int PathDegree>
-bool BallSeparation<PathDegree>::surely_apart(double t) const {
-  return relative_path_is_line() && certain_sign(RelativeLine(*this, t).polynomial().c[0]) > 0;
 }
 
 }  // namespace kds::certificates

@@ -6,8 +6,6 @@
 #include "kds/arithmetic/lattice.hpp"
 #include "kds/arithmetic/two.hpp"
 
-#include <limits>
-
 namespace kds::certificates {
 
 /// Of two pairs of balls, lane by lane.
@@ -31,7 +29,7 @@ template <int PathDegree>
                                                                 const BallSeparation<PathDegree>& other, double now,
                                                                 double horizon) {
   using Line = detail::RelativeLine<Two>;
-  const Two undecided = both(std::numeric_limits<double>::quiet_NaN());
+  const Two undecided = both(kds::detail::undecided);
   const Line line(one, other, now);
   const Two error = Line::unit * (line.M * line.W) + Line::lost;  // of the product
   const Two size = line.M * line.M + line.reach * line.reach;

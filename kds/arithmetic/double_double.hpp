@@ -23,12 +23,35 @@ struct DoubleDouble {
   constexpr explicit operator double() const { return high; }
 };
 
+namespace detail {
+
+/// a + b - sum, where sum is a + b rounded; of doubles, or of vectors of them, lane by lane.
+template <class Number>
+Number sum_error(Number a, Number b, Number sum) {
+  const Number b_part = sum - a;
+  const Number a_part = sum - b_part;
+  return (a - a_part) + (b - b_part);
+}
+
+/// a b - product likewise, by Dekker's splitting.
+template <class Number>
+Number product_error(Number a, Number b, Number product) {
+  constexpr double splitter = 134217729.0;  // 2^27 + 1
+  const Number a_scaled = splitter * a;
+  const Number a_high = a_scaled - (a_scaled - a);
+  const Number a_low = a - a_high;
+  const Number b_scaled = splitter * b;
+  const Number b_high = b_scaled - (b_scaled - b);
+  const Number b_low = b - b_high;
+  return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+}
+
+}  // namespace detail
+
 /// a + b = high + low exactly [Knuth].
 inline DoubleDouble two_sum(double a, double b) {
   const double sum = a + b;
-  const double b_part = sum - a;
-  const double a_part = sum - b_part;
-  return {sum, (a - a_part) + (b - b_part)};
+  return {sum, detail::sum_error(a, b, sum)};
 }
 
 /// a + b = high + low exactly, for |a| >= |b| or a = 0 [Dekker71].
@@ -43,14 +66,7 @@ inline DoubleDouble two_product(double a, double b) {
 #if defined(__FMA__) || defined(FP_FAST_FMA)
   return {product, __builtin_fma(a, b, -product)};
 #else
-  constexpr double splitter = 134217729.0;  // 2^27 + 1
-  const double a_scaled = splitter * a;
-  const double a_high = a_scaled - (a_scaled - a);
-  const double a_low = a - a_high;
-  const double b_scaled = splitter * b;
-  const double b_high = b_scaled - (b_scaled - b);
-  const double b_low = b - b_high;
-  return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
+  return {product, detail::product_error(a, b, product)};
 #endif
 }
 

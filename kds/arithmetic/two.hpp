@@ -40,31 +40,16 @@ inline Two square_root(Two x) {
 /// A double-double in each lane.
 struct TwoDoubleDoubles {
   Two high, low;
-
-  DoubleDouble operator[](int lane) const { return {high[lane], low[lane]}; }
 };
 
 inline TwoDoubleDoubles two_sum(Two a, Two b) {
   const Two sum = a + b;
-  const Two b_part = sum - a;
-  const Two a_part = sum - b_part;
-  return {sum, (a - a_part) + (b - b_part)};
+  return {sum, detail::sum_error(a, b, sum)};
 }
 
 inline TwoDoubleDoubles two_product(Two a, Two b) {
   const Two product = a * b;
-#if defined(__FMA__) || defined(FP_FAST_FMA)
-  return {product, Two{__builtin_fma(a[0], b[0], -product[0]), __builtin_fma(a[1], b[1], -product[1])}};
-#else
-  constexpr double splitter = 134217729.0;  // 2^27 + 1
-  const Two a_scaled = splitter * a;
-  const Two a_high = a_scaled - (a_scaled - a);
-  const Two a_low = a - a_high;
-  const Two b_scaled = splitter * b;
-  const Two b_high = b_scaled - (b_scaled - b);
-  const Two b_low = b - b_high;
-  return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
-#endif
+  return {product, detail::product_error(a, b, product)};
 }
 
 }  // namespace kds

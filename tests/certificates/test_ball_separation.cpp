@@ -108,7 +108,6 @@ TEMPLATE_TEST_CASE_SIG("quick answers about balls are the ones that exact signs 
   CAPTURE(PathDegree, seed);
   Random random(seed);
   int decided = 0;
-  int apart = 0;
   for (int round = 0; round < 60'000; ++round) {
     const BallApproach<PathDegree> approach(random, random.one_in(4) ? random.integer(-300, 300) : 0);
     const BallSeparation<PathDegree> balls{approach.a, approach.b, approach.radius_a, approach.radius_b};
@@ -125,11 +124,6 @@ TEMPLATE_TEST_CASE_SIG("quick answers about balls are the ones that exact signs 
     const double expected = plain_first_approach(balls, now, horizon);
     const double found = balls.first_approach(now, horizon);
     if (found != expected) REQUIRE(found == expected);
-
-    const bool surely = balls.surely_apart(now);
-    if (surely && sign_after(plain, now) <= 0) REQUIRE(sign_after(plain, now) > 0);
-    apart += surely;
   }
   CHECK(decided > 30'000);
-  CHECK(apart > 10'000);
 }
