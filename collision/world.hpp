@@ -4,13 +4,13 @@
 #include "collision/body_description.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
-#include "collision/earliest_wall_time.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
+#include "collision/world/earliest_wall_time.hpp"
+#include "collision/world/records.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
-#include "collision/world_records.hpp"
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
 
@@ -125,7 +125,7 @@ class World final : private PairListener {
   static constexpr PairSlot no_pair = detail::no_pair;
   static constexpr HoldSlot no_hold = detail::no_hold;
   static constexpr BodyId no_body = detail::no_body;
-  // world_records.hpp
+  // world/records.hpp
   using Mover = detail::Mover<Degree>;
   using Extras = detail::Extras<Degree>;
   using Link = detail::Link;
@@ -146,7 +146,7 @@ class World final : private PairListener {
   void renew_volume(BodyId id);
   void count_edit();
 
-  // world_reports.cpp: what is told at one instant, in one order
+  // world/reports.cpp: what is told at one instant, in one order
   void report_next();
   void report(typename Pending::Kind kind, BodyId a, BodyId b, const Contact& contact) {
     pending_.insert({kind, a, b, contact});
@@ -158,7 +158,7 @@ class World final : private PairListener {
 
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }
 
-  // world_snapshot.cpp: saving and loading; world_image.cpp: what is saved, written and read
+  // world/snapshot.cpp: saving and loading; world/image.cpp: what is saved, written and read
   struct Image;
   Image image() const;
   void become(const Image& image);
@@ -166,11 +166,11 @@ class World final : private PairListener {
   void load_pairs(const Image& image);
   std::vector<std::shared_ptr<const Mesh>> meshes() const;
 
-  // world_entry.cpp: bodies that come
+  // world/entry.cpp: bodies that come
   void set_extras(BodyId id, std::span<const Motion> script, const typename Description::BoxFunction& box_function);
   void enter_new_bodies();
 
-  // world_bodies.cpp: bodies and pairs
+  // world/bodies.cpp: bodies and pairs
   const Body& body(BodyId id) const;
   Body& body(BodyId id);
   void pair_began(BodyId a, BodyId b, double t) override;
@@ -187,13 +187,13 @@ class World final : private PairListener {
   void schedule_volume(BodyId id);
   Moving moving(BodyId id) const { return Moving(bodies_[id], movers_[id].motion); }
 
-  // world_kdops.cpp: bounding volumes in more directions than the axes
+  // world/kdops.cpp: bounding volumes in more directions than the axes
   Kdops<Degree> kdops();
   void place_extents(BodyId id);
   KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;
   bool volumes_overlap(BodyId a, BodyId b) const;
 
-  // world_contacts.cpp: tests, contacts, response
+  // world/contacts.cpp: tests, contacts, response
   ContactMode mode() const {
     return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
   }
@@ -222,7 +222,7 @@ class World final : private PairListener {
   std::uint64_t count_meeting(BodyId id);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
-  // world_holds.cpp: contacts that are held
+  // world/holds.cpp: contacts that are held
   HoldSlot find_hold(BodyId a, BodyId b, int wall = -1) const;
   void add_hold(const Hold& hold);
   void drop_hold(HoldSlot slot);
@@ -231,7 +231,7 @@ class World final : private PairListener {
   void schedule_release(HoldSlot slot);
   void release(HoldSlot slot);
 
-  // world_islands.cpp: bodies that lean on each other
+  // world/islands.cpp: bodies that lean on each other
   void disturb(BodyId id);
   void settle();
   bool settle_island(BodyId id);
@@ -240,7 +240,7 @@ class World final : private PairListener {
   bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
   bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
 
-  // world_audit.cpp
+  // world/audit.cpp
   void audit_holds() const;
 
   WorldOptions options_;

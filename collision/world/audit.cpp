@@ -1,6 +1,6 @@
 // What the world checks of itself: pairs, and contacts that are held.
-#include "collision/world.hpp"
 #include "kds/audit.hpp"
+#include "collision/world.hpp"
 
 #include <algorithm>
 #include <cmath>

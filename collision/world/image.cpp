@@ -1,5 +1,5 @@
 // The image of a world, written and read.
-#include "collision/world_image.hpp"
+#include "collision/world/image.hpp"
 
 #include "collision/shapes/mesh.hpp"
 

@@ -1,8 +1,8 @@
 // The walls of the world: when a body reaches one, and what it does then.
 #include "certificates/conjunction.hpp"
 #include "certificates/wall_separation.hpp"
-#include "collision/queue_room.hpp"
 #include "collision/world.hpp"
+#include "collision/world/queue_room.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Worlds saved, and loaded again.
-#include "collision/world_image.hpp"
+#include "collision/world/image.hpp"
 
 #include "collision/shapes/mesh.hpp"
 

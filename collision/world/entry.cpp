@@ -1,8 +1,8 @@
 // How bodies come into the world.
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
-#include "collision/queue_room.hpp"
 #include "collision/world.hpp"
+#include "collision/world/queue_room.hpp"
 
 #include <algorithm>
 #include <cmath>

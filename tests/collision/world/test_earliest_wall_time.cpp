@@ -1,6 +1,6 @@
 // Lower bounds on the times at which balls leave through walls.
 #include "certificates/wall_separation.hpp"
-#include "collision/earliest_wall_time.hpp"
+#include "collision/world/earliest_wall_time.hpp"
 #include "kds/roots/failure_time.hpp"
 #include "tests/support/random_numbers.hpp"
 

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "collision/body_description.hpp"
-#include "collision/list_arena.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/response/least_constraint.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/world/list_arena.hpp"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // Bodies and pairs of the world.
 #include "collision/profile.hpp"
-#include "collision/queue_room.hpp"
 #include "collision/world.hpp"
+#include "collision/world/queue_room.hpp"
 
 #include <algorithm>
 #include <cmath>
