@@ -62,11 +62,50 @@ struct BallSeparation {
   }
 
  private:
-  using RelativeLine = detail::RelativeLine<double>;
+  using Line = detail::RelativeLine<double>;
+  Line relative_line(double now) const;
   double quick_root(const Polynomial<2, Ball<double>>& f, double now, double horizon) const;
 };
 
 // ---------------------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+template <int PathDegree>
+MotionNumbers<double, PathDegree> numbers_of(const PointMotion<PathDegree>& motion) {
+  MotionNumbers<double, PathDegree> numbers;
+  for (std::size_t k = 0; k <= PathDegree; ++k) {
+    for (int d = 0; d < 3; ++d) numbers.coefficients[k][d] = motion.coefficients[k][d];
+  }
+  numbers.start = motion.start;
+  return numbers;
+}
+
+inline Ball<double> bounded(double value, double magnitude) {
+  using Line = RelativeLine<double>;
+  return {value, magnitude < Line::range ? Line::unit * magnitude + Line::lost : never};
+}
+
+/// f' now, where f is the square of the distance less that of the reach.
+inline Ball<double> rate_of_gap(const RelativeLine<double>& line) {
+  return bounded(2 * line.product, 2 * (line.M * line.W));
+}
+
+/// f itself.
+inline Polynomial<2, Ball<double>> square_gap(const RelativeLine<double>& line) {
+  Polynomial<2, Ball<double>> f;
+  f.c[0] = bounded(line.square, line.M * line.M + line.reach * line.reach);
+  f.c[1] = rate_of_gap(line);
+  f.c[2] = bounded(line.speeds, line.W * line.W);
+  return f;
+}
+
+}  // namespace detail
+
+template <int PathDegree>
+detail::RelativeLine<double> BallSeparation<PathDegree>::relative_line(double now) const {
+  return {detail::numbers_of(a), detail::numbers_of(b), radius_a + radius_b, now};
+}
 
 /// f > 0 now, and falls: when it reaches zero.
 template <int PathDegree>
@@ -79,7 +118,7 @@ double BallSeparation<PathDegree>::quick_root(const Polynomial<2, Ball<double>>&
 template <int PathDegree>
 double BallSeparation<PathDegree>::quick_failure_time(double now, double horizon) const {
   if (!relative_path_is_line()) return kds::detail::undecided;
-  const auto f = RelativeLine(*this, now).polynomial();
+  const auto f = detail::square_gap(relative_line(now));
   const int value = certain_sign(f.c[0]);
   if (value < 0) return now;
   const int rate = certain_sign(f.c[1]);
@@ -91,11 +130,11 @@ template <int PathDegree>
 double BallSeparation<PathDegree>::first_approach(double now, double horizon) const {
   if (!(now <= horizon)) return never;
   if (relative_path_is_line()) {
-    const RelativeLine line(*this, now);
+    const Line line = relative_line(now);
     // f is convex along a line, so balls that part will never approach again.
-    const int rate = certain_sign(line.rate());
+    const int rate = certain_sign(detail::rate_of_gap(line));
     if (rate > 0) return never;
-    const auto f = line.polynomial();
+    const auto f = detail::square_gap(line);
     const int value = certain_sign(f.c[0]);
     if (rate < 0 && value < 0) return now;
     if (rate < 0 && value > 0) {

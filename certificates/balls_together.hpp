@@ -1,54 +1,55 @@
-// When the balls of two pairs may meet, computed together.
+// When the balls of four pairs may meet, computed together.
 #pragma once
 
-#include "certificates/ball_separation.hpp"
-#include "certificates/relative_line.hpp"
-#include "kds/arithmetic/lattice.hpp"
-#include "kds/arithmetic/two.hpp"
+#include "certificates/earliest_approach.hpp"
+#include "certificates/point_motion.hpp"
+
+#include <cstddef>
+#include <limits>
 
 namespace kds::certificates {
 
-/// Of two pairs of balls, lane by lane.
-struct TwoApproaches {
-  /// Not before `now` and not after first_approach(now, horizon), `never` just where that is certain; or a NaN where it
-  /// takes more care.
-  Two earliest;
-  /// Whether the balls are surely apart at `now`; false says nothing.
-  TwoBits apart;
+/// A ball whose centre moves so. One cache line at degree 1.
+template <int PathDegree>
+struct alignas(64) MovingBall {
+  PointMotion<PathDegree> motion;
+  double radius = no_radius;
+
+  /// Of what is no ball: nothing is told of it.
+  static constexpr double no_radius = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Most pairs of balls whose motions change are asked for more often than they meet, so a lower bound is what is wanted
-/// of them first. It knows the paths that BallSeparation::quick_failure_time() knows.
+/// Four pairs of balls, which must stay where they are. Most pairs whose motions change are asked for more often than
+/// they meet, so a lower bound is what is wanted of them first. Known are the paths that
+/// BallSeparation::quick_failure_time() knows.
 ///
-/// Two lanes, and without a branch: whether balls approach is what processors cannot foresee. Along a line f (the
-/// square of the distance less that of the reach) is convex: it has its first root where it falls, at c / (p + sqrt(p^2
-/// - c s)) with c = f now, p half its rate downward and s that of v . v. Bounds in place of c, p and the discriminant
-/// give a lower bound of that, and whether it is a root at all need not be known.
+/// Computed in registers of four doubles where the processor has them (found out when a program runs), else of two,
+/// with the same results bit by bit. Cost: some 50 or 90 instructions a pair.
 template <int PathDegree>
-[[gnu::always_inline]] inline TwoApproaches earliest_approaches(const BallSeparation<PathDegree>& one,
-                                                                const BallSeparation<PathDegree>& other, double now,
-                                                                double horizon) {
-  using Line = detail::RelativeLine<Two>;
-  const Two undecided = both(kds::detail::undecided);
-  const Line line(one, other, now);
-  const Two error = Line::unit * (line.M * line.W) + Line::lost;  // of the product
-  const Two size = line.M * line.M + line.reach * line.reach;
-  const Two least = line.square - (Line::unit * size + Line::lost);
-  // The discriminant is off by unit W^2 (4 M^2 + 2 reach^2), and by its own rounding.
-  const Two spare = 8 * Line::unit * (line.W * line.W) * size + Line::lost;
-  const Two discriminant = line.product * line.product - line.square * line.speeds + spare;
-  const Two root = least / (square_root(discriminant) - line.product + error);
-  const Two sum = now + root * (1 - 0x1p-50);
-  const Two t = sum - 0x1p-52 * magnitude(sum);  // not after what was rounded
+class BallsTogether {
+ public:
+  static constexpr std::size_t size = 4;
 
-  TwoBits known = line.M + line.W + line.reach < Line::small;
-  if constexpr (PathDegree > 1) known &= TwoBits{-one.relative_path_is_line(), -other.relative_path_is_line()};
-  const TwoBits parts = (line.product > error) | (line.W == 0.0);  // or one stands as seen from the other
-  const TwoBits comes = (line.product < -error) & (least > 0.0);
-  Two earliest = t <= horizon ? greater(t, both(now)) : both(never);  // t is a NaN where there is no root
-  earliest = comes ? earliest : undecided;
-  earliest = parts ? both(never) : earliest;
-  return {known ? earliest : undecided, known & (least > 0.0)};
-}
+  void put(std::size_t place, const MovingBall<PathDegree>& a, const MovingBall<PathDegree>& b) {
+    pairs_.a[place] = numbers_of(a);
+    pairs_.b[place] = numbers_of(b);
+  }
+
+  /// Of each place a time not before `now` and not after BallSeparation::first_approach(now, horizon); `never` where
+  /// they surely do not meet and are apart now, `-never` where they surely do not meet, but may be together now; a NaN
+  /// where it takes more care.
+  void earliest_approaches(double now, double horizon, double* earliest) const {
+    detail::find_approaches<PathDegree>(pairs_, now, horizon, earliest);
+  }
+
+ private:
+  static const double* numbers_of(const MovingBall<PathDegree>& ball) {
+    static_assert(sizeof ball.motion == (3 * (PathDegree + 1) + 1) * sizeof(double));
+    static_assert(offsetof(MovingBall<PathDegree>, radius) == sizeof ball.motion);
+    return ball.motion.coefficients[0].data();
+  }
+
+  detail::FourPairs pairs_;
+};
 
 }  // namespace kds::certificates

@@ -1,22 +1,20 @@
 // The path of one ball as seen from another, where that is a line.
 #pragma once
 
-#include "certificates/point_motion.hpp"
 #include "kds/arithmetic/double_double.hpp"
+#include "kds/arithmetic/four.hpp"
 #include "kds/arithmetic/two.hpp"
-#include "kds/roots/failure_time.hpp"
 
-#include <array>
-#include <cstddef>
+namespace kds::certificates::detail {
 
-namespace kds::certificates {
+/// The numbers of a PointMotion: of one, in doubles, or of several, lane by lane.
+template <class Number, int PathDegree>
+struct MotionNumbers {
+  Number coefficients[PathDegree + 1][3];
+  Number start;
+};
 
-template <int PathDegree>
-struct BallSeparation;
-
-namespace detail {
-
-/// The path of b as seen from a, about now, if that is a line: r + v (t - now). Of one pair, in doubles, or of two,
+/// The path of b as seen from a, about now, if that is a line: r + v (t - now). Of one pair, in doubles, or of several,
 /// lane by lane.
 ///
 /// Error bounds, with u = 2^-53. A coordinate at `now` is evaluated by Horner's rule with an elapsed time known to u:
@@ -35,77 +33,14 @@ struct RelativeLine {
   static constexpr double range = 0x1p1000;  ///< beyond, sums of opposite infinities might look like a number
   static constexpr double small = 0x1p240;   ///< the fourth power of it is within that range
 
-  /// One pair.
   template <int PathDegree>
-  [[gnu::always_inline]] inline RelativeLine(const BallSeparation<PathDegree>& balls, double now)
-      : RelativeLine(balls.radius_a + balls.radius_b, [&](int d) {
-          Axis<PathDegree> axis{{}, {}, now - balls.a.start, now - balls.b.start};
-          for (std::size_t k = 0; k <= PathDegree; ++k) {
-            axis.a[k] = balls.a.coefficients[k][d];
-            axis.b[k] = balls.b.coefficients[k][d];
-          }
-          return axis;
-        }) {}
-
-  /// Two.
-  template <int PathDegree>
-  [[gnu::always_inline]] inline RelativeLine(const BallSeparation<PathDegree>& one,
-                                             const BallSeparation<PathDegree>& other, double now)
-      : RelativeLine(Number{one.radius_a + one.radius_b, other.radius_a + other.radius_b}, [&](int d) {
-          Axis<PathDegree> axis{
-              {}, {}, now - Number{one.a.start, other.a.start}, now - Number{one.b.start, other.b.start}};
-          for (std::size_t k = 0; k <= PathDegree; ++k) {
-            axis.a[k] = Number{one.a.coefficients[k][d], other.a.coefficients[k][d]};
-            axis.b[k] = Number{one.b.coefficients[k][d], other.b.coefficients[k][d]};
-          }
-          return axis;
-        }) {}
-
-  /// f' now, where f is the square of the distance less that of the reach.
-  Ball<double> rate() const { return bounded(2 * product, 2 * (M * W)); }
-
-  Polynomial<2, Ball<double>> polynomial() const {
-    Polynomial<2, Ball<double>> f;
-    f.c[0] = bounded(square, M * M + reach * reach);
-    f.c[1] = rate();
-    f.c[2] = bounded(speeds, W * W);
-    return f;
-  }
-
- private:
-  /// The motions along an axis, and the time since they began.
-  template <int PathDegree>
-  struct Axis {
-    std::array<Number, PathDegree + 1> a, b;
-    Number elapsed_a, elapsed_b;
-  };
-
-  struct Part {
-    Number r, v, m, w;
-
-    template <int PathDegree>
-    [[gnu::always_inline]] inline explicit Part(const Axis<PathDegree>& axis) {
-      const auto& [a, b, elapsed_a, elapsed_b] = axis;
-      Number moved_a = a[1] * elapsed_a;
-      Number moved_b = b[1] * elapsed_b;
-      m = magnitude(a[0]) + magnitude(b[0]) + magnitude(moved_a) + magnitude(moved_b);
-      v = b[1] - a[1];
-      w = magnitude(v);
-      if constexpr (PathDegree == 2) {
-        const Number bend = a[2];
-        moved_a = (a[1] + bend * elapsed_a) * elapsed_a;
-        moved_b = (b[1] + bend * elapsed_b) * elapsed_b;
-        m += magnitude(bend) * (elapsed_a * elapsed_a + elapsed_b * elapsed_b);
-        v = (b[1] + 2 * bend * elapsed_b) - (a[1] + 2 * bend * elapsed_a);
-        w = magnitude(b[1]) + magnitude(a[1]) + 2 * magnitude(bend) * (magnitude(elapsed_a) + magnitude(elapsed_b));
-      }
-      r = (b[0] + moved_b) - (a[0] + moved_a);
-    }
-  };
-
-  template <class AxisOf>
-  [[gnu::always_inline]] inline RelativeLine(Number reach_of_both, AxisOf&& axis) : reach(reach_of_both) {
-    const Part x(axis(0)), y(axis(1)), z(axis(2));
+  [[gnu::always_inline]] inline RelativeLine(const MotionNumbers<Number, PathDegree>& a,
+                                             const MotionNumbers<Number, PathDegree>& b, Number reach_of_both,
+                                             double now)
+      : reach(reach_of_both) {
+    const Number since_a = now - a.start;
+    const Number since_b = now - b.start;
+    const Part x(a, b, 0, since_a, since_b), y(a, b, 1, since_a, since_b), z(a, b, 2, since_a, since_b);
     square = x.r * x.r + y.r * y.r + z.r * z.r - reach * reach;
     product = x.r * x.v + y.r * y.v + z.r * z.v;
     speeds = x.v * x.v + y.v * y.v + z.v * z.v;
@@ -113,10 +48,33 @@ struct RelativeLine {
     W = x.w + y.w + z.w;
   }
 
-  static Ball<double> bounded(double value, double magnitude) {
-    return {value, magnitude < range ? unit * magnitude + lost : never};
-  }
+ private:
+  /// Along an axis.
+  struct Part {
+    Number r, v, m, w;
+
+    template <int PathDegree>
+    [[gnu::always_inline]] inline Part(const MotionNumbers<Number, PathDegree>& of_a,
+                                       const MotionNumbers<Number, PathDegree>& of_b, int d, Number since_a,
+                                       Number since_b) {
+      const Number a0 = of_a.coefficients[0][d], a1 = of_a.coefficients[1][d];
+      const Number b0 = of_b.coefficients[0][d], b1 = of_b.coefficients[1][d];
+      Number moved_a = a1 * since_a;
+      Number moved_b = b1 * since_b;
+      m = magnitude(a0) + magnitude(b0) + magnitude(moved_a) + magnitude(moved_b);
+      v = b1 - a1;
+      w = magnitude(v);
+      if constexpr (PathDegree == 2) {
+        const Number bend = of_a.coefficients[2][d];
+        moved_a = (a1 + bend * since_a) * since_a;
+        moved_b = (b1 + bend * since_b) * since_b;
+        m += magnitude(bend) * (since_a * since_a + since_b * since_b);
+        v = (b1 + 2 * bend * since_b) - (a1 + 2 * bend * since_a);
+        w = magnitude(b1) + magnitude(a1) + 2 * magnitude(bend) * (magnitude(since_a) + magnitude(since_b));
+      }
+      r = (b0 + moved_b) - (a0 + moved_a);
+    }
+  };
 };
 
-}  // namespace detail
-}  // namespace kds::certificates
+}  // namespace kds::certificates::detail

@@ -28,8 +28,8 @@ template <int Degree>
 Contact World<Degree>::contact_of(BodyId a, BodyId b, double t, const FoundTouch& found) const {
   const Mover& of_a = movers_[a];
   const Mover& of_b = movers_[b];
-  if (of_a.ball_radius > 0 && of_b.ball_radius > 0) {
-    return ball_contact_at(of_a.motion, of_b.motion, of_a.ball_radius, t);
+  if (of_a.radius > 0 && of_b.radius > 0) {
+    return ball_contact_at(of_a.motion, of_b.motion, of_a.radius, t);
   }
   return contact_at(moving(a), moving(b), t, found);
 }

@@ -67,7 +67,7 @@ BodyId World<Degree>::add_body(const Description& description) {
   added.volume = description.volume;
   added.alive = true;
   movers_[id].motion = *piece;
-  movers_[id].ball_radius = ball ? ball->radius : 0;
+  movers_[id].radius = ball ? ball->radius : Mover::no_radius;
   if constexpr (Degree >= 2) added.force = piece->coefficients[2];
   place_extents(id);
   ++alive_;

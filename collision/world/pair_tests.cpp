@@ -7,6 +7,7 @@
 #include "collision/world.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -51,31 +52,24 @@ bool World<Degree>::balls_are_quick() const {
 }
 
 /// Most tests by far are these, and need two cache lines. They change nothing but estimates_: for some of the dirty
-/// pairs, a time before which the balls do not meet, or a NaN where test() is called for. Precondition:
-/// balls_are_quick().
+/// pairs, a time before which the balls do not meet, as BallsTogether tells it. Precondition: balls_are_quick().
 template <int Degree>
 void World<Degree>::estimate_balls(std::size_t first, std::size_t last) {
-  using Balls = certificates::BallSeparation<Degree>;
-  const auto balls = [&](const Pair& pair) {
-    const Mover& a = movers_[pair.a];
-    const Mover& b = movers_[pair.b];
-    return Balls{a.motion, b.motion, a.ball_radius, b.ball_radius};
+  certificates::BallsTogether<Degree> together;
+  const auto put = [&](std::size_t place, std::size_t i) {
+    const Pair& pair = pairs_[dirty_[i]];
+    together.put(place, movers_[pair.a], movers_[pair.b]);
   };
-  for (std::size_t i = first; i < last; i += 2) {
-    const std::size_t next = std::min(i + 1, last - 1);
-    const Pair& one = pairs_[dirty_[i]];
-    const Pair& other = pairs_[dirty_[next]];
-    const Balls of_one = balls(one);
-    const Balls of_other = balls(other);
-    const certificates::TwoApproaches found = certificates::earliest_approaches(of_one, of_other, now_, horizon_);
-    const auto estimate = [&](const Pair& pair, const Balls& two, int lane) {
-      const bool simple = !pair.ignored && pair.let_pass != now_ && two.radius_a > 0 && two.radius_b > 0 &&
-                          (!pair.fresh || found.apart[lane] != 0);
-      return simple ? found.earliest[lane] : undecided;
-    };
-    estimates_[next] = estimate(other, of_other, 1);
-    estimates_[i] = estimate(one, of_one, 0);
+  std::size_t i = first;
+  for (; i + together.size <= last; i += together.size) {
+    for (std::size_t k = 0; k < together.size; ++k) put(k, i + k);
+    together.earliest_approaches(now_, horizon_, &estimates_[i]);
   }
+  if (i == last) return;
+  for (std::size_t k = 0; k < together.size; ++k) put(k, std::min(i + k, last - 1));
+  std::array<double, together.size> rest;
+  together.earliest_approaches(now_, horizon_, rest.data());
+  std::copy_n(rest.begin(), last - i, &estimates_[i]);
 }
 
 template <int Degree>
@@ -97,7 +91,9 @@ void World<Degree>::test_dirty_pairs() {
     pair.dirty = false;
     if (!pair.alive) continue;
     ++counters_.pair_tests;
-    const double estimate = estimates_[i];
+    double estimate = estimates_[i];
+    if (estimate == -never) estimate = pair.fresh ? undecided : never;
+    if (pair.ignored || pair.let_pass == now_) estimate = undecided;
     if (!std::isnan(estimate)) [[likely]] {
       pair.estimated = estimate != never;
       if (pair.estimated || contacts_.contains(slot)) contacts_.set(slot, estimate);
@@ -182,8 +178,8 @@ void World<Degree>::certify_contact(PairSlot slot) {
   const Pair& pair = pairs_[slot];
   const Mover& a = movers_[pair.a];
   const Mover& b = movers_[pair.b];
-  if (a.ball_radius > 0 && b.ball_radius > 0) {
-    const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.ball_radius, b.ball_radius};
+  if (a.radius > 0 && b.radius > 0) {
+    const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.radius, b.radius};
     return set_contact(slot, apart.first_approach(now_, horizon_));
   }
   FoundTouch found;

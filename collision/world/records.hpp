@@ -1,6 +1,7 @@
 // What the world keeps of bodies, pairs, contacts that last, and reports to be made.
 #pragma once
 
+#include "certificates/balls_together.hpp"
 #include "collision/body_description.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
@@ -25,12 +26,9 @@ inline constexpr PairSlot no_pair = ~PairSlot{0};
 inline constexpr HoldSlot no_hold = ~HoldSlot{0};
 inline constexpr BodyId no_body = ~BodyId{0};
 
-/// What the tests of balls read of a body: one cache line at degree 1.
+/// What the tests of balls read of a body.
 template <int Degree>
-struct alignas(64) Mover {
-  certificates::PointMotion<Degree> motion;
-  double ball_radius = 0;  ///< of a body that is a ball, else 0
-};
+using Mover = certificates::MovingBall<Degree>;
 
 /// What few bodies have.
 template <int Degree>

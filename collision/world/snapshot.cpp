@@ -105,7 +105,7 @@ void World<Degree>::set_shape(BodyId id, PlacedShape placed) {
   Body& b = bodies_[id];
   const auto* const ball = std::get_if<Sphere>(&placed.shape);
   b.bounding_radius = placed.bounding_radius;
-  movers_[id].ball_radius = ball ? ball->radius : 0;
+  movers_[id].radius = ball ? ball->radius : Mover::no_radius;
   if (!ball || !placed.rotation.isIdentity(0)) b.shape = std::make_shared<const PlacedShape>(std::move(placed));
 }
 

@@ -1,0 +1,110 @@
+// When balls may meet, in registers of several doubles: a lower bound, lane by lane.
+#pragma once
+
+#include "certificates/relative_line.hpp"
+#include "kds/arithmetic/lattice.hpp"
+
+namespace kds::certificates::detail {
+
+/// Four pairs of balls, each read as it lies in a MovingBall: the coefficients, each of three numbers, the start and
+/// the radius.
+struct FourPairs {
+  const double* a[4];
+  const double* b[4];
+};
+
+/// The numbers of a MovingBall, lane by lane.
+template <class Lanes, int PathDegree>
+struct BallNumbers {
+  MotionNumbers<Lanes, PathDegree> motion;
+  Lanes radius;
+};
+
+/// x in each lane.
+template <class Lanes>
+[[gnu::always_inline]] inline Lanes all(double x) {
+  return x - Lanes{};
+}
+
+/// See BallsTogether::earliest_approaches(). `known` where the path is a line.
+///
+/// Along a line f (the square of the distance less that of the reach) is convex: it has its first root where it falls,
+/// at c / (p + sqrt(p^2 - c s)) with c = f now, p half its rate downward and s that of v . v. Bounds in place of c, p
+/// and the discriminant give a lower bound of that, and whether it is a root at all need not be known.
+///
+/// Without a branch: whether balls approach is what processors cannot foresee. And with nothing that is not inlined
+/// (see four.hpp).
+template <class Lanes, class Bits>
+[[gnu::always_inline]] inline Lanes earliest_approach(const RelativeLine<Lanes>& line, Bits known, double now,
+                                                      double horizon) {
+  using Line = RelativeLine<Lanes>;
+  const Lanes undecided = all<Lanes>(__builtin_nan(""));
+  const Lanes no_meeting = all<Lanes>(never);
+  const Lanes error = Line::unit * (line.M * line.W) + Line::lost;  // of the product
+  const Lanes size = line.M * line.M + line.reach * line.reach;
+  const Lanes least = line.square - (Line::unit * size + Line::lost);
+  // The discriminant is off by unit W^2 (4 M^2 + 2 reach^2), and by its own rounding.
+  const Lanes spare = 8 * Line::unit * (line.W * line.W) * size + Line::lost;
+  const Lanes discriminant = line.product * line.product - line.square * line.speeds + spare;
+  const Lanes root = least / (square_root(discriminant) - line.product + error);
+  const Lanes sum = now + root * (1 - 0x1p-50);
+  const Lanes t = sum - 0x1p-52 * magnitude(sum);  // not after what was rounded
+
+  known &= line.M + line.W + line.reach < Line::small;
+  const Bits apart = least > 0.0;
+  const Bits parts = (line.product > error) | (line.W == 0.0);               // or one stands as seen from the other
+  Lanes earliest = t <= horizon ? greater(t, all<Lanes>(now)) : no_meeting;  // t is a NaN where there is no root
+  const Bits comes = apart & (line.product < -error);
+  earliest = comes ? earliest : undecided;
+  earliest = parts ? (apart ? no_meeting : -no_meeting) : earliest;
+  return known ? earliest : undecided;
+}
+
+/// How many doubles a register has.
+template <class Lanes>
+inline constexpr int lanes_of = sizeof(Lanes) / sizeof(double);
+
+/// Reads as many balls as a register has doubles.
+template <int PathDegree>
+[[gnu::always_inline]] inline void read(const double* const* balls, BallNumbers<Two, PathDegree>& numbers) {
+  const double* const one = balls[0];
+  const double* const other = balls[1];
+  for (int k = 0; k <= PathDegree; ++k) {
+    for (int d = 0; d < 3; ++d) numbers.motion.coefficients[k][d] = Two{one[3 * k + d], other[3 * k + d]};
+  }
+  constexpr int start = 3 * (PathDegree + 1);
+  numbers.motion.start = Two{one[start], other[start]};
+  numbers.radius = Two{one[start + 1], other[start + 1]};
+}
+
+template <class Lanes, int PathDegree>
+[[gnu::always_inline]] inline void find_approaches_in(const FourPairs& pairs, double now, double horizon,
+                                                      double* earliest) {
+  constexpr int width = lanes_of<Lanes>;
+  for (int first = 0; first < 4; first += width) {
+    BallNumbers<Lanes, PathDegree> a, b;
+    read(pairs.a + first, a);
+    read(pairs.b + first, b);
+    const Lanes reach = a.radius + b.radius;
+    auto known = reach == reach;
+    if constexpr (PathDegree > 1) {
+      for (int d = 0; d < 3; ++d) known &= a.motion.coefficients[2][d] == b.motion.coefficients[2][d];
+    }
+    const Lanes found = earliest_approach(RelativeLine<Lanes>(a.motion, b.motion, reach, now), known, now, horizon);
+    __builtin_memcpy(earliest + first, &found, sizeof found);
+  }
+}
+
+/// In registers of four doubles where the build and the processor have them, else as the next.
+template <int PathDegree>
+void find_approaches(const FourPairs& pairs, double now, double horizon, double* earliest);
+
+/// In registers of two.
+template <int PathDegree>
+void find_approaches_by_two(const FourPairs& pairs, double now, double horizon, double* earliest);
+
+/// In registers of four; for processors with AVX2 only.
+template <int PathDegree>
+void find_approaches_by_four(const FourPairs& pairs, double now, double horizon, double* earliest);
+
+}  // namespace kds::certificates::detail

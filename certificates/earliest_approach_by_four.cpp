@@ -1,0 +1,50 @@
+// Compiled for processors with AVX2, whatever the rest is compiled for: see kds/arithmetic/four.hpp for what that asks.
+#include "certificates/earliest_approach.hpp"
+
+#ifdef __AVX2__
+
+namespace kds::certificates::detail {
+namespace {
+
+/// What four balls have in four places in a row, place by place.
+[[gnu::always_inline]] inline void transpose(const double* const* balls, int from, Four (&places)[4]) {
+  const Four b0 = _mm256_loadu_pd(balls[0] + from), b1 = _mm256_loadu_pd(balls[1] + from);
+  const Four b2 = _mm256_loadu_pd(balls[2] + from), b3 = _mm256_loadu_pd(balls[3] + from);
+  const Four even01 = _mm256_unpacklo_pd(b0, b1), odd01 = _mm256_unpackhi_pd(b0, b1);
+  const Four even23 = _mm256_unpacklo_pd(b2, b3), odd23 = _mm256_unpackhi_pd(b2, b3);
+  places[0] = _mm256_permute2f128_pd(even01, even23, 0x20);
+  places[1] = _mm256_permute2f128_pd(odd01, odd23, 0x20);
+  places[2] = _mm256_permute2f128_pd(even01, even23, 0x31);
+  places[3] = _mm256_permute2f128_pd(odd01, odd23, 0x31);
+}
+
+}  // namespace
+
+template <int PathDegree>
+[[gnu::always_inline]] inline void read(const double* const* balls, BallNumbers<Four, PathDegree>& numbers) {
+  constexpr int count = 3 * (PathDegree + 1) + 2;
+  Four all[count];
+  for (int from = 0; from < count; from += 4) {
+    const int begin = from + 4 <= count ? from : count - 4;  // the last four may overlap those before
+    Four places[4];
+    transpose(balls, begin, places);
+    for (int i = 0; i < 4; ++i) all[begin + i] = places[i];
+  }
+  for (int k = 0; k <= PathDegree; ++k) {
+    for (int d = 0; d < 3; ++d) numbers.motion.coefficients[k][d] = all[3 * k + d];
+  }
+  numbers.motion.start = all[count - 2];
+  numbers.radius = all[count - 1];
+}
+
+template <int PathDegree>
+void find_approaches_by_four(const FourPairs& pairs, double now, double horizon, double* earliest) {
+  find_approaches_in<Four, PathDegree>(pairs, now, horizon, earliest);
+}
+
+template void find_approaches_by_four<1>(const FourPairs&, double, double, double*);
+template void find_approaches_by_four<2>(const FourPairs&, double, double, double*);
+
+}  // namespace kds::certificates::detail
+
+#endif
