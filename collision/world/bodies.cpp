@@ -99,11 +99,11 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
   inserting_ = jumped && mode() == ContactMode::resolved;
   broad_phase_->update(id, renewed_box(id), now_, *this);
   for (Passing& passing : passing_) passing.moved = passing.moved || passing.a == id || passing.b == id;
-  for (const Link& link : links_.items(b.pairs)) {
-    mark_dirty(link.slot);
-    pairs_[link.slot].fresh = pairs_[link.slot].fresh || inserting_;
+  for (const Link& link : links_.items(b.pairs)) mark_dirty(link.slot);
+  if (inserting_) {
+    for (const Link& link : links_.items(b.pairs)) pairs_[link.slot].fresh = true;
+    inserting_ = false;
   }
-  inserting_ = false;
   schedule_wall(id);
   schedule_volume(id);
 }

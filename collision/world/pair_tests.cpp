@@ -69,7 +69,7 @@ void World<Degree>::estimate_balls(std::size_t first, std::size_t last) {
   for (std::size_t k = 0; k < together.size; ++k) put(k, std::min(i + k, last - 1));
   std::array<double, together.size> rest;
   together.earliest_approaches(now_, horizon_, rest.data());
-  std::copy_n(rest.begin(), last - i, &estimates_[i]);
+  for (std::size_t k = 0; i + k < last; ++k) estimates_[i + k] = rest[k];
 }
 
 template <int Degree>
@@ -91,14 +91,13 @@ void World<Degree>::test_dirty_pairs() {
     pair.dirty = false;
     if (!pair.alive) continue;
     ++counters_.pair_tests;
-    double estimate = estimates_[i];
-    if (estimate == -never) estimate = pair.fresh ? undecided : never;
-    if (pair.ignored || pair.let_pass == now_) estimate = undecided;
-    if (!std::isnan(estimate)) [[likely]] {
-      pair.estimated = estimate != never;
-      if (pair.estimated || contacts_.contains(slot)) contacts_.set(slot, estimate);
-    } else {
+    const double estimate = estimates_[i];
+    const bool may_be_together = std::isnan(estimate) || (estimate == -never && pair.fresh);
+    if (may_be_together || pair.ignored || pair.let_pass == now_) [[unlikely]] {
       test(slot);
+    } else {
+      pair.estimated = std::abs(estimate) != never;
+      if (pair.estimated || contacts_.contains(slot)) contacts_.set(slot, pair.estimated ? estimate : never);
     }
     if (boxes) test_boxes(slot);
     pairs_[slot].fresh = false;
