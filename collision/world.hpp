@@ -130,6 +130,7 @@ class World final : private PairListener {
   using Extras = detail::Extras<Degree>;
   using Link = detail::Link;
   using Body = detail::Body<Degree>;
+  using Entry = typename BroadPhase<Degree>::Entry;
   using Moving = detail::Moving<Degree>;
   using Hold = detail::Hold;
   using HoldRank = detail::HoldRank;
@@ -167,12 +168,14 @@ class World final : private PairListener {
   std::vector<std::shared_ptr<const Mesh>> meshes() const;
 
   // world/entry.cpp: bodies that come
+  BodyId new_body();
   void set_extras(BodyId id, std::span<const Motion> script, const typename Description::BoxFunction& box_function);
   void enter_new_bodies();
 
   // world/bodies.cpp: bodies and pairs
   const Body& body(BodyId id) const;
   Body& body(BodyId id);
+  void pairs_to_come(std::size_t pairs) override;
   void pair_began(BodyId a, BodyId b, double t) override;
   void pair_ended(BodyId a, BodyId b, double t) override;
   PairSlot find_pair(BodyId a, BodyId b) const;
@@ -183,7 +186,9 @@ class World final : private PairListener {
   bool is_jump(BodyId id, const Motion& to) const;
   KineticBox<Degree> bounding_box(BodyId id) const;
   KineticBox<Degree> renewed_box(BodyId id);
+  void estimate_wall(BodyId id);
   void schedule_wall(BodyId id);
+  void schedule_walls(std::span<const Entry> bodies);
   void schedule_volume(BodyId id);
   Moving moving(BodyId id) const { return Moving(bodies_[id], movers_[id].motion); }
 

@@ -13,6 +13,8 @@ namespace kds::collision {
 class PairListener {
  public:
   virtual ~PairListener() = default;
+  /// A hint: about so many pairs will be reported at once.
+  virtual void pairs_to_come(std::size_t) {}
   virtual void pair_began(BodyId a, BodyId b, double t) = 0;
   virtual void pair_ended(BodyId a, BodyId b, double t) = 0;
 };

@@ -55,7 +55,8 @@ double exit_time(const KineticBox<Degree>& box, const StaticBox& present, const 
 
 /// Seconds until a box has moved by its reach, `never` if it is at rest; exact for straight paths, up to rounding.
 template <int Degree>
-inline double KineticGrid<Degree>::lifetime(const Body& body, const BoxSweep<Degree>& sweep) {
+template <class Sweep>
+inline double KineticGrid<Degree>::lifetime(const Body& body, const Sweep& sweep) {
   const double speed = sweep.speed();
   double time = speed > 0 ? std::min(body.reach / speed, largest) : never;
   if constexpr (Degree >= 2) {
@@ -68,9 +69,9 @@ inline double KineticGrid<Degree>::lifetime(const Body& body, const BoxSweep<Deg
 
 /// `may_begin()`: whether a level coarser than `coarsest` may be begun just for the body's reach.
 template <int Degree>
-template <class MayBegin>
-inline auto KineticGrid<Degree>::fat_box(Body& body, const BoxSweep<Degree>& sweep, const StaticBox& present,
-                                         double now, double coarsest, MayBegin&& may_begin) const -> FatBox {
+template <class Sweep, class MayBegin>
+inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const StaticBox& present, double now,
+                                         double coarsest, MayBegin&& may_begin) const -> FatBox {
   body.fattened = now;
   const double size = present.extent();
   const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
@@ -125,11 +126,19 @@ auto KineticGrid<Degree>::fat_box(BodyId id, const BoxSweep<Degree>& sweep, cons
   return fat;
 }
 
-/// One that fits into a level, unless the body does not.
+/// Gives a body a fat box that fits into a level, unless the body does not. Returns the tries it took.
 template <int Degree>
-auto KineticGrid<Degree>::fitting_box(Body& body, double now, double coarsest) const -> FatBox {
-  const BoxSweep<Degree> sweep(body.box, now);
-  return fat_box(body, sweep, sweep.begin(), now, coarsest, [] { return false; });
+std::uint32_t KineticGrid<Degree>::fit(Body& body, StaticBox& box, double now, double coarsest) const {
+  const auto fit = [&](const auto& sweep) __attribute__((always_inline)) {
+    const FatBox fat = fat_box(body, sweep, sweep.begin(), now, coarsest, [] { return false; });
+    box = fat.box;
+    body.expiry = fat.expiry;
+    return fat.certificates;
+  };
+  if constexpr (Degree == 1) {
+    if (corners_move_alike(body.box)) return fit(AlikeSweep(body.box, now));
+  }
+  return fit(BoxSweep<Degree>(body.box, now));
 }
 
 /// The reach of a jostled body is what makes its renewals cost about what pairs and their tests do. Of others, a box

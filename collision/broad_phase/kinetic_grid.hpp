@@ -61,6 +61,8 @@ class KineticGrid final : public BroadPhase<Degree> {
   static constexpr std::uint64_t share_for_level = 8;
 
   struct Body {
+    Body() {}  // not the implicit one, for which all is set to zero first
+
     /// As one that comes.
     void begin(const KineticBox<Degree>& its_box, double its_reach) {
       box = its_box;
@@ -86,16 +88,17 @@ class KineticGrid final : public BroadPhase<Degree> {
     std::uint32_t certificates = 0;  ///< tries
   };
 
-  template <class MayBegin>
-  FatBox fat_box(Body& body, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, double coarsest,
+  template <class Sweep, class MayBegin>
+  FatBox fat_box(Body& body, const Sweep& sweep, const StaticBox& present, double now, double coarsest,
                  MayBegin&& may_begin) const;
   FatBox fat_box(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
-  FatBox fitting_box(Body& body, double now, double coarsest) const;
+  std::uint32_t fit(Body& body, StaticBox& box, double now, double coarsest) const;
   void insert_first(std::span<const Entry> bodies, double now, PairListener& listener);
   void make_boxes(std::span<const Entry> bodies, std::span<StaticBox> boxes, std::size_t threads, double now);
   void cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now);
   void report_pair(BodyId a, BodyId b, double now, PairListener& listener);
-  static double lifetime(const Body& body, const BoxSweep<Degree>& sweep);
+  template <class Sweep>
+  static double lifetime(const Body& body, const Sweep& sweep);
   void adapt_reach(BodyId id, double now);
   void renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
   void set_expiry(BodyId id, double expiry, double now);

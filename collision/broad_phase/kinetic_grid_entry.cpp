@@ -90,8 +90,9 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   make_boxes(bodies, boxes, threads, now);
   cut_to_levels(bodies, boxes, now);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    set_expiry(bodies[i].id, bodies_[bodies[i].id].expiry, now);
-    fat_boxes_.announce(bodies[i].id, boxes[i]);
+    const BodyId id = bodies[i].id;
+    if (bodies_[id].expiry <= horizon_) expiry_.set(id, bodies_[id].expiry);
+    fat_boxes_.announce(id, boxes[i]);
   }
   BoxPairs pairs;
   if (pairs.find(boxes, threads)) {
@@ -99,6 +100,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
     order.reserve(bodies.size());
     for (const BoxPairs::Index i : pairs.order()) order.push_back(bodies[i].id);
     fat_boxes_.settle(order);
+    listener.pairs_to_come(pairs.pairs().size());
     for (const auto& [i, j] : pairs.pairs()) report_pair(bodies[i].id, bodies[j].id, now, listener);
     return;
   }
@@ -124,10 +126,7 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
     for (std::size_t i = first; i < last; ++i) {
       Body& body = bodies_[bodies[i].id];
       body.begin(*bodies[i].box, first_reach_);
-      const FatBox fat = fitting_box(body, now, std::numeric_limits<double>::max());
-      boxes[i] = fat.box;
-      body.expiry = fat.expiry;
-      tries += fat.certificates;
+      tries += fit(body, boxes[i], now, std::numeric_limits<double>::max());
     }
     certificates[part] = tries;
   });
@@ -153,10 +152,7 @@ void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     Body& body = bodies_[bodies[i].id];
     if (!(boxes[i].extent() > coarsest) || body.expiry == never) continue;
-    const FatBox fat = fitting_box(body, now, coarsest);
-    boxes[i] = fat.box;
-    body.expiry = fat.expiry;
-    counters_.certificates += fat.certificates;
+    counters_.certificates += fit(body, boxes[i], now, coarsest);
   }
 }
 

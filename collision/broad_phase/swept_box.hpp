@@ -76,34 +76,30 @@ inline bool corners_move_alike(const KineticBox<1>& box) {
 
 namespace detail {
 
-/// A coordinate, or two in a register, of a box whose corners move alike.
-template <class Number>
+/// Two coordinates of a box whose corners move alike.
 struct AlikeEnds {
-  static Number least(Number a, Number b) { return b < a ? b : a; }
-  static Number most(Number a, Number b) { return a < b ? b : a; }
-
-  AlikeEnds(Number from_low, Number from_high, Number at_velocity, double elapsed)
-      : low(least(from_low, from_high)),
-        high(most(from_low, from_high)),
-        size(most(high, -low)),
+  AlikeEnds(Two from_low, Two from_high, Two at_velocity, double elapsed)
+      : low(lesser(from_high, from_low)),
+        high(greater(from_high, from_low)),
+        size(greater(-low, high)),
         velocity(at_velocity),
         moved(at_velocity * elapsed) {}
 
   struct Span {
-    Number min, max;
+    Two min, max;
   };
   /// On the way from where it has moved to `elapsed` already to where it will have moved to then.
-  Span until(Number then) const {
-    const Number first = least(moved, then);
-    const Number last = most(moved, then);
-    const Number margin = 8 * 0x1p-53 * (size + most(last, -first));
+  Span until(Two then) const {
+    const Two first = lesser(then, moved);
+    const Two last = greater(then, moved);
+    const Two margin = 8 * 0x1p-53 * (size + greater(-first, last));
     return {low + first - margin, high + last + margin};
   }
 
-  Number low, high;  ///< at the start of the motion
-  Number size;       ///< the greater magnitude of these
-  Number velocity;
-  Number moved;
+  Two low, high;  ///< at the start of the motion
+  Two size;       ///< the greater magnitude of these
+  Two velocity;
+  Two moved;
 };
 
 /// A box that holds a kinetic box over [from, to].
@@ -139,44 +135,57 @@ class BoxSweep {
   double from_;
 };
 
-template <>
-class BoxSweep<1> {
+/// The same of one whose corners move alike, straight on.
+class AlikeSweep {
  public:
-  BoxSweep(const KineticBox<1>& box, double from)
-      : box_(box),
-        from_(from),
-        alike_(corners_move_alike(box)),
-        xy_(xy(box.min.coefficients[0]), xy(box.max.coefficients[0]), xy(box.min.coefficients[1]),
+  AlikeSweep(const KineticBox<1>& box, double from)
+      : xy_(xy(box.min.coefficients[0]), xy(box.max.coefficients[0]), xy(box.min.coefficients[1]),
             from - box.min.start),
-        z_(box.min.coefficients[0][2], box.max.coefficients[0][2], box.min.coefficients[1][2], from - box.min.start) {}
+        zz_(zz(box.min.coefficients[0]), zz(box.max.coefficients[0]), zz(box.min.coefficients[1]),
+            from - box.min.start),
+        start_(box.min.start) {}
 
   StaticBox until(double to) const {
-    if (!alike_) return detail::swept_by_corners(box_, from_, to);
-    const double elapsed = to - box_.min.start;
-    return joined(xy_.until(xy_.velocity * elapsed), z_.until(z_.velocity * elapsed));
+    const double elapsed = to - start_;
+    return joined(xy_.until(xy_.velocity * elapsed), zz_.until(zz_.velocity * elapsed));
   }
-  StaticBox begin() const {
-    if (!alike_) return detail::swept_by_corners(box_, from_, from_);
-    return joined(xy_.until(xy_.moved), z_.until(z_.moved));
-  }
+  StaticBox begin() const { return joined(xy_.until(xy_.moved), zz_.until(zz_.moved)); }
   double speed() const {
-    const auto greatest = [](const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff(); };
-    const double speed = greatest(box_.min.coefficients[1]);
-    return alike_ ? speed : std::max(speed, greatest(box_.max.coefficients[1]));
+    const Two speed = greater(magnitude(xy_.velocity), magnitude(zz_.velocity));
+    return std::max(speed[0], speed[1]);
   }
 
  private:
   /// Arrays of three would be computed one by one.
   static Two xy(const Eigen::Vector3d& v) { return Two{v[0], v[1]}; }
-  static StaticBox joined(const detail::AlikeEnds<Two>::Span& xy, const detail::AlikeEnds<double>::Span& z) {
-    return {{xy.min[0], xy.min[1], z.min}, {xy.max[0], xy.max[1], z.max}};
+  static Two zz(const Eigen::Vector3d& v) { return both(v[2]); }
+  static StaticBox joined(const detail::AlikeEnds::Span& xy, const detail::AlikeEnds::Span& zz) {
+    return {{xy.min[0], xy.min[1], zz.min[0]}, {xy.max[0], xy.max[1], zz.max[0]}};
   }
 
+  detail::AlikeEnds xy_;
+  detail::AlikeEnds zz_;
+  double start_;
+};
+
+template <>
+class BoxSweep<1> {
+ public:
+  BoxSweep(const KineticBox<1>& box, double from)
+      : box_(box), from_(from), alike_(corners_move_alike(box)), sweep_(box, from) {}
+
+  StaticBox until(double to) const { return alike_ ? sweep_.until(to) : detail::swept_by_corners(box_, from_, to); }
+  StaticBox begin() const { return alike_ ? sweep_.begin() : detail::swept_by_corners(box_, from_, from_); }
+  double speed() const {
+    if (alike_) return sweep_.speed();
+    return std::max(sweep_.speed(), box_.max.coefficients[1].cwiseAbs().maxCoeff());
+  }
+
+ private:
   const KineticBox<1>& box_;
   double from_;
   bool alike_;
-  detail::AlikeEnds<Two> xy_;
-  detail::AlikeEnds<double> z_;
+  AlikeSweep sweep_;
 };
 
 /// A box that holds a kinetic box over [from, to].

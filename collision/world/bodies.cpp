@@ -146,6 +146,17 @@ void World<Degree>::schedule_volume(BodyId id) {
   }
 }
 
+/// Room for them and some more, if they are the first.
+template <int Degree>
+void World<Degree>::pairs_to_come(std::size_t pairs) {
+  if (!pairs_.empty()) return;
+  const std::size_t room = pairs + pairs / 4;
+  pairs_.reserve(room);
+  dirty_.reserve(room);
+  make_room(contacts_, room);
+  links_.reserve(2 * first_pairs * pairs);
+}
+
 template <int Degree>
 void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   const Stopwatch watch(profile(), Work::prune);

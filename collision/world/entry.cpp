@@ -34,14 +34,27 @@ void validate(const BodyDescription<Degree>& description) {
 
 }  // namespace
 
+/// The number of one that is still to be described.
+template <int Degree>
+inline BodyId World<Degree>::new_body() {
+  if (!free_bodies_.empty()) {
+    const BodyId id = free_bodies_.back();
+    free_bodies_.pop_back();
+    return id;
+  }
+  const auto id = static_cast<BodyId>(bodies_.size());
+  bodies_.emplace_back();
+  movers_.emplace_back();
+  return id;
+}
+
 template <int Degree>
 BodyId World<Degree>::add_body(const Description& description) {
   validate(description);
   count_edit();
   const auto* const ball = std::get_if<Sphere>(&description.shape);
-  const bool placed = ball && description.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs();
   std::shared_ptr<const PlacedShape> shape;
-  if (placed) {
+  if (ball && description.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs()) [[likely]] {
     require_radius(ball->radius);
   } else {
     shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
@@ -49,15 +62,9 @@ BodyId World<Degree>::add_body(const Description& description) {
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
-  const BodyId id = free_bodies_.empty() ? static_cast<BodyId>(bodies_.size()) : free_bodies_.back();
-  if (free_bodies_.empty()) {
-    bodies_.emplace_back();
-    movers_.emplace_back();
-  } else {
-    free_bodies_.pop_back();
-  }
+  const BodyId id = new_body();
   Body& added = bodies_[id];
-  added.bounding_radius = placed ? ball->radius : shape->bounding_radius;
+  added.bounding_radius = shape ? shape->bounding_radius : ball->radius;
   added.shape = std::move(shape);
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
@@ -69,7 +76,7 @@ BodyId World<Degree>::add_body(const Description& description) {
   movers_[id].motion = *piece;
   movers_[id].radius = ball ? ball->radius : Mover::no_radius;
   if constexpr (Degree >= 2) added.force = piece->coefficients[2];
-  place_extents(id);
+  if (!directions_.empty()) place_extents(id);
   ++alive_;
   const bool enters_now = piece->start <= now_;
   if (enters_now) {
@@ -108,7 +115,7 @@ void World<Degree>::enter_new_bodies() {
   // What is due now among the others comes first, lest it count as what the new ones bring.
   while (broad_phase_->advance(now_, *this)) {
   }
-  std::vector<typename BroadPhase<Degree>::Entry> entries;
+  std::vector<Entry> entries;
   entries.reserve(entering.size());
   for (const BodyId id : entering) {
     Body& b = bodies_[id];
@@ -131,10 +138,9 @@ void World<Degree>::enter_new_bodies() {
     broad_phase_->insert(entries, now_, *this);
   }
   inserting_ = false;
-  for (const auto& entry : entries) {
-    schedule_wall(entry.id);
-    schedule_volume(entry.id);
-  }
+  schedule_walls(entries);
+  if (!functions) return;
+  for (const Entry& entry : entries) schedule_volume(entry.id);
 }
 
 template class World<1>;

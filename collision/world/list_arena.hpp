@@ -6,7 +6,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -29,8 +31,13 @@ class ListArena {
     bool empty() const { return size == 0; }
   };
 
-  std::span<T> items(const List& list) { return {memory_.data() + list.begin, list.size}; }
-  std::span<const T> items(const List& list) const { return {memory_.data() + list.begin, list.size}; }
+  std::span<T> items(const List& list) { return {memory_.get() + list.begin, list.size}; }
+  std::span<const T> items(const List& list) const { return {memory_.get() + list.begin, list.size}; }
+
+  /// Makes room for so many items beyond those that there are.
+  void reserve(std::size_t items) {
+    if (used_ + items > room_) enlarge(used_ + items);
+  }
 
   /// A list without room gets some for so many at first.
   void push_back(List& list, const T& item, std::uint32_t first_room = 4) {
@@ -49,7 +56,6 @@ class ListArena {
 
   /// All lists are lost.
   void clear() {
-    memory_.clear();
     used_ = 0;
     for (auto& free : free_) free.clear();
   }
@@ -61,7 +67,7 @@ class ListArena {
     const std::uint32_t begin = block(room);
     const std::uint32_t size = list.size;
     if (list.room > 0) {
-      std::copy_n(memory_.begin() + list.begin, size, memory_.begin() + begin);
+      std::copy_n(memory_.get() + list.begin, size, memory_.get() + begin);
       free(list);
     }
     list = {begin, size, room};
@@ -76,12 +82,21 @@ class ListArena {
     }
     const std::size_t begin = used_;
     used_ += room;
-    if (used_ > memory_.size()) memory_.resize(std::max<std::size_t>(2 * memory_.size(), used_ + 16 * room));
+    if (used_ > room_) enlarge(std::max<std::size_t>(2 * room_, used_ + 16 * room));
     return static_cast<std::uint32_t>(begin);
   }
 
-  std::vector<T> memory_;
-  std::size_t used_ = 0;                             ///< of memory_: lists and what has been given back
+  /// What is not used yet is not written to.
+  void enlarge(std::size_t room) {
+    auto memory = std::make_unique_for_overwrite<T[]>(room);
+    std::copy_n(memory_.get(), std::min(used_, room_), memory.get());
+    memory_ = std::move(memory);
+    room_ = room;
+  }
+
+  std::unique_ptr<T[]> memory_;
+  std::size_t room_ = 0;                             ///< in memory_
+  std::size_t used_ = 0;                             ///< of it: lists and what has been given back
   std::array<std::vector<std::uint32_t>, 32> free_;  ///< beginnings, by the logarithm of their room
 };
 

@@ -10,10 +10,9 @@ namespace kds::collision {
 
 using Eigen::Vector3d;
 
+/// Precondition: there are walls, and room in walls_.
 template <int Degree>
-void World<Degree>::schedule_wall(BodyId id) {
-  if (!options_.walls) return;
-  make_room(walls_, bodies_.size());
+inline void World<Degree>::estimate_wall(BodyId id) {
   double earliest = now_;
   if constexpr (Degree == 1) {
     earliest = earliest_wall_time_of_all(movers_[id].motion, bodies_[id].bounding_radius, *options_.walls, now_);
@@ -21,7 +20,25 @@ void World<Degree>::schedule_wall(BodyId id) {
   bodies_[id].wall_estimated = true;
   // An earlier one is a lower bound as well: most are replaced again before they are due.
   if (walls_.contains(id) && walls_.time(id) > now_ && walls_.time(id) <= earliest) return;
-  walls_.set(id, earliest <= horizon_ ? std::max(earliest, now_) : never);
+  if (earliest <= horizon_) {
+    walls_.set(id, std::max(earliest, now_));
+  } else {
+    walls_.clear(id);
+  }
+}
+
+template <int Degree>
+void World<Degree>::schedule_wall(BodyId id) {
+  if (!options_.walls) return;
+  make_room(walls_, bodies_.size());
+  estimate_wall(id);
+}
+
+template <int Degree>
+void World<Degree>::schedule_walls(std::span<const Entry> bodies) {
+  if (!options_.walls) return;
+  make_room(walls_, bodies_.size());
+  for (const Entry& entry : bodies) estimate_wall(entry.id);
 }
 
 template <int Degree>
