@@ -38,15 +38,16 @@ inline bool BoxPairs::overlap(const Rough& a, const Rough& b) {
 }
 
 bool BoxPairs::choose_cells(std::span<const StaticBox> boxes) {
-  corner_ = boxes[0].min;
-  Eigen::Array3d end = corner_;
-  Eigen::Array3d size = boxes[0].max - corner_;
+  Eigen::Array3d begin = boxes[0].min;
+  Eigen::Array3d end = begin;
+  Eigen::Array3d size = boxes[0].max - begin;
   for (const StaticBox& box : boxes) {
-    corner_ = corner_.min(box.min);
+    begin = begin.min(box.min);
     end = end.max(box.min);
     size = size.max(box.max - box.min);
   }
-  const Eigen::Array3d span = end - corner_;
+  corner_ = begin;
+  const Eigen::Array3d span = end - begin;
   double cell = room * size.maxCoeff();
   if (!(span.maxCoeff() < 0x1p1000 && cell < 0x1p1000 && cell > 0x1p-1000)) return false;
   const double most = cells_per_box * static_cast<double>(boxes.size()) + 64;
@@ -89,12 +90,12 @@ bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
     for (std::size_t place = first; place < last; ++place) {
       cell_[place] = cells[order_[place]];
       const StaticBox& box = boxes[order_[place]];
-      Rough rough{};
-      for (int d = 0; d < 3; ++d) {
-        rough.low[d] = static_cast<float>(box.min[d] - corner[d]);
-        rough.high[d] = static_cast<float>(box.max[d] - corner[d]);
-      }
-      rough_[place] = rough;
+      const auto rough = [&](const Eigen::Array3d& end) {
+        const auto at = [&](int d) { return static_cast<float>(end[d] - corner[d]); };
+        return Four{at(0), at(1), at(2), 0};
+      };
+      rough_[place].low = rough(box.min);
+      rough_[place].high = rough(box.max);
     }
   });
   return true;

@@ -38,6 +38,8 @@ class BoxPairs {
   /// A box in single precision, rounded by a monotone rule: boxes that overlap do so here too.
   using Four = float __attribute__((vector_size(16)));
   struct Rough {
+    Rough() {}  // not the implicit one, for which all is set to zero first
+
     Four low, high;
   };
   static bool overlap(const Rough& a, const Rough& b);

@@ -96,9 +96,9 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   }
   BoxPairs pairs;
   if (pairs.find(boxes, threads)) {
-    std::vector<BodyId> order;
-    order.reserve(bodies.size());
-    for (const BoxPairs::Index i : pairs.order()) order.push_back(bodies[i].id);
+    std::vector<BodyId> order(bodies.size());
+    std::transform(pairs.order().begin(), pairs.order().end(), order.begin(),
+                   [&](BoxPairs::Index i) { return bodies[i].id; });
     fat_boxes_.settle(order);
     listener.pairs_to_come(pairs.pairs().size());
     for (const auto& [i, j] : pairs.pairs()) report_pair(bodies[i].id, bodies[j].id, now, listener);

@@ -20,22 +20,29 @@ template <class BoxOf>
 double typical_spacing(std::size_t count, BoxOf&& box_of) {
   constexpr std::size_t sample = 256;
   const std::size_t step = std::max<std::size_t>(count / sample, 1);
-  std::array<std::vector<double>, 3> places;
-  std::vector<double> sizes;
-  for (std::vector<double>* numbers : {&places[0], &places[1], &places[2], &sizes}) numbers->reserve(count / step + 1);
-  for (std::size_t i = 0; i < count; i += step) {
-    const StaticBox box = box_of(i);
-    sizes.push_back(box.extent());
-    for (std::size_t d = 0; d < 3; ++d) places[d].push_back(box.min[static_cast<Eigen::Index>(d)]);
+  const std::size_t looked_at = (count - 1) / step + 1;
+  std::array<std::vector<double>, 4> numbers;  // lower corners by axis, and sizes
+  for (auto& some : numbers) some.resize(looked_at);
+  auto& [xs, ys, zs, sizes] = numbers;
+  for (std::size_t i = 0; i < looked_at; ++i) {
+    const StaticBox box = box_of(i * step);
+    xs[i] = box.min[0];
+    ys[i] = box.min[1];
+    zs[i] = box.min[2];
+    sizes[i] = box.extent();
   }
-  const auto part = [](std::vector<double>& numbers, std::size_t quarters) {
-    const auto at = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() * quarters / 4);
-    std::nth_element(numbers.begin(), at, numbers.end());
-    return *at;
-  };
-  const double size = part(sizes, 2);
+  const auto place = [&](std::size_t quarters) { return static_cast<std::ptrdiff_t>(looked_at * quarters / 4); };
+  const auto middle = sizes.begin() + place(2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const double size = *middle;
   double volume = 1;
-  for (auto& place : places) volume *= std::max(2 * (part(place, 3) - part(place, 1)), size);
+  for (auto* some : {&xs, &ys, &zs}) {
+    const auto low = some->begin() + place(1);
+    const auto high = some->begin() + place(3);
+    std::nth_element(some->begin(), high, some->end());
+    std::nth_element(some->begin(), low, high);
+    volume *= std::max(2 * (*high - *low), size);
+  }
   const double spacing = std::cbrt(volume / static_cast<double>(count));
   return std::isfinite(spacing) ? spacing : size;
 }
