@@ -10,21 +10,21 @@
 
 namespace kds::collision {
 
-void BoxGrid::put(Id id, const StaticBox& box, Changes& changes) {
+void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding) {
   if (id >= items_.size()) items_.resize(std::max<std::size_t>(id + 1, items_.size() + items_.size() / 2));
   const Exponent before = items_[id].level;
   const double extent = box.extent();
   Exponent level = level_for(extent);
   // A box that has become a little smaller stays at its level.
   if (before != absent && level < before && level_for(1.125 * extent) == before) level = before;
-  if (level == before) return move(id, bounds(box), changes);
+  const Item to{BoxBounds(box), kept_rounding(rounding), 0, level, false};
+  if (level == before) return move(id, to, changes);
   const std::size_t levels = levels_.size();
   use_level(level);
   if (levels_.size() > levels) restart_guests();
-  if (before != absent) return put_anew(id, bounds(box), level, changes);
+  if (before != absent) return put_anew(id, to, changes);
   ++size_;
-  items_[id].bounds = bounds(box);
-  items_[id].level = level;
+  items_[id] = to;
   enter(id, changes);
 }
 
@@ -46,7 +46,7 @@ void BoxGrid::enter(Id id, Changes& changes) {
   if (guests_.size() + levels_.size() > guests_.room()) restart_guests();
   items_[id].entered = true;
   const Item item = items_[id];
-  const Bounds limits = item.bounds.limits();
+  const BoxOverlaps overlaps = overlaps_with(item);
   begin_search(id);
   for (Level& level : levels_) {
     if (level.exponent < item.level) continue;
@@ -62,14 +62,15 @@ void BoxGrid::enter(Id id, Changes& changes) {
     }
   }
   for (const Id other : found_.numbers()) {
-    if (items_[other].bounds.within(limits) && report_once(other)) changes.began.push_back(other);
+    const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
+    if (overlap && report_once(other)) changes.began.push_back(other);
   }
   tidy();
 }
 
 /// Counts boxes in, many at once: their ends are compared as they are, and the extremes rounded, which is monotone.
 struct BoxGrid::Census {
-  void add(const Bounds& box, const Ends& ends) {
+  void add(const BoxBounds& box, const Ends& ends) {
     ++count;
     span = std::max(span, ends.span());
     low_xy = lesser(box.xy, low_xy);
@@ -127,7 +128,7 @@ void BoxGrid::settle(std::span<const Id> ids) {
 void BoxGrid::leave(Id id, Changes& changes) {
   items_[id].entered = false;
   const Item item = items_[id];
-  const Bounds limits = item.bounds.limits();
+  const BoxOverlaps overlaps = overlaps_with(item);
   begin_search(id);
   for (Level& level : levels_) {
     if (level.exponent < item.level) continue;
@@ -141,7 +142,8 @@ void BoxGrid::leave(Id id, Changes& changes) {
     search(natives_, level, level.natives, ends);
   }
   for (const Id other : found_.numbers()) {
-    if (items_[other].bounds.within(limits) && report_once(other)) changes.ended.push_back(other);
+    const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
+    if (overlap && report_once(other)) changes.ended.push_back(other);
   }
 }
 
@@ -152,45 +154,44 @@ void BoxGrid::remove(Id id, Changes& changes) {
 }
 
 /// Replaces a box by one of its level: if they are near each other, one search finds what overlaps either.
-void BoxGrid::move(Id id, const Bounds& to, Changes& changes) {
-  const Item item = items_[id];
-  auto level = find_level(item.level);
+void BoxGrid::move(Id id, const Item& to, Changes& changes) {
+  const Item from = items_[id];
+  auto level = find_level(to.level);
   constexpr double near = 2 * units_per_cell;  // in units of the lattice; searches are then small at all levels
-  if (item.bounds.joined(to).extent() * level->scale > near) return put_anew(id, to, item.level, changes);
-  const Ends own_before(item.bounds, level->scale);
-  const Ends own_after(to, level->scale);
+  if (from.bounds.joined(to.bounds).extent() * level->scale > near) return put_anew(id, to, changes);
+  const Ends own_before(from.bounds, level->scale);
+  const Ends own_after(to.bounds, level->scale);
   const Ends own_either = own_before.joined(own_after);
-  items_[id].bounds = to;
+  items_[id] = to;
+  items_[id].entered = true;
   begin_search(id);
   level->idle = 0;
   search(natives_, *level, level->natives, own_either);
   search(guests_, *level, level->guests, own_either);
   replace(natives_, *level, level->natives, own_before, own_after, id);
   while (++level != levels_.end()) {
-    const Ends before(item.bounds, level->scale);
-    const Ends after(to, level->scale);
+    const Ends before(from.bounds, level->scale);
+    const Ends after(to.bounds, level->scale);
     search(natives_, *level, level->natives, before.joined(after));
     count_guest(*level);
     replace(guests_, *level, level->guests, before, after, id);
   }
-  const Bounds limits_before = item.bounds.limits();
-  const Bounds limits_after = to.limits();
+  const BoxOverlaps overlaps(from.bounds, from.rounding, to.bounds, to.rounding);
+  constexpr unsigned only_before = 1, only_after = 2;
   for (const Id other : found_.numbers()) {
-    const Bounds& bounds = items_[other].bounds;
-    const bool after = bounds.within(limits_after);
-    if (bounds.within(limits_before) == after || !report_once(other)) continue;
-    (after ? changes.began : changes.ended).push_back(other);
+    const unsigned overlap = overlaps.with(items_[other].bounds, items_[other].rounding);
+    if ((overlap != only_before && overlap != only_after) || !report_once(other)) continue;
+    (overlap == only_after ? changes.began : changes.ended).push_back(other);
   }
   tidy();
 }
 
 /// Takes a box out and puts it in anew; what overlaps both before and after has not changed.
-void BoxGrid::put_anew(Id id, const Bounds& to, Exponent level, Changes& changes) {
+void BoxGrid::put_anew(Id id, const Item& to, Changes& changes) {
   const auto ended = static_cast<std::ptrdiff_t>(changes.ended.size());
   const auto began = static_cast<std::ptrdiff_t>(changes.began.size());
   leave(id, changes);
-  items_[id].bounds = to;
-  items_[id].level = level;
+  items_[id] = to;
   enter(id, changes);
   std::sort(changes.ended.begin() + ended, changes.ended.end());
   std::sort(changes.began.begin() + began, changes.began.end());

@@ -1,13 +1,10 @@
 // Boxes at rest, and which of them overlap: a hierarchical hash grid.
 #pragma once
 
+#include "collision/broad_phase/box_bounds.hpp"
 #include "collision/broad_phase/cell_table.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "kds/arithmetic/two.hpp"
-
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
 
 #include <algorithm>
 #include <array>
@@ -58,8 +55,7 @@ class BoxGrid {
   /// Precondition: contains(id).
   StaticBox box(Id id) const {
     if (!contains(id)) return {};
-    const auto& [xy, zx, yz] = items_[id].bounds;
-    return {{xy[0], xy[1], zx[0]}, {-zx[1], -yz[0], -yz[1]}};
+    return items_[id].bounds.box();
   }
   /// One past the greatest number that there has been.
   Id end() const { return static_cast<Id>(items_.size()); }
@@ -79,15 +75,19 @@ class BoxGrid {
   /// Side of the smallest cells there may be.
   double least_cell() const { return cell_side(finest_); }
 
-  /// Puts a box in, or in place of the one of that number. Appends to `changes`.
-  void put(Id id, const StaticBox& box, Changes& changes);
+  /// Puts a box in, its edges rounded (box_bounds.hpp), or in place of the one of that number. Appends to `changes`.
+  void put(Id id, const StaticBox& box, Changes& changes, double rounding = 0);
+
+  /// Whether two boxes overlap. Precondition: both are here.
+  bool overlap(Id a, Id b) const { return overlaps_with(items_[a]).with(items_[b].bounds, items_[b].rounding) != 0; }
 
   /// To put many into an empty grid in whatever order suits the cache: first all are announced, then each one enters.
   /// Nothing else may be asked in between. Precondition: id below the end reserved; none has entered.
-  void announce(Id id, const StaticBox& box) {
+  void announce(Id id, const StaticBox& box, double rounding = 0) {
     if (size_ == 0) levels_.clear();  // of boxes that have gone
     Item& item = items_[id];
-    item.bounds = bounds(box);
+    item.bounds = BoxBounds(box);
+    item.rounding = kept_rounding(rounding);
     item.level = level_for(item.bounds.extent());
     if (levels_.empty() || levels_.back().exponent != item.level) use_level(item.level);
     ++size_;
@@ -116,34 +116,10 @@ class BoxGrid {
   static constexpr int least = -1000;  ///< exponent: the scale of such cells is a number
   static constexpr int most = 1023;    ///< all space is a few cells of this exponent
 
-  /// A box as six numbers (min, -max). Boxes overlap if none of one's exceeds the same of the other's *limits*,
-  /// (max, -min): three comparisons of two numbers.
-  struct Bounds {
-    Two xy, zx, yz;
-
-    bool within(const Bounds& limits) const {
-#ifdef __SSE2__
-      const Two within =
-          _mm_and_pd(_mm_and_pd(_mm_cmple_pd(xy, limits.xy), _mm_cmple_pd(zx, limits.zx)), _mm_cmple_pd(yz, limits.yz));
-      return _mm_movemask_pd(within) == 3;
-#else
-      const auto within = (xy <= limits.xy) & (zx <= limits.zx) & (yz <= limits.yz);
-      return (within[0] & within[1]) != 0;
-#endif
-    }
-    Bounds joined(const Bounds& other) const {
-      return {lesser(xy, other.xy), lesser(zx, other.zx), lesser(yz, other.yz)};
-    }
-    double extent() const { return std::max({-zx[1] - xy[0], -yz[0] - xy[1], -yz[1] - zx[0]}); }
-    Bounds limits() const { return {Two{-zx[1], -yz[0]}, Two{-yz[1], -xy[0]}, Two{-xy[1], -zx[0]}}; }
-  };
-  static Bounds bounds(const StaticBox& box) {
-    return {Two{box.min[0], box.min[1]}, Two{box.min[2], -box.max[0]}, Two{-box.max[1], -box.max[2]}};
-  }
-
   /// What a search reads of every box that it finds: one cache line.
   struct alignas(64) Item {
-    Bounds bounds;
+    BoxBounds bounds;
+    float rounding = 0;
     std::uint32_t reported = 0;  ///< the last search that has reported it
     Exponent level = absent;
     bool entered = false;  ///< is in the cells; not yet if it has been announced
@@ -164,6 +140,10 @@ class BoxGrid {
     Population guests{};
     std::size_t idle = 0;  ///< registrations of guests since the last native went
   };
+
+  static BoxOverlaps overlaps_with(const Item& item) {
+    return {item.bounds, item.rounding, item.bounds, item.rounding};
+  }
 
   struct Ends;
   struct Census;
@@ -191,8 +171,8 @@ class BoxGrid {
   void begin_search(Id id);
   bool report_once(Id id);
   void leave(Id id, Changes& changes);
-  void move(Id id, const Bounds& to, Changes& changes);
-  void put_anew(Id id, const Bounds& to, Exponent level, Changes& changes);
+  void move(Id id, const Item& to, Changes& changes);
+  void put_anew(Id id, const Item& to, Changes& changes);
   void drop_idle_level();
   void restart_guests();
   void tidy();

@@ -37,10 +37,10 @@ inline CellTable::Ends row_marks(std::int64_t y, std::int64_t z) {
   return (mark | (mark ^ 0xFF) << 8) << 48;
 }
 
-/// A box on the lattice of a level: (min, -max), like Bounds.
+/// A box on the lattice of a level: (min, -max), like BoxBounds.
 struct BoxGrid::Ends {
   Ends() = default;
-  Ends(const Bounds& box, double scale) {
+  Ends(const BoxBounds& box, double scale) {
     std::size_t i = 0;
     for (const Two& two : {box.xy, box.zx, box.yz}) {
       const Two bounded = clamped(two * scale);

@@ -37,10 +37,10 @@ struct BroadPhaseCounters {
 /// Reports, at the right times and in order, which pairs of bodies have to be tested.
 ///
 /// Semantic laws: (1) a pair is reported as begun no later than the instant its bounding volumes overlap (kinetic
-/// boxes, or k-DOPs, see WorldOptions.kdop), and as ended not before they cease to; (2) where `exact()` is true, at
-/// exactly those instants; (3) reports alternate for each pair, beginning with pair_began, and removing a body ends its
-/// pairs; (4) a broad phase never reports a time before the last it was given. Swapping one broad phase for another
-/// changes neither contacts nor their times.
+/// boxes, rounded as they say where `exact()` is false, or k-DOPs, see WorldOptions.kdop), and as ended not before they
+/// cease to; (2) where `exact()` is true, at exactly those instants; (3) reports alternate for each pair, beginning
+/// with pair_began, and removing a body ends its pairs; (4) a broad phase never reports a time before the last it was
+/// given. Swapping one broad phase for another changes neither contacts nor their times.
 template <int Degree>
 class BroadPhase {
  public:

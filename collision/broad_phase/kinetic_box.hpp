@@ -22,6 +22,9 @@ struct KineticBox {
   certificates::PointMotion<Degree> min;
   certificates::PointMotion<Degree> max;
   double valid_until = never;  ///< s
+  /// What it contains may be taken to be within this radius of a point whose distance from all its sides is no less: of
+  /// a ball its own, else 0. Broad phases may make use of it.
+  double rounding = 0;
 };
 
 /// The box that moves with `motion` and spans [low, high] about it, rounded outward: its real ends are never inside
@@ -31,10 +34,11 @@ struct KineticBox {
 /// outward, the next double. A rounded sum is never zero.
 template <int Degree>
 inline KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& motion, const Eigen::Vector3d& low,
-                                     const Eigen::Vector3d& high) {
+                                     const Eigen::Vector3d& high, double rounding = 0) {
   constexpr Two outward{-1, 1};
   constexpr TwoBits step{-1, 1};
   KineticBox<Degree> box;
+  box.rounding = rounding;
   box.min.start = box.max.start = motion.start;
   for (std::size_t i = 1; i <= Degree; ++i) box.min.coefficients[i] = box.max.coefficients[i] = motion.coefficients[i];
   for (int d = 0; d < 3; ++d) {

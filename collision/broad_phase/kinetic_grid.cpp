@@ -222,7 +222,7 @@ void KineticGrid<Degree>::renew(BodyId id, const BoxSweep<Degree>& sweep, const 
   const FatBox fat = fat_box(id, sweep, present, now);
   set_expiry(id, fat.expiry, now);
   changes_.clear();
-  fat_boxes_.put(id, fat.box, changes_);
+  fat_boxes_.put(id, fat.box, changes_, bodies_[id].box.rounding);
   report(id, now, listener);
 }
 
@@ -237,6 +237,7 @@ void KineticGrid<Degree>::remove(BodyId id, double now, PairListener& listener) 
 template <int Degree>
 void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
   Body& body = bodies_[id];
+  const bool less_rounded = box.rounding < body.box.rounding;  // than the old fat box
   body.box = box;
   ++body.changes;
   body.tests += body.partners;
@@ -244,7 +245,7 @@ void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, doubl
   const BoxSweep<Degree> sweep(body.box, now);
   const StaticBox present = sweep.begin();
   const StaticBox fat = fat_boxes_.box(id);
-  if (fat.contains(present)) {
+  if (fat.contains(present) && !less_rounded) {
     const double time = lifetime(body, sweep);
     if (time == never) return set_expiry(id, never, now);
     double expiry = now + kept_share<Degree> * time;

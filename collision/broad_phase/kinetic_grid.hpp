@@ -46,7 +46,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   std::size_t size() const { return fat_boxes_.size(); }
 
   /// Whether two bodies are a pair. Precondition: both are here.
-  bool paired(BodyId a, BodyId b) const { return fat_boxes_.box(a).overlaps(fat_boxes_.box(b)); }
+  bool paired(BodyId a, BodyId b) const { return fat_boxes_.overlap(a, b); }
 
   /// Calls visit(id, box) for each body.
   template <class Visit>

@@ -92,7 +92,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const BodyId id = bodies[i].id;
     if (bodies_[id].expiry <= horizon_) expiry_.set(id, bodies_[id].expiry);
-    fat_boxes_.announce(id, boxes[i]);
+    fat_boxes_.announce(id, boxes[i], bodies[i].box->rounding);
   }
   BoxPairs pairs;
   if (pairs.find(boxes, threads)) {
@@ -101,7 +101,9 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
                    [&](BoxPairs::Index i) { return bodies[i].id; });
     fat_boxes_.settle(order);
     listener.pairs_to_come(pairs.pairs().size());
-    for (const auto& [i, j] : pairs.pairs()) report_pair(bodies[i].id, bodies[j].id, now, listener);
+    for (const auto& [i, j] : pairs.pairs()) {
+      if (paired(bodies[i].id, bodies[j].id)) report_pair(bodies[i].id, bodies[j].id, now, listener);
+    }
     return;
   }
   const auto enter = [&](BodyId id) {

@@ -115,7 +115,9 @@ inline KineticBox<Degree> World<Degree>::bounding_box(BodyId id) const {
   if (b.extras && b.extras->box_function) return b.extras->box;
   const bool sphere = !b.shape || b.volume == BoundingVolume::sphere;
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
-  return box_around<Degree>(movers_[id].motion, sphere ? -reach : b.shape->low, sphere ? reach : b.shape->high);
+  const double rounding = sphere && !options_.report_pairs ? b.bounding_radius : 0;  // of boxes those are told
+  return box_around<Degree>(movers_[id].motion, sphere ? -reach : b.shape->low, sphere ? reach : b.shape->high,
+                            rounding);
 }
 
 /// A bounding volume for the present motion.

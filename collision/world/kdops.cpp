@@ -1,4 +1,5 @@
 // The k-DOPs of the world's bodies.
+#include "collision/broad_phase/swept_box.hpp"
 #include "collision/world.hpp"
 #include "structures/extents.hpp"
 
@@ -6,6 +7,20 @@
 #include <stdexcept>
 
 namespace kds::collision {
+namespace {
+
+/// Whether two boxes overlap, rounded as they say, by more than what is rounded here can feign.
+template <int Degree>
+bool surely_overlap_rounded(const KineticBox<Degree>& a, const KineticBox<Degree>& b, double now) {
+  const double radius = a.rounding + b.rounding;
+  const StaticBox box_a = box_at(a, now);
+  const StaticBox box_b = box_at(b, now);
+  const double coordinates = std::max(box_a.min.abs().max(box_a.max.abs()).maxCoeff(), radius);
+  const Eigen::Array3d gap = ((box_a.min - box_b.max).max(box_b.min - box_a.max) + radius).max(0);
+  return radius == 0 || gap.matrix().norm() < radius * (1 - 0x1p-18) - 0x1p-44 * coordinates;
+}
+
+}  // namespace
 
 template <int Degree>
 Kdops<Degree> World<Degree>::kdops() {
@@ -56,10 +71,13 @@ bool World<Degree>::volumes_overlap(BodyId a, BodyId b) const {
   const auto broken = [this](const kds::Motion<Degree>& left, const kds::Motion<Degree>& right) {
     return sign_after(certificates::Order<Degree>{left, right}, now_) < 0;
   };
-  const BoxOverlap<Degree> boxes(bounding_box(a), bounding_box(b));
+  const KineticBox<Degree> box_a = bounding_box(a);
+  const KineticBox<Degree> box_b = bounding_box(b);
+  const BoxOverlap<Degree> boxes(box_a, box_b);
   for (const auto& side : boxes.separations()) {
     if (sign_after(side, now_) >= 0) return false;
   }
+  if (!broad_phase_->exact() && !surely_overlap_rounded(box_a, box_b, now_)) return false;
   for (std::size_t i = 0; i < directions_.size(); ++i) {
     const KineticSlab<Degree> slab_a = slab(a, i, now_);
     const KineticSlab<Degree> slab_b = slab(b, i, now_);
