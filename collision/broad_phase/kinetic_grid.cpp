@@ -34,7 +34,11 @@ constexpr int jostled_most = 6;
 /// For one that is, a pair that begins costs as much as so many tests; and what was spent on both within a box, in
 /// tests, that a longer reach would pay, or a shorter one (found by measuring; the minimum is flat).
 constexpr std::uint32_t tests_per_pair = 8;
-constexpr std::uint32_t little_spent = 40, much_spent = 60;
+constexpr std::uint32_t little_spent = 32, much_spent = 48;
+
+/// It gets so much of its margin more ahead, and less behind: it goes on as it does until it is struck, and a little
+/// after that. A seventh fewer renewals of dense balls than without (found by measuring; the minimum is flat).
+constexpr double lead = 0.6;
 
 /// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not
 /// told.
@@ -80,10 +84,16 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
   if (time == never) return {present, never};
   // Where a jostled body will go nobody knows; a margin of more than its size would be mostly in vain.
   double margin = body.jostled >= jostled_at && body.reach <= 0.5 * size ? body.reach : 0;
+  Eigen::Array3d ahead = Eigen::Array3d::Zero();  // over the margin
+  if (margin > 0) {
+    ahead = lead / sweep.speed() * body.box.min.coefficients[1].array();
+    time *= 1 + lead;
+  }
   const auto swept = [&](double expiry) {
     const StaticBox box = sweep.until(expiry);
     if (margin == 0) return box;
-    return StaticBox{box.min.min(present.min - margin), box.max.max(present.max + margin)};
+    const Eigen::Array3d shift = margin * ahead;
+    return StaticBox{box.min.min(present.min + (shift - margin)), box.max.max(present.max + (shift + margin))};
   };
   for (std::uint32_t certificates = 0;;) {
     // Where the clock is coarse, a box lasts until its next tick at least.
