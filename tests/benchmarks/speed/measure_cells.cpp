@@ -101,9 +101,9 @@ Ratio measure(const Cell& cell, const Settings& settings, std::ofstream& file) {
   }
   RaceOptions options;
   options.rounds = settings.quick ? 1 : 5;
-  options.most_rounds = settings.quick ? 1 : 80;
+  options.most_rounds = settings.quick ? 1 : 120;
   options.least = 0.01;  // so that all have their turns within a short time
-  options.patience = 4;
+  options.patience = 8;
   const auto results = race(entrants, options);
   check_agreement(results, name(cell));
 

@@ -48,7 +48,7 @@ struct RaceOptions {
 };
 
 /// All have settled when in so many rounds nobody's best has fallen by more than this part.
-inline constexpr int settled_rounds = 10;
+inline constexpr int settled_rounds = 15;
 inline constexpr double settled_part = 0.01;
 
 struct Result {
