@@ -186,7 +186,7 @@ class World final : private PairListener {
   bool is_jump(BodyId id, const Motion& to) const;
   KineticBox<Degree> bounding_box(BodyId id) const;
   KineticBox<Degree> renewed_box(BodyId id);
-  void estimate_wall(BodyId id);
+  void note_wall(BodyId id, double earliest);
   void schedule_wall(BodyId id);
   void schedule_walls(std::span<const Entry> bodies);
   void schedule_volume(BodyId id);

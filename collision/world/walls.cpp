@@ -5,18 +5,15 @@
 #include "collision/world/queue_room.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace kds::collision {
 
 using Eigen::Vector3d;
 
-/// Precondition: there are walls, and room in walls_.
+/// Takes note that a body is at no wall before some time. Precondition: there is room in walls_.
 template <int Degree>
-inline void World<Degree>::estimate_wall(BodyId id) {
-  double earliest = now_;
-  if constexpr (Degree == 1) {
-    earliest = earliest_wall_time_of_all(movers_[id].motion, bodies_[id].bounding_radius, *options_.walls, now_);
-  }
+inline void World<Degree>::note_wall(BodyId id, double earliest) {
   bodies_[id].wall_estimated = true;
   // An earlier one is a lower bound as well: most are replaced again before they are due.
   if (walls_.contains(id) && walls_.time(id) > now_ && walls_.time(id) <= earliest) return;
@@ -31,14 +28,28 @@ template <int Degree>
 void World<Degree>::schedule_wall(BodyId id) {
   if (!options_.walls) return;
   make_room(walls_, bodies_.size());
-  estimate_wall(id);
+  double earliest = now_;
+  if constexpr (Degree == 1) {
+    earliest = earliest_wall_time_of_all(movers_[id].motion, bodies_[id].bounding_radius, *options_.walls, now_);
+  }
+  note_wall(id, earliest);
 }
 
 template <int Degree>
 void World<Degree>::schedule_walls(std::span<const Entry> bodies) {
   if (!options_.walls) return;
   make_room(walls_, bodies_.size());
-  for (const Entry& entry : bodies) estimate_wall(entry.id);
+  for (std::size_t i = 0; i < bodies.size(); i += 2) {
+    const BodyId a = bodies[i].id;
+    const BodyId b = bodies[std::min(i + 1, bodies.size() - 1)].id;
+    std::array earliest{now_, now_};
+    if constexpr (Degree == 1) {
+      const Two radii{bodies_[a].bounding_radius, bodies_[b].bounding_radius};
+      earliest = earliest_wall_times_of_all({&movers_[a].motion, &movers_[b].motion}, radii, *options_.walls, now_);
+    }
+    note_wall(a, earliest[0]);
+    if (b != a) note_wall(b, earliest[1]);
+  }
 }
 
 template <int Degree>

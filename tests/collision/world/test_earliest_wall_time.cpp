@@ -33,6 +33,7 @@ TEST_CASE("No ball leaves through a wall before the earliest time told", "[walls
   int late = 0;
   int different = 0;
   int never_told = 0;
+  Motion previous{{Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()}, 0};
   for (int i = 0; i < 20'000; ++i) {
     const bool coarse = i % 2 != 0;
     const auto number = [&] { return coarse ? random.coarse() : random.scaled(-30, 10); };
@@ -51,6 +52,10 @@ TEST_CASE("No ball leaves through a wall before the earliest time told", "[walls
       least = std::min(least, earliest_wall_time(motion, radius, walls, wall, now));
     }
     different += told != least;
+    const auto [as_first, before] = earliest_wall_times_of_all({&motion, &previous}, Two{radius, 1}, walls, now);
+    const auto [after, as_second] = earliest_wall_times_of_all({&previous, &motion}, Two{1, radius}, walls, now);
+    different += as_first != told || as_second != told || before != after;
+    previous = motion;
     never_told += told == never;
     late += told > first_leaving(motion, radius, walls, now);
   }
