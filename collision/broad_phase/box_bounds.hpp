@@ -26,6 +26,16 @@ struct BoxBounds {
     result.xy = lesser(xy, other.xy), result.zx = lesser(zx, other.zx), result.yz = lesser(yz, other.yz);
     return result;
   }
+  bool contains(const BoxBounds& other) const {
+#ifdef __SSE2__
+    const Two contains = _mm_and_pd(_mm_and_pd(_mm_cmple_pd(xy, other.xy), _mm_cmple_pd(zx, other.zx)),
+                                    _mm_cmple_pd(yz, other.yz));
+    return _mm_movemask_pd(contains) == 3;
+#else
+    const auto contains = (xy <= other.xy) & (zx <= other.zx) & (yz <= other.yz);
+    return (contains[0] & contains[1]) != 0;
+#endif
+  }
   double extent() const { return std::max({-zx[1] - xy[0], -yz[0] - xy[1], -yz[1] - zx[0]}); }
 };
 

@@ -57,6 +57,8 @@ class BoxGrid {
     if (!contains(id)) return {};
     return items_[id].bounds.box();
   }
+  /// The same as numbers to compare.
+  const BoxBounds& bounds(Id id) const { return items_[id].bounds; }
   /// One past the greatest number that there has been.
   Id end() const { return static_cast<Id>(items_.size()); }
 
