@@ -64,5 +64,24 @@ TEST_CASE("Room that was given back is used again", "[list_arena]") {
   CHECK(arena.items(third).data() != place);
 }
 
+TEST_CASE("Lists stay where they are while there is reserved room", "[list_arena]") {
+  ListArena<int> arena;
+  ListArena<int>::List first, other;
+  arena.push_back(first, 1);
+  arena.reserve(400);
+  const auto* const place = arena.items(first).data();
+  for (int i = 0; i < 100; ++i) {
+    other = {};
+    arena.push_back(other, i);
+  }
+  CHECK(arena.items(first).data() == place);
+  CHECK(arena.items(first)[0] == 1);
+  CHECK(arena.items(other)[0] == 99);
+  arena.clear();
+  first = {};
+  arena.push_back(first, 2);
+  CHECK(arena.items(first)[0] == 2);
+}
+
 }  // namespace
 }  // namespace kds::collision
