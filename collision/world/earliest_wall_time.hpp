@@ -75,19 +75,18 @@ inline double earliest_wall_time_of_all(const certificates::PointMotion<1>& moti
 /// The same of two balls, in less time than one by one.
 inline std::array<double, 2> earliest_wall_times_of_all(
     const std::array<const certificates::PointMotion<1>*, 2>& motions, Two radii, const Walls& walls, double now) {
-  const auto& [a, b] = motions;
-  const Two elapsed{now - a->start, now - b->start};
+  const Two elapsed{now - motions[0]->start, now - motions[1]->start};
   const auto wait_xy = [&](std::size_t ball) {
     const auto xy = [](const Eigen::Vector3d& v) { return Two{v[0], v[1]}; };
     const auto& [at, speed] = motions[ball]->coefficients;
     return detail::wait_for_wall(xy(at), xy(speed), both(elapsed[ball]), both(radii[ball]), xy(walls.min),
                                  xy(walls.max));
   };
-  const auto z = [&](std::size_t i) { return Two{a->coefficients[i][2], b->coefficients[i][2]}; };
-  const Two a_xy = wait_xy(0);
-  const Two b_xy = wait_xy(1);
-  const Two ab_z = detail::wait_for_wall(z(0), z(1), elapsed, radii, both(walls.min[2]), both(walls.max[2]));
-  const Two first = lesser(lesser(Two{a_xy[0], b_xy[0]}, Two{a_xy[1], b_xy[1]}), ab_z);
+  const auto z = [&](std::size_t i) { return Two{motions[0]->coefficients[i][2], motions[1]->coefficients[i][2]}; };
+  const Two a = wait_xy(0);
+  const Two b = wait_xy(1);
+  const Two both_z = detail::wait_for_wall(z(0), z(1), elapsed, radii, both(walls.min[2]), both(walls.max[2]));
+  const Two first = lesser(lesser(Two{a[0], b[0]}, Two{a[1], b[1]}), both_z);
   return {detail::after_wait(first[0], now), detail::after_wait(first[1], now)};
 }
 
