@@ -28,8 +28,8 @@ struct BoxBounds {
   }
   bool contains(const BoxBounds& other) const {
 #ifdef __SSE2__
-    const Two contains = _mm_and_pd(_mm_and_pd(_mm_cmple_pd(xy, other.xy), _mm_cmple_pd(zx, other.zx)),
-                                    _mm_cmple_pd(yz, other.yz));
+    const Two contains =
+        _mm_and_pd(_mm_and_pd(_mm_cmple_pd(xy, other.xy), _mm_cmple_pd(zx, other.zx)), _mm_cmple_pd(yz, other.yz));
     return _mm_movemask_pd(contains) == 3;
 #else
     const auto contains = (xy <= other.xy) & (zx <= other.zx) & (yz <= other.yz);

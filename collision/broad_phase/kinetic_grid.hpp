@@ -11,15 +11,15 @@
 
 namespace kds::collision {
 
-/// Every body has a *fat box* at rest that holds its kinetic box for a while; the only certificate of a body is that it
-/// is still inside, and pairs are those whose fat boxes overlap (box_grid.hpp). When its time is up, a body gets a new
-/// fat box: what it sweeps until it has moved by a length, its *reach*. So a body pays for its neighbours only, not, as
-/// in sorted lists, for all whose coordinates it passes; and one at rest pays nothing.
+/// Every body has a *fat box* at rest that holds its kinetic box for a while, rounded as much (box_bounds.hpp); the only
+/// certificate of a body is that it is still inside, and pairs are those whose fat boxes overlap (box_grid.hpp). When its
+/// time is up, a body gets a new fat box: what it sweeps until it has moved by a length, its *reach*. So a body pays for
+/// its neighbours only, not, as in sorted lists, for all whose coordinates it passes; and one at rest pays nothing.
 ///
 /// The reach adapts, body by body: it grows while few pairs begin and shrinks while many do, which balances the cost of
 /// renewals against that of pairs, at every density, size and speed. A body whose motion changes again and again before
-/// it has left its fat box gets one that reaches to all sides, so that it stays in it whatever it does next. All that
-/// changes the cost, never the contacts.
+/// it has left its fat box gets one that reaches to all sides, and farthest ahead, so that it stays in it whatever it
+/// does next. All that changes the cost, never the contacts.
 ///
 /// The time for which a fat box holds is not a root: a time is chosen, and the box is then what is swept until then,
 /// rounded outward. Nothing of what is scheduled needs to be exact, nor is.
