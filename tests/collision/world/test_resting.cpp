@@ -1,5 +1,5 @@
 // Bodies that are held: what lies on what, slides, is lifted, knocked and let go.
-#include "tests/collision/resting_scenes.hpp"
+#include "tests/collision/world/resting_scenes.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // Restitution, and bounces that pile up in time.
-#include "tests/collision/resting_scenes.hpp"
+#include "tests/collision/world/resting_scenes.hpp"
 
 #include <catch2/catch.hpp>
 
