@@ -11,10 +11,11 @@
 
 namespace kds::collision {
 
-/// Every body has a *fat box* at rest that holds its kinetic box for a while, rounded as much (box_bounds.hpp); the only
-/// certificate of a body is that it is still inside, and pairs are those whose fat boxes overlap (box_grid.hpp). When its
-/// time is up, a body gets a new fat box: what it sweeps until it has moved by a length, its *reach*. So a body pays for
-/// its neighbours only, not, as in sorted lists, for all whose coordinates it passes; and one at rest pays nothing.
+/// Every body has a *fat box* at rest that holds its kinetic box for a while, rounded as much (box_bounds.hpp); the
+/// only certificate of a body is that it is still inside, and pairs are those whose fat boxes overlap (box_grid.hpp).
+/// When its time is up, a body gets a new fat box: what it sweeps until it has moved by a length, its *reach*. So a
+/// body pays for its neighbours only, not, as in sorted lists, for all whose coordinates it passes; and one at rest
+/// pays nothing.
 ///
 /// The reach adapts, body by body: it grows while few pairs begin and shrinks while many do, which balances the cost of
 /// renewals against that of pairs, at every density, size and speed. A body whose motion changes again and again before
@@ -99,6 +100,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   void report_pair(BodyId a, BodyId b, double now, PairListener& listener);
   template <class Sweep>
   static double lifetime(const Body& body, const Sweep& sweep);
+  double kept_until(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
   void adapt_reach(BodyId id, double now);
   void renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
   void set_expiry(BodyId id, double expiry, double now);

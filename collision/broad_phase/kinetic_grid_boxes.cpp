@@ -1,0 +1,208 @@
+// The fat boxes of a kinetic grid: how far each reaches, and how long it holds.
+#include "collision/broad_phase/kinetic_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kds::collision {
+namespace {
+
+constexpr double largest = std::numeric_limits<double>::max();
+
+/// At most: such that a box of this reach on both sides still has an extent.
+constexpr double greatest_reach = 0x1p1020;
+
+/// At least, over its size: less would have it renewed ever so often among others that touch it anyway.
+constexpr double least_reach = 0.125;
+
+/// At least, over its coordinates: boxes without extent have a reach too, which then adapts.
+constexpr double least_part_of_coordinates = 0x1p-40;
+constexpr double least_reach_at_all = 0x1p-500;
+
+/// An old fat box is kept if it lasts this share of a new one's lifetime.
+template <int Degree>
+constexpr double kept_share = Degree == 1 ? 0.15 : 0.25;
+
+/// A body is *jostled* if its motion changes in most of its boxes: each in which it does counts 1, up to a bound, each
+/// in which it does not takes back 2. Only bodies on straight paths are: of these it is told when they leave a box.
+constexpr int jostled_at = 3;
+constexpr int jostled_most = 6;
+
+/// For one that is, a pair that begins costs as much as so many tests; and what was spent on both within a box, in
+/// tests, that a longer reach would pay, or a shorter one (found by measuring; the minimum is flat).
+constexpr std::uint32_t tests_per_pair = 8;
+constexpr std::uint32_t little_spent = 40, much_spent = 60;
+
+/// It gets so much of its margin more ahead, and less behind: it goes on as it does until it is struck, and a little
+/// after that. A seventh fewer renewals of dense balls than without (found by measuring; the minimum is flat).
+constexpr double lead = 0.6;
+
+/// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not
+/// told. Which sides it moves to nobody can predict.
+template <int Degree>
+double exit_time(const KineticBox<Degree>& box, const BoxBounds& present, const BoxBounds& fat) {
+  if constexpr (Degree > 1) return 0;
+  const Eigen::Vector3d& low = box.min.coefficients[1];
+  const Eigen::Vector3d& high = box.max.coefficients[1];
+  const auto time = [](Two room, Two speed) { return speed > 0 ? room / speed : both(never); };
+  const Two xy = time(present.xy - fat.xy, Two{-low[0], -low[1]});
+  const Two zx = time(present.zx - fat.zx, Two{-low[2], high[0]});
+  const Two yz = time(present.yz - fat.yz, Two{high[1], high[2]});
+  const Two earliest = lesser(lesser(xy, zx), yz);
+  return std::min(earliest[0], earliest[1]) * (1 - 0x1p-20);
+}
+
+}  // namespace
+
+/// Seconds until a box has moved by its reach, `never` if it is at rest; exact for straight paths, up to rounding.
+template <int Degree>
+template <class Sweep>
+inline double KineticGrid<Degree>::lifetime(const Body& body, const Sweep& sweep) {
+  const double speed = sweep.speed();
+  double time = speed > 0 ? std::min(body.reach / speed, largest) : never;
+  if constexpr (Degree >= 2) {
+    const KineticBox<Degree>& box = body.box;
+    const double bend = box.min.coefficients[2].cwiseAbs().cwiseMax(box.max.coefficients[2].cwiseAbs()).maxCoeff();
+    if (bend > 0) time = std::min(time, std::sqrt(body.reach / bend));
+  }
+  return time;
+}
+
+/// `may_begin()`: whether a level coarser than `coarsest` may be begun just for the body's reach.
+template <int Degree>
+template <class Sweep, class MayBegin>
+inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const StaticBox& present, double now,
+                                         double coarsest, MayBegin&& may_begin) const -> FatBox {
+  body.fattened = now;
+  const double size = present.extent();
+  const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
+  body.reach = std::max({body.reach, least_reach * size, least_part_of_coordinates * coordinates, least_reach_at_all});
+  double time = lifetime(body, sweep);
+  if (time == never) return {present, never};
+  // Where a jostled body will go nobody knows; a margin of more than its size would be mostly in vain.
+  double margin = body.jostled >= jostled_at && body.reach <= 0.5 * size ? body.reach : 0;
+  Eigen::Array3d ahead = Eigen::Array3d::Zero();  // over the margin
+  if (margin > 0) {
+    ahead = lead / sweep.speed() * body.box.min.coefficients[1].array();
+    time *= 1 + lead;
+  }
+  const auto swept = [&](double expiry) {
+    const StaticBox box = sweep.until(expiry);
+    if (margin == 0) return box;
+    const Eigen::Array3d shift = margin * ahead;
+    return StaticBox{box.min.min(present.min + (shift - margin)), box.max.max(present.max + (shift + margin))};
+  };
+  for (std::uint32_t certificates = 0;;) {
+    // Where the clock is coarse, a box lasts until its next tick at least.
+    double expiry = std::max(now + time, next_up(now));
+    if (expiry > largest) return {whole_space(), never, certificates};
+    StaticBox box = swept(expiry);
+    double extent = box.extent();
+    if (!(extent <= largest)) return {whole_space(), never, certificates};
+    ++certificates;
+    // One that is just too large for a level is better cut than in the next.
+    const double room_below = fat_boxes_.room_below(extent);
+    if (extent < 1.5 * room_below && size < 0.75 * room_below) {
+      const double cut = 0.999 * (room_below - size) / (extent - size);
+      time *= cut;
+      margin *= cut;
+      expiry = std::max(now + time, next_up(now));
+      box = swept(expiry);
+      extent = box.extent();
+    }
+    // A coarser level costs all bodies something, so it takes many to begin one; until then boxes are cut to fit.
+    const double room = coarsest - size;
+    if (extent - size <= room || room < 0.25 * size || expiry == next_up(now) || may_begin()) {
+      return {box, expiry, certificates};
+    }
+    body.reach *= 0.75;
+    time *= 0.75;
+    margin *= 0.75;
+  }
+}
+
+template <int Degree>
+auto KineticGrid<Degree>::fat_box(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now)
+    -> FatBox {
+  const FatBox fat = fat_box(bodies_[id], sweep, present, now, fat_boxes_.coarsest(), [&] {
+    if (++wishes_ * share_for_level <= fat_boxes_.size()) return false;
+    wishes_ = 0;
+    return true;
+  });
+  counters_.certificates += fat.certificates;
+  return fat;
+}
+
+/// Gives a body a fat box that fits into a level, unless the body does not. Returns the tries it took.
+template <int Degree>
+std::uint32_t KineticGrid<Degree>::fit(Body& body, StaticBox& box, double now, double coarsest) const {
+  const auto fit = [&](const auto& sweep) __attribute__((always_inline)) {
+    const FatBox fat = fat_box(body, sweep, sweep.begin(), now, coarsest, [] { return false; });
+    box = fat.box;
+    body.expiry = fat.expiry;
+    return fat.certificates;
+  };
+  if constexpr (Degree == 1) {
+    if (corners_move_alike(body.box)) return fit(AlikeSweep(body.box, now));
+  }
+  return fit(BoxSweep<Degree>(body.box, now));
+}
+
+/// The reach of a jostled body is what makes its renewals cost about what pairs and their tests do. Of others, a box
+/// that has lasted its time: it costs about as much as two pairs, so at one or two pairs a renewal, those begun by
+/// others' renewals included, a longer reach and a shorter one would both cost more (found by measuring, for packings
+/// from 0.01 to 0.25). One that the body leaves early, since its motion has changed, was too long.
+template <int Degree>
+void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
+  Body& body = bodies_[id];
+  const bool lasted = body.expiry <= now;
+  if (body.jostled >= jostled_at) {
+    const std::uint32_t spent = tests_per_pair * body.begun + body.tests;
+    if (spent < little_spent) body.reach = std::min(1.1 * body.reach, greatest_reach);
+    if (spent > much_spent) body.reach *= 0.9;
+  } else if (lasted) {
+    switch (body.begun) {
+      case 0:
+        body.reach = std::min(1.4 * body.reach, greatest_reach);
+        break;
+      case 1:
+        body.reach = std::min(1.15 * body.reach, greatest_reach);
+        break;
+      case 2:
+        break;
+      default:
+        body.reach *= body.begun < 8 ? 0.8 : 0.5;
+    }
+  } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
+    body.reach *= 0.8;
+  }
+  if (Degree == 1 && body.changes > 0) {
+    body.jostled = std::min(body.jostled + 1, jostled_most);
+  } else {
+    body.jostled = std::max(body.jostled - 2, 0);
+  }
+  body.begun = 0;
+  body.changes = 0;
+  body.tests = 0;
+}
+
+/// Until when the fat box that a body has holds a new motion, if that is long enough for it to be kept; else `now`.
+template <int Degree>
+double KineticGrid<Degree>::kept_until(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now) {
+  const Body& body = bodies_[id];
+  const BoxBounds& fat = fat_boxes_.bounds(id);
+  const BoxBounds bounds(present);
+  if (!fat.contains(bounds)) return now;
+  const double time = lifetime(body, sweep);
+  if (time == never) return never;
+  const double expiry = now + std::max(kept_share<Degree> * time, exit_time(body.box, bounds, fat));
+  if (!(expiry > now && expiry <= largest && fat.contains(BoxBounds(sweep.until(expiry))))) return now;
+  ++counters_.certificates;
+  return expiry;
+}
+
+template class KineticGrid<1>;
+template class KineticGrid<2>;
+
+}  // namespace kds::collision
