@@ -65,25 +65,18 @@ class BoxOverlaps {
   /// Bit 0 if the first box does, bit 1 if the second.
   unsigned with(const BoxBounds& other, float rounding) const {
     const Two radius = rounding_ + both(rounding);
-    const Two x = most(both(other.xy[0]) + minus_max_[0], both(other.zx[1]) + min_[0]);
-    const Two y = most(both(other.xy[1]) + minus_max_[1], both(other.yz[0]) + min_[1]);
-    const Two z = most(both(other.zx[0]) + minus_max_[2], both(other.yz[1]) + min_[2]);
+    const Two x = greater(both(other.xy[0]) + minus_max_[0], both(other.zx[1]) + min_[0]);
+    const Two y = greater(both(other.xy[1]) + minus_max_[1], both(other.yz[0]) + min_[1]);
+    const Two z = greater(both(other.zx[0]) + minus_max_[2], both(other.yz[1]) + min_[2]);
     const Two gap = square(x + radius) + square(y + radius) + square(z + radius);
-    const Two apart = most(most(most(x, y), z), gap - radius * radius);
+    const Two apart = greater(greater(greater(x, y), z), gap - radius * radius);
     return not_above_zero(apart);
   }
 
  private:
   static Two square(Two x) {
-    x = most(x, Two{0, 0});
+    x = greater(x, Two{0, 0});
     return x * x;
-  }
-  static Two most(Two x, Two y) {
-#ifdef __SSE2__
-    return _mm_max_pd(x, y);
-#else
-    return greater(x, y);
-#endif
   }
   static unsigned not_above_zero(Two x) {
 #ifdef __SSE2__

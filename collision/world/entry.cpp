@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace kds::collision {
@@ -125,16 +123,13 @@ void World<Degree>::enter_new_bodies() {
     b.entered = true;
     entries.push_back({id, nullptr});
   }
-  // Memory alone: an array of boxes would have some of their members set first.
-  using Box = KineticBox<Degree>;
-  static_assert(alignof(Box) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__ && std::is_trivially_destructible_v<Box>);
-  const auto boxes = std::make_unique_for_overwrite<std::byte[]>(entries.size() * sizeof(Box));
+  const auto boxes = std::make_unique_for_overwrite<KineticBox<Degree>[]>(entries.size());
   // The functions of callers are called by their own thread, and in order.
   const bool functions = volumes_.slots() > 0;
   const std::size_t threads = functions ? 1 : threads_for(entries.size(), options_.threads);
   in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      entries[i].box = new (&boxes[i * sizeof(Box)]) Box(renewed_box(entries[i].id));  // not copied there
+      entries[i].box = new (&boxes[i]) KineticBox<Degree>(renewed_box(entries[i].id));  // not copied there
     }
   });
   inserting_ = true;

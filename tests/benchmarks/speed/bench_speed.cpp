@@ -49,7 +49,7 @@ void tell_targets(const std::vector<Target>& targets, const Settings& settings) 
 
 int main(int argc, char** argv) {
   try {
-    if (argc < 2) {
+    if (argc < 2 || argv[1][0] == '-') {
       std::fputs("usage: bench_speed DIRECTORY [--quick] [PART...]\n", stderr);
       return 2;
     }
