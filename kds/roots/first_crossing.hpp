@@ -76,16 +76,16 @@ struct SignMasks {
     negative |= static_cast<unsigned>(value < -error) << i;
   }
 
-  /// Numbers 0 ... last: all positive; or positive ones, then at most one that is undecided, then negative ones to the
+  /// Numbers 0 ... last: all positive; or positive ones, then at most one that is unsure, then negative ones to the
   /// end. Two undecided ones could be negative and positive, and make three changes of sign.
   Pattern pattern(int last) const {
     const unsigned all = (2u << last) - 1;
     if (positive == all) return Pattern::positive;
     const unsigned not_negative = all & ~negative;
-    const unsigned undecided = not_negative & ~positive;
+    const unsigned unsure = not_negative & ~positive;
     const bool falls_once = (positive & 1u) != 0 && (positive & (positive + 1)) == 0 &&
                             (not_negative & (not_negative + 1)) == 0 && not_negative != all &&
-                            (undecided & (undecided - 1)) == 0;
+                            (unsure & (unsure - 1)) == 0;
     return falls_once ? Pattern::falls_once : Pattern::other;
   }
 };

@@ -1,13 +1,16 @@
-// How fast the engine is: against other libraries, against its own methods, by size, in a gas, on large models.
+// How fast the engine is: against other libraries, against its own methods, by size, by rate, in a gas, on large
+// models.
 //
-//     bench_speed DIRECTORY [--quick] [PART...]     peers, rings, cells, growth, gas, models: all if none is named
+//     bench_speed DIRECTORY [--quick] [PART...]     all parts if none is named; they stand in the list below
 //
-// CSV into the directory; at the end the table of targets. Times are CPU seconds of the thread, of several ways in turn
-// within one run, and all ways are checked to find the same contacts. Exits with 1 where they do not.
+// CSV into the directory; at the end the table of targets. Times are CPU seconds of the thread (of `threads` seconds
+// that pass), of several ways in turn within one run, and all ways are checked to find the same contacts. Exits with 1
+// where they do not. CELLS_SECONDS and SAMPLES in the environment: Settings::cells_seconds and samples.
 
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/speed/report.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -25,8 +28,11 @@ struct Part {
   std::vector<Target> (*measure)(const Settings&);
 };
 
-const std::vector<Part> parts{{"peers", measure_peers},   {"rings", measure_rings}, {"cells", measure_cells},
-                              {"growth", measure_growth}, {"gas", measure_gas},     {"models", measure_models}};
+const std::vector<Part> parts{
+    {"peers", measure_peers},        {"rings", measure_rings},   {"cells", measure_cells},
+    {"growth", measure_growth},      {"gas", measure_gas},       {"models", measure_models},
+    {"threads", measure_threads},    {"bodies", measure_bodies}, {"frequency", measure_frequency},
+    {"one-hertz", measure_one_hertz}};
 
 const Part& part(std::string_view name) {
   for (const Part& p : parts) {
@@ -36,6 +42,7 @@ const Part& part(std::string_view name) {
 }
 
 void tell_targets(const std::vector<Target>& targets, const Settings& settings) {
+  if (targets.empty()) return;
   std::puts("\n== targets");
   auto file = kds::benchmarks::open_csv(settings.folder, "speed-targets.csv");
   kds::benchmarks::tell(file, "what,wanted,measured,unit,met\n");
@@ -64,6 +71,8 @@ int main(int argc, char** argv) {
       }
     }
     if (const char* seconds = std::getenv("CELLS_SECONDS")) settings.cells_seconds = std::atof(seconds);
+    if (const char* samples = std::getenv("SAMPLES")) settings.samples = std::max(1, std::atoi(samples));
+    if (settings.quick) settings.samples = 1;
     std::vector<Target> targets;
     for (const Part& p : chosen.empty() ? parts : chosen) {
       std::printf("\n== %s\n", p.name);

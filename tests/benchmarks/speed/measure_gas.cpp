@@ -70,8 +70,8 @@ std::vector<Target> measure_gas(const Settings& settings) {
         if (n > m.most_bodies) continue;
         entrants.push_back({m.name, [&scene, drive, &m] { return to_run(run_method(scene, m, drive)); }});
       }
-      RaceOptions race_options;
-      race_options.rounds = settings.quick ? 1 : 5;
+      RaceOptions race_options = settings.quick ? single_round : RaceOptions{};
+      if (!settings.quick) race_options.rounds = 25;  // a time is wanted, not a ratio: it needs a quiet moment
       race_options.patience = 3;
       race_options.cap = 10;
       const auto results = race(entrants, race_options);
@@ -89,12 +89,10 @@ std::vector<Target> measure_gas(const Settings& settings) {
              each(c.broad_phase.box_updates, before.broad_phase.box_updates), each(c.pairs_begun, before.pairs_begun),
              each(c.wall_contacts, before.wall_contacts), r.best.setup, r.best_run, r.cut);
       }
-      if (packing == 0.25) {
+      if (packing == 0.25 && n == 1000) {
         const Result& ours = results.front();
         const double us = ours.cut ? INFINITY : 1e6 * ours.best_run / static_cast<double>(ours.best.contacts);
-        // The target is stated for 1 000; the larger ones stand beside it.
-        const std::string what = "auto: gas of " + std::to_string(n) + " balls at packing 0.25: CPU a contact";
-        targets.push_back({what, us, '<', 2, "us"});
+        targets.push_back({"auto: gas of 1000 balls at packing 0.25: CPU a contact", us, '<', 2, "us"});
       }
     }
   }

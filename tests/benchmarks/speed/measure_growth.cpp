@@ -15,8 +15,9 @@ using kds::benchmarks::tell;
 
 std::vector<Target> measure_growth(const Settings& settings) {
   auto file = open_csv(settings.folder, "speed-growth.csv");
-  tell(file, "bodies,method,setup_us_a_body,run_us_a_body,setup_cpu,run_cpu,peak_mib,contacts,swaps,tests,certificates,"
-             "box_updates,instructions,cache_misses,page_faults,cut\n");
+  tell(file,
+       "bodies,method,setup_us_a_body,run_us_a_body,setup_cpu,run_cpu,peak_mib,contacts,swaps,tests,certificates,"
+       "box_updates,instructions,cache_misses,page_faults,cut\n");
   std::vector<std::size_t> sizes{1000, 10'000};
   if (!settings.quick) sizes.insert(sizes.end(), {100'000, 1'000'000});
   double first = 0;
@@ -36,8 +37,7 @@ std::vector<Target> measure_growth(const Settings& settings) {
                             return run;
                           }});
     }
-    RaceOptions race_options;
-    race_options.rounds = settings.quick ? 1 : 5;
+    RaceOptions race_options = settings.quick ? single_round : RaceOptions{};
     race_options.cap = 15;
     const auto results = race(entrants, race_options);
     check_agreement(results, std::to_string(n) + " balls");

@@ -72,22 +72,21 @@ std::vector<Entrant> entrants(const BallScene& scene, const Drive& drive, const 
   return list;
 }
 
-/// The default's CPU time as a share of the best of some, set-up counted or not; the library's best configuration.
+/// How many times as long a library takes as the default, set-up counted or not; its best configuration.
 Target against(const std::vector<Result>& results, const std::string& prefix, bool with_setup, const Setting& setting,
                double wanted) {
   double best = std::numeric_limits<double>::infinity();
   bool all_cut = true;
   for (const Result& r : results) {
     if (r.name.rfind(prefix, 0) != 0) continue;
-    best = std::min(best, with_setup ? r.best.total() : r.best_run);
+    best = std::min(best, ratio(r, results.front(), with_setup ? &Round::total : &Round::run).median);
     all_cut = all_cut && r.cut;
   }
-  const Result& ours = results.front();
   char what[200];
   std::snprintf(what, sizeof what, "auto against %s%s: %zu balls %g %% %g Hz %g s%s", prefix.c_str(),
                 all_cut ? " (ended: more than this)" : "", setting.bodies, 100 * setting.packing, setting.rate,
                 setting.duration, with_setup ? " with set-up" : " run alone");
-  return {what, best / (with_setup ? ours.best.total() : ours.best_run), '>', wanted, "x"};
+  return {what, best, '>', wanted, "x"};
 }
 
 double wanted_of(const Setting& setting) {
@@ -117,11 +116,10 @@ std::vector<Target> measure_peers(const Settings& settings) {
     run_method(scene, methods().front(), drive, &expected);
     expected = in_order(std::move(expected));
 
-    RaceOptions race_options;
-    race_options.rounds = settings.quick ? 1 : 5;
+    RaceOptions race_options = settings.quick ? single_round : RaceOptions{};
     race_options.hopeless = 1e9;  // a ratio is wanted, however great
     race_options.cap = settings.quick ? 5 : 12;
-    race_options.patience = 3;
+    race_options.patience = 5;
     const auto results = race(entrants(scene, drive, expected), race_options);
     for (const Result& r : results) {
       tell(file, "%zu,%g,%g,%g,%s,%.6f,%.6f,%llu,%llu,%.1e,%llu,%d\n", setting.bodies, setting.packing, setting.rate,
@@ -134,8 +132,8 @@ std::vector<Target> measure_peers(const Settings& settings) {
       }
     }
     for (const char* prefix : {"btAxisSweep3", "bt32BitAxisSweep3", "btDbvtBroadphase", "fcl"}) {
-      const bool there = std::any_of(results.begin(), results.end(),
-                                     [&](const Result& r) { return r.name.rfind(prefix, 0) == 0; });
+      const bool there =
+          std::any_of(results.begin(), results.end(), [&](const Result& r) { return r.name.rfind(prefix, 0) == 0; });
       const bool wanted = setting.packing == 0.01 && setting.bodies != 10'000;
       if (!there || !wanted) continue;
       for (const bool with_setup : {true, false}) {

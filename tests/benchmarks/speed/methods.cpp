@@ -1,7 +1,6 @@
 #include "tests/benchmarks/speed/methods.hpp"
 
 #include "collision/broad_phase/broad_phase_kind.hpp"
-#include "tests/benchmarks/thread_time.hpp"
 
 #include <bit>
 #include <stdexcept>
@@ -9,7 +8,6 @@
 namespace speed {
 namespace {
 
-using kds::benchmarks::thread_seconds;
 using kds::collision::BodyId;
 using kds::collision::BroadPhaseKind;
 
@@ -82,6 +80,7 @@ kds::collision::WorldOptions world_options(const BallScene& scene, const Method&
   options.response = kds::collision::Response::elastic;
   options.broad_phase = method.kind;
   options.rate = drive.rate;
+  options.threads = drive.threads;
   options.walls = kds::collision::Walls{Eigen::Vector3d::Zero(), scene.side};
   return options;
 }
@@ -101,12 +100,12 @@ Outcome run_method(const BallScene& scene, const Method& method, const Drive& dr
   Outcome outcome;
   Hasher hasher(outcome, meetings);
   const HardwareCounters hardware;
-  const double begin = thread_seconds();
+  const double begin = drive.clock();
   kds::collision::World<1> world(world_options(scene, method, drive), &hasher);
   add_balls(world, scene);
   world.advance_to(scene.start_time);
   outcome.after_setup = world.counters();
-  const double middle = thread_seconds();
+  const double middle = drive.clock();
   const double end = scene.start_time + drive.duration;
   for (std::uint64_t frame = 1;; ++frame) {
     const double t = scene.start_time + static_cast<double>(frame) / drive.rate;
@@ -114,7 +113,7 @@ Outcome run_method(const BallScene& scene, const Method& method, const Drive& dr
     world.advance_to(t);
   }
   world.advance_to(end);
-  outcome.run = thread_seconds() - middle;
+  outcome.run = drive.clock() - middle;
   outcome.setup = middle - begin;
   outcome.counters = world.counters();
   outcome.hardware = hardware.read();

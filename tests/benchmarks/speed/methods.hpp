@@ -4,6 +4,7 @@
 #include "collision/world.hpp"
 #include "tests/benchmarks/speed/hardware_counters.hpp"
 #include "tests/benchmarks/speed/scenes.hpp"
+#include "tests/benchmarks/thread_time.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,8 @@ const Method& method(const std::string& name);
 struct Drive {
   double rate = 60;     ///< Hz; results are asked for so often, and swept boxes renewed
   double duration = 1;  ///< s of simulated time
+  std::size_t threads = 1;
+  double (*clock)() = kds::benchmarks::thread_seconds;  ///< what set-up and run are taken by
 };
 
 /// A contact, to compare with others'.
@@ -35,8 +38,8 @@ struct Meeting {
 };
 
 struct Outcome {
-  double setup = 0;          ///< CPU s from the scene to the first instant
-  double run = 0;            ///< CPU s from there to the end
+  double setup = 0;          ///< s by the drive's clock from the scene to the first instant
+  double run = 0;            ///< s from there to the end
   std::uint64_t events = 0;  ///< contacts, walls, overlaps, holds
   std::uint64_t hash = 0;    ///< of all of them, bit by bit; the order of those at one time does not count
   kds::collision::WorldCounters counters;     ///< set-up and run

@@ -3,6 +3,7 @@
 #include "tests/benchmarks/speed/isolated.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -14,8 +15,8 @@ namespace speed {
 namespace {
 
 /// Of some runs that than which a tenth are shorter, after one that is not counted: a new process has its memory still
-/// to get. It keeps what it got: whether the C library gives memory back to the system between runs, to get it anew page
-/// by page, would depend on the sizes of an entrant's blocks.
+/// to get. It keeps what it got: whether the C library gives memory back to the system between runs, to get it anew
+/// page by page, would depend on the sizes of an entrant's blocks.
 Run repeated(const Entrant& entrant, std::size_t times) {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
@@ -45,7 +46,28 @@ Run to_run(const Outcome& outcome) {
   return run;
 }
 
+Ratio ratio(const Result& x, const Result& y, double Round::*part) {
+  std::vector<double> ratios;
+  for (std::size_t k = 1; k < std::min(x.rounds.size(), y.rounds.size()); ++k) {
+    const double r = x.rounds[k].*part / y.rounds[k].*part;
+    if (!std::isnan(r)) ratios.push_back(r);
+  }
+  if (x.cut || y.cut || ratios.size() < 3) {
+    const auto least = [&](const Result& of) { return part == &Round::run ? of.best_run : of.best.total(); };
+    const double r = least(x) / least(y);
+    return {r, r, r};
+  }
+  std::sort(ratios.begin(), ratios.end());
+  // How many of n lie below the median is binomial: in 95 of 100 cases n / 2 within 1.96 sqrt(n) / 2, here rounded
+  // down.
+  const auto n = static_cast<double>(ratios.size());
+  const auto below = static_cast<std::size_t>(std::max(0.0, (n - 1 - 1.96 * std::sqrt(n)) / 2));
+  const std::size_t last = ratios.size() - 1;
+  return {(ratios[last / 2] + ratios[last - last / 2]) / 2, ratios[below], ratios[last - below]};
+}
+
 std::vector<Result> race(const std::vector<Entrant>& entrants, const RaceOptions& options) {
+  constexpr double not_run = std::numeric_limits<double>::quiet_NaN();
   std::vector<Result> results;
   double best = std::numeric_limits<double>::infinity();
   for (const Entrant& entrant : entrants) {
@@ -60,23 +82,29 @@ std::vector<Result> race(const std::vector<Entrant>& entrants, const RaceOptions
       result.cut = true;
       result.best.run = result.best_run = limit;
     }
+    result.rounds.push_back({result.best.total(), result.best.run});
     results.push_back(std::move(result));
   }
   const double hopeless = options.hopeless * best;  // of first runs, which have their memory still to get
-  int last_gain = 0;  // the round in which somebody's best has become better
+  const auto is_known = [&](const Result& result) {
+    if (result.cut || result.best.total() > options.far * best) return true;
+    const Ratio r = ratio(result, results.front());
+    return r.high - r.low <= 2 * options.precision * r.median;
+  };
   for (int round = 1; round < std::max(options.rounds, options.most_rounds); ++round) {
     const bool extra = round >= options.rounds;
-    if (extra && round - last_gain > settled_rounds) break;
+    if (extra && std::all_of(results.begin(), results.end(), is_known)) break;
     for (std::size_t k = 0; k < entrants.size(); ++k) {
       const std::size_t i = round % 2 == 0 ? k : entrants.size() - 1 - k;
       Result& result = results[i];
+      result.rounds.push_back({not_run, not_run});
       const double once = result.best.total();
       if (result.cut || once > hopeless || once * round > options.patience) continue;
       if (extra && once > options.far * best) continue;
       const auto times = static_cast<std::size_t>(std::clamp(options.least / once, 1.0, 1000.0));
       const auto run = isolated(std::numeric_limits<double>::infinity(), [&] { return repeated(entrants[i], times); });
       if (!run) throw std::runtime_error(entrants[i].name + ": a run was ended");
-      if (run->total() < (1 - settled_part) * once) last_gain = round;
+      result.rounds.back() = {run->total(), run->run};
       result.best_run = std::min(result.best_run, run->run);
       if (run->total() < once) result.best = *run;
       best = std::min(best, result.best.total());

@@ -11,6 +11,7 @@ struct Settings {
   std::filesystem::path folder;  ///< to write CSV into
   bool quick = false;            ///< small sizes and few rounds: shows that all works, measures nothing
   double cells_seconds = 480;    ///< wall clock; no further cell is begun after it
+  int samples = 5;               ///< scenes of different seeds, where a figure is the mean over such
 };
 
 /// A row of the table of targets.
@@ -31,5 +32,9 @@ std::vector<Target> measure_cells(const Settings& settings);
 std::vector<Target> measure_growth(const Settings& settings);
 std::vector<Target> measure_gas(const Settings& settings);
 std::vector<Target> measure_models(const Settings& settings);
+std::vector<Target> measure_threads(const Settings& settings);
+std::vector<Target> measure_bodies(const Settings& settings);
+std::vector<Target> measure_frequency(const Settings& settings);
+std::vector<Target> measure_one_hertz(const Settings& settings);
 
 }  // namespace speed

@@ -1,4 +1,5 @@
-// What the benchmark of speed stands on: scenes without overlap, and a frame simulation that finds the engine's contacts.
+// What the benchmark of speed stands on: scenes without overlap, and a frame simulation that finds the engine's
+// contacts.
 #include "tests/benchmarks/speed/isolated.hpp"
 #include "tests/benchmarks/speed/methods.hpp"
 #include "tests/benchmarks/speed/peers/frame_simulation.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <tuple>
 #include <vector>
@@ -24,8 +26,8 @@ std::size_t misplaced(const BallScene& scene) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < scene.balls.size(); ++i) {
     const auto& a = scene.balls[i];
-    const bool inside = (a.position.array() >= a.radius).all() &&
-                        (a.position.array() <= scene.side.array() - a.radius).all();
+    const bool inside =
+        (a.position.array() >= a.radius).all() && (a.position.array() <= scene.side.array() - a.radius).all();
     wrong += inside ? 0 : 1;
     for (std::size_t j = 0; j < i; ++j) {
       const auto& b = scene.balls[j];
@@ -108,8 +110,9 @@ TEST_CASE("speed scenes: spreads, means and shares are those asked for", "[speed
 
 TEST_CASE("speed peers: the frame simulation finds the engine's contacts at the engine's times", "[speed]") {
   const auto by_bodies = [](std::vector<Meeting>& list) {
-    std::sort(list.begin(), list.end(),
-              [](const Meeting& x, const Meeting& y) { return std::tuple(x.a, x.b, x.time) < std::tuple(y.a, y.b, y.time); });
+    std::sort(list.begin(), list.end(), [](const Meeting& x, const Meeting& y) {
+      return std::tuple(x.a, x.b, x.time) < std::tuple(y.a, y.b, y.time);
+    });
   };
   for (const double rate : {1.0, 7.0, 300.0}) {
     SceneOptions options;
@@ -143,7 +146,8 @@ TEST_CASE("speed race: what takes too long is ended, and different events are no
   const auto spin = [](double seconds) {
     return [seconds] {
       const double begin = kds::benchmarks::thread_seconds();
-      while (kds::benchmarks::thread_seconds() - begin < seconds) {}
+      while (kds::benchmarks::thread_seconds() - begin < seconds) {
+      }
       Run run;
       run.run = seconds;
       run.events = seconds < 0.015 ? 1 : 2;
@@ -164,34 +168,74 @@ TEST_CASE("speed race: what takes too long is ended, and different events are no
                   std::runtime_error);
 }
 
-TEST_CASE("speed race: rounds go on until nobody becomes better", "[speed]") {
+TEST_CASE("speed race: rounds go on until ratios are known", "[speed]") {
   // Counts runs of all processes; each of which says how long it has taken.
   void* memory = mmap(nullptr, 2 * sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   REQUIRE(memory != MAP_FAILED);
   int* const runs = new (memory) int[2]{0, 0};
-  const auto entrant = [&](int which, int better_for, double start) {
+  /// Its round k takes `seconds`, and so much more in every other one.
+  const auto entrant = [&](int which, double seconds, double more) {
     return [=] {
       Run run;
-      run.run = start * std::pow(0.95, std::min(++runs[which], better_for));
+      run.run = seconds * (1 + (++runs[which] / 2 % 2 == 0 ? more : 0));
       return run;
     };
   };
   RaceOptions options;
-  options.rounds = 3;
+  options.rounds = 9;
   options.most_rounds = 40;
   options.least = 0;
   const auto rounds_of = [&](int which) { return (runs[which] + 1) / 2; };  // of two runs each, but for the first
-  race({{"steady", entrant(0, 0, 1e-3)}, {"far", entrant(1, 0, 3e-3)}}, options);
-  CHECK(rounds_of(0) == 1 + settled_rounds);
-  CHECK(rounds_of(1) == 3);
-  runs[0] = runs[1] = 0;
-  const auto results = race({{"steady", entrant(0, 0, 1e-3)}, {"better", entrant(1, 10, 1.1e-3)}}, options);
-  CHECK(rounds_of(1) >= 5 + settled_rounds);
-  CHECK(rounds_of(1) < 40);
-  CHECK(rounds_of(0) == rounds_of(1));
-  CHECK(results[1].best.total() == Approx(1.1e-3 * std::pow(0.95, 10)));
-  runs[0] = runs[1] = 0;
-  race({{"steady", entrant(0, 0, 1e-3)}, {"endless", entrant(1, 1000, 1.1e-3)}}, options);
+  const auto race_of = [&](double seconds, double more) {
+    runs[0] = runs[1] = 0;
+    return race({{"first", entrant(0, 1e-3, 0)}, {"other", entrant(1, seconds, more)}}, options);
+  };
+  const auto steady = race_of(1.1e-3, 0);
+  CHECK(rounds_of(0) == 9);
+  CHECK(rounds_of(1) == 9);
+  CHECK(ratio(steady[1], steady[0]).median == Approx(1.1));
+  race_of(1.1e-3, 0.015);  // 1.5 %: within 1 % either way
+  CHECK(rounds_of(1) == 9);
+  const auto unsteady = race_of(1.1e-3, 0.1);
+  CHECK(rounds_of(0) == 40);
   CHECK(rounds_of(1) == 40);
+  const Ratio r = ratio(unsteady[1], unsteady[0]);
+  CHECK(r.low == Approx(1.1));
+  CHECK(r.high == Approx(1.21));
+  race_of(3e-3, 0.1);
+  CHECK(rounds_of(1) == 9);  // far: no more than that
   munmap(memory, 2 * sizeof(int));
+}
+
+TEST_CASE("speed race: a ratio is the median over rounds", "[speed]") {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Result x, y;
+  x.best.run = x.best_run = 5;
+  y.best.run = y.best_run = 2;
+  x.rounds = {{100, 50}, {3, 1.5}, {6, 6}};
+  y.rounds = {{1, 1}, {2, 1}, {4, 2}};
+  CHECK(ratio(x, y).median == 2.5);  // best over best: two rounds are too few
+  x.best.setup = 1;
+  CHECK(ratio(x, y).median == 3);
+  CHECK(ratio(x, y, &Round::run).median == 2.5);
+  x.rounds.insert(x.rounds.end(), {{none, none}, {30, 30}});  // a slow moment of the machine, for both
+  y.rounds.insert(y.rounds.end(), {{7, 7}, {20, 10}});
+  CHECK(ratio(x, y).median == 1.5);
+  CHECK(ratio(x, y).low == 1.5);
+  CHECK(ratio(x, y).high == 1.5);
+  CHECK(ratio(x, y, &Round::run).median == 3);  // of 1.5, 3, 3
+  CHECK(ratio(y, x).median == 1 / 1.5);
+  x.cut = true;
+  CHECK(ratio(x, y).median == 3);
+
+  Result many, one;
+  many.rounds.push_back({1, 1});
+  one.rounds.push_back({1, 1});
+  for (int k = 0; k < 100; ++k) {  // 0 ... 99, shuffled: 37 and 100 have no common divisor
+    many.rounds.push_back({static_cast<double>(37 * k % 100), 0});
+    one.rounds.push_back({1, 1});
+  }
+  CHECK(ratio(many, one).median == 49.5);
+  CHECK(ratio(many, one).low == 39);  // the 40th and the 61st: the interval of textbooks for n = 100
+  CHECK(ratio(many, one).high == 60);
 }

@@ -1,4 +1,4 @@
-# Draws what bench_methods measured: gnuplot -e "folder='DIRECTORY'" plot_methods.gp
+# Draws the methods by bodies and by rate, as bench_speed measured them: gnuplot -e "folder='DIRECTORY'" plot_methods.gp
 if (!exists("folder")) folder = "."
 set datafile separator ","
 set grid lc rgb "#dddddd"
@@ -19,7 +19,7 @@ set y2tics
 set y2range [0:*]
 set ytics nomirror
 plot for [i = 1:words(names)] of("bodies", word(names, i)) using 1:3 title word(names, i) lw 2 pt i + 3, \
-     of("bodies", word(names, 1)) using 1:5 axes x1y2 title "contacts (right)" with lines dt 3 lc rgb "black"
+     of("bodies", word(names, 1)) using 1:6 axes x1y2 title "contacts (right)" with lines dt 3 lc rgb "black"
 
 # [Paper] Figure 8: a panel for each method.
 columns = 2
@@ -37,9 +37,9 @@ do for [i = 1:words(names)] {
   set title word(names, i)
   set xlabel "frames a second"
   plot of("frequency", word(names, i)) using 1:3 title "all" lw 3 pt 7, \
-       of("frequency", word(names, i)) using 1:4 title "update" dt 2 pt 6, \
-       of("frequency", word(names, i)) using 1:5 title "sort" dt 3 pt 4, \
-       of("frequency", word(names, i)) using 1:6 title "prune" dt 5 pt 12, \
-       of("frequency", word(names, i)) using 1:7 title "test" dt 4 pt 8
+       of("frequency", word(names, i)) using 1:5 title "update" dt 2 pt 6, \
+       of("frequency", word(names, i)) using 1:6 title "sort" dt 3 pt 4, \
+       of("frequency", word(names, i)) using 1:7 title "prune" dt 5 pt 12, \
+       of("frequency", word(names, i)) using 1:8 title "test" dt 4 pt 8
 }
 unset multiplot
