@@ -65,7 +65,8 @@ class History {
     calls_.push_back({simulator_.now(), 0, std::move(f)});
   }
 
-  /// Events from the beginning to the present state; those that were rolled back do not count.
+  /// Events from the beginning to the present state. Those that were rolled back do not count, and those that were due
+  /// at an edit and made by it are part of the edit.
   std::uint64_t events() const { return events_; }
   std::size_t snapshots() const { return kept_.size(); }
   /// Whether a replay is going on: what is called then has been called before.

@@ -164,8 +164,8 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
 ///
 ///     change(id, repair)                          take up a new motion; without it: remove and insert
 ///     keeps(id, next, repair) -> bool             whether change() can take up this motion: asked before it, with the
-///                                                 old motion still in place; if not: remove and insert. Only with
-///                                                 change()
+///                                                 old motion still in place; if not: remove and insert. A rule
+///                                                 that has it must have change()
 ///     build(repair)                               take up all of repair.elements() at once; without it: insert each
 ///     audit(elements, now) const                  throw AuditFailure if its own state is incoherent
 ///     archive(archive)                            name its members, archive(a_, b_), so that it can be saved

@@ -29,7 +29,7 @@ double gsl_first_negative(std::span<const double> c, double end = never);
 
 /// What failure_time() means, through gsl_first_negative(): the certificate is written about `now` in doubles and its
 /// answer added to `now`. Same call, same meaning, none of the guarantees: the result is near the failure time, on
-/// either side of it.
+/// either side of it. Throws as gsl_first_negative() does, also where the coefficients overflow.
 template <Certificate C>
 double gsl_failure_time(const C& certificate, double now, double horizon = never) {
   if (!(now <= horizon)) return never;
