@@ -14,9 +14,9 @@
 
 namespace kds::certificates {
 
-/// axis . (b(t) - a(t)) as a polynomial in (t - epoch): what relative_motion<Ball<double>> and the products with the
-/// axis give, for a third of the cost, with one error bound a coefficient in place of one an operation. A coefficient
-/// that is known to vanish whatever the roundings has the radius 0.
+/// axis . (b(t) - a(t)) as a polynomial in (t - epoch), of degree 1 or 2: what relative_motion<Ball<double>> and the products
+/// with the axis give, for a third of the cost, with one error bound a coefficient in place of one an operation. A
+/// coefficient that is known to vanish whatever the roundings has the radius 0.
 ///
 /// Error bound, with u = 2^-53. The elapsed times are known to u; a coordinate of a path is a sum of at most three
 /// products, known to 6 u of the sum of their magnitudes, m; the difference of two adds u. The product with the axis

@@ -16,6 +16,7 @@
 namespace kds::certificates {
 
 /// |b(t) - a(t)|^2 >= (radius_a + radius_b)^2: two balls do not penetrate. Degree 2 for linear, 4 for quadratic paths.
+/// The motions are referred to, and must outlive it; the radii are finite and not negative.
 template <int PathDegree>
 struct BallSeparation {
   static constexpr int degree = 2 * PathDegree;

@@ -9,11 +9,11 @@
 
 namespace kds::certificates {
 
-/// A ball whose centre moves so. One cache line at degree 1.
+/// A ball, and how its centre moves. One cache line at degree 1.
 template <int PathDegree>
 struct alignas(64) MovingBall {
   PointMotion<PathDegree> motion;
-  double radius = no_radius;
+  double radius = no_radius;  ///< length
 
   /// Of what is no ball: nothing is told of it.
   static constexpr double no_radius = std::numeric_limits<double>::quiet_NaN();
@@ -30,11 +30,14 @@ class BallsTogether {
  public:
   static constexpr std::size_t size = 4;
 
+  /// Precondition: place < size.
   void put(std::size_t place, const MovingBall<PathDegree>& a, const MovingBall<PathDegree>& b) {
     pairs_.a[place] = numbers_of(a);
     pairs_.b[place] = numbers_of(b);
   }
 
+  /// Writes four numbers to `earliest`. Precondition: all four places have been put.
+  ///
   /// Of each place a time not before `now` and not after BallSeparation::first_approach(now, horizon); `never` where
   /// they surely do not meet and are apart now, `-never` where they surely do not meet, but may be together now; a NaN
   /// where it takes more care.

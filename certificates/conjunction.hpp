@@ -16,6 +16,7 @@ bool all_broken(double t, std::span<const C>... certificates) {
 }
 
 /// The first double t in [now, horizon] just after which every certificate of all the spans is broken, or `never`.
+/// Preconditions: now is finite; there is a certificate.
 ///
 /// This is how contacts of convex shapes are found: shapes penetrate when no axis separates them any more. Whichever
 /// certificate still holds is a witness that nothing happens before it fails; so jump to its failure time and look

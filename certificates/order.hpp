@@ -13,7 +13,7 @@
 
 namespace kds::certificates {
 
-/// lower(t) <= upper(t).
+/// lower(t) <= upper(t). The motions are referred to, and must outlive it.
 template <int Degree>
 struct Order {
   static constexpr int degree = Degree;

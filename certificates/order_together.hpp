@@ -10,12 +10,13 @@
 
 namespace kds::certificates {
 
+/// Failure times in seconds, of the first and of the second pair.
 struct TwoTimes {
   double first, second;
 };
 
 /// What failure_time() gives for two pairs in order, bit for bit, or a NaN where it takes more care: for both, unless
-/// the motions of each pair have a common start.
+/// the motions of each pair have a common start. Precondition: now <= horizon.
 ///
 /// Two lanes do what Order::quick_failure_time() does for one pair, but always to the end: whether values will meet is
 /// what processors cannot foresee. Bounds on errors are derived there and in failure_time_falling_line.hpp.

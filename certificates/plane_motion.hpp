@@ -44,7 +44,7 @@ struct BoundedPoint {
   static constexpr bool sampled = true;
 
   std::array<double, 2> position{};  ///< length
-  double speed = 0;                  ///< length/s
+  double speed = 0;                  ///< length/s, >= 0
   double start = 0;                  ///< s
 
   Bounded axis(int d) const { return {position[static_cast<std::size_t>(d)], speed, start}; }
@@ -61,7 +61,7 @@ struct BoundedAccelerationPoint {
 
   std::array<double, 2> position{};  ///< length
   std::array<double, 2> velocity{};  ///< length/s
-  double acceleration = 0;           ///< length/s^2
+  double acceleration = 0;           ///< length/s^2, >= 0
   double start = 0;                  ///< s
 
   BoundedAcceleration axis(int d) const {

@@ -15,8 +15,8 @@ template <int Degree>
 struct PointMotion {
   static constexpr int degree = Degree;
 
-  std::array<Eigen::Vector3d, Degree + 1> coefficients;
-  double start = 0;
+  std::array<Eigen::Vector3d, Degree + 1> coefficients;  ///< length, length/s, length/s^2 ...
+  double start = 0;                                      ///< s
 
   /// Motion of one coordinate.
   Motion<Degree> axis(int d) const {
@@ -26,6 +26,7 @@ struct PointMotion {
     return motion;
   }
 
+  /// At t, rounded.
   Eigen::Vector3d position(double t) const {
     const double elapsed = t - start;
     Eigen::Vector3d x = coefficients[Degree];
@@ -33,6 +34,7 @@ struct PointMotion {
     return x;
   }
 
+  /// First derivative at t, rounded.
   Eigen::Vector3d velocity(double t) const {
     const double elapsed = t - start;
     Eigen::Vector3d v = coefficients[Degree] * Degree;
@@ -40,7 +42,7 @@ struct PointMotion {
     return v;
   }
 
-  /// Second derivative.
+  /// Second derivative at t, rounded.
   Eigen::Vector3d acceleration(double t) const {
     Eigen::Vector3d a = Eigen::Vector3d::Zero();
     const double elapsed = t - start;

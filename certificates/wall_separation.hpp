@@ -11,9 +11,9 @@ template <int Degree>
 struct WallSeparation {
   static constexpr int degree = Degree;
   Motion<Degree> coordinate;
-  double plane;
-  double radius;
-  double side;
+  double plane;   ///< length
+  double radius;  ///< length
+  double side;    ///< +1 or -1
 
   template <class Number>
   Polynomial<Degree, Number> polynomial(double epoch) const {

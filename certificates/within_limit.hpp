@@ -14,7 +14,7 @@ struct WithinLimit {
   static constexpr int degree = Value::degree;
   Value value;
   double limit;
-  double side;
+  double side;  ///< 1 or -1
 
   template <class Number>
   auto polynomial(double epoch) const {

@@ -8,7 +8,7 @@
 namespace kds {
 
 /// A value that was at `position` at time `start` and has moved at most at `speed` since: whatever it did, it lies in
-/// position +- speed (t - start). Papers: [Kahan91]; [deBerg11], the black-box model.
+/// position +- speed (t - start) at any t >= start. Papers: [Kahan91]; [deBerg11], the black-box model.
 struct Bounded {
   static constexpr int degree = 1;
   static constexpr bool sampled = true;
@@ -20,6 +20,7 @@ struct Bounded {
   friend bool operator==(const Bounded&, const Bounded&) = default;
 };
 
+/// Whether it is a sample that may be used: all numbers finite, and the bound not negative.
 inline bool is_finite(const Bounded& value) {
   return std::isfinite(value.position) && std::isfinite(value.start) && value.speed >= 0 && std::isfinite(value.speed);
 }
@@ -57,6 +58,7 @@ struct BoundedAcceleration {
   friend bool operator==(const BoundedAcceleration&, const BoundedAcceleration&) = default;
 };
 
+/// Likewise.
 inline bool is_finite(const BoundedAcceleration& value) {
   return std::isfinite(value.position) && std::isfinite(value.velocity) && std::isfinite(value.start) &&
          value.acceleration >= 0 && std::isfinite(value.acceleration);

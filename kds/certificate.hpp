@@ -27,8 +27,11 @@ namespace kds {
 ///       auto polynomial(double epoch) const { return about<Number>(x, epoch) - constant<Number>(3); }
 ///     };
 ///
-/// Semantic laws: (1) f uses only ring operations on doubles, so that it is exact over Exact; (2) polynomial(e) and
-/// polynomial(e') are the same function of t. A certificate may offer `bool vanishes() const`, a cheap and sufficient
+/// Semantic laws: (1) f uses only ring operations on finite doubles, so that it is exact over Exact; (2) polynomial(e)
+/// and polynomial(e') are the same function of t, for all finite e. Certificates that hold references, as most of
+/// certificates/ do, must not outlive the motions.
+///
+/// A certificate may offer `bool vanishes() const`, a cheap and sufficient
 /// test that f is zero throughout, which spares such pairs (things that move together) the exact rung; and a
 /// `double quick_failure_time(double now, double horizon) const` that gives what failure_time() would, bit for bit,
 /// or a NaN where it does not decide, and likewise `quick_failure_time_after_turn`; and a
@@ -61,7 +64,7 @@ struct SignCounters {
 inline thread_local SignCounters sign_counters;
 
 /// Sign of f (or its derivative number `derivative`) at t+, the instant after t: the sign of the first of f(t),
-/// f'(t), f''(t)... that is not zero, and 0 only if all vanish. Exact.
+/// f'(t), f''(t)... that is not zero, and 0 only if all vanish. Exact. Precondition: t is finite, 0 <= derivative.
 ///
 /// The ladder: doubles with an error bound, double-doubles with an error bound, exact integers. f is written about t
 /// itself, so its coefficients are its derivatives up to positive factors.

@@ -17,7 +17,8 @@ namespace kds {
 /// x(t) = c0 + c1 (t - start) + c2 (t - start)^2 + ...: [Paper] Equation 1, written about its own start.
 ///
 /// Law (epochs): a motion is never evaluated with a large absolute t, so a clock at 1e9 is as good as one at 0. The
-/// coefficients and the start are taken as exact; c2 is half the acceleration.
+/// coefficients and the start are taken as exact; c2 is half the acceleration. Degrees above 8 are refused at compile
+/// time by what evaluates motions in double-double (compensated_value()), and so by most certificates.
 template <int Degree>
 struct Motion {
   static constexpr int degree = Degree;
@@ -165,7 +166,8 @@ Polynomial<Degree> mirrored(const Polynomial<Degree>& p) {
   return result;
 }
 
-/// The same motion in time that runs backwards: reversed(m)(-t) = m(t), exactly. Twice gives the motion itself.
+/// The same motion in time that runs backwards: reversed(m)(-t) = m(t), exactly. Twice gives the motion itself (with
+/// zeros for negative zeros, which are equal to them).
 template <int Degree>
 Motion<Degree> reversed(const Motion<Degree>& motion) {
   return {mirrored(motion.position), 0.0 - motion.start};

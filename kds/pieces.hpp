@@ -15,12 +15,14 @@
 namespace kds {
 
 /// Plans for the elements of a set: from `start` on the element has this motion. To the simulator it is one more
-/// structure, whose events are the seams between pieces; an edit by hand leaves the plan as it is.
+/// structure, whose events are the seams between pieces; an edit by hand leaves the plan as it is, a removal drops it.
 ///
-/// As with every edit, events of the seam's time come before it (see MovingSet). Whether pieces meet at a seam is the
-/// planner's affair: a jump is legal.
+/// As with every edit, events of the seam's time come before it (see MovingSet). Their listeners must not remove the
+/// element: the seam would throw std::out_of_range. Whether pieces meet at a seam is the planner's affair: a jump is
+/// legal.
 ///
-/// Cost: O(1) queue operations a seam, and what the structures have to do for an edit.
+/// Cost: O(1) queue operations a seam, a move of the element's later pieces, and what the structures have to do for an
+/// edit.
 template <MovingElement E>
 class Pieces final : private MovingSet<E>::Observer {
  public:
@@ -30,8 +32,9 @@ class Pieces final : private MovingSet<E>::Observer {
   Pieces(const Pieces&) = delete;
   Pieces& operator=(const Pieces&) = delete;
 
-  /// Appends a piece to the plan of an element. Throws std::out_of_range for an element that is not there,
-  /// std::invalid_argument for a start that is not finite, before `now`, or not after that of the piece before.
+  /// Appends a piece to the plan of an element, which takes it up at `start`, in seconds. `now` is the clock. Throws
+  /// std::out_of_range for an element that is not there, std::invalid_argument for a motion that is not finite and for
+  /// a start that is not finite, before `now`, or not after that of the piece before; the plan is then as it was.
   void plan(Id id, double start, const E& motion, double now) {
     if (!elements_.contains(id)) throw std::out_of_range("Pieces: no element with id " + std::to_string(id));
     if (!detail::finite(motion)) {
@@ -52,11 +55,13 @@ class Pieces final : private MovingSet<E>::Observer {
   /// Pieces still to come.
   std::size_t planned(Id id) const { return id < plans_.size() ? plans_[id].size() : 0; }
 
+  /// Time of the next seam within the horizon, `never` if there is none.
   double next_time() const {
     if (queue_.empty() || queue_.top().time > horizon_) return never;
     return queue_.top().time;
   }
 
+  /// Makes the change of motion due at next_time(). Precondition: there is one.
   void process() {
     const auto [time, id] = queue_.top();
     const Piece piece = plans_[id].front();
@@ -71,6 +76,7 @@ class Pieces final : private MovingSet<E>::Observer {
 
   void extend_horizon(double /*now*/, double horizon) { horizon_ = horizon; }
 
+  /// Throws AuditFailure if a piece is not scheduled at its start, or should have started before now.
   void audit(double now) const {
     for (Id id = 0; id < plans_.size(); ++id) {
       const double start = plans_[id].empty() ? never : plans_[id].front().start;

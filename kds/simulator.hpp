@@ -34,13 +34,16 @@ concept KineticStructure = requires(S& structure, const S& observed, double t) {
 /// Runs structures side by side: events in (time, structure, slot) order, structures in the order of the arguments.
 ///
 /// The structures are referred to, not owned. No virtual call, no allocation: a step costs a comparison a structure
-/// on top of the structure's own work.
+/// on top of the structure's own work. All times are in seconds.
+///
+/// Threads: a simulator, its structures and their sets are for one thread at a time, const functions included (a queue
+/// may rearrange itself when it is asked for its least). Different ones may run in different threads.
 template <KineticStructure... Structures>
 class Simulator {
  public:
   static_assert(sizeof...(Structures) > 0);
 
-  /// The clock starts at `now`.
+  /// The clock starts at `now`: finite, and not before the structures were made and last changed (neither is checked).
   explicit Simulator(double now, Structures&... structures) : structures_(structures...), now_(now) {}
 
   double now() const { return now_; }
@@ -49,15 +52,18 @@ class Simulator {
   /// Time of the next event within the horizon, `never` if there is none.
   double next_time() const { return next().first; }
 
-  /// Keeps only events up to `window` seconds ahead. Whenever the clock is asked beyond, the structures certify
-  /// again for another window. Infinite (the default) predicts everything.
+  /// Keeps only events up to `window` seconds ahead. Whenever the clock is asked beyond, the structures certify again
+  /// for another window. Infinite (the default) predicts everything; a step() without a limit does so too, and from
+  /// then on. Throws std::invalid_argument for a window that is not > 0. Cost: a failure time for each certificate that
+  /// the change concerns.
   void set_window(double window) {
     if (!(window > 0)) throw std::invalid_argument("Simulator::set_window: the window must be > 0");
     window_ = window;
     set_horizon(now_ + window);
   }
 
-  /// Processes the next event if it is not later than `limit`; the clock moves to it. False if there is none.
+  /// Processes the next event if it is not later than `limit`; the clock moves to it. If there is none: false, and the
+  /// clock stays where it is.
   bool step(double limit = never) {
     if (limit > horizon_) reach(limit);
     const auto [time, index] = next();
@@ -68,7 +74,8 @@ class Simulator {
   }
 
   /// Processes all events up to and including t and sets the clock to t. Throws std::invalid_argument for a t before
-  /// the clock, or one that is not finite (to run while there are events, call step() until it is false).
+  /// the clock, or one that is not finite (to run while there are events, call step() until it is false). If a listener
+  /// throws, the clock stands at its event, and the run may go on.
   void advance_to(double t) {
     if (!std::isfinite(t)) throw std::invalid_argument("Simulator::advance_to: the time must be finite");
     if (t < now_) {

@@ -19,7 +19,7 @@ namespace kds {
 /// Laws: (1) the coefficients of `radius` about `since`, the time of the latest sample, are not negative, so that it
 /// grows from then on. (2) Sums add radii; for a product |xy - ab| <= |a| s + |b| r + r s with |x - a| <= r, |y - b| <=
 /// s, where |a(t)| <= |a_0| + |a_1| u + |a_2| u^2 ..., u = t - since, a_i being the coefficients of a about `since`.
-/// (3) So all are polynomials that do not depend on the epoch.
+/// (3) So all are polynomials that do not depend on the epoch, which must be the same for both operands.
 template <int MiddleDegree, int RadiusDegree, class Number>
 struct Uncertain {
   Polynomial<MiddleDegree, Number> middle{};

@@ -20,7 +20,8 @@
 
 namespace kds::structures {
 
-/// A box whose least and greatest corner move, each as it likes: a path each.
+/// A box whose least and greatest corner move, each as it likes: a path each. Precondition: as long as it is in a
+/// structure, min stays at or below max on each axis. That is not checked.
 template <class Path>
 struct MovingBox {
   static constexpr int degree = Path::degree;
@@ -91,8 +92,10 @@ class AabbTreeRule {
   bool paired(Id a, Id b) const {
     return a < partners_.size() && std::binary_search(partners_[a].begin(), partners_[a].end(), b);
   }
-  /// Ids of the elements that this one is paired with, ascending. Precondition: the element is there.
+  /// Ids of the elements that this one is paired with, ascending. Precondition: the element is there. The reference
+  /// holds until the next insertion, and shows later pairs.
   const std::vector<Id>& partners(Id id) const { return partners_[id]; }
+  /// All pairs, ascending, the lower id first. O(n + pairs).
   std::vector<std::array<Id, 2>> pairs() const;
 
   /// Whether two elements overlap at t+, exactly: on each axis neither begins where the other has ended.

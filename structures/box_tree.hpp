@@ -46,9 +46,10 @@ class BoxTree {
   template <class Found>
   void visit(const Box& box, Found&& found) const;
 
-  /// Of the longest way down, in steps: 0 for one box. O(n).
+  /// Of the longest way down, in steps: 0 for one box or none. O(n depth).
   std::size_t depth() const;
-  /// Sum of the surfaces of inner nodes, that of the root being 1: what a visit costs.
+  /// Sum of the surfaces of inner nodes, that of the root being 1: what a visit costs. 0 for fewer than two boxes; a
+  /// NaN where the root's surface is zero or infinite. O(n).
   double relative_surface() const;
 
   /// Throws AuditFailure unless every node is the hull of its two, and is where it is said to be.

@@ -66,7 +66,8 @@ class Bracket {
     }
   }
 
-  /// Lets several in or out at once, or has them play again: before that, none of them is asked about. O(k log n).
+  /// Lets several in or out at once, or has them play again: before that, none of them is asked about. Makes room where
+  /// there is none. O(k log n), or O(n) where the tree becomes another.
   template <class Present, class Beats, class Played>
   void update(const std::vector<Entrant>& entrants, const Present& present, const Beats& beats, const Played& played) {
     if (entrants.empty()) return;

@@ -37,8 +37,9 @@ class ClosestPairRule {
   using Element = Path;
   static constexpr const char* name = "ClosestPair";
 
-  /// The pair, the lower id first; none if there are fewer than two points, or more on one line. Of several pairs that
-  /// are equally close for good it is any.
+  /// The pair, the lower id first; none if there are fewer than two points, or if there are three or more, all on one
+  /// line for good. Of several pairs that are equally close for good it is any. O(1), but O(n) while points share a
+  /// vertex or the triangulation is flat().
   std::optional<std::array<Id, 2>> pair() const;
   const DelaunayRule<Path>& delaunay() const { return delaunay_; }
 

@@ -17,7 +17,8 @@
 namespace kds::structures {
 
 /// The k / 2 directions of the usual k-DOPs in space: k = 6 the axes, 14 with the corners of a cube, 18 with the
-/// middles of its edges, 26 with both. Not of unit length, so that they are exact. Paper: [Klosowski98].
+/// middles of its edges, 26 with both. Not of unit length, so that they are exact. Throws std::invalid_argument for any
+/// other k. Paper: [Klosowski98].
 inline std::vector<std::array<double, 3>> kdop_directions(int k) {
   if (k != 6 && k != 14 && k != 18 && k != 26)
     throw std::invalid_argument("kdop_directions: k must be 6, 14, 18 or 26");
@@ -61,11 +62,13 @@ class ExtentsRule {
 
   const std::vector<Direction>& directions() const { return directions_; }
 
-  /// The points that are farthest and least far in a direction at t+; none if there are no points.
+  /// The points that are farthest and least far in a direction, given by its number from 0, at t+; none if there are no
+  /// points. Precondition: direction < directions().size().
   std::optional<Id> foremost(std::size_t direction) const { return winner(2 * direction); }
   std::optional<Id> hindmost(std::size_t direction) const { return winner(2 * direction + 1); }
 
-  /// From least to greatest value of direction . point at t, rounded. Precondition: there are points.
+  /// From least to greatest value of direction . point at t, rounded. Preconditions: there are points, and t is the
+  /// clock or at least before the next event.
   std::array<double, 2> extent(std::size_t direction, const MovingSet<Path>& points, double t) const {
     return {value(direction, points[*hindmost(direction)], t), value(direction, points[*foremost(direction)], t)};
   }

@@ -47,8 +47,8 @@ class Lawson {
     return false;
   }
 
-  /// Inserts a vertex, looking for its place from the triangle `near`. Gives the vertex it is one with, which it then
-  /// does not join, or nobody.
+  /// Inserts a vertex, looking for its place from the triangle `near`, and gives `nobody`. Where the mesh has a vertex
+  /// that is one with it for good, gives that and inserts nothing. Precondition: the mesh is not empty.
   Id insert(Id vertex, std::uint32_t near) {
     const std::uint32_t place = locate(vertex, near);
     for (Edge h = 3 * place; h < 3 * place + 3; ++h) {

@@ -49,8 +49,10 @@ class PlaneTriangulationRule {
   Id vertex(Id id) const { return id < same_as_.size() && same_as_[id] != nobody ? same_as_[id] : id; }
   /// Whether some points share a vertex.
   bool has_shared_vertices() const { return hidden_ > 0; }
-  /// Ids on the hull, counter-clockwise from the lowest; those on its edges are among them. Empty if flat().
+  /// Ids on the hull, counter-clockwise, beginning with the lowest id; those on its edges are among them. Empty if
+  /// flat(). O(points of the hull).
   std::vector<Id> hull() const;
+  /// How often it has been built anew.
   std::uint64_t rebuilds() const { return rebuilds_; }
 
   using Orientation = certificates::Orientation<Path>;

@@ -42,6 +42,8 @@ struct NoSwapListener {
 /// jump needs; insertion and removal O(n) moves of memory and O(log n) comparisons; `assign` O(n log n). At most one
 /// event for each adjacent pair is scheduled: the structure is compact and, with two events an element, local.
 ///
+/// `now` is always the clock, in seconds: finite, and not before the last change or event. That is not checked.
+///
 /// All orders are decided by exact signs at t+, so the state between events is exactly that of the motions (with an
 /// uncertified solver: as far as Schedule promises).
 template <int Degree, class Listener = NoSwapListener, class Queue = PlaceQueue,
@@ -67,17 +69,18 @@ class SortedList {
   std::size_t size() const { return order_.size(); }
   bool contains(Id id) const { return id < position_.size() && position_[id] != absent; }
 
-  /// Elements in ascending order.
+  /// Elements in ascending order. The span, and references to motions, hold until the next event or change.
   std::span<const Entry> entries() const { return order_; }
 
   /// Place of an element in the order, from 0. Precondition: contains(id).
   std::uint32_t position(Id id) const { return position_[id]; }
+  /// Precondition: contains(id).
   const Motion<Degree>& motion(Id id) const { return order_[position_[id]].motion; }
 
   Listener& listener() { return listener_; }
 
-  /// Replaces the content. Swaps are not reported. Throws std::invalid_argument for an id used twice or a motion that
-  /// is not finite, and then changes nothing.
+  /// Replaces the content by other entries than the list's own. Swaps are not reported. Throws std::invalid_argument
+  /// for an id that is used twice or reserved and for a motion that is not finite, and then changes nothing.
   void assign(std::span<const Entry> entries, double now);
 
   // Changes throw std::invalid_argument for an id that is used or reserved (the greatest) and for a motion that is not
@@ -102,13 +105,14 @@ class SortedList {
   /// Makes the swap due at next_time(). Precondition: there is one.
   void process();
 
+  /// See KineticStructure.
   void extend_horizon(double now, double horizon);
 
   /// Turns the motions round and certifies them in time that runs backwards: see reverse() in
   /// kds/framework/reverse.hpp.
   void turn_round(double now, double horizon);
 
-  /// Checks order, positions and failure times against the motions, exactly.
+  /// Checks order, positions and failure times against the motions, exactly. Throws AuditFailure.
   void audit(double now) const;
 
   const Counters& counters() const { return schedule_.counters(); }

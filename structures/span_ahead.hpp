@@ -12,6 +12,7 @@
 
 namespace kds::structures {
 
+/// A closed interval, in units of length.
 struct Span {
   double min;
   double max;
@@ -38,8 +39,8 @@ void add_terms(const Polynomial<Degree, Ball<double>>& f, double ahead, Span& sp
 
 }  // namespace detail
 
-/// An interval whose inside holds the value from now until `ahead` seconds later, a sampled one whatever it does; all
-/// there is where the numbers overflow.
+/// An interval whose inside holds the value from now until `ahead` seconds later, a sampled one whatever it does;
+/// [-infinity, infinity] where the numbers overflow. Precondition: now is finite, ahead >= 0.
 ///
 /// Roundings: n - 1 of a power, one of the product, n + 2 of the sums, 2^-53 of a term each; 2^-48 of all terms covers
 /// degrees to 12, and leaves the ends strictly outside; 2^-1000 is for underflow.

@@ -23,9 +23,12 @@ namespace kds::structures {
 /// and so are those above it, up to the first that the old winner had not won. Paper: [Basch99] section 3.2.
 ///
 /// Cost: O(log n) certificates an event or a change; an element plays in at most log2 n matches (local), n - 1
-/// certificates in all (compact).
+/// certificates in all (compact). Depth and memory are those of the greatest id that there has been, so ids should be
+/// small; an insertion for which the tree must grow (to twice the size or more) plays all matches.
 ///
-/// Ties: among values that are equal for good the one of the lower slot wins.
+/// Ties: among values that are equal for good the one with the lower id wins.
+///
+/// `now` is always the clock, in seconds: finite, and not before the last change or event. That is not checked.
 template <int Degree, EventQueue Queue = DefaultEventQueue, FailureTimeSolver Solver = CertifiedSolver>
 class Tournament {
  public:
@@ -40,10 +43,12 @@ class Tournament {
     return winner_[1];
   }
 
+  /// Precondition: contains(id). The reference holds until the next insertion.
   const Motion<Degree>& motion(Id id) const { return *entrants_[id]; }
 
   // Changes throw std::invalid_argument for an id that is used or reserved (the greatest) and for a motion that is not
-  // finite, std::out_of_range for an id that is not there, and then change nothing.
+  // finite, std::out_of_range for an id that is not there, and then change nothing. A motion to
+  // be inserted must not be one of the tournament's own: copy it first.
   void insert(Id id, const Motion<Degree>& motion, double now) {
     if (id == nobody) throw std::invalid_argument("Tournament: id " + std::to_string(id) + " is reserved");
     if (contains(id)) throw std::invalid_argument("Tournament: id " + std::to_string(id) + " is used twice");
@@ -69,8 +74,10 @@ class Tournament {
     replay_from(id, now);
   }
 
+  /// Time of the next event within the horizon, `never` if there is none.
   double next_time() const { return schedule_.next_time(); }
 
+  /// Makes the event due at next_time(). Precondition: there is one.
   void process() {
     const auto [time, slot] = schedule_.next();
     if (!schedule_.failed(slot, match(slot), time)) return;
@@ -86,6 +93,7 @@ class Tournament {
     measures_.most_touched = std::max(measures_.most_touched, touched);
   }
 
+  /// See KineticStructure. O(n) failure times.
   void extend_horizon(double now, double horizon) {
     schedule_.set_horizon(horizon);
     for (std::size_t node = 1; node < capacity_; ++node) certify(node, now);
@@ -101,6 +109,7 @@ class Tournament {
     for (std::size_t node = capacity_; node-- > 1;) play(node, now);
   }
 
+  /// Checks winners and failure times against the motions, exactly. Throws AuditFailure.
   void audit(double now) const;
 
   const Counters& counters() const { return schedule_.counters(); }

@@ -18,7 +18,8 @@ namespace kds::structures {
 /// that every half-edge has a twin and a hull is nothing special. Knows no coordinates. Paper: [Guibas85], with
 /// triangles in place of quad-edges.
 ///
-/// Cost: O(1) for everything but audit(). Numbers of triangles are kept until they are removed, and then used again.
+/// Cost: O(1) for everything but valence(), connected() and rename(), which are linear in the valence, and audit().
+/// Numbers of triangles are kept until they are removed, and then used again.
 class TriangleMesh {
  public:
   using Edge = std::uint32_t;
@@ -88,7 +89,8 @@ class TriangleMesh {
     join(4, 11), join(5, 7), join(8, 10);
   }
 
-  /// Puts a vertex into a triangle. The triangles that are then around it have the half-edges that this gives opposite.
+  /// Puts a vertex into a triangle, and gives the half-edge opposite to it in each of the three triangles that are then
+  /// around it. Precondition: !contains(vertex).
   std::array<Edge, 3> split(std::uint32_t triangle, Id vertex) {
     const Edge h = 3 * triangle;
     const std::array<Id, 3> corner{origin_[h], origin_[h + 1], origin_[h + 2]};

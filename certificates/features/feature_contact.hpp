@@ -22,6 +22,8 @@ enum class FeatureContactStatus : std::uint8_t {
 /// rounding far behind; size is the greatest coordinate, in absolute value, of a difference between a point of one
 /// feature and one of the other at t0, plus what that coordinate changes until t1. It scales with the query, and does
 /// not know where in the world it is. Larger is faster by little; smaller reports fewer near misses.
+///
+/// Precondition: neither number is a NaN. What is negative, or less than the least, counts as the least.
 struct ContactTolerance {
   double relative = 1e-6;  ///< of the size, as in most published comparisons of such tests
   double absolute = std::numeric_limits<double>::infinity();  ///< in units of length
@@ -60,7 +62,8 @@ struct FeatureContact {
 ///
 /// Cost: for linear paths 0.06 - 0.1 us without a contact, 0.25 us with one, 1.7 us at worst seen; a third more for
 /// quadratic ones. Paths that do not start at t0 cost 0.2 - 0.5 us more (they are moved there in double-double).
-/// Precondition: t0 <= t1, both finite. Throws std::invalid_argument if a number is not finite.
+/// Precondition: t0 <= t1. Throws std::invalid_argument if a time or a coordinate is not finite, or a size is 2^1000 or
+/// more.
 template <int Degree>
 FeatureContact vertex_face_contact(const PointMotion<Degree>& vertex, const PointMotion<Degree>& a,
                                    const PointMotion<Degree>& b, const PointMotion<Degree>& c, double t0, double t1,
@@ -71,7 +74,7 @@ FeatureContact edge_edge_contact(const PointMotion<Degree>& a, const PointMotion
                                  const ContactTolerance& tolerance = {});
 
 /// Four points on straight paths, from begin[k] at time 0 to end[k] at time 1, both exact: the form of the published
-/// benchmarks and of simulators with deforming meshes. Vertex, then face; or edge, then edge.
+/// benchmarks and of simulators with deforming meshes. Vertex, then face; or edge, then edge. Throws as the others do.
 FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin,
                                    const std::array<Eigen::Vector3d, 4>& end, const ContactTolerance& tolerance = {});
 FeatureContact edge_edge_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,

@@ -92,7 +92,8 @@ double halley_guess(const Polynomial<Degree>& p, double width, double level) {
 
 }  // namespace detail
 
-/// An r in [s, 1] such that p > margin on all of [s, r]; near the first time at which it is not, or 1.
+/// An r in [s, 1] such that p > margin on all of [s, r]; near the first time at which it is not, or 1. It is s where p
+/// is not certainly above the margin at s. Precondition: 0 <= s <= 1.
 ///
 /// Where the Bernstein coefficients of a stretch are all above the margin, p is. If those of [s, 1] are not, those of
 /// the stretch up to Halley's guess of the root usually are, which ends it. If not, the part of a stretch before a line

@@ -14,7 +14,8 @@
 
 namespace kds {
 
-/// A calendar queue: amortised O(1) for set, clear and pop, without allocation after resize().
+/// A calendar queue: amortised O(1) for set, clear and pop, without allocation after resize(). At most 2^27 - 1 slots
+/// (asserted).
 ///
 /// A year begins at the earliest event and has a few days for each event; what comes later waits in an unsorted list,
 /// the years to come. A day is an unsorted, doubly linked list of its slots, so that set and clear touch a constant

@@ -23,20 +23,21 @@ namespace kds {
 ///
 /// Steps and edits must be made through it from the beginning, or it knows nothing of them. Edits and listeners are
 /// called again when they are replayed, and must then do the same (replaying() tells them). What is rolled back is
-/// forgotten: the run goes on from there.
+/// forgotten: the run goes on from there. Simulator and parts are referred to, and must outlive it.
 ///
 /// Cost: memory, a snapshot every `every` events or calls, and a few words a call; a roll-back, a load and at most
 /// `every` events and calls. Not for time that runs backwards (reverse.hpp).
 template <class AnySimulator, class... Parts>
 class History {
  public:
-  /// `parts`: the sets of elements and whatever else is saved with the simulator.
+  /// `parts`: the sets of elements and whatever else is saved with the simulator. `every`, in events and calls, is 1 at
+  /// least: 0 counts as 1.
   explicit History(std::uint64_t every, AnySimulator& simulator, Parts&... parts)
       : simulator_(simulator), parts_(parts...), every_(std::max<std::uint64_t>(every, 1)) {
     keep();
   }
 
-  /// As those of the simulator.
+  /// As Simulator::step(). A step for which there is no event is not written down.
   bool step(double limit = forever) {
     keep_now_and_then();
     if (!simulator_.step(limit)) return false;
@@ -48,20 +49,27 @@ class History {
     ++events_;
     return true;
   }
+  /// As Simulator::advance_to(), which throws for a t that is not finite or before the clock; but +infinity is refused
+  /// only when no events are left.
   void advance_to(double t) {
     while (t >= simulator_.now() && step(t)) {}
     simulator_.advance_to(t);
     calls_.push_back({t, 0, {}});
   }
-  /// Calls f(), which may edit the elements, plan pieces, and so on, at the clock.
+  /// Calls f(), which may edit the elements, plan pieces, and so on, at the clock, but must not move it. f is kept as
+  /// long as it may be replayed, and so must be what it refers to. If it throws, nothing is written down of what it did
+  /// before.
   void edit(std::function<void()> f) {
     keep_now_and_then();
     f();
     calls_.push_back({simulator_.now(), 0, std::move(f)});
   }
 
+  /// Events from the beginning to the present state. Those that were rolled back do not count, and those that were due
+  /// at an edit and made by it are part of the edit.
   std::uint64_t events() const { return events_; }
   std::size_t snapshots() const { return kept_.size(); }
+  /// Whether a replay is going on: what is called then has been called before.
   bool replaying() const { return replaying_; }
 
   /// Back to time t: all edits up to and including t have been made, and all events have happened. Throws
@@ -76,8 +84,8 @@ class History {
     advance_to(t);
   }
 
-  /// Undoes the last event and whatever came after it: the state is the one in which it was due. False if there is
-  /// none.
+  /// Undoes the last event and whatever came after it: the state is the one in which it was due. The clock may stand
+  /// before its time. False, and nothing is done, if there is none, or none after the earliest snapshot that is kept.
   bool step_back() {
     if (events_ == kept_.front().events) return false;
     const std::uint64_t before = events_ - 1;
@@ -85,7 +93,7 @@ class History {
     return true;
   }
 
-  /// Forgets what is not needed to go back to t.
+  /// Forgets what is not needed to go back to t; earlier times are out of reach from then on.
   void forget_before(double t) {
     std::size_t first = 0;
     while (first + 1 < kept_.size() && kept_[first + 1].time <= t) ++first;

@@ -19,9 +19,10 @@
 
 namespace kds {
 
-/// A certificate that failed and was repaired.
+/// A certificate that failed and was repaired; or, of sampled elements, one that was no longer guaranteed, so that they
+/// were sampled anew (internal).
 struct KineticEvent {
-  double time = 0;
+  double time = 0;  ///< s
   Slot slot = 0;
   Effect effect = Effect::internal;
 
@@ -29,7 +30,8 @@ struct KineticEvent {
 };
 
 /// Hears nothing. A listener is a function object called as listener(rule, event) after each event, when the
-/// structure is in order again: it may look at the rule, and edit the elements.
+/// structure is in order again: it may look at the rule, and edit the elements, at the time of the event. What it
+/// throws comes out of the step or edit that the event was part of; the event has been made then.
 struct NoListener {
   template <class Rule>
   void operator()(const Rule& /*rule*/, const KineticEvent& /*event*/) const {}
@@ -41,6 +43,8 @@ struct NoListener {
 /// Several structures may share a set; a Simulator runs them side by side. With sampled elements (Bounded) a failure
 /// means that the certificate is no longer guaranteed: the rule is not asked to repair, but the elements are sampled
 /// anew (MovingSet::sample_with); the state is that of the samples.
+///
+/// An exception from the rule leaves the structure in pieces: every event and edit after that throws std::logic_error.
 ///
 /// Cost of an event, beyond the rule's own: a pop, and for each certificate it marks a failure time and a push.
 template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue, class Solver = CertifiedSolver>
@@ -59,7 +63,8 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
  public:
   using Element = typename Rule::Element;
 
-  /// Takes up what is in the set. The set must outlive the structure.
+  /// Takes up what is in the set at the time `now`, which is the clock: finite, and not before the last edit (neither
+  /// is checked). The set must outlive the structure.
   explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
       : elements_(elements), rule_(std::move(rule)), listener_(std::move(listener)), repair_(elements),
         backwards_(elements.backwards()) {
@@ -80,15 +85,18 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   Listener& listener() { return listener_; }
   const MovingSet<Element>& elements() const { return elements_; }
 
+  /// Time of the next event within the horizon, `never` if there is none.
   double next_time() const { return schedule_.next_time(); }
 
   /// Makes the event due at next_time(). Precondition: there is one.
   void process();
 
+  /// See KineticStructure. Cost: a failure time for each certificate that the change concerns.
   void extend_horizon(double now, double horizon);
 
   /// Certifies anew, all elements having been turned round and the clock too: see reverse() in reverse.hpp. What has
-  /// failed by then fails at once, so that the events of this time bring the state before it.
+  /// failed by then fails at once, so that the events of this time bring the state before it. Throws std::logic_error
+  /// if the elements have not been turned round.
   void turn_round(double now, double horizon) requires Reversible<Element> {
     backwards_ = !backwards_;
     begin(now);
@@ -100,7 +108,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   }
 
   /// Checks every certificate and failure time with exact signs, and what the rule itself has to check. Throws
-  /// AuditFailure.
+  /// AuditFailure. Precondition: `now` is the clock.
   void audit(double now) const;
 
   Counters counters() const { return schedule_.counters(); }

@@ -40,7 +40,8 @@ class Repair {
   /// The slot is given up: it will not be asked for.
   void retire(Slot slot) { mark(slot, Mark::retire); }
 
-  /// For rules made of rules: while `part` runs, its slot s is the slot first + stride * s of the whole.
+  /// For rules made of rules: while `part` runs, its slot s is the slot first + stride * s of the whole. Returns what
+  /// part() returns, which must not be void.
   template <class Part>
   auto nested(Slot first, Slot stride, Part&& part) {
     const Slot first_before = std::exchange(first_, first_ + stride_ * first);
@@ -163,7 +164,8 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
 ///
 ///     change(id, repair)                          take up a new motion; without it: remove and insert
 ///     keeps(id, next, repair) -> bool             whether change() can take up this motion: asked before it, with the
-///                                                 old motion still in place; if not: remove and insert
+///                                                 old motion still in place; if not: remove and insert. A rule
+///                                                 that has it must have change()
 ///     build(repair)                               take up all of repair.elements() at once; without it: insert each
 ///     audit(elements, now) const                  throw AuditFailure if its own state is incoherent
 ///     archive(archive)                            name its members, archive(a_, b_), so that it can be saved
@@ -172,7 +174,8 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
 /// the rule's state and the motions only; (3) repair() decides by exact signs at now+ (Repair::sign), and is called
 /// only for a slot whose certificate has failed there; each call removes a contradiction between state and signs and
 /// makes none that was removed before at the same time (see docs/termination.md); (4) every slot whose certificate is
-/// another after a call has been marked in it; (5) insert, remove and change are called with a state that is right.
+/// another after a call has been marked in it; (5) insert, remove and change are called with a state that is right;
+/// (6) none of these functions edits the elements or throws (but for audit(), and for want of memory).
 template <class R>
 concept KineticRule = detail::NamesElement<R> && detail::HasName<R> && detail::Certifies<R> &&
     detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R>;

@@ -14,7 +14,7 @@ enum class Effect : std::uint8_t { internal, external };
 /// an element is in few certificates (most_per_element), *compact* if few are held (held, most_held), and *efficient*
 /// if it has not many more events than the thing it is kept for has changes (events against external).
 struct Measures {
-  std::uint64_t events = 0;
+  std::uint64_t events = 0;            ///< certificates that failed; samples taken for one count too
   std::uint64_t external = 0;          ///< events that changed what is kept: the rest only changed the proof
   std::uint64_t touched = 0;           ///< certificates made, replaced or given up in all events
   std::uint64_t most_touched = 0;      ///< ... in one event

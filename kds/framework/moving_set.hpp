@@ -61,10 +61,15 @@ concept Reversible = MovingElement<E> && requires(const E& element) {
 ///
 /// An edit is made at a clock value, which is that of the simulator that runs the structures. Law: an edit comes after
 /// the events of its time: every structure first processes what is due then (so that nobody has to repair a state that
-/// is being repaired), the edit is made, and every structure takes it up. An edit at a time before an earlier one, or
-/// after an event that has not been processed, is an error and throws before anything is changed.
+/// is being repaired), the edit is made, and every structure takes it up. A time before the last event or edit, or past
+/// an event that has not been processed, is refused by the structures with std::logic_error before the elements are
+/// changed; one that is not finite by the set with std::invalid_argument. Any other time is taken for the clock, and
+/// not compared with it.
 ///
-/// Cost: a virtual call a structure and edit; none for an event. Elements are stored by id.
+/// The element given to an edit must not be one of the set itself: copy it first.
+///
+/// Cost: a virtual call a structure and edit; none for an event. Elements are stored by id, so that memory is that of
+/// the greatest id.
 template <MovingElement E>
 class MovingSet {
  public:
@@ -91,7 +96,7 @@ class MovingSet {
   std::size_t size() const { return size_; }
   /// Every id is below this.
   Id end_id() const { return static_cast<Id>(present_.size()); }
-  /// Precondition: contains(id).
+  /// Precondition: contains(id). The reference holds until the next insertion, and shows later motions.
   const Element& operator[](Id id) const { return elements_[id]; }
 
   /// The ids in use, ascending.
@@ -103,7 +108,8 @@ class MovingSet {
     return result;
   }
 
-  /// Throws std::invalid_argument for an id that is used or reserved, and for an element that is not finite.
+  /// Throws std::invalid_argument for an id that is used or reserved (`nobody`), and for an element that is not finite.
+  /// Listeners of events that are due at this time must not insert the same id.
   void insert(Id id, const Element& element, double now) {
     if (id == nobody) throw std::invalid_argument("MovingSet: id " + std::to_string(id) + " is reserved");
     if (contains(id)) throw std::invalid_argument("MovingSet: id " + std::to_string(id) + " is used twice");
@@ -119,14 +125,16 @@ class MovingSet {
     for (Observer* observer : observers_) observer->inserted(id, now);
   }
 
-  /// Inserts under the first id above all that were ever used.
+  /// Inserts under the first id above all that were ever used, and gives it. Throws as insert() does. Listeners of
+  /// events that are due at this time must not add elements: they would be given the same id.
   Id add(const Element& element, double now) {
     const Id id = end_id();
     insert(id, element, now);
     return id;
   }
 
-  /// Throws std::out_of_range for an id that is not used.
+  /// Throws std::out_of_range for an id that is not used, also if it is the listener of an event of this time that has
+  /// removed it.
   void remove(Id id, double now) {
     require(id);
     settle(now);
@@ -148,6 +156,7 @@ class MovingSet {
   /// Where new samples come from: sampler(id, now) gives an element sampled at now. Structures ask for one when a
   /// certificate is no longer guaranteed, but not before a member's last one is `tick` seconds old: what is closer to
   /// failing than that is not guaranteed in between (a tick of 0 would have them ask for ever where two elements meet).
+  /// Throws std::invalid_argument for a tick that is not > 0.
   void sample_with(std::function<Element(Id, double)> sampler, double tick) requires Sampled<Element> {
     if (!(tick > 0)) throw std::invalid_argument("MovingSet::sample_with: the tick must be > 0");
     sampler_ = std::move(sampler);
@@ -156,8 +165,9 @@ class MovingSet {
   double tick() const { return tick_; }
   std::uint64_t samples() const { return samples_; }  ///< taken so far
 
-  /// Samples an element, and tells the structures. Unlike other edits this one may come amidst those of a time. Throws
-  /// std::out_of_range for an id that is not used.
+  /// Samples an element, and tells the structures. Unlike other edits this one may come amidst the events of a time,
+  /// unless samples move (MovingSample). Throws std::out_of_range for an id that is not used, std::logic_error if there
+  /// is no sampler or its sample is of another time, std::invalid_argument for a sample that is not finite.
   void resample(Id id, double now) requires Sampled<Element> {
     if (!sampler_) throw std::logic_error("MovingSet: an element is to be sampled, but there is no sampler");
     require(id);
@@ -169,17 +179,19 @@ class MovingSet {
     replace(id, element, now);
   }
 
-  /// Whether the motions are written in time that runs backwards: see reverse() in reverse.hpp, which calls
-  /// turn_round().
+  /// Whether the motions are written in time that runs backwards. To be turned by reverse() in reverse.hpp only: the
+  /// structures must be turned with them.
   bool backwards() const { return backwards_; }
   void turn_round() requires Reversible<E> {
     for (E& element : elements_) element = reversed(element);
     backwards_ = !backwards_;
   }
 
+  /// Observers are told in the order in which they were attached. Not to be called from within an edit.
   void attach(Observer& observer) { observers_.push_back(&observer); }
   void detach(Observer& observer) { std::erase(observers_, &observer); }
 
+  /// Saves or loads the elements; not the observers, the sampler and the tick. See save() in snapshot.hpp.
   template <class Archive>
   void archive(Archive& archive) {
     archive.tag("MovingSet");

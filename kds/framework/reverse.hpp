@@ -38,7 +38,7 @@ void reverse(Simulator<Structures...>& simulator, MovingSet<Elements>&... sets) 
   simulator.turn_round();
 }
 
-/// The time that a clock shows: that of the simulator, or its negative if the set is turned round.
+/// The time in seconds that a clock would show: that of the simulator, or its negative if the set is turned round.
 template <class AnySimulator, MovingElement E>
 double time_of(const AnySimulator& simulator, const MovingSet<E>& set) {
   return set.backwards() ? 0.0 - simulator.now() : simulator.now();

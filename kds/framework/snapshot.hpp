@@ -28,6 +28,7 @@ class Snapshot {
   explicit Snapshot(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
 
   const std::vector<char>& bytes() const { return bytes_; }
+  /// Of the bytes: snapshots of one state may differ in what pads its numbers.
   friend bool operator==(const Snapshot&, const Snapshot&) = default;
 
  private:
@@ -176,7 +177,8 @@ void restore(const Snapshot& snapshot, Parts&... parts) {
   }
 }
 
-/// Writes a snapshot, with its length and a checksum.
+/// Writes a snapshot, with its length and a checksum. The stream must be a binary one. Throws std::runtime_error if it
+/// cannot be written.
 inline void write(std::ostream& out, const Snapshot& snapshot) {
   const std::uint64_t head[3] = {0x31534453444bu, snapshot.bytes().size(), detail::checksum(snapshot.bytes())};
   char letters[sizeof head];
@@ -186,7 +188,8 @@ inline void write(std::ostream& out, const Snapshot& snapshot) {
   if (!out) throw std::runtime_error("snapshot: cannot be written");
 }
 
-/// Throws std::runtime_error for what is no snapshot of this kind of machine, or is damaged.
+/// Reads a snapshot, which must be all that is left of the stream: a file holds one, at its end. Throws
+/// std::runtime_error for what is no snapshot of this kind of machine, or is damaged.
 inline Snapshot read_snapshot(std::istream& in) {
   std::uint64_t head[3] = {};
   char letters[sizeof head];

@@ -20,7 +20,7 @@ enum class FailureStatus {
 /// A failure time and its guaranteed enclosure, in seconds.
 struct FailureTime {
   double time = never;   ///< `never` if the certificate holds
-  double lower = never;  ///< lower <= true root <= upper where it fails; `never` where it holds
+  double lower = never;  ///< lower <= true root <= upper; `now` where it fails at once, `never` where it holds
   double upper = never;
   FailureStatus status = FailureStatus::holds;
 };

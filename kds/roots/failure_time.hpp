@@ -12,12 +12,12 @@
 
 namespace kds {
 
-/// The first double t in [now, horizon] with sign_after(certificate, t) < 0, or `never`.
+/// The first double t in [now, horizon] with sign_after(certificate, t) < 0, or `never`. Precondition: now is finite.
 ///
-/// This is the library's definition of an event time. It has three consequences. It is within one ulp above the true
-/// root, and the enclosure is (previous double, t]. It is a function of certificate and now alone: each solver, queue,
-/// broad phase and compiler gives the same bits. And when the clock stands at t the certificate *has* failed,
-/// exactly, so an event never proves early.
+/// This is the library's definition of an event time. It has three consequences. Unless it is now itself, it is within
+/// one ulp above the true root, and the enclosure is (previous double, t]. It is a function of certificate and now
+/// alone: each solver, queue, broad phase and compiler gives the same bits. And when the clock stands at t the
+/// certificate *has* failed, exactly, so an event never proves early.
 ///
 /// Method, in three steps; where a step does not decide, the next one that can does.
 /// (1) Which root: signs of the coefficients about `now` alone; for a parabola that of the discriminant; above that the
@@ -31,12 +31,13 @@ namespace kds {
 ///
 /// Cost: from 7 ns (a line of known coefficients) through 15 (a parabola of such), 30 (degree 2) and 120 to 300
 /// (degree 4 to 8) for an ordinary root; 2 to 70 us for the third step, most for clustered roots of a high degree.
-/// `horizon` may be infinite. enclosed_failure_time.hpp has results with enclosure and status.
+/// `horizon` may be infinite; one before now makes the interval empty. enclosed_failure_time.hpp has results with
+/// enclosure and status.
 template <Certificate C>
 double failure_time(const C& certificate, double now, double horizon = never);
 
-/// The same where f has just turned from - to + at now (two elements that have just swapped): its sign there, which
-/// is zero up to rounding and would ask for the expensive rungs, is known. A line has no second failure.
+/// The same where f has just turned from - to + at now (two elements that have just swapped), which is a precondition:
+/// its sign there, zero up to rounding, would ask for the expensive rungs, and is known. A line has no second failure.
 template <Certificate C>
 double failure_time_after_turn(const C& certificate, double now, double horizon = never);
 

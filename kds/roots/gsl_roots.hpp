@@ -23,12 +23,13 @@ namespace kds {
 /// coefficients so small that dividing by them overflows are dropped, and with them the roots far out.
 ///
 /// Throws std::invalid_argument for a coefficient that is not finite, and std::runtime_error where the eigenvalues do
-/// not converge (the GSL's error handler is off during the call, for all threads).
+/// not converge. For that the GSL's error handler, which is one for the whole program, is off during the call: threads
+/// that call this at once may leave it off.
 double gsl_first_negative(std::span<const double> c, double end = never);
 
 /// What failure_time() means, through gsl_first_negative(): the certificate is written about `now` in doubles and its
 /// answer added to `now`. Same call, same meaning, none of the guarantees: the result is near the failure time, on
-/// either side of it.
+/// either side of it. Throws as gsl_first_negative() does, also where the coefficients overflow.
 template <Certificate C>
 double gsl_failure_time(const C& certificate, double now, double horizon = never) {
   if (!(now <= horizon)) return never;
