@@ -48,8 +48,8 @@ struct VertexPair {
   Two x, y, z;
 };
 
-/// A triangle surface with its tree of oriented boxes. Coordinates in units of length about the model's origin, which
-/// is the centre of the bodies that use it. It need not be closed, connected or consistently wound.
+/// A triangle surface with its tree of oriented boxes. Coordinates are in units of length, relative to the model's
+/// origin, which is the centre of the bodies that use it. It need not be closed, connected or consistently wound.
 class Mesh {
  public:
   using Triangle = std::array<std::uint32_t, 3>;  ///< indices of vertices
