@@ -43,7 +43,7 @@ inline Eigen::Vector3d placed_vertex(const Eigen::Matrix3d& rotation, double sca
           rotation(2, 0) * x + rotation(2, 1) * y + rotation(2, 2) * z};
 }
 
-/// Two vertices.
+/// Two vertices, coordinate by coordinate.
 struct VertexPair {
   Two x, y, z;
 };
