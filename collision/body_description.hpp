@@ -22,21 +22,23 @@ enum class BoundingVolume : std::uint8_t {
 template <int Degree>
 struct BodyDescription {
   using Motion = certificates::PointMotion<Degree>;
-  /// Gives a box that holds the body from time t until its valid_until, which must be later than t.
+  /// Returns a box that holds the body from time t until the box's valid_until. It must be finite and valid_until later
+  /// than t, else step() throws std::invalid_argument and the world can no longer be used.
   using BoxFunction = std::function<KineticBox<Degree>(double t, const Motion& motion)>;
 
   Shape shape;
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  /// One or more pieces sorted by start. The first may lie in the past; in the future, the body enters then.
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit to 1e-6; the body keeps it
+  /// One or more pieces, each starting later than the one before. The first may start in the past; if it starts in the
+  /// future, the body enters then.
   std::vector<Motion> motion;
-  double mass = 1;     ///< > 0
-  bool fixed = false;  ///< infinite mass
+  double mass = 1;     ///< > 0, unless the body is fixed
+  bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.
   double restitution = 1;
-  std::uint32_t category = 1;          ///< bits
-  std::uint32_t collides_with = ~0u;   ///< a pair is tested if each one's category is in the other's mask
+  std::uint32_t category = 1;         ///< bits
+  std::uint32_t collides_with = ~0u;  ///< a pair is tested if each one's category shares a bit with the other's mask
   BoundingVolume volume = BoundingVolume::shape;
-  BoxFunction box;     ///< instead of `volume`: caller-given conservative boxes
+  BoxFunction box;  ///< if given: the caller's own conservative boxes, instead of `volume`
 };
 
 }  // namespace kds::collision

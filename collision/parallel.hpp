@@ -9,8 +9,8 @@
 
 namespace kds::collision {
 
-/// Threads for so many items, of those that are allowed (0: all that the machine has): none begins for less work than
-/// it costs to begin it.
+/// How many threads to use for this many items, at most `most` (0: as many as the machine has). Each has more work than
+/// it costs to start it.
 inline std::size_t threads_for(std::size_t items, std::size_t most) {
   constexpr std::size_t items_per_thread = 4096;  // some 0.1 us each; to begin and end a thread takes some 50 us
   if (most == 1 || items < 2 * items_per_thread) return 1;
@@ -18,9 +18,9 @@ inline std::size_t threads_for(std::size_t items, std::size_t most) {
   return std::min(items / items_per_thread, most);
 }
 
-/// Calls work(part, begin, end) for parts 0, 1 ... of [0, items), which are as large as each other and in order, each
-/// in a thread of its own; the last part is this thread's. What the parts compute must depend on nothing that another
-/// one changes. Returns when all are done; throws what the first of them threw.
+/// Cuts [0, items) into `threads` parts of equal size, in order, and calls work(part, begin, end) for parts 0, 1 ...,
+/// each in a thread of its own; the last part is this thread's. No part may depend on what another one changes. Returns
+/// when all are done; if some threw, throws what the lowest of them threw.
 template <class Work>
 void in_parts(std::size_t items, std::size_t threads, const Work& work) {
   if (threads <= 1) return work(std::size_t{0}, std::size_t{0}, items);

@@ -45,8 +45,10 @@ struct WorldCounters {
 /// phase finds them makes no difference: WorldListener says in what order they are reported. Dynamic test results are
 /// kept until a motion changes; then only the pairs of that body that are active are tested again.
 ///
+/// Adding, removing and moving bodies calls no listener: what follows from it is reported by the next step, at now().
+///
 /// Degree 1 (straight paths) never pays for degree 2. Lengths and masses are in units of the caller's own, times in
-/// seconds. An id that names no body throws std::out_of_range.
+/// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
 class World final : private PairListener {
  public:
@@ -54,24 +56,28 @@ class World final : private PairListener {
   using Description = BodyDescription<Degree>;
   using Listener = WorldListener<Degree>;
 
-  /// Throws std::invalid_argument for options that contradict each other.
+  /// Throws std::invalid_argument, naming the option, for one that is out of range or does not go with the others.
+  /// The listener, if there is one, must outlive the world.
   explicit World(const WorldOptions& options, Listener* listener = nullptr);
   ~World() override;
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Adds a body and returns its id: the number of bodies so far, or the id of one that was removed. Throws
-  /// std::invalid_argument naming the member that is wrong. Adding many before time moves costs least.
+  /// Adds a body and returns its id: the next number, from 0 on, or the id of a body that was removed. Throws
+  /// std::invalid_argument, naming the member that is wrong; then nothing is added. Adding many between two steps costs
+  /// least.
   BodyId add_body(const Description& description);
 
-  /// Makes room for so many bodies in all. Saves time and memory where many are added; is never needed.
+  /// Makes room for this many bodies in all. Never needed, but saves time and memory where many are added.
   void reserve(std::size_t bodies);
 
   /// Removes a body. Its pairs end, and in mode `none` its contacts separate, with reports.
   void remove_body(BodyId id);
 
-  /// From now on the body moves so, whatever pieces it still had. A jump counts as entering anew. Throws
-  /// std::invalid_argument for a motion that is not finite or starts after now().
+  /// Replaces the motion from now() on, and discards the pieces still to come. A body that was to enter later enters
+  /// now. In the modes that resolve contacts a body that jumps enters anew: what it meets there is an overlap. In mode
+  /// `none` a jump begins and ends contacts. Throws std::invalid_argument for a motion that is not finite or starts
+  /// after now().
   void update_motion(BodyId id, const Motion& motion);
 
   /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,
@@ -82,14 +88,16 @@ class World final : private PairListener {
   /// if that is finite. Throws as advance_to(), but not for the past; `sap`, whose frames never end, needs a limit.
   bool step(double limit = never);
 
-  /// Processes events up to t for as long as the wall-clock budget lasts, but one at least; true if t was reached.
+  /// Processes events up to t until this much time of the wall clock has passed, but at least one; true if t was
+  /// reached. Throws as step() does.
   bool advance_for(double budget_seconds, double t);
 
   double now() const { return now_; }
   std::size_t size() const { return alive_; }
   bool contains(BodyId id) const { return id < bodies_.size() && bodies_[id].alive; }
 
-  /// What held contacts do to the acceleration is in it; callers who change a motion begin with free_motion.
+  /// Includes what held contacts do to the acceleration; to change a motion, begin with free_motion(). The reference is
+  /// valid until bodies are added, removed or moved, or the clock advances.
   const Motion& motion(BodyId id) const { return body(id), movers_[id].motion; }
   /// The motion as it would go on without the contacts that hold it: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
@@ -100,17 +108,20 @@ class World final : private PairListener {
   /// Whether a and b are in contact (mode `none`).
   bool touching(BodyId a, BodyId b) const;
 
-  /// Whether a and b are held together, or a at the wall (mode `elastic`).
+  /// Whether a and b are held together (mode `elastic` alone), or a is held at a wall, numbered as in WallEvent (all
+  /// modes).
   bool held(BodyId a, BodyId b) const;
   bool held_at_wall(BodyId a, int wall) const;
 
   WorldCounters counters() const;
   /// The broad phase in use: a name of broad_phase_kind.hpp; "auto" is "grid", or "few-boxes" with few bodies.
   std::string_view broad_phase() const { return broad_phase_->name(); }
-  /// All zero but for `other` unless WorldOptions.profile is set.
+  /// All zero unless WorldOptions.profile is set.
   const Profile& work_profile() const { return profile_; }
 
-  /// Checks the broad phase against the motions, exactly, and the pairs against brute force; throws AuditFailure.
+  /// Checks the broad phase against the motions, exactly, and the pairs against brute force, in O(n^2); throws
+  /// AuditFailure. Just after bodies were added or moved, while the next step has work left at now(), only the broad
+  /// phase is checked.
   void audit() const;
 
   /// Saves or loads all that decides the events to come: see save() and restore() in kds/framework/snapshot.hpp. A

@@ -17,7 +17,7 @@ struct PairEvent {
 struct WallEvent {
   BodyId body;
   int wall;
-  Contact contact;  ///< normal points out of the domain
+  Contact contact;  ///< the point lies on the wall; the normal points out of the domain; there are no features
 };
 
 template <int Degree>
@@ -33,15 +33,18 @@ class World;
 /// above; walls, by body; contacts and separations, by (a, b).
 ///
 /// Every callback may change motions, add and remove bodies, the ones concerned included; the world is consistent when
-/// it is called, and what is still to be told of the instant is told of the world as it is then.
+/// it is called, and what is still to be told of the instant is told of the world as it is then. A callback must not
+/// advance the world; saving or loading it throws std::logic_error. WorldOptions::most_edits limits the changes.
 template <int Degree>
 class WorldListener {
  public:
   virtual ~WorldListener() = default;
   virtual void contact(World<Degree>&, const PairEvent&) {}     ///< penetration begins; motions are as after response
   virtual void separation(World<Degree>&, const PairEvent&) {}  ///< `none` alone: penetration ends
-  virtual void overlap(World<Degree>&, const PairEvent&) {}     ///< in contact when entering the world or after a jump
-  virtual void wall(World<Degree>&, const WallEvent&) {}        ///< motions are as after response
+  /// In contact when one of the two enters the world or, in the modes that resolve contacts, jumps. (In mode `none` a
+  /// jump into contact is a contact.)
+  virtual void overlap(World<Degree>&, const PairEvent&) {}
+  virtual void wall(World<Degree>&, const WallEvent&) {}  ///< motions are as after response
   /// With WorldOptions.report_pairs: the bounding volumes of a < b begin and cease to overlap at a time in s.
   virtual void pair_began(World<Degree>&, BodyId, BodyId, double) {}
   virtual void pair_ended(World<Degree>&, BodyId, BodyId, double) {}

@@ -12,14 +12,15 @@
 
 namespace kds::collision {
 
-/// What the engine does about contacts.
+/// What the engine does about contacts of bodies. Walls reflect bodies in every mode.
 enum class Response {
   none,      ///< reports contacts and separations; bodies pass through each other
   elastic,   ///< frictionless impulses by the bodies' restitution, no spin; motions change at each contact
   callback,  ///< as elastic, but the listener changes the motions; a pair it leaves approaching passes through
 };
 
-/// Bounces that pile up in time (Zeno). A contact is *held* instead of bounced back from, in mode `elastic`, if it
+/// Bounces that pile up in time (Zeno). A contact, of two bodies in mode `elastic` or with a wall in any mode, is
+/// *held* instead of bounced back from if it
 /// - has no rebound: restitution 0, or no speed of approach;
 /// - would be back within interval / contacts, pressed by the acceleration that it has (a ball coming to rest), or rise
 ///   by roundings of the coordinates only;
@@ -38,16 +39,17 @@ struct ZenoPolicy {
   double interval = 1e-9;        ///< s
 };
 
-/// Reflecting walls: a ball around each body stays inside the box [min, max].
+/// Reflecting walls: the bounding ball of each body, fixed ones included, stays inside the box [min, max]. A body that
+/// begins outside is turned back where it moves farther out.
 struct Walls {
-  Eigen::Vector3d min;
+  Eigen::Vector3d min;  ///< each coordinate below that of max
   Eigen::Vector3d max;
   double restitution = 1;  ///< in [0, 1]; see BodyDescription
 };
 
 struct WorldOptions {
-  double start_time = 0;  ///< s; keep it near 0: events are as fine as doubles near the clock
-  double window = never;  ///< s; how far ahead events are predicted at a time
+  double start_time = 0;  ///< s; keep it near 0: event times are rounded to doubles, which are sparse far from it
+  double window = never;  ///< s, > 0; how far ahead events are predicted at a time
   Response response = Response::none;
   BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
   double rate = 0;  ///< Hz; frames of the swept boxes, needed by `sap` alone
@@ -58,13 +60,14 @@ struct WorldOptions {
   std::optional<Walls> walls;
   bool report_pairs = false;  ///< tell the listener of bounding volumes that begin and cease to overlap
   bool profile = false;       ///< measure where the time goes
-  /// Threads that share the work of thousands of bodies that come at once; 0 for as many as the machine has. All else
-  /// is done by the caller's thread, event by event. Events and counters do not depend on it.
+  /// Threads that share the work where thousands of bodies enter, or thousands of pairs are to be tested, at once; 0
+  /// for as many as the machine has. All else, callbacks and box functions included, is done by the caller's thread.
+  /// Events and counters do not depend on it.
   std::size_t threads = 1;
   ZenoPolicy zeno;
-  /// So many times, or 64 for each body if that is more, callbacks may add, remove and move bodies within zeno.interval
-  /// of simulated time. One more throws std::runtime_error: callbacks that go on for ever at one time would never let
-  /// the clock move. Without callbacks a run always ends.
+  /// How often callbacks may add, remove or move bodies within zeno.interval of simulated time; 64 times the number of
+  /// bodies, if that is more. The call that exceeds it throws std::runtime_error: callbacks that go on for ever at one
+  /// time would never let the clock move. Without callbacks a run always ends.
   std::uint64_t most_edits = 1'000'000;
 };
 

@@ -9,7 +9,7 @@
 
 namespace kds::collision {
 
-/// A few boxes compared each with all others, the kinetic grid from 65 bodies on, and back when most have gone. A
+/// A few boxes compared each with all others; the kinetic grid from 65 bodies on, until there are no more than 32. A
 /// change reports just the pairs that one has and the other has not, so no contact is lost.
 ///
 /// These two are enough: of random scenes of 4 to 64 balls of all sizes, speeds, densities and rates hardly any was
@@ -20,8 +20,8 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  /// `threads`: see KineticGrid. At most `most_for_few` bodies, itself at most FewBoxes::most, are compared each with
-  /// all others at first, and half as many when others have gone.
+  /// `threads`: see KineticGrid. Up to `most_for_few` bodies are compared each with all others; once there have been
+  /// more, up to half as many. Precondition: most_for_few <= FewBoxes::most.
   explicit AdaptiveBroadPhase(std::size_t threads = 1, std::size_t most_for_few = FewBoxes<Degree>::most)
       : most_for_few_(most_for_few), threads_(threads) {}
 
@@ -46,8 +46,8 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   static void report_changes(std::span<const Entry> bodies, const From& from, const To& to, double now,
                              PairListener& listener);
 
-  FewBoxes<Degree> few_;                       ///< holds all bodies,
-  std::unique_ptr<KineticGrid<Degree>> grid_;  ///< if this does not
+  FewBoxes<Degree> few_;                       ///< holds all bodies while there is no grid
+  std::unique_ptr<KineticGrid<Degree>> grid_;  ///< else holds them
   std::size_t most_for_few_;
   std::size_t threads_;
   double horizon_ = never;

@@ -8,8 +8,9 @@
 
 namespace kds::collision {
 
-/// Cached dynamic collision detection ([Paper] section 5): every pair is active from the time both bodies are there.
-/// Cost: O(n) pairs to test for each motion change.
+/// Cached dynamic collision detection ([Paper] section 5): every pair is active from the time both bodies are there
+/// until one is removed.
+/// Cost: O(n) pairs to test for each motion change; memory O(n^2), in the world, for the pairs.
 template <int Degree>
 class AllPairs final : public BroadPhase<Degree> {
  public:

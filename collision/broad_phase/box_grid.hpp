@@ -57,7 +57,7 @@ class BoxGrid {
     if (!contains(id)) return {};
     return items_[id].bounds.box();
   }
-  /// The same as numbers to compare.
+  /// The same as numbers to compare. Precondition: contains(id).
   const BoxBounds& bounds(Id id) const { return items_[id].bounds; }
   /// One past the greatest number that there has been.
   Id end() const { return static_cast<Id>(items_.size()); }
@@ -77,7 +77,8 @@ class BoxGrid {
   /// Side of the smallest cells there may be.
   double least_cell() const { return cell_side(finest_); }
 
-  /// Puts a box in, its edges rounded (box_bounds.hpp), or in place of the one of that number. Appends to `changes`.
+  /// Puts a box in, or in place of the one of that number, with edges rounded by a radius (box_bounds.hpp). Appends to
+  /// `changes`.
   void put(Id id, const StaticBox& box, Changes& changes, double rounding = 0);
 
   /// Whether two boxes overlap. Precondition: both are here.
@@ -103,7 +104,7 @@ class BoxGrid {
   /// Precondition: contains(id). Appends to `changes`.
   void remove(Id id, Changes& changes);
 
-  /// The same of the next finer level; 0 if there is none.
+  /// Greatest extent of a box of the level next finer than that of a box of this extent; 0 if there is none.
   double room_below(double extent) const {
     const Exponent level = level_for(extent);
     return level == finest_ ? 0 : cell_side(level - 1) / roominess;

@@ -26,7 +26,8 @@ class BoxPairs {
     Index a, b;  ///< in no order
   };
 
-  /// False if that would not pay: boxes without bounds, or many of too different sizes or too crowded.
+  /// Finds them. False, and no pairs, if that would not pay: no boxes, boxes without bounds, or many that are of too
+  /// different sizes or too crowded. `threads`: how many at most; 0 is as many as the machine has.
   bool find(std::span<const StaticBox> boxes, std::size_t threads = 1);
 
   /// In spatial order.

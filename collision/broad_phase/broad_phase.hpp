@@ -63,7 +63,7 @@ class BroadPhase {
   /// Takes a body out. Its pairs end, and are reported.
   virtual void remove(BodyId id, double now, PairListener& listener) = 0;
 
-  /// Gives a body another box, which may be a jump.
+  /// Gives a body another box, which may be elsewhere (a jump). Pairs that begin and end are reported.
   virtual void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) = 0;
 
   /// Processes events not later than `limit` and returns true right after the first that reported a pair; false when

@@ -27,12 +27,12 @@ class FewBoxes final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  /// So many bodies at most: those that a body is paired with are bits of one number.
+  /// The most bodies there may be: those that a body is paired with are bits of one number.
   static constexpr std::size_t most = 64;
 
   bool exact() const override { return false; }
   std::string_view name() const override { return "few-boxes"; }
-  /// Throws std::length_error if there would be too many.
+  /// Throws std::length_error, and changes nothing, if there would be more than `most`.
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
   void remove(BodyId id, double now, PairListener& listener) override;
   void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;

@@ -16,14 +16,14 @@ using BodyId = std::uint32_t;
 
 /// An axis-aligned box with a motion for each corner: it may grow and shrink ([Paper] section 5.2).
 ///
-/// It must contain its body until `valid_until`; then the owner asks for a new one.
+/// It must contain its body until `valid_until`; then the owner of the body makes a new one.
 template <int Degree>
 struct KineticBox {
   certificates::PointMotion<Degree> min;
   certificates::PointMotion<Degree> max;
   double valid_until = never;  ///< s
-  /// What it contains may be taken to be within this radius of a point whose distance from all its sides is no less: of
-  /// a ball its own, else 0. Broad phases may make use of it.
+  /// What the box contains lies within this distance of a point that is at least as far from each of its sides: the
+  /// radius of a ball, else 0. Broad phases may round the edges of the box by it.
   double rounding = 0;
 };
 

@@ -30,7 +30,7 @@ class KineticGrid final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  /// Bodies that come many at once are shared out among so many threads.
+  /// `threads`: how many share the work where many bodies come at once; 0 is as many as the machine has.
   explicit KineticGrid(std::size_t threads = 1) : threads_(threads) {}
 
   bool exact() const override { return false; }

@@ -24,10 +24,10 @@ enum class ListedAxes { automatic, one, two, all };
 /// Paper: [Paper] sections 4.1-4.3. Differs: by default one list. A body passes the coordinates of all others, near or
 /// far, on each listed axis, so swaps are what it costs, and one list has a third of them; of the pairs that meet on
 /// one axis few come near on the others. The axis is the one with the fewest pairs and swaps to expect from sizes and
-/// speeds; it is chosen again when the horizon is moved or the bodies have doubled. Fewer than 64 bodies get three
-/// lists, which is a matter of microseconds then. Times of pairs are the same, bit for bit, whatever is listed. Of
-/// changes at one time lists come first, in the order of axes, then pairs by (a, b) on the other axes; so a pair may
-/// overlap for no time at all (begin on one axis and end on another at once) on listed axes alone.
+/// speeds; it is chosen again when the horizon is moved or the bodies have doubled. Fewer than 64 boxes, not
+/// k-DOPs, get three lists, which is a matter of microseconds then. Times of pairs are the same, bit for bit, whatever
+/// is listed. Of changes at one time lists come first, in the order of axes, then pairs by (a, b) on the other axes; so
+/// a pair may overlap for no time at all (begin on one axis and end on another at once) on listed axes alone.
 ///
 /// Cost: O(log n) or less a swap (the queue's), no cost between events; a motion change the swaps of its jump and a
 /// look at the pairs that overlap on the first listed axis; insertion and removal O(n) moves of memory besides that.

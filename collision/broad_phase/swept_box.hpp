@@ -28,7 +28,8 @@ inline StaticBox whole_space() {
   return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)};
 }
 
-/// Extremes of a moving point's coordinates over [from, to], rounded outward.
+/// Extremes of a moving point's coordinates over [from, to], rounded outward. Precondition, here and below: from <= to,
+/// both finite. Ends may overflow to infinity.
 ///
 /// Horner's rule over |elapsed| errs by at most 2 Degree + 1 roundings of the sum of the magnitudes of its terms, and
 /// the elapsed time by one more a factor; 8 units in the last place of that sum cover degrees 1 and 2.

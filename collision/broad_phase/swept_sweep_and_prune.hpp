@@ -23,7 +23,7 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  /// Frames at start + k / rate. `profile` may be null.
+  /// Frames at start + k / rate. `profile` may be null. Precondition: rate > 0, in Hz, and 1 / rate is finite.
   SweptSweepAndPrune(double start, double rate, Profile* profile);
 
   bool exact() const override { return false; }

@@ -5,7 +5,7 @@
 
 namespace kds::collision {
 
-/// The functions of narrow_phase.hpp for shapes that are spheres or boxes. Bodies of mesh shape: not accepted.
+/// The functions of narrow_phase.hpp for shapes that are spheres or boxes. Precondition: none of the two is a mesh.
 ///
 /// Method: the set of relative positions in which two convex shapes penetrate is a union of convex *pieces* (one for
 /// two spheres or two boxes; slabs, edge cylinders and vertex balls for a box and a sphere), and each piece is a

@@ -30,7 +30,7 @@ inline Lanes magnitude(Lanes x) {
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneBits>(x) & without_sign);
 }
 
-/// Lane by lane; where one is not a number the second.
+/// Lane by lane; the second where either is not a number.
 inline Lanes lesser(Lanes x, Lanes y) { return x < y ? x : y; }
 inline Lanes greater(Lanes x, Lanes y) { return x > y ? x : y; }
 

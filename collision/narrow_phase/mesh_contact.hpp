@@ -47,7 +47,7 @@ struct MeshTouchPlace {
 template <int Degree>
 class MeshPair {
  public:
-  /// Keeps references to the shapes. Precondition: the shape of a is a mesh.
+  /// Keeps references to the shapes, and a copy of the motion. Precondition: the shape of a is a mesh.
   MeshPair(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion);
 
   /// The first contact in [tau0, tau1]. Mode `transparent`: tau0 itself if they touch there. Mode `resolved`: a pair of
@@ -84,7 +84,8 @@ extern template class MeshPair<2>;
 
 /// The functions of narrow_phase.hpp for pairs with a mesh among them.
 ///
-/// The time of a contact is the first double t of the clock with t - epoch >= tau.
+/// The time of a contact is the first double t of the clock with t - epoch >= tau, where the difference is rounded, or
+/// t0 if that is later.
 template <int Degree>
 struct MeshContact {
   using Body = MovingShape<Degree>;

@@ -16,7 +16,7 @@ enum class ContactMode {
   resolved,     ///< an impulse turns them back: contact counts only while they approach
 };
 
-/// A shape on its way.
+/// A shape and its motion; refers to both.
 template <int Degree>
 struct MovingShape {
   const PlacedShape& shape;
@@ -27,21 +27,22 @@ struct MovingShape {
 /// decides nothing.
 struct FoundTouch {
   double time = never;  ///< on the clock; `never`: nothing is known
-  double tau = 0;       ///< s, from the epoch of the pair
+  double tau = 0;       ///< s, from the epoch of the pair: the later of the two motions' starts
   std::uint32_t triangle_a = 0, triangle_b = 0;
 };
 
 /// The first time t in [t0, horizon] at which a and b come into contact, or `never`.
 ///
-/// Spheres and boxes: the first double just after which they penetrate, by exact signs (for boxes and spheres against
-/// boxes: of the shapes that their rounded axes describe). Meshes: never late, early by at most the margin of
-/// mesh_contact.hpp. The answer depends on the two shapes and motions alone, and on t0 only in that earlier contacts
-/// are passed over.
+/// Spheres and boxes: the first double just after which they penetrate, by exact signs, of boxes as their rounded axes
+/// describe them. (Two boxes with edges that are parallel but for an angle below 2^-40 may be found early, by at most
+/// that part of their size: box_and_box.hpp.) Meshes: never late, early by at most the margin of mesh_contact.hpp. The
+/// answer depends on the two shapes and motions alone, and on t0 only in that earlier contacts are passed over.
 ///
 /// Mode `resolved`: shapes that overlap at t0 by rounding (an impulse has just been applied) are in contact only if
 /// they approach. Mode `transparent`: t0 itself where they overlap there.
 ///
-/// `found`, where it is wanted, is told which triangles touch, if that is a help to contact_at; else it stays.
+/// If `found` is given and meshes touch, it receives the triangles, where contact_at can use them; else it is left as
+/// it is. Precondition, here and below: where there is a mesh, both motions have started by t0 (or t).
 template <int Degree>
 double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
                      ContactMode mode, FoundTouch* found = nullptr);
@@ -58,10 +59,11 @@ struct ContactEstimate {
   bool exact;  ///< it is the time of the first contact, or `never` if there is none
 };
 
-/// The same for less, mostly, or a time that is not later: the kinetic separating axis. As long as there is a direction
-/// along which the boxes around the shapes (boxes: the shapes themselves) are apart, nothing happens; the last such
-/// direction fails at a root of a polynomial of the motion's degree. Until then the pair needs no test, unless a motion
-/// changes, and then the old direction is tried first, and most of what a contact asks for was never asked.
+/// As first_contact, or an earlier time before which there is no contact, which mostly costs less: the kinetic
+/// separating axis. As long as there is a direction along which the boxes around the shapes (of boxes: the shapes
+/// themselves) are apart, nothing happens; the last such direction fails at a root of a polynomial of the motion's
+/// degree. Until then the pair needs no further test. If a motion changes before, the old direction is tried first; so
+/// for most pairs the exact time is never asked for. Two balls: the time of first_contact.
 template <int Degree>
 ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
                                         double horizon, ContactMode mode, PairMemory& memory,
@@ -75,13 +77,13 @@ bool in_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, doub
 template <int Degree>
 double first_separation(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon);
 
-/// Point, normal and features of the contact at t, a time that first_contact or in_contact has named. In doubles:
-/// accurate to some ulps of the coordinates. `found`: by first_contact, of the same motions; the contact is the same
-/// without it.
+/// Point, normal and features of the contact at t, a time that first_contact, in_contact or first_separation has named.
+/// In doubles: accurate to some ulps of the coordinates. `found`: what first_contact has told of the same motions; the
+/// contact is the same without it.
 template <int Degree>
 Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t, const FoundTouch& found = {});
 
-/// The same of two balls, of which the first has this radius.
+/// The same of two balls; the first has the radius `radius_a`. Concentric balls have the normal (1, 0, 0).
 template <int Degree>
 Contact ball_contact_at(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b,
                         double radius_a, double t) {
@@ -89,7 +91,7 @@ Contact ball_contact_at(const certificates::PointMotion<Degree>& a, const certif
   contact.time = t;
   const Eigen::Vector3d centre_a = a.position(t);
   const Eigen::Vector3d apart = b.position(t) - centre_a;
-  if (apart.norm() > 0) contact.normal = apart.normalized();  // concentric balls: the default direction
+  if (apart.norm() > 0) contact.normal = apart.normalized();
   contact.point = centre_a + contact.normal * radius_a;
   return contact;
 }

@@ -20,7 +20,8 @@ struct Touch {
 
 /// Changes rates (velocities, or accelerations, of bodies) as little as possible, measured by mass, so that at every
 /// touch normal . (rate_b - rate_a) >= 0. Pushes are frictionless, along the normals, equal and opposite.
-/// Returns whether that was possible; if not (a body between two that close in), some touches are left violated.
+/// Returns whether that was achieved; if not (a body between two that close in, or a pile too large to be solved within
+/// the bounds below), some touches are left violated.
 ///
 /// Paper: [Gauss1829]; the sign conditions make it the linear complementarity problem of [Baraff94]. Up to 64 touches
 /// it is solved by active sets [Lawson74], above that by projected successive over-relaxation [Cryer71]; neither needs

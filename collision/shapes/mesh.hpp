@@ -43,13 +43,13 @@ inline Eigen::Vector3d placed_vertex(const Eigen::Matrix3d& rotation, double sca
           rotation(2, 0) * x + rotation(2, 1) * y + rotation(2, 2) * z};
 }
 
-/// Two vertices.
+/// Two vertices, coordinate by coordinate.
 struct VertexPair {
   Two x, y, z;
 };
 
-/// A triangle surface with its tree of oriented boxes. Coordinates in units of length about the model's origin, which
-/// is the centre of the bodies that use it. It need not be closed, connected or consistently wound.
+/// A triangle surface with its tree of oriented boxes. Coordinates are in units of length, relative to the model's
+/// origin, which is the centre of the bodies that use it. It need not be closed, connected or consistently wound.
 class Mesh {
  public:
   using Triangle = std::array<std::uint32_t, 3>;  ///< indices of vertices

@@ -42,16 +42,18 @@ struct PlacedShape {
 };
 
 /// Validates and places a shape. Throws std::invalid_argument naming the member that is wrong: sizes must be finite
-/// and > 0, a mesh must be there, the orientation must be a unit quaternion to 1e-6 (it is normalised).
+/// and > 0, a mesh must be there, the orientation must be a unit quaternion to 1e-6 (it is normalised). What a mesh and
+/// its scale make together is not checked: their product should stay below Mesh::largest_coordinate.
 PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation);
 
 /// From where to where the shape reaches about its centre along a direction: least and greatest direction . x, rounded
-/// outward, with the margin of its bounding box. Of a mesh it costs a look at all its vertices. Precondition: the
-/// direction is of three numbers -1, 0 or 1.
+/// outward, with the margin of its bounding box; in units of length times that of the direction. Of a mesh it costs a
+/// look at all its vertices. Precondition: the direction is of three numbers -1, 0 or 1, not all zero.
 std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction);
 
 /// What place() makes of a ball that is not turned; throws as it does.
 PlacedShape placed_ball(double radius);
+/// Throws as place() does for a radius that is not finite or not > 0.
 void require_radius(double radius);
 
 }  // namespace kds::collision

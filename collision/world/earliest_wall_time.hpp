@@ -12,7 +12,7 @@
 namespace kds::collision {
 
 /// A time before which a ball will not be outside a wall and going outward; `never` for never. Wall 2 d is the lower
-/// one on axis d, 2 d + 1 the upper.
+/// one on axis d, 2 d + 1 the upper. Curved paths (degree 2): `now`, which says nothing.
 ///
 /// Error bound, for straight paths: the gap is a sum of five numbers, with a product of a time known to one rounding:
 /// at most 6 units of 2^-53 of their magnitudes. The quotient by the speed, which is a double, and the sum with the
@@ -39,7 +39,7 @@ double earliest_wall_time(const certificates::PointMotion<Degree>& motion, doubl
 
 namespace detail {
 
-/// As above, but from now on, of two coordinates at a time: `never` where one does not move, or its wall is nowhere.
+/// How many seconds from now on that time is away, for two coordinates at a time; `never` where one does not move.
 /// Without a branch, since nobody can predict which walls bodies approach.
 inline Two wait_for_wall(Two at, Two speed, Two elapsed, Two radius, Two low, Two high) {
   const Two moved = speed * elapsed;
@@ -51,6 +51,7 @@ inline Two wait_for_wall(Two at, Two speed, Two elapsed, Two radius, Two low, Tw
   return speed != 0 ? lesser(time, both(never)) : both(never);
 }
 
+/// now + wait, rounded down.
 inline double after_wait(double wait, double now) {
   if (wait == never) return never;
   const double t = now + wait * (1 - 0x1p-50);

@@ -22,7 +22,8 @@ namespace kds::collision {
 template <class T>
 class ListArena {
  public:
-  /// A list is told by this; to copy it does not copy the list. Spans are good until the next push_back().
+  /// A list is known by this; copying it does not copy the list. Spans of items are valid until the next push_back()
+  /// to any list, or reserve().
   struct List {
     std::uint32_t begin = 0;
     std::uint32_t size = 0;
@@ -34,12 +35,12 @@ class ListArena {
   std::span<T> items(const List& list) { return {memory_.get() + list.begin, list.size}; }
   std::span<const T> items(const List& list) const { return {memory_.get() + list.begin, list.size}; }
 
-  /// Makes room for so many items beyond those that there are.
+  /// Makes room for this many more items.
   void reserve(std::size_t items) {
     if (used_ + items > room_) enlarge(used_ + items);
   }
 
-  /// A list without room gets some for so many at first.
+  /// A list without room first gets some for `first_room` items, rounded up to a power of two.
   void push_back(List& list, const T& item, std::uint32_t first_room = 4) {
     if (list.size == list.room) grow(list, list.room == 0 ? std::bit_ceil(first_room) : 2 * list.room);
     memory_[list.begin + list.size++] = item;

@@ -8,6 +8,7 @@
 
 namespace kds::collision {
 
+/// Clears a slot, if the queue has it.
 template <class Queue>
 void clear(Queue& queue, Slot slot) {
   if (slot < queue.slots()) queue.clear(slot);
@@ -16,7 +17,7 @@ void clear(Queue& queue, Slot slot) {
 /// Slots that a queue has at first: small scenes never need more, and growing slot by slot would be much of their cost.
 inline constexpr std::size_t first_slots = 32;
 
-/// The queues grow by doubling, as vectors do.
+/// Gives a queue at least this many slots. Queues grow by doubling, as vectors do.
 template <class Queue>
 void make_room(Queue& queue, std::size_t slots) {
   if (queue.slots() < slots) queue.resize(std::max({slots, 2 * queue.slots(), first_slots}));

@@ -92,7 +92,7 @@ struct Hold {
   BodyId b = no_body;  ///< of a wall
   int wall = -1;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
-  double push = 0;                                   ///< relative acceleration that it gives
+  double push = 0;                                   ///< half the relative acceleration that it gives
   bool alive = false;
   bool fresh = false;  ///< its approach is still to be taken out
 };

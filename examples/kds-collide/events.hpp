@@ -38,7 +38,7 @@ class EventSink {
  public:
   virtual ~EventSink() = default;
   virtual void on_event(const Event&) {}
-  /// From piece.start on the body moves so, other than its scene says: response has changed its motion.
+  /// From piece.start on the body moves so: a contact, a wall or what holds it has changed its motion.
   virtual void on_motion(std::uint32_t /*body*/, const MotionPiece& /*piece*/) {}
   /// The clock has come to `time`.
   virtual void on_time(double /*time*/) {}

@@ -21,12 +21,13 @@ struct MeshFileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads .obj (tinyobjloader) or .stl (assimp). Vertices of an OBJ file keep its order and its numbers to the last
-/// bit, polygons are cut into triangles; equal vertices of an STL file, which repeats them for every triangle, become
-/// one. Throws MeshFileError; whether the triangles make a sound mesh is not looked at here.
+/// Reads .obj (tinyobjloader) or .stl (assimp, in single precision). Vertices of an OBJ file keep its order and its
+/// numbers to the last bit, polygons are cut into triangles; equal vertices of an STL file, which repeats them for
+/// every triangle, become one. Throws MeshFileError, and std::filesystem::filesystem_error for a file that cannot be
+/// looked at; whether the triangles make a sound mesh is not checked here.
 MeshData read_mesh_file(const std::filesystem::path& file);
 
-/// Writes an OBJ file that read_mesh_file gives back bit for bit.
+/// The text of an OBJ file that read_mesh_file gives back bit for bit.
 std::string to_obj(const MeshData& mesh);
 
 }  // namespace kds_collide

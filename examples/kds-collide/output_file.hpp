@@ -17,8 +17,10 @@ struct OutputError : std::runtime_error {
 
 /// Writes to a temporary file beside `path`, which commit() renames; until then nothing is at `path`, or what was there
 /// before. Destroyed without commit(), and when the process is told to stop (SIGINT, SIGTERM, SIGHUP) or nobody reads
-/// its standard output any more (SIGPIPE), the temporary file is removed. "-" is standard output, and pipes and devices
-/// are written as they are.
+/// its standard output any more (SIGPIPE), the temporary file is removed. "-" is standard output; it, pipes and devices
+/// are written directly. A link to a file stays one; a link that leads nowhere is replaced.
+///
+/// All members but the destructor throw OutputError. Signals remove up to 8 files at a time.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);
@@ -36,7 +38,7 @@ class OutputFile {
   [[noreturn]] void fail(int error, bool on_opening = false) const;
 
   std::string path_;
-  std::filesystem::path target_;     ///< path_ with symbolic links resolved
+  std::filesystem::path target_;     ///< path_; of a file that exists, with symbolic links resolved
   std::filesystem::path temporary_;  ///< empty where path_ is written directly
   std::FILE* file_ = nullptr;
   int slot_ = -1;  ///< of the names a signal removes

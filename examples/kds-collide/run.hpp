@@ -17,15 +17,15 @@ struct RunOptions {
   int kdop = 6;                      ///< 6, boxes, or, for "kinetic-sap", 14, 18 or 26
   double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
   bool pairs = false;                ///< tell of bounding volumes too
-  bool steady_progress = false;      ///< call on_time at least a hundred times
+  bool steady_progress = false;      ///< call on_time about a hundred times, or more
   bool profile = false;              ///< measure where the time goes
-  std::size_t threads = 1;           ///< that take in bodies, where there are many; 0 is all that the machine has
+  std::size_t threads = 1;           ///< how many take in bodies, where there are many; 0: as many as the machine has
 };
 
 /// What a run took and did.
 struct RunResult {
   std::string broad_phase;       ///< the one used, as World::broad_phase() names it
-  double setup_cpu_seconds = 0;  ///< from the scene to the first instant
+  double setup_cpu_seconds = 0;  ///< making the world and all that happens at begin_time
   double run_cpu_seconds = 0;    ///< from there on
   double sim_seconds = 0;        ///< simulated time
   std::uint64_t bodies = 0;
@@ -44,7 +44,8 @@ struct RunResult {
   kds::collision::Profile profile;  ///< where the time went, if asked for
 };
 
-/// Runs the scene from its begin_time to its end_time. Throws std::invalid_argument for options it cannot follow.
+/// Runs the scene from its begin_time to its end_time, and tells `sink`. Throws std::invalid_argument for options it
+/// cannot follow, and what the sink throws.
 RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink);
 
 }  // namespace kds_collide
