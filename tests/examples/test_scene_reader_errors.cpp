@@ -65,7 +65,6 @@ std::string edited(const Edit& edit) {
 TEST_CASE("scene reader: each bad value is named with its place") {
   const TemporaryFolder folder;
   folder.write("ring.obj", tetrahedron);
-  const std::string sphere = R"({"sphere": {"radius": 1}})";
   const auto edit = GENERATE_COPY(values<Edit>({
       {"/scene", "2", "scene: must be 1, the only format there is"},
       {"/scene", "\"1\"", "scene: must be 1, the only format there is"},

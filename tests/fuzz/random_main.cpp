@@ -127,7 +127,13 @@ int main(int argc, char** argv) {
     if ((argument == "--runs" || argument == "--seed") && i + 1 < argc) {
       (argument == "--runs" ? runs : first) = std::strtoull(argv[++i], nullptr, 10);
     } else {
-      for (const auto& file : files_of(argument)) files.push_back(file);
+      for (const auto& file : files_of(argument)) {
+        if (!std::ifstream(file)) {
+          std::fprintf(stderr, "%s cannot be read\n", file.c_str());
+          return 2;
+        }
+        files.push_back(file);
+      }
     }
   }
   if (const char* wished = std::getenv("KDS_FUZZ_RUNS")) runs = std::strtoull(wished, nullptr, 10);

@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -24,6 +25,7 @@ using structures::DelaunayRule;
 
 TEMPLATE_TEST_CASE_SIG("a kinetic Delaunay triangulation is Delaunay, exactly", "[delaunay]", ((int Degree), Degree), 1,
                        2) {
+  std::size_t events = 0;
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 800; seed < (Degree == 1 ? 803u : 801u); ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
@@ -31,11 +33,14 @@ TEMPLATE_TEST_CASE_SIG("a kinetic Delaunay triangulation is Delaunay, exactly", 
       const RunOptions options{Degree == 1 ? 10 : 6, 4 + 4 * (seed % 3), 12, seed % 2 == 0 ? never : 0.4, 6};
       CHECK(run_structure(seed, kind, options, DelaunayRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
                           check_triangulation<Degree, Criterion::delaunay>, log) == 0);
+      events += log.size();
     }
   }
+  CHECK(events > 20);
 }
 
 TEMPLATE_TEST_CASE_SIG("a kinetic convex hull is the hull, exactly", "[hull]", ((int Degree), Degree), 1, 2) {
+  std::size_t events = 0;
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 810; seed < 813; ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
@@ -43,8 +48,10 @@ TEMPLATE_TEST_CASE_SIG("a kinetic convex hull is the hull, exactly", "[hull]", (
       const RunOptions options{12, 4 + 4 * (seed % 3), 14, seed % 2 == 0 ? never : 0.4, 2};
       CHECK(run_structure(seed, kind, options, ConvexHullRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
                           check_triangulation<Degree, Criterion::hull>, log) == 0);
+      events += log.size();
     }
   }
+  CHECK(events > 20);
 }
 
 TEST_CASE("triangulations keep to their measures", "[delaunay][hull]") {
