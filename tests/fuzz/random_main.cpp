@@ -5,7 +5,7 @@
 // All files first, then N inputs from the seeds FIRST, FIRST + 1 ... (default 1). The environment variable
 // KDS_FUZZ_RUNS, if set, is instead of --runs. A failure, whatever its kind, is reported with its file or seed, and the
 // program exits with 1, or as crashes do; `--runs 1 --seed S` with the same files makes the input again. What has failed
-// without a crash is written to the file `failed-input`.
+// without a crash is written to the file `failed-input`. A file that cannot be read is refused with 2.
 #include "tests/fuzz/check.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -127,7 +127,13 @@ int main(int argc, char** argv) {
     if ((argument == "--runs" || argument == "--seed") && i + 1 < argc) {
       (argument == "--runs" ? runs : first) = std::strtoull(argv[++i], nullptr, 10);
     } else {
-      for (const auto& file : files_of(argument)) files.push_back(file);
+      for (const auto& file : files_of(argument)) {
+        if (!std::ifstream(file)) {
+          std::fprintf(stderr, "%s cannot be read\n", file.c_str());
+          return 2;
+        }
+        files.push_back(file);
+      }
     }
   }
   if (const char* wished = std::getenv("KDS_FUZZ_RUNS")) runs = std::strtoull(wished, nullptr, 10);

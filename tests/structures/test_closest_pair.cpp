@@ -35,6 +35,7 @@ int check_pair(const ClosestPairRule<PlaneMotion<Degree>>& rule, const MovingSet
 
 TEMPLATE_TEST_CASE_SIG("the kinetic closest pair is the closest, exactly", "[closest_pair]", ((int Degree), Degree), 1,
                        2) {
+  std::size_t events = 0;
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = Degree == 1 ? 900 : 901; seed < (Degree == 1 ? 903u : 902u); ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
@@ -42,8 +43,10 @@ TEMPLATE_TEST_CASE_SIG("the kinetic closest pair is the closest, exactly", "[clo
       const RunOptions options{10, 2 + 4 * (seed % 3), 12, seed % 2 == 0 ? never : 0.4, 3};
       CHECK(run_structure(seed, kind, options, ClosestPairRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
                           check_pair<Degree>, log) == 0);
+      events += log.size();
     }
   }
+  CHECK(events > 20);
 }
 
 TEST_CASE("the closest pair keeps to its measures", "[closest_pair]") {

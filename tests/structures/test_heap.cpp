@@ -37,6 +37,7 @@ int check_heap(const HeapRule<ByValue<Motion<Degree>>>& rule, const MovingSet<Mo
 
 TEMPLATE_TEST_CASE_SIG("a kinetic heap has a greatest value on top, exactly", "[heap]", ((int Degree), Degree), 1, 2,
                        3) {
+  std::size_t events = 0;
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 600; seed < 603; ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
@@ -44,8 +45,10 @@ TEMPLATE_TEST_CASE_SIG("a kinetic heap has a greatest value on top, exactly", "[
       const RunOptions options{24, 3 + 6 * (seed % 3), 24, seed % 2 == 0 ? never : 0.4};
       CHECK(run_structure(seed, kind, options, HeapRule<ByValue<Motion<Degree>>>{}, random_motion<Degree>,
                           check_heap<Degree>, log) == 0);
+      events += log.size();
     }
   }
+  CHECK(events > 20);
 }
 
 TEST_CASE("a heap keeps to its measures", "[heap]") {
