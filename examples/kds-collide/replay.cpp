@@ -23,7 +23,8 @@ void append_short(std::string& text, double value) { append_number(text, static_
 
 /// JSON that may stand inside a <script> element, whose end no string may spell.
 std::string quoted(const std::string& name) {
-  std::string text = nlohmann::json(name).dump();
+  using nlohmann::json;
+  std::string text = json(name).dump(-1, ' ', false, json::error_handler_t::replace);  // a file name may hold any bytes
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
   return text;
 }
@@ -115,9 +116,15 @@ void ReplayRecorder::on_event(const Event& event) {
 
 void ReplayRecorder::on_motion(std::uint32_t body, const MotionPiece& piece) {
   auto& pieces = motion_[body];
+  // Pieces of a script may come after it.
+  const auto at = std::lower_bound(pieces.begin(), pieces.end(), piece.start,
+                                   [](const MotionPiece& p, double start) { return p.start < start; });
   // Several changes at one instant: the last one is what happens.
-  if (pieces.back().start == piece.start) pieces.pop_back();
-  pieces.push_back(piece);
+  if (at != pieces.end() && at->start == piece.start) {
+    *at = piece;
+  } else {
+    pieces.insert(at, piece);
+  }
 }
 
 std::string ReplayRecorder::to_json(const std::string& title) const {

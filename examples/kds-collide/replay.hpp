@@ -28,8 +28,8 @@ class ReplayRecorder final : public EventSink {
 
  private:
   const Scene& scene_;
-  std::vector<std::vector<MotionPiece>> motion_;
-  std::vector<Event> touches_;  ///< contacts, separations, overlaps
+  std::vector<std::vector<MotionPiece>> motion_;  ///< of each body; starts ascend
+  std::vector<Event> touches_;                    ///< contacts, separations, overlaps
 };
 
 /// The page: viewer, three.js and data in one text. Throws ReplayError where three.js is not found in `three_folder`.

@@ -52,6 +52,28 @@ TEST_CASE("replay: the record holds pieces of motion and contacts, counted from 
   CHECK(data["touches"] == json::parse("[[1,0,0,1]]"));
 }
 
+TEST_CASE("replay: a change of motion stands before the pieces of the script that come after it") {
+  Scene scene = scene_of_two();
+  MotionPiece piece = scene.bodies[0].motion[0];
+  piece.start = 11.5;
+  scene.bodies[0].motion.push_back(piece);
+  ReplayRecorder recorder(scene);
+  piece.start = 11;
+  piece.coefficients[1] = {-1, 0, 0};
+  recorder.on_motion(0, piece);
+  piece.start = 11.5;
+  piece.coefficients[1] = {3, 0, 0};
+  recorder.on_motion(0, piece);  // the script's piece begins, and is changed at once
+  const json data = json::parse(recorder.to_json("a"));
+  CHECK(data["bodies"][0]["motion"] == json::parse("[[0,0,0,0,1,0,0],[1,0,0,0,-1,0,0],[1.5,0,0,0,3,0,0]]"));
+}
+
+TEST_CASE("replay: a title that is not UTF-8 is written as well as it can be") {
+  const Scene scene = scene_of_two();
+  const json data = json::parse(ReplayRecorder(scene).to_json("sc\xff.json"));
+  CHECK(data["title"] == "sc\uFFFD.json");
+}
+
 TEST_CASE("replay: the page holds viewer, three.js and data") {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder / "build");
