@@ -31,27 +31,65 @@ std::string read_text(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
-/// The vertices of an OBJ file. tinyobjloader rounds numbers carelessly (0.3 becomes 0.30000000000000004) and takes
-/// what is no number for 0, so the coordinates are read here and only the faces there.
+/// The first word of `line`, which loses it; empty at the end. Blanks as tinyobjloader has them.
+std::string_view next_word(std::string_view& line) {
+  constexpr std::string_view blanks = " \t";
+  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(blanks));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+/// Whether the whole of `word` is a number, with + before it or not.
+template <class Number>
+bool read_number(std::string_view word, Number& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const char* const end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  return error == std::errc() && stop == end;
+}
+
+/// `words` are what follows the v of a line.
+Eigen::Vector3d read_obj_vertex(std::string_view words) {
+  Eigen::Vector3d vertex;
+  for (int d = 0; d < 3; ++d) {
+    const std::string_view word = next_word(words);
+    if (word.empty()) throw MeshFileError("a vertex needs three coordinates");
+    if (!read_number(word, vertex[d]) || !std::isfinite(vertex[d])) {
+      throw MeshFileError('"' + std::string(word) + "\" is not a finite number");
+    }
+  }
+  return vertex;
+}
+
+/// `words` are what follows the f of a line: corners such as 7, 7/1 and 7//1.
+void check_obj_face(std::string_view words) {
+  for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
+    int vertex = 0;
+    if (!read_number(word.substr(0, word.find('/')), vertex) || vertex == 0) {
+      throw MeshFileError('"' + std::string(word) + "\" is not the number of a vertex");
+    }
+  }
+}
+
+/// The vertices of an OBJ file. tinyobjloader rounds numbers carelessly (0.3 becomes 0.30000000000000004), and takes
+/// what is no number for 0 and 1.9 or 4294967297 for 1. So the coordinates are read here, and the faces there after
+/// their numbers are checked here.
 std::vector<Eigen::Vector3d> read_obj_vertices(std::istream& text) {
   std::vector<Eigen::Vector3d> vertices;
-  std::string line;
-  for (std::size_t number = 1; std::getline(text, line); ++number) {
-    std::istringstream words(line);
-    std::string word;
-    if (!(words >> word) || word != "v") continue;
-    Eigen::Vector3d vertex;
-    for (int d = 0; d < 3; ++d) {
-      const auto where = [number] { return "line " + std::to_string(number) + ": "; };
-      if (!(words >> word)) throw MeshFileError(where() + "a vertex needs three coordinates");
-      const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
-      const char* end = word.data() + word.size();
-      const auto [stop, error] = std::from_chars(begin, end, vertex[d]);
-      if (error != std::errc() || stop != end || !std::isfinite(vertex[d])) {
-        throw MeshFileError(where() + "\"" + word + "\" is not a finite number");
-      }
+  std::string content;
+  for (std::size_t number = 1; std::getline(text, content); ++number) {
+    std::string_view line = content;
+    while (line.ends_with('\r')) line.remove_suffix(1);
+    try {
+      // tinyobjloader goes on with another line there.
+      if (line.find('\r') != line.npos) throw MeshFileError("a line ends in CR alone; LF or CR LF is read");
+      const std::string_view keyword = next_word(line);
+      if (keyword == "v") vertices.push_back(read_obj_vertex(line));
+      if (keyword == "f") check_obj_face(line);
+    } catch (const MeshFileError& error) {
+      throw MeshFileError("line " + std::to_string(number) + ": " + error.what());
     }
-    vertices.push_back(vertex);
   }
   return vertices;
 }
@@ -75,7 +113,6 @@ ObjFaces read_obj_faces(const std::string& text, std::size_t vertex_count, bool 
   if (warnings.find("Degenerated face") != std::string::npos) {
     throw MeshFileError("a face has fewer than three corners");
   }
-  if (attributes.vertices.size() != 3 * vertex_count) throw MeshFileError("has line ends other than LF or CR LF");
   ObjFaces faces;
   std::size_t corners_expected = 0;
   for (const auto& shape : shapes) {
@@ -121,13 +158,19 @@ MeshData read_stl(const std::filesystem::path& file) {
     const aiMesh& part = *scene->mMeshes[m];
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
-      if (face.mNumIndices != 3) throw MeshFileError("face " + std::to_string(f) + " is not a triangle");
+      const auto fail = [&](const char* what) {
+        throw MeshFileError("triangle " + std::to_string(mesh.triangles.size()) + ": " + what);
+      };
+      if (face.mNumIndices != 3) fail("has not three corners");
       std::array<std::uint32_t, 3> triangle{};
       for (std::size_t i = 0; i < 3; ++i) {
         const aiVector3D& p = part.mVertices[face.mIndices[i]];
+        const Eigen::Vector3d vertex(p.x, p.y, p.z);
+        // Before it is looked for: what is no number has no place in an order.
+        if (!vertex.allFinite()) fail("has a coordinate that is not finite");
         const auto next = static_cast<std::uint32_t>(mesh.vertices.size());
         const auto [entry, is_new] = numbers.try_emplace({p.x, p.y, p.z}, next);
-        if (is_new) mesh.vertices.emplace_back(p.x, p.y, p.z);
+        if (is_new) mesh.vertices.push_back(vertex);
         triangle[i] = entry->second;
       }
       mesh.triangles.push_back(triangle);

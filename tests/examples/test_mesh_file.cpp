@@ -83,6 +83,18 @@ TEST_CASE("mesh file: equal vertices of an STL file become one") {
   CHECK(same.triangles == mesh.triangles);
 }
 
+TEST_CASE("mesh file: coordinates of an STL file that are not finite are refused with their triangle") {
+  const TemporaryFolder folder;
+  const std::string coordinate = GENERATE("nan", "inf", "-inf", "1e39");
+  INFO(coordinate);
+  const std::string good =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  const std::string bad =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 " + coordinate + " 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  const auto file = folder.write("a.stl", "solid s\n" + good + bad + "endsolid s\n");
+  CHECK_THROWS_WITH(read_mesh_file(file), "triangle 1: has a coordinate that is not finite");
+}
+
 TEST_CASE("mesh file: files that are no mesh") {
   const TemporaryFolder folder;
   const auto error = [&](const std::filesystem::path& file) {
@@ -99,6 +111,17 @@ TEST_CASE("mesh file: files that are no mesh") {
   CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n")) != "no error");
   CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf a b c\n")) != "no error");
   CHECK(error(folder.write("a.obj", std::string("\0\1\2garbage", 10))) == "has no triangles");
+  const auto face_of = [&](const std::string& corners) {
+    return error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf " + corners + "\n"));
+  };
+  CHECK(face_of("1 2 3") == "no error");
+  CHECK(face_of("+1/7/8 2//3 3/4") == "no error");
+  CHECK(face_of("1.9 2 3") == "line 5: \"1.9\" is not the number of a vertex");
+  CHECK(face_of("1 2 4294967297") == "line 5: \"4294967297\" is not the number of a vertex");
+  CHECK(face_of("1 2x/1 3") == "line 5: \"2x/1\" is not the number of a vertex");
+  CHECK(face_of("0 1 2") == "line 5: \"0\" is not the number of a vertex");
+  CHECK(face_of("1\v2 3 1 2") != "no error");
+  CHECK(face_of("1 2 3\r# a comment\rf 1.9 2 3") == "line 5: a line ends in CR alone; LF or CR LF is read");
   CHECK(error(folder.write("a.stl", "solid s\nendsolid s\n")) != "no error");
   CHECK(error(folder.write("a.stl", "x")) != "no error");
 }
