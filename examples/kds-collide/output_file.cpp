@@ -1,6 +1,7 @@
 #include "examples/kds-collide/output_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -14,6 +15,8 @@
 namespace kds_collide {
 namespace {
 
+using std::filesystem::file_type;
+
 /// Names of the temporary files now open, where a signal handler can read them: it may neither lock nor allocate.
 constexpr std::size_t most_files = 8;
 std::array<std::atomic<char*>, most_files> open_temporaries{};
@@ -26,14 +29,18 @@ extern "C" void remove_temporaries(int signal) {
   raise(signal);
 }
 
-int remember(const std::string& name) {
-  [[maybe_unused]] static const bool installed = [] {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+void prepare_for_signals() {
+  [[maybe_unused]] static const bool prepared = [] {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT, SIGXCPU}) {
       // What is ignored stays so: nohup.
       if (std::signal(signal, remove_temporaries) == SIG_IGN) std::signal(signal, SIG_IGN);
     }
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow further is an error of writing, as a full disk is
     return true;
   }();
+}
+
+int remember(const std::string& name) {
   for (std::size_t slot = 0; slot < most_files; ++slot) {
     if (open_temporaries[slot].load()) continue;
     open_temporaries[slot] = strdup(name.c_str());
@@ -48,32 +55,47 @@ void forget(int slot) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
+std::filesystem::path past_dangling_links(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::filesystem::path file = path;
+  while (std::filesystem::is_symlink(file, ignored) &&
+         std::filesystem::status(file, ignored).type() == file_type::not_found) {
+    file = file.parent_path() / std::filesystem::read_symlink(file, ignored);
+  }
+  return file;
+}
+
+OutputFile::OutputFile(const std::string& path) : path_(path), target_(past_dangling_links(path)) {
+  prepare_for_signals();
   if (path_ == "-") {
     file_ = stdout;
     return;
   }
   std::error_code error;
-  const auto kind = std::filesystem::status(target_, error).type();
-  if (kind == std::filesystem::file_type::directory) fail(EISDIR, true);
-  if (kind != std::filesystem::file_type::regular && kind != std::filesystem::file_type::not_found) {
+  const std::filesystem::file_status status = std::filesystem::status(target_, error);
+  const file_type kind = status.type();
+  if (kind == file_type::directory) fail(EISDIR, true);
+  if (kind != file_type::regular && kind != file_type::not_found) {
     file_ = std::fopen(path_.c_str(), "wb");
     if (!file_) fail(errno, true);
     return;
   }
-  if (kind == std::filesystem::file_type::regular) {
+  const bool replaces = kind == file_type::regular;
+  if (replaces) {
     if (access(path_.c_str(), W_OK) != 0) fail(errno, true);
     target_ = std::filesystem::canonical(target_, error);
     if (error) fail(error.value(), true);
   }
+  const mode_t mode = replaces ? static_cast<mode_t>(status.permissions() & std::filesystem::perms::all) : 0666;
   temporary_ = target_;
   temporary_ += ".part-" + std::to_string(getpid());
-  const int descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const int descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   if (descriptor < 0) {
     const int reason = errno;
     temporary_.clear();
     fail(reason, true);
   }
+  if (replaces) fchmod(descriptor, mode);  // which the umask may have narrowed
   slot_ = remember(temporary_.string());
   file_ = fdopen(descriptor, "wb");
 }

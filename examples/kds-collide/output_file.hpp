@@ -15,10 +15,15 @@ struct OutputError : std::runtime_error {
   bool on_opening;  ///< so the name is wrong; else the disk is full or failing
 };
 
-/// Writes to a temporary file beside `path`, which commit() renames; until then nothing is at `path`, or what was there
-/// before. Destroyed without commit(), and when the process is told to stop (SIGINT, SIGTERM, SIGHUP) or nobody reads
-/// its standard output any more (SIGPIPE), the temporary file is removed. "-" is standard output; it, pipes and devices
-/// are written directly. A link to a file stays one; a link that leads nowhere is replaced.
+/// Where `path` leads if it is a symbolic link to a file that is not there yet; else `path`.
+std::filesystem::path past_dangling_links(const std::filesystem::path& path);
+
+/// Writes to a temporary file beside the one that `path` leads to; commit() renames it, and until then nothing is
+/// there, or what was there before. Destroyed without commit(), and when the process is told to stop (SIGINT, SIGTERM,
+/// SIGHUP, SIGQUIT, SIGXCPU) or nobody reads its standard output any more (SIGPIPE), the temporary file is removed; a
+/// file that grows beyond a limit (SIGXFSZ, ignored) is an error like any other. "-" is standard output; it, pipes and
+/// devices are written directly. Links stay links. A file that was there leaves its permissions to the new one, but not
+/// its owner or its other names (hard links).
 ///
 /// All members but the destructor throw OutputError. Signals remove up to 8 files at a time.
 class OutputFile {
@@ -30,7 +35,7 @@ class OutputFile {
 
   void write(std::string_view text);
   /// Ends the writing, and throws if it failed. Called of several files before the first commit(), it makes all of them
-  /// appear or none.
+  /// appear or none, but for a rename that fails in between: a folder that others have meanwhile changed.
   void close();
   void commit();
 
@@ -38,7 +43,7 @@ class OutputFile {
   [[noreturn]] void fail(int error, bool on_opening = false) const;
 
   std::string path_;
-  std::filesystem::path target_;     ///< path_; of a file that exists, with symbolic links resolved
+  std::filesystem::path target_;     ///< path_, with symbolic links resolved
   std::filesystem::path temporary_;  ///< empty where path_ is written directly
   std::FILE* file_ = nullptr;
   int slot_ = -1;  ///< of the names a signal removes

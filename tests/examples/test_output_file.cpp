@@ -41,6 +41,36 @@ TEST_CASE("output file: a symbolic link stays one, a device is written as it is"
   CHECK(std::filesystem::is_character_file("/dev/null"));
 }
 
+TEST_CASE("output file: a link that leads nowhere yet leads to the new file") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "below");
+  std::filesystem::create_symlink("below/second", folder / "first");  // relative to the folder of the link
+  std::filesystem::create_symlink("../a.txt", folder / "below/second");
+  //   CHECK(past_dangling_links((folder / "first").string()) == folder / "below/../a.txt");
+  OutputFile file((folder / "first").string());
+  file.write("new");
+  file.commit();
+  CHECK(std::filesystem::is_symlink(folder / "first"));
+  CHECK(std::filesystem::is_symlink(folder / "below/second"));
+  CHECK(read_file(folder / "a.txt") == "new");
+  CHECK(folder.file_count() == 3);
+
+  std::filesystem::create_symlink("circle", folder / "circle");
+  CHECK_THROWS_WITH(OutputFile((folder / "circle").string()), Catch::Contains("Too many levels of symbolic links"));
+}
+
+TEST_CASE("output file: who may read and write it stays as it was") {
+  using std::filesystem::perms;
+  const TemporaryFolder folder;
+  const auto path = folder.write("a.txt", "old");
+  const auto mode = GENERATE(perms{0600}, perms{0666}, perms{0755});
+  std::filesystem::permissions(path, mode);
+  OutputFile file(path.string());
+  file.write("new");
+  file.commit();
+  CHECK(std::filesystem::status(path).permissions() == mode);
+}
+
 TEST_CASE("output file: a place that cannot be written is named") {
   const TemporaryFolder folder;
   const auto error = [](const std::string& path) {
