@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <stdexcept>
 #include <type_traits>
@@ -139,7 +140,10 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   const double run_start = cpu_seconds();
 
   double rate = options.rate;
-  if (options.steady_progress && end > begin) rate = std::max(rate, 100 / (end - begin));
+  if (options.steady_progress && end > begin) {
+    const double steady = 100 / (end - begin);
+    if (std::isfinite(steady)) rate = std::max(rate, steady);  // not of a run below 1e-306 s
+  }
   if (rate > 0) {
     for (std::uint64_t frame = 1;; ++frame) {
       const double t = begin + static_cast<double>(frame) / rate;

@@ -17,7 +17,7 @@ struct RunOptions {
   int kdop = 6;                      ///< 6, boxes, or, for "kinetic-sap", 14, 18 or 26
   double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
   bool pairs = false;                ///< tell of bounding volumes too
-  bool steady_progress = false;      ///< call on_time about a hundred times, or more
+  bool steady_progress = false;      ///< call on_time about a hundred times, or more, in a run of 1e-306 s or more
   bool profile = false;              ///< measure where the time goes
   std::size_t threads = 1;           ///< how many take in bodies, where there are many; 0: as many as the machine has
 };
