@@ -149,8 +149,10 @@ void check(const GeneratorOptions& options) {
   constexpr std::size_t most_bodies = 10'000'000;  // about 3 GB of text
   if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
   if (options.bodies > most_bodies) throw std::invalid_argument("--bodies: must be at most 10000000");
-  if (!(options.density > 0 && options.density <= 0.3)) {
-    throw std::invalid_argument("--density: must be > 0 and at most 0.3");
+  // With most_bodies this is 5.3e18 cells of Placement's, whose numbers are below 2^63.
+  constexpr double lowest_density = 1e-12;
+  if (!(options.density >= lowest_density && options.density <= 0.3)) {
+    throw std::invalid_argument("--density: must be from 1e-12 to 0.3");
   }
 }
 

@@ -13,7 +13,7 @@ namespace kds_collide {
 struct GeneratorOptions {
   std::string kind = "rings";  ///< see generator_kinds()
   std::size_t bodies = 1000;   ///< 1 to 10 000 000
-  double density = 0.01;       ///< volume of all bounding balls over the volume of the domain, in (0, 0.3]
+  double density = 0.01;       ///< volume of all bounding balls over the volume of the domain, 1e-12 to 0.3
   std::uint64_t seed = 1;
   double end_time = 1;  ///< s
 };
