@@ -15,6 +15,9 @@ struct JsonError : std::runtime_error {
   std::string where;
 };
 
+/// The path of what is at `key` of the object at `path`, which is empty for the document itself.
+std::string path_to(const std::string& path, const std::string& key);
+
 /// Throws JsonError with the path of the value that could not be read.
 nlohmann::json parse_json(std::string_view text);
 

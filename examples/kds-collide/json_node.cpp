@@ -18,7 +18,7 @@ const JsonNode& JsonNode::object(std::initializer_list<std::string_view> keys) c
 }
 
 JsonNode JsonNode::operator[](const std::string& key) const {
-  if (!value_.contains(key)) throw JsonError(child_path(key), "is missing");
+  if (!value_.contains(key)) throw JsonError(path_to(path_, key), "is missing");
   return at(key);
 }
 

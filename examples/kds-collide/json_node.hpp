@@ -50,8 +50,7 @@ class JsonNode {
   void require(bool holds, const std::string& what) const {
     if (!holds) fail(what);
   }
-  std::string child_path(const std::string& key) const { return path_.empty() ? key : path_ + '.' + key; }
-  JsonNode at(const std::string& key) const { return {value_.at(key), child_path(key)}; }
+  JsonNode at(const std::string& key) const { return {value_.at(key), path_to(path_, key)}; }
 
   const nlohmann::json& value_;
   std::string path_;

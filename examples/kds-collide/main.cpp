@@ -2,6 +2,7 @@
 #include "collision/broad_phase/broad_phase_kind.hpp"
 #include "examples/kds-collide/arguments.hpp"
 #include "examples/kds-collide/event_csv.hpp"
+#include "examples/kds-collide/one_line.hpp"
 #include "examples/kds-collide/output_file.hpp"
 #include "examples/kds-collide/progress_bar.hpp"
 #include "examples/kds-collide/replay.hpp"
@@ -27,9 +28,7 @@ constexpr int run_failed = 1;
 constexpr int bad_input = 2;
 
 int complain(const std::string& line, int code) {
-  std::string text = line;
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  std::fprintf(stderr, "%s\n", text.c_str());
+  std::fprintf(stderr, "%s\n", one_line(line).c_str());
   return code;
 }
 

@@ -1,18 +1,8 @@
 #include "examples/kds-collide/scene.hpp"
 
-#include <algorithm>
+#include "examples/kds-collide/one_line.hpp"
 
 namespace kds_collide {
-namespace {
-
-/// File names and keys come from outside and may hold anything; an error stays one line.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  return text;
-}
-
-}  // namespace
 
 int Scene::degree() const {
   for (const SceneBody& body : bodies) {

@@ -57,7 +57,16 @@ kds::collision::Shape read_shape(const JsonNode& node, const std::vector<SceneMe
   const std::string name = node["mesh"].string();
   const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const SceneMesh& m) { return m.name == name; });
   if (found == meshes.end()) node["mesh"].fail("there is no mesh \"" + name + "\" in \"meshes\"");
-  return kds::collision::MeshShape{found->mesh, node.has("scale") ? node["scale"].positive() : 1.0};
+  const double scale = node.has("scale") ? node["scale"].positive() : 1.0;
+  const double radius = found->mesh->bounding_radius() * scale;
+  if (radius < smallest_size || radius > largest_number) {
+    const std::string reaches = node.has("scale") ? "makes the mesh reach " : "reaches ";
+    const std::string limit =
+        radius < smallest_size ? "at least " + number_text(smallest_size) : "at most " + number_text(largest_number);
+    node[node.has("scale") ? "scale" : "mesh"].fail(reaches + about(radius) + " from its origin; " + limit +
+                                                    " is supported");
+  }
+  return kds::collision::MeshShape{found->mesh, scale};
 }
 
 Eigen::Quaterniond read_orientation(const JsonNode& node) {

@@ -164,6 +164,11 @@ TEST_CASE("scene reader: what is not JSON is named with path, line and column") 
       {"{\"scene\": 1, \"scene\": 1}", "scene.json: scene: this key is given twice"},
       {"{\"meshes\": {\"a\": {\"file\": \"x\", \"file\": \"y\"}}}",
        "scene.json: meshes.a.file: this key is given twice"},
+      {"{\"\": 1}", "scene.json: \"\": unknown key"},
+      {"{\"\": 1e999}", "scene.json: \"\": number overflow parsing '1e999'"},
+      {"{\"scene\": 1, \"end_time\": 1, \"meshes\": {\"\": {\"file\": 1, \"\": 1}}}",
+       "scene.json: meshes.\"\".\"\": unknown key"},
+      {"{\"meshes\": {\"\": [1e999]}}", "scene.json: meshes.\"\"[0]: number overflow parsing '1e999'"},
       {"[]", "scene.json: document: must be an object"},
       {"7", "scene.json: document: must be an object"},
   }));
@@ -206,6 +211,23 @@ TEST_CASE("scene reader: bad mesh files are named with mesh and place") {
   CHECK(error("v 0 0 x1\n") == where + "line 1: \"x1\" is not a finite number");
   CHECK(error("v 0 0 0\nv 1 0 0\nv 0 1 0\n") == where + "has no triangles");
   CHECK(error("") == where + "cannot be read, or is empty");
+}
+
+TEST_CASE("scene reader: a mesh times its scale is of a size that is supported") {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& size, const std::string& scale) {
+    folder.write("ring.obj", "v 0 0 0\nv " + size + " 0 0\nv 0 " + size + " 0\nf 1 2 3\n");
+    return error_in(folder, R"({"scene": 1, "end_time": 1, "meshes": {"ring": {"file": "ring.obj"}}, "bodies": [
+      {"name": "a", "shape": {"mesh": "ring")" +
+                                scale + R"(}, "motion": [{"start": 0, "position": [[0,0,0]]}]}]})");
+  };
+  CHECK(error("0.9e20", R"(, "scale": 1e10)") == "no error");
+  CHECK(error("1e30", R"(, "scale": 1e30)") ==
+        "scene.json: bodies[0].shape.scale: makes the mesh reach 1e+60 from its origin; at most 1e+30 is supported");
+  CHECK(error("1e-20", R"(, "scale": 1e-20)") ==
+        "scene.json: bodies[0].shape.scale: makes the mesh reach 1e-40 from its origin; at least 1e-30 is supported");
+  CHECK(error("1.2e30", "") ==
+        "scene.json: bodies[0].shape.mesh: reaches 1.2e+30 from its origin; at most 1e+30 is supported");
 }
 
 TEST_CASE("scene reader: no mutation of a valid scene breaks it") {
