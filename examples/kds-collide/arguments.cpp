@@ -1,14 +1,17 @@
 #include "examples/kds-collide/arguments.hpp"
 
 #include "collision/broad_phase/broad_phase_kind.hpp"
+#include "examples/kds-collide/number_text.hpp"
+#include "examples/kds-collide/output_file.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
 #include <limits>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,17 +21,32 @@ namespace {
 /// A run that is asked for more results than this would take hours: each is some 6 ns.
 constexpr double most_results = 1e12;
 
-/// Without it -1, and what is too great, would be read as the greatest number there is.
-CLI::Validator whole_number() {
-  const auto check = [](std::string& text) -> std::string {
-    std::uint64_t value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error == std::errc() && stop == end) return "";
-    return "\"" + text + "\" is not a whole number from 0 to " +
-           std::to_string(std::numeric_limits<std::uint64_t>::max());
+/// The whole of `text` as a decimal number. CLI11 has other rules: 010 is 8 to it, -1 the greatest number there is, and
+/// an empty text, of a variable that was not set, say, is 0.
+template <class Number>
+Number to_number(const std::string& option, const std::string& text) {
+  const auto refuse = [&](const std::string& why) { throw CLI::ValidationError(option, '"' + text + "\" is " + why); };
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  const bool is_read = error == std::errc() && stop == end;
+  if constexpr (std::is_floating_point_v<Number>) {
+    if (error == std::errc::result_out_of_range) refuse("out of range");
+    if (!is_read || !std::isfinite(value)) refuse("not a finite number");
+  } else if (!is_read || std::cmp_less(value, 0)) {
+    refuse("not a whole number from 0 to " + std::to_string(std::numeric_limits<Number>::max()));
+  }
+  return value;
+}
+
+/// An option whose value is a number, perhaps in a std::optional.
+template <class Number>
+CLI::Option* add_number(CLI::App& app, const std::string& name, auto& value, const std::string& what) {
+  const CLI::callback_t read = [name, &value](const CLI::results_t& texts) {
+    value = to_number<Number>(name, texts.back());
+    return true;
   };
-  return {check, ""};
+  return app.add_option(name, read, what);
 }
 
 /// An empty name, of a variable that was not set, say, would be an output that is silently not written.
@@ -49,7 +67,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   if (std::filesystem::is_other(a, ignored)) return false;
   if (std::filesystem::equivalent(a, b, ignored)) return true;
   const auto plain = [&](const std::filesystem::path& path) {  // also of a file that is not there yet
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(past_dangling_links(path), ignored), ignored);
   };
   return plain(a) == plain(b);
 }
@@ -79,15 +97,16 @@ void describe(CLI::App& app, Arguments& arguments) {
       ->check(not_empty());
   app.add_option("--broad-phase", arguments.run.broad_phase, "How pairs are found; \"list\" names the ways")
       ->type_name("NAME");
-  app.add_option("--kdop", arguments.run.kdop, "Bounding volumes of kinetic-sap: 6 (boxes), 14, 18 or 26 sides")
+  add_number<int>(app, "--kdop", arguments.run.kdop, "Bounding volumes of kinetic-sap: 6 (boxes), 14, 18 or 26 sides")
       ->type_name("K");
-  app.add_option("--until", arguments.until, "End the run at T, in seconds, instead of the scene's end_time")
+  add_number<double>(app, "--until", arguments.until, "End the run at T, in seconds, instead of the scene's end_time")
       ->type_name("T");
-  app.add_option("--rate", arguments.run.rate, "Ask for results so many times a second (sap needs it); 0 = not at all")
+  add_number<double>(app, "--rate", arguments.run.rate,
+                     "Ask for results so many times a second (sap needs it); 0 = not at all")
       ->type_name("HZ");
-  app.add_option("--threads", arguments.run.threads, "Threads that take in the bodies of large scenes; 0 = all")
-      ->type_name("N")
-      ->check(whole_number());
+  add_number<std::size_t>(app, "--threads", arguments.run.threads,
+                          "Threads that take in the bodies of large scenes; 0 = all")
+      ->type_name("N");
   app.add_flag("--pairs", arguments.run.pairs, "Write events of kinetic bounding volumes too");
   app.add_option("--view", arguments.view, "Write a replay that any browser shows")
       ->type_name("FILE.html")
@@ -99,18 +118,19 @@ void describe(CLI::App& app, Arguments& arguments) {
   auto* kind = app.add_option("--generate", arguments.generator.kind, "rings, models, spheres or boxes")
                    ->type_name("KIND")
                    ->group(group);
-  const auto add = [&](const char* name, auto& value, const char* what) {
-    return app.add_option(name, value, what)->needs(kind)->group(group);
+  const auto add = [&]<class Number>(const char* name, const char* type, Number& value, const char* what) {
+    std::string preset;
+    append_number(preset, value);
+    add_number<Number>(app, name, value, what)->type_name(type)->default_str(preset)->needs(kind)->group(group);
   };
-  add("--bodies", arguments.generator.bodies, "How many")->check(whole_number())->capture_default_str();
-  add("--density", arguments.generator.density, "Volume of their bounding balls over that of the domain")
-      ->capture_default_str();
-  add("--seed", arguments.generator.seed, "One seed, one scene, on every machine")
-      ->check(whole_number())
-      ->capture_default_str();
-  add("--output", arguments.output, "Scene file to write, meshes beside it (default: KIND.json)")
+  add("--bodies", "N", arguments.generator.bodies, "How many");
+  add("--density", "D", arguments.generator.density, "Volume of their bounding balls over that of the domain");
+  add("--seed", "N", arguments.generator.seed, "One seed, one scene, on every machine");
+  app.add_option("--output", arguments.output, "Scene file to write, meshes beside it (default: KIND.json)")
       ->type_name("FILE")
-      ->check(not_empty());
+      ->check(not_empty())
+      ->needs(kind)
+      ->group(group);
   for (CLI::Option* option : of_a_run) {
     if (option != app.get_help_ptr()) option->excludes(kind);
   }
@@ -125,8 +145,10 @@ void check(const Arguments& arguments) {
   }
   if (arguments.scene.empty()) throw ArgumentError("SCENE: is missing");
   const RunOptions& run = arguments.run;
-  if (!std::isfinite(run.rate) || run.rate < 0) throw ArgumentError("--rate: must be finite and >= 0");
-  if (arguments.until && !std::isfinite(*arguments.until)) throw ArgumentError("--until: must be finite");
+  if (run.rate < 0) throw ArgumentError("--rate: must be >= 0");
+  if (run.rate > 0 && !std::isfinite(1 / run.rate)) {
+    throw ArgumentError("--rate: must be 0 or have a finite period, 1 / rate");
+  }
   const auto& known = kds::collision::broad_phases;
   if (std::none_of(known.begin(), known.end(), [&](const auto& b) { return b.name == run.broad_phase; })) {
     std::string names;

@@ -178,15 +178,26 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"none.json", "none.json: file: cannot be read: No such file or directory"},
       {"bad.json --events e.csv --stats s.json", "bad.json: end_time: line 1, column 26: "},
       {"scene.json --frobnicate", "kds-collide: arguments: The following argument was not expected: --frobnicate"},
-      {"scene.json --rate fast", "kds-collide: arguments: Could not convert: --rate = fast"},
-      {"scene.json --rate -1", "kds-collide: --rate: must be finite and >= 0"},
-      {"scene.json --rate nan", "kds-collide: --rate: must be finite and >= 0"},
-      {"scene.json --until inf", "kds-collide: --until: must be finite"},
+      {"scene.json --rate fast", "kds-collide: arguments: --rate: \"fast\" is not a finite number"},
+      {"scene.json --rate ''", "kds-collide: arguments: --rate: \"\" is not a finite number"},
+      {"scene.json --rate=", "kds-collide: arguments: --rate: "},
+      {"scene.json --rate '{}'", "kds-collide: arguments: --rate: \"{}\" is not a finite number"},
+      {"scene.json --rate 1e999", "kds-collide: arguments: --rate: \"1e999\" is out of range"},
+      {"scene.json --rate 0x10", "kds-collide: arguments: --rate: \"0x10\" is not a finite number"},
+      {"scene.json --until ''", "kds-collide: arguments: --until: \"\" is not a finite number"},
+      {"scene.json --kdop 14.5", "kds-collide: arguments: --kdop: \"14.5\" is not a whole number from 0 to "},
+      {"scene.json --kdop 016", "kds-collide: --kdop: must be 6, 14, 18 or 26"},
+      {"scene.json --threads ''", "kds-collide: arguments: --threads: \"\" is not a whole number from 0 to 1844"},
+      {"scene.json --rate -1", "kds-collide: --rate: must be >= 0"},
+      {"scene.json --rate nan", "kds-collide: arguments: --rate: \"nan\" is not a finite number"},
+      {"scene.json --until inf", "kds-collide: arguments: --until: \"inf\" is not a finite number"},
       {"scene.json --until -1", "kds-collide: --until: is before the motion begins"},
       {"scene.json --broad-phase best",
        "kds-collide: --broad-phase: there is no \"best\"; there are auto, grid, kinetic-sap"},
       {"scene.json --broad-phase kinetic-sap --kdop 8", "kds-collide: --kdop: must be 6, 14, 18 or 26"},
       {"scene.json --kdop 14", "kds-collide: --kdop: more than 6 is for --broad-phase kinetic-sap alone"},
+      {"scene.json --broad-phase sap --rate 1e-310",
+       "kds-collide: --rate: must be 0 or have a finite period, 1 / rate"},
       {"scene.json --broad-phase sap", "kds-collide: --rate: must be > 0 for the broad phase \"sap\""},
       {"scene.json --events none/e.csv", "none/e.csv: file: cannot be written: No such file or directory"},
       {"scene.json --events e.csv --stats none/s.json", "none/s.json: file: cannot be written: "},
@@ -203,7 +214,8 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"--generate rings --until 5", "kds-collide: arguments: --until excludes --generate"},
       {"--generate rings --bodies 2 --output ring.obj", "kds-collide: --output: is the name of the mesh ring.obj too"},
       {"--generate cubes", "kds-collide: --generate: there is no \"cubes\""},
-      {"--generate rings --density 2", "kds-collide: --density: must be > 0 and at most 0.3"},
+      {"--generate rings --density 2", "kds-collide: --density: must be from 1e-12 to 0.3"},
+      {"--generate rings --density ''", "kds-collide: arguments: --density: \"\" is not a finite number"},
       {"--generate rings --bodies 0", "kds-collide: --bodies: must be > 0"},
       {"--generate rings --bodies -5", "kds-collide: arguments: --bodies: \"-5\" is not a whole number from 0 to "},
       {"--generate rings --seed 18446744073709551616",
@@ -218,6 +230,51 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
   CHECK_THAT(outcome.err, Catch::StartsWith(error));
   CHECK(lines_of(outcome.err).size() == 1);
   CHECK(folder.file_count() == 2);
+}
+
+TEST_CASE("command line: an error is one line, whatever the arguments hold") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  const Outcome outcome = kds_collide_in(folder, "scene.json --events \"$(printf 'no\\rsuch\\nfol\\033der/e')\"");
+  CHECK(outcome.code == 2);
+  CHECK(outcome.err == "no such fol der/e: file: cannot be written: No such file or directory\n");
+}
+
+TEST_CASE("command line: whole numbers are decimal, zeros in front or not") {
+  const TemporaryFolder folder;
+  REQUIRE(kds_collide_in(folder, "--generate spheres --bodies 010 --seed 010 --output a.json").code == 0);
+  REQUIRE(kds_collide_in(folder, "--generate spheres --bodies 10 --seed 10 --output b.json").code == 0);
+  CHECK(read_file(folder / "a.json") == read_file(folder / "b.json"));
+  CHECK(kds_collide_in(folder, "a.json --broad-phase kinetic-sap --kdop 014 --quiet").code == 0);
+}
+
+TEST_CASE("command line: the replay shows a bounce between two pieces of a script") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", R"({"scene": 1, "end_time": 8, "response": "none",
+    "domain": {"min": [0,0,0], "max": [10,10,10], "walls": "reflect"}, "bodies": [
+    {"name": "a", "shape": {"sphere": {"radius": 1}}, "motion": [
+      {"start": 0, "position": [[7,5,5], [1,0,0]]}, {"start": 5, "position": [[5,5,5]]}]}]})");
+  const Outcome outcome = kds_collide_in(folder, "scene.json --view v.html --quiet");
+  if (outcome.err.find("libjs-three") != std::string::npos) return;  // cannot be shown here
+  CHECK_THAT(read_file(folder / "v.html"), Catch::Contains(R"("motion":[[0,7,5,5,1,0,0],[2,9,5,5,-1,0,0],[5,5,5,5]])"));
+}
+
+TEST_CASE("command line: a scene's name that is not UTF-8 does not lose the run") {
+  const TemporaryFolder folder;
+  folder.write("sc\xff.json", head_on);
+  const Outcome outcome = kds_collide_in(folder, "sc\xff.json --view v.html --stats s.json --quiet");
+  if (outcome.err.find("libjs-three") != std::string::npos) return;  // cannot be shown here
+  CHECK(outcome.code == 0);
+  CHECK(folder.file_count() == 3);
+}
+
+TEST_CASE("command line: outputs that are one file by way of a link that leads nowhere yet are refused") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  std::filesystem::create_symlink("x", folder / "link");
+  const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --events link --stats x");
+  CHECK(outcome.code == 2);
+  CHECK(outcome.err == "kds-collide: --stats: is the same file as --events\n");
 }
 
 TEST_CASE("command line: no output takes the place of a mesh of the scene") {
@@ -246,11 +303,22 @@ TEST_CASE("command line: outputs may share a device, and one that is full ends t
 TEST_CASE("command line: a run that is ended by a signal leaves nothing behind") {
   const TemporaryFolder folder;
   folder.write("scene.json", head_on);
-  const std::string signal = GENERATE("INT", "TERM", "HUP", "PIPE");
+  const std::string signal = GENERATE("INT", "TERM", "HUP", "PIPE", "QUIT", "XCPU");
   INFO(signal);
   const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --events e.csv --stats s.json --rate 1e11",
-                                         "timeout --signal=" + signal + " 0.3");
+                                         "ulimit -c 0; timeout --signal=" + signal + " 0.3");
   CHECK(outcome.code == 124);  // of timeout: it had to
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("command line: a file that may not grow so far ends the run with 1") {
+  const TemporaryFolder folder;
+  REQUIRE(kds_collide_in(folder, "--generate spheres --bodies 400 --output scene.json").code == 0);
+  const std::string events = GENERATE("e.csv", "-");
+  const Outcome outcome =
+      kds_collide_in(folder, "scene.json --pairs --quiet --stats s.json --events " + events, "ulimit -f 4; ");
+  CHECK(outcome.code == 1);
+  CHECK(outcome.err == events + ": file: cannot be written: File too large\n");
   CHECK(folder.file_count() == 1);
 }
 
