@@ -17,6 +17,7 @@ namespace kds::certificates {
 template <int Degree>
 struct Order {
   static constexpr int degree = Degree;
+  static constexpr bool antisymmetric = true;
   const Motion<Degree>& lower;
   const Motion<Degree>& upper;
 
@@ -82,7 +83,7 @@ struct Order {
   }
 
   /// The same for failure_time_after_turn().
-  double quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 2);
+  double quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 1);
 
  private:
   /// The same for straight motions.
@@ -120,11 +121,26 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const requi
   }
 }
 
+/// A line that is positive and does not fall stays so. Values that were in the other order before, as most that swap,
+/// differ by one that rises.
+///
+/// Error bound of the rate with starts of their own, in units of 2^-53 of the sum of the magnitudes: the time between
+/// the starts, the run, which is that times 2 a, and the two sums are rounded once each. 8 are charged for these 4.
 template <int Degree>
-double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 2) {
-  if (!at_most_quadratic()) return std::numeric_limits<double>::quiet_NaN();
-  if (lower.position.c[2] == upper.position.c[2]) return never;  // a line that has risen through zero
-  return quick_parabola_failure_time<true>(now, horizon);
+double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 1) {
+  constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
+  const double low_rate = lower.position.c[1];
+  const double high_rate = upper.position.c[1];
+  if constexpr (Degree == 1) {
+    return high_rate >= low_rate ? never : undecided;
+  } else {
+    if (!at_most_quadratic()) return undecided;
+    if (lower.position.c[2] != upper.position.c[2]) return quick_parabola_failure_time<true>(now, horizon);
+    if (lower.start == upper.start) return high_rate >= low_rate ? never : undecided;
+    const double run = 2 * lower.position.c[2] * (lower.start - upper.start);
+    const double size = (std::abs(low_rate) + std::abs(high_rate)) + std::abs(run);
+    return (high_rate - low_rate) + run > 0x1p-50 * size + 0x1p-1000 ? never : undecided;
+  }
 }
 
 /// In doubles: on which side of zero now, and at the horizon? Where that is certain it needs no better.

@@ -37,6 +37,10 @@ namespace kds {
 /// or a NaN where it does not decide, and likewise `quick_failure_time_after_turn`; and a
 /// `Ball<DoubleDouble> extended_value(double t) const` that gives f(t) alone for less than polynomial() costs, with an
 /// error bound of its own (see compensated_value()), for it is f(t) that places a root among the doubles.
+///
+/// If f is given by the members `lower` and `upper`, references, alone, and is -f for the two the other way round, it
+/// may say `static constexpr bool antisymmetric = true`: when it has failed, that of the two exchanged is known to be
+/// positive, and its next failure is found for less (failure_time_after_turn()).
 template <class C>
 concept Certificate = requires(const C& certificate, double epoch) {
   { C::degree } -> std::convertible_to<int>;

@@ -90,7 +90,8 @@ class Schedule {
     }
   }
 
-  /// The same for a certificate whose sign has just turned from - to +: that of two elements which have swapped.
+  /// The same for a certificate that is known to be positive just after now: that of two elements which have swapped,
+  /// since their order, of which it is the negative, has failed. See failure_time_after_turn().
   template <Certificate C>
   void certify_turned(Slot slot, const C& certificate, double now) {
     if constexpr (requires(const Solver& solver) { solver.after_turn(certificate, now, now); }) {
@@ -101,7 +102,7 @@ class Schedule {
     }
   }
 
-  /// After a swap, of places in a row: the certificate at `middle` has just turned from - to +, those on its left and
+  /// After a swap, of places in a row: the certificate at `middle` is positive just after now, those on its left and
   /// right are new. As certify() and certify_turned() would do, for less.
   template <Certificate C>
   void certify_three(Slot middle, const C& left, const C& turned, const C& right,

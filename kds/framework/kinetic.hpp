@@ -6,7 +6,7 @@
 #include "kds/framework/kinetic_rule.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cassert>
 #include <concepts>
 #include <cstdint>
 #include <functional>
@@ -155,12 +155,10 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
 
   void certify(Slot slot, bool in_event);
   bool failed(Slot slot, double time, bool counts = true);
-  /// Whether it is of the two whose order has just failed, the other way round: that is certified for less.
+  /// Whether it is the negative of the certificate that has just failed: that is known to be positive at t+.
   template <class C>
   bool has_turned(const C& certificate) const {
-    if constexpr (detail::OrdersTwo<C>) {
-      return last_ > edited_ && &certificate.lower == crossed_[1] && &certificate.upper == crossed_[0];
-    }
+    if constexpr (detail::Antisymmetric<C>) return detail::Ordered::by(certificate) == crossed_.turned();
     return false;
   }
   void sample_again(Slot slot, double time);
@@ -177,9 +175,8 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   Schedule<Queue, Solver> schedule_;
   std::vector<std::uint8_t> held_;  ///< whether a slot has a certificate
   Measures measures_;
-  double last_ = -never;  ///< of the last change
-  double edited_ = -never;                  ///< when there was a change that was no event
-  std::array<const void*, 2> crossed_{};  ///< the two whose order failed in the event that is processed
+  double last_ = -never;     ///< of the last change
+  detail::Ordered crossed_;  ///< the two whose order failed in the event that is processed
   bool busy_ = false;
   bool backwards_ = false;
   bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
@@ -209,7 +206,6 @@ void Kinetic<Rule, Listener, Queue, Solver>::process() {
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::finish(bool in_event) {
-  if (!in_event) edited_ = last_;
   if (!repair_.marks_.empty() && held_.size() < repair_.marks_.size()) {
     held_.resize(repair_.marks_.size(), 0);
     schedule_.resize(repair_.marks_.size());
@@ -248,6 +244,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
     } else {
       if (in_event) schedule_.look_for_late_events(certificate, last_);
       if (in_event && has_turned(certificate)) {
+        assert(sign_after(certificate, last_) > 0);  // else it is not antisymmetric, or the rule did not mark a slot
         schedule_.certify_turned(slot, certificate, last_);
       } else {
         schedule_.certify(slot, certificate, last_);

@@ -69,7 +69,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::archive(Archive& archive) {
     static_assert(!sizeof(Archive),
                   "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
   }
-  archive(held_, schedule_, measures_, last_, edited_, backwards_);
+  archive(held_, schedule_, measures_, last_, backwards_);
   if constexpr (Archive::loading) {
     if (schedule_.queue().slots() != held_.size()) throw std::runtime_error("snapshot: it is damaged");
     repair_.marks_.assign(held_.size(), Repair<Element>::Mark::none);

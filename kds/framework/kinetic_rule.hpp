@@ -111,12 +111,28 @@ void with_certificate(const T& choice, F&& f) {
   }
 }
 
-/// A certificate that two elements are in order, each the whole of it: of them the other way round it is the negative.
+/// See Certificate.
 template <class C>
-concept OrdersTwo = requires(const std::remove_cvref_t<C>& certificate, double t) {
+concept Antisymmetric = requires(const C& certificate) {
+  requires C::antisymmetric;
   certificate.lower;
   certificate.upper;
-  certificate.quick_failure_time(t, t);
+};
+
+/// What an antisymmetric certificate is about, and which kind it is: none of the two if default-made.
+struct Ordered {
+  const void* lower = nullptr;
+  const void* upper = nullptr;
+  const void* kind = nullptr;
+
+  template <Antisymmetric C>
+  static Ordered by(const C& certificate) {
+    static constexpr char kind = 0;
+    return {&certificate.lower, &certificate.upper, &kind};
+  }
+  Ordered turned() const { return {upper, lower, kind}; }
+
+  friend bool operator==(const Ordered&, const Ordered&) = default;
 };
 
 // One concept a part of a rule, so that Kinetic can name the part that is missing.

@@ -36,8 +36,12 @@ namespace kds {
 template <Certificate C>
 double failure_time(const C& certificate, double now, double horizon = never);
 
-/// The same where f has just turned from - to + at now (two elements that have just swapped), which is a precondition:
-/// its sign there, zero up to rounding, would ask for the expensive rungs, and is known. A line has no second failure.
+/// The same where f is known to be positive just after now, which is a precondition: -f has failed there (two elements
+/// that have just swapped), so that its sign, zero up to rounding, would ask for the expensive rungs.
+///
+/// What was before now is not asked: f need not have risen through zero just now, and even a line may fail yet. For a
+/// certificate may have failed before it is made, and then -f may be falling already. (In a heap a child comes under
+/// another parent, and had passed it within the same spacing of doubles.)
 template <Certificate C>
 double failure_time_after_turn(const C& certificate, double now, double horizon = never);
 
@@ -123,16 +127,12 @@ double failure_time(const C& certificate, double now, double horizon) {
 template <Certificate C>
 double failure_time_after_turn(const C& certificate, double now, double horizon) {
   if (!(now <= horizon)) return never;
-  if constexpr (C::degree <= 1) {
-    return never;  // A line that is positive just after a zero has risen through it.
-  } else {
-    if constexpr (requires { certificate.quick_failure_time_after_turn(now, horizon); }) {
-      const double t = certificate.quick_failure_time_after_turn(now, horizon);
-      if (!std::isnan(t)) return t;
-    }
-    return detail::failure_time_while_positive(certificate, certificate.template polynomial<Ball<double>>(now), now,
-                                               horizon);
+  if constexpr (requires { certificate.quick_failure_time_after_turn(now, horizon); }) {
+    const double t = certificate.quick_failure_time_after_turn(now, horizon);
+    if (__builtin_expect(!std::isnan(t), 1)) return t;
   }
+  return detail::failure_time_while_positive(certificate, certificate.template polynomial<Ball<double>>(now), now,
+                                             horizon);
 }
 
 }  // namespace kds

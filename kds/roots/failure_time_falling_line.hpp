@@ -10,7 +10,6 @@
 namespace kds {
 
 /// What failure_time() gives for g + r x, the parabola p with a = 0, bit for bit, or a NaN where it takes more care.
-/// (If it has turned, a line never fails.)
 template <bool shifted>
 double quick_line_failure_time(const Parabola<shifted>& p, double now, double horizon);
 

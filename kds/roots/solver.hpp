@@ -29,7 +29,7 @@ struct CertifiedSolver {
     return failure_time(certificate, now, horizon);
   }
 
-  /// Where f is known to have turned from - to + at now.
+  /// Where f is known to be positive just after now, as failure_time_after_turn() says. A solver may do without.
   template <Certificate C>
   double after_turn(const C& certificate, double now, double horizon) const {
     return failure_time_after_turn(certificate, now, horizon);

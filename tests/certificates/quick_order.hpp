@@ -57,9 +57,8 @@ struct Comparison {
     const CarefulOrder<Degree> careful{order};
     double expected, quick, answer;
     if (turned) {
-      expected = failure_time_after_turn(careful, now, horizon);
-      quick = std::nan("");
-      if constexpr (Degree >= 2) quick = order.quick_failure_time_after_turn(now, horizon);
+      expected = failure_time(careful, now, horizon);
+      quick = order.quick_failure_time_after_turn(now, horizon);
       answer = failure_time_after_turn(order, now, horizon);
     } else {
       expected = failure_time(careful, now, horizon);
@@ -78,11 +77,16 @@ struct Comparison {
     if (wrong++ == 0) example = describe(lower, upper, now, horizon) + (turned ? ", turned" : "");
   }
 
-  /// From `now`; with the horizon at the failure and around it; at the failure, when they have swapped.
+  /// From `now`; where they are known to be in order, without looking; with the horizon at the failure and around it;
+  /// at the failure, when they have swapped.
   template <int Degree>
   void ask_around(const Motion<Degree>& lower, const Motion<Degree>& upper, double now, double horizon) {
     ask(lower, upper, now, horizon);
     ask(lower, upper, now, never);
+    if (sign_after(CarefulOrder<Degree>{{lower, upper}}, now) > 0) {
+      ask(lower, upper, now, horizon, true);
+      ask(lower, upper, now, never, true);
+    }
     const double t = failure_time(CarefulOrder<Degree>{{lower, upper}}, now);
     if (t == never) return;
     for (const double edge : {next_down(t), t, next_up(t)}) ask(lower, upper, now, edge);

@@ -73,8 +73,9 @@ void run_list(kds::tests::Kind kind, EventHash& hash) {
 template <int Degree>
 void add_lists(std::vector<Replay>& replays) {
   constexpr std::array kinds{"generic", "lattice", "mixed", "resting", "scales", "late"};
-  for (const kds::tests::Kind kind : kds::tests::all_kinds) {
-    const std::string name = "list/" + std::to_string(Degree) + '/' + kinds[static_cast<std::size_t>(kind)];
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const kds::tests::Kind kind = kds::tests::all_kinds[i];
+    const std::string name = "list/" + std::to_string(Degree) + '/' + kinds[i];
     replays.push_back({name,
                        {{"calendar", [=](EventHash& hash) { run_list<Degree, CalendarQueue<>>(kind, hash); }},
                         {"dary", [=](EventHash& hash) { run_list<Degree, DaryQueue<>>(kind, hash); }},

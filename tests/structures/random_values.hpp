@@ -24,11 +24,12 @@ enum class Kind {
   resting,  ///< most do not move
   scales,   ///< 1e-6 next to 1e6
   late,     ///< clock at 1e9
+  coarse,   ///< clock where doubles are a second apart: many events at one time, each up to a second late
 };
-inline constexpr std::array all_kinds{Kind::generic, Kind::lattice, Kind::mixed,
-                                      Kind::resting, Kind::scales,  Kind::late};
+inline constexpr std::array all_kinds{Kind::generic, Kind::lattice, Kind::mixed, Kind::resting,
+                                      Kind::scales,  Kind::late,    Kind::coarse};
 
-inline double beginning(Kind kind) { return kind == Kind::late ? 1e9 : 0; }
+inline double beginning(Kind kind) { return kind == Kind::late ? 1e9 : (kind == Kind::coarse ? 0x1p52 : 0); }
 
 /// A motion about a clock that stands at `now`.
 template <int Degree>
@@ -63,6 +64,11 @@ Motion<Degree> random_motion(Random& random, Kind kind, double now) {
       if (random.one_in(3)) c[1] = random.between(-1e6, 1e6);
       break;
     }
+    case Kind::coarse:  // A few seconds from one to the next, half of them with an acceleration in common.
+      for (double& x : c) x = random.between(-4, 4);
+      std::fill(c.begin() + 2, c.end(), random.one_in(2) ? 0.5 : random.between(-1, 1));
+      motion.start = now + random.integer(-1, 1);
+      break;
   }
   return motion;
 }
@@ -87,6 +93,7 @@ certificates::PointMotion<Degree> random_point_motion(Random& random, Kind kind,
 }
 
 inline double random_delay(Random& random, Kind kind) {
+  if (kind == Kind::coarse) return random.integer(0, 3);
   return kind == Kind::lattice || kind == Kind::resting ? random.integer(0, 4) / 4.0 : random.between(0, 0.5);
 }
 

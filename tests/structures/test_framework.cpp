@@ -76,6 +76,19 @@ TEMPLATE_TEST_CASE_SIG("a list in forty lines is in exact order after every even
   }
 }
 
+TEST_CASE("what is known after a failure is of the same kind of certificate, of the same two", "[framework]") {
+  using certificates::Order;
+  struct Above : Order<1> {};  // some other order of the same elements
+  const Motion<1> a, b, c;
+  const auto failed = detail::Ordered::by(Order<1>{a, b});
+  CHECK(detail::Ordered::by(Order<1>{b, a}) == failed.turned());
+  CHECK_FALSE(detail::Ordered::by(Order<1>{a, b}) == failed.turned());
+  CHECK_FALSE(detail::Ordered::by(Order<1>{b, c}) == failed.turned());
+  CHECK_FALSE(detail::Ordered::by(Above{{b, a}}) == failed.turned());
+  CHECK_FALSE(detail::Ordered::by(Order<1>{b, a}) == detail::Ordered{});
+  CHECK_FALSE(detail::Antisymmetric<PolynomialCertificate<1>>);
+}
+
 TEST_CASE("the list of the framework swaps when the tuned one does, and keeps to its measures", "[framework]") {
   const std::uint64_t seed = 510;
   CAPTURE(seed);

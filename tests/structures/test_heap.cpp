@@ -51,6 +51,19 @@ TEMPLATE_TEST_CASE_SIG("a kinetic heap has a greatest value on top, exactly", "[
   CHECK(events > 20);
 }
 
+TEMPLATE_TEST_CASE_SIG("a heap is right where many children pass many parents at one time", "[heap][degeneracy]",
+                       ((int Degree), Degree), 1, 2) {
+  std::size_t together = 0;  // events at the time of the one before
+  for (std::uint64_t seed = 620; seed < 720; ++seed) {
+    CAPTURE(Degree, seed);
+    std::vector<KineticEvent> log;
+    REQUIRE(run_structure(seed, Kind::coarse, {24, 3 + 6 * (seed % 3), 24}, HeapRule<ByValue<Motion<Degree>>>{},
+                          random_motion<Degree>, check_heap<Degree>, log) == 0);
+    for (std::size_t i = 1; i < log.size(); ++i) together += log[i].time == log[i - 1].time;
+  }
+  CHECK(together > 100);
+}
+
 TEST_CASE("a heap keeps to its measures", "[heap]") {
   const std::uint64_t seed = 610;
   CAPTURE(seed);
@@ -86,6 +99,40 @@ TEST_CASE("a heap of values that all meet at one time is turned over there", "[h
   simulator.audit();
   CHECK(heap.rule().top() == n - 1);
   CHECK(heap.measures().events < n * n / 2);
+}
+
+TEMPLATE_TEST_CASE_SIG("a child that is passed at the time at which it came under its parent passes it again later",
+                       "[heap][degeneracy]", ((int Degree), Degree), 1, 2, 3) {
+  // Times are a second apart. 1 and 2 overtake 0 within the first; 1 does it first, and comes on top of 2, which is
+  // ahead of it by the end of that second, though slower.
+  const double start = 0x1p52;
+  for (const double late : {0.0, 1.0}) {  // the start of 2: the same line from another time
+    MovingSet<Motion<Degree>> set;
+    set.insert(0, {{{10, -8}}, start}, start);
+    set.insert(1, {{{1, 3}}, start}, start);
+    set.insert(2, {{{4.5 + 0.5 * late, 0.5}}, start + late}, start);
+    if constexpr (Degree >= 2) {
+      for (const Id id : {0u, 1u, 2u}) {
+        auto motion = set[id];
+        const double elapsed = start - motion.start;
+        motion.position.c[0] += 3 * elapsed * elapsed;  // an acceleration in common, and still the same difference
+        motion.position.c[1] -= 6 * elapsed;
+        motion.position.c[2] = 3;
+        set.update(id, motion, start);
+      }
+    }
+    Heap<Degree> heap(set, start);
+    REQUIRE(heap.rule().heap() == std::vector<Id>{0, 1, 2});
+    Simulator simulator(start, heap);
+    for (const Id greatest : {2u, 1u, 1u}) {
+      simulator.advance_to(simulator.now() + 1);
+      CAPTURE(Degree, late, simulator.now() - start);
+      CHECK(heap.rule().top() == greatest);
+      CHECK(check_heap<Degree>(heap.rule(), set, simulator.now()) == 0);
+      CHECK_NOTHROW(simulator.audit());
+    }
+    CHECK(heap.measures().events == 3);
+  }
 }
 
 TEST_CASE("values that move together make no event in a heap", "[heap][degeneracy]") {

@@ -195,6 +195,18 @@ TEMPLATE_TEST_CASE_SIG("after a turn from - to + the next failure is found witho
   });
 }
 
+TEMPLATE_TEST_CASE_SIG("what is known to be positive now may be falling", "[failure_time]", FOR_EACH_DEGREE) {
+  run<Degree>(1450, 40, [](Random& random) {
+    const Motion<Degree> f = random_motion<Degree>(random);
+    const double now = random.coarse();
+    if (sign_after(Value<Degree>{f}, now) <= 0) return;
+    INFO(describe(f, now, never));
+    CHECK(failure_time_after_turn(Value<Degree>{f}, now) == expected_failure_time(f, now));
+    CHECK(failure_time_after_turn(Value<Degree>{f}, now, now + 2) == expected_failure_time(f, now, now + 2));
+  });
+  CHECK(failure_time_after_turn(Value<Degree>{{{{1, -0.5}}, 0}}, 1) == 2);
+}
+
 TEST_CASE("f with its sign turned has all signs turned", "[failure_time]") {
   const Value<2> f{{{{1, -3, 1}}, 0.5}};
   const Negated<Value<2>> turned{f};
