@@ -30,8 +30,9 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
     case BroadPhaseKind::kinetic_sap:
       return std::make_unique<KineticSweepAndPrune<Degree>>(now, ListedAxes::automatic, std::move(kdops));
     case BroadPhaseKind::sap:
-      if (!(options.rate > 0) || !std::isfinite(options.rate)) {
-        throw std::invalid_argument("WorldOptions.rate: sweep and prune with swept boxes needs a rate > 0");
+      if (!(options.rate > 0) || !std::isfinite(options.rate) || !std::isfinite(1 / options.rate)) {
+        throw std::invalid_argument(
+            "WorldOptions.rate: sweep and prune with swept boxes needs a rate > 0, finite and with a finite 1 / rate");
       }
       return std::make_unique<SweptSweepAndPrune<Degree>>(now, options.rate, profile);
     case BroadPhaseKind::all_pairs:
@@ -126,6 +127,7 @@ bool World<Degree>::step(double limit) {
     throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
   }
   const Stepping stepping(stepping_);
+  bool looked_ahead = false;
   for (;;) {
     if (!entering_.empty()) enter_new_bodies();
     if (!disturbed_.empty()) settle();
@@ -175,7 +177,9 @@ bool World<Degree>::step(double limit) {
       report_next();
       return true;
     } else if (next < limit) {
-      reach(limit == never ? horizon_ + options_.window : limit);
+      // Without a limit a window farther, and where nothing happens in that either, as far as there is time.
+      reach(limit == never && !looked_ahead ? horizon_ + options_.window : limit);
+      looked_ahead = true;
     } else {
       if (passing_.empty()) {
         idle_until_ = std::min({horizon_, piece, boxes, volume, wall, let_go, contact, broad_phase_->next_time()});

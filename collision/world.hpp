@@ -250,6 +250,8 @@ class World final : private PairListener {
   // world/islands.cpp: bodies that lean on each other
   void disturb(BodyId id);
   void settle();
+  void settle_fixed(BodyId id);
+  void take_up(BodyId id, const Motion& motion);
   bool settle_island(BodyId id);
   Island find_island(BodyId id);
   bool drop_broken(const Island& island);

@@ -49,10 +49,12 @@ struct Walls {
 
 struct WorldOptions {
   double start_time = 0;  ///< s; keep it near 0: event times are rounded to doubles, which are sparse far from it
-  double window = never;  ///< s, > 0; how far ahead events are predicted at a time
+  /// s, > 0; how far ahead events are predicted at a time. A step without a limit that finds nothing within one more
+  /// window looks at all time to come, and so do all steps from then on.
+  double window = never;
   Response response = Response::none;
   BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
-  double rate = 0;  ///< Hz; frames of the swept boxes, needed by `sap` alone
+  double rate = 0;  ///< Hz; frames of the swept boxes, needed by `sap` alone: > 0, finite, and so must be 1 / rate
   /// Bounding volumes of kinetic sweep and prune: 6, boxes; 14, 18 or 26, k-DOPs, tighter around what is long, thin or
   /// round, and more to compute (docs/kdops.md). Other broad phases know boxes alone. Contacts are the same; the pairs
   /// reported are those whose volumes overlap.

@@ -8,12 +8,12 @@
 
 namespace kds::certificates {
 
-/// The margin that an axis of 1-norm 1 keeps: a bound on everything that is rounded, times 1.5 or more.
+/// The margin that an axis of 1-norm 1 keeps: a bound on everything that is rounded.
 ///
 /// axis . corner(s), computed as a polynomial of s, differs from what is meant by at most paths.error for the patch,
-/// and by at most 40 x 2^-53 size for the arithmetic: 3 roundings for each coefficient, 3 Degree for moving it to s, 3
-/// for taking off the margin, 8 (as a relative error of each coefficient) for the root. See docs/features.md,
-/// "Rounding".
+/// and by less than 52 x 2^-53 size for the arithmetic: 3 for the coefficients, 1 for taking off the margin, and for
+/// quadratic paths 4 roundings of moving to s and 8 for the root, of coefficients whose parts sum to 4 size. See
+/// docs/features.md, "Rounding".
 template <int Degree>
 double axis_margin(const PatchPaths<Degree>& paths) {
   return paths.error + 64 * half_ulp * paths.size;

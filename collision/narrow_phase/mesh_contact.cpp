@@ -75,11 +75,18 @@ template class MeshPair<2>;
 
 namespace {
 
-/// The first double t with t - epoch >= tau.
+/// The first double t with t - epoch >= tau, or infinity. Precondition: tau > 0, finite.
+///
+/// The difference is rounded: near 0 it is the same for very many t, if the epoch is not. So t is looked for by halves,
+/// between a time whose exact difference is below the double before tau, and one whose is above tau.
 double clock_time(double epoch, double tau) {
-  double t = epoch + tau;
-  while (t - epoch < tau) t = next_up(t);
-  while (next_down(t) - epoch >= tau) t = next_down(t);
+  if (epoch + tau == infinity) return infinity;
+  double before = next_down(epoch + next_down(tau));
+  double t = next_up(epoch + tau);
+  while (lattice_distance(before, t) > 1) {
+    const double middle = lattice_middle(before, t);
+    (middle - epoch >= tau ? t : before) = middle;
+  }
   return t;
 }
 

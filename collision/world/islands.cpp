@@ -32,12 +32,49 @@ void World<Degree>::settle() {
     if (!contains(id) || !bodies_[id].disturbed) continue;
     bodies_[id].disturbed = false;
     if (bodies_[id].inverse_mass == 0) {
-      for (const HoldSlot slot : bodies_[id].holds) disturb(holds_[slot].a == id ? holds_[slot].b : holds_[slot].a);
+      settle_fixed(id);
     } else {
       while (!settle_island(id)) {
       }
     }
   }
+}
+
+/// Nothing but walls holds a fixed body: they take the speed and the acceleration that lead out of the domain.
+template <int Degree>
+void World<Degree>::settle_fixed(BodyId id) {
+  const Motion before = movers_[id].motion.restarted(now_);
+  Motion motion = before;
+  const std::vector<HoldSlot> holds = bodies_[id].holds;  // some may be dropped
+  const bool at_wall = std::any_of(holds.begin(), holds.end(), [&](HoldSlot slot) { return holds_[slot].wall >= 0; });
+  if constexpr (Degree >= 2) {
+    if (at_wall) motion.coefficients[2] = bodies_[id].force;
+  }
+  for (const HoldSlot slot : holds) {
+    Hold& hold = holds_[slot];
+    if (hold.wall < 0) {
+      disturb(hold.a == id ? hold.b : hold.a);
+      continue;
+    }
+    const Eigen::Index axis = hold.wall / 2;
+    if (hold.fresh) motion.coefficients[1][axis] = 0;
+    bool parts = motion.coefficients[1][axis] != 0;  // inward, or outward: then it meets the wall anew
+    if constexpr (Degree >= 2) {
+      double& force = motion.coefficients[2][axis];
+      parts = parts || force * hold.normal[axis] < 0;
+      if (!parts) force = 0;
+    }
+    hold.fresh = false;
+    if (parts) drop_hold(slot);
+  }
+  if (at_wall && !(motion == before)) take_up(id, motion);
+}
+
+template <int Degree>
+void World<Degree>::take_up(BodyId id, const Motion& motion) {
+  ++counters_.motion_updates;
+  set_motion(id, motion, false);
+  report(Pending::Kind::moved, id, no_body, {.time = now_});
 }
 
 /// False if a hold had to be dropped: then it is to be called again. Each time there is one hold less.
@@ -49,12 +86,9 @@ bool World<Degree>::settle_island(BodyId id) {
   for (const BodyId each : island.bodies) motions.push_back(movers_[each].motion.restarted(now_));
   const std::vector<Motion> before = motions;
   if (!constrain(island, 1, motions)) return false;
-  const auto take_up = [&] {
+  const auto take_up_all = [&] {
     for (std::size_t i = 0; i < island.free; ++i) {
-      if (motions[i] == before[i]) continue;
-      ++counters_.motion_updates;
-      set_motion(island.bodies[i], motions[i], false);
-      report(Pending::Kind::moved, island.bodies[i], no_body, {.time = now_});
+      if (!(motions[i] == before[i])) take_up(island.bodies[i], motions[i]);
     }
   };
   if constexpr (Degree >= 2) {
@@ -62,11 +96,11 @@ bool World<Degree>::settle_island(BodyId id) {
     for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[2] = bodies_[island.bodies[i]].force;
     if (!constrain(island, 2, motions)) {  // What is pulled away at once has been stopped all the same.
       motions = stopped;
-      take_up();
+      take_up_all();
       return false;
     }
   }
-  take_up();
+  take_up_all();
   for (const HoldSlot slot : island.holds) {
     holds_[slot].fresh = false;
     schedule_release(slot);

@@ -76,6 +76,34 @@ TEST_CASE("Clock at 1e9: bounces go on and the run ends", "[degenerate]") {
   }
 }
 
+TEST_CASE("A step without a limit ends, however short the window, and finds what there is", "[degenerate]") {
+  constexpr double late = 1e9;
+  for (const double window : {1e-9, 1e-7, 0.25, 100.0}) {
+    for (const auto method : all_methods) {
+      if (method == BroadPhaseKind::sap) continue;  // asks for a limit
+      INFO("window " << window << ", method " << static_cast<int>(method));
+      WorldOptions options = with(Response::none, method);
+      options.start_time = late;
+      options.window = window;
+      EventLog<1> log;
+      World<1> world(options, &log);
+      CHECK_FALSE(world.step());  // nothing there
+      for (auto b : two_balls()) {
+        b.motion[0].start = world.now();
+        world.add_body(b);
+      }
+      const double start = world.now();
+      while (world.step()) {
+      }
+      REQUIRE(log.count(Kind::contact) == 1);
+      REQUIRE(log.count(Kind::separation) == 1);
+      CHECK(log.of(Kind::contact)[0].time() == Approx(start + 1).epsilon(1e-15));
+      CHECK(log.of(Kind::separation)[0].time() == Approx(start + 3).epsilon(1e-15));
+      CHECK_FALSE(world.step());
+    }
+  }
+}
+
 TEST_CASE("Bodies of size 1e-6 next to bodies of size 1e6", "[degenerate]") {
   for (const auto method : all_methods) {
     for (const Shape& large : {Shape(Box{{1e6, 1e6, 1e6}}), Shape(Sphere{1e6})}) {

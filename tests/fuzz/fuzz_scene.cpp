@@ -30,8 +30,9 @@ void check_sound(const Scene& scene) {
 void check_accepted(const Scene& scene) {
   collision::WorldOptions options;
   options.start_time = scene.begin_time;
+  if (scene.response == kds_collide::Response::elastic) options.response = collision::Response::elastic;
   if (scene.domain && scene.domain->walls == kds_collide::Walls::reflect) {
-    options.walls = collision::Walls{scene.domain->min, scene.domain->max};
+    options.walls = collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
   collision::World<2> world(options);
   for (const SceneBody& body : scene.bodies) {
@@ -40,6 +41,7 @@ void check_accepted(const Scene& scene) {
     description.orientation = body.orientation;
     description.mass = body.mass;
     description.fixed = body.fixed;
+    description.restitution = body.restitution;
     description.motion = body.motion;
     world.add_body(description);
   }

@@ -7,6 +7,7 @@
 #include "tests/fuzz/check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -34,8 +35,14 @@ struct Options {
   bool walls;
   bool meshes;
   bool edits;  ///< callbacks change things
-  bool pairs;  ///< of bounding volumes are among the events
   std::uint64_t seed;
+
+  // What the seed's bits say.
+  bool pairs() const { return (seed & 1) != 0; }  ///< of bounding volumes are among the events
+  bool fixed_move() const { return (seed & 2) != 0; }
+  bool walls_without_response() const { return (seed & 32) != 0; }
+  double restitution() const { return (seed & 64) != 0 ? 0.5 : 1; }
+  double restitution_of_walls() const { return (seed & 64) != 0 ? std::array{1.0, 0.75, 0.25, 0.0}[seed >> 2 & 3] : 1; }
 };
 
 template <int Degree>
@@ -59,8 +66,11 @@ class Scenario {
     options.response = options_.response;
     options.broad_phase = broad_phase;
     options.rate = broad_phase == BroadPhaseKind::sap ? 8 : 0;
-    options.report_pairs = options_.pairs;
-    if (options_.walls) options.walls = collision::Walls{Vector3d::Constant(-16), Vector3d::Constant(16)};
+    options.report_pairs = options_.pairs();
+    if (options_.walls) {
+      options.walls =
+          collision::Walls{Vector3d::Constant(-16), Vector3d::Constant(16), options_.restitution_of_walls()};
+    }
     return options;
   }
 
@@ -96,7 +106,10 @@ class Scenario {
     }
     result.mass = 0.5 * bytes_.integer(1, 8);
     result.fixed = bytes_.one_in(8);
-    if (result.fixed) result.motion = {motion<Degree>(result.motion[0].coefficients[0], zero, zero, world_.now())};
+    result.restitution = options_.restitution();
+    if (result.fixed && !options_.fixed_move()) {
+      result.motion = {motion<Degree>(result.motion[0].coefficients[0], zero, zero, world_.now())};
+    }
     if (bytes_.one_in(8)) result.collides_with = static_cast<std::uint32_t>(bytes_.integer(0, 1));
     if (options_.response == Response::none && bytes_.one_in(3)) {  // a script, perhaps one that begins later
       auto next = path();
@@ -235,7 +248,7 @@ void run(std::span<const std::uint8_t> input) {
   options.meshes = bytes.one_in(4);
   options.edits = options.response == Response::callback || bytes.one_in(2);
   options.seed = bytes.byte();
-  options.pairs = options.seed % 2 != 0;
+  if (options.response == Response::none) options.walls = options.walls_without_response();
   quadratic ? compare_broad_phases<2>(bytes, options) : compare_broad_phases<1>(bytes, options);
 }
 

@@ -326,3 +326,26 @@ TEST_CASE("Contact begins and ends on the clock, at any time of day") {
     on_the_clock<2>(302, epoch);
   }
 }
+
+TEST_CASE("A contact near clock 0 of bodies that have begun long before") {
+  // The time since the epoch is one and the same for some 2^44 clock values there.
+  for (const double epoch : {-1.0, -1e3, -1e9}) {
+    for (const double late : {0.0, 1e-300, 1e-20, -1e-20}) {
+      INFO("epoch " << epoch << ", " << late);
+      // Cubes that reach 1 and 0.5 to the side.
+      const PointMotion<1> path_a{{Vector3d{1.5 - epoch + late, 0, 0}, Vector3d::Zero()}, epoch};
+      const PointMotion<1> path_b{{Vector3d::Zero(), Vector3d::UnitX()}, epoch};
+      const MovingShape<1> a{placed(cuboid()), path_a};
+      const MovingShape<1> b{place(Box{{0.5, 0.5, 0.5}}, Eigen::Quaterniond::Identity()), path_b};
+      using Test = MeshContact<1>;
+      const double begin = Test::first_contact(a, b, epoch, infinity, ContactMode::transparent);
+      CHECK(std::abs(begin) < 1e-13 * -epoch);
+      CHECK(Test::in_contact(a, b, begin));
+      CHECK_FALSE(Test::in_contact(a, b, std::nextafter(begin, -infinity)));
+      const double end = Test::first_separation(a, b, begin, infinity);
+      CHECK(end == Approx(1).margin(1e-4));  // within: a mesh is a surface
+      CHECK_FALSE(Test::in_contact(a, b, end));
+      CHECK(Test::in_contact(a, b, std::nextafter(end, -infinity)));
+    }
+  }
+}

@@ -38,7 +38,7 @@ TEST_CASE("Options that make no sense are refused by name", "[world]") {
   for (const double window : {0.0, -1.0, nan}) refuse([&](WorldOptions& o) { o.window = window; }, "window");
   refuse([](WorldOptions& o) { o.zeno.interval = -1; }, "zeno.interval");
   refuse([](WorldOptions& o) { o.zeno.interval = nan; }, "zeno.interval");
-  for (const double rate : {0.0, -1.0, nan, never}) {
+  for (const double rate : {0.0, -1.0, nan, never, 1e-310}) {
     refuse([&](WorldOptions& o) { o.broad_phase = BroadPhaseKind::sap, o.rate = rate; }, "rate");
   }
   refuse([](WorldOptions& o) { o.walls = Walls{{0, 0, 0}, {1, 0, 1}}; }, "walls");
