@@ -8,6 +8,7 @@
 #include "collision/broad_phase/swept_sweep_and_prune.hpp"
 #include "collision/profile.hpp"
 #include "kds/audit.hpp"
+#include "kds/raised_flag.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -58,19 +59,6 @@ void validate(const WorldOptions& options) {
     }
   }
 }
-
-/// Callbacks are called from step() alone.
-class Stepping {
- public:
-  explicit Stepping(bool& flag) : flag_(flag), before_(flag) { flag_ = true; }
-  ~Stepping() { flag_ = before_; }
-  Stepping(const Stepping&) = delete;
-  Stepping& operator=(const Stepping&) = delete;
-
- private:
-  bool& flag_;
-  bool before_;
-};
 
 }  // namespace
 
@@ -126,7 +114,7 @@ bool World<Degree>::step(double limit) {
   if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
     throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
   }
-  const Stepping stepping(stepping_);
+  const kds::detail::RaisedFlag stepping(stepping_);  // Callbacks are called from here alone.
   bool looked_ahead = false;
   for (;;) {
     if (!entering_.empty()) enter_new_bodies();

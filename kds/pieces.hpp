@@ -4,6 +4,7 @@
 #include "kds/audit.hpp"
 #include "kds/events/default_event_queue.hpp"
 #include "kds/framework/moving_set.hpp"
+#include "kds/raised_flag.hpp"
 #include "kds/roots/failure_time.hpp"
 #include "kds/statistics.hpp"
 
@@ -17,9 +18,8 @@ namespace kds {
 /// Plans for the elements of a set: from `start` on the element has this motion. To the simulator it is one more
 /// structure, whose events are the seams between pieces; an edit by hand leaves the plan as it is, a removal drops it.
 ///
-/// As with every edit, events of the seam's time come before it (see MovingSet). Their listeners must not remove the
-/// element: the seam would throw std::out_of_range. Whether pieces meet at a seam is the planner's affair: a jump is
-/// legal.
+/// As with every edit, events of the seam's time come before it (see MovingSet). Whether pieces meet at a seam is the
+/// planner's affair: a jump is legal.
 ///
 /// Cost: O(1) queue operations a seam, a move of the element's later pieces, and what the structures have to do for an
 /// edit.
@@ -61,17 +61,19 @@ class Pieces final : private MovingSet<E>::Observer {
     return queue_.top().time;
   }
 
-  /// Makes the change of motion due at next_time(). Precondition: there is one.
+  /// Makes the change of motion due at next_time(), unless the listener of an event of that time removes the element.
+  /// Precondition: there is one.
   void process() {
-    const auto [time, id] = queue_.top();
+    const double time = queue_.top().time;
+    const detail::RaisedFlag processing(processing_);
+    elements_.settle(time);
+    if (next_time() != time) return;
+    const Id id = queue_.top().slot;
     const Piece piece = plans_[id].front();
     plans_[id].erase(plans_[id].begin());
     schedule(id);
     ++counters_.events;
-    const bool outer = !processing_;
-    processing_ = true;
     elements_.update(id, piece.motion, time);
-    if (outer) processing_ = false;
   }
 
   void extend_horizon(double /*now*/, double horizon) { horizon_ = horizon; }

@@ -35,11 +35,11 @@ class BoxTree {
   const Box& box(Id id) const { return nodes_[leaf_[id]].box; }
 
   /// Precondition: !contains(id).
-  void insert(Id id, const Box& box);
+  void insert(Id id, Box box);
   /// Precondition: contains(id).
   void remove(Id id);
   /// Gives it another box. Precondition: contains(id).
-  void change(Id id, const Box& box);
+  void change(Id id, Box box);
 
   /// Calls found(id) for all boxes that overlap with this one, in no particular order. The tree must not be changed
   /// from there.
@@ -72,6 +72,8 @@ class BoxTree {
     Id id = nobody;                          ///< of a leaf
 
     bool is_leaf() const { return child[0] == none; }
+    template <class Archive>
+    void archive(Archive& archive) { archive(box, parent, child, leaves, id); }
   };
 
   Place take_node();
@@ -92,7 +94,7 @@ class BoxTree {
 // ---------------------------------------------------------------------------------------------------------------
 
 template <std::size_t Dimension>
-void BoxTree<Dimension>::insert(Id id, const Box& box) {
+void BoxTree<Dimension>::insert(Id id, Box box) {
   if (id >= leaf_.size()) leaf_.resize(id + std::size_t{1}, none);
   const Place leaf = take_node();
   nodes_[leaf].box = box;
@@ -121,7 +123,7 @@ void BoxTree<Dimension>::remove(Id id) {
 }
 
 template <std::size_t Dimension>
-void BoxTree<Dimension>::change(Id id, const Box& box) {
+void BoxTree<Dimension>::change(Id id, Box box) {
   const Place parent = nodes_[leaf_[id]].parent;
   if (parent != none && !nodes_[parent].box.contains(box)) {
     remove(id);
@@ -151,10 +153,7 @@ void BoxTree<Dimension>::visit(const Box& box, Found&& found) const {
 
 template <std::size_t Dimension>
 typename BoxTree<Dimension>::Place BoxTree<Dimension>::take_node() {
-  if (free_.empty()) {
-    nodes_.emplace_back();
-    return static_cast<Place>(nodes_.size() - 1);
-  }
+  if (free_.empty()) return nodes_.emplace_back(), static_cast<Place>(nodes_.size() - 1);
   const Place place = free_.back();
   free_.pop_back();
   nodes_[place] = Node{};

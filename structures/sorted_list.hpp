@@ -79,8 +79,8 @@ class SortedList {
 
   Listener& listener() { return listener_; }
 
-  /// Replaces the content by other entries than the list's own. Swaps are not reported. Throws std::invalid_argument
-  /// for an id that is used twice or reserved and for a motion that is not finite, and then changes nothing.
+  /// Replaces the content. Swaps are not reported. Throws std::invalid_argument for an id that is used twice or
+  /// reserved and for a motion that is not finite, and then changes nothing.
   void assign(std::span<const Entry> entries, double now);
 
   // Changes throw std::invalid_argument for an id that is used or reserved (the greatest) and for a motion that is not

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace kds::structures {
@@ -62,9 +63,10 @@ void SortedList<Degree, Listener, Queue, Solver>::sort(std::span<const Entry> en
       return a.entry != b.entry && in_order(entries[a.entry], entries[b.entry], now);
     });
   }
-  order_.clear();
-  order_.reserve(entries.size());
-  for (const RoughPlace& place : places) order_.push_back(entries[place.entry]);
+  std::vector<Entry> sorted;  // the entries may be those of order_
+  sorted.reserve(entries.size());
+  for (const RoughPlace& place : places) sorted.push_back(entries[place.entry]);
+  order_ = std::move(sorted);
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>

@@ -47,9 +47,8 @@ class Tournament {
   const Motion<Degree>& motion(Id id) const { return *entrants_[id]; }
 
   // Changes throw std::invalid_argument for an id that is used or reserved (the greatest) and for a motion that is not
-  // finite, std::out_of_range for an id that is not there, and then change nothing. A motion to
-  // be inserted must not be one of the tournament's own: copy it first.
-  void insert(Id id, const Motion<Degree>& motion, double now) {
+  // finite, std::out_of_range for an id that is not there, and then change nothing.
+  void insert(Id id, Motion<Degree> motion, double now) {
     if (id == nobody) throw std::invalid_argument("Tournament: id " + std::to_string(id) + " is reserved");
     if (contains(id)) throw std::invalid_argument("Tournament: id " + std::to_string(id) + " is used twice");
     require_finite(id, motion);

@@ -79,6 +79,7 @@ class CalendarQueue {
     }
   }
 
+  void drop(Slot slot);
   void insert(Slot slot) const;
   void remove(Slot slot) const;
   void link(Slot slot, std::uint32_t day) const;
@@ -126,7 +127,9 @@ class CalendarQueue {
 template <QueueRank Rank>
 void CalendarQueue<Rank>::resize(std::size_t slots) {
   assert(slots <= none / (2 * days_per_event));  // the days, rounded up, must be numbered too
-  for (std::size_t slot = slots; slot < nodes_.size(); ++slot) clear(static_cast<Slot>(slot));
+  for (std::size_t slot = slots; slot < nodes_.size(); ++slot) {
+    if (contains(static_cast<Slot>(slot))) drop(static_cast<Slot>(slot));
+  }
   nodes_.resize(slots);
   if constexpr (has_ranks) ranks_.resize(slots);
   present_.reserve(slots);
@@ -160,6 +163,12 @@ template <QueueRank Rank>
 inline void CalendarQueue<Rank>::clear(Slot slot) {
   if (!contains(slot)) return;
   ++operations_;
+  drop(slot);
+}
+
+/// Precondition: contains(slot).
+template <QueueRank Rank>
+inline void CalendarQueue<Rank>::drop(Slot slot) {
   --size_;
   remove(slot);
   nodes_[slot].time = detail::no_event;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "kds/framework/snapshot.hpp"
+#include "kds/raised_flag.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -49,10 +51,9 @@ class History {
     ++events_;
     return true;
   }
-  /// As Simulator::advance_to(), which throws for a t that is not finite or before the clock; but +infinity is refused
-  /// only when no events are left.
+  /// As Simulator::advance_to(), which throws for a t that is not finite or before the clock.
   void advance_to(double t) {
-    while (t >= simulator_.now() && step(t)) {}
+    while (std::isfinite(t) && t >= simulator_.now() && step(t)) {}
     simulator_.advance_to(t);
     calls_.push_back({t, 0, {}});
   }
@@ -137,7 +138,7 @@ class History {
     std::vector<Call> calls(std::make_move_iterator(calls_.begin() + static_cast<std::ptrdiff_t>(from.calls)),
                             std::make_move_iterator(calls_.end()));
     calls_.resize(from.calls);
-    replaying_ = true;
+    const detail::RaisedFlag replaying(replaying_);
     for (Call& call : calls) {
       if (call.steps > 0) {
         std::uint64_t done = 0;
@@ -148,7 +149,6 @@ class History {
         call.edit ? edit(std::move(call.edit)) : advance_to(call.limit);
       }
     }
-    replaying_ = false;
   }
 
   AnySimulator& simulator_;

@@ -58,6 +58,8 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   static_assert(detail::Repairs<Rule>, "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing");
   static_assert(detail::InsertsAndRemoves<Rule>,
                 "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing");
+  static_assert(detail::ChangesWhatItKeeps<Rule>,
+                "kinetic rule: `change(Id, Repair<Element>&)` is missing, which a rule with `keeps` must have");
   static_assert(FailureTimeSolver<Solver>, "Kinetic: the solver is no FailureTimeSolver");
 
  public:
@@ -145,9 +147,13 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
     finish(false);
   }
 
-  void begin(double now) {
+  /// Throws unless events and edits may be taken up.
+  void require_ready() const {
     if (busy_) fail_use("the elements may not be edited from within the rule");
     if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
+  }
+  void begin(double now) {
+    require_ready();
     busy_ = true;
     repair_.now_ = last_ = now;
   }

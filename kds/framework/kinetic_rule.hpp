@@ -163,6 +163,12 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
   rule.insert(id, repair);
   rule.remove(id, repair);
 };
+template <class R>
+concept ChangesWhatItKeeps =
+    !requires(R & rule, Id id, const typename R::Element& next, Repair<typename R::Element>& repair) {
+  rule.keeps(id, next, repair);
+}
+|| requires(R& rule, Id id, Repair<typename R::Element>& repair) { rule.change(id, repair); };
 
 }  // namespace detail
 
@@ -194,6 +200,6 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
 /// (6) none of these functions edits the elements or throws (but for audit(), and for want of memory).
 template <class R>
 concept KineticRule = detail::NamesElement<R> && detail::HasName<R> && detail::Certifies<R> &&
-    detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R>;
+    detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R> && detail::ChangesWhatItKeeps<R>;
 
 }  // namespace kds

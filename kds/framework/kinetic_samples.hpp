@@ -35,8 +35,8 @@ void Kinetic<Rule, Listener, Queue, Solver>::sample_again(Slot slot, double time
   if constexpr (Sampled<Element>) {
     const auto members = rule_.members(slot);
     const std::vector<Id> ids(std::begin(members), std::end(members));
-    schedule_.set(slot, never);
     for (const Id id : ids) {
+      elements_.settle(time);
       if (elements_.contains(id)) elements_.resample(id, time);  // else a listener has removed it
     }
   }
@@ -51,6 +51,7 @@ double Kinetic<Rule, Listener, Queue, Solver>::soonest_sample(Slot slot) const {
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::settle(double now) {
+  require_ready();
   if (now < last_) {
     fail_use("an edit at " + std::to_string(now) + " comes after a change at " + std::to_string(last_));
   }
@@ -58,20 +59,27 @@ void Kinetic<Rule, Listener, Queue, Solver>::settle(double now) {
     fail_use("an edit at " + std::to_string(now) + " would pass over an event at " + std::to_string(next_time()));
   }
   if constexpr (Sampled<Element> && !MovingSample<Element>) return;  // In order at all times.
-  std::vector<Slot> due;  // for samples, which can wait
+  // What is due for a sample can wait. It is put back also if a listener throws.
+  struct Waiting {
+    Kinetic& structure;
+    double now;
+    std::vector<Slot> slots{};
+    ~Waiting() {
+      for (const Slot slot : slots) {
+        if (structure.held_[slot] && !structure.schedule_.contains(slot)) structure.schedule_.set(slot, now);
+      }
+    }
+  } waiting{*this, now};
   while (next_time() <= now) {
     const Slot slot = schedule_.next().slot;
     if constexpr (MovingSample<Element>) {
       if (!failed(slot, now, false)) {
+        waiting.slots.push_back(slot);
         schedule_.set(slot, never);
-        due.push_back(slot);
         continue;
       }
     }
     process();
-  }
-  for (const Slot slot : due) {
-    if (held_[slot] && !schedule_.contains(slot)) schedule_.set(slot, now);
   }
 }
 

@@ -66,8 +66,6 @@ concept Reversible = MovingElement<E> && requires(const E& element) {
 /// changed; one that is not finite by the set with std::invalid_argument. Any other time is taken for the clock, and
 /// not compared with it.
 ///
-/// The element given to an edit must not be one of the set itself: copy it first.
-///
 /// Cost: a virtual call a structure and edit; none for an event. Elements are stored by id, so that memory is that of
 /// the greatest id.
 template <MovingElement E>
@@ -75,10 +73,10 @@ class MovingSet {
  public:
   using Element = E;
 
-  /// Who is told of edits. In their order: settle(), then one of the others.
+  /// Who is told of edits. In their order: settle(), then one of the others, which must not throw.
   class Observer {
    public:
-    virtual void settle(double now) = 0;                          ///< process what is due up to now
+    virtual void settle(double now) = 0;                          ///< process what is due up to now, or throw
     virtual void inserted(Id id, double now) = 0;                 ///< the element is there
     virtual void removing(Id id, double now) = 0;                 ///< the element is still there
     virtual void changing(Id id, const E& next, double now) = 0;  ///< the element still moves as before
@@ -108,28 +106,28 @@ class MovingSet {
     return result;
   }
 
-  /// Throws std::invalid_argument for an id that is used or reserved (`nobody`), and for an element that is not finite.
-  /// Listeners of events that are due at this time must not insert the same id.
-  void insert(Id id, const Element& element, double now) {
-    if (id == nobody) throw std::invalid_argument("MovingSet: id " + std::to_string(id) + " is reserved");
-    if (contains(id)) throw std::invalid_argument("MovingSet: id " + std::to_string(id) + " is used twice");
-    require_finite(id, element);
-    settle(now);
-    if (id >= present_.size()) {
-      elements_.resize(id + std::size_t{1});
-      present_.resize(id + std::size_t{1}, 0);
-    }
-    elements_[id] = element;
-    present_[id] = 1;
-    ++size_;
-    for (Observer* observer : observers_) observer->inserted(id, now);
+  /// What every edit begins with: the structures process what is due up to now. What their listeners do to the set is
+  /// done then: an edit of the same time that follows finds it as it is now.
+  void settle(double now) {
+    if (!std::isfinite(now)) throw std::invalid_argument("MovingSet: the time of an edit must be finite");
+    for (Observer* observer : observers_) observer->settle(now);
   }
 
-  /// Inserts under the first id above all that were ever used, and gives it. Throws as insert() does. Listeners of
-  /// events that are due at this time must not add elements: they would be given the same id.
-  Id add(const Element& element, double now) {
+  /// Throws std::invalid_argument for an id that is used or reserved (`nobody`), also if it is the listener of an event
+  /// of this time that has used it, and for an element that is not finite.
+  void insert(Id id, Element element, double now) {
+    require_free(id);
+    require_finite(id, element);
+    settle(now);
+    put(id, std::move(element), now);
+  }
+
+  /// Inserts under the first id above all that were ever used, and gives it. Throws as insert() does.
+  Id add(Element element, double now) {
+    require_finite(end_id(), element);
+    settle(now);
     const Id id = end_id();
-    insert(id, element, now);
+    put(id, std::move(element), now);
     return id;
   }
 
@@ -145,7 +143,7 @@ class MovingSet {
   }
 
   /// Gives an element another motion, continuously or with a jump. Throws as insert() and remove() do.
-  void update(Id id, const Element& element, double now) {
+  void update(Id id, Element element, double now) {
     require(id);
     require_finite(id, element);
     settle(now);
@@ -171,7 +169,8 @@ class MovingSet {
   void resample(Id id, double now) requires Sampled<Element> {
     if (!sampler_) throw std::logic_error("MovingSet: an element is to be sampled, but there is no sampler");
     require(id);
-    if constexpr (MovingSample<E>) settle(now), require(id);
+    settle(now);
+    require(id);
     const Element element = sampler_(id, now);
     if (element.start != now) throw std::logic_error("MovingSet: a sample must be of the time it is asked for");
     require_finite(id, element);
@@ -205,9 +204,22 @@ class MovingSet {
     for (Observer* observer : observers_) observer->changed(id, now);
   }
 
-  void settle(double now) {
-    if (!std::isfinite(now)) throw std::invalid_argument("MovingSet: the time of an edit must be finite");
-    for (Observer* observer : observers_) observer->settle(now);
+  /// After settle().
+  void put(Id id, Element&& element, double now) {
+    require_free(id);  // A listener may have taken it.
+    if (id >= present_.size()) {
+      elements_.resize(id + std::size_t{1});
+      present_.resize(id + std::size_t{1}, 0);
+    }
+    elements_[id] = std::move(element);
+    present_[id] = 1;
+    ++size_;
+    for (Observer* observer : observers_) observer->inserted(id, now);
+  }
+
+  void require_free(Id id) const {
+    if (id == nobody) throw std::invalid_argument("MovingSet: id " + std::to_string(id) + " is reserved");
+    if (contains(id)) throw std::invalid_argument("MovingSet: id " + std::to_string(id) + " is used twice");
   }
 
   void require(Id id) const {

@@ -28,7 +28,8 @@ class Snapshot {
   explicit Snapshot(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
 
   const std::vector<char>& bytes() const { return bytes_; }
-  /// Of the bytes: snapshots of one state may differ in what pads its numbers.
+  /// Of the bytes, which are those of the state: but elements of the caller's own that have padding and no archive()
+  /// are copied padding and all.
   friend bool operator==(const Snapshot&, const Snapshot&) = default;
 
  private:

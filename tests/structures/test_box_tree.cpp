@@ -1,5 +1,6 @@
 // The tree under the kinetic AABB tree: against brute force, and its depth.
 #include "structures/box_tree.hpp"
+#include "kds/framework/snapshot.hpp"
 #include "kds/roots/failure_time.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -106,4 +107,28 @@ TEST_CASE("a box tree stays shallow where boxes are one, sorted or nested", "[bo
   CHECK(grow([](double) { return TreeBox<2>{{0, 0}, {never, never}}; }) < 20);
   CHECK(grow([](double i) { return TreeBox<2>{{i, 0}, {i + 0.5, 1}}; }) < 40);
   CHECK(grow([](double i) { return TreeBox<2>{{-i, -i}, {i, i}}; }) < n);  // no tree of these is good
+}
+
+TEST_CASE("a box of the tree may be given to its changes", "[box_tree]") {
+  BoxTree<3> tree;
+  const TreeBox<3> box{{1, 2, 3}, {4, 5, 6}};
+  tree.insert(0, box);
+  for (Id id = 1; id < 300; ++id) tree.insert(id, tree.box(id - 1));
+  tree.insert(300, {{10, 10, 10}, {11, 11, 11}});
+  tree.change(1, tree.box(300));
+  tree.change(1, tree.box(299));
+  for (Id id = 0; id < 300; ++id) CHECK(tree.box(id) == box);
+  tree.audit("BoxTree");
+}
+
+TEST_CASE("equal box trees are saved as equal bytes", "[box_tree][snapshot]") {
+  const auto grown = [] {
+    BoxTree<2> tree;
+    for (Id id = 0; id < 5; ++id) tree.insert(id, {{1.0 * id, 0}, {1.0 * id + 1, 1}});
+    return tree;
+  };
+  BoxTree<2> tree = grown(), other = grown();
+  CHECK(save(tree) == save(other));
+  // Nine nodes of 4 doubles and 5 numbers, five leaves, the root; and how long these lists and that of the free are.
+  CHECK(save(tree).bytes().size() == 9 * (4 * 8 + 5 * 4) + 5 * 4 + 4 + 3 * (8 + 4));
 }

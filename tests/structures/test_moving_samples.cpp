@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
@@ -205,4 +206,64 @@ TEST_CASE("samples that cross within a tick are put in order as they cross, and 
   restore(before, simulator, set);
   CHECK(list.next_time() == 1);
   CHECK_THROWS_AS(set.resample(7, 0), std::out_of_range);
+}
+
+namespace {
+
+struct Calls {
+  std::function<void(double)> function;
+  void operator()(const ListRule<BoundedAcceleration>&, const KineticEvent& event) const {
+    if (event.effect == Effect::external) function(event.time);
+  }
+};
+
+/// At 10 the first two are to be sampled, and the last two have crossed. What is called then, and by the sampler.
+struct Busy {
+  static BoundedAcceleration sample(Id id, double t) {
+    return {id < 2 ? 5.0 * id - 100 : id == 2 ? t : 10, id == 2 ? 1.0 : 0.0, 0.3, t};
+  }
+  MovingSet<BoundedAcceleration> set;
+  Kinetic<ListRule<BoundedAcceleration>, Calls> list{set, 0};
+  Simulator<Kinetic<ListRule<BoundedAcceleration>, Calls>> simulator{0, list};
+  Busy() {
+    set.sample_with(sample, 10);
+    for (Id id = 0; id < 4; ++id) set.insert(id, sample(id, 0), 0);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("samples that are due are taken even if a listener has thrown, or the sampler", "[framework][bounded]") {
+  Busy busy;
+  SECTION("the listener, in an edit") {
+    busy.list.listener().function = [](double) { throw std::runtime_error("no more"); };
+    CHECK_THROWS_WITH(busy.set.insert(7, {0, 0, 0, 10}, 10), "no more");
+    CHECK_FALSE(busy.set.contains(7));
+  }
+  SECTION("the listener, in a step") {
+    busy.list.listener().function = [](double) { throw std::runtime_error("no more"); };
+    CHECK_THROWS_WITH(busy.simulator.step(), "no more");
+  }
+  SECTION("the sampler") {
+    busy.list.listener().function = [](double) {};
+    busy.set.sample_with([](Id, double) -> BoundedAcceleration { throw std::runtime_error("no more"); }, 10);
+    CHECK_THROWS_WITH(busy.simulator.step(), "no more");
+  }
+  CHECK(busy.list.next_time() == 10);
+  busy.list.audit(10);
+  busy.list.listener().function = [](double) {};
+  busy.set.sample_with(Busy::sample, 10);
+  busy.simulator.advance_to(10);
+  busy.simulator.audit();
+  CHECK(busy.set[0].start == 10);
+  CHECK(busy.set[1].start == 10);
+  CHECK(busy.list.rule().order == std::vector<Id>{0, 1, 3, 2});
+}
+
+TEST_CASE("the listener of a crossing may remove what is to be sampled at its time", "[framework][bounded]") {
+  Busy busy;
+  busy.list.listener().function = [&](double t) { busy.set.remove(0, t); };
+  busy.simulator.advance_to(10);
+  busy.simulator.audit();
+  CHECK(busy.list.rule().order == std::vector<Id>{1, 3, 2});
 }

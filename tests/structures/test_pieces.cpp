@@ -5,7 +5,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <functional>
 #include <stdexcept>
+#include <vector>
 
 namespace {
 
@@ -75,4 +77,55 @@ TEST_CASE("a thousand seams at one time need no deep stack and leave the right o
   simulator.audit();
   CHECK(list.rule().order.front() == n - 1);
   CHECK(log.size() == n * (n - 1) / 2);
+}
+
+namespace {
+
+/// A list whose events call a function.
+struct Calls {
+  std::function<void(double)> function;
+  void operator()(const examples::ListRule<Motion<1>>&, const KineticEvent& event) const { function(event.time); }
+};
+
+}  // namespace
+
+TEST_CASE("the listener of an event may remove the element of a seam of its time", "[framework][pieces]") {
+  MovingSet<Motion<1>> set;
+  Pieces<Motion<1>> pieces(set);
+  set.insert(0, {{{0, 1}}, 0}, 0);
+  set.insert(1, {{{1, 0}}, 0}, 0);
+  for (const Id id : {0u, 1u}) pieces.plan(id, 1, {{{5, 0}}, 1}, 0);
+  pieces.plan(1, 2, {{{3, 0}}, 2}, 0);
+  Kinetic<examples::ListRule<Motion<1>>, Calls> list(set, 0);
+  list.listener().function = [&](double t) { set.remove(0, t); };
+  Simulator simulator(0, pieces, list);
+  simulator.advance_to(1);
+  CHECK(set.ids() == std::vector<Id>{1});
+  CHECK(set[1] == Motion<1>{{{5, 0}}, 1});
+  CHECK(pieces.planned(0) == 0);
+  CHECK(pieces.counters().events == 1);
+  simulator.audit();
+  set.insert(2, {}, 2);  // The seams of its time come before it, as ever.
+  CHECK(set[1] == Motion<1>{{{3, 0}}, 2});
+}
+
+TEST_CASE("a seam at whose time a listener throws is made when the run goes on", "[framework][pieces]") {
+  MovingSet<Motion<1>> set;
+  Pieces<Motion<1>> pieces(set);
+  set.insert(0, {{{0, 1}}, 0}, 0);
+  set.insert(1, {{{1, 0}}, 0}, 0);
+  pieces.plan(1, 1, {{{5, 0}}, 1}, 0);
+  pieces.plan(1, 2, {{{3, 0}}, 2}, 0);
+  Kinetic<examples::ListRule<Motion<1>>, Calls> list(set, 0);
+  list.listener().function = [](double) { throw std::runtime_error("no more"); };
+  Simulator simulator(0, pieces, list);
+  CHECK_THROWS_WITH(simulator.step(), "no more");
+  CHECK(pieces.planned(1) == 2);
+  list.listener().function = [](double) {};
+  simulator.advance_to(1);
+  CHECK(set[1] == Motion<1>{{{5, 0}}, 1});
+  set.insert(2, {}, 2);
+  CHECK(set[1] == Motion<1>{{{3, 0}}, 2});
+  simulator.advance_to(2);
+  simulator.audit();
 }

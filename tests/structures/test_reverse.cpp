@@ -16,6 +16,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <tuple>
@@ -325,4 +326,32 @@ TEST_CASE("a history brings back any earlier state bit for bit, edits and plans 
     past.simulator.audit();
     while (history.step_back()) {}
   }
+}
+
+TEST_CASE("a history refuses times that are not to be reached before it does anything", "[reverse][history]") {
+  Past past;
+  past.set.insert(0, {{{0, 1}}, 0}, 0);
+  past.set.insert(1, {{{1, 0}}, 0}, 0);
+  History history(3, past.simulator, past.set);
+  history.advance_to(0.5);
+  for (const double t : {never, -never, std::nan(""), 0.25}) {
+    CHECK_THROWS_AS(history.advance_to(t), std::invalid_argument);
+  }
+  CHECK(past.simulator.now() == 0.5);
+  CHECK(history.events() == 0);
+}
+
+TEST_CASE("a replay that throws is over", "[reverse][history]") {
+  Past past;
+  History history(10, past.simulator, past.set);
+  bool refuses = false;
+  for (const double t : {1, 2, 3}) {
+    history.advance_to(t);
+    history.edit([&] {
+      if (refuses) throw std::runtime_error("no more");
+    });
+  }
+  refuses = true;
+  CHECK_THROWS_WITH(history.roll_back(2), "no more");
+  CHECK_FALSE(history.replaying());
 }

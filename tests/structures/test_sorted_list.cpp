@@ -335,3 +335,18 @@ TEST_CASE("a horizon takes events away and brings them back", "[sorted_list]") {
   CHECK(list.next_time() == 5);
   list.audit(1);
 }
+
+TEST_CASE("entries and motions of the list may be given to its changes", "[sorted_list]") {
+  Log log;
+  List<1> list(Recorder{&log});
+  list.assign(std::vector<List<1>::Entry>{{{{{0, 1}}, 0}, 0}, {{{{1, 0}}, 0}, 1}, {{{{2, -1}}, 0}, 2}}, 0);
+  list.assign(list.entries(), 5);  // without the swaps in between
+  CHECK(ids(list) == std::vector<std::uint32_t>{2, 1, 0});
+  list.audit(5);
+  list.assign(list.entries().subspan(1), 5);
+  CHECK(ids(list) == std::vector<std::uint32_t>{1, 0});
+  for (std::uint32_t id = 2; id < 300; ++id) list.insert(id, list.motion(0), 5);
+  list.update(1, list.motion(0), 5);
+  for (const auto& entry : list.entries()) CHECK(entry.motion == Motion<1>{{{0, 1}}, 0});
+  list.audit(5);
+}

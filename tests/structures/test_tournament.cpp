@@ -254,3 +254,12 @@ TEST_CASE("a tournament counts its events and certificates", "[tournament]") {
   CHECK(tournament.counters().events >= 3);
   CHECK(tournament.counters().certificates > before.certificates);
 }
+
+TEST_CASE("a motion of the tournament may be given to its changes", "[tournament]") {
+  Tournament<1> tournament;
+  tournament.insert(0, {{{3, 7}}, 0}, 0);
+  for (std::uint32_t id = 1; id < 300; ++id) tournament.insert(id, tournament.motion(id - 1), 0);
+  tournament.update(1, tournament.motion(299), 0);
+  for (std::uint32_t id = 0; id < 300; ++id) CHECK(tournament.motion(id) == Motion<1>{{{3, 7}}, 0});
+  tournament.audit(0);
+}

@@ -328,6 +328,12 @@ TEMPLATE_TEST_CASE("operations are counted where there was something to do", "[e
   queue.clear(2);
   REQUIRE(queue.operations() == 5);
   REQUIRE(queue.empty());
+  queue.set(0, 1.0);
+  queue.set(2, 2.0);
+  queue.resize(1);  // drops one
+  queue.resize(4);
+  REQUIRE(queue.operations() == 7);
+  REQUIRE(queue.size() == 1);
 }
 
 TEMPLATE_TEST_CASE("entries in falling order, a hundred thousand deep, do not exhaust the stack", "[event_queue]",

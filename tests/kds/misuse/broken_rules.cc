@@ -39,13 +39,23 @@ struct WithoutRepair : Base {
 struct WithoutRemove : Base {
   void remove() {}
 };
+/// change() is what it is to be taken up by.
+struct KeepsOnly : Base {
+  bool keeps(Id, const Value&, Repair<Value>&) { return true; }
+};
+struct KeepsAndChanges : KeepsOnly {
+  void change(Id, Repair<Value>&) {}
+};
+static_assert(KineticRule<KeepsAndChanges>);
 static_assert(!KineticRule<WithoutElement> && !KineticRule<WithoutName> && !KineticRule<WithoutCertificate> &&
-              !KineticRule<WithoutMembers> && !KineticRule<WithoutRepair> && !KineticRule<WithoutRemove>);
+              !KineticRule<WithoutMembers> && !KineticRule<WithoutRepair> && !KineticRule<WithoutRemove> &&
+              !KineticRule<KeepsOnly>);
 
 template <class Rule>
 using With = Kinetic<Rule>;
 constexpr std::size_t sizes[] = {sizeof(With<WithoutElement>),     sizeof(With<WithoutName>),   sizeof(With<WithoutCertificate>),
                                  sizeof(With<WithoutMembers>),     sizeof(With<WithoutRepair>), sizeof(With<WithoutRemove>),
+                                 sizeof(With<KeepsOnly>),
                                  sizeof(Kinetic<Base, NoListener, DefaultEventQueue, int>)};
 
 struct Unsaved {
