@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace kds::structures {
@@ -63,10 +63,15 @@ void SortedList<Degree, Listener, Queue, Solver>::sort(std::span<const Entry> en
       return a.entry != b.entry && in_order(entries[a.entry], entries[b.entry], now);
     });
   }
-  std::vector<Entry> sorted;  // the entries may be those of order_
-  sorted.reserve(entries.size());
-  for (const RoughPlace& place : places) sorted.push_back(entries[place.entry]);
-  order_ = std::move(sorted);
+  // Memory that is there is used again, unless it holds the very entries.
+  const std::less<const Entry*> before;
+  std::vector<Entry> own;
+  if (!before(entries.data(), order_.data()) && before(entries.data(), order_.data() + order_.size())) {
+    own.swap(order_);
+  }
+  order_.clear();
+  order_.reserve(entries.size());
+  for (const RoughPlace& place : places) order_.push_back(entries[place.entry]);
 }
 
 template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>

@@ -38,6 +38,9 @@ constexpr double least_tolerance = 0x1p-38;
 /// Products of up to eight coordinates must neither overflow nor underflow: other sizes are scaled.
 constexpr double least_size = 0x1p-100;
 constexpr double greatest_size = 0x1p100;
+/// Units of length: more than is lost where the coefficients of a patch and the bound on their error are no normal
+/// numbers, a rounding of 2^-1075 for each power of the duration, and one for the bound.
+constexpr double underflow = 0x1p-1072;
 
 template <Patch kind, int Degree>
 class Search {
@@ -49,7 +52,7 @@ class Search {
     if (paths_.size > 0 && !(paths_.size > least_size && paths_.size < greatest_size)) rescale();
     margin_ = axis_margin(paths_);
     tolerance_ = std::max(std::min(tolerance.absolute * scale_, tolerance.relative * paths_.size),
-                          least_tolerance * paths_.size);
+                          std::max(least_tolerance * paths_.size, 8 * margin_));
     // The points of the patch meant are within sqrt(3) paths.error of those computed, up to a few roundings.
     const double inner = tolerance_ - 5 * margin_;
     inner2_ = inner * inner;
@@ -82,11 +85,11 @@ class Search {
     if (until >= 1) return until;
     if (!turning_) turning_.emplace(paths_);
     const int steps = result_.steps;
-    until = std::max(until, steps < plane_steps ? turning_->separated_by_plane_until(s) :
-                                                  turning_->separated_until(point, s));
+    until = std::max(until,
+                     steps < plane_steps ? turning_->separated_by_plane_until(s) : turning_->separated_until(point, s));
     if (steps >= extrapolated_steps && until < 1) {
-      until = std::max(until, turning_->separated_turning_on(axis_.normalized(), axis_time_,
-                                                             point.position.normalized(), s));
+      until = std::max(until,
+                       turning_->separated_turning_on(axis_.normalized(), axis_time_, point.position.normalized(), s));
     }
     if (!(until > s)) {
       for (const auto& axis : patch.careful_axes()) until = std::max(until, separated_until(paths_, margin_, axis, s));
@@ -155,7 +158,7 @@ class Search {
       for (auto& lanes : c) lanes = lanes * Lanes(scale_);
     }
     paths_.size *= scale_;
-    paths_.error *= scale_;
+    paths_.error = (paths_.error + underflow) * scale_;
   }
 
   PatchPaths<Degree> paths_;

@@ -3,6 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <string>
 
@@ -103,4 +106,36 @@ TEMPLATE_TEST_CASE_SIG("features on polynomial paths, at any time and from any s
   CHECK(tally.complaints.empty());
   CHECK(tally.touching > tally.queries / 8);
   CHECK(tally.most_steps < 64);
+}
+
+TEMPLATE_TEST_CASE_SIG(
+    "features so small that there are no normal numbers of their size are not missed, nor found late", "[features]",
+    ((int Degree), Degree), 1, 2) {
+  const std::uint64_t seed = 770;
+  CAPTURE(seed);
+  Random random(seed);
+  int missed = 0, late = 0, false_alarms = 0, found = 0;
+  for (const int power : {-1020, -1040, -1060, -1070, -1074}) {
+    for (int round = 0; round < 100; ++round) {
+      std::array<PointMotion<Degree>, 4> points;
+      const double end = random.between(0.5, 1.5);  // so that coefficients are rounded
+      for (auto& point : points) {
+        for (auto& c : point.coefficients) {
+          for (int d = 0; d < 3; ++d) c[d] = std::ldexp(random.integer(-64, 64), power);
+        }
+      }
+      for (const Features kind : {Features::vertex_face, Features::edge_edge}) {
+        const FeatureContact answer = ask(kind, points, 0, end);
+        const auto truth = ExactFeatures(kind, exact_paths(points)).first_touch(0, end);
+        missed += truth && !answer;
+        late += truth && answer && truth->compare(oracle::rational(answer.time)) < 0;
+        false_alarms += !truth && answer.status == FeatureContactStatus::contact;
+        found += answer.status == FeatureContactStatus::contact;
+      }
+    }
+  }
+  CHECK(missed == 0);
+  CHECK(late == 0);
+  CHECK(false_alarms == 0);
+  CHECK(found > 15);
 }
