@@ -19,9 +19,10 @@ enum class FeatureContactStatus : std::uint8_t {
 /// How near two features count as touching.
 ///
 /// The distance is min(absolute, relative * size), but at least 2^-38 size (4e-12), which leaves the margins of
-/// rounding far behind (where there are no normal numbers of that size it is at least 2^-1069 or so); size is the greatest coordinate, in absolute value, of a difference between a point of one
-/// feature and one of the other at t0, plus what that coordinate changes until t1. It scales with the query, and does
-/// not know where in the world it is. Larger is faster by little; smaller reports fewer near misses.
+/// rounding far behind (some 2^-1069 where there are no normal numbers of that size); size is the greatest coordinate,
+/// in absolute value, of a difference between a point of one feature and one of the other at t0, plus what that
+/// coordinate changes until t1. It scales with the query, and does not know where in the world it is. Larger is faster
+/// by little; smaller reports fewer near misses.
 ///
 /// Precondition: neither number is a NaN. What is negative, or less than the least, counts as the least.
 struct ContactTolerance {
