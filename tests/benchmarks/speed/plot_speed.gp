@@ -12,8 +12,10 @@ if (is_there("speed-ratios.csv")) {
   set xlabel "cells"
   set ylabel "CPU time, set-up counted / least of the others"
   set logscale y
-  set yrange [*:*]
-  set ytics (0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.15, 1.5, 2, 3, 5)
+  stats file using 3 skip 1 nooutput name "low"
+  stats file using 4 skip 1 nooutput name "high"
+  set yrange [(low_min < 0.6 ? low_min : 0.6):(high_max > 1.4 ? high_max : 1.4)]
+  set ytics (0.1, 0.2, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.15, 1.3, 1.5, 2, 3, 5)
   set key top left
   plot file using 1:2:3:4 skip 1 with yerrorbars pt 7 ps 0.5 lc rgb "#c0392b" title "with set-up, 95 % interval", \
        1.15 with lines dt 2 lc rgb "black" title "1.15"
