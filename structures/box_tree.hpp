@@ -153,7 +153,10 @@ void BoxTree<Dimension>::visit(const Box& box, Found&& found) const {
 
 template <std::size_t Dimension>
 typename BoxTree<Dimension>::Place BoxTree<Dimension>::take_node() {
-  if (free_.empty()) return nodes_.emplace_back(), static_cast<Place>(nodes_.size() - 1);
+  if (free_.empty()) {
+    nodes_.emplace_back();
+    return static_cast<Place>(nodes_.size() - 1);
+  }
   const Place place = free_.back();
   free_.pop_back();
   nodes_[place] = Node{};
