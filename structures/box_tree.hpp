@@ -73,7 +73,9 @@ class BoxTree {
 
     bool is_leaf() const { return child[0] == none; }
     template <class Archive>
-    void archive(Archive& archive) { archive(box, parent, child, leaves, id); }
+    void archive(Archive& archive) {
+      archive(box, parent, child, leaves, id);
+    }
   };
 
   Place take_node();
