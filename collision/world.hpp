@@ -86,7 +86,8 @@ class World final : private PairListener {
   void advance_to(double t);
 
   /// Processes the next event not later than `limit`, if there is one. False if not; then the clock is at `limit`
-  /// if that is finite, and else stays at the last event. Throws as advance_to(), but not for the past; `sap`, whose frames never end, needs a limit.
+  /// if that is finite, and else stays at the last event. Throws as advance_to(), but not for the past; `sap`, whose
+  /// frames never end, needs a limit.
   bool step(double limit = never);
 
   /// Processes events up to t until this much time of the wall clock has passed, but at least one; true if t was
