@@ -45,10 +45,10 @@ void World<Degree>::process_contact(PairSlot slot, double t) {
     mark_dirty(slot);
     if (pair.touching) {
       ++counters_.contacts;
-      return listener_->contact(*this, event);
+      return tell([&](Listener& listener) { listener.contact(*this, event); });
     }
     ++counters_.separations;
-    return listener_->separation(*this, event);
+    return tell([&](Listener& listener) { listener.separation(*this, event); });
   }
   ++counters_.contacts;
   pair.ignored = false;
@@ -61,14 +61,25 @@ void World<Degree>::process_contact(PairSlot slot, double t) {
     held = passes = count_meeting(event.a, event.b) > patience();
     counters_.held += held;
   }
-  listener_->contact(*this, event);
-  if (held) listener_->held(*this, event);
   // A pair that is still pressed together (nobody can or will move it) passes through.
-  if (!contains(event.a) || !contains(event.b) || find_hold(event.a, event.b) != no_hold) return;
-  // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a rounding.
-  if (passes || parting(event.contact, movers_[event.a].motion, movers_[event.b].motion) < 0) {
-    let_pass(event.a, event.b);
+  const auto after = [&] {
+    if (!contains(event.a) || !contains(event.b) || find_hold(event.a, event.b) != no_hold) return;
+    // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a
+    // rounding.
+    if (passes || parting(event.contact, movers_[event.a].motion, movers_[event.b].motion) < 0) {
+      let_pass(event.a, event.b);
+    }
+  };
+  try {
+    tell([&](Listener& listener) {
+      listener.contact(*this, event);
+      if (held) listener.held(*this, event);
+    });
+  } catch (...) {
+    if (!failure_) after();
+    throw;
   }
+  after();
 }
 
 /// Both have met others so often; a fixed body's meetings count only with another fixed one.
