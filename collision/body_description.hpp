@@ -26,8 +26,8 @@ struct BodyDescription {
   /// than t, else the call that asked for it, step() or update_motion(), throws std::invalid_argument. It may look at
   /// the world but must not change it: to add, remove or move bodies, to run, save or load the world from within it
   /// throws std::logic_error. After a bad box, or whatever else comes out of the function, the world can no longer be
-  /// used: all that would run, change, check or save it throws std::logic_error and says why. It can still be looked at,
-  /// and destroyed.
+  /// used: all that would run, change, check or save it throws std::logic_error and says why. It can still be looked
+  /// at, and destroyed.
   using BoxFunction = std::function<KineticBox<Degree>(double t, const Motion& motion)>;
 
   Shape shape;

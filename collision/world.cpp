@@ -74,8 +74,8 @@ void validate(const WorldOptions& options) {
 
 void require_ahead(const char* function, double t, double now) {
   if (t >= now && t != never) return;
-  throw std::invalid_argument(std::string(function) + ": " + std::to_string(t) +
-                              " is not a finite time from now on (" + std::to_string(now) + ")");
+  throw std::invalid_argument(std::string(function) + ": " + std::to_string(t) + " is not a finite time from now on (" +
+                              std::to_string(now) + ")");
 }
 
 }  // namespace

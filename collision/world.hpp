@@ -169,15 +169,18 @@ class World final : private PairListener {
   // world/guards.cpp: what may be called when, and what is left when something throws
   [[noreturn]] void refuse(const char* function) const;
   void require_whole(const char* function) const {
-    if (failure_) [[unlikely]] refuse(function);
+    if (failure_) [[unlikely]]
+      refuse(function);
   }
   /// For what changes bodies. Callbacks may.
   void require_editable(const char* function) const {
-    if (failure_ || in_box_function_) [[unlikely]] refuse(function);
+    if (failure_ || in_box_function_) [[unlikely]]
+      refuse(function);
   }
   /// For what runs, saves or loads the world.
   void require_idle(const char* function) const {
-    if (failure_ || in_box_function_ || stepping_) [[unlikely]] refuse(function);
+    if (failure_ || in_box_function_ || stepping_) [[unlikely]]
+      refuse(function);
   }
   void note_failure();
   /// Makes a change. What throws in the middle of it leaves the world in pieces.

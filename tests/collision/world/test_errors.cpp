@@ -124,7 +124,8 @@ TEST_CASE("Bodies that make no sense are refused by name, and the world goes on"
   throws([&] { world.advance_for(1, 0.25); }, "advance_for");
   throws([&] { world.advance_for(1, nan); }, "advance_for");
   throws([&] { world.advance_for(1, never); }, "advance_for");
-  for (const double budget : {-1.0, nan, -never}) throws([&] { world.advance_for(budget, 1); }, "advance_for: a budget");
+  for (const double budget : {-1.0, nan, -never})
+    throws([&] { world.advance_for(budget, 1); }, "advance_for: a budget");
 
   CHECK(world.size() == 2);
   CHECK(world.now() == 0.5);

@@ -30,9 +30,15 @@ std::vector<Call> calls_that_run() {
 }
 
 std::vector<Call> calls_that_edit() {
-  return {{"World::add_body", [](World<1>& w) { w.add_body(ball<1>(1, {0, 50, 0})); }},
+  return {{"World::add_body",
+           [](World<1>& w) {
+             w.add_body(ball<1>(1, {0, 50, 0}));
+           }},
           {"World::remove_body", [](World<1>& w) { w.remove_body(1); }},
-          {"World::update_motion", [](World<1>& w) { w.update_motion(1, motion<1>({9, 9, 9})); }},
+          {"World::update_motion",
+           [](World<1>& w) {
+             w.update_motion(1, motion<1>({9, 9, 9}));
+           }},
           {"World::reserve", [](World<1>& w) { w.reserve(1000); }}};
 }
 
@@ -172,8 +178,7 @@ struct Mishap {
 };
 
 std::vector<Mishap> mishaps() {
-  return {{"out of boxes",
-           [](World<1>&, KineticBox<1>) -> KineticBox<1> { throw std::runtime_error("out of boxes"); }},
+  return {{"out of boxes", [](World<1>&, KineticBox<1>) -> KineticBox<1> { throw std::runtime_error("out of boxes"); }},
           {"no std::exception", [](World<1>&, KineticBox<1>) -> KineticBox<1> { throw 7; }},
           {"must not change the world",
            [](World<1>& world, KineticBox<1> box) {
