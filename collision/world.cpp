@@ -7,6 +7,7 @@
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "collision/broad_phase/swept_sweep_and_prune.hpp"
 #include "collision/profile.hpp"
+#include "kds/arithmetic/strict.hpp"
 #include "kds/audit.hpp"
 #include "kds/raised_flag.hpp"
 
@@ -89,6 +90,7 @@ World<Degree>::World(const WorldOptions& options, Listener* listener)
       boxes_(PairRank{&pairs_}),
       now_(options.start_time),
       horizon_(options.start_time + options.window) {
+  require_strict_arithmetic("World");
   validate(options);
   make_broad_phase();
 }

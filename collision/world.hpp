@@ -62,7 +62,8 @@ class World final : private PairListener {
   using Description = BodyDescription<Degree>;
   using Listener = WorldListener<Degree>;
 
-  /// Throws std::invalid_argument, naming the option, for one that is out of range or does not go with the others.
+  /// Throws std::invalid_argument, naming the option, for one that is out of range or does not go with the others, and
+  /// std::runtime_error where arithmetic is not that of kds/arithmetic/strict.hpp.
   /// The listener, if there is one, must outlive the world.
   explicit World(const WorldOptions& options, Listener* listener = nullptr);
   ~World() override;

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cfenv>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
@@ -132,6 +133,19 @@ TEST_CASE("Bodies that make no sense are refused by name, and the world goes on"
   world.advance_to(10);
   world.audit();
   CHECK(log.events.size() == 2);
+}
+
+TEST_CASE("A world is not made where arithmetic is not exact", "[world]") {
+  std::string said;
+  std::fesetround(FE_TOWARDZERO);
+  try {
+    World<1> world({});
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  std::fesetround(FE_TONEAREST);
+  CHECK(said.find("World: this thread does not round to nearest") == 0);
+  CHECK_NOTHROW(World<1>({}));
 }
 
 TEST_CASE("A budget of no time is enough for one event", "[world]") {
