@@ -2,6 +2,8 @@
 #include "collision/world.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 namespace kds::collision {
 namespace {
@@ -152,6 +154,9 @@ bool World<Degree>::held(BodyId a, BodyId b) const {
 template <int Degree>
 bool World<Degree>::held_at_wall(BodyId a, int wall) const {
   body(a);
+  if (wall < 0 || wall > 5) {
+    throw std::out_of_range("World::held_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
+  }
   return find_hold(a, no_body, wall) != no_hold;
 }
 
