@@ -133,6 +133,12 @@ bool World<Degree>::step(double limit) {
     const double next = std::min({reports ? now_ : limit, horizon_, piece, boxes, volume, wall, let_go, contact});
     if (next < never && certify_next(contact == next, wall == next)) continue;
     // A piece that starts now is the motion at t+, so the broad phase may not run past it under the old one.
+    const bool only_volumes = limit == never && next == volume && next < never && clearance_ == Clearance::constant &&
+                              std::min({horizon_, piece, boxes, wall, let_go, contact}) == never && !reports;
+    if (only_volumes && broad_phase_->next_time() == never) {
+      let_volumes_grow();
+      continue;
+    }
     const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
     if (until == never) return false;
     {
@@ -151,8 +157,7 @@ bool World<Degree>::step(double limit) {
       report_next();
       return true;
     } else if (volume == next) {
-      renew_volume(volumes_.top().slot);
-      return true;
+      if (renew_volume(volumes_.top().slot)) return true;
     } else if (wall == next) {
       process_wall(walls_.top().slot, next);
       return true;
@@ -241,13 +246,11 @@ void World<Degree>::start_pieces() {
   }
 }
 
+/// True if the volume is one that a caller gives: that is an event.
 template <int Degree>
-void World<Degree>::renew_volume(BodyId id) {
-  broad_phase_->update(id, renewed_box(id), now_, *this);
-  if (options_.report_pairs && !broad_phase_->exact()) {  // when its box meets others is to be found anew
-    for (const Link& link : links_.items(bodies_[id].pairs)) mark_dirty(link.slot);
-  }
-  schedule_volume(id);
+bool World<Degree>::renew_volume(BodyId id) {
+  update_volume(id, renewed_box(id));
+  return bodies_[id].extras && bodies_[id].extras->box_function;
 }
 
 /// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are

@@ -5,6 +5,7 @@
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/narrow_phase/contact.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/earliest_wall_time.hpp"
@@ -150,12 +151,13 @@ class World final : private PairListener {
   using Passing = detail::Passing;
   using PairRank = detail::PairRank;
   using Pending = detail::Pending;
+  using Clearance = detail::Clearance;
 
   // world.cpp: the clock
   void make_broad_phase();
   void reach(double limit);
   void start_pieces();
-  void renew_volume(BodyId id);
+  bool renew_volume(BodyId id);
   void count_edit();
 
   // world/reports.cpp: what is told at one instant, in one order
@@ -196,6 +198,7 @@ class World final : private PairListener {
   void set_motion(BodyId id, const Motion& motion, bool jumped);
   bool is_jump(BodyId id, const Motion& to) const;
   KineticBox<Degree> bounding_box(BodyId id) const;
+  KineticBox<Degree> bare_box(BodyId id) const;
   KineticBox<Degree> renewed_box(BodyId id);
   void note_wall(BodyId id, double earliest);
   void schedule_wall(BodyId id);
@@ -208,6 +211,15 @@ class World final : private PairListener {
   void place_extents(BodyId id);
   KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;
   bool volumes_overlap(BodyId a, BodyId b) const;
+
+  // world/clearance.cpp: what volumes reach beyond bodies, for the contact gap of meshes
+  void allow_for_meshes();
+  void let_volumes_grow();
+  void regrow_volumes();
+  void update_volume(BodyId id, const KineticBox<Degree>& box);
+  std::array<double, Degree + 1> growth(BodyId id) const;
+  KineticBox<Degree> grown(BodyId id, KineticBox<Degree> box) const;
+  double clearance_until(BodyId id) const;
 
   // world/contacts.cpp: tests, contacts, response
   ContactMode mode() const {
@@ -297,6 +309,8 @@ class World final : private PairListener {
   double horizon_;
   double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
   std::size_t alive_ = 0;
+  Clearance clearance_ = Clearance::none;
+  bool box_functions_ = false;  ///< some body has or had one
   bool inserting_ = false;
   bool stepping_ = false;
   std::uint64_t islands_ = 0;

@@ -30,6 +30,9 @@ inline constexpr BodyId no_body = ~BodyId{0};
 template <int Degree>
 using Mover = certificates::MovingBall<Degree>;
 
+/// Whether bounding volumes reach beyond bodies: not before there is a mesh; mostly by a constant (MeshClearance).
+enum class Clearance : std::uint8_t { none, constant, growing };
+
 /// What few bodies have.
 template <int Degree>
 struct Extras {

@@ -59,7 +59,7 @@ std::vector<std::shared_ptr<const Mesh>> World<Degree>::meshes() const {
 template <int Degree>
 typename World<Degree>::Image World<Degree>::image() const {
   Image image;
-  image.now = now_, image.horizon = horizon_, image.counters = counters();
+  image.now = now_, image.horizon = horizon_, image.clearance = clearance_, image.counters = counters();
   image.meshes = meshes();
   for (BodyId id = 0; id < bodies_.size(); ++id) {
     const Body& b = bodies_[id];
@@ -111,7 +111,7 @@ void World<Degree>::set_shape(BodyId id, PlacedShape placed) {
 
 template <int Degree>
 void World<Degree>::become(const Image& image) {
-  now_ = image.now, horizon_ = image.horizon;
+  now_ = image.now, horizon_ = image.horizon, clearance_ = image.clearance;
   idle_until_ = -never;
   edits_ = image.edits, edits_start_ = image.edits_start;
   free_bodies_ = image.free_bodies, entering_ = image.entering, disturbed_ = image.disturbed;
@@ -162,6 +162,7 @@ void World<Degree>::load_pairs(const Image& image) {
     entries.push_back({id, nullptr});
     boxes.push_back(bounding_box(id));
     schedule_wall(id);
+    schedule_volume(id);
   }
   for (std::size_t i = 0; i < entries.size(); ++i) entries[i].box = &boxes[i];
   broad_phase_->insert(entries, now_, found);
