@@ -14,7 +14,9 @@
 #include "collision/world_options.hpp"
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
+#include "kds/statistics.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -38,6 +40,10 @@ struct WorldCounters {
   std::uint64_t held = 0;            ///< times the Zeno policy acted
 
   friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
+  /// As a kinetic structure's: what has happened, and failure times asked for.
+  operator Counters() const {
+    return {.events = contacts + separations + overlaps + wall_contacts, .certificates = pair_tests};
+  }
 };
 
 /// Runs bodies through time and reports their contacts at exact times.
@@ -103,7 +109,22 @@ class World final : private PairListener {
   /// reached. Throws as advance_to() does, and std::invalid_argument for a budget that is negative or not a number.
   bool advance_for(double budget_seconds, double t);
 
-  double now() const { return now_; }
+  // A world is a KineticStructure: it runs in a Simulator beside others, one clock for all (docs/framework.md). Before
+  // it is changed it has to be advanced to that clock, where nothing is due.
+
+  /// When the next event happens, `never` if there is none within the horizon. now(), if bodies have come or changed
+  /// there, and it is still to be seen what follows. Nothing that can be observed changes: the search is kept for the
+  /// step to come, and made again if the world is changed before that time, at the cost of entry for all bodies. Throws
+  /// as step() does.
+  double next_time() const;
+  /// Processes what is due at next_time(). Throws as step() does.
+  void process();
+  /// Knows what happens until then. Throws std::logic_error as step() does.
+  void extend_horizon(double now, double horizon);
+  /// As audit(), at a time from now() on before which nothing is due.
+  void audit(double t) const;
+
+  double now() const { return stepping_ ? now_ : clock_; }
   std::size_t size() const { return alive_; }
   bool contains(BodyId id) const { return id < bodies_.size() && bodies_[id].alive; }
 
@@ -133,7 +154,7 @@ class World final : private PairListener {
   /// Checks the broad phase against the motions, exactly, and the pairs against brute force, in O(n^2); throws
   /// AuditFailure. Just after bodies were added or moved, while the next step has work left at now(), only the broad
   /// phase is checked.
-  void audit() const;
+  void audit() const { audit(now()); }
 
   /// Saves or loads all that decides the events to come: see save() and restore() in kds/framework/snapshot.hpp. A
   /// world that is loaded, with the same options (but see docs/framework.md), makes the same contacts at the same
@@ -162,7 +183,17 @@ class World final : private PairListener {
   using Pending = detail::Pending;
 
   // world.cpp: the clock
-  bool next_event(double limit);
+  /// When the next of each kind is due, but for what the broad phase does.
+  struct Agenda {
+    double piece, boxes, volume, wall, let_go, contact;
+    double first() const { return std::min({piece, boxes, volume, wall, let_go, contact}); }
+  };
+  Agenda agenda() const;
+  /// Whether the search for the next event makes it, or stops before it.
+  enum class Search { makes, looks };
+  bool next_event(double limit, Search search = Search::makes);
+  bool guarded_event(double limit, Search search);
+  bool work_left() const { return !entering_.empty() || !disturbed_.empty() || !dirty_.empty() || !pending_.empty(); }
   void make_broad_phase();
   void reach(double limit);
   void go_back(double t);
@@ -177,9 +208,11 @@ class World final : private PairListener {
       refuse(function);
   }
   /// For what changes bodies. Callbacks may.
-  void require_editable(const char* function) const {
+  void require_editable(const char* function) {
     if (failure_ || in_box_function_) [[unlikely]]
       refuse(function);
+    if (!stepping_ && now_ > clock_) [[unlikely]]
+      change_or_fail([&] { go_back(clock_); });
   }
   /// For what runs, saves or loads the world.
   void require_idle(const char* function) const {
@@ -262,7 +295,7 @@ class World final : private PairListener {
   Kdops<Degree> kdops();
   void place_extents(BodyId id);
   KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;
-  bool volumes_overlap(BodyId a, BodyId b) const;
+  bool volumes_overlap(BodyId a, BodyId b, double t) const;
 
   // world/clearance.cpp: what volumes reach beyond bodies, for the contact gap of meshes
   void allow_for_meshes();
@@ -306,7 +339,7 @@ class World final : private PairListener {
   void add_hold(const Hold& hold);
   void drop_hold(HoldSlot slot);
   void drop_holds(BodyId id);
-  double next_contact_of_held(const Pair& pair) const;
+  double next_contact_of_held(const Pair& pair);
   void schedule_release(HoldSlot slot);
   void release(HoldSlot slot);
 
@@ -322,8 +355,8 @@ class World final : private PairListener {
   bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
 
   // world/audit.cpp
-  void audit_holds() const;
-  void audit_overlapping() const;
+  void audit_holds(double t) const;
+  void audit_overlapping(double t) const;
 
   WorldOptions options_;
   Listener* listener_;
@@ -355,9 +388,11 @@ class World final : private PairListener {
   DaryQueue<PairRank> boxes_;         // slots are pairs; used where the broad phase is not exact
   WorldCounters counters_;
   Profile profile_;
-  double now_;
+  double now_;    ///< of what is being done; ahead of clock_ when next_time() has looked ahead
+  double clock_;  ///< as callers know it
   double horizon_;
   double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
+  double next_time_ = -never;   ///< as next_time() has found it; -never if it has not been asked for
   double removed_at_ = -never;
   std::size_t alive_ = 0;
   std::size_t unlisted_ = 0;    ///< pairs that the broad phase does not list

@@ -37,7 +37,7 @@ struct World<Degree>::Image {
     double boxes = never;
   };
 
-  double now = 0, horizon = 0;
+  double now = 0, clock = 0, horizon = 0;
   bool has_had_meshes = false;
   WorldCounters counters;
   std::vector<std::shared_ptr<const Mesh>> meshes;

@@ -132,11 +132,11 @@ void World<Degree>::test(PairSlot slot) {
       pair.overlapping = in_contact(a, b, now_) && !only_touching(a, b, now_);
       if (pair.overlapping) report_overlap();
     }
-    if (find_hold(pair.a, pair.b) != no_hold) {
-      next.time = next_contact_of_held(pair);
-    } else if (pair.overlapping) {
+    if (pair.overlapping) {
       const double start = pair.passes_at == now_ ? next_up(now_) : now_;
       if (start <= horizon_) next.time = first_separation(a, b, start, horizon_);
+    } else if (find_hold(pair.a, pair.b) != no_hold) {
+      next.time = next_contact_of_held(pair);
     } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
       next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory, &found);
     }

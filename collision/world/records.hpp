@@ -95,6 +95,7 @@ struct Hold {
   double push = 0;                                   ///< half the relative acceleration that it gives
   bool alive = false;
   bool fresh = false;  ///< its approach is still to be taken out
+  double left_behind = -never;  ///< s, the epoch of a pair of motions: until it is another, rounding feigns a contact
 };
 
 struct HoldRank {
