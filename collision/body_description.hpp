@@ -34,7 +34,7 @@ struct BodyDescription {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit to 1e-6; the body keeps it
   /// One or more pieces, each starting later than the one before. The first may start in the past; if it starts in the
   /// future, the body enters then.
-  std::vector<Motion> motion;
+  std::vector<Motion> motion{};
   double mass = 1;     ///< > 0, unless the body is fixed
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.
@@ -42,7 +42,7 @@ struct BodyDescription {
   std::uint32_t category = 1;         ///< bits
   std::uint32_t collides_with = ~0u;  ///< a pair is tested if each one's category shares a bit with the other's mask
   BoundingVolume volume = BoundingVolume::shape;
-  BoxFunction box;  ///< if given: the caller's own conservative boxes, instead of `volume`
+  BoxFunction box{};  ///< if given: the caller's own conservative boxes, instead of `volume`
 };
 
 }  // namespace kds::collision

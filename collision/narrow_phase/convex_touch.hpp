@@ -139,7 +139,7 @@ class ConvexTouch {
   static constexpr double tie = 4;
 
   struct Condition {
-    std::array<double, Degree + 1> separation;  ///< along the normal; below the gap: near
+    std::array<double, std::size_t{Degree} + 1> separation;  ///< along the normal; below the gap: near
     Eigen::Vector3d normal;                     ///< unit, from a to b
 
     double operator()(double tau) const {

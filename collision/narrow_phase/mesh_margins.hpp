@@ -35,7 +35,7 @@ struct ContactGap {
   static constexpr double roundings = 64 * 0x1p-53;
   static constexpr double clock = 4 * 0x1p-52;
 
-  std::array<double, Degree + 1> c;
+  std::array<double, std::size_t{Degree} + 1> c;
 
   double operator()(double tau) const {
     if constexpr (Degree == 1) {
@@ -123,13 +123,13 @@ class MeshClearance {
   bool is_least() const { return constant_ == least_; }
 
   /// Not less than the share, and than the constant, from the motion's start on.
-  std::array<double, Degree + 1> growing() const {
-    std::array<double, Degree + 1> growth = share_;
+  std::array<double, std::size_t{Degree} + 1> growing() const {
+    std::array<double, std::size_t{Degree} + 1> growth = share_;
     growth[0] = least_ + 2 * share_[0];
     return growth;
   }
 
-  const std::array<double, Degree + 1>& share() const { return share_; }
+  const std::array<double, std::size_t{Degree} + 1>& share() const { return share_; }
 
  private:
   /// A time, in seconds from the start, at which the share is not above the constant.
@@ -144,7 +144,7 @@ class MeshClearance {
     }
   }
 
-  std::array<double, Degree + 1> share_;
+  std::array<double, std::size_t{Degree} + 1> share_;
   double least_;
   double constant_;
   double holds_until_;
@@ -156,9 +156,9 @@ class MeshClearance {
 /// About another start, d earlier or later, the polynomial's value is the same; where its coefficients are rounded, by
 /// 2^-52 of their sum, the growth has more room than that.
 template <int Degree>
-void grow(KineticBox<Degree>& box, std::array<double, Degree + 1> growth, double start) {
+void grow(KineticBox<Degree>& box, std::array<double, std::size_t{Degree} + 1> growth, double start) {
   const auto about = [&](double epoch) {
-    std::array<double, Degree + 1> g = growth;
+    std::array<double, std::size_t{Degree} + 1> g = growth;
     const double d = epoch - start;
     if constexpr (Degree == 1) {
       g[0] += d * g[1];

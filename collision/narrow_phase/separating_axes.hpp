@@ -138,7 +138,7 @@ inline constexpr double vanishing_axis = 0x1p-320;
 /// Projections are widened by `margin` as in BoxPairTest, times the 1-norm of the axis, which is not below its length.
 template <int Degree, class A, class B>
 bool may_touch(const A& a, const B& b, const RelativeMotion<Degree>& motion,
-               const std::array<double, Degree + 1>& margin, TimeWindow& window) {
+               const std::array<double, std::size_t{Degree} + 1>& margin, TimeWindow& window) {
   return every_axis(a, b, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
     const double length = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
     if (!(length > vanishing_axis)) return true;
