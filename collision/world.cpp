@@ -44,6 +44,9 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
 
 void validate(const WorldOptions& options) {
   if (!std::isfinite(options.start_time)) throw std::invalid_argument("WorldOptions.start_time: must be finite");
+  if (std::abs(options.start_time) > largest_magnitude) {
+    throw std::invalid_argument("WorldOptions.start_time: must not be beyond 2^205 (5.1e61)");
+  }
   if (!(options.window > 0)) throw std::invalid_argument("WorldOptions.window: must be > 0");
   if (!(options.zeno.interval >= 0)) throw std::invalid_argument("WorldOptions.zeno.interval: must be >= 0");
   if (options.walls) {
@@ -141,6 +144,7 @@ bool World<Degree>::step(double limit) {
     }
     const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
     if (until == never) return false;
+    if (next == never) looked_to_ = until;
     {
       const Stopwatch watch(profile(), Work::sort);
       if (broad_phase_->advance(until, *this) || next == never) continue;
@@ -249,7 +253,7 @@ void World<Degree>::start_pieces() {
 /// True if the volume is one that a caller gives: that is an event.
 template <int Degree>
 bool World<Degree>::renew_volume(BodyId id) {
-  update_volume(id, renewed_box(id));
+  update_volume(id, renewed_box(id), now_);
   return bodies_[id].extras && bodies_[id].extras->box_function;
 }
 

@@ -215,8 +215,8 @@ class World final : private PairListener {
   // world/clearance.cpp: what volumes reach beyond bodies, for the contact gap of meshes
   void allow_for_meshes();
   void let_volumes_grow();
-  void regrow_volumes();
-  void update_volume(BodyId id, const KineticBox<Degree>& box);
+  void regrow_volumes(double now);
+  void update_volume(BodyId id, const KineticBox<Degree>& box, double now);
   std::array<double, Degree + 1> growth(BodyId id) const;
   KineticBox<Degree> grown(BodyId id, KineticBox<Degree> box) const;
   double clearance_until(BodyId id) const;
@@ -307,6 +307,7 @@ class World final : private PairListener {
   Profile profile_;
   double now_;
   double horizon_;
+  double looked_to_ = -never;   ///< where there was no limit: how far the broad phase is ahead of the clock
   double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
   std::size_t alive_ = 0;
   Clearance clearance_ = Clearance::none;

@@ -13,7 +13,7 @@ template <int Degree>
 void World<Degree>::allow_for_meshes() {
   if (clearance_ != Clearance::none) return;
   clearance_ = Clearance::constant;
-  regrow_volumes();
+  regrow_volumes(now_);
 }
 
 /// Nothing is left to happen but that volumes have to grow: they do so at once, or a run without a limit would set the
@@ -21,20 +21,20 @@ void World<Degree>::allow_for_meshes() {
 template <int Degree>
 void World<Degree>::let_volumes_grow() {
   clearance_ = Clearance::growing;
-  regrow_volumes();
+  regrow_volumes(std::max(now_, looked_to_));
 }
 
 template <int Degree>
-void World<Degree>::regrow_volumes() {
+void World<Degree>::regrow_volumes(double now) {
   for (BodyId id = 0; id < bodies_.size(); ++id) {
-    if (bodies_[id].entered) update_volume(id, bounding_box(id));
+    if (bodies_[id].entered) update_volume(id, bounding_box(id), now);
   }
 }
 
 /// Makes known a volume that is another though nothing has moved.
 template <int Degree>
-void World<Degree>::update_volume(BodyId id, const KineticBox<Degree>& box) {
-  broad_phase_->update(id, box, now_, *this);
+void World<Degree>::update_volume(BodyId id, const KineticBox<Degree>& box, double now) {
+  broad_phase_->update(id, box, now, *this);
   if (options_.report_pairs && !broad_phase_->exact()) {  // when its box meets others is to be found anew
     for (const Link& link : links_.items(bodies_[id].pairs)) mark_dirty(link.slot);
   }
