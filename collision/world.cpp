@@ -45,6 +45,9 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
 
 void validate(const WorldOptions& options) {
   if (!std::isfinite(options.start_time)) throw std::invalid_argument("WorldOptions.start_time: must be finite");
+  if (std::abs(options.start_time) > largest_magnitude) {
+    throw std::invalid_argument("WorldOptions.start_time: must not be beyond 2^205 (5.1e61)");
+  }
   if (!(options.window > 0)) throw std::invalid_argument("WorldOptions.window: must be > 0");
   if (!(options.rate >= 0) || !std::isfinite(options.rate)) {
     throw std::invalid_argument("WorldOptions.rate: must be finite and >= 0");
@@ -195,9 +198,9 @@ bool World<Degree>::next_event(double limit, Search search) {
       return true;
     }
     now_ = std::max(now_, next);
-    const bool event = boxes == next || reports || wall == next || let_go == next || contact == next ||
-                       (volume == next && bodies_[volumes_.top().slot].extras);
-    if (looks && event) return true;
+    const bool told =
+        reports || wall == next || contact == next || (volume == next && caller_makes_box(volumes_.top().slot));
+    if (looks && (told || boxes == next || let_go == next)) return true;
     if (boxes == next) {
       process_boxes(boxes_.top().slot, next);
     } else if (reports) {
@@ -341,7 +344,7 @@ void World<Degree>::start_pieces() {
 template <int Degree>
 bool World<Degree>::renew_volume(BodyId id) {
   update_volume(id, renewed_box(id));
-  return bodies_[id].extras && bodies_[id].extras->box_function;
+  return caller_makes_box(id);
 }
 
 /// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are

@@ -284,6 +284,7 @@ class World final : private PairListener {
   bool is_jump(BodyId id, const Motion& to) const;
   KineticBox<Degree> bounding_box(BodyId id) const;
   KineticBox<Degree> bare_box(BodyId id) const;
+  bool caller_makes_box(BodyId id) const { return bodies_[id].extras && bodies_[id].extras->box_function; }
   KineticBox<Degree> renewed_box(BodyId id);
   void note_wall(BodyId id, double earliest);
   void schedule_wall(BodyId id);

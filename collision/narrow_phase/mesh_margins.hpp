@@ -88,9 +88,9 @@ inline constexpr double box_margin = 0x1p-24;
 /// the brackets of both bodies are not below those of ContactGap. (2) The uncertainty of the relative coefficients is
 /// at most 14 u of these sums: seven operations, charged 2 u each. With the roundings of ContactGap that is 78 u. (3)
 /// Contact is reported up to 1 + 45/64 gaps along a separating axis; a ball in the corner of such conditions is up to
-/// sqrt 3 times as far away (ball_touch.hpp). That makes 231 u and 12 x 2^-52. (4) The time of a separation is rounded up
-/// to a double, by one spacing, 2^-52 (|s| + tau_a) at most, and tau by u: 1 x 2^-52 of `clock`, 1 u of `roundings`. 256
-/// and 16 leave room for what is rounded here and where ends are moved.
+/// sqrt 3 times as far away (ball_touch.hpp). That makes 231 u and 12 x 2^-52. (4) The time of a separation is rounded
+/// up to a double, by one spacing, 2^-52 (|s| + tau_a) at most, and tau by u: 1 x 2^-52 of `clock`, 1 u of `roundings`.
+/// 256 and 16 leave room for what is rounded here and where ends are moved.
 ///
 /// A volume is grown by a constant for as long as that will do: so its corners move alike, and it is not renewed. After
 /// that its ends move apart as the share grows, which holds for ever: one renewal a motion, if any.

@@ -130,9 +130,9 @@ bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
   return true;
 }
 
-/// Axes shorter than this are left out, which is always safe; with coordinates of 2^-100 to 2^100 they come from
-/// parallel edges alone, and squares of projections do not underflow.
-inline constexpr double vanishing_axis = 0x1p-320;
+/// Axes shorter than this are left out, which is always safe. With edges of 2^-110 or more that meet at sines of 2^-46
+/// or more (`shortest_edge`, Mesh::thinnest_sine) they come from parallel edges alone; their squares do not underflow.
+inline constexpr double vanishing_axis = 0x1p-400;
 
 /// Cheap test: shrinks the window to times at which a and b may touch, with b moving; false if there are none.
 /// Projections are widened by `margin` as in BoxPairTest, times the 1-norm of the axis, which is not below its length.

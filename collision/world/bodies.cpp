@@ -76,7 +76,7 @@ template <int Degree>
 void World<Degree>::update_motion(BodyId id, const Motion& motion) {
   require_editable("World::update_motion");
   body(id);
-  if (!motion.finite()) throw std::invalid_argument("World::update_motion: the motion is not finite");
+  if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
   if (motion.start > now_) {
     throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(motion.start) +
                                 ", after the clock at " + std::to_string(now_));

@@ -21,14 +21,12 @@ void validate(const BodyDescription<Degree>& description) {
   if (description.motion.empty()) fail("motion: has no piece");
   for (std::size_t i = 0; i < description.motion.size(); ++i) {
     const auto& piece = description.motion[i];
-    if (!piece.finite()) fail("motion[" + std::to_string(i) + "]: must be finite");
+    if (!in_range(piece)) refuse_motion(piece, "motion[" + std::to_string(i) + "]");
     if (i > 0 && !(piece.start > description.motion[i - 1].start)) {
       fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
     }
   }
-  if (!description.fixed && (!std::isfinite(description.mass) || !(description.mass > 0))) {
-    fail("mass: must be finite and > 0");
-  }
+  if (!description.fixed) require_size(description.mass, "mass");
   switch (description.volume) {
     case BoundingVolume::shape:
     case BoundingVolume::sphere:
