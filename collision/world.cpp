@@ -7,6 +7,7 @@
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "collision/broad_phase/swept_sweep_and_prune.hpp"
 #include "collision/profile.hpp"
+#include "kds/arithmetic/strict.hpp"
 #include "kds/audit.hpp"
 #include "kds/raised_flag.hpp"
 
@@ -31,7 +32,7 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
     case BroadPhaseKind::kinetic_sap:
       return std::make_unique<KineticSweepAndPrune<Degree>>(now, ListedAxes::automatic, std::move(kdops));
     case BroadPhaseKind::sap:
-      if (!(options.rate > 0) || !std::isfinite(options.rate) || !std::isfinite(1 / options.rate)) {
+      if (!(options.rate > 0) || !std::isfinite(1 / options.rate)) {
         throw std::invalid_argument(
             "WorldOptions.rate: sweep and prune with swept boxes needs a rate > 0, finite and with a finite 1 / rate");
       }
@@ -44,7 +45,22 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
 
 void validate(const WorldOptions& options) {
   if (!std::isfinite(options.start_time)) throw std::invalid_argument("WorldOptions.start_time: must be finite");
+  if (std::abs(options.start_time) > largest_magnitude) {
+    throw std::invalid_argument("WorldOptions.start_time: must not be beyond 2^205 (5.1e61)");
+  }
   if (!(options.window > 0)) throw std::invalid_argument("WorldOptions.window: must be > 0");
+  if (!(options.rate >= 0) || !std::isfinite(options.rate)) {
+    throw std::invalid_argument("WorldOptions.rate: must be finite and >= 0");
+  }
+  switch (options.response) {
+    case Response::none:
+    case Response::elastic:
+    case Response::callback:
+      break;
+    default:
+      throw std::invalid_argument("WorldOptions.response: unknown");
+  }
+  if (options.zeno.contacts == 0) throw std::invalid_argument("WorldOptions.zeno.contacts: must be > 0");
   if (!(options.zeno.interval >= 0)) throw std::invalid_argument("WorldOptions.zeno.interval: must be >= 0");
   if (options.walls) {
     const Walls& walls = *options.walls;
@@ -60,6 +76,12 @@ void validate(const WorldOptions& options) {
   }
 }
 
+void require_ahead(const char* function, double t, double now) {
+  if (t >= now && t != never) return;
+  throw std::invalid_argument(std::string(function) + ": " + std::to_string(t) + " is not a finite time from now on (" +
+                              std::to_string(now) + ")");
+}
+
 }  // namespace
 
 template <int Degree>
@@ -70,7 +92,9 @@ World<Degree>::World(const WorldOptions& options, Listener* listener)
       contacts_(PairRank{&pairs_}),
       boxes_(PairRank{&pairs_}),
       now_(options.start_time),
+      clock_(options.start_time),
       horizon_(options.start_time + options.window) {
+  require_strict_arithmetic("World");
   validate(options);
   make_broad_phase();
 }
@@ -105,76 +129,143 @@ void World<Degree>::reach(double limit) {
 
 template <int Degree>
 bool World<Degree>::step(double limit) {
-  if (limit < idle_until_) {
-    now_ = std::max(now_, limit);
+  require_idle("World::step");
+  if (limit < idle_until_ || (limit == never && idle_until_ == never)) {
+    if (limit < never) clock_ = std::max(clock_, limit);
+    now_ = std::max(now_, clock_);
     return false;
   }
-  idle_until_ = -never;
   if (std::isnan(limit)) throw std::invalid_argument("World::step: the limit is not a number");
   if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
     throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
   }
+  if (limit < now_) {  // Up to there nothing happens, as next_time() has found.
+    clock_ = std::max(clock_, limit);
+    return false;
+  }
+  next_time_ = -never;
+  return guarded_event(limit, Search::makes);
+}
+
+/// The clock follows what has been done, even where a listener throws.
+template <int Degree>
+bool World<Degree>::guarded_event(double limit, Search search) {
   const kds::detail::RaisedFlag stepping(stepping_);  // Callbacks are called from here alone.
+  try {
+    const bool found = next_event(limit, search);
+    if (search == Search::makes) clock_ = now_;
+    return found;
+  } catch (...) {
+    if (search == Search::makes) clock_ = now_;
+    if (!std::exchange(telling_, false)) note_failure();
+    throw;
+  }
+}
+
+template <int Degree>
+bool World<Degree>::next_event(double limit, Search search) {
+  const bool looks = search == Search::looks;
+  idle_until_ = -never;
   bool looked_ahead = false;
+  double reached = clock_;  // the clock, should nothing come
   for (;;) {
     if (!entering_.empty()) enter_new_bodies();
     if (!disturbed_.empty()) settle();
-    if (!dirty_.empty() || !passing_.empty()) test_dirty_pairs();
-    const auto time_of = [](const auto& queue) { return queue.empty() ? never : queue.top().time; };
-    const double piece = time_of(pieces_);
-    const double boxes = time_of(boxes_);
-    const double volume = time_of(volumes_);
-    const double wall = time_of(walls_);
-    const double let_go = time_of(releases_);
-    const double contact = time_of(contacts_);
+    if (!dirty_.empty()) test_dirty_pairs();
+    const Agenda due = agenda();
+    const auto [piece, boxes, volume, wall, let_go, contact] = due;
     // What is pending is of this instant, all of which has to be known before any of it is told.
     const bool reports = !pending_.empty();
     // Nothing is known beyond the horizon: look that far, then farther.
-    const double next = std::min({reports ? now_ : limit, horizon_, piece, boxes, volume, wall, let_go, contact});
+    const double next = std::min({reports ? now_ : limit, horizon_, due.first()});
     if (next < never && certify_next(contact == next, wall == next)) continue;
     // A piece that starts now is the motion at t+, so the broad phase may not run past it under the old one.
     const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
-    if (until == never) return false;
+    if (until == never) {
+      if (looks) return false;
+      idle_until_ = never;
+      go_back(reached);
+      return false;
+    }
     {
       const Stopwatch watch(profile(), Work::sort);
       if (broad_phase_->advance(until, *this) || next == never) continue;
     }
     if (piece == next) {
       now_ = next;
+      if (looks) return true;
       start_pieces();
       return true;
     }
     now_ = std::max(now_, next);
+    const bool told =
+        reports || wall == next || contact == next || (volume == next && caller_makes_box(volumes_.top().slot));
+    if (looks && (told || boxes == next || let_go == next)) return true;
     if (boxes == next) {
       process_boxes(boxes_.top().slot, next);
-    } else if (reports && !pending_.begin()->waits()) {
+    } else if (reports) {
       report_next();
       return true;
     } else if (volume == next) {
-      renew_volume(volumes_.top().slot);
-      return true;
+      if (renew_volume(volumes_.top().slot)) return true;
     } else if (wall == next) {
       process_wall(walls_.top().slot, next);
       return true;
     } else if (let_go == next) {
       release(releases_.top().slot);
-    } else if (contact == next && !(reports && separates_before(pairs_[contacts_.top().slot]))) {
-      process_contact(contacts_.top().slot, next);
-      return true;
-    } else if (reports) {
-      report_next();
+      reached = now_;
+    } else if (contact == next) {
+      const PairSlot slot = contacts_.top().slot;
+      if (pairs_[slot].overlapping) {
+        process_separation(slot, next);
+      } else {
+        process_contact(slot, next);
+      }
       return true;
     } else if (next < limit) {
       // Without a limit a window farther, and where nothing happens in that either, as far as there is time.
       reach(limit == never && !looked_ahead ? horizon_ + options_.window : limit);
       looked_ahead = true;
     } else {
-      if (passing_.empty()) {
-        idle_until_ = std::min({horizon_, piece, boxes, volume, wall, let_go, contact, broad_phase_->next_time()});
-      }
+      if (!looks) idle_until_ = std::min({horizon_, due.first(), broad_phase_->next_time()});
       return false;
     }
   }
+}
+
+template <int Degree>
+typename World<Degree>::Agenda World<Degree>::agenda() const {
+  const auto time_of = [](const auto& queue) { return queue.empty() ? never : queue.top().time; };
+  return {time_of(pieces_), time_of(boxes_),    time_of(volumes_),
+          time_of(walls_),  time_of(releases_), time_of(contacts_)};
+}
+
+/// What is found is kept in queues and lists, as all that is known of the time to come.
+template <int Degree>
+double World<Degree>::next_time() const {
+  require_idle("World::next_time");
+  if (next_time_ != -never) return next_time_;
+  if (now_ == clock_ && work_left()) return clock_;
+  if (horizon_ == never && options_.broad_phase == BroadPhaseKind::sap) {
+    throw std::invalid_argument("World::next_time: sweep and prune by frames has no last event, so it needs a window");
+  }
+  auto& self = const_cast<World&>(*this);
+  self.next_time_ = self.guarded_event(horizon_, Search::looks) ? now_ : never;
+  return next_time_;
+}
+
+template <int Degree>
+void World<Degree>::process() {
+  const double t = next_time();
+  if (t < never) step(t);
+}
+
+template <int Degree>
+void World<Degree>::extend_horizon(double now, double horizon) {
+  require_idle("World::extend_horizon");
+  if (now > clock_) advance_to(now);
+  idle_until_ = next_time_ = -never;
+  change_or_fail([&] { reach(horizon); });
 }
 
 /// Where what comes next is a lower bound only, puts the exact time in its place, which may be later: true if so.
@@ -193,10 +284,8 @@ bool World<Degree>::certify_next(bool contact, bool wall) {
 
 template <int Degree>
 void World<Degree>::advance_to(double t) {
-  if (!(t >= now_) || t == never) {
-    throw std::invalid_argument("World::advance_to: " + std::to_string(t) + " is not a finite time from now on (" +
-                                std::to_string(now_) + ")");
-  }
+  require_idle("World::advance_to");
+  require_ahead("World::advance_to", t, clock_);
   while (step(t)) {
   }
 }
@@ -204,6 +293,11 @@ void World<Degree>::advance_to(double t) {
 template <int Degree>
 bool World<Degree>::advance_for(double budget_seconds, double t) {
   using Clock = std::chrono::steady_clock;
+  require_idle("World::advance_for");
+  require_ahead("World::advance_for", t, clock_);
+  if (!(budget_seconds >= 0)) {
+    throw std::invalid_argument("World::advance_for: a budget of " + std::to_string(budget_seconds) + " s is not >= 0");
+  }
   const auto deadline = Clock::now() + std::chrono::duration<double>(budget_seconds);
   while (step(t)) {
     if (Clock::now() >= deadline) return false;
@@ -214,12 +308,17 @@ bool World<Degree>::advance_for(double budget_seconds, double t) {
 /// All that are due at once: bodies that jump together are not apart in between.
 template <int Degree>
 void World<Degree>::start_pieces() {
-  std::vector<BodyId> due;
+  struct Due {
+    BodyId id;
+    bool jumps;
+  };
+  std::vector<Due> due;
   while (!pieces_.empty() && pieces_.top().time == now_) {
     const BodyId id = pieces_.top().slot;
     Body& b = bodies_[id];
     auto& script = b.extras->script;
-    if (b.entered && is_jump(id, script.back())) drop_holds(id);
+    const bool jumps = b.entered && is_jump(id, script.back());
+    if (jumps) drop_holds(id);
     movers_[id].motion = script.back();
     if constexpr (Degree >= 2) b.force = script.back().coefficients[2];
     script.pop_back();
@@ -228,12 +327,12 @@ void World<Degree>::start_pieces() {
     } else {
       pieces_.set(id, script.back().start);
     }
-    due.push_back(id);
+    due.push_back({id, jumps});
   }
-  for (const BodyId id : due) {
+  for (const auto& [id, jumps] : due) {
     if (bodies_[id].entered) {
       ++counters_.motion_updates;
-      set_motion(id, Motion(movers_[id].motion), false);
+      set_motion(id, Motion(movers_[id].motion), jumps);
       disturb(id);
     } else {
       entering_.push_back(id);
@@ -241,20 +340,18 @@ void World<Degree>::start_pieces() {
   }
 }
 
+/// True if the volume is one that a caller gives: that is an event.
 template <int Degree>
-void World<Degree>::renew_volume(BodyId id) {
-  broad_phase_->update(id, renewed_box(id), now_, *this);
-  if (options_.report_pairs && !broad_phase_->exact()) {  // when its box meets others is to be found anew
-    for (const Link& link : links_.items(bodies_[id].pairs)) mark_dirty(link.slot);
-  }
-  schedule_volume(id);
+bool World<Degree>::renew_volume(BodyId id) {
+  update_volume(id, renewed_box(id));
+  return caller_makes_box(id);
 }
 
 /// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are
 /// counted, so that a run ends.
 template <int Degree>
 void World<Degree>::count_edit() {
-  idle_until_ = -never;
+  idle_until_ = next_time_ = -never;
   if (!stepping_) return;
   if (now_ - edits_start_ > options_.zeno.interval) {
     edits_start_ = now_;

@@ -5,6 +5,7 @@
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/narrow_phase/contact.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/earliest_wall_time.hpp"
@@ -13,8 +14,11 @@
 #include "collision/world_options.hpp"
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
+#include "kds/statistics.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <set>
 #include <span>
@@ -36,6 +40,10 @@ struct WorldCounters {
   std::uint64_t held = 0;            ///< times the Zeno policy acted
 
   friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
+  /// As a kinetic structure's: what has happened, and failure times asked for.
+  operator Counters() const {
+    return {.events = contacts + separations + overlaps + wall_contacts, .certificates = pair_tests};
+  }
 };
 
 /// Runs bodies through time and reports their contacts at exact times.
@@ -47,6 +55,11 @@ struct WorldCounters {
 ///
 /// Adding, removing and moving bodies calls no listener: what follows from it is reported by the next step, at now().
 ///
+/// What a call refuses it refuses before anything is changed, and what a listener throws comes out of the step when its
+/// event has been made: the world goes on after both. But where something interrupts a change half-way (a box function
+/// that throws, want of memory) the world can no longer be used: it can be looked at and destroyed, and all that would
+/// run, change, check or save it throws std::logic_error and says why.
+///
 /// Degree 1 (straight paths) never pays for degree 2. Lengths and masses are in units of the caller's own, times in
 /// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
@@ -56,19 +69,22 @@ class World final : private PairListener {
   using Description = BodyDescription<Degree>;
   using Listener = WorldListener<Degree>;
 
-  /// Throws std::invalid_argument, naming the option, for one that is out of range or does not go with the others.
+  /// Throws std::invalid_argument, naming the option, for one that is out of range or does not go with the others, and
+  /// std::runtime_error where arithmetic is not that of kds/arithmetic/strict.hpp.
   /// The listener, if there is one, must outlive the world.
   explicit World(const WorldOptions& options, Listener* listener = nullptr);
   ~World() override;
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Adds a body and returns its id: the next number, from 0 on, or the id of a body that was removed. Throws
+  /// Adds a body and returns its id: the next number, from 0 on, or the id of a body that was removed at an earlier
+  /// time, so that what is told of an instant never names two bodies by one id. Throws
   /// std::invalid_argument, naming the member that is wrong; then nothing is added. Adding many between two steps costs
   /// least.
   BodyId add_body(const Description& description);
 
-  /// Makes room for this many bodies in all. Never needed, but saves time and memory where many are added.
+  /// Makes room for this many bodies in all. Never needed, but saves time and memory where many are added. Throws
+  /// std::length_error for more than there are ids.
   void reserve(std::size_t bodies);
 
   /// Removes a body. Its pairs end, and in mode `none` its contacts separate, with reports.
@@ -81,18 +97,34 @@ class World final : private PairListener {
   void update_motion(BodyId id, const Motion& motion);
 
   /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,
-  /// and std::runtime_error as WorldOptions::most_edits says.
+  /// std::logic_error if called from within a callback, and std::runtime_error as WorldOptions::most_edits says.
   void advance_to(double t);
 
   /// Processes the next event not later than `limit`, if there is one. False if not; then the clock is at `limit`
-  /// if that is finite. Throws as advance_to(), but not for the past; `sap`, whose frames never end, needs a limit.
+  /// if that is finite, and else stays at the last event. Throws as advance_to(), but not for the past; `sap`, whose
+  /// frames never end, needs a limit.
   bool step(double limit = never);
 
   /// Processes events up to t until this much time of the wall clock has passed, but at least one; true if t was
-  /// reached. Throws as step() does.
+  /// reached. Throws as advance_to() does, and std::invalid_argument for a budget that is negative or not a number.
   bool advance_for(double budget_seconds, double t);
 
-  double now() const { return now_; }
+  // A world is a KineticStructure: it runs in a Simulator beside others, one clock for all (docs/framework.md). Before
+  // it is changed it has to be advanced to that clock, where nothing is due.
+
+  /// When the next event happens, `never` if there is none within the horizon. now(), if bodies have come or changed
+  /// there, and it is still to be seen what follows. Nothing that can be observed changes: the search is kept for the
+  /// step to come, and made again if the world is changed before that time, at the cost of entry for all bodies. Throws
+  /// as step() does.
+  double next_time() const;
+  /// Processes what is due at next_time(). Throws as step() does.
+  void process();
+  /// Knows what happens until then. Throws std::logic_error as step() does.
+  void extend_horizon(double now, double horizon);
+  /// As audit(), at a time from now() on before which nothing is due.
+  void audit(double t) const;
+
+  double now() const { return stepping_ ? now_ : clock_; }
   std::size_t size() const { return alive_; }
   bool contains(BodyId id) const { return id < bodies_.size() && bodies_[id].alive; }
 
@@ -109,7 +141,7 @@ class World final : private PairListener {
   bool touching(BodyId a, BodyId b) const;
 
   /// Whether a and b are held together (mode `elastic` alone), or a is held at a wall, numbered as in WallEvent (all
-  /// modes).
+  /// modes; std::out_of_range for any other number).
   bool held(BodyId a, BodyId b) const;
   bool held_at_wall(BodyId a, int wall) const;
 
@@ -122,7 +154,7 @@ class World final : private PairListener {
   /// Checks the broad phase against the motions, exactly, and the pairs against brute force, in O(n^2); throws
   /// AuditFailure. Just after bodies were added or moved, while the next step has work left at now(), only the broad
   /// phase is checked.
-  void audit() const;
+  void audit() const { audit(now()); }
 
   /// Saves or loads all that decides the events to come: see save() and restore() in kds/framework/snapshot.hpp. A
   /// world that is loaded, with the same options (but see docs/framework.md), makes the same contacts at the same
@@ -147,16 +179,65 @@ class World final : private PairListener {
   using HoldRank = detail::HoldRank;
   using Island = detail::Island;
   using Pair = detail::Pair;
-  using Passing = detail::Passing;
   using PairRank = detail::PairRank;
   using Pending = detail::Pending;
 
   // world.cpp: the clock
+  /// When the next of each kind is due, but for what the broad phase does.
+  struct Agenda {
+    double piece, boxes, volume, wall, let_go, contact;
+    double first() const { return std::min({piece, boxes, volume, wall, let_go, contact}); }
+  };
+  Agenda agenda() const;
+  /// Whether the search for the next event makes it, or stops before it.
+  enum class Search { makes, looks };
+  bool next_event(double limit, Search search = Search::makes);
+  bool guarded_event(double limit, Search search);
+  bool work_left() const { return !entering_.empty() || !disturbed_.empty() || !dirty_.empty() || !pending_.empty(); }
   void make_broad_phase();
   void reach(double limit);
+  void go_back(double t);
   void start_pieces();
-  void renew_volume(BodyId id);
+  bool renew_volume(BodyId id);
   void count_edit();
+
+  // world/guards.cpp: what may be called when, and what is left when something throws
+  [[noreturn]] void refuse(const char* function) const;
+  void require_whole(const char* function) const {
+    if (failure_) [[unlikely]]
+      refuse(function);
+  }
+  /// For what changes bodies. Callbacks may.
+  void require_editable(const char* function) {
+    if (failure_ || in_box_function_) [[unlikely]]
+      refuse(function);
+    if (!stepping_ && now_ > clock_) [[unlikely]]
+      change_or_fail([&] { go_back(clock_); });
+  }
+  /// For what runs, saves or loads the world.
+  void require_idle(const char* function) const {
+    if (failure_ || in_box_function_ || stepping_) [[unlikely]]
+      refuse(function);
+  }
+  void note_failure();
+  /// Makes a change. What throws in the middle of it leaves the world in pieces.
+  template <class Change>
+  auto change_or_fail(const Change& change) {
+    try {
+      return change();
+    } catch (...) {
+      note_failure();
+      throw;
+    }
+  }
+  /// Calls the listener: in a step, when the world is whole. What it throws leaves it so.
+  template <class Call>
+  void tell(const Call& call) {
+    telling_ = true;
+    call(*listener_);
+    telling_ = false;
+    require_whole("World::step");  // The listener may have caught what interrupted a change that it made.
+  }
 
   // world/reports.cpp: what is told at one instant, in one order
   void report_next();
@@ -165,7 +246,6 @@ class World final : private PairListener {
   }
   void report_pair(bool began, BodyId a, BodyId b);
   bool take_back(typename Pending::Kind kind, BodyId a, BodyId b);
-  bool separates_before(const Pair& pair) const;
   void keep_reports_of(BodyId removed);
 
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }
@@ -176,10 +256,13 @@ class World final : private PairListener {
   void become(const Image& image);
   void set_shape(BodyId id, PlacedShape placed);
   void load_pairs(const Image& image);
+  void rebuild_broad_phase();
   std::vector<std::shared_ptr<const Mesh>> meshes() const;
 
   // world/entry.cpp: bodies that come
+  BodyId put(const Description& description, std::shared_ptr<const PlacedShape> shape);
   BodyId new_body();
+  void free_removed();
   void set_extras(BodyId id, std::span<const Motion> script, const typename Description::BoxFunction& box_function);
   void enter_new_bodies();
 
@@ -189,13 +272,19 @@ class World final : private PairListener {
   void pairs_to_come(std::size_t pairs) override;
   void pair_began(BodyId a, BodyId b, double t) override;
   void pair_ended(BodyId a, BodyId b, double t) override;
+  void take_out(BodyId id);
+  void give(BodyId id, const Motion& motion);
   PairSlot find_pair(BodyId a, BodyId b) const;
+  PairSlot new_pair(BodyId a, BodyId b);
+  void unlist(PairSlot slot);
   void release_pair(PairSlot slot);
   void mark_dirty(PairSlot slot);
   void let_pass(BodyId a, BodyId b);
   void set_motion(BodyId id, const Motion& motion, bool jumped);
   bool is_jump(BodyId id, const Motion& to) const;
   KineticBox<Degree> bounding_box(BodyId id) const;
+  KineticBox<Degree> bare_box(BodyId id) const;
+  bool caller_makes_box(BodyId id) const { return bodies_[id].extras && bodies_[id].extras->box_function; }
   KineticBox<Degree> renewed_box(BodyId id);
   void note_wall(BodyId id, double earliest);
   void schedule_wall(BodyId id);
@@ -207,7 +296,14 @@ class World final : private PairListener {
   Kdops<Degree> kdops();
   void place_extents(BodyId id);
   KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;
-  bool volumes_overlap(BodyId a, BodyId b) const;
+  bool volumes_overlap(BodyId a, BodyId b, double t) const;
+
+  // world/clearance.cpp: what volumes reach beyond bodies, for the contact gap of meshes
+  void allow_for_meshes();
+  void update_volume(BodyId id, const KineticBox<Degree>& box);
+  std::array<double, Degree + 1> growth(BodyId id) const;
+  KineticBox<Degree> grown(BodyId id, KineticBox<Degree> box) const;
+  double clearance_until(BodyId id) const;
 
   // world/contacts.cpp: tests, contacts, response
   ContactMode mode() const {
@@ -227,6 +323,7 @@ class World final : private PairListener {
   void process_boxes(PairSlot slot, double t);
   Contact contact_of(BodyId a, BodyId b, double t, const FoundTouch& found = {}) const;
   void process_contact(PairSlot slot, double t);
+  void process_separation(PairSlot slot, double t);
   void process_wall(BodyId id, double t);
   bool respond(PairSlot slot, const Contact& contact);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
@@ -243,7 +340,7 @@ class World final : private PairListener {
   void add_hold(const Hold& hold);
   void drop_hold(HoldSlot slot);
   void drop_holds(BodyId id);
-  double next_contact_of_held(const Pair& pair) const;
+  double next_contact_of_held(const Pair& pair);
   void schedule_release(HoldSlot slot);
   void release(HoldSlot slot);
 
@@ -259,7 +356,8 @@ class World final : private PairListener {
   bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
 
   // world/audit.cpp
-  void audit_holds() const;
+  void audit_holds(double t) const;
+  void audit_overlapping(double t) const;
 
   WorldOptions options_;
   Listener* listener_;
@@ -269,6 +367,7 @@ class World final : private PairListener {
   std::vector<Body> bodies_;
   ListArena<Link> links_;  // pairs of each body
   std::vector<BodyId> free_bodies_;
+  std::vector<BodyId> removed_;  ///< at removed_at_: their ids are not given again at that time
   std::vector<BodyId> entering_;
   std::vector<Pair> pairs_;
   std::vector<PairSlot> free_pairs_;
@@ -277,9 +376,6 @@ class World final : private PairListener {
   std::vector<FoundTouch> found_;               // by pair, as far as known; of no use once a motion has changed
   std::vector<KdopDirection> directions_;       // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction
-  /// Ignored pairs that have ended at this instant: motions that change in turn may part boxes that touch and bring
-  /// them together again, or keep together what would have parted.
-  std::vector<Passing> passing_;
   std::vector<Hold> holds_;
   std::vector<HoldSlot> free_holds_;
   std::vector<BodyId> disturbed_;
@@ -293,12 +389,21 @@ class World final : private PairListener {
   DaryQueue<PairRank> boxes_;         // slots are pairs; used where the broad phase is not exact
   WorldCounters counters_;
   Profile profile_;
-  double now_;
+  double now_;    ///< of what is being done; ahead of clock_ when next_time() has looked ahead
+  double clock_;  ///< as callers know it
   double horizon_;
   double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
+  double next_time_ = -never;   ///< as next_time() has found it; -never if it has not been asked for
+  double removed_at_ = -never;
   std::size_t alive_ = 0;
+  std::size_t unlisted_ = 0;    ///< pairs that the broad phase does not list
+  bool meshes_ = false;         ///< there is or has been one, so volumes have room for contact gaps
+  bool box_functions_ = false;  ///< some body has or had one
   bool inserting_ = false;
   bool stepping_ = false;
+  bool telling_ = false;          ///< a listener is being told, or has thrown
+  bool in_box_function_ = false;  ///< a function of the caller's is making a box
+  std::exception_ptr failure_;    ///< what has left the world in pieces
   std::uint64_t islands_ = 0;
   std::uint64_t edits_ = 0;  ///< by callbacks since edits_start_
   double edits_start_ = -never;

@@ -104,7 +104,7 @@ bool BallTouch<Degree>::matters(const Path& path) const {
 
 template <int Degree>
 TimeSpans BallTouch<Degree>::within(const Path& path) const {
-  std::array<double, Degree + 1> reach = gap_.c;
+  std::array<double, std::size_t{Degree} + 1> reach = gap_.c;
   reach[0] += radius_;
   return near_spans(path, reach, horizon_);
 }

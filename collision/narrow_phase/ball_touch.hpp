@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/convex_touch.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/near_spans.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
@@ -33,7 +34,7 @@ NearestPoint nearest_point(const PlacedTriangle& triangle, const Eigen::Vector3d
 template <int Degree>
 class BallTouch {
  public:
-  using Path = std::array<Eigen::Vector3d, Degree + 1>;  ///< polynomial of tau
+  using Path = std::array<Eigen::Vector3d, std::size_t{Degree} + 1>;  ///< polynomial of tau
 
   /// Motion of the ball seen from the triangle's body. `horizon`: no contact after it; a function of the bodies and
   /// motion alone, or answers would not be. Parts of the triangle that the ball is not near within the window of

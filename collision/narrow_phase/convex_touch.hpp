@@ -1,6 +1,7 @@
 // When a triangle touches another triangle or a box, one of them moving.
 #pragma once
 
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
@@ -138,7 +139,7 @@ class ConvexTouch {
   static constexpr double tie = 4;
 
   struct Condition {
-    std::array<double, Degree + 1> separation;  ///< along the normal; below the gap: near
+    std::array<double, std::size_t{Degree} + 1> separation;  ///< along the normal; below the gap: near
     Eigen::Vector3d normal;                     ///< unit, from a to b
 
     double operator()(double tau) const {

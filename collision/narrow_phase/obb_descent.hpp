@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/lanes.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/obb_tree.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
@@ -67,7 +68,8 @@ struct SliceMotion {
 
   SliceMotion(const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, const TimeSlice& slice, double size);
 
-  std::array<Eigen::Vector3d, Degree + 1> r;  ///< centre of b seen from a: coefficients about the slice's begin
+  std::array<Eigen::Vector3d, std::size_t{Degree} + 1>
+      r;  ///< centre of b seen from a: coefficients about the slice's begin
   double size;
   float margin;
   float bend;  ///< length of the quadratic coefficient, rounded up
@@ -90,7 +92,7 @@ class BoxPairTest {
   /// What depends on the box of a alone: kept while it meets several boxes of b.
   struct Frame {
     std::array<Lanes, 3> turn;             ///< column k: coordinate k of b's model along the axes of a's box
-    std::array<Lanes, Degree + 1> motion;  ///< of b's model origin along them
+    std::array<Lanes, std::size_t{Degree} + 1> motion;  ///< of b's model origin along them
     Lanes half_extents;
   };
   Frame frame(const ObbNode& a) const;
@@ -100,7 +102,7 @@ class BoxPairTest {
 
  private:
   std::array<std::array<float, 3>, 3> turn_;        ///< model of b -> model of a
-  std::array<Eigen::Vector3f, Degree + 1> motion_;  ///< of b's centre in the model coordinates of a
+  std::array<Eigen::Vector3f, std::size_t{Degree} + 1> motion_;  ///< of b's centre in the model coordinates of a
   float unit_a_;
   float unit_b_;
   float margin_;
@@ -115,7 +117,7 @@ class BoxBallTest {
   bool operator()(const ObbNode& a, StepWindow& window) const;
 
  private:
-  std::array<Eigen::Vector3f, Degree + 1> motion_;
+  std::array<Eigen::Vector3f, std::size_t{Degree} + 1> motion_;
   float unit_;
   float radius_;
   float margin_;

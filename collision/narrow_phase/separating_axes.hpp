@@ -1,6 +1,7 @@
 // Separating axes of a triangle with a triangle or a box, one of them moving.
 #pragma once
 
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
 
@@ -129,18 +130,15 @@ bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
   return true;
 }
 
-/// Axes shorter than this are left out, which is always safe; with coordinates of 2^-100 to 2^100 they come from
-/// parallel edges alone, and squares of projections do not underflow.
-inline constexpr double vanishing_axis = 0x1p-320;
-
-/// Gaps by which boxes and quick tests are widened, see BoxPairTest.
-inline constexpr double quick_margin = 4;
+/// Axes shorter than this are left out, which is always safe. With edges of 2^-110 or more that meet at sines of 2^-46
+/// or more (`shortest_edge`, Mesh::thinnest_sine) they come from parallel edges alone; their squares do not underflow.
+inline constexpr double vanishing_axis = 0x1p-400;
 
 /// Cheap test: shrinks the window to times at which a and b may touch, with b moving; false if there are none.
 /// Projections are widened by `margin` as in BoxPairTest, times the 1-norm of the axis, which is not below its length.
 template <int Degree, class A, class B>
 bool may_touch(const A& a, const B& b, const RelativeMotion<Degree>& motion,
-               const std::array<double, Degree + 1>& margin, TimeWindow& window) {
+               const std::array<double, std::size_t{Degree} + 1>& margin, TimeWindow& window) {
   return every_axis(a, b, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
     const double length = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
     if (!(length > vanishing_axis)) return true;

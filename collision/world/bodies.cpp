@@ -2,6 +2,7 @@
 #include "collision/profile.hpp"
 #include "collision/world.hpp"
 #include "collision/world/queue_room.hpp"
+#include "kds/raised_flag.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,8 +35,15 @@ typename World<Degree>::Body& World<Degree>::body(BodyId id) {
 
 template <int Degree>
 void World<Degree>::remove_body(BodyId id) {
-  Body& removed = body(id);
+  require_editable("World::remove_body");
+  body(id);
   count_edit();
+  change_or_fail([&] { take_out(id); });
+}
+
+template <int Degree>
+void World<Degree>::take_out(BodyId id) {
+  Body& removed = bodies_[id];
   drop_holds(id);
   removed.alive = false;
   clear(pieces_, id);
@@ -46,24 +54,40 @@ void World<Degree>::remove_body(BodyId id) {
   } else {
     std::erase(entering_, id);  // or the next of this id would enter in its stead
   }
-  // Pairs the broad phase does not know of any more.
-  while (!removed.pairs.empty()) release_pair(links_.items(removed.pairs).back().slot);
+  while (!removed.pairs.empty()) {  // those that overlap, or have just separated
+    const PairSlot slot = links_.items(removed.pairs).back().slot;
+    const Pair& pair = pairs_[slot];
+    // They separate, unless it has not been told yet that they overlap.
+    if (mode() == ContactMode::transparent && pair.overlapping && !take_back(Pending::Kind::overlap, pair.a, pair.b)) {
+      report(Pending::Kind::separation, pair.a, pair.b, contact_of(pair.a, pair.b, now_));
+    }
+    release_pair(slot);
+  }
   links_.free(removed.pairs);
   if (!pending_.empty()) keep_reports_of(id);
   removed = Body{};
-  free_bodies_.push_back(id);
+  free_removed();
+  removed_.push_back(id);
+  removed_at_ = now_;
   --alive_;
 }
 
 template <int Degree>
 void World<Degree>::update_motion(BodyId id, const Motion& motion) {
-  Body& b = body(id);
-  if (!motion.finite()) throw std::invalid_argument("World::update_motion: the motion is not finite");
+  require_editable("World::update_motion");
+  body(id);
+  if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
   if (motion.start > now_) {
     throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(motion.start) +
                                 ", after the clock at " + std::to_string(now_));
   }
   count_edit();
+  change_or_fail([&] { give(id, motion); });
+}
+
+template <int Degree>
+void World<Degree>::give(BodyId id, const Motion& motion) {
+  Body& b = bodies_[id];
   if (b.extras) b.extras->script.clear();
   clear(pieces_, id);
   ++counters_.motion_updates;
@@ -98,7 +122,6 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
   }
   inserting_ = jumped && mode() == ContactMode::resolved;
   broad_phase_->update(id, renewed_box(id), now_, *this);
-  for (Passing& passing : passing_) passing.moved = passing.moved || passing.a == id || passing.b == id;
   for (const Link& link : links_.items(b.pairs)) mark_dirty(link.slot);
   if (inserting_) {
     for (const Link& link : links_.items(b.pairs)) pairs_[link.slot].fresh = true;
@@ -111,6 +134,13 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
 /// The bounding volume as it is: what the caller's function gave last, or what the motion gives.
 template <int Degree>
 inline KineticBox<Degree> World<Degree>::bounding_box(BodyId id) const {
+  if (meshes_) return grown(id, bare_box(id));
+  return bare_box(id);
+}
+
+/// The same without room for the contact gap of meshes.
+template <int Degree>
+inline KineticBox<Degree> World<Degree>::bare_box(BodyId id) const {
   const Body& b = bodies_[id];
   if (b.extras && b.extras->box_function) return b.extras->box;
   const bool sphere = !b.shape || b.volume == BoundingVolume::sphere;
@@ -125,7 +155,10 @@ template <int Degree>
 KineticBox<Degree> World<Degree>::renewed_box(BodyId id) {
   Extras* const extras = bodies_[id].extras.get();
   if (extras && extras->box_function) {
-    const KineticBox<Degree> box = extras->box_function(now_, movers_[id].motion);
+    const KineticBox<Degree> box = [&] {
+      const kds::detail::RaisedFlag calling(in_box_function_);
+      return extras->box_function(now_, movers_[id].motion);
+    }();
     if (!box.min.finite() || !box.max.finite()) {
       throw std::invalid_argument("BodyDescription.box: returned a box that is not finite");
     }
@@ -140,11 +173,14 @@ KineticBox<Degree> World<Degree>::renewed_box(BodyId id) {
 template <int Degree>
 void World<Degree>::schedule_volume(BodyId id) {
   const Extras* const extras = bodies_[id].extras.get();
-  if (!extras || !extras->box_function) return;
-  if (extras->box.valid_until <= horizon_) {
-    volumes_.set(id, extras->box.valid_until);
+  const bool box_function = extras && extras->box_function;
+  if (!box_function && !meshes_) return;
+  const double until = box_function ? extras->box.valid_until : clearance_until(id);
+  if (until <= horizon_ && until < never) {
+    make_room(volumes_, bodies_.size());
+    volumes_.set(id, until);
   } else {
-    volumes_.clear(id);
+    clear(volumes_, id);
   }
 }
 
@@ -166,6 +202,21 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   Body& body_a = bodies_[a];
   Body& body_b = bodies_[b];
   if ((body_a.category & body_b.collides_with) == 0 || (body_b.category & body_a.collides_with) == 0) return;
+  const PairSlot overlapping = unlisted_ > 0 ? find_pair(a, b) : no_pair;
+  if (overlapping != no_pair) --unlisted_;
+  const PairSlot slot = overlapping != no_pair ? overlapping : new_pair(a, b);
+  Pair& pair = pairs_[slot];
+  pair.listed = true;
+  pair.fresh = pair.fresh || inserting_;
+  ++counters_.pairs_begun;
+  mark_dirty(slot);
+  if (options_.report_pairs && broad_phase_->exact()) report_pair(true, a, b);
+}
+
+template <int Degree>
+inline typename World<Degree>::PairSlot World<Degree>::new_pair(BodyId a, BodyId b) {
+  Body& body_a = bodies_[a];
+  Body& body_b = bodies_[b];
   PairSlot slot;
   if (free_pairs_.empty()) {
     slot = static_cast<PairSlot>(pairs_.size());
@@ -184,21 +235,10 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   pair.place_in_a = body_a.pairs.size;
   pair.place_in_b = body_b.pairs.size;
   pair.alive = true;
-  pair.fresh = inserting_;
-  for (const Passing& passing : passing_) {
-    if (passing.a != a || passing.b != b) continue;
-    // What is let pass is ignored from the next instant on; its boxes may begin to overlap then.
-    pair.ignored = pair.ignored || passing.at == t || (passing.let_pass && next_up(passing.at) == t);
-    if (passing.let_pass && passing.at == t) pair.let_pass = t;
-  }
-  // A jump may part two bodies and another one bring them together at the same instant.
-  pair.touching = take_back(Pending::Kind::separation, a, b);
   const std::uint32_t first_room = alive_ <= few_pairs + 1 ? few_pairs : first_pairs;
   links_.push_back(body_a.pairs, {b, slot}, first_room);
   links_.push_back(body_b.pairs, {a, slot}, first_room);
-  ++counters_.pairs_begun;
-  mark_dirty(slot);
-  if (options_.report_pairs && broad_phase_->exact()) report_pair(true, a, b);
+  return slot;
 }
 
 template <int Degree>
@@ -207,7 +247,23 @@ void World<Degree>::pair_ended(BodyId a, BodyId b, double t) {
   now_ = t;
   const PairSlot slot = find_pair(a, b);
   if (slot == no_pair) return;  // filtered
-  release_pair(slot);
+  unlist(slot);
+  if (pairs_[slot].overlapping) {
+    mark_dirty(slot);
+  } else {
+    release_pair(slot);
+  }
+}
+
+/// The broad phase does not list the pair any more.
+template <int Degree>
+void World<Degree>::unlist(PairSlot slot) {
+  Pair& pair = pairs_[slot];
+  if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) report_pair(false, pair.a, pair.b);
+  pair.boxes_overlap = false;
+  pair.listed = false;
+  ++unlisted_;
+  if (slot < boxes_.slots()) boxes_.clear(slot);
 }
 
 template <int Degree>
@@ -220,11 +276,10 @@ typename World<Degree>::PairSlot World<Degree>::find_pair(BodyId a, BodyId b) co
   return no_pair;
 }
 
+/// Precondition: it is not listed.
 template <int Degree>
 void World<Degree>::release_pair(PairSlot slot) {
   Pair& pair = pairs_[slot];
-  if (pair.touching) report(Pending::Kind::separation, pair.a, pair.b, {.time = now_});
-  if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) report_pair(false, pair.a, pair.b);
   // Each body's list closes up with its last entry.
   for (const BodyId id : {pair.a, pair.b}) {
     const auto links = links_.items(bodies_[id].pairs);
@@ -234,21 +289,25 @@ void World<Degree>::release_pair(PairSlot slot) {
     links_.pop_back(bodies_[id].pairs);
     (id < moved.other ? pairs_[moved.slot].place_in_a : pairs_[moved.slot].place_in_b) = place;
   }
-  if (pair.ignored) passing_.push_back({pair.a, pair.b, now_, pair.let_pass == now_, false});
   contacts_.clear(slot);
-  if (slot < boxes_.slots()) boxes_.clear(slot);
+  --unlisted_;
   pair.alive = false;
   free_pairs_.push_back(slot);
 }
 
-/// Ignores a pair until it has separated, and at this time whatever else happens, even if its boxes do not overlap just
-/// now.
+/// Lets a pair pass until it has separated, and at this time whatever else happens, even if its boxes do not overlap
+/// just now.
 template <int Degree>
 void World<Degree>::let_pass(BodyId a, BodyId b) {
-  const PairSlot slot = find_pair(a, b);
-  if (slot == no_pair) return passing_.push_back({a, b, now_, true, false});
-  pairs_[slot].ignored = true;
-  pairs_[slot].let_pass = now_;
+  PairSlot slot = find_pair(a, b);
+  if (slot == no_pair) {
+    slot = new_pair(a, b);
+    ++unlisted_;
+  }
+  Pair& pair = pairs_[slot];
+  pair.overlapping = true;
+  pair.fresh = false;
+  pair.passes_at = now_;
   mark_dirty(slot);
 }
 
@@ -264,10 +323,7 @@ bool World<Degree>::touching(BodyId a, BodyId b) const {
   body(a), body(b);
   if (a > b) std::swap(a, b);
   const PairSlot slot = find_pair(a, b);
-  if (slot != no_pair) return pairs_[slot].touching;
-  // Whether the broad phase has forgotten the pair before its separation is told makes no difference.
-  return std::any_of(pending_.begin(), pending_.end(),
-                     [&](const Pending& event) { return event.waits() && event.a == a && event.b == b; });
+  return slot != no_pair && mode() == ContactMode::transparent && pairs_[slot].overlapping;
 }
 
 template class World<1>;

@@ -21,22 +21,36 @@ void validate(const BodyDescription<Degree>& description) {
   if (description.motion.empty()) fail("motion: has no piece");
   for (std::size_t i = 0; i < description.motion.size(); ++i) {
     const auto& piece = description.motion[i];
-    if (!piece.finite()) fail("motion[" + std::to_string(i) + "]: must be finite");
+    if (!in_range(piece)) refuse_motion(piece, "motion[" + std::to_string(i) + "]");
     if (i > 0 && !(piece.start > description.motion[i - 1].start)) {
       fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
     }
   }
-  if (!description.fixed && (!std::isfinite(description.mass) || !(description.mass > 0))) {
-    fail("mass: must be finite and > 0");
+  if (!description.fixed) require_size(description.mass, "mass");
+  switch (description.volume) {
+    case BoundingVolume::shape:
+    case BoundingVolume::sphere:
+      break;
+    default:
+      fail("volume: unknown");
   }
   if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
 }
 
 }  // namespace
 
+/// Those that were removed at an earlier time: all that has happened to them has been told.
+template <int Degree>
+inline void World<Degree>::free_removed() {
+  if (removed_.empty() || !(removed_at_ < now_)) return;
+  free_bodies_.insert(free_bodies_.end(), removed_.begin(), removed_.end());
+  removed_.clear();
+}
+
 /// The number of one that is still to be described.
 template <int Degree>
 inline BodyId World<Degree>::new_body() {
+  free_removed();
   if (!free_bodies_.empty()) {
     const BodyId id = free_bodies_.back();
     free_bodies_.pop_back();
@@ -50,6 +64,7 @@ inline BodyId World<Degree>::new_body() {
 
 template <int Degree>
 BodyId World<Degree>::add_body(const Description& description) {
+  require_editable("World::add_body");
   validate(description);
   count_edit();
   const auto* const ball = std::get_if<Sphere>(&description.shape);
@@ -59,9 +74,17 @@ BodyId World<Degree>::add_body(const Description& description) {
   } else {
     shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
   }
+  return change_or_fail([&] { return put(description, std::move(shape)); });
+}
+
+/// No shape is that of a ball that is not turned.
+template <int Degree>
+inline BodyId World<Degree>::put(const Description& description, std::shared_ptr<const PlacedShape> shape) {
+  const auto* const ball = std::get_if<Sphere>(&description.shape);
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
+  if (std::holds_alternative<MeshShape>(description.shape)) allow_for_meshes();
   const BodyId id = new_body();
   Body& added = bodies_[id];
   added.bounding_radius = shape ? shape->bounding_radius : ball->radius;
@@ -94,7 +117,10 @@ template <int Degree>
 void World<Degree>::set_extras(BodyId id, std::span<const Motion> script,
                                const typename Description::BoxFunction& box_function) {
   Extras extras{{script.rbegin(), script.rend()}, box_function, {}};  // next piece last
-  if (box_function) make_room(volumes_, bodies_.size());
+  if (box_function) {
+    make_room(volumes_, bodies_.size());
+    box_functions_ = true;
+  }
   make_room(pieces_, bodies_.size());
   if (!script.empty()) pieces_.set(id, script.front().start);
   bodies_[id].extras = std::make_unique<Extras>(std::move(extras));
@@ -102,6 +128,10 @@ void World<Degree>::set_extras(BodyId id, std::span<const Motion> script,
 
 template <int Degree>
 void World<Degree>::reserve(std::size_t bodies) {
+  require_editable("World::reserve");
+  if (bodies > no_body) {
+    throw std::length_error("World::reserve: " + std::to_string(bodies) + " bodies are more than there are ids");
+  }
   bodies_.reserve(bodies);
   movers_.reserve(bodies);
   entering_.reserve(bodies);
@@ -125,8 +155,7 @@ void World<Degree>::enter_new_bodies() {
   }
   const auto boxes = std::make_unique_for_overwrite<KineticBox<Degree>[]>(entries.size());
   // The functions of callers are called by their own thread, and in order.
-  const bool functions = volumes_.slots() > 0;
-  const std::size_t threads = functions ? 1 : threads_for(entries.size(), options_.threads);
+  const std::size_t threads = box_functions_ ? 1 : threads_for(entries.size(), options_.threads);
   in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       entries[i].box = new (&boxes[i]) KineticBox<Degree>(renewed_box(entries[i].id));  // not copied there
@@ -139,7 +168,7 @@ void World<Degree>::enter_new_bodies() {
   }
   inserting_ = false;
   schedule_walls(entries);
-  if (!functions) return;
+  if (!box_functions_ && !meshes_) return;
   for (const Entry& entry : entries) schedule_volume(entry.id);
 }
 

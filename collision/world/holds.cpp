@@ -2,6 +2,8 @@
 #include "collision/world.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 namespace kds::collision {
 namespace {
@@ -96,20 +98,28 @@ void World<Degree>::drop_holds(BodyId id) {
 
 /// Convex bodies that are held are on either side of a plane through the touch and stay there, so they cannot meet
 /// again before they are let go. A mesh may have something else in the way; where rounding makes it the held touch that
-/// is found, that is left behind by some roundings.
+/// is found, that is left behind by some roundings, for as long as the two move as they do: so the answer does not
+/// depend on how often it is asked for.
 template <int Degree>
-double World<Degree>::next_contact_of_held(const Pair& pair) const {
+double World<Degree>::next_contact_of_held(const Pair& pair) {
   const auto a = moving(pair.a);
   const auto b = moving(pair.b);
   if (!is_mesh(a) && !is_mesh(b)) return never;
-  const double t = first_contact(a, b, now_, horizon_, ContactMode::resolved);
-  if (t != now_) return t;
+  const double began = std::max(a.motion.start, b.motion.start);
   Vector3d out = Vector3d::Zero();
+  bool left_behind = false;
   for (const HoldSlot slot : bodies_[pair.a].holds) {
-    if (holds_[slot].b == pair.b) out += holds_[slot].normal;
+    if (holds_[slot].b != pair.b) continue;
+    out += holds_[slot].normal;
+    left_behind = left_behind || holds_[slot].left_behind == began;
+  }
+  if (!left_behind) {
+    const double t = first_contact(a, b, now_, horizon_, ContactMode::resolved);
+    if (t != now_) return t;
+    holds_[find_hold(pair.a, pair.b)].left_behind = began;
   }
   const double coordinates =
-      a.motion.position(now_).cwiseAbs().maxCoeff() + b.motion.position(now_).cwiseAbs().maxCoeff();
+      a.motion.position(began).cwiseAbs().maxCoeff() + b.motion.position(began).cwiseAbs().maxCoeff();
   const double size = a.shape.bounding_radius + b.shape.bounding_radius;
   const Motion farther = shifted(b.motion, coordinate_slack * (size + coordinates) * out);
   return first_contact(a, MovingShape<Degree>{b.shape, farther}, now_, horizon_, ContactMode::resolved);
@@ -149,6 +159,9 @@ bool World<Degree>::held(BodyId a, BodyId b) const {
 template <int Degree>
 bool World<Degree>::held_at_wall(BodyId a, int wall) const {
   body(a);
+  if (wall < 0 || wall > 5) {
+    throw std::out_of_range("World::held_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
+  }
   return find_hold(a, no_body, wall) != no_hold;
 }
 
@@ -156,7 +169,7 @@ template <int Degree>
 typename World<Degree>::Motion World<Degree>::free_motion(BodyId id) const {
   const Body& b = body(id);
   if (b.holds.empty()) return movers_[id].motion;
-  Motion motion = movers_[id].motion.restarted(now_);
+  Motion motion = movers_[id].motion.restarted(now());
   if constexpr (Degree >= 2) motion.coefficients[2] = b.force;
   return motion;
 }

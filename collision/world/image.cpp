@@ -79,18 +79,17 @@ void World<Degree>::Image::body(Archive& archive, BodyImage& body) const {
 template <int Degree>
 template <class Archive>
 void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
-  archive(now, horizon, counters, edits, edits_start);
+  archive(now, clock, horizon, has_had_meshes, counters, edits, edits_start);
   each(archive, meshes, [&](auto& one) { mesh(archive, one, known); });
   each(archive, bodies, [&](BodyImage& one) { body(archive, one); });
-  archive(free_bodies, entering, disturbed, free_holds, releases);
+  archive(free_bodies, removed, removed_at, entering, disturbed, free_holds, releases);
   each(archive, pairs, [&](PairImage& image) {
     Pair& p = image.pair;
-    archive(p.a, p.b, p.dirty, p.fresh, p.touching, p.ignored, p.boxes_overlap, p.estimated, p.let_pass, image.contact,
-            image.boxes);
+    archive(p.a, p.b, p.listed, p.dirty, p.fresh, p.overlapping, p.boxes_overlap, p.estimated, p.passes_at,
+            image.contact, image.boxes);
   });
-  each(archive, passing, [&](Passing& p) { archive(p.a, p.b, p.at, p.let_pass, p.moved); });
   each(archive, holds, [&](Hold& h) {
-    archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh);
+    archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh, h.left_behind);
     vector(archive, h.normal);
   });
   each(archive, pending, [&](Pending& p) {

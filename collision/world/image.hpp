@@ -37,17 +37,18 @@ struct World<Degree>::Image {
     double boxes = never;
   };
 
-  double now = 0, horizon = 0;
+  double now = 0, clock = 0, horizon = 0;
+  bool has_had_meshes = false;
   WorldCounters counters;
   std::vector<std::shared_ptr<const Mesh>> meshes;
   std::vector<BodyImage> bodies;  // by id
-  std::vector<BodyId> free_bodies, entering, disturbed;
+  std::vector<BodyId> free_bodies, removed, entering, disturbed;
   std::vector<PairImage> pairs;
-  std::vector<Passing> passing;
   std::vector<Hold> holds;
   std::vector<double> releases;  // by hold
   std::vector<HoldSlot> free_holds;
   std::vector<Pending> pending;
+  double removed_at = 0;
   std::uint64_t edits = 0;
   double edits_start = 0;
 
