@@ -105,8 +105,8 @@ void World<Degree>::reach(double limit) {
 
 template <int Degree>
 bool World<Degree>::step(double limit) {
-  if (limit < idle_until_) {
-    now_ = std::max(now_, limit);
+  if (limit < idle_until_ || (limit == never && idle_until_ == never)) {
+    if (limit < never) now_ = std::max(now_, limit);
     return false;
   }
   idle_until_ = -never;
@@ -116,10 +116,11 @@ bool World<Degree>::step(double limit) {
   }
   const kds::detail::RaisedFlag stepping(stepping_);  // Callbacks are called from here alone.
   bool looked_ahead = false;
+  double reached = now_;  // the clock, should nothing come
   for (;;) {
     if (!entering_.empty()) enter_new_bodies();
     if (!disturbed_.empty()) settle();
-    if (!dirty_.empty() || !passing_.empty()) test_dirty_pairs();
+    if (!dirty_.empty()) test_dirty_pairs();
     const auto time_of = [](const auto& queue) { return queue.empty() ? never : queue.top().time; };
     const double piece = time_of(pieces_);
     const double boxes = time_of(boxes_);
@@ -134,7 +135,11 @@ bool World<Degree>::step(double limit) {
     if (next < never && certify_next(contact == next, wall == next)) continue;
     // A piece that starts now is the motion at t+, so the broad phase may not run past it under the old one.
     const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
-    if (until == never) return false;
+    if (until == never) {
+      idle_until_ = never;
+      go_back(reached);
+      return false;
+    }
     {
       const Stopwatch watch(profile(), Work::sort);
       if (broad_phase_->advance(until, *this) || next == never) continue;
@@ -147,7 +152,7 @@ bool World<Degree>::step(double limit) {
     now_ = std::max(now_, next);
     if (boxes == next) {
       process_boxes(boxes_.top().slot, next);
-    } else if (reports && !pending_.begin()->waits()) {
+    } else if (reports) {
       report_next();
       return true;
     } else if (volume == next) {
@@ -158,20 +163,21 @@ bool World<Degree>::step(double limit) {
       return true;
     } else if (let_go == next) {
       release(releases_.top().slot);
-    } else if (contact == next && !(reports && separates_before(pairs_[contacts_.top().slot]))) {
-      process_contact(contacts_.top().slot, next);
-      return true;
-    } else if (reports) {
-      report_next();
+      reached = now_;
+    } else if (contact == next) {
+      const PairSlot slot = contacts_.top().slot;
+      if (pairs_[slot].overlapping) {
+        process_separation(slot, next);
+      } else {
+        process_contact(slot, next);
+      }
       return true;
     } else if (next < limit) {
       // Without a limit a window farther, and where nothing happens in that either, as far as there is time.
       reach(limit == never && !looked_ahead ? horizon_ + options_.window : limit);
       looked_ahead = true;
     } else {
-      if (passing_.empty()) {
-        idle_until_ = std::min({horizon_, piece, boxes, volume, wall, let_go, contact, broad_phase_->next_time()});
-      }
+      idle_until_ = std::min({horizon_, piece, boxes, volume, wall, let_go, contact, broad_phase_->next_time()});
       return false;
     }
   }
@@ -214,12 +220,17 @@ bool World<Degree>::advance_for(double budget_seconds, double t) {
 /// All that are due at once: bodies that jump together are not apart in between.
 template <int Degree>
 void World<Degree>::start_pieces() {
-  std::vector<BodyId> due;
+  struct Due {
+    BodyId id;
+    bool jumps;
+  };
+  std::vector<Due> due;
   while (!pieces_.empty() && pieces_.top().time == now_) {
     const BodyId id = pieces_.top().slot;
     Body& b = bodies_[id];
     auto& script = b.extras->script;
-    if (b.entered && is_jump(id, script.back())) drop_holds(id);
+    const bool jumps = b.entered && is_jump(id, script.back());
+    if (jumps) drop_holds(id);
     movers_[id].motion = script.back();
     if constexpr (Degree >= 2) b.force = script.back().coefficients[2];
     script.pop_back();
@@ -228,12 +239,12 @@ void World<Degree>::start_pieces() {
     } else {
       pieces_.set(id, script.back().start);
     }
-    due.push_back(id);
+    due.push_back({id, jumps});
   }
-  for (const BodyId id : due) {
+  for (const auto& [id, jumps] : due) {
     if (bodies_[id].entered) {
       ++counters_.motion_updates;
-      set_motion(id, Motion(movers_[id].motion), false);
+      set_motion(id, Motion(movers_[id].motion), jumps);
       disturb(id);
     } else {
       entering_.push_back(id);

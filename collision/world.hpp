@@ -63,7 +63,8 @@ class World final : private PairListener {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Adds a body and returns its id: the next number, from 0 on, or the id of a body that was removed. Throws
+  /// Adds a body and returns its id: the next number, from 0 on, or the id of a body that was removed at an earlier
+  /// time, so that what is told of an instant never names two bodies by one id. Throws
   /// std::invalid_argument, naming the member that is wrong; then nothing is added. Adding many between two steps costs
   /// least.
   BodyId add_body(const Description& description);
@@ -85,7 +86,7 @@ class World final : private PairListener {
   void advance_to(double t);
 
   /// Processes the next event not later than `limit`, if there is one. False if not; then the clock is at `limit`
-  /// if that is finite. Throws as advance_to(), but not for the past; `sap`, whose frames never end, needs a limit.
+  /// if that is finite, and else stays at the last event. Throws as advance_to(), but not for the past; `sap`, whose frames never end, needs a limit.
   bool step(double limit = never);
 
   /// Processes events up to t until this much time of the wall clock has passed, but at least one; true if t was
@@ -147,13 +148,13 @@ class World final : private PairListener {
   using HoldRank = detail::HoldRank;
   using Island = detail::Island;
   using Pair = detail::Pair;
-  using Passing = detail::Passing;
   using PairRank = detail::PairRank;
   using Pending = detail::Pending;
 
   // world.cpp: the clock
   void make_broad_phase();
   void reach(double limit);
+  void go_back(double t);
   void start_pieces();
   void renew_volume(BodyId id);
   void count_edit();
@@ -165,7 +166,6 @@ class World final : private PairListener {
   }
   void report_pair(bool began, BodyId a, BodyId b);
   bool take_back(typename Pending::Kind kind, BodyId a, BodyId b);
-  bool separates_before(const Pair& pair) const;
   void keep_reports_of(BodyId removed);
 
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }
@@ -176,10 +176,12 @@ class World final : private PairListener {
   void become(const Image& image);
   void set_shape(BodyId id, PlacedShape placed);
   void load_pairs(const Image& image);
+  void rebuild_broad_phase();
   std::vector<std::shared_ptr<const Mesh>> meshes() const;
 
   // world/entry.cpp: bodies that come
   BodyId new_body();
+  void free_removed();
   void set_extras(BodyId id, std::span<const Motion> script, const typename Description::BoxFunction& box_function);
   void enter_new_bodies();
 
@@ -190,6 +192,8 @@ class World final : private PairListener {
   void pair_began(BodyId a, BodyId b, double t) override;
   void pair_ended(BodyId a, BodyId b, double t) override;
   PairSlot find_pair(BodyId a, BodyId b) const;
+  PairSlot new_pair(BodyId a, BodyId b);
+  void unlist(PairSlot slot);
   void release_pair(PairSlot slot);
   void mark_dirty(PairSlot slot);
   void let_pass(BodyId a, BodyId b);
@@ -227,6 +231,7 @@ class World final : private PairListener {
   void process_boxes(PairSlot slot, double t);
   Contact contact_of(BodyId a, BodyId b, double t, const FoundTouch& found = {}) const;
   void process_contact(PairSlot slot, double t);
+  void process_separation(PairSlot slot, double t);
   void process_wall(BodyId id, double t);
   bool respond(PairSlot slot, const Contact& contact);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
@@ -260,6 +265,7 @@ class World final : private PairListener {
 
   // world/audit.cpp
   void audit_holds() const;
+  void audit_overlapping() const;
 
   WorldOptions options_;
   Listener* listener_;
@@ -269,6 +275,7 @@ class World final : private PairListener {
   std::vector<Body> bodies_;
   ListArena<Link> links_;  // pairs of each body
   std::vector<BodyId> free_bodies_;
+  std::vector<BodyId> removed_;  ///< at removed_at_: their ids are not given again at that time
   std::vector<BodyId> entering_;
   std::vector<Pair> pairs_;
   std::vector<PairSlot> free_pairs_;
@@ -277,9 +284,6 @@ class World final : private PairListener {
   std::vector<FoundTouch> found_;               // by pair, as far as known; of no use once a motion has changed
   std::vector<KdopDirection> directions_;       // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction
-  /// Ignored pairs that have ended at this instant: motions that change in turn may part boxes that touch and bring
-  /// them together again, or keep together what would have parted.
-  std::vector<Passing> passing_;
   std::vector<Hold> holds_;
   std::vector<HoldSlot> free_holds_;
   std::vector<BodyId> disturbed_;
@@ -296,7 +300,9 @@ class World final : private PairListener {
   double now_;
   double horizon_;
   double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
+  double removed_at_ = -never;
   std::size_t alive_ = 0;
+  std::size_t unlisted_ = 0;  ///< pairs that the broad phase does not list
   bool inserting_ = false;
   bool stepping_ = false;
   std::uint64_t islands_ = 0;

@@ -16,11 +16,12 @@ void World<Degree>::audit() const {
   };
   if (!entering_.empty() || !dirty_.empty()) return;  // Work of this instant is still to be done.
   if (disturbed_.empty()) audit_holds();
+  audit_overlapping();
   for (BodyId a = 0; a < bodies_.size(); ++a) {
     for (BodyId b = a + 1; b < bodies_.size(); ++b) {
       if (!bodies_[a].entered || !bodies_[b].entered) continue;
       const PairSlot slot = find_pair(a, b);
-      if (slot != no_pair) continue;
+      if (slot != no_pair && pairs_[slot].listed) continue;
       if ((bodies_[a].category & bodies_[b].collides_with) == 0 ||
           (bodies_[b].category & bodies_[a].collides_with) == 0) {
         continue;
@@ -29,6 +30,25 @@ void World<Degree>::audit() const {
       if (volumes_overlap(a, b)) fail(a, b, "the bounding volumes overlap and the pair is not active");
     }
   }
+}
+
+/// Pairs that the broad phase does not list are those that overlap, and what overlaps penetrates or is about to
+/// separate at this instant.
+template <int Degree>
+void World<Degree>::audit_overlapping() const {
+  std::size_t unlisted = 0;
+  for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
+    const Pair& pair = pairs_[slot];
+    if (!pair.alive) continue;
+    const auto fail = [&](const char* what) {
+      throw AuditFailure("World: bodies " + std::to_string(pair.a) + " and " + std::to_string(pair.b) + ": " + what);
+    };
+    unlisted += pair.listed ? 0 : 1;
+    if (!pair.overlapping && !pair.listed) fail("a pair that neither overlaps nor is listed");
+    if (!pair.overlapping || pair.passes_at == now_ || contacts_.time(slot) <= now_) continue;
+    if (!in_contact(moving(pair.a), moving(pair.b), now_)) fail("they count as overlapping, and do not penetrate");
+  }
+  if (unlisted != unlisted_) throw AuditFailure("World: pairs that are not listed are miscounted");
 }
 
 /// Each hold is of two bodies that are there (or one and a wall), is listed with them and no others, and is held: along

@@ -46,12 +46,21 @@ void World<Degree>::remove_body(BodyId id) {
   } else {
     std::erase(entering_, id);  // or the next of this id would enter in its stead
   }
-  // Pairs the broad phase does not know of any more.
-  while (!removed.pairs.empty()) release_pair(links_.items(removed.pairs).back().slot);
+  while (!removed.pairs.empty()) {  // those that overlap, or have just separated
+    const PairSlot slot = links_.items(removed.pairs).back().slot;
+    const Pair& pair = pairs_[slot];
+    // They separate, unless it has not been told yet that they overlap.
+    if (mode() == ContactMode::transparent && pair.overlapping && !take_back(Pending::Kind::overlap, pair.a, pair.b)) {
+      report(Pending::Kind::separation, pair.a, pair.b, contact_of(pair.a, pair.b, now_));
+    }
+    release_pair(slot);
+  }
   links_.free(removed.pairs);
   if (!pending_.empty()) keep_reports_of(id);
   removed = Body{};
-  free_bodies_.push_back(id);
+  free_removed();
+  removed_.push_back(id);
+  removed_at_ = now_;
   --alive_;
 }
 
@@ -98,7 +107,6 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
   }
   inserting_ = jumped && mode() == ContactMode::resolved;
   broad_phase_->update(id, renewed_box(id), now_, *this);
-  for (Passing& passing : passing_) passing.moved = passing.moved || passing.a == id || passing.b == id;
   for (const Link& link : links_.items(b.pairs)) mark_dirty(link.slot);
   if (inserting_) {
     for (const Link& link : links_.items(b.pairs)) pairs_[link.slot].fresh = true;
@@ -166,6 +174,21 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   Body& body_a = bodies_[a];
   Body& body_b = bodies_[b];
   if ((body_a.category & body_b.collides_with) == 0 || (body_b.category & body_a.collides_with) == 0) return;
+  const PairSlot overlapping = unlisted_ > 0 ? find_pair(a, b) : no_pair;
+  if (overlapping != no_pair) --unlisted_;
+  const PairSlot slot = overlapping != no_pair ? overlapping : new_pair(a, b);
+  Pair& pair = pairs_[slot];
+  pair.listed = true;
+  pair.fresh = pair.fresh || inserting_;
+  ++counters_.pairs_begun;
+  mark_dirty(slot);
+  if (options_.report_pairs && broad_phase_->exact()) report_pair(true, a, b);
+}
+
+template <int Degree>
+inline typename World<Degree>::PairSlot World<Degree>::new_pair(BodyId a, BodyId b) {
+  Body& body_a = bodies_[a];
+  Body& body_b = bodies_[b];
   PairSlot slot;
   if (free_pairs_.empty()) {
     slot = static_cast<PairSlot>(pairs_.size());
@@ -184,21 +207,10 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   pair.place_in_a = body_a.pairs.size;
   pair.place_in_b = body_b.pairs.size;
   pair.alive = true;
-  pair.fresh = inserting_;
-  for (const Passing& passing : passing_) {
-    if (passing.a != a || passing.b != b) continue;
-    // What is let pass is ignored from the next instant on; its boxes may begin to overlap then.
-    pair.ignored = pair.ignored || passing.at == t || (passing.let_pass && next_up(passing.at) == t);
-    if (passing.let_pass && passing.at == t) pair.let_pass = t;
-  }
-  // A jump may part two bodies and another one bring them together at the same instant.
-  pair.touching = take_back(Pending::Kind::separation, a, b);
   const std::uint32_t first_room = alive_ <= few_pairs + 1 ? few_pairs : first_pairs;
   links_.push_back(body_a.pairs, {b, slot}, first_room);
   links_.push_back(body_b.pairs, {a, slot}, first_room);
-  ++counters_.pairs_begun;
-  mark_dirty(slot);
-  if (options_.report_pairs && broad_phase_->exact()) report_pair(true, a, b);
+  return slot;
 }
 
 template <int Degree>
@@ -207,7 +219,23 @@ void World<Degree>::pair_ended(BodyId a, BodyId b, double t) {
   now_ = t;
   const PairSlot slot = find_pair(a, b);
   if (slot == no_pair) return;  // filtered
-  release_pair(slot);
+  unlist(slot);
+  if (pairs_[slot].overlapping) {
+    mark_dirty(slot);
+  } else {
+    release_pair(slot);
+  }
+}
+
+/// The broad phase does not list the pair any more.
+template <int Degree>
+void World<Degree>::unlist(PairSlot slot) {
+  Pair& pair = pairs_[slot];
+  if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) report_pair(false, pair.a, pair.b);
+  pair.boxes_overlap = false;
+  pair.listed = false;
+  ++unlisted_;
+  if (slot < boxes_.slots()) boxes_.clear(slot);
 }
 
 template <int Degree>
@@ -220,11 +248,10 @@ typename World<Degree>::PairSlot World<Degree>::find_pair(BodyId a, BodyId b) co
   return no_pair;
 }
 
+/// Precondition: it is not listed.
 template <int Degree>
 void World<Degree>::release_pair(PairSlot slot) {
   Pair& pair = pairs_[slot];
-  if (pair.touching) report(Pending::Kind::separation, pair.a, pair.b, {.time = now_});
-  if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) report_pair(false, pair.a, pair.b);
   // Each body's list closes up with its last entry.
   for (const BodyId id : {pair.a, pair.b}) {
     const auto links = links_.items(bodies_[id].pairs);
@@ -234,21 +261,25 @@ void World<Degree>::release_pair(PairSlot slot) {
     links_.pop_back(bodies_[id].pairs);
     (id < moved.other ? pairs_[moved.slot].place_in_a : pairs_[moved.slot].place_in_b) = place;
   }
-  if (pair.ignored) passing_.push_back({pair.a, pair.b, now_, pair.let_pass == now_, false});
   contacts_.clear(slot);
-  if (slot < boxes_.slots()) boxes_.clear(slot);
+  --unlisted_;
   pair.alive = false;
   free_pairs_.push_back(slot);
 }
 
-/// Ignores a pair until it has separated, and at this time whatever else happens, even if its boxes do not overlap just
-/// now.
+/// Lets a pair pass until it has separated, and at this time whatever else happens, even if its boxes do not overlap
+/// just now.
 template <int Degree>
 void World<Degree>::let_pass(BodyId a, BodyId b) {
-  const PairSlot slot = find_pair(a, b);
-  if (slot == no_pair) return passing_.push_back({a, b, now_, true, false});
-  pairs_[slot].ignored = true;
-  pairs_[slot].let_pass = now_;
+  PairSlot slot = find_pair(a, b);
+  if (slot == no_pair) {
+    slot = new_pair(a, b);
+    ++unlisted_;
+  }
+  Pair& pair = pairs_[slot];
+  pair.overlapping = true;
+  pair.fresh = false;
+  pair.passes_at = now_;
   mark_dirty(slot);
 }
 
@@ -264,10 +295,7 @@ bool World<Degree>::touching(BodyId a, BodyId b) const {
   body(a), body(b);
   if (a > b) std::swap(a, b);
   const PairSlot slot = find_pair(a, b);
-  if (slot != no_pair) return pairs_[slot].touching;
-  // Whether the broad phase has forgotten the pair before its separation is told makes no difference.
-  return std::any_of(pending_.begin(), pending_.end(),
-                     [&](const Pending& event) { return event.waits() && event.a == a && event.b == b; });
+  return slot != no_pair && mode() == ContactMode::transparent && pairs_[slot].overlapping;
 }
 
 template class World<1>;

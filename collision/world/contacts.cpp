@@ -34,25 +34,30 @@ Contact World<Degree>::contact_of(BodyId a, BodyId b, double t, const FoundTouch
   return contact_at(moving(a), moving(b), t, found);
 }
 
+/// Two bodies that overlap separate; what was let pass may meet again from now on.
+template <int Degree>
+void World<Degree>::process_separation(PairSlot slot, double t) {
+  Pair& pair = pairs_[slot];
+  contacts_.clear(slot);
+  pair.overlapping = false;
+  mark_dirty(slot);
+  if (mode() == ContactMode::resolved) return;
+  ++counters_.separations;
+  listener_->separation(*this, {pair.a, pair.b, contact_of(pair.a, pair.b, t)});
+}
+
 template <int Degree>
 void World<Degree>::process_contact(PairSlot slot, double t) {
   contacts_.clear(slot);
   Pair& pair = pairs_[slot];
   const FoundTouch found = slot < found_.size() ? found_[slot] : FoundTouch{};
   const PairEvent event{pair.a, pair.b, contact_of(pair.a, pair.b, t, found)};
-  if (mode() == ContactMode::transparent) {
-    pair.touching = !pair.touching;
-    mark_dirty(slot);
-    if (pair.touching) {
-      ++counters_.contacts;
-      return listener_->contact(*this, event);
-    }
-    ++counters_.separations;
-    return listener_->separation(*this, event);
-  }
   ++counters_.contacts;
-  pair.ignored = false;
   mark_dirty(slot);
+  if (mode() == ContactMode::transparent) {
+    pair.overlapping = true;
+    return listener_->contact(*this, event);
+  }
   bool held = false;
   bool passes = false;
   if (options_.response == Response::elastic) {

@@ -34,9 +34,18 @@ void validate(const BodyDescription<Degree>& description) {
 
 }  // namespace
 
+/// Those that were removed at an earlier time: all that has happened to them has been told.
+template <int Degree>
+inline void World<Degree>::free_removed() {
+  if (removed_.empty() || !(removed_at_ < now_)) return;
+  free_bodies_.insert(free_bodies_.end(), removed_.begin(), removed_.end());
+  removed_.clear();
+}
+
 /// The number of one that is still to be described.
 template <int Degree>
 inline BodyId World<Degree>::new_body() {
+  free_removed();
   if (!free_bodies_.empty()) {
     const BodyId id = free_bodies_.back();
     free_bodies_.pop_back();

@@ -82,13 +82,12 @@ void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shar
   archive(now, horizon, counters, edits, edits_start);
   each(archive, meshes, [&](auto& one) { mesh(archive, one, known); });
   each(archive, bodies, [&](BodyImage& one) { body(archive, one); });
-  archive(free_bodies, entering, disturbed, free_holds, releases);
+  archive(free_bodies, removed, removed_at, entering, disturbed, free_holds, releases);
   each(archive, pairs, [&](PairImage& image) {
     Pair& p = image.pair;
-    archive(p.a, p.b, p.dirty, p.fresh, p.touching, p.ignored, p.boxes_overlap, p.estimated, p.let_pass, image.contact,
+    archive(p.a, p.b, p.listed, p.dirty, p.fresh, p.overlapping, p.boxes_overlap, p.estimated, p.passes_at, image.contact,
             image.boxes);
   });
-  each(archive, passing, [&](Passing& p) { archive(p.a, p.b, p.at, p.let_pass, p.moved); });
   each(archive, holds, [&](Hold& h) {
     archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh);
     vector(archive, h.normal);

@@ -41,13 +41,13 @@ struct World<Degree>::Image {
   WorldCounters counters;
   std::vector<std::shared_ptr<const Mesh>> meshes;
   std::vector<BodyImage> bodies;  // by id
-  std::vector<BodyId> free_bodies, entering, disturbed;
+  std::vector<BodyId> free_bodies, removed, entering, disturbed;
   std::vector<PairImage> pairs;
-  std::vector<Passing> passing;
   std::vector<Hold> holds;
   std::vector<double> releases;  // by hold
   std::vector<HoldSlot> free_holds;
   std::vector<Pending> pending;
+  double removed_at = 0;
   std::uint64_t edits = 0;
   double edits_start = 0;
 

@@ -93,20 +93,17 @@ void World<Degree>::test_dirty_pairs() {
     ++counters_.pair_tests;
     const double estimate = estimates_[i];
     const bool may_be_together = std::isnan(estimate) || (estimate == -never && pair.fresh);
-    if (may_be_together || pair.ignored || pair.let_pass == now_) [[unlikely]] {
+    if (may_be_together || pair.overlapping) [[unlikely]] {
       test(slot);
     } else {
       pair.estimated = std::abs(estimate) != never;
       if (pair.estimated || contacts_.contains(slot)) contacts_.set(slot, pair.estimated ? estimate : never);
     }
-    if (boxes) test_boxes(slot);
-    pairs_[slot].fresh = false;
+    pair.fresh = false;
+    if (boxes && pair.listed) test_boxes(slot);
+    if (unlisted_ > 0 && !pair.listed && !pair.overlapping) release_pair(slot);
   }
   dirty_.clear();
-  if (passing_.empty()) return;
-  std::erase_if(passing_, [&](const Passing& passing) {
-    return passing.let_pass ? next_up(passing.at) < now_ : passing.moved || passing.at < now_;
-  });
 }
 
 template <int Degree>
@@ -119,34 +116,29 @@ void World<Degree>::test(PairSlot slot) {
   ContactEstimate next{never, true};
   if (mode() == ContactMode::transparent) {
     if (pair.fresh && in_contact(a, b, now_)) {
-      pair.touching = true;
+      pair.overlapping = true;
       report_overlap();
     }
     if (at_rest(a.motion) && at_rest(b.motion)) {  // Nothing will happen, but a jump may have happened.
-      next.time = in_contact(a, b, now_) == pair.touching ? never : now_;
-    } else if (pair.touching) {
+      next.time = in_contact(a, b, now_) == pair.overlapping ? never : now_;
+    } else if (pair.overlapping) {
       next.time = first_separation(a, b, now_, horizon_);
     } else {
       next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory, &found);
     }
   } else {
-    const bool passes = pair.let_pass == now_ && !pair.fresh;
-    if ((pair.fresh || pair.ignored) && !passes) {
-      pair.ignored = in_contact(a, b, now_) && !(pair.fresh && only_touching(a, b, now_));
-      if (pair.fresh && pair.ignored) report_overlap();
+    if (pair.fresh) {
+      pair.passes_at = -never;
+      pair.overlapping = in_contact(a, b, now_) && !only_touching(a, b, now_);
+      if (pair.overlapping) report_overlap();
     }
     if (find_hold(pair.a, pair.b) != no_hold) {
       next.time = next_contact_of_held(pair);
+    } else if (pair.overlapping) {
+      const double start = pair.passes_at == now_ ? next_up(now_) : now_;
+      if (start <= horizon_) next.time = first_separation(a, b, start, horizon_);
     } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
-      const double start = passes ? next_up(now_) : now_;
-      if (pair.ignored && start <= horizon_) {
-        const double from = first_separation(a, b, start, horizon_);
-        if (from <= horizon_) next.time = first_contact(a, b, from, horizon_, mode());
-      } else if (passes) {
-        if (start <= horizon_) next.time = first_contact(a, b, start, horizon_, mode());
-      } else {
-        next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory, &found);
-      }
+      next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory, &found);
     }
   }
   contacts_.set(slot, next.time);

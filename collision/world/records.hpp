@@ -112,25 +112,21 @@ struct Island {
   std::vector<Touch> touches;  ///< of the holds
 };
 
+/// Two bodies that may meet. It is there while the broad phase lists it, and while they overlap: so what it knows is a
+/// function of what has happened to the two, whatever the broad phase.
 struct Pair {
   BodyId a = 0, b = 0;
   std::uint32_t place_in_a = 0, place_in_b = 0;
   bool alive = false;
+  bool listed = false;  ///< by the broad phase
   bool dirty = false;
-  bool fresh = false;     ///< one of the bodies has entered or jumped at this instant
-  bool touching = false;  ///< mode none: in contact
-  bool ignored = false;   ///< resolved: overlaps and passes through until separated
+  bool fresh = false;  ///< one of the bodies has entered or jumped at this instant
+  /// In contact, in mode `none`; in the modes that resolve contacts, let pass. Its next event is that they separate.
+  bool overlapping = false;
   bool boxes_overlap = false;
   bool estimated = false;  ///< its time in contacts_ is a lower bound
   PairMemory memory;
-  double let_pass = -never;  ///< resolved: at this time decided to be ignored, whatever else happens at it
-};
-
-struct Passing {
-  BodyId a, b;
-  double at;      ///< when its pair ended
-  bool let_pass;  ///< at that time, whatever happens
-  bool moved;     ///< one of the two has moved otherwise since: then only until the next tests
+  double passes_at = -never;  ///< it overlaps at this time at least, whatever else happens at it
 };
 
 struct PairRank {
@@ -147,7 +143,6 @@ struct Pending {
   Contact contact;
   bool removed = false;  ///< one of the bodies has been removed since: nothing undoes it
 
-  bool waits() const { return kind == Kind::separation && !removed; }
   bool operator<(const Pending& other) const;
 };
 

@@ -22,7 +22,7 @@ bool detail::Pending::operator<(const Pending& other) const {
         case Kind::pair_began:
           return 2;
         case Kind::separation:
-          return event.waits() ? 5 : 3;
+          return 3;
         case Kind::overlap:
           return 4;
       }
@@ -44,9 +44,6 @@ void World<Degree>::report_next() {
       return listener_->overlap(*this, pair);
     case Pending::Kind::separation:
       ++counters_.separations;
-      // A caller who moves two bodies in turn parts them with the first move, but they separate where the second leaves
-      // them: so whether the broad phase told of it at once makes no difference.
-      if (event.waits()) pair.contact = contact_of(event.a, event.b, event.contact.time);
       return listener_->separation(*this, pair);
     case Pending::Kind::held:
       return listener_->held(*this, pair);
@@ -78,14 +75,6 @@ bool World<Degree>::take_back(typename Pending::Kind kind, BodyId a, BodyId b) {
   return true;
 }
 
-/// Whether a separation that the broad phase told of, by ending its pair, comes before the contact of another pair at
-/// the same time. Precondition: nothing is pending but separations that wait.
-template <int Degree>
-bool World<Degree>::separates_before(const Pair& pair) const {
-  const Pending& event = *pending_.begin();
-  return std::pair(event.a, event.b) < std::pair(pair.a, pair.b);
-}
-
 /// A body has been removed, and has no pairs any more: its separations are told as they were, and what would be told of
 /// a body that is there is not.
 template <int Degree>
@@ -97,17 +86,8 @@ void World<Degree>::keep_reports_of(BodyId removed) {
     reports.push_back(event);
     return true;
   });
-  const auto overlaps_too = [&](const Pending& separation) {
-    return std::any_of(reports.begin(), reports.end(), [&](const Pending& event) {
-      return event.kind == Kind::overlap && event.a == separation.a && event.b == separation.b;
-    });
-  };
   for (Pending event : reports) {
     if (event.kind == Kind::overlap || event.kind == Kind::moved) continue;
-    if (event.waits()) {
-      if (overlaps_too(event)) continue;
-      event.contact = contact_of(event.a, event.b, event.contact.time);
-    }
     event.removed = true;
     pending_.insert(event);
   }

@@ -93,8 +93,8 @@ typename World<Degree>::Image World<Degree>::image() const {
             [](const auto& x, const auto& y) { return std::pair(x.pair.a, x.pair.b) < std::pair(y.pair.a, y.pair.b); });
   image.holds = holds_, image.free_holds = free_holds_;
   for (HoldSlot slot = 0; slot < holds_.size(); ++slot) image.releases.push_back(releases_.time(slot));
-  image.free_bodies = free_bodies_, image.entering = entering_, image.disturbed = disturbed_;
-  image.passing = passing_;
+  image.free_bodies = free_bodies_, image.removed = removed_, image.removed_at = removed_at_;
+  image.entering = entering_, image.disturbed = disturbed_;
   image.pending.assign(pending_.begin(), pending_.end());
   image.edits = edits_, image.edits_start = edits_start_;
   return image;
@@ -114,8 +114,8 @@ void World<Degree>::become(const Image& image) {
   now_ = image.now, horizon_ = image.horizon;
   idle_until_ = -never;
   edits_ = image.edits, edits_start_ = image.edits_start;
-  free_bodies_ = image.free_bodies, entering_ = image.entering, disturbed_ = image.disturbed;
-  passing_ = image.passing;
+  free_bodies_ = image.free_bodies, removed_ = image.removed, removed_at_ = image.removed_at;
+  entering_ = image.entering, disturbed_ = image.disturbed;
   pending_ = {image.pending.begin(), image.pending.end()};
   const std::size_t count = image.bodies.size();
   bodies_.clear(), movers_.clear(), links_.clear();
@@ -150,9 +150,9 @@ void World<Degree>::become(const Image& image) {
   load_pairs(image);
 }
 
-/// The pairs that were known, and what has become of them in a broad phase made anew.
+/// A broad phase of the bodies as they are now; pairs are listed as it finds them.
 template <int Degree>
-void World<Degree>::load_pairs(const Image& image) {
+void World<Degree>::rebuild_broad_phase() {
   make_broad_phase();
   PairCollector found;
   std::vector<typename BroadPhase<Degree>::Entry> entries;
@@ -160,14 +160,40 @@ void World<Degree>::load_pairs(const Image& image) {
   for (BodyId id = 0; id < bodies_.size(); ++id) {
     if (!bodies_[id].entered) continue;
     entries.push_back({id, nullptr});
-    boxes.push_back(bounding_box(id));
-    schedule_wall(id);
+    boxes.push_back(renewed_box(id));
+    schedule_volume(id);
   }
   for (std::size_t i = 0; i < entries.size(); ++i) entries[i].box = &boxes[i];
   broad_phase_->insert(entries, now_, found);
   std::sort(found.pairs.begin(), found.pairs.end());
+  for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
+    const Pair& pair = pairs_[slot];
+    if (!pair.alive || !pair.listed) continue;
+    if (!std::binary_search(found.pairs.begin(), found.pairs.end(), std::pair(pair.a, pair.b))) {
+      pair_ended(pair.a, pair.b, now_);
+    }
+  }
+  for (const auto& [a, b] : found.pairs) {
+    const PairSlot slot = find_pair(a, b);
+    if (slot == no_pair || !pairs_[slot].listed) pair_began(a, b, now_);
+  }
+}
 
+/// A search for an event without a limit has found none, and gone beyond all times: the clock is put back to where it
+/// was. Nothing has happened since but that bounding volumes have met and parted.
+template <int Degree>
+void World<Degree>::go_back(double t) {
+  if (now_ == t) return;
+  now_ = t;
+  counters_.broad_phase = counters_.broad_phase + broad_phase_->counters();
+  rebuild_broad_phase();
+}
+
+/// The pairs that were known, and what has become of them in a broad phase made anew.
+template <int Degree>
+void World<Degree>::load_pairs(const Image& image) {
   pairs_.clear(), free_pairs_.clear(), dirty_.clear(), found_.clear();
+  unlisted_ = 0;
   contacts_.resize(0), boxes_.resize(0);
   contacts_.resize(image.pairs.size());
   if (options_.report_pairs && !broad_phase_->exact()) boxes_.resize(image.pairs.size());
@@ -182,16 +208,12 @@ void World<Degree>::load_pairs(const Image& image) {
     contacts_.set(slot, from.contact);
     if (slot < boxes_.slots()) boxes_.set(slot, from.boxes);
     if (from.pair.dirty) mark_dirty(slot);
+    unlisted_ += pair.listed ? 0 : 1;
   }
-  const auto is_found = [&](const auto& from) {
-    return std::binary_search(found.pairs.begin(), found.pairs.end(), std::pair(from.pair.a, from.pair.b));
-  };
-  for (const auto& from : image.pairs) {
-    if (!is_found(from)) pair_ended(from.pair.a, from.pair.b, now_);
+  for (BodyId id = 0; id < bodies_.size(); ++id) {
+    if (bodies_[id].entered) schedule_wall(id);
   }
-  for (const auto& [a, b] : found.pairs) {
-    if (find_pair(a, b) == no_pair) pair_began(a, b, now_);
-  }
+  rebuild_broad_phase();
   counters_ = image.counters;
   counters_.broad_phase = image.counters.broad_phase - broad_phase_->counters();
 }
