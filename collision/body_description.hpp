@@ -23,7 +23,11 @@ template <int Degree>
 struct BodyDescription {
   using Motion = certificates::PointMotion<Degree>;
   /// Returns a box that holds the body from time t until the box's valid_until. It must be finite and valid_until later
-  /// than t, else step() throws std::invalid_argument and the world can no longer be used.
+  /// than t, else the call that asked for it, step() or update_motion(), throws std::invalid_argument. It may look at
+  /// the world but must not change it: to add, remove or move bodies, to run, save or load the world from within it
+  /// throws std::logic_error. After a bad box, or whatever else comes out of the function, the world can no longer be
+  /// used: all that would run, change, check or save it throws std::logic_error and says why. It can still be looked
+  /// at, and destroyed.
   using BoxFunction = std::function<KineticBox<Degree>(double t, const Motion& motion)>;
 
   Shape shape;

@@ -7,6 +7,7 @@
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "collision/broad_phase/swept_sweep_and_prune.hpp"
 #include "collision/profile.hpp"
+#include "kds/arithmetic/strict.hpp"
 #include "kds/audit.hpp"
 #include "kds/raised_flag.hpp"
 
@@ -31,7 +32,7 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
     case BroadPhaseKind::kinetic_sap:
       return std::make_unique<KineticSweepAndPrune<Degree>>(now, ListedAxes::automatic, std::move(kdops));
     case BroadPhaseKind::sap:
-      if (!(options.rate > 0) || !std::isfinite(options.rate) || !std::isfinite(1 / options.rate)) {
+      if (!(options.rate > 0) || !std::isfinite(1 / options.rate)) {
         throw std::invalid_argument(
             "WorldOptions.rate: sweep and prune with swept boxes needs a rate > 0, finite and with a finite 1 / rate");
       }
@@ -45,6 +46,18 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
 void validate(const WorldOptions& options) {
   if (!std::isfinite(options.start_time)) throw std::invalid_argument("WorldOptions.start_time: must be finite");
   if (!(options.window > 0)) throw std::invalid_argument("WorldOptions.window: must be > 0");
+  if (!(options.rate >= 0) || !std::isfinite(options.rate)) {
+    throw std::invalid_argument("WorldOptions.rate: must be finite and >= 0");
+  }
+  switch (options.response) {
+    case Response::none:
+    case Response::elastic:
+    case Response::callback:
+      break;
+    default:
+      throw std::invalid_argument("WorldOptions.response: unknown");
+  }
+  if (options.zeno.contacts == 0) throw std::invalid_argument("WorldOptions.zeno.contacts: must be > 0");
   if (!(options.zeno.interval >= 0)) throw std::invalid_argument("WorldOptions.zeno.interval: must be >= 0");
   if (options.walls) {
     const Walls& walls = *options.walls;
@@ -60,6 +73,12 @@ void validate(const WorldOptions& options) {
   }
 }
 
+void require_ahead(const char* function, double t, double now) {
+  if (t >= now && t != never) return;
+  throw std::invalid_argument(std::string(function) + ": " + std::to_string(t) + " is not a finite time from now on (" +
+                              std::to_string(now) + ")");
+}
+
 }  // namespace
 
 template <int Degree>
@@ -71,6 +90,7 @@ World<Degree>::World(const WorldOptions& options, Listener* listener)
       boxes_(PairRank{&pairs_}),
       now_(options.start_time),
       horizon_(options.start_time + options.window) {
+  require_strict_arithmetic("World");
   validate(options);
   make_broad_phase();
 }
@@ -105,16 +125,27 @@ void World<Degree>::reach(double limit) {
 
 template <int Degree>
 bool World<Degree>::step(double limit) {
+  require_idle("World::step");
   if (limit < idle_until_ || (limit == never && idle_until_ == never)) {
     if (limit < never) now_ = std::max(now_, limit);
     return false;
   }
-  idle_until_ = -never;
   if (std::isnan(limit)) throw std::invalid_argument("World::step: the limit is not a number");
   if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
     throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
   }
   const kds::detail::RaisedFlag stepping(stepping_);  // Callbacks are called from here alone.
+  try {
+    return next_event(limit);
+  } catch (...) {
+    if (!std::exchange(telling_, false)) note_failure();
+    throw;
+  }
+}
+
+template <int Degree>
+bool World<Degree>::next_event(double limit) {
+  idle_until_ = -never;
   bool looked_ahead = false;
   double reached = now_;  // the clock, should nothing come
   for (;;) {
@@ -199,10 +230,8 @@ bool World<Degree>::certify_next(bool contact, bool wall) {
 
 template <int Degree>
 void World<Degree>::advance_to(double t) {
-  if (!(t >= now_) || t == never) {
-    throw std::invalid_argument("World::advance_to: " + std::to_string(t) + " is not a finite time from now on (" +
-                                std::to_string(now_) + ")");
-  }
+  require_idle("World::advance_to");
+  require_ahead("World::advance_to", t, now_);
   while (step(t)) {
   }
 }
@@ -210,6 +239,11 @@ void World<Degree>::advance_to(double t) {
 template <int Degree>
 bool World<Degree>::advance_for(double budget_seconds, double t) {
   using Clock = std::chrono::steady_clock;
+  require_idle("World::advance_for");
+  require_ahead("World::advance_for", t, now_);
+  if (!(budget_seconds >= 0)) {
+    throw std::invalid_argument("World::advance_for: a budget of " + std::to_string(budget_seconds) + " s is not >= 0");
+  }
   const auto deadline = Clock::now() + std::chrono::duration<double>(budget_seconds);
   while (step(t)) {
     if (Clock::now() >= deadline) return false;

@@ -15,6 +15,7 @@
 #include "kds/events/dary_queue.hpp"
 
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <set>
 #include <span>
@@ -47,6 +48,11 @@ struct WorldCounters {
 ///
 /// Adding, removing and moving bodies calls no listener: what follows from it is reported by the next step, at now().
 ///
+/// What a call refuses it refuses before anything is changed, and what a listener throws comes out of the step when its
+/// event has been made: the world goes on after both. But where something interrupts a change half-way (a box function
+/// that throws, want of memory) the world can no longer be used: it can be looked at and destroyed, and all that would
+/// run, change, check or save it throws std::logic_error and says why.
+///
 /// Degree 1 (straight paths) never pays for degree 2. Lengths and masses are in units of the caller's own, times in
 /// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
@@ -56,7 +62,8 @@ class World final : private PairListener {
   using Description = BodyDescription<Degree>;
   using Listener = WorldListener<Degree>;
 
-  /// Throws std::invalid_argument, naming the option, for one that is out of range or does not go with the others.
+  /// Throws std::invalid_argument, naming the option, for one that is out of range or does not go with the others, and
+  /// std::runtime_error where arithmetic is not that of kds/arithmetic/strict.hpp.
   /// The listener, if there is one, must outlive the world.
   explicit World(const WorldOptions& options, Listener* listener = nullptr);
   ~World() override;
@@ -69,7 +76,8 @@ class World final : private PairListener {
   /// least.
   BodyId add_body(const Description& description);
 
-  /// Makes room for this many bodies in all. Never needed, but saves time and memory where many are added.
+  /// Makes room for this many bodies in all. Never needed, but saves time and memory where many are added. Throws
+  /// std::length_error for more than there are ids.
   void reserve(std::size_t bodies);
 
   /// Removes a body. Its pairs end, and in mode `none` its contacts separate, with reports.
@@ -82,15 +90,16 @@ class World final : private PairListener {
   void update_motion(BodyId id, const Motion& motion);
 
   /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,
-  /// and std::runtime_error as WorldOptions::most_edits says.
+  /// std::logic_error if called from within a callback, and std::runtime_error as WorldOptions::most_edits says.
   void advance_to(double t);
 
   /// Processes the next event not later than `limit`, if there is one. False if not; then the clock is at `limit`
-  /// if that is finite, and else stays at the last event. Throws as advance_to(), but not for the past; `sap`, whose frames never end, needs a limit.
+  /// if that is finite, and else stays at the last event. Throws as advance_to(), but not for the past; `sap`, whose
+  /// frames never end, needs a limit.
   bool step(double limit = never);
 
   /// Processes events up to t until this much time of the wall clock has passed, but at least one; true if t was
-  /// reached. Throws as step() does.
+  /// reached. Throws as advance_to() does, and std::invalid_argument for a budget that is negative or not a number.
   bool advance_for(double budget_seconds, double t);
 
   double now() const { return now_; }
@@ -110,7 +119,7 @@ class World final : private PairListener {
   bool touching(BodyId a, BodyId b) const;
 
   /// Whether a and b are held together (mode `elastic` alone), or a is held at a wall, numbered as in WallEvent (all
-  /// modes).
+  /// modes; std::out_of_range for any other number).
   bool held(BodyId a, BodyId b) const;
   bool held_at_wall(BodyId a, int wall) const;
 
@@ -152,12 +161,49 @@ class World final : private PairListener {
   using Pending = detail::Pending;
 
   // world.cpp: the clock
+  bool next_event(double limit);
   void make_broad_phase();
   void reach(double limit);
   void go_back(double t);
   void start_pieces();
   void renew_volume(BodyId id);
   void count_edit();
+
+  // world/guards.cpp: what may be called when, and what is left when something throws
+  [[noreturn]] void refuse(const char* function) const;
+  void require_whole(const char* function) const {
+    if (failure_) [[unlikely]]
+      refuse(function);
+  }
+  /// For what changes bodies. Callbacks may.
+  void require_editable(const char* function) const {
+    if (failure_ || in_box_function_) [[unlikely]]
+      refuse(function);
+  }
+  /// For what runs, saves or loads the world.
+  void require_idle(const char* function) const {
+    if (failure_ || in_box_function_ || stepping_) [[unlikely]]
+      refuse(function);
+  }
+  void note_failure();
+  /// Makes a change. What throws in the middle of it leaves the world in pieces.
+  template <class Change>
+  auto change_or_fail(const Change& change) {
+    try {
+      return change();
+    } catch (...) {
+      note_failure();
+      throw;
+    }
+  }
+  /// Calls the listener: in a step, when the world is whole. What it throws leaves it so.
+  template <class Call>
+  void tell(const Call& call) {
+    telling_ = true;
+    call(*listener_);
+    telling_ = false;
+    require_whole("World::step");  // The listener may have caught what interrupted a change that it made.
+  }
 
   // world/reports.cpp: what is told at one instant, in one order
   void report_next();
@@ -180,6 +226,7 @@ class World final : private PairListener {
   std::vector<std::shared_ptr<const Mesh>> meshes() const;
 
   // world/entry.cpp: bodies that come
+  BodyId put(const Description& description, std::shared_ptr<const PlacedShape> shape);
   BodyId new_body();
   void free_removed();
   void set_extras(BodyId id, std::span<const Motion> script, const typename Description::BoxFunction& box_function);
@@ -191,6 +238,8 @@ class World final : private PairListener {
   void pairs_to_come(std::size_t pairs) override;
   void pair_began(BodyId a, BodyId b, double t) override;
   void pair_ended(BodyId a, BodyId b, double t) override;
+  void take_out(BodyId id);
+  void give(BodyId id, const Motion& motion);
   PairSlot find_pair(BodyId a, BodyId b) const;
   PairSlot new_pair(BodyId a, BodyId b);
   void unlist(PairSlot slot);
@@ -305,6 +354,9 @@ class World final : private PairListener {
   std::size_t unlisted_ = 0;  ///< pairs that the broad phase does not list
   bool inserting_ = false;
   bool stepping_ = false;
+  bool telling_ = false;          ///< a listener is being told, or has thrown
+  bool in_box_function_ = false;  ///< a function of the caller's is making a box
+  std::exception_ptr failure_;    ///< what has left the world in pieces
   std::uint64_t islands_ = 0;
   std::uint64_t edits_ = 0;  ///< by callbacks since edits_start_
   double edits_start_ = -never;

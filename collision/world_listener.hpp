@@ -33,8 +33,10 @@ class World;
 /// above; walls, by body; contacts and separations, by (a, b).
 ///
 /// Every callback may change motions, add and remove bodies, the ones concerned included; the world is consistent when
-/// it is called, and what is still to be told of the instant is told of the world as it is then. A callback must not
-/// advance the world; saving or loading it throws std::logic_error. WorldOptions::most_edits limits the changes.
+/// it is called, and what is still to be told of the instant is told of the world as it is then. To
+/// advance, save or load the world from within a callback throws std::logic_error. WorldOptions::most_edits limits the
+/// changes. What a callback throws comes out of the step, and the run may go on: the clock stands at the event, which
+/// has been made, and only what else was to be told of that event is not.
 template <int Degree>
 class WorldListener {
  public:

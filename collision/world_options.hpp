@@ -35,8 +35,8 @@ enum class Response {
 /// Differs from counting meetings of pairs: a pair is forgotten when its bounding volumes part, which boxes do at each
 /// bounce, and when that is depends on the broad phase.
 struct ZenoPolicy {
-  std::uint32_t contacts = 100;  ///< more makes longer cascades exact and collapses slower
-  double interval = 1e-9;        ///< s
+  std::uint32_t contacts = 100;  ///< > 0; more makes longer cascades exact and collapses slower
+  double interval = 1e-9;        ///< s, >= 0
 };
 
 /// Reflecting walls: the bounding ball of each body, fixed ones included, stays inside the box [min, max]. A body that
@@ -54,7 +54,8 @@ struct WorldOptions {
   double window = never;
   Response response = Response::none;
   BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
-  double rate = 0;  ///< Hz; frames of the swept boxes, needed by `sap` alone: > 0, finite, and so must be 1 / rate
+  /// Hz, finite and >= 0; frames of the swept boxes, which `sap` alone has: it needs one > 0 with a finite 1 / rate.
+  double rate = 0;
   /// Bounding volumes of kinetic sweep and prune: 6, boxes; 14, 18 or 26, k-DOPs, tighter around what is long, thin or
   /// round, and more to compute (docs/kdops.md). Other broad phases know boxes alone. Contacts are the same; the pairs
   /// reported are those whose volumes overlap.

@@ -1,6 +1,7 @@
 // The clock: runs kinetic structures in the order of time.
 #pragma once
 
+#include "kds/arithmetic/strict.hpp"
 #include "kds/roots/failure_time.hpp"
 #include "kds/statistics.hpp"
 
@@ -44,7 +45,10 @@ class Simulator {
   static_assert(sizeof...(Structures) > 0);
 
   /// The clock starts at `now`: finite, and not before the structures were made and last changed (neither is checked).
-  explicit Simulator(double now, Structures&... structures) : structures_(structures...), now_(now) {}
+  /// Throws std::runtime_error where arithmetic is not that of arithmetic/strict.hpp.
+  explicit Simulator(double now, Structures&... structures) : structures_(structures...), now_(now) {
+    require_strict_arithmetic("Simulator");
+  }
 
   double now() const { return now_; }
   double horizon() const { return horizon_; }

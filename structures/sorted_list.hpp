@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/order.hpp"
+#include "kds/arithmetic/strict.hpp"
 #include "kds/audit.hpp"
 #include "kds/events/place_queue.hpp"
 #include "kds/events/schedule.hpp"
@@ -64,7 +65,8 @@ class SortedList {
     }
   };
 
-  explicit SortedList(Listener listener = {}) : listener_(listener) {}
+  /// Throws std::runtime_error where arithmetic is not that of kds/arithmetic/strict.hpp.
+  explicit SortedList(Listener listener = {}) : listener_(listener) { require_strict_arithmetic("SortedList"); }
 
   std::size_t size() const { return order_.size(); }
   bool contains(Id id) const { return id < position_.size() && position_[id] != absent; }

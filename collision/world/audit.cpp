@@ -10,6 +10,7 @@ namespace kds::collision {
 
 template <int Degree>
 void World<Degree>::audit() const {
+  require_whole("World::audit");
   broad_phase_->audit(now_);
   const auto fail = [](BodyId a, BodyId b, const char* what) {
     throw AuditFailure("World: bodies " + std::to_string(a) + " and " + std::to_string(b) + ": " + what);

@@ -2,6 +2,7 @@
 #include "collision/profile.hpp"
 #include "collision/world.hpp"
 #include "collision/world/queue_room.hpp"
+#include "kds/raised_flag.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,8 +35,15 @@ typename World<Degree>::Body& World<Degree>::body(BodyId id) {
 
 template <int Degree>
 void World<Degree>::remove_body(BodyId id) {
-  Body& removed = body(id);
+  require_editable("World::remove_body");
+  body(id);
   count_edit();
+  change_or_fail([&] { take_out(id); });
+}
+
+template <int Degree>
+void World<Degree>::take_out(BodyId id) {
+  Body& removed = bodies_[id];
   drop_holds(id);
   removed.alive = false;
   clear(pieces_, id);
@@ -66,13 +74,20 @@ void World<Degree>::remove_body(BodyId id) {
 
 template <int Degree>
 void World<Degree>::update_motion(BodyId id, const Motion& motion) {
-  Body& b = body(id);
+  require_editable("World::update_motion");
+  body(id);
   if (!motion.finite()) throw std::invalid_argument("World::update_motion: the motion is not finite");
   if (motion.start > now_) {
     throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(motion.start) +
                                 ", after the clock at " + std::to_string(now_));
   }
   count_edit();
+  change_or_fail([&] { give(id, motion); });
+}
+
+template <int Degree>
+void World<Degree>::give(BodyId id, const Motion& motion) {
+  Body& b = bodies_[id];
   if (b.extras) b.extras->script.clear();
   clear(pieces_, id);
   ++counters_.motion_updates;
@@ -133,7 +148,10 @@ template <int Degree>
 KineticBox<Degree> World<Degree>::renewed_box(BodyId id) {
   Extras* const extras = bodies_[id].extras.get();
   if (extras && extras->box_function) {
-    const KineticBox<Degree> box = extras->box_function(now_, movers_[id].motion);
+    const KineticBox<Degree> box = [&] {
+      const kds::detail::RaisedFlag calling(in_box_function_);
+      return extras->box_function(now_, movers_[id].motion);
+    }();
     if (!box.min.finite() || !box.max.finite()) {
       throw std::invalid_argument("BodyDescription.box: returned a box that is not finite");
     }

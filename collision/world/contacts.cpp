@@ -43,7 +43,8 @@ void World<Degree>::process_separation(PairSlot slot, double t) {
   mark_dirty(slot);
   if (mode() == ContactMode::resolved) return;
   ++counters_.separations;
-  listener_->separation(*this, {pair.a, pair.b, contact_of(pair.a, pair.b, t)});
+  const PairEvent event{pair.a, pair.b, contact_of(pair.a, pair.b, t)};
+  tell([&](Listener& listener) { listener.separation(*this, event); });
 }
 
 template <int Degree>
@@ -56,7 +57,7 @@ void World<Degree>::process_contact(PairSlot slot, double t) {
   mark_dirty(slot);
   if (mode() == ContactMode::transparent) {
     pair.overlapping = true;
-    return listener_->contact(*this, event);
+    return tell([&](Listener& listener) { listener.contact(*this, event); });
   }
   bool held = false;
   bool passes = false;
@@ -66,14 +67,25 @@ void World<Degree>::process_contact(PairSlot slot, double t) {
     held = passes = count_meeting(event.a, event.b) > patience();
     counters_.held += held;
   }
-  listener_->contact(*this, event);
-  if (held) listener_->held(*this, event);
   // A pair that is still pressed together (nobody can or will move it) passes through.
-  if (!contains(event.a) || !contains(event.b) || find_hold(event.a, event.b) != no_hold) return;
-  // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a rounding.
-  if (passes || parting(event.contact, movers_[event.a].motion, movers_[event.b].motion) < 0) {
-    let_pass(event.a, event.b);
+  const auto after = [&] {
+    if (!contains(event.a) || !contains(event.b) || find_hold(event.a, event.b) != no_hold) return;
+    // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a
+    // rounding.
+    if (passes || parting(event.contact, movers_[event.a].motion, movers_[event.b].motion) < 0) {
+      let_pass(event.a, event.b);
+    }
+  };
+  try {
+    tell([&](Listener& listener) {
+      listener.contact(*this, event);
+      if (held) listener.held(*this, event);
+    });
+  } catch (...) {
+    if (!failure_) after();
+    throw;
   }
+  after();
 }
 
 /// Both have met others so often; a fixed body's meetings count only with another fixed one.

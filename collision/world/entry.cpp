@@ -29,6 +29,13 @@ void validate(const BodyDescription<Degree>& description) {
   if (!description.fixed && (!std::isfinite(description.mass) || !(description.mass > 0))) {
     fail("mass: must be finite and > 0");
   }
+  switch (description.volume) {
+    case BoundingVolume::shape:
+    case BoundingVolume::sphere:
+      break;
+    default:
+      fail("volume: unknown");
+  }
   if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
 }
 
@@ -59,6 +66,7 @@ inline BodyId World<Degree>::new_body() {
 
 template <int Degree>
 BodyId World<Degree>::add_body(const Description& description) {
+  require_editable("World::add_body");
   validate(description);
   count_edit();
   const auto* const ball = std::get_if<Sphere>(&description.shape);
@@ -68,6 +76,13 @@ BodyId World<Degree>::add_body(const Description& description) {
   } else {
     shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
   }
+  return change_or_fail([&] { return put(description, std::move(shape)); });
+}
+
+/// No shape is that of a ball that is not turned.
+template <int Degree>
+inline BodyId World<Degree>::put(const Description& description, std::shared_ptr<const PlacedShape> shape) {
+  const auto* const ball = std::get_if<Sphere>(&description.shape);
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
@@ -111,6 +126,10 @@ void World<Degree>::set_extras(BodyId id, std::span<const Motion> script,
 
 template <int Degree>
 void World<Degree>::reserve(std::size_t bodies) {
+  require_editable("World::reserve");
+  if (bodies > no_body) {
+    throw std::length_error("World::reserve: " + std::to_string(bodies) + " bodies are more than there are ids");
+  }
   bodies_.reserve(bodies);
   movers_.reserve(bodies);
   entering_.reserve(bodies);

@@ -2,6 +2,8 @@
 #include "collision/world.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 namespace kds::collision {
 namespace {
@@ -96,20 +98,23 @@ void World<Degree>::drop_holds(BodyId id) {
 
 /// Convex bodies that are held are on either side of a plane through the touch and stay there, so they cannot meet
 /// again before they are let go. A mesh may have something else in the way; where rounding makes it the held touch that
-/// is found, that is left behind by some roundings.
+/// is found, that is left behind by some roundings. Whether it does is asked for the time at which the later of the two
+/// motions began, so that the answer is a function of the pair, however often it is looked for.
 template <int Degree>
 double World<Degree>::next_contact_of_held(const Pair& pair) const {
   const auto a = moving(pair.a);
   const auto b = moving(pair.b);
   if (!is_mesh(a) && !is_mesh(b)) return never;
-  const double t = first_contact(a, b, now_, horizon_, ContactMode::resolved);
-  if (t != now_) return t;
+  const double began = std::max(a.motion.start, b.motion.start);
+  if (first_contact(a, b, began, began, ContactMode::resolved) != began) {
+    return first_contact(a, b, now_, horizon_, ContactMode::resolved);
+  }
   Vector3d out = Vector3d::Zero();
   for (const HoldSlot slot : bodies_[pair.a].holds) {
     if (holds_[slot].b == pair.b) out += holds_[slot].normal;
   }
   const double coordinates =
-      a.motion.position(now_).cwiseAbs().maxCoeff() + b.motion.position(now_).cwiseAbs().maxCoeff();
+      a.motion.position(began).cwiseAbs().maxCoeff() + b.motion.position(began).cwiseAbs().maxCoeff();
   const double size = a.shape.bounding_radius + b.shape.bounding_radius;
   const Motion farther = shifted(b.motion, coordinate_slack * (size + coordinates) * out);
   return first_contact(a, MovingShape<Degree>{b.shape, farther}, now_, horizon_, ContactMode::resolved);
@@ -149,6 +154,9 @@ bool World<Degree>::held(BodyId a, BodyId b) const {
 template <int Degree>
 bool World<Degree>::held_at_wall(BodyId a, int wall) const {
   body(a);
+  if (wall < 0 || wall > 5) {
+    throw std::out_of_range("World::held_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
+  }
   return find_hold(a, no_body, wall) != no_hold;
 }
 

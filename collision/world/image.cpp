@@ -85,8 +85,8 @@ void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shar
   archive(free_bodies, removed, removed_at, entering, disturbed, free_holds, releases);
   each(archive, pairs, [&](PairImage& image) {
     Pair& p = image.pair;
-    archive(p.a, p.b, p.listed, p.dirty, p.fresh, p.overlapping, p.boxes_overlap, p.estimated, p.passes_at, image.contact,
-            image.boxes);
+    archive(p.a, p.b, p.listed, p.dirty, p.fresh, p.overlapping, p.boxes_overlap, p.estimated, p.passes_at,
+            image.contact, image.boxes);
   });
   each(archive, holds, [&](Hold& h) {
     archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh);

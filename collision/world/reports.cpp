@@ -41,18 +41,18 @@ void World<Degree>::report_next() {
   switch (event.kind) {
     case Pending::Kind::overlap:
       ++counters_.overlaps;
-      return listener_->overlap(*this, pair);
+      return tell([&](Listener& listener) { listener.overlap(*this, pair); });
     case Pending::Kind::separation:
       ++counters_.separations;
-      return listener_->separation(*this, pair);
+      return tell([&](Listener& listener) { listener.separation(*this, pair); });
     case Pending::Kind::held:
-      return listener_->held(*this, pair);
+      return tell([&](Listener& listener) { listener.held(*this, pair); });
     case Pending::Kind::moved:
-      return listener_->moved(*this, event.a);
+      return tell([&](Listener& listener) { listener.moved(*this, event.a); });
     case Pending::Kind::pair_began:
-      return listener_->pair_began(*this, event.a, event.b, event.contact.time);
+      return tell([&](Listener& listener) { listener.pair_began(*this, event.a, event.b, event.contact.time); });
     case Pending::Kind::pair_ended:
-      return listener_->pair_ended(*this, event.a, event.b, event.contact.time);
+      return tell([&](Listener& listener) { listener.pair_ended(*this, event.a, event.b, event.contact.time); });
   }
 }
 

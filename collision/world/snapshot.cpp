@@ -113,6 +113,7 @@ template <int Degree>
 void World<Degree>::become(const Image& image) {
   now_ = image.now, horizon_ = image.horizon;
   idle_until_ = -never;
+  inserting_ = false;
   edits_ = image.edits, edits_start_ = image.edits_start;
   free_bodies_ = image.free_bodies, removed_ = image.removed, removed_at_ = image.removed_at;
   entering_ = image.entering, disturbed_ = image.disturbed;
@@ -221,13 +222,15 @@ void World<Degree>::load_pairs(const Image& image) {
 template <int Degree>
 template <class Archive>
 void World<Degree>::archive(Archive& archive) {
-  if (stepping_) throw std::logic_error("World: it can be neither saved nor loaded from within a callback");
+  // What has been interrupted may be loaded: then it is whole again.
+  if (!Archive::loading || stepping_ || in_box_function_) require_idle("World::archive");
   archive.tag("World of degree " + std::to_string(Degree));
   archive_options(archive, options_, broad_phase_->exact());
   if constexpr (Archive::loading) {
     Image loaded;
     loaded.archive(archive, meshes());
-    become(loaded);
+    change_or_fail([&] { become(loaded); });
+    failure_ = nullptr;
   } else {
     Image saved = image();
     saved.archive(archive, {});

@@ -117,8 +117,10 @@ void World<Degree>::process_wall(BodyId id, double t) {
   }
   disturb(id);
   settle();
-  listener_->wall(*this, event);
-  if (held) listener_->held_at_wall(*this, event);
+  tell([&](Listener& listener) {
+    listener.wall(*this, event);
+    if (held) listener.held_at_wall(*this, event);
+  });
 }
 
 template class World<1>;

@@ -1,6 +1,8 @@
 // Error-free transformations, and numbers of about 106 bits made of two doubles.
 #pragma once
 
+#include "kds/arithmetic/strict.hpp"
+
 #include <cmath>
 
 namespace kds {

@@ -1,6 +1,8 @@
 // Exact arithmetic on the numbers that doubles generate.
 #pragma once
 
+#include "kds/arithmetic/strict.hpp"
+
 #include <cstddef>
 
 namespace kds {

@@ -3,6 +3,8 @@
 
 #ifdef __AVX2__
 
+#include "kds/arithmetic/strict.hpp"
+
 #include <immintrin.h>
 
 #include <cstdint>

@@ -1,6 +1,8 @@
 // The doubles as a lattice of points in time.
 #pragma once
 
+#include "kds/arithmetic/strict.hpp"
+
 #include <bit>
 #include <cstdint>
 #include <limits>

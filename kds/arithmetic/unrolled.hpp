@@ -1,6 +1,8 @@
 // Loops of a fixed length, written out.
 #pragma once
 
+#include "kds/arithmetic/strict.hpp"
+
 #include <cstddef>
 #include <type_traits>
 #include <utility>

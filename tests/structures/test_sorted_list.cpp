@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <ostream>
@@ -349,4 +350,17 @@ TEST_CASE("entries and motions of the list may be given to its changes", "[sorte
   list.update(1, list.motion(0), 5);
   for (const auto& entry : list.entries()) CHECK(entry.motion == Motion<1>{{{0, 1}}, 0});
   list.audit(5);
+}
+
+TEST_CASE("a list is not made where arithmetic is not exact", "[sorted_list]") {
+  bool refused = false;
+  std::fesetround(FE_DOWNWARD);
+  try {
+    structures::SortedList<1> list;
+  } catch (const std::runtime_error&) {
+    refused = true;
+  }
+  std::fesetround(FE_TONEAREST);
+  CHECK(refused);
+  CHECK_NOTHROW(structures::SortedList<1>());
 }

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cfenv>
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -38,9 +40,24 @@ TEST_CASE("Options that make no sense are refused by name", "[world]") {
   for (const double window : {0.0, -1.0, nan}) refuse([&](WorldOptions& o) { o.window = window; }, "window");
   refuse([](WorldOptions& o) { o.zeno.interval = -1; }, "zeno.interval");
   refuse([](WorldOptions& o) { o.zeno.interval = nan; }, "zeno.interval");
+  refuse([](WorldOptions& o) { o.zeno.contacts = 0; }, "zeno.contacts");
   for (const double rate : {0.0, -1.0, nan, never, 1e-310}) {
     refuse([&](WorldOptions& o) { o.broad_phase = BroadPhaseKind::sap, o.rate = rate; }, "rate");
   }
+  for (const auto method : all_methods) {
+    for (const double rate : {-5.0, nan, never, -never}) {
+      refuse([&](WorldOptions& o) { o.broad_phase = method, o.rate = rate; }, "WorldOptions.rate");
+    }
+    for (const int kdop : {-6, 0, 5, 7, 12, 27}) {
+      refuse([&](WorldOptions& o) { o.broad_phase = method, o.rate = 1, o.kdop = kdop; }, "WorldOptions.kdop");
+    }
+    if (method == BroadPhaseKind::kinetic_sap) continue;
+    refuse([&](WorldOptions& o) { o.broad_phase = method, o.rate = 1, o.kdop = 18; }, "WorldOptions.kdop");
+  }
+  refuse([](WorldOptions& o) { o.start_time = -never; }, "start_time");
+  refuse([](WorldOptions& o) { o.window = -never; }, "window");
+  refuse([](WorldOptions& o) { o.walls = Walls{{0, 0, 0}, {1, never, 1}}; }, "walls");
+  refuse([](WorldOptions& o) { o.response = static_cast<Response>(77); }, "WorldOptions.response");
   refuse([](WorldOptions& o) { o.walls = Walls{{0, 0, 0}, {1, 0, 1}}; }, "walls");
   refuse([](WorldOptions& o) { o.walls = Walls{{0, 0, 0}, {1, nan, 1}}; }, "walls");
   for (const double bad : {-0.1, 1.1, nan}) {
@@ -76,6 +93,7 @@ TEST_CASE("Bodies that make no sense are refused by name, and the world goes on"
     refuse([&](D& d) { d.orientation.w() = bad; }, "orientation");
   }
   refuse([](D& d) { d.motion.clear(); }, "motion");
+  refuse([](D& d) { d.volume = static_cast<BoundingVolume>(77); }, "volume");
   refuse([](D& d) { d.motion.push_back(d.motion[0]); }, "motion[1].start");
   refuse([](D& d) { d.motion.push_back(d.motion[0]), d.motion[1].start = -1; }, "motion[1].start");
   refuse([](D& d) { d.orientation.coeffs() *= 1.01; }, "orientation");
@@ -89,17 +107,54 @@ TEST_CASE("Bodies that make no sense are refused by name, and the world goes on"
   CHECK_THROWS_AS(world.motion(2), std::out_of_range);
   CHECK_THROWS_AS(world.shape(2), std::out_of_range);
   CHECK_THROWS_AS(world.touching(0, 2), std::out_of_range);
+  CHECK_THROWS_AS(world.touching(2, 0), std::out_of_range);
+  CHECK_THROWS_AS(world.held(0, 2), std::out_of_range);
+  CHECK_THROWS_AS(world.held(2, 0), std::out_of_range);
+  CHECK_THROWS_AS(world.free_motion(2), std::out_of_range);
+  CHECK_THROWS_AS(world.mass(2), std::out_of_range);
+  CHECK_THROWS_AS(world.fixed(2), std::out_of_range);
+  CHECK_THROWS_AS(world.held_at_wall(2, 0), std::out_of_range);
+  for (const int wall : {-1, 6, 17}) CHECK_THROWS_AS(world.held_at_wall(0, wall), std::out_of_range);
+  for (int wall = 0; wall < 6; ++wall) CHECK_FALSE(world.held_at_wall(0, wall));
+  CHECK_THROWS_AS(world.reserve(std::size_t{1} << 33), std::length_error);
   world.advance_to(0.5);
   throws([&] { world.advance_to(0.25); }, "advance_to");
   throws([&] { world.advance_to(nan); }, "advance_to");
   throws([&] { world.advance_to(never); }, "advance_to");
   throws([&] { world.step(nan); }, "step");
+  throws([&] { world.advance_for(1, 0.25); }, "advance_for");
+  throws([&] { world.advance_for(1, nan); }, "advance_for");
+  throws([&] { world.advance_for(1, never); }, "advance_for");
+  for (const double budget : {-1.0, nan, -never})
+    throws([&] { world.advance_for(budget, 1); }, "advance_for: a budget");
 
   CHECK(world.size() == 2);
   CHECK(world.now() == 0.5);
   world.advance_to(10);
   world.audit();
   CHECK(log.events.size() == 2);
+}
+
+TEST_CASE("A world is not made where arithmetic is not exact", "[world]") {
+  std::string said;
+  std::fesetround(FE_TOWARDZERO);
+  try {
+    World<1> world({});
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  std::fesetround(FE_TONEAREST);
+  CHECK(said.find("World: this thread does not round to nearest") == 0);
+  CHECK_NOTHROW(World<1>({}));
+}
+
+TEST_CASE("A budget of no time is enough for one event", "[world]") {
+  EventLog<1> log;
+  World<1> world({}, &log);
+  for (const auto& b : two_balls()) world.add_body(b);
+  CHECK_FALSE(world.advance_for(0, 10));
+  CHECK(log.events.size() == 1);
+  CHECK(world.now() == 1);
 }
 
 TEST_CASE("A world of frames needs a limit to step to", "[world]") {

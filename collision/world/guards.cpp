@@ -1,0 +1,34 @@
+// What may be asked of a world at which moment, and what is left of it when something throws.
+#include "collision/world.hpp"
+
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+namespace kds::collision {
+
+/// Keeps the first reason: what is thrown later follows from it.
+template <int Degree>
+void World<Degree>::note_failure() {
+  if (!failure_) failure_ = std::current_exception();
+}
+
+template <int Degree>
+void World<Degree>::refuse(const char* function) const {
+  const std::string called = std::string(function) + ": ";
+  if (!failure_ && in_box_function_) throw std::logic_error(called + "a box function must not change the world");
+  if (!failure_) throw std::logic_error(called + "must not be called from within a callback");
+  std::string why = "what was thrown is no std::exception";
+  try {
+    std::rethrow_exception(failure_);
+  } catch (const std::exception& error) {
+    why = error.what();
+  } catch (...) {
+  }
+  throw std::logic_error(called + "the world can no longer be used, since a change was interrupted half-way: " + why);
+}
+
+template class World<1>;
+template class World<2>;
+
+}  // namespace kds::collision
