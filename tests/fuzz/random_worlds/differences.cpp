@@ -19,8 +19,8 @@ std::vector<Line> run(const DrawnScenario& drawn, const Way& way) { return play(
 Difference accepted(const std::vector<Line>& lines) {
   Difference result;
   for (std::size_t i = 0; i < lines.size() && !result.any; ++i) {
-    if (lines[i].kind != Line::Kind::thrown || !lines[i].text.starts_with("(nothing")) continue;
-    result = {true, i, "accepted in a callback", "  " + shown(lines[i]) + "\n"};
+    if (lines[i].kind != Line::Kind::thrown || lines[i].text != not_refused) continue;
+    result = {true, i, "accepted where it must be refused", "  " + shown(lines[i]) + "\n"};
   }
   return result;
 }

@@ -129,6 +129,7 @@ BodyPlan draw_body(Random& random, const Style& style) {
     body.box_function = true;
     body.box_margin = random.one_in(2) ? 0 : 0.25;
     body.box_validity = 0.25 * random.integer(1, 6);
+    body.box_edits = random.one_in(4);
   }
   return body;
 }

@@ -40,6 +40,9 @@ inline constexpr std::string_view line_names[] = {"contact",    "separation", "o
                                                   "pair_began", "pair_ended", "held",    "held_at_wall",
                                                   "moved",      "thrown",     "state"};
 
+/// Text of a line for a call that must be refused and was not.
+inline constexpr std::string_view not_refused = "nothing, where it must be";
+
 /// Whether all is the same, bit for bit.
 bool same(const Line& x, const Line& y);
 /// For people; numbers in hexadecimal, or rounded.

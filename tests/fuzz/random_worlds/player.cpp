@@ -46,6 +46,12 @@ void Player<Degree>::note_thrown(const char* what) {
   log_.push_back({Line::Kind::thrown, 0, 0, {.time = world_->now()}, what});
 }
 
+/// What should have been refused.
+template <int Degree>
+void Player<Degree>::note_accepted() {
+  log_.push_back({Line::Kind::thrown, 0, 0, {.time = world_->now()}, std::string(not_refused)});
+}
+
 /// The clock and the motions as a hash, and who is with whom.
 template <int Degree>
 void Player<Degree>::note_state() {
@@ -102,9 +108,9 @@ typename Player<Degree>::Motion Player<Degree>::motion(const Path& path) const {
 }
 
 template <int Degree>
-BodyDescription<Degree> Player<Degree>::description(const BodyPlan& plan) const {
+BodyDescription<Degree> Player<Degree>::description(const BodyPlan& plan) {
   BodyDescription<Degree> result;
-  const Vector3d size = scenario_.unit * plan.size;
+  const Vector3d size = way_.growth * scenario_.unit * plan.size;
   switch (plan.shape) {
     case ShapeKind::ball:
       result.shape = collision::Sphere{size[0]};
@@ -127,8 +133,9 @@ BodyDescription<Degree> Player<Degree>::description(const BodyPlan& plan) const 
   if (plan.box_function) {
     const collision::PlacedShape placed = place(result.shape, result.orientation);
     const Vector3d margin = Vector3d::Constant(plan.box_margin * scenario_.unit);
-    result.box = [low = Vector3d(placed.low - margin), high = Vector3d(placed.high + margin),
-                  validity = plan.box_validity](double t, const Motion& path) {
+    result.box = [this, low = Vector3d(placed.low - margin), high = Vector3d(placed.high + margin),
+                  validity = plan.box_validity, edits = plan.box_edits](double t, const Motion& path) {
+      if (edits) edit_in_box_function();
       auto box = collision::box_around<Degree>(path, low, high);
       box.valid_until = t + validity;
       return box;
@@ -141,6 +148,10 @@ template <int Degree>
 void Player<Degree>::save_and_load() {
   try {
     const kds::Snapshot saved = kds::save(*world_);
+    if (way_.runs_ahead) {
+      run_ahead();
+      return kds::restore(saved, *world_);
+    }
     auto other = std::make_unique<World>(options(loaded_before_ ? way_.broad_phase : way_.load_into), this);
     kds::restore(saved, *other);
     world_ = std::move(other);
@@ -149,6 +160,25 @@ void Player<Degree>::save_and_load() {
     stopped_ = true;
     note_thrown(error.what());
   }
+}
+
+/// Some steps, of which nothing is left but in the world.
+template <int Degree>
+void Player<Degree>::run_ahead() {
+  constexpr int steps_ahead = 6;
+  const auto bodies = bodies_;
+  const auto ids = ids_;
+  const auto numbers = numbers_;
+  const std::size_t lines = log_.size();
+  reactor_.go_ahead(true);
+  try {
+    const double limit = world_->now() + 0.5;
+    for (int i = 0; i < steps_ahead && world_->step(limit); ++i) continue;
+  } catch (const std::exception&) {  // so it is when these steps are made again
+  }
+  reactor_.go_ahead(false);
+  log_.resize(lines);
+  bodies_ = bodies, ids_ = ids, numbers_ = numbers;
 }
 
 template class Player<1>;

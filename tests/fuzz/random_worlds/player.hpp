@@ -40,10 +40,12 @@ class Player final : public collision::WorldListener<Degree> {
   void note(Line::Kind kind, BodyId a, BodyId b, const Contact& contact);
   void note_wall(Line::Kind kind, const WallEvent& e) { note(kind, e.body, static_cast<BodyId>(e.wall), e.contact); }
   void note_thrown(const char* what);
+  void note_accepted();
   void note_state();
 
   collision::WorldOptions options(BroadPhaseKind broad_phase) const;
-  collision::BodyDescription<Degree> description(const BodyPlan& plan) const;
+  collision::BodyDescription<Degree> description(const BodyPlan& plan);
+  void edit_in_box_function();
   Motion motion(const Path& path) const;
 
   void call_from_outside(const Call& call);
@@ -54,6 +56,7 @@ class Player final : public collision::WorldListener<Degree> {
   void advance(double seconds);
   bool step_up_to(double limit);
   void save_and_load();
+  void run_ahead();
 
   static constexpr BodyId gone = ~BodyId{0};
   BodyId id_of(std::size_t body) const { return body < ids_.size() ? ids_[body] : gone; }

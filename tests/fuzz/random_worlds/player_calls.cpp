@@ -67,7 +67,11 @@ void Player<Degree>::call(const Call& call, const Contact* contact) {
       return;
     case Call::Kind::advance:
     case Call::Kind::save:
-      return must_be_refused(call);
+      if (contact) must_be_refused(call);
+      return;
+    case Call::Kind::fail:
+      if (contact) throw std::runtime_error("a callback throws");
+      return;
   }
 }
 
@@ -101,7 +105,23 @@ void Player<Degree>::must_be_refused(const Call& call) {
   } catch (const std::logic_error&) {
     return;
   }
-  note_thrown("(nothing, where a callback advances or saves the world)");
+  note_accepted();
+}
+
+template <int Degree>
+void Player<Degree>::edit_in_box_function() {
+  const auto refused = [](const auto& edit) {
+    try {
+      edit();
+    } catch (const std::logic_error&) {
+      return true;
+    }
+    return false;
+  };
+  const bool all = refused([&] { world_->remove_body(0); }) && refused([&] { world_->step(world_->now()); }) &&
+                   refused([&] { world_->update_motion(0, motion({})); }) &&
+                   refused([&] { world_->add_body(description({})); });
+  if (!all) note_accepted();
 }
 
 template <int Degree>

@@ -50,6 +50,9 @@ void print_call(const Scenario& scenario, const Call& call, const char* indent) 
     case Call::Kind::save:
       text = call.kind == Call::Kind::save ? "save_and_load(" : "advance(" + number(call.seconds);
       break;
+    case Call::Kind::fail:
+      text = "fail(";
+      break;
     default:
       break;
   }
@@ -141,6 +144,7 @@ void print_options(const Scenario& scenario, const Way& way) {
   std::printf(
       "    p.options.kdop = %d;\n    p.stops = %d;\n    p.save_every = %zu;\n    p.saves_between_calls = %d;\n  }\n",
       way.kdop, way.stops, way.save_every, static_cast<int>(way.saves_between_calls));
+  if (way.runs_ahead) std::printf("  if (other) p.runs_ahead = true;\n");
 }
 
 void print_reactions(const Scenario& scenario) {

@@ -8,7 +8,7 @@ namespace kds::fuzz {
 namespace {
 
 constexpr std::size_t most_calls = 3;
-/// Reactions that are refused are as good as none, so there are few.
+/// Reactions that are refused, or throw, end others, so there are few.
 constexpr std::size_t one_is_refused_in = 100;
 
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
@@ -28,7 +28,7 @@ EventKey counted(const EventKey& event, std::map<EventKey, std::size_t>& counts)
 
 Call::Kind draw_kind(Random& random) {
   using enum Call::Kind;
-  if (random.one_in(one_is_refused_in)) return random.one_in(2) ? advance : save;
+  if (random.one_in(one_is_refused_in)) return std::array{advance, save, fail}[random.below(3)];
   constexpr std::array kinds{add, remove, move, turn_back, keep, follow, away_and_back};
   return kinds[random.below(kinds.size())];
 }
@@ -77,8 +77,17 @@ std::vector<Call> WrittenReactor::react(const Line& /*line*/, const EventKey& ev
   return found == calls_.end() ? std::vector<Call>{} : *found->second;
 }
 
+void WrittenReactor::go_ahead(bool ahead) {
+  if (ahead) {
+    kept_ = counts_;
+  } else {
+    counts_ = kept_;
+  }
+}
+
 std::vector<Call> WritingReactor::react(const Line& line, const EventKey& event, std::vector<BodyPlan>& bodies) {
   std::vector<Call> calls = other_.react(line, event, bodies);
+  if (ahead_) return calls;
   const EventKey key = counted(event, counts_);
   if (!calls.empty()) reactions_.push_back({key, calls});
   bodies_ = bodies;

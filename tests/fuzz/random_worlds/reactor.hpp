@@ -17,6 +17,8 @@ class Reactor {
   /// The calls to make at an event. `event` names its bodies by their numbers in `bodies`; those that calls add are
   /// appended to it.
   virtual std::vector<Call> react(const Line& line, const EventKey& event, std::vector<BodyPlan>& bodies) = 0;
+  /// What comes now will be undone, or (false) has been.
+  virtual void go_ahead(bool /*ahead*/) {}
 };
 
 /// Random calls, from the seed of the scenario and the bits of the event.
@@ -35,10 +37,12 @@ class WrittenReactor final : public Reactor {
  public:
   explicit WrittenReactor(const Scenario& scenario);
   std::vector<Call> react(const Line& line, const EventKey& event, std::vector<BodyPlan>& bodies) override;
+  void go_ahead(bool ahead) override;
 
  private:
   std::map<EventKey, const std::vector<Call>*> calls_;
   std::map<EventKey, std::size_t> counts_;
+  std::map<EventKey, std::size_t> kept_;
 };
 
 /// Asks another one, and writes down what it says.
@@ -46,12 +50,14 @@ class WritingReactor final : public Reactor {
  public:
   explicit WritingReactor(Reactor& other) : other_(other) {}
   std::vector<Call> react(const Line& line, const EventKey& event, std::vector<BodyPlan>& bodies) override;
+  void go_ahead(bool ahead) override { ahead_ = ahead, other_.go_ahead(ahead); }
 
   /// The scenario with what has been written down, in place of random reactions.
   Scenario written(Scenario scenario) const;
 
  private:
   Reactor& other_;
+  bool ahead_ = false;
   std::map<EventKey, std::size_t> counts_;
   std::vector<Reaction> reactions_;
   std::vector<BodyPlan> bodies_;

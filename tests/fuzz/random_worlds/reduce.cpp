@@ -92,6 +92,7 @@ class Reducer {
     simpler(&Way::stops, 1);
     simpler(&Way::save_every, std::size_t{0});
     simpler(&Way::saves_between_calls, false);
+    simpler(&Way::runs_ahead, false);
     simpler(&Way::load_into, way_.broad_phase);
     simpler(&Way::broad_phase, BroadPhaseKind::all_pairs);
     simpler(&Way::broad_phase, BroadPhaseKind::automatic);

@@ -42,6 +42,7 @@ struct BodyPlan {
   bool box_function = false;
   double box_margin = 0;    ///< how far its boxes reach beyond the shape
   double box_validity = 1;  ///< s; how long each of them is valid
+  bool box_edits = false;   ///< the function tries to change the world, which must be refused
 };
 
 /// Something done to the world. Bodies are named by their number in Scenario::bodies, whatever id they have got.
@@ -57,6 +58,7 @@ struct Call {
     push_off,       ///< in a callback alone: both bodies leave each other along the normal, `body` in any case
     advance,        ///< up to `seconds` from now; in a callback it must be refused
     save,           ///< in a callback alone: it must be refused
+    fail,           ///< in a callback alone: it throws
   };
   Kind kind = Kind::keep;
   std::size_t body = 0;
@@ -65,8 +67,8 @@ struct Call {
   double seconds = 0;
 };
 
-inline constexpr std::string_view call_names[] = {"add",    "remove",        "move",     "turn_back", "keep",
-                                                  "follow", "away_and_back", "push_off", "advance",   "save"};
+inline constexpr std::string_view call_names[] = {"add",           "remove",   "move",    "turn_back", "keep", "follow",
+                                                  "away_and_back", "push_off", "advance", "save",      "fail"};
 
 /// Which event of a log: the `count`th of its kind and bodies.
 struct EventKey {

@@ -25,6 +25,8 @@ struct Way {
   std::size_t save_every = 0;  ///< steps; each time the world is saved and loaded into another one (0: never)
   BroadPhaseKind load_into = BroadPhaseKind::all_pairs;  ///< that world's, in turn with `broad_phase`
   bool saves_between_calls = false;                      ///< also before each call
+  bool runs_ahead = false;  ///< what is saved is loaded by the same world, after some steps more that are undone by it
+  double growth = 1;        ///< of all shapes; one that is not 1 makes a wrong world, to check the comparison
 
   std::string name() const;
 };
