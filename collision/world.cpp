@@ -187,8 +187,7 @@ bool World<Degree>::next_event(double limit) {
       report_next();
       return true;
     } else if (volume == next) {
-      renew_volume(volumes_.top().slot);
-      return true;
+      if (renew_volume(volumes_.top().slot)) return true;
     } else if (wall == next) {
       process_wall(walls_.top().slot, next);
       return true;
@@ -286,13 +285,11 @@ void World<Degree>::start_pieces() {
   }
 }
 
+/// True if the volume is one that a caller gives: that is an event.
 template <int Degree>
-void World<Degree>::renew_volume(BodyId id) {
-  broad_phase_->update(id, renewed_box(id), now_, *this);
-  if (options_.report_pairs && !broad_phase_->exact()) {  // when its box meets others is to be found anew
-    for (const Link& link : links_.items(bodies_[id].pairs)) mark_dirty(link.slot);
-  }
-  schedule_volume(id);
+bool World<Degree>::renew_volume(BodyId id) {
+  update_volume(id, renewed_box(id));
+  return bodies_[id].extras && bodies_[id].extras->box_function;
 }
 
 /// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are

@@ -5,6 +5,7 @@
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/narrow_phase/contact.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/earliest_wall_time.hpp"
@@ -166,7 +167,7 @@ class World final : private PairListener {
   void reach(double limit);
   void go_back(double t);
   void start_pieces();
-  void renew_volume(BodyId id);
+  bool renew_volume(BodyId id);
   void count_edit();
 
   // world/guards.cpp: what may be called when, and what is left when something throws
@@ -249,6 +250,7 @@ class World final : private PairListener {
   void set_motion(BodyId id, const Motion& motion, bool jumped);
   bool is_jump(BodyId id, const Motion& to) const;
   KineticBox<Degree> bounding_box(BodyId id) const;
+  KineticBox<Degree> bare_box(BodyId id) const;
   KineticBox<Degree> renewed_box(BodyId id);
   void note_wall(BodyId id, double earliest);
   void schedule_wall(BodyId id);
@@ -261,6 +263,13 @@ class World final : private PairListener {
   void place_extents(BodyId id);
   KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;
   bool volumes_overlap(BodyId a, BodyId b) const;
+
+  // world/clearance.cpp: what volumes reach beyond bodies, for the contact gap of meshes
+  void allow_for_meshes();
+  void update_volume(BodyId id, const KineticBox<Degree>& box);
+  std::array<double, Degree + 1> growth(BodyId id) const;
+  KineticBox<Degree> grown(BodyId id, KineticBox<Degree> box) const;
+  double clearance_until(BodyId id) const;
 
   // world/contacts.cpp: tests, contacts, response
   ContactMode mode() const {
@@ -351,7 +360,9 @@ class World final : private PairListener {
   double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
   double removed_at_ = -never;
   std::size_t alive_ = 0;
-  std::size_t unlisted_ = 0;  ///< pairs that the broad phase does not list
+  std::size_t unlisted_ = 0;    ///< pairs that the broad phase does not list
+  bool meshes_ = false;         ///< there is or has been one, so volumes have room for contact gaps
+  bool box_functions_ = false;  ///< some body has or had one
   bool inserting_ = false;
   bool stepping_ = false;
   bool telling_ = false;          ///< a listener is being told, or has thrown

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/convex_touch.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/near_spans.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"

@@ -1,6 +1,7 @@
 // When a triangle touches another triangle or a box, one of them moving.
 #pragma once
 
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"

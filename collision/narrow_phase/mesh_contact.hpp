@@ -1,6 +1,7 @@
 // Dynamic intersection tests of triangle meshes with meshes, boxes and balls.
 #pragma once
 
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/shapes/shape.hpp"
@@ -35,7 +36,7 @@ struct MeshTouchPlace {
 ///
 /// Laws. (1) Never late, never missed: contact is reported while surfaces are nearer than the contact gap (see
 /// ContactGap for its size and derivation), and so no vertex or edge slips between two triangles that share an edge.
-/// (Predictions end where the gap has grown to a sixteenth of the shapes: see `widest_gap` in mesh_times.hpp.)
+/// (Predictions end where the gap has grown to a sixteenth of the shapes: see `widest_gap` in mesh_margins.hpp.)
 /// (2) Early by the gap and the rounding of the tests, at most 45/64 of it, measured along each separating axis
 /// (docs/accuracy.md: 1.03 gaps were seen). (3) The times are closed forms of the shapes and
 /// the motion polynomial: they do not depend on the window asked about, on the order of the walk through the trees or

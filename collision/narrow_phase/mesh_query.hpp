@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/contact_patch.hpp"
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/mesh_partners.hpp"
 #include "collision/narrow_phase/mesh_times.hpp"
 #include "collision/narrow_phase/obb_descent.hpp"

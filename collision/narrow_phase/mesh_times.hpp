@@ -1,6 +1,7 @@
 // When it is worth looking for contacts of two shapes, one of them a mesh.
 #pragma once
 
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/near_spans.hpp"
 #include "collision/narrow_phase/obb_descent.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
@@ -16,11 +17,6 @@ namespace kds::collision::detail {
 
 /// s; contacts that lie farther ahead than 10^60 are none. Keeps polynomials of the time from overflowing.
 inline constexpr double farthest = 0x1p200;
-
-/// Nor are contacts predicted for times at which the contact gap has grown to this part of the radii, and fourfold. A
-/// straight path gets there only if its speed is nothing but rounding (bodies that move alike), a curved one if it goes
-/// out 2^43 radii and comes back. Larger predicts more of such contacts, and more slowly.
-inline constexpr double widest_gap = 0x1p-4;
 
 /// The relative motion of a pair, and the times at which its bounding balls are in reach of each other.
 template <int Degree>

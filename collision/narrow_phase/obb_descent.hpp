@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/lanes.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/obb_tree.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"

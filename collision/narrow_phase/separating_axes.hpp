@@ -1,6 +1,7 @@
 // Separating axes of a triangle with a triangle or a box, one of them moving.
 #pragma once
 
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
 
@@ -132,9 +133,6 @@ bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
 /// Axes shorter than this are left out, which is always safe; with coordinates of 2^-100 to 2^100 they come from
 /// parallel edges alone, and squares of projections do not underflow.
 inline constexpr double vanishing_axis = 0x1p-320;
-
-/// Gaps by which boxes and quick tests are widened, see BoxPairTest.
-inline constexpr double quick_margin = 4;
 
 /// Cheap test: shrinks the window to times at which a and b may touch, with b moving; false if there are none.
 /// Projections are widened by `margin` as in BoxPairTest, times the 1-norm of the axis, which is not below its length.

@@ -1,5 +1,6 @@
 #include "collision/shapes/shape.hpp"
 
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/shapes/mesh.hpp"
 
 #include <cmath>
@@ -19,10 +20,6 @@ void require_size(double value, const char* what) {
 
 /// What the axes of a turned box may be off orthonormal, and what adding up its extents may round.
 constexpr double rotation_margin = 16 * 0x1p-52;
-
-/// A mesh touches a little before its surfaces do (the margin of mesh_contact.hpp); its box is grown by this fraction
-/// of its size, so that the broad phase finds the pair before then for paths of up to a million sizes.
-constexpr double mesh_margin = 0x1p-24;
 
 void grow(PlacedShape& placed, double margin) {
   placed.low.array() -= margin;
@@ -76,7 +73,7 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
     require_size(instance.scale, "scale");
     instance.mesh->extents(placed.rotation, instance.scale, placed.low, placed.high);
     const double radius = instance.mesh->bounding_radius() * instance.scale;
-    grow(placed, mesh_margin * radius);
+    grow(placed, box_margin * radius);
     placed.bounding_radius = radius * (1 + rotation_margin);
   }
   return placed;
@@ -97,7 +94,7 @@ std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& di
     const std::array<double, 2> ends = instance.mesh->extent(shape.rotation, instance.scale, direction);
     low = ends[0];
     high = ends[1];
-    margin = (mesh_margin + rotation_margin) * shape.bounding_radius * length;
+    margin = (box_margin + rotation_margin) * shape.bounding_radius * length;
   }
   return {low - margin, high + margin};
 }

@@ -15,7 +15,8 @@ void World<Degree>::audit() const {
   const auto fail = [](BodyId a, BodyId b, const char* what) {
     throw AuditFailure("World: bodies " + std::to_string(a) + " and " + std::to_string(b) + ": " + what);
   };
-  if (!entering_.empty() || !dirty_.empty()) return;  // Work of this instant is still to be done.
+  const bool volumes_due = !volumes_.empty() && volumes_.top().time <= now_;
+  if (!entering_.empty() || !dirty_.empty() || volumes_due) return;  // Work of this instant is still to be done.
   if (disturbed_.empty()) audit_holds();
   audit_overlapping();
   for (BodyId a = 0; a < bodies_.size(); ++a) {

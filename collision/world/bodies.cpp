@@ -134,6 +134,13 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
 /// The bounding volume as it is: what the caller's function gave last, or what the motion gives.
 template <int Degree>
 inline KineticBox<Degree> World<Degree>::bounding_box(BodyId id) const {
+  if (meshes_) return grown(id, bare_box(id));
+  return bare_box(id);
+}
+
+/// The same without room for the contact gap of meshes.
+template <int Degree>
+inline KineticBox<Degree> World<Degree>::bare_box(BodyId id) const {
   const Body& b = bodies_[id];
   if (b.extras && b.extras->box_function) return b.extras->box;
   const bool sphere = !b.shape || b.volume == BoundingVolume::sphere;
@@ -166,11 +173,14 @@ KineticBox<Degree> World<Degree>::renewed_box(BodyId id) {
 template <int Degree>
 void World<Degree>::schedule_volume(BodyId id) {
   const Extras* const extras = bodies_[id].extras.get();
-  if (!extras || !extras->box_function) return;
-  if (extras->box.valid_until <= horizon_) {
-    volumes_.set(id, extras->box.valid_until);
+  const bool box_function = extras && extras->box_function;
+  if (!box_function && !meshes_) return;
+  const double until = box_function ? extras->box.valid_until : clearance_until(id);
+  if (until <= horizon_ && until < never) {
+    make_room(volumes_, bodies_.size());
+    volumes_.set(id, until);
   } else {
-    volumes_.clear(id);
+    clear(volumes_, id);
   }
 }
 

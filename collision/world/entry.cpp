@@ -86,6 +86,7 @@ inline BodyId World<Degree>::put(const Description& description, std::shared_ptr
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= now_) ++piece;
+  if (std::holds_alternative<MeshShape>(description.shape)) allow_for_meshes();
   const BodyId id = new_body();
   Body& added = bodies_[id];
   added.bounding_radius = shape ? shape->bounding_radius : ball->radius;
@@ -118,7 +119,10 @@ template <int Degree>
 void World<Degree>::set_extras(BodyId id, std::span<const Motion> script,
                                const typename Description::BoxFunction& box_function) {
   Extras extras{{script.rbegin(), script.rend()}, box_function, {}};  // next piece last
-  if (box_function) make_room(volumes_, bodies_.size());
+  if (box_function) {
+    make_room(volumes_, bodies_.size());
+    box_functions_ = true;
+  }
   make_room(pieces_, bodies_.size());
   if (!script.empty()) pieces_.set(id, script.front().start);
   bodies_[id].extras = std::make_unique<Extras>(std::move(extras));
@@ -153,8 +157,7 @@ void World<Degree>::enter_new_bodies() {
   }
   const auto boxes = std::make_unique_for_overwrite<KineticBox<Degree>[]>(entries.size());
   // The functions of callers are called by their own thread, and in order.
-  const bool functions = volumes_.slots() > 0;
-  const std::size_t threads = functions ? 1 : threads_for(entries.size(), options_.threads);
+  const std::size_t threads = box_functions_ ? 1 : threads_for(entries.size(), options_.threads);
   in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       entries[i].box = new (&boxes[i]) KineticBox<Degree>(renewed_box(entries[i].id));  // not copied there
@@ -167,7 +170,7 @@ void World<Degree>::enter_new_bodies() {
   }
   inserting_ = false;
   schedule_walls(entries);
-  if (!functions) return;
+  if (!box_functions_ && !meshes_) return;
   for (const Entry& entry : entries) schedule_volume(entry.id);
 }
 

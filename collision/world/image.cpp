@@ -79,7 +79,7 @@ void World<Degree>::Image::body(Archive& archive, BodyImage& body) const {
 template <int Degree>
 template <class Archive>
 void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
-  archive(now, horizon, counters, edits, edits_start);
+  archive(now, horizon, has_had_meshes, counters, edits, edits_start);
   each(archive, meshes, [&](auto& one) { mesh(archive, one, known); });
   each(archive, bodies, [&](BodyImage& one) { body(archive, one); });
   archive(free_bodies, removed, removed_at, entering, disturbed, free_holds, releases);

@@ -38,6 +38,7 @@ struct World<Degree>::Image {
   };
 
   double now = 0, horizon = 0;
+  bool has_had_meshes = false;
   WorldCounters counters;
   std::vector<std::shared_ptr<const Mesh>> meshes;
   std::vector<BodyImage> bodies;  // by id

@@ -60,7 +60,15 @@ KineticSlab<Degree> World<Degree>::slab(BodyId id, std::size_t i, double now) co
   const auto& [low, high] = extents_[id * directions_.size() + i];
   const bool boxes_alone = b.extras && b.extras->box_function;
   if (!boxes_alone && movers_[id].motion.start <= now) {
-    return slab_around(movers_[id].motion, low, high, directions_[i]);
+    KineticSlab<Degree> slab = slab_around(movers_[id].motion, low, high, directions_[i]);
+    if (!meshes_) return slab;
+    const auto by = growth(id);
+    const double length = Eigen::Vector3d(directions_[i].data()).norm() * (1 + 0x1p-48);
+    for (std::size_t k = 0; k <= Degree; ++k) {
+      slab.min.position.c[k] -= by[k] * length;
+      slab.max.position.c[k] += by[k] * length;
+    }
+    return slab;
   }
   return slab_around(bounding_box(id), directions_[i], now);
 }

@@ -59,7 +59,7 @@ std::vector<std::shared_ptr<const Mesh>> World<Degree>::meshes() const {
 template <int Degree>
 typename World<Degree>::Image World<Degree>::image() const {
   Image image;
-  image.now = now_, image.horizon = horizon_, image.counters = counters();
+  image.now = now_, image.horizon = horizon_, image.has_had_meshes = meshes_, image.counters = counters();
   image.meshes = meshes();
   for (BodyId id = 0; id < bodies_.size(); ++id) {
     const Body& b = bodies_[id];
@@ -111,7 +111,7 @@ void World<Degree>::set_shape(BodyId id, PlacedShape placed) {
 
 template <int Degree>
 void World<Degree>::become(const Image& image) {
-  now_ = image.now, horizon_ = image.horizon;
+  now_ = image.now, horizon_ = image.horizon, meshes_ = image.has_had_meshes;
   idle_until_ = -never;
   inserting_ = false;
   edits_ = image.edits, edits_start_ = image.edits_start;

@@ -1,0 +1,179 @@
+// The margins of mesh contact: how near counts as contact, and what has to allow for that.
+#pragma once
+
+#include "certificates/point_motion.hpp"
+#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/narrow_phase/relative_motion.hpp"
+#include "kds/arithmetic/lattice.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace kds::collision {
+
+/// Polynomial in tau >= 0: two surfaces nearer than this count as touching.
+///
+/// This margin pays for every rounding of the tests of meshes, which are made in doubles. So no contact is missed or
+/// found late, and none slips between two triangles that share an edge; the price is that contact is found early by
+/// at most this gap (in a corner, measured along each of the separating axes that meet there).
+///
+/// gap(tau) = `roundings` (S + |r0| + |r1| tau + |r2| tau^2) + `clock` |epoch| |velocity| + uncertainty of r, with S
+/// the sum of the shapes' radii. Derivation, in units of 2^-53 and of the bracket: the rotation matrix has entries
+/// good to 6 and placed_vertex adds 4 (in all at most 10 sqrt 3 < 18 times a vertex); projections of vertices on a
+/// unit axis and their differences 8; of r 4 for each coefficient and 3 for their sum; normalising the axis 4; the
+/// roots of the closed forms solve a polynomial whose coefficients are off by 6, and rounding tau moves it by 2. That
+/// is 45 at most; 64 leaves room, and makes the time in which two parallel faces pass each other last at least 19
+/// roundings of tau, so that it never falls between two doubles. `clock`: the time of a contact, epoch + tau, is
+/// rounded to a double by less than one spacing (2^-52 |epoch|); within four spacings two bodies must not pass each
+/// other unseen nor, after an impulse at the rounded time, find themselves on the wrong side.
+template <int Degree>
+struct ContactGap {
+  static constexpr double roundings = 64 * 0x1p-53;
+  static constexpr double clock = 4 * 0x1p-52;
+
+  std::array<double, Degree + 1> c;
+
+  double operator()(double tau) const {
+    if constexpr (Degree == 1) {
+      return c[0] + tau * c[1];
+    } else {
+      return c[0] + tau * (c[1] + tau * c[2]);
+    }
+  }
+};
+
+template <int Degree>
+ContactGap<Degree> contact_gap(const RelativeMotion<Degree>& motion, double radii) {
+  ContactGap<Degree> gap;
+  const double clock = ContactGap<Degree>::clock * std::abs(motion.epoch);
+  double size = radii;
+  for (std::size_t i = 0; i <= Degree; ++i) {
+    size += motion.coefficients[i].norm();
+    gap.c[i] = ContactGap<Degree>::roundings * size + motion.uncertainty[i];
+    if (i < Degree) gap.c[i] += clock * static_cast<double>(i + 1) * motion.coefficients[i + 1].norm();
+    size = 0;
+  }
+  return gap;
+}
+
+/// Gaps by which boxes and quick tests are widened, see BoxPairTest.
+inline constexpr double quick_margin = 4;
+
+/// No contacts are predicted for times at which the contact gap has grown to this part of the radii, and fourfold. A
+/// straight path gets there only if its speed is nothing but rounding (bodies that move alike), a curved one if it goes
+/// out 2^43 radii and comes back. Larger predicts more of such contacts, and more slowly.
+inline constexpr double widest_gap = 0x1p-4;
+
+/// The bounding box of a mesh is grown by this part of its radius, which is enough for paths of a million radii: see
+/// MeshClearance, which grows volumes where it is not. Larger has more pairs tested.
+inline constexpr double box_margin = 0x1p-24;
+
+/// By how much the bounding volume of a body has to reach beyond its shape where there are meshes, so that volumes
+/// overlap for as long as contact may be reported, and the broad phase makes no difference to contacts: the contact gap
+/// is of a pair, a volume of one body, so each of the two has a share of it.
+///
+/// The share of a body with path p0 + v tau + a tau^2 from its start s on, and of radius R, is the polynomial
+///     share(tau) = `roundings` (R + |p0| + |v| tau + |a| tau^2) + `clock` (|s| + tau) (|v| + 2 |a| tau)
+/// with the sums of magnitudes of coordinates for |.|, which are not below the lengths. Law: what a mesh and another
+/// shape leave between them along any of the axes and directions of k-DOPs, while contact is reported, is not above the
+/// sum of the two shares; nor are their distances, where the other is a ball.
+///
+/// Derivation. u = 2^-53; tau_a and tau_b count from the starts of the two bodies, tau from the later one, the epoch.
+/// (1) Written about the epoch, a path has |p0'| + |v'| tau + |a| tau^2 <= |p0| + |v| tau_a + |a| tau_a^2 (the triangle
+/// inequality), and |v'| + 2 |a| tau <= |v| + 2 |a| tau_a; |epoch| <= |s| + tau_a, for each of the two. So the sums of
+/// the brackets of both bodies are not below those of ContactGap. (2) The uncertainty of the relative coefficients is
+/// at most 14 u of these sums: seven operations, charged 2 u each. With the roundings of ContactGap that is 78 u. (3)
+/// Contact is reported up to 1 + 45/64 gaps along a separating axis; a ball in the corner of such conditions is up to
+/// sqrt 3 times as far away (ball_touch.hpp). That makes 231 u and 12 x 2^-52. (4) The time of a separation is rounded up
+/// to a double, by one spacing, 2^-52 (|s| + tau_a) at most, and tau by u: 1 x 2^-52 of `clock`, 1 u of `roundings`. 256
+/// and 16 leave room for what is rounded here and where ends are moved.
+///
+/// A volume is grown by a constant for as long as that will do: so its corners move alike, and it is not renewed. After
+/// that its ends move apart as the share grows, which holds for ever: one renewal a motion, if any.
+template <int Degree>
+class MeshClearance {
+ public:
+  static constexpr double roundings = 256 * 0x1p-53;
+  static constexpr double clock = 16 * 0x1p-52;
+
+  MeshClearance(const certificates::PointMotion<Degree>& motion, double radius) : least_(box_margin * radius) {
+    std::array<double, 3> size{};
+    for (std::size_t i = 0; i <= Degree; ++i) {
+      const Eigen::Vector3d& c = motion.coefficients[i];
+      size[i] = std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]);
+    }
+    const auto& [position, velocity, half_acceleration] = size;
+    const double start = std::abs(motion.start);
+    share_[0] = roundings * (radius + position) + clock * start * velocity;
+    share_[1] = roundings * velocity + clock * (velocity + 2 * start * half_acceleration);
+    if constexpr (Degree >= 2) share_[2] = (roundings + 2 * clock) * half_acceleration;
+    constant_ = std::max(least_, 2 * share_[0]);
+    holds_until_ = motion.start + lasts() * (1 - 0x1p-50);
+    if (holds_until_ < never) holds_until_ = next_down(holds_until_);
+  }
+
+  /// Not less than the share until `holds_until()`, on the clock; `never` if it holds for ever.
+  double constant() const { return constant_; }
+  double holds_until() const { return holds_until_; }
+  /// Whether the constant is the part of the radius that boxes of meshes are grown by anyway.
+  bool is_least() const { return constant_ == least_; }
+
+  /// Not less than the share, and than the constant, from the motion's start on.
+  std::array<double, Degree + 1> growing() const {
+    std::array<double, Degree + 1> growth = share_;
+    growth[0] = least_ + 2 * share_[0];
+    return growth;
+  }
+
+  const std::array<double, Degree + 1>& share() const { return share_; }
+
+ private:
+  /// A time, in seconds from the start, at which the share is not above the constant.
+  double lasts() const {
+    const double room = constant_ - share_[0];
+    if constexpr (Degree == 1) {
+      return share_[1] > 0 ? room / share_[1] : never;
+    } else {
+      double time = share_[1] > 0 ? 0.5 * room / share_[1] : never;
+      if (share_[2] > 0) time = std::min(time, std::sqrt(0.5 * room / share_[2]));
+      return time;
+    }
+  }
+
+  std::array<double, Degree + 1> share_;
+  double least_;
+  double constant_;
+  double holds_until_;
+};
+
+/// Moves the ends of a box apart by a polynomial of the time since `start`. Precondition: the box is used from then on
+/// alone.
+///
+/// About another start, d earlier or later, the polynomial's value is the same; where its coefficients are rounded, by
+/// 2^-52 of their sum, the growth has more room than that.
+template <int Degree>
+void grow(KineticBox<Degree>& box, std::array<double, Degree + 1> growth, double start) {
+  const auto about = [&](double epoch) {
+    std::array<double, Degree + 1> g = growth;
+    const double d = epoch - start;
+    if constexpr (Degree == 1) {
+      g[0] += d * g[1];
+    } else {
+      g[0] += d * (g[1] + d * g[2]);
+      g[1] += 2 * d * g[2];
+    }
+    return g;
+  };
+  const auto of_min = about(box.min.start);
+  const auto of_max = about(box.max.start);
+  for (std::size_t i = 0; i <= Degree; ++i) {
+    box.min.coefficients[i].array() -= of_min[i];
+    box.max.coefficients[i].array() += of_max[i];
+  }
+}
+
+}  // namespace kds::collision
