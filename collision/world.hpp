@@ -270,6 +270,13 @@ class World final : private PairListener {
   const Body& body(BodyId id) const;
   Body& body(BodyId id);
   void pairs_to_come(std::size_t pairs) override;
+  bool filters() const override { return filters_; }
+  /// What collides with nothing the broad phase does not know.
+  bool collides(BodyId id) const { return bodies_[id].category != 0 && bodies_[id].collides_with != 0; }
+  bool may_collide(BodyId a, BodyId b) const override {
+    return (bodies_[a].category & bodies_[b].collides_with) != 0 &&
+           (bodies_[b].category & bodies_[a].collides_with) != 0;
+  }
   void pair_began(BodyId a, BodyId b, double t) override;
   void pair_ended(BodyId a, BodyId b, double t) override;
   void take_out(BodyId id);
@@ -399,6 +406,7 @@ class World final : private PairListener {
   std::size_t unlisted_ = 0;    ///< pairs that the broad phase does not list
   bool meshes_ = false;         ///< there is or has been one, so volumes have room for contact gaps
   bool box_functions_ = false;  ///< some body has or had one
+  bool filters_ = false;        ///< some body does not collide with all others, or did not
   bool inserting_ = false;
   bool stepping_ = false;
   bool telling_ = false;          ///< a listener is being told, or has thrown

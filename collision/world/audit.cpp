@@ -25,10 +25,7 @@ void World<Degree>::audit(double t) const {
       if (!bodies_[a].entered || !bodies_[b].entered) continue;
       const PairSlot slot = find_pair(a, b);
       if (slot != no_pair && pairs_[slot].listed) continue;
-      if ((bodies_[a].category & bodies_[b].collides_with) == 0 ||
-          (bodies_[b].category & bodies_[a].collides_with) == 0) {
-        continue;
-      }
+      if (!may_collide(a, b)) continue;
       if (broad_phase_->next_time() <= t) continue;
       if (volumes_overlap(a, b, t)) fail(a, b, "the bounding volumes overlap and the pair is not active");
     }

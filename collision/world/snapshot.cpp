@@ -136,6 +136,7 @@ void World<Degree>::become(const Image& image) {
     movers_[id].motion = from.motion;
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
     b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume;
+    filters_ = filters_ || b.category != default_category || ~b.collides_with != 0;
     place_extents(id);
     b.meetings = from.meetings, b.burst_start = from.burst_start;
     if constexpr (Degree >= 2) b.force = from.force;
@@ -160,7 +161,7 @@ void World<Degree>::rebuild_broad_phase() {
   std::vector<typename BroadPhase<Degree>::Entry> entries;
   std::vector<KineticBox<Degree>> boxes;
   for (BodyId id = 0; id < bodies_.size(); ++id) {
-    if (!bodies_[id].entered) continue;
+    if (!bodies_[id].entered || !collides(id)) continue;
     entries.push_back({id, nullptr});
     boxes.push_back(renewed_box(id));
     schedule_volume(id);
