@@ -44,7 +44,7 @@ void World<Degree>::remove_body(BodyId id) {
 template <int Degree>
 void World<Degree>::take_out(BodyId id) {
   Body& removed = bodies_[id];
-  drop_holds(id);
+  resting_.forget(id);
   removed.alive = false;
   clear(pieces_, id);
   clear(volumes_, id);
@@ -98,9 +98,9 @@ void World<Degree>::give(BodyId id, const Motion& motion) {
     return;
   }
   const bool jumped = is_jump(id, motion);
-  if (jumped) drop_holds(id);
+  if (jumped) resting_.drop_all(id);
   set_motion(id, motion, jumped);
-  disturb(id);
+  resting_.disturb(id);
 }
 
 template <int Degree>
