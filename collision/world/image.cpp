@@ -79,7 +79,7 @@ void World<Degree>::Image::body(Archive& archive, BodyImage& body) const {
 template <int Degree>
 template <class Archive>
 void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
-  archive(now, clock, horizon, has_had_meshes, counters, edits, edits_start);
+  archive(now, clock, horizon, has_had_meshes, counters, edits);
   each(archive, meshes, [&](auto& one) { mesh(archive, one, known); });
   each(archive, bodies, [&](BodyImage& one) { body(archive, one); });
   archive(free_bodies, removed, removed_at, entering);
@@ -94,7 +94,7 @@ void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shar
     archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh, h.left_behind);
     vector(archive, h.normal);
   });
-  each(archive, pending, [&](Pending& p) {
+  each(archive, pending, [&](auto& p) {
     archive(p.kind, p.a, p.b, p.removed, p.contact.time);
     for (Feature* f : {&p.contact.feature_a, &p.contact.feature_b}) archive(f->kind, f->first, f->second);
     vector(archive, p.contact.point), vector(archive, p.contact.normal);

@@ -44,10 +44,9 @@ struct World<Degree>::Image {
   std::vector<BodyId> free_bodies, removed, entering;
   std::vector<PairImage> pairs;
   typename RestingContacts<Degree>::Image resting;
-  std::vector<Pending> pending;
+  std::vector<detail::Pending> pending;
   double removed_at = 0;
-  std::uint64_t edits = 0;
-  double edits_start = 0;
+  EditLimit edits;
 
   /// Loading, meshes that are among `known` are not built again.
   template <class Archive>
