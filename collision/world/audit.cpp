@@ -1,5 +1,6 @@
 // What the world checks of itself: pairs, and contacts that are held.
 #include "kds/audit.hpp"
+#include "collision/vectors.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -85,7 +86,7 @@ void World<Degree>::audit_holds(double t) const {
       if (std::count(known.begin(), known.end(), slot) != 1) fail(slot, "a body does not know it");
     }
     if (at_wall && (hold.wall < 0 || hold.wall > 5 || !options_.walls)) fail(slot, "there is no such wall");
-    if (std::abs(hold.normal.norm() - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
+    if (std::abs(norm(hold.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
     if (releases_.time(slot) < t) fail(slot, "it should have been let go");
     if (hold.fresh) continue;
     const Eigen::Vector3d a = movers_[hold.a].motion.velocity(t);
@@ -97,7 +98,7 @@ void World<Degree>::audit_holds(double t) const {
         largest += 2 * bodies_[id].force.cwiseAbs().maxCoeff() * (1 + t - movers_[id].motion.start);
       }
     }
-    if (std::abs(hold.normal.dot(b - a)) > 16 * rate_rounding * largest) {
+    if (std::abs(dot(hold.normal, b - a)) > 16 * rate_rounding * largest) {
       fail(slot, "the bodies part or press on along its normal");
     }
   }

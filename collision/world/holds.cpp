@@ -1,4 +1,5 @@
 // Contacts that are held: which there are, when the bodies may meet elsewhere, and when they are let go.
+#include "collision/vectors.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -53,7 +54,7 @@ template <int Degree>
 void World<Degree>::add_hold(const Hold& hold) {
   for (const HoldSlot slot : bodies_[hold.a].holds) {
     Hold& other = holds_[slot];
-    if (other.a != hold.a || other.b != hold.b || !(other.normal.dot(hold.normal) > same_normal)) continue;
+    if (other.a != hold.a || other.b != hold.b || !(dot(other.normal, hold.normal) > same_normal)) continue;
     other.normal = hold.normal;
     other.fresh = true;
     return;

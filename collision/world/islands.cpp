@@ -1,4 +1,5 @@
 // Bodies that lean on each other: found, and moved as what holds them lets them.
+#include "collision/vectors.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -166,7 +167,7 @@ bool World<Degree>::drop_broken(const Island& island) {
     const Vector3d a = movers_[hold.a].motion.velocity(now_);
     const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : movers_[hold.b].motion.velocity(now_);
     const double largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
-    if (std::abs(hold.normal.dot(b - a)) <= rate_rounding * largest) continue;
+    if (std::abs(dot(hold.normal, b - a)) <= rate_rounding * largest) continue;
     drop_hold(slot);
     any = true;
   }
