@@ -23,6 +23,9 @@ enum class BoundingVolume : std::uint8_t {
   sphere,  ///< the box around the bounding sphere: right for a shape in any orientation
 };
 
+/// The category of bodies that are given none.
+inline constexpr std::uint32_t default_category = 1;
+
 /// A body to add. Numbers have to be in the range of shape.hpp: sizes and masses from 2^-205 to 2^205 (1.9e-62 to
 /// 5.1e61), coefficients and starts of motions up to 2^205 in magnitude. The edges of a mesh, scaled, are at least
 /// 2^-110 long, and its coordinates at most 2^100.
@@ -46,7 +49,7 @@ struct BodyDescription {
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.
   double restitution = 1;
-  std::uint32_t category = 1;         ///< bits
+  std::uint32_t category = default_category;  ///< bits
   std::uint32_t collides_with = ~0u;  ///< a pair is tested if each one's category shares a bit with the other's mask
   BoundingVolume volume = BoundingVolume::shape;
   BoxFunction box{};  ///< if given: the caller's own conservative boxes, instead of `volume`

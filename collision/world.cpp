@@ -88,7 +88,7 @@ template <int Degree>
 World<Degree>::World(const WorldOptions& options, Listener* listener)
     : options_(options),
       listener_(listener ? listener : &silent_),
-      releases_(HoldRank{&holds_}),
+      resting_(*this),
       contacts_(PairRank{&pairs_}),
       boxes_(PairRank{&pairs_}),
       now_(options.start_time),
@@ -122,9 +122,7 @@ void World<Degree>::reach(double limit) {
     schedule_wall(id);
     schedule_volume(id);
   }
-  for (HoldSlot slot = 0; slot < holds_.size(); ++slot) {
-    if (holds_[slot].alive && !releases_.contains(slot)) schedule_release(slot);
-  }
+  resting_.extend_horizon();
 }
 
 template <int Degree>
@@ -170,7 +168,7 @@ bool World<Degree>::next_event(double limit, Search search) {
   double reached = clock_;  // the clock, should nothing come
   for (;;) {
     if (!entering_.empty()) enter_new_bodies();
-    if (!disturbed_.empty()) settle();
+    if (!resting_.settled()) resting_.settle();
     if (!dirty_.empty()) test_dirty_pairs();
     const Agenda due = agenda();
     const auto [piece, boxes, volume, wall, let_go, contact] = due;
@@ -212,7 +210,7 @@ bool World<Degree>::next_event(double limit, Search search) {
       process_wall(walls_.top().slot, next);
       return true;
     } else if (let_go == next) {
-      release(releases_.top().slot);
+      resting_.process();
       reached = now_;
     } else if (contact == next) {
       const PairSlot slot = contacts_.top().slot;
@@ -236,8 +234,8 @@ bool World<Degree>::next_event(double limit, Search search) {
 template <int Degree>
 typename World<Degree>::Agenda World<Degree>::agenda() const {
   const auto time_of = [](const auto& queue) { return queue.empty() ? never : queue.top().time; };
-  return {time_of(pieces_), time_of(boxes_),    time_of(volumes_),
-          time_of(walls_),  time_of(releases_), time_of(contacts_)};
+  return {time_of(pieces_), time_of(boxes_),      time_of(volumes_),
+          time_of(walls_),  resting_.next_time(), time_of(contacts_)};
 }
 
 /// What is found is kept in queues and lists, as all that is known of the time to come.
@@ -318,7 +316,7 @@ void World<Degree>::start_pieces() {
     Body& b = bodies_[id];
     auto& script = b.extras->script;
     const bool jumps = b.entered && is_jump(id, script.back());
-    if (jumps) drop_holds(id);
+    if (jumps) resting_.drop_all(id);
     movers_[id].motion = script.back();
     if constexpr (Degree >= 2) b.force = script.back().coefficients[2];
     script.pop_back();
@@ -333,7 +331,7 @@ void World<Degree>::start_pieces() {
     if (bodies_[id].entered) {
       ++counters_.motion_updates;
       set_motion(id, Motion(movers_[id].motion), jumps);
-      disturb(id);
+      resting_.disturb(id);
     } else {
       entering_.push_back(id);
     }

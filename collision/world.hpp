@@ -10,6 +10,7 @@
 #include "collision/profile.hpp"
 #include "collision/world/earliest_wall_time.hpp"
 #include "collision/world/records.hpp"
+#include "collision/world/resting_contacts.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/calendar_queue.hpp"
@@ -63,7 +64,7 @@ struct WorldCounters {
 /// Degree 1 (straight paths) never pays for degree 2. Lengths and masses are in units of the caller's own, times in
 /// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
-class World final : private PairListener {
+class World final : private PairListener, private RestingContacts<Degree>::Bodies {
  public:
   using Motion = certificates::PointMotion<Degree>;
   using Description = BodyDescription<Degree>;
@@ -164,9 +165,7 @@ class World final : private PairListener {
 
  private:
   using PairSlot = detail::PairSlot;
-  using HoldSlot = detail::HoldSlot;
   static constexpr PairSlot no_pair = detail::no_pair;
-  static constexpr HoldSlot no_hold = detail::no_hold;
   static constexpr BodyId no_body = detail::no_body;
   // world/records.hpp
   using Mover = detail::Mover<Degree>;
@@ -175,9 +174,7 @@ class World final : private PairListener {
   using Body = detail::Body<Degree>;
   using Entry = typename BroadPhase<Degree>::Entry;
   using Moving = detail::Moving<Degree>;
-  using Hold = detail::Hold;
-  using HoldRank = detail::HoldRank;
-  using Island = detail::Island;
+  using Resting = RestingContacts<Degree>;
   using Pair = detail::Pair;
   using PairRank = detail::PairRank;
   using Pending = detail::Pending;
@@ -193,7 +190,7 @@ class World final : private PairListener {
   enum class Search { makes, looks };
   bool next_event(double limit, Search search = Search::makes);
   bool guarded_event(double limit, Search search);
-  bool work_left() const { return !entering_.empty() || !disturbed_.empty() || !dirty_.empty() || !pending_.empty(); }
+  bool work_left() const { return !entering_.empty() || !resting_.settled() || !dirty_.empty() || !pending_.empty(); }
   void make_broad_phase();
   void reach(double limit);
   void go_back(double t);
@@ -270,6 +267,13 @@ class World final : private PairListener {
   const Body& body(BodyId id) const;
   Body& body(BodyId id);
   void pairs_to_come(std::size_t pairs) override;
+  bool filters() const override { return filters_; }
+  /// What collides with nothing the broad phase does not know.
+  bool collides(BodyId id) const { return bodies_[id].category != 0 && bodies_[id].collides_with != 0; }
+  bool may_collide(BodyId a, BodyId b) const override {
+    return (bodies_[a].category & bodies_[b].collides_with) != 0 &&
+           (bodies_[b].category & bodies_[a].collides_with) != 0;
+  }
   void pair_began(BodyId a, BodyId b, double t) override;
   void pair_ended(BodyId a, BodyId b, double t) override;
   void take_out(BodyId id);
@@ -279,7 +283,6 @@ class World final : private PairListener {
   void unlist(PairSlot slot);
   void release_pair(PairSlot slot);
   void mark_dirty(PairSlot slot);
-  void let_pass(BodyId a, BodyId b);
   void set_motion(BodyId id, const Motion& motion, bool jumped);
   bool is_jump(BodyId id, const Motion& to) const;
   KineticBox<Degree> bounding_box(BodyId id) const;
@@ -290,7 +293,6 @@ class World final : private PairListener {
   void schedule_wall(BodyId id);
   void schedule_walls(std::span<const Entry> bodies);
   void schedule_volume(BodyId id);
-  Moving moving(BodyId id) const { return Moving(bodies_[id], movers_[id].motion); }
 
   // world/kdops.cpp: bounding volumes in more directions than the axes
   Kdops<Degree> kdops();
@@ -335,28 +337,20 @@ class World final : private PairListener {
   std::uint64_t count_meeting(BodyId id);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
-  // world/holds.cpp: contacts that are held
-  HoldSlot find_hold(BodyId a, BodyId b, int wall = -1) const;
-  void add_hold(const Hold& hold);
-  void drop_hold(HoldSlot slot);
-  void drop_holds(BodyId id);
-  double next_contact_of_held(const Pair& pair);
-  void schedule_release(HoldSlot slot);
-  void release(HoldSlot slot);
-
-  // world/islands.cpp: bodies that lean on each other
-  void disturb(BodyId id);
-  void settle();
-  void settle_fixed(BodyId id);
-  void take_up(BodyId id, const Motion& motion);
-  bool settle_island(BodyId id);
-  Island find_island(BodyId id);
-  bool drop_broken(const Island& island);
-  bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
-  bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
+  // What resting contacts ask, and tell (RestingContacts::Bodies).
+  bool present(BodyId id) const override { return contains(id) && bodies_[id].entered; }
+  Moving moving(BodyId id) const override { return Moving(bodies_[id], movers_[id].motion); }
+  const Motion& path(BodyId id) const override { return movers_[id].motion; }
+  double inverse_mass(BodyId id) const override { return bodies_[id].inverse_mass; }
+  Eigen::Vector3d free_acceleration(BodyId id) const override;
+  double time() const override { return now_; }
+  double horizon() const override { return horizon_; }
+  void take_up(BodyId id, const Motion& motion) override;
+  void changed(BodyId a, BodyId b) override;
+  void let_pass(BodyId a, BodyId b) override;
+  void tell_held(BodyId a, BodyId b) override;
 
   // world/audit.cpp
-  void audit_holds(double t) const;
   void audit_overlapping(double t) const;
 
   WorldOptions options_;
@@ -376,15 +370,12 @@ class World final : private PairListener {
   std::vector<FoundTouch> found_;               // by pair, as far as known; of no use once a motion has changed
   std::vector<KdopDirection> directions_;       // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction
-  std::vector<Hold> holds_;
-  std::vector<HoldSlot> free_holds_;
-  std::vector<BodyId> disturbed_;
+  Resting resting_;
   std::multiset<Pending> pending_;
   // Queues that a scene does not need have no slots.
   DaryQueue<> pieces_;                // slots are bodies
   DaryQueue<> volumes_;               // slots are bodies
   CalendarQueue<> walls_;             // slots are bodies
-  DaryQueue<HoldRank> releases_;      // slots are holds
   CalendarQueue<PairRank> contacts_;  // slots are pairs
   DaryQueue<PairRank> boxes_;         // slots are pairs; used where the broad phase is not exact
   WorldCounters counters_;
@@ -399,13 +390,13 @@ class World final : private PairListener {
   std::size_t unlisted_ = 0;    ///< pairs that the broad phase does not list
   bool meshes_ = false;         ///< there is or has been one, so volumes have room for contact gaps
   bool box_functions_ = false;  ///< some body has or had one
+  bool filters_ = false;        ///< some body does not collide with all others, or did not
   bool inserting_ = false;
   bool stepping_ = false;
   bool telling_ = false;          ///< a listener is being told, or has thrown
   bool in_box_function_ = false;  ///< a function of the caller's is making a box
   std::exception_ptr failure_;    ///< what has left the world in pieces
-  std::uint64_t islands_ = 0;
-  std::uint64_t edits_ = 0;  ///< by callbacks since edits_start_
+  std::uint64_t edits_ = 0;       ///< by callbacks since edits_start_
   double edits_start_ = -never;
 };
 

@@ -26,8 +26,10 @@ NearestPoint nearest_point(const PlacedTriangle& triangle, const Eigen::Vector3d
 
 /// When a ball touches a triangle: their distance is below radius + contact gap. The set of such places of the ball's
 /// centre is the union of seven convex pieces: a prism over the face, three cylinders about the edges, three balls
-/// about the vertices. Same members as ConvexTouch; closed forms for linear motion, for quadratic motion quartics
-/// whose sign changes are bracketed between those of their derivatives.
+/// about the vertices. Each side of the prism lies a gap farther out, and so do sides across its corners, or a sharp
+/// one would reach out far: in no piece the ball is more than sqrt 3 gaps away from the triangle. Same members as
+/// ConvexTouch; closed forms for linear motion, for quadratic motion quartics whose sign changes are bracketed between
+/// those of their derivatives.
 ///
 /// Squared distances are never expanded about tau = 0 to decide a sign, only evaluated from the place of the centre at
 /// tau: so their error is that of the distance, which the contact gap covers, however small the ball.
@@ -50,9 +52,9 @@ class BallTouch {
   double turning(double tau, double end) const;
 
  private:
-  /// Slab or cylinder and its ends; five conditions at most.
+  /// Slab or cylinder and its ends; eight conditions at most.
   struct Piece {
-    std::array<TimeSpans, 5> conditions;
+    std::array<TimeSpans, 8> conditions;
     std::size_t size = 0;
 
     std::span<const TimeSpans> spans() const { return {conditions.data(), size}; }

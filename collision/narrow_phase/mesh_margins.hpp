@@ -61,8 +61,10 @@ ContactGap<Degree> contact_gap(const RelativeMotion<Degree>& motion, double radi
   return gap;
 }
 
-/// Gaps by which boxes and quick tests are widened, see BoxPairTest.
-inline constexpr double quick_margin = 4;
+/// Gaps by which boxes and quick tests are widened, see BoxPairTest. Contact may be reported while triangles are 3.4
+/// (every_kdop_direction) times 1 + 45/64 gaps apart, between two sharp corners; 8 leaves room for what is rounded in
+/// doubles.
+inline constexpr double quick_margin = 8;
 
 /// No contacts are predicted for times at which the contact gap has grown to this part of the radii, and fourfold. A
 /// straight path gets there only if its speed is nothing but rounding (bodies that move alike), a curved one if it goes

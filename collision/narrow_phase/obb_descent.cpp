@@ -65,7 +65,7 @@ Lanes along(const std::array<Lanes, 3>& axes, float x, float y, float z) {
 template <int Degree>
 SliceMotion<Degree>::SliceMotion(const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap,
                                  const TimeSlice& slice, double size_of_pair)
-    : size(size_of_pair), margin(rounding + rounded_up(4 * gap(slice.end) / size_of_pair)), bend(0) {
+    : size(size_of_pair), margin(rounding + rounded_up(quick_margin * gap(slice.end) / size_of_pair)), bend(0) {
   r[0] = motion.position(slice.begin) / size;
   r[1] = motion.velocity(slice.begin) * (slice.length() / size);
   if constexpr (Degree == 2) {

@@ -55,8 +55,8 @@ inline float in_steps(const TimeSlice& slice, double tau) {
 /// Motion during a slice, in units of the pair's size, for the box tests.
 ///
 /// All lengths of a pair are divided by `size`, the sum of the radii of the shapes; during a slice their centres are at
-/// most about that far apart, so that every number is of order 1 and floats will do. Margin: `rounding`, plus four
-/// contact gaps at the end of the slice, one for the gap itself, the others for what is rounded in doubles.
+/// most about that far apart, so that every number is of order 1 and floats will do. Margin: `rounding`, plus
+/// `quick_margin` contact gaps at the end of the slice.
 ///
 /// Derivation of `rounding`, in roundings of a float (2^-24) of numbers of order 1: the turned axes are good to 10, the
 /// place of a centre to 12, a projection of it to 20 and of both boxes' edges to 40; axes that are orthonormal only to

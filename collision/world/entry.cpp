@@ -94,6 +94,7 @@ inline BodyId World<Degree>::put(const Description& description, std::shared_ptr
   added.restitution = description.restitution;
   added.category = description.category;
   added.collides_with = description.collides_with;
+  filters_ = filters_ || description.category != default_category || ~description.collides_with != 0;
   added.volume = description.volume;
   added.alive = true;
   movers_[id].motion = *piece;
@@ -161,10 +162,17 @@ void World<Degree>::enter_new_bodies() {
       entries[i].box = new (&boxes[i]) KineticBox<Degree>(renewed_box(entries[i].id));  // not copied there
     }
   });
+  const std::span<const Entry> all(entries);
+  std::size_t colliding = entries.size();
+  if (filters_) {
+    const auto rest =
+        std::stable_partition(entries.begin(), entries.end(), [&](const Entry& entry) { return collides(entry.id); });
+    colliding = static_cast<std::size_t>(rest - entries.begin());
+  }
   inserting_ = true;
   {
     const Stopwatch watch(profile(), Work::update);
-    broad_phase_->insert(entries, now_, *this);
+    broad_phase_->insert(all.first(colliding), now_, *this);
   }
   inserting_ = false;
   schedule_walls(entries);

@@ -86,7 +86,7 @@ inline Scene<2> bouncing_scene() {
 inline Scene<2> resting_scene() {
   Random random(3);
   Scene<2> scene;
-  scene.end_time = 1.5;
+  scene.end_time = 1.25;
   const auto jitter = [&] { return random.between(-0.1, 0.1); };
   for (int i = 0; i < 5; ++i) {
     for (int j = 0; j < 5; ++j) {

@@ -1,0 +1,22 @@
+// Meshes of several kinds: closed and open, thin, folded, and with many triangles on one edge.
+#pragma once
+
+#include "collision/shapes/mesh.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace kds::fuzz {
+
+/// Vertices and triangles, before they are a mesh.
+struct Surface {
+  const char* name;
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<collision::Mesh::Triangle> triangles;
+};
+
+const std::vector<Surface>& sample_surfaces();
+/// One mesh of each, shared by all bodies.
+const std::vector<std::shared_ptr<const collision::Mesh>>& sample_meshes();
+
+}  // namespace kds::fuzz

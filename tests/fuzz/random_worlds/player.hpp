@@ -1,0 +1,89 @@
+// Runs a scenario in one way and writes down what happens.
+#pragma once
+
+#include "collision/world.hpp"
+#include "tests/fuzz/random_worlds/log.hpp"
+#include "tests/fuzz/random_worlds/reactor.hpp"
+#include "tests/fuzz/random_worlds/scenario.hpp"
+#include "tests/fuzz/random_worlds/way.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace kds::fuzz {
+
+template <int Degree>
+class Player final : public collision::WorldListener<Degree> {
+ public:
+  Player(const Scenario& scenario, const Way& way, Reactor& reactor);
+
+  std::vector<Line> run();
+
+ private:
+  using World = collision::World<Degree>;
+  using Motion = certificates::PointMotion<Degree>;
+  using PairEvent = collision::PairEvent;
+  using WallEvent = collision::WallEvent;
+
+  void contact(World&, const PairEvent& e) override { note(Line::Kind::contact, e.a, e.b, e.contact); }
+  void separation(World&, const PairEvent& e) override { note(Line::Kind::separation, e.a, e.b, e.contact); }
+  void overlap(World&, const PairEvent& e) override { note(Line::Kind::overlap, e.a, e.b, e.contact); }
+  void held(World&, const PairEvent& e) override { note(Line::Kind::held, e.a, e.b, e.contact); }
+  void wall(World&, const WallEvent& e) override { note_wall(Line::Kind::wall, e); }
+  void held_at_wall(World&, const WallEvent& e) override { note_wall(Line::Kind::held_at_wall, e); }
+  void pair_began(World&, BodyId a, BodyId b, double t) override { note(Line::Kind::pair_began, a, b, {.time = t}); }
+  void pair_ended(World&, BodyId a, BodyId b, double t) override { note(Line::Kind::pair_ended, a, b, {.time = t}); }
+  void moved(World& world, BodyId a) override { note(Line::Kind::moved, a, 0, {.time = world.now()}); }
+
+  void note(Line::Kind kind, BodyId a, BodyId b, const Contact& contact);
+  void note_wall(Line::Kind kind, const WallEvent& e) { note(kind, e.body, static_cast<BodyId>(e.wall), e.contact); }
+  void note_thrown(const char* what);
+  void note_accepted();
+  void note_state();
+
+  collision::WorldOptions options(BroadPhaseKind broad_phase) const;
+  collision::BodyDescription<Degree> description(const BodyPlan& plan);
+  void edit_in_box_function();
+  Motion motion(const Path& path) const;
+
+  void call_from_outside(const Call& call);
+  void call(const Call& call, const Contact* contact);
+  void add(std::size_t body);
+  void push_off(std::size_t body, const Vector3d& normal);
+  void must_be_refused(const Call& call);
+  void advance(double seconds);
+  bool step_up_to(double limit);
+  void save_and_load();
+  void run_ahead();
+
+  static constexpr BodyId gone = ~BodyId{0};
+  BodyId id_of(std::size_t body) const { return body < ids_.size() ? ids_[body] : gone; }
+  /// Whether it is there, and calls may change its motion.
+  bool moves(std::size_t body) const {
+    return id_of(body) != gone && (scenario_.fixed_bodies_move || !world_->fixed(id_of(body)));
+  }
+  std::size_t number_of(BodyId id) const { return id < numbers_.size() ? numbers_[id] : 0; }
+  bool given_up() const { return stopped_ || log_.size() > scenario_.most_events; }
+
+  const Scenario& scenario_;
+  Way way_;
+  Reactor& reactor_;
+  std::vector<BodyPlan> bodies_;
+  std::vector<BodyId> ids_;           // by number of the body
+  std::vector<std::size_t> numbers_;  // by id: the body that has, or had, it last
+  std::vector<Line> log_;
+  std::unique_ptr<World> world_;
+  std::size_t steps_ = 0;
+  bool loaded_before_ = false;
+  bool stopped_ = false;
+};
+
+extern template class Player<1>;
+extern template class Player<2>;
+
+/// Runs a scenario of either degree.
+std::vector<Line> play(const Scenario& scenario, const Way& way, Reactor& reactor);
+
+}  // namespace kds::fuzz

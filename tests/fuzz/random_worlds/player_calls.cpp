@@ -1,0 +1,161 @@
+// What a scenario does to the world, from outside and from callbacks.
+#include "tests/fuzz/random_worlds/player.hpp"
+
+#include "kds/audit.hpp"
+#include "kds/framework/snapshot.hpp"
+
+#include <exception>
+#include <stdexcept>
+
+namespace kds::fuzz {
+
+template <int Degree>
+void Player<Degree>::call_from_outside(const Call& call) {
+  if (call.kind == Call::Kind::advance) return advance(call.seconds);
+  try {
+    this->call(call, nullptr);
+  } catch (const std::exception& error) {
+    note_thrown(error.what());
+  }
+}
+
+/// `contact`: of the event, in a callback. What a call needs that is not there makes it do nothing.
+template <int Degree>
+void Player<Degree>::call(const Call& call, const Contact* contact) {
+  World& world = *world_;
+  const BodyId id = id_of(call.body);
+  const bool moves = this->moves(call.body);
+  switch (call.kind) {
+    case Call::Kind::add:
+      return add(call.body);
+    case Call::Kind::remove:
+      if (id == gone) return;
+      world.remove_body(id);
+      ids_[call.body] = gone;
+      return;
+    case Call::Kind::move:
+      if (moves) world.update_motion(id, motion(call.path));
+      return;
+    case Call::Kind::turn_back:
+      if (!moves || world.motion(id).start > world.now()) return;
+      {
+        Motion back = world.free_motion(id).restarted(world.now());
+        back.coefficients[1] = -back.coefficients[1];
+        world.update_motion(id, back);
+      }
+      return;
+    case Call::Kind::keep:
+    case Call::Kind::away_and_back:
+      if (!moves || world.motion(id).start > world.now()) return;
+      {
+        const Motion kept = world.motion(id);
+        if (call.kind == Call::Kind::away_and_back) world.update_motion(id, motion(call.path));
+        world.update_motion(id, kept);
+      }
+      return;
+    case Call::Kind::follow: {
+      const BodyId other = id_of(call.other);
+      if (!moves || other == gone || world.motion(other).start > world.now()) return;
+      const Motion same = world.motion(other);
+      world.update_motion(id, same);
+      return;
+    }
+    case Call::Kind::push_off:
+      if (!contact) return;
+      push_off(call.body, -contact->normal);
+      if (call.other != call.body) push_off(call.other, contact->normal);
+      return;
+    case Call::Kind::advance:
+    case Call::Kind::save:
+      if (contact) must_be_refused(call);
+      return;
+    case Call::Kind::fail:
+      if (contact) throw std::runtime_error("a callback throws");
+      return;
+  }
+}
+
+template <int Degree>
+void Player<Degree>::add(std::size_t body) {
+  if (world_->size() >= scenario_.most_alive) return;
+  const BodyId id = world_->add_body(description(bodies_[body]));
+  if (ids_.size() <= body) ids_.resize(body + 1, gone);
+  if (numbers_.size() <= id) numbers_.resize(id + 1);
+  ids_[body] = id;
+  numbers_[id] = body;
+}
+
+template <int Degree>
+void Player<Degree>::push_off(std::size_t body, const Vector3d& normal) {
+  if (!moves(body)) return;
+  const BodyId id = id_of(body);
+  Motion away = world_->free_motion(id).restarted(world_->now());
+  away.coefficients[1] = scenario_.unit * normal;
+  world_->update_motion(id, away);
+}
+
+template <int Degree>
+void Player<Degree>::must_be_refused(const Call& call) {
+  try {
+    if (call.kind == Call::Kind::save) {
+      (void)kds::save(*world_);
+    } else {
+      world_->advance_to(world_->now() + call.seconds);
+    }
+  } catch (const std::logic_error&) {
+    return;
+  }
+  note_accepted();
+}
+
+template <int Degree>
+void Player<Degree>::edit_in_box_function() {
+  const auto refused = [](const auto& edit) {
+    try {
+      edit();
+    } catch (const std::logic_error&) {
+      return true;
+    }
+    return false;
+  };
+  const bool all = refused([&] { world_->remove_body(0); }) && refused([&] { world_->step(world_->now()); }) &&
+                   refused([&] { world_->update_motion(0, motion({})); }) &&
+                   refused([&] { world_->add_body(description({})); });
+  if (!all) note_accepted();
+}
+
+template <int Degree>
+void Player<Degree>::advance(double seconds) {
+  const double from = world_->now();
+  bool goes_on = true;
+  for (int part = 1; part <= way_.stops && goes_on && !given_up(); ++part) {
+    goes_on = step_up_to(from + seconds * part / (way_.stops + 1));
+  }
+  if (goes_on) step_up_to(from + seconds);
+  if (!given_up()) note_state();
+}
+
+/// False if something was thrown: then the clock stands still.
+template <int Degree>
+bool Player<Degree>::step_up_to(double limit) {
+  try {
+    while (!given_up() && world_->step(limit)) {
+      ++steps_;
+      if (way_.audits) world_->audit();
+      if (way_.save_every != 0 && steps_ % way_.save_every == 0) save_and_load();
+    }
+    if (way_.audits && !given_up()) world_->audit();
+    return true;
+  } catch (const AuditFailure& failure) {
+    stopped_ = true;
+    note_thrown(failure.what());
+  } catch (const std::exception& error) {
+    note_thrown(error.what());
+  }
+  return false;
+}
+
+template class Player<1>;
+template class Player<2>;
+
+}  // namespace kds::fuzz
