@@ -1,4 +1,5 @@
 // Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
+#include "collision/vectors.hpp"
 #include "collision/world/resting_contacts.hpp"
 #include "kds/audit.hpp"
 
@@ -55,7 +56,7 @@ template <int Degree>
 void RestingContacts<Degree>::add(const Contact& hold) {
   for (const Slot slot : member(hold.a).contacts) {
     Contact& other = contacts_[slot];
-    if (other.a != hold.a || other.b != hold.b || !(other.normal.dot(hold.normal) > same_normal)) continue;
+    if (other.a != hold.a || other.b != hold.b || !(dot(other.normal, hold.normal) > same_normal)) continue;
     other.normal = hold.normal;
     other.fresh = true;
     return;
@@ -190,7 +191,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
       if (std::count(known.begin(), known.end(), slot) != 1) fail(slot, "a body does not know it");
     }
     if (at_wall && (hold.wall < 0 || hold.wall > 5 || !walls)) fail(slot, "there is no such wall");
-    if (std::abs(hold.normal.norm() - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
+    if (std::abs(norm(hold.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
     if (releases_.time(slot) < t) fail(slot, "it should have been let go");
     if (hold.fresh) continue;
     const Eigen::Vector3d a = bodies_.path(hold.a).velocity(t);
@@ -202,7 +203,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
         largest += 2 * bodies_.free_acceleration(id).cwiseAbs().maxCoeff() * (1 + t - bodies_.path(id).start);
       }
     }
-    if (std::abs(hold.normal.dot(b - a)) > 16 * rate_rounding * largest) {
+    if (std::abs(dot(hold.normal, b - a)) > 16 * rate_rounding * largest) {
       fail(slot, "the bodies part or press on along its normal");
     }
   }
