@@ -42,14 +42,15 @@ inline constexpr double along_axis_lost = 0x1p-1000;
 /// zero.
 template <int Degree>
 struct RelativeCoordinate {
-  std::array<double, Degree + 1> c;
-  std::array<double, Degree + 1> magnitude;
-  std::array<bool, Degree + 1> present;
+  std::array<double, std::size_t{Degree} + 1> c;
+  std::array<double, std::size_t{Degree} + 1> magnitude;
+  std::array<bool, std::size_t{Degree} + 1> present;
 };
 
 /// Of c0 + c1 x + c2 x^2 about x = h.
 template <int Degree>
-void shift(std::array<double, Degree + 1>& c, std::array<double, Degree + 1>& magnitude, double h) {
+void shift(std::array<double, std::size_t{Degree} + 1>& c, std::array<double, std::size_t{Degree} + 1>& magnitude,
+           double h) {
   static_assert(Degree == 1 || Degree == 2);
   const double distance = std::abs(h);
   if constexpr (Degree == 2) {
@@ -79,7 +80,7 @@ RelativeCoordinate<Degree> relative_coordinate(const PointMotion<Degree>& a, con
     shift<Degree>(r.c, r.magnitude, epoch - a.start);
     return r;
   }
-  std::array<double, Degree + 1> of_a, size_a, size_b;
+  std::array<double, std::size_t{Degree} + 1> of_a, size_a, size_b;
   for (std::size_t i = Degree + 1; i-- > 0;) {
     of_a[i] = a.coefficients[i][d];
     r.c[i] = b.coefficients[i][d];

@@ -10,13 +10,64 @@
 
 namespace kds::certificates {
 
+/// The coefficients of a motion: an array of vectors, of which those that are left out are zero when the first ones are
+/// given. If none is given they are unset, as vectors of Eigen are: so arrays of motions cost nothing to make.
+template <int Degree>
+struct PointCoefficients : std::array<Eigen::Vector3d, std::size_t{Degree} + 1> {
+  using Vector = Eigen::Vector3d;
+
+  PointCoefficients() {}
+  PointCoefficients(const Vector& c0) { set(c0); }
+  PointCoefficients(const Vector& c0, const Vector& c1) requires(Degree >= 1) { set(c0, c1); }
+  PointCoefficients(const Vector& c0, const Vector& c1, const Vector& c2) requires(Degree >= 2) { set(c0, c1, c2); }
+  template <class... Others>
+  PointCoefficients(const Vector& c0, const Vector& c1, const Vector& c2, const Vector& c3,
+                    const Others&... others) requires(Degree >= 3 + sizeof...(Others)) {
+    set(c0, c1, c2, c3, others...);
+  }
+
+ private:
+  template <class... Given>
+  void set(const Given&... given) {
+    std::size_t i = 0;
+    (((*this)[i++] = given), ...);
+    while (i <= Degree) (*this)[i++] = Vector::Zero();
+  }
+};
+
+}  // namespace kds::certificates
+
+/// As of the array that they are: for structured bindings.
+template <int Degree>
+struct std::tuple_size<kds::certificates::PointCoefficients<Degree>>
+    : std::tuple_size<std::array<Eigen::Vector3d, std::size_t{Degree} + 1>> {};
+template <std::size_t I, int Degree>
+struct std::tuple_element<I, kds::certificates::PointCoefficients<Degree>> {
+  using type = Eigen::Vector3d;
+};
+
+namespace kds::certificates {
+
 /// x(t) = c[0] + c[1] (t - start) + c[2] (t - start)^2: position, velocity, *half* the acceleration.
 template <int Degree>
 struct PointMotion {
   static constexpr int degree = Degree;
 
-  std::array<Eigen::Vector3d, Degree + 1> coefficients;  ///< length, length/s, length/s^2 ...
-  double start = 0;                                      ///< s
+  PointCoefficients<Degree> coefficients;  ///< length, length/s, length/s^2 ...; zero from the first left out on
+  double start = 0;                        ///< s
+
+  /// Through a position (length) at time t (s) with a velocity (length/s) that stays.
+  static PointMotion line(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
+                          double t = 0) requires(Degree >= 1) {
+    return {{position, velocity}, t};
+  }
+
+  /// Through a position (length) at time t (s) with a velocity (length/s) and an acceleration (length/s^2), all of it:
+  /// the coefficient is half of that.
+  static PointMotion parabola(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
+                              const Eigen::Vector3d& acceleration, double t = 0) requires(Degree >= 2) {
+    return {{position, velocity, 0.5 * acceleration}, t};
+  }
 
   /// Motion of one coordinate.
   Motion<Degree> axis(int d) const {

@@ -10,7 +10,7 @@ namespace kds::certificates::detail {
 /// The numbers of a PointMotion: of one, in doubles, or of several, lane by lane.
 template <class Number, int PathDegree>
 struct MotionNumbers {
-  Number coefficients[PathDegree + 1][3];
+  Number coefficients[std::size_t{PathDegree} + 1][3];
   Number start;
 };
 

@@ -6,8 +6,13 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace kds::collision {
@@ -18,7 +23,12 @@ enum class BoundingVolume : std::uint8_t {
   sphere,  ///< the box around the bounding sphere: right for a shape in any orientation
 };
 
-/// A body to add.
+/// The category of bodies that are given none.
+inline constexpr std::uint32_t default_category = 1;
+
+/// A body to add. Numbers have to be in the range of shape.hpp: sizes and masses from 2^-205 to 2^205 (1.9e-62 to
+/// 5.1e61), coefficients and starts of motions up to 2^205 in magnitude. The edges of a mesh, scaled, are at least
+/// 2^-110 long, and its coordinates at most 2^100.
 template <int Degree>
 struct BodyDescription {
   using Motion = certificates::PointMotion<Degree>;
@@ -34,15 +44,43 @@ struct BodyDescription {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit to 1e-6; the body keeps it
   /// One or more pieces, each starting later than the one before. The first may start in the past; if it starts in the
   /// future, the body enters then.
-  std::vector<Motion> motion;
+  std::vector<Motion> motion{};
   double mass = 1;     ///< > 0, unless the body is fixed
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.
   double restitution = 1;
-  std::uint32_t category = 1;         ///< bits
+  std::uint32_t category = default_category;  ///< bits
   std::uint32_t collides_with = ~0u;  ///< a pair is tested if each one's category shares a bit with the other's mask
   BoundingVolume volume = BoundingVolume::shape;
-  BoxFunction box;  ///< if given: the caller's own conservative boxes, instead of `volume`
+  BoxFunction box{};  ///< if given: the caller's own conservative boxes, instead of `volume`
 };
+
+/// Whether all numbers of a motion are finite and in range.
+template <int Degree>
+bool in_range(const certificates::PointMotion<Degree>& motion) {
+  bool all = std::abs(motion.start) <= largest_magnitude;
+  for (const Eigen::Vector3d& c : motion.coefficients) {
+    for (int d = 0; d < 3; ++d) all = all && std::abs(c[d]) <= largest_magnitude;
+  }
+  return all;
+}
+
+/// Throws std::invalid_argument, naming the motion by `name` and the member that is wrong. Precondition: !in_range().
+template <int Degree>
+[[noreturn]] void refuse_motion(const certificates::PointMotion<Degree>& motion, const std::string& name) {
+  if (!motion.finite()) throw std::invalid_argument(name + ": must be finite");
+  std::string member = "start";
+  double value = motion.start;
+  for (std::size_t i = 0; i <= Degree; ++i) {
+    for (int d = 0; d < 3; ++d) {
+      if (!(std::abs(motion.coefficients[i][d]) > largest_magnitude)) continue;
+      member = "coefficients[" + std::to_string(i) + "]";
+      value = motion.coefficients[i][d];
+    }
+  }
+  std::ostringstream text;
+  text << name << "." << member << ": " << value << " is beyond 2^205 (5.1e61) in magnitude";
+  throw std::invalid_argument(text.str());
+}
 
 }  // namespace kds::collision

@@ -45,6 +45,9 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
 
 void validate(const WorldOptions& options) {
   if (!std::isfinite(options.start_time)) throw std::invalid_argument("WorldOptions.start_time: must be finite");
+  if (std::abs(options.start_time) > largest_magnitude) {
+    throw std::invalid_argument("WorldOptions.start_time: must not be beyond 2^205 (5.1e61)");
+  }
   if (!(options.window > 0)) throw std::invalid_argument("WorldOptions.window: must be > 0");
   if (!(options.rate >= 0) || !std::isfinite(options.rate)) {
     throw std::invalid_argument("WorldOptions.rate: must be finite and >= 0");
@@ -85,10 +88,11 @@ template <int Degree>
 World<Degree>::World(const WorldOptions& options, Listener* listener)
     : options_(options),
       listener_(listener ? listener : &silent_),
-      releases_(HoldRank{&holds_}),
+      resting_(*this),
       contacts_(PairRank{&pairs_}),
       boxes_(PairRank{&pairs_}),
       now_(options.start_time),
+      clock_(options.start_time),
       horizon_(options.start_time + options.window) {
   require_strict_arithmetic("World");
   validate(options);
@@ -118,55 +122,65 @@ void World<Degree>::reach(double limit) {
     schedule_wall(id);
     schedule_volume(id);
   }
-  for (HoldSlot slot = 0; slot < holds_.size(); ++slot) {
-    if (holds_[slot].alive && !releases_.contains(slot)) schedule_release(slot);
-  }
+  resting_.extend_horizon();
 }
 
 template <int Degree>
 bool World<Degree>::step(double limit) {
   require_idle("World::step");
   if (limit < idle_until_ || (limit == never && idle_until_ == never)) {
-    if (limit < never) now_ = std::max(now_, limit);
+    if (limit < never) clock_ = std::max(clock_, limit);
+    now_ = std::max(now_, clock_);
     return false;
   }
   if (std::isnan(limit)) throw std::invalid_argument("World::step: the limit is not a number");
   if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
     throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
   }
+  if (limit < now_) {  // Up to there nothing happens, as next_time() has found.
+    clock_ = std::max(clock_, limit);
+    return false;
+  }
+  next_time_ = -never;
+  return guarded_event(limit, Search::makes);
+}
+
+/// The clock follows what has been done, even where a listener throws.
+template <int Degree>
+bool World<Degree>::guarded_event(double limit, Search search) {
   const kds::detail::RaisedFlag stepping(stepping_);  // Callbacks are called from here alone.
   try {
-    return next_event(limit);
+    const bool found = next_event(limit, search);
+    if (search == Search::makes) clock_ = now_;
+    return found;
   } catch (...) {
+    if (search == Search::makes) clock_ = now_;
     if (!std::exchange(telling_, false)) note_failure();
     throw;
   }
 }
 
 template <int Degree>
-bool World<Degree>::next_event(double limit) {
+bool World<Degree>::next_event(double limit, Search search) {
+  const bool looks = search == Search::looks;
   idle_until_ = -never;
   bool looked_ahead = false;
-  double reached = now_;  // the clock, should nothing come
+  double reached = clock_;  // the clock, should nothing come
   for (;;) {
     if (!entering_.empty()) enter_new_bodies();
-    if (!disturbed_.empty()) settle();
+    if (!resting_.settled()) resting_.settle();
     if (!dirty_.empty()) test_dirty_pairs();
-    const auto time_of = [](const auto& queue) { return queue.empty() ? never : queue.top().time; };
-    const double piece = time_of(pieces_);
-    const double boxes = time_of(boxes_);
-    const double volume = time_of(volumes_);
-    const double wall = time_of(walls_);
-    const double let_go = time_of(releases_);
-    const double contact = time_of(contacts_);
+    const Agenda due = agenda();
+    const auto [piece, boxes, volume, wall, let_go, contact] = due;
     // What is pending is of this instant, all of which has to be known before any of it is told.
     const bool reports = !pending_.empty();
     // Nothing is known beyond the horizon: look that far, then farther.
-    const double next = std::min({reports ? now_ : limit, horizon_, piece, boxes, volume, wall, let_go, contact});
+    const double next = std::min({reports ? now_ : limit, horizon_, due.first()});
     if (next < never && certify_next(contact == next, wall == next)) continue;
     // A piece that starts now is the motion at t+, so the broad phase may not run past it under the old one.
     const double until = next == never ? broad_phase_->next_time() : (piece == next ? next_down(next) : next);
     if (until == never) {
+      if (looks) return false;
       idle_until_ = never;
       go_back(reached);
       return false;
@@ -177,10 +191,14 @@ bool World<Degree>::next_event(double limit) {
     }
     if (piece == next) {
       now_ = next;
+      if (looks) return true;
       start_pieces();
       return true;
     }
     now_ = std::max(now_, next);
+    const bool told =
+        reports || wall == next || contact == next || (volume == next && caller_makes_box(volumes_.top().slot));
+    if (looks && (told || boxes == next || let_go == next)) return true;
     if (boxes == next) {
       process_boxes(boxes_.top().slot, next);
     } else if (reports) {
@@ -192,7 +210,7 @@ bool World<Degree>::next_event(double limit) {
       process_wall(walls_.top().slot, next);
       return true;
     } else if (let_go == next) {
-      release(releases_.top().slot);
+      resting_.process();
       reached = now_;
     } else if (contact == next) {
       const PairSlot slot = contacts_.top().slot;
@@ -207,10 +225,45 @@ bool World<Degree>::next_event(double limit) {
       reach(limit == never && !looked_ahead ? horizon_ + options_.window : limit);
       looked_ahead = true;
     } else {
-      idle_until_ = std::min({horizon_, piece, boxes, volume, wall, let_go, contact, broad_phase_->next_time()});
+      if (!looks) idle_until_ = std::min({horizon_, due.first(), broad_phase_->next_time()});
       return false;
     }
   }
+}
+
+template <int Degree>
+typename World<Degree>::Agenda World<Degree>::agenda() const {
+  const auto time_of = [](const auto& queue) { return queue.empty() ? never : queue.top().time; };
+  return {time_of(pieces_), time_of(boxes_),      time_of(volumes_),
+          time_of(walls_),  resting_.next_time(), time_of(contacts_)};
+}
+
+/// What is found is kept in queues and lists, as all that is known of the time to come.
+template <int Degree>
+double World<Degree>::next_time() const {
+  require_idle("World::next_time");
+  if (next_time_ != -never) return next_time_;
+  if (now_ == clock_ && work_left()) return clock_;
+  if (horizon_ == never && options_.broad_phase == BroadPhaseKind::sap) {
+    throw std::invalid_argument("World::next_time: sweep and prune by frames has no last event, so it needs a window");
+  }
+  auto& self = const_cast<World&>(*this);
+  self.next_time_ = self.guarded_event(horizon_, Search::looks) ? now_ : never;
+  return next_time_;
+}
+
+template <int Degree>
+void World<Degree>::process() {
+  const double t = next_time();
+  if (t < never) step(t);
+}
+
+template <int Degree>
+void World<Degree>::extend_horizon(double now, double horizon) {
+  require_idle("World::extend_horizon");
+  if (now > clock_) advance_to(now);
+  idle_until_ = next_time_ = -never;
+  change_or_fail([&] { reach(horizon); });
 }
 
 /// Where what comes next is a lower bound only, puts the exact time in its place, which may be later: true if so.
@@ -230,7 +283,7 @@ bool World<Degree>::certify_next(bool contact, bool wall) {
 template <int Degree>
 void World<Degree>::advance_to(double t) {
   require_idle("World::advance_to");
-  require_ahead("World::advance_to", t, now_);
+  require_ahead("World::advance_to", t, clock_);
   while (step(t)) {
   }
 }
@@ -239,7 +292,7 @@ template <int Degree>
 bool World<Degree>::advance_for(double budget_seconds, double t) {
   using Clock = std::chrono::steady_clock;
   require_idle("World::advance_for");
-  require_ahead("World::advance_for", t, now_);
+  require_ahead("World::advance_for", t, clock_);
   if (!(budget_seconds >= 0)) {
     throw std::invalid_argument("World::advance_for: a budget of " + std::to_string(budget_seconds) + " s is not >= 0");
   }
@@ -263,7 +316,7 @@ void World<Degree>::start_pieces() {
     Body& b = bodies_[id];
     auto& script = b.extras->script;
     const bool jumps = b.entered && is_jump(id, script.back());
-    if (jumps) drop_holds(id);
+    if (jumps) resting_.drop_all(id);
     movers_[id].motion = script.back();
     if constexpr (Degree >= 2) b.force = script.back().coefficients[2];
     script.pop_back();
@@ -278,7 +331,7 @@ void World<Degree>::start_pieces() {
     if (bodies_[id].entered) {
       ++counters_.motion_updates;
       set_motion(id, Motion(movers_[id].motion), jumps);
-      disturb(id);
+      resting_.disturb(id);
     } else {
       entering_.push_back(id);
     }
@@ -289,14 +342,14 @@ void World<Degree>::start_pieces() {
 template <int Degree>
 bool World<Degree>::renew_volume(BodyId id) {
   update_volume(id, renewed_box(id));
-  return bodies_[id].extras && bodies_[id].extras->box_function;
+  return caller_makes_box(id);
 }
 
 /// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are
 /// counted, so that a run ends.
 template <int Degree>
 void World<Degree>::count_edit() {
-  idle_until_ = -never;
+  idle_until_ = next_time_ = -never;
   if (!stepping_) return;
   if (now_ - edits_start_ > options_.zeno.interval) {
     edits_start_ = now_;

@@ -10,11 +10,14 @@
 #include "collision/profile.hpp"
 #include "collision/world/earliest_wall_time.hpp"
 #include "collision/world/records.hpp"
+#include "collision/world/resting_contacts.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
+#include "kds/statistics.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -38,6 +41,10 @@ struct WorldCounters {
   std::uint64_t held = 0;            ///< times the Zeno policy acted
 
   friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
+  /// As a kinetic structure's: what has happened, and failure times asked for.
+  operator Counters() const {
+    return {.events = contacts + separations + overlaps + wall_contacts, .certificates = pair_tests};
+  }
 };
 
 /// Runs bodies through time and reports their contacts at exact times.
@@ -57,7 +64,7 @@ struct WorldCounters {
 /// Degree 1 (straight paths) never pays for degree 2. Lengths and masses are in units of the caller's own, times in
 /// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
-class World final : private PairListener {
+class World final : private PairListener, private RestingContacts<Degree>::Bodies {
  public:
   using Motion = certificates::PointMotion<Degree>;
   using Description = BodyDescription<Degree>;
@@ -103,7 +110,22 @@ class World final : private PairListener {
   /// reached. Throws as advance_to() does, and std::invalid_argument for a budget that is negative or not a number.
   bool advance_for(double budget_seconds, double t);
 
-  double now() const { return now_; }
+  // A world is a KineticStructure: it runs in a Simulator beside others, one clock for all (docs/framework.md). Before
+  // it is changed it has to be advanced to that clock, where nothing is due.
+
+  /// When the next event happens, `never` if there is none within the horizon. now(), if bodies have come or changed
+  /// there, and it is still to be seen what follows. Nothing that can be observed changes: the search is kept for the
+  /// step to come, and made again if the world is changed before that time, at the cost of entry for all bodies. Throws
+  /// as step() does.
+  double next_time() const;
+  /// Processes what is due at next_time(). Throws as step() does.
+  void process();
+  /// Knows what happens until then. Throws std::logic_error as step() does.
+  void extend_horizon(double now, double horizon);
+  /// As audit(), at a time from now() on before which nothing is due.
+  void audit(double t) const;
+
+  double now() const { return stepping_ ? now_ : clock_; }
   std::size_t size() const { return alive_; }
   bool contains(BodyId id) const { return id < bodies_.size() && bodies_[id].alive; }
 
@@ -133,7 +155,7 @@ class World final : private PairListener {
   /// Checks the broad phase against the motions, exactly, and the pairs against brute force, in O(n^2); throws
   /// AuditFailure. Just after bodies were added or moved, while the next step has work left at now(), only the broad
   /// phase is checked.
-  void audit() const;
+  void audit() const { audit(now()); }
 
   /// Saves or loads all that decides the events to come: see save() and restore() in kds/framework/snapshot.hpp. A
   /// world that is loaded, with the same options (but see docs/framework.md), makes the same contacts at the same
@@ -143,9 +165,7 @@ class World final : private PairListener {
 
  private:
   using PairSlot = detail::PairSlot;
-  using HoldSlot = detail::HoldSlot;
   static constexpr PairSlot no_pair = detail::no_pair;
-  static constexpr HoldSlot no_hold = detail::no_hold;
   static constexpr BodyId no_body = detail::no_body;
   // world/records.hpp
   using Mover = detail::Mover<Degree>;
@@ -154,15 +174,23 @@ class World final : private PairListener {
   using Body = detail::Body<Degree>;
   using Entry = typename BroadPhase<Degree>::Entry;
   using Moving = detail::Moving<Degree>;
-  using Hold = detail::Hold;
-  using HoldRank = detail::HoldRank;
-  using Island = detail::Island;
+  using Resting = RestingContacts<Degree>;
   using Pair = detail::Pair;
   using PairRank = detail::PairRank;
   using Pending = detail::Pending;
 
   // world.cpp: the clock
-  bool next_event(double limit);
+  /// When the next of each kind is due, but for what the broad phase does.
+  struct Agenda {
+    double piece, boxes, volume, wall, let_go, contact;
+    double first() const { return std::min({piece, boxes, volume, wall, let_go, contact}); }
+  };
+  Agenda agenda() const;
+  /// Whether the search for the next event makes it, or stops before it.
+  enum class Search { makes, looks };
+  bool next_event(double limit, Search search = Search::makes);
+  bool guarded_event(double limit, Search search);
+  bool work_left() const { return !entering_.empty() || !resting_.settled() || !dirty_.empty() || !pending_.empty(); }
   void make_broad_phase();
   void reach(double limit);
   void go_back(double t);
@@ -177,9 +205,11 @@ class World final : private PairListener {
       refuse(function);
   }
   /// For what changes bodies. Callbacks may.
-  void require_editable(const char* function) const {
+  void require_editable(const char* function) {
     if (failure_ || in_box_function_) [[unlikely]]
       refuse(function);
+    if (!stepping_ && now_ > clock_) [[unlikely]]
+      change_or_fail([&] { go_back(clock_); });
   }
   /// For what runs, saves or loads the world.
   void require_idle(const char* function) const {
@@ -237,6 +267,13 @@ class World final : private PairListener {
   const Body& body(BodyId id) const;
   Body& body(BodyId id);
   void pairs_to_come(std::size_t pairs) override;
+  bool filters() const override { return filters_; }
+  /// What collides with nothing the broad phase does not know.
+  bool collides(BodyId id) const { return bodies_[id].category != 0 && bodies_[id].collides_with != 0; }
+  bool may_collide(BodyId a, BodyId b) const override {
+    return (bodies_[a].category & bodies_[b].collides_with) != 0 &&
+           (bodies_[b].category & bodies_[a].collides_with) != 0;
+  }
   void pair_began(BodyId a, BodyId b, double t) override;
   void pair_ended(BodyId a, BodyId b, double t) override;
   void take_out(BodyId id);
@@ -246,23 +283,22 @@ class World final : private PairListener {
   void unlist(PairSlot slot);
   void release_pair(PairSlot slot);
   void mark_dirty(PairSlot slot);
-  void let_pass(BodyId a, BodyId b);
   void set_motion(BodyId id, const Motion& motion, bool jumped);
   bool is_jump(BodyId id, const Motion& to) const;
   KineticBox<Degree> bounding_box(BodyId id) const;
   KineticBox<Degree> bare_box(BodyId id) const;
+  bool caller_makes_box(BodyId id) const { return bodies_[id].extras && bodies_[id].extras->box_function; }
   KineticBox<Degree> renewed_box(BodyId id);
   void note_wall(BodyId id, double earliest);
   void schedule_wall(BodyId id);
   void schedule_walls(std::span<const Entry> bodies);
   void schedule_volume(BodyId id);
-  Moving moving(BodyId id) const { return Moving(bodies_[id], movers_[id].motion); }
 
   // world/kdops.cpp: bounding volumes in more directions than the axes
   Kdops<Degree> kdops();
   void place_extents(BodyId id);
   KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;
-  bool volumes_overlap(BodyId a, BodyId b) const;
+  bool volumes_overlap(BodyId a, BodyId b, double t) const;
 
   // world/clearance.cpp: what volumes reach beyond bodies, for the contact gap of meshes
   void allow_for_meshes();
@@ -301,29 +337,21 @@ class World final : private PairListener {
   std::uint64_t count_meeting(BodyId id);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
-  // world/holds.cpp: contacts that are held
-  HoldSlot find_hold(BodyId a, BodyId b, int wall = -1) const;
-  void add_hold(const Hold& hold);
-  void drop_hold(HoldSlot slot);
-  void drop_holds(BodyId id);
-  double next_contact_of_held(const Pair& pair) const;
-  void schedule_release(HoldSlot slot);
-  void release(HoldSlot slot);
-
-  // world/islands.cpp: bodies that lean on each other
-  void disturb(BodyId id);
-  void settle();
-  void settle_fixed(BodyId id);
-  void take_up(BodyId id, const Motion& motion);
-  bool settle_island(BodyId id);
-  Island find_island(BodyId id);
-  bool drop_broken(const Island& island);
-  bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
-  bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
+  // What resting contacts ask, and tell (RestingContacts::Bodies).
+  bool present(BodyId id) const override { return contains(id) && bodies_[id].entered; }
+  Moving moving(BodyId id) const override { return Moving(bodies_[id], movers_[id].motion); }
+  const Motion& path(BodyId id) const override { return movers_[id].motion; }
+  double inverse_mass(BodyId id) const override { return bodies_[id].inverse_mass; }
+  Eigen::Vector3d free_acceleration(BodyId id) const override;
+  double time() const override { return now_; }
+  double horizon() const override { return horizon_; }
+  void take_up(BodyId id, const Motion& motion) override;
+  void changed(BodyId a, BodyId b) override;
+  void let_pass(BodyId a, BodyId b) override;
+  void tell_held(BodyId a, BodyId b) override;
 
   // world/audit.cpp
-  void audit_holds() const;
-  void audit_overlapping() const;
+  void audit_overlapping(double t) const;
 
   WorldOptions options_;
   Listener* listener_;
@@ -342,34 +370,33 @@ class World final : private PairListener {
   std::vector<FoundTouch> found_;               // by pair, as far as known; of no use once a motion has changed
   std::vector<KdopDirection> directions_;       // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction
-  std::vector<Hold> holds_;
-  std::vector<HoldSlot> free_holds_;
-  std::vector<BodyId> disturbed_;
+  Resting resting_;
   std::multiset<Pending> pending_;
   // Queues that a scene does not need have no slots.
   DaryQueue<> pieces_;                // slots are bodies
   DaryQueue<> volumes_;               // slots are bodies
   CalendarQueue<> walls_;             // slots are bodies
-  DaryQueue<HoldRank> releases_;      // slots are holds
   CalendarQueue<PairRank> contacts_;  // slots are pairs
   DaryQueue<PairRank> boxes_;         // slots are pairs; used where the broad phase is not exact
   WorldCounters counters_;
   Profile profile_;
-  double now_;
+  double now_;    ///< of what is being done; ahead of clock_ when next_time() has looked ahead
+  double clock_;  ///< as callers know it
   double horizon_;
   double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
+  double next_time_ = -never;   ///< as next_time() has found it; -never if it has not been asked for
   double removed_at_ = -never;
   std::size_t alive_ = 0;
   std::size_t unlisted_ = 0;    ///< pairs that the broad phase does not list
   bool meshes_ = false;         ///< there is or has been one, so volumes have room for contact gaps
   bool box_functions_ = false;  ///< some body has or had one
+  bool filters_ = false;        ///< some body does not collide with all others, or did not
   bool inserting_ = false;
   bool stepping_ = false;
   bool telling_ = false;          ///< a listener is being told, or has thrown
   bool in_box_function_ = false;  ///< a function of the caller's is making a box
   std::exception_ptr failure_;    ///< what has left the world in pieces
-  std::uint64_t islands_ = 0;
-  std::uint64_t edits_ = 0;  ///< by callbacks since edits_start_
+  std::uint64_t edits_ = 0;       ///< by callbacks since edits_start_
   double edits_start_ = -never;
 };
 

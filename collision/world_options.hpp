@@ -60,14 +60,14 @@ struct WorldOptions {
   /// round, and more to compute (docs/kdops.md). Other broad phases know boxes alone. Contacts are the same; the pairs
   /// reported are those whose volumes overlap.
   int kdop = 6;
-  std::optional<Walls> walls;
+  std::optional<Walls> walls{};
   bool report_pairs = false;  ///< tell the listener of bounding volumes that begin and cease to overlap
   bool profile = false;       ///< measure where the time goes
   /// Threads that share the work where thousands of bodies enter, or thousands of pairs are to be tested, at once; 0
   /// for as many as the machine has. All else, callbacks and box functions included, is done by the caller's thread.
   /// Events and counters do not depend on it.
   std::size_t threads = 1;
-  ZenoPolicy zeno;
+  ZenoPolicy zeno{};
   /// How often callbacks may add, remove or move bodies within zeno.interval of simulated time; 64 times the number of
   /// bodies, if that is more. The call that exceeds it throws std::runtime_error: callbacks that go on for ever at one
   /// time would never let the clock move. Without callbacks a run always ends.

@@ -6,7 +6,7 @@
 #include <iostream>
 
 using namespace kds::collision;
-using Motion = kds::certificates::PointMotion<1>;  // straight paths; 2 for parabolas
+using Motion = kds::certificates::PointMotion<1>;  // straight paths; 2, with parabola(), for gravity
 using Eigen::Vector3d;
 
 struct Teller : WorldListener<1> {
@@ -20,8 +20,8 @@ struct Teller : WorldListener<1> {
 int main() {
   Teller teller;
   World<1> world({.response = Response::elastic}, &teller);
-  const Motion right{{Vector3d(0, 0, 0), Vector3d(1, 0, 0)}, 0};  // (0, 0, 0) + (1, 0, 0) t from t = 0 on
-  const Motion left{{Vector3d(4, 0, 0), Vector3d(-1, 0, 0)}, 0};
+  const Motion right = Motion::line(Vector3d(0, 0, 0), Vector3d(1, 0, 0));  // (0, 0, 0) + (1, 0, 0) t from t = 0 on
+  const Motion left = Motion::line(Vector3d(4, 0, 0), Vector3d(-1, 0, 0));
   world.add_body({.shape = Sphere{1.0}, .motion = {right}});
   world.add_body({.shape = Sphere{1.0}, .motion = {left}});
   world.advance_to(10);

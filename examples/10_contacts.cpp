@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
   const Vector3d places[] = {{1, 1, 0}, {3, 3.5, 0}, {5, 1.2, 0}, {6.6, 3.6, 0}};
   const Vector3d speeds[] = {{1.1, 1.6, 0}, {0.7, 0, 0}, {-0.8, 1.2, 0}, {-1.2, -0.4, 0}};
   for (Id id = 0; id < 4; ++id) {
-    const Path path{{places[id], speeds[id], gravity / 2}, 0};  // half the acceleration
+    const Path path = Path::parabola(places[id], speeds[id], gravity);
     const double radius = Teller::radius(id);
     page.element(id, std::string(1, static_cast<char>('a' + id)), radius);
     page.moves(id, path, 0);

@@ -74,9 +74,9 @@ namespace detail {
 /// added to keeps its radius: it may be exact.
 template <int Degree, class Scalar>
 Polynomial<Degree, Ball<double>> shifted_balls(const Polynomial<Degree, Scalar>& p, double shift) {
-  std::array<double, Degree + 1> c;
-  std::array<double, Degree + 1> e;
-  std::array<double, Degree + 1> kept;
+  std::array<double, std::size_t{Degree} + 1> c;
+  std::array<double, std::size_t{Degree} + 1> e;
+  std::array<double, std::size_t{Degree} + 1> kept;
   double added = 0;
   unrolled<Degree + 1>([&](auto k) {
     constexpr std::size_t i = Degree - k;

@@ -17,7 +17,7 @@ struct Polynomial {
   static_assert(Degree >= 0);
   static constexpr int degree = Degree;
 
-  std::array<Scalar, Degree + 1> c{};  ///< coefficients, constant first
+  std::array<Scalar, std::size_t{Degree} + 1> c{};  ///< coefficients, constant first
 
   /// The value at x, by Horner's rule.
   template <class Argument>

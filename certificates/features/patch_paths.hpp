@@ -28,7 +28,7 @@ template <int Degree>
 struct PatchPaths {
   static constexpr int degree = Degree;
 
-  std::array<Corners, Degree + 1> c;
+  std::array<Corners, std::size_t{Degree} + 1> c;
   /// The greatest sum |c[0]| + |c[1]| + ... of any coordinate of any corner: no coordinate exceeds it in [0, 1].
   double size;
   /// No coordinate of a corner of the patch meant is farther than this from its polynomial, in [0, 1].
@@ -91,7 +91,7 @@ void for_each_corner(const std::array<const Point*, 4>& p, Set&& set) {
 template <Patch kind, int Degree>
 PatchPaths<Degree> shifted_patch_paths(const std::array<const PointMotion<Degree>*, 4>& points, double t0,
                                        double duration) {
-  std::array<std::array<std::array<double, 4>, 3>, Degree + 1> c;
+  std::array<std::array<std::array<double, 4>, 3>, std::size_t{Degree} + 1> c;
   double error = 0;
   for_each_corner<kind>(points, [&](std::size_t k, const PointMotion<Degree>& x, const PointMotion<Degree>& y) {
     const auto r = relative_motion<Ball<DoubleDouble>>(y, x, t0);

@@ -24,7 +24,7 @@ namespace detail {
 /// table[i][j] = C(i, j) / C(Degree, j): Bernstein coefficient i of a polynomial is the sum of table[i][j] c[j].
 template <int Degree>
 constexpr auto bernstein_table() {
-  std::array<std::array<double, Degree + 1>, Degree + 1> table{};
+  std::array<std::array<double, std::size_t{Degree} + 1>, std::size_t{Degree} + 1> table{};
   for (int i = 0; i <= Degree; ++i) {
     double ratio = 1;  // C(i, j) / C(Degree, j)
     for (int j = 0; j <= i; ++j) {
@@ -37,14 +37,14 @@ constexpr auto bernstein_table() {
 
 /// Bernstein coefficients on [0, width].
 template <int Degree>
-std::array<double, Degree + 1> bernstein(Polynomial<Degree> p, double width) {
+std::array<double, std::size_t{Degree} + 1> bernstein(Polynomial<Degree> p, double width) {
   static constexpr auto table = bernstein_table<Degree>();
   double factor = width;
   for (std::size_t j = 1; j <= Degree; ++j) {
     p.c[j] *= factor;
     factor *= width;
   }
-  std::array<double, Degree + 1> b;
+  std::array<double, std::size_t{Degree} + 1> b;
   for (std::size_t i = 0; i <= Degree; ++i) {
     b[i] = p.c[0];
     for (std::size_t j = 1; j <= i; ++j) b[i] += table[i][j] * p.c[j];

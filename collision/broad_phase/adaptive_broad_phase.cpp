@@ -9,8 +9,14 @@ namespace {
 /// For pairs that are known already.
 class NoListener final : public PairListener {
  public:
+  explicit NoListener(const PairListener& told) : told_(told) {}
+  bool filters() const override { return told_.filters(); }
+  bool may_collide(BodyId a, BodyId b) const override { return told_.may_collide(a, b); }
   void pair_began(BodyId, BodyId, double) override {}
   void pair_ended(BodyId, BodyId, double) override {}
+
+ private:
+  const PairListener& told_;
 };
 
 void add(BroadPhaseCounters& sum, const BroadPhaseCounters& work) {
@@ -29,6 +35,7 @@ void AdaptiveBroadPhase<Degree>::report_changes(std::span<const Entry> bodies, c
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const auto [a, b] = std::minmax(bodies[i].id, bodies[j].id);
+      if (listener.filters() && !listener.may_collide(a, b)) continue;
       const bool was = from.paired(a, b);
       const bool is = to.paired(a, b);
       if (was && !is) listener.pair_ended(a, b, now);
@@ -44,7 +51,7 @@ void AdaptiveBroadPhase<Degree>::change_to_grid(double now, PairListener& listen
   grid_ = std::make_unique<KineticGrid<Degree>>(threads_);
   grid_->extend_horizon(now, horizon_);
   if (entries.empty()) return;
-  NoListener known;
+  NoListener known(listener);
   grid_->insert(entries, now, known);
   report_changes(entries, few_, *grid_, now, listener);
   few_.clear();
@@ -54,7 +61,7 @@ template <int Degree>
 void AdaptiveBroadPhase<Degree>::change_to_few(double now, PairListener& listener) {
   std::vector<Entry> entries;
   grid_->visit([&](BodyId id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
-  NoListener known;
+  NoListener known(listener);
   few_.extend_horizon(now, horizon_);
   few_.insert(entries, now, known);
   report_changes(entries, *grid_, few_, now, listener);

@@ -52,12 +52,12 @@ struct BoxGrid::Ends {
   /// Monotone, and as far below zero as above.
   static std::int64_t on_lattice(double x) { return std::llrint(clamped(both(x))[0]); }
   static Two clamped(Two x) {
-    constexpr Two most{0x1p61, 0x1p61};
+    constexpr Two farthest{0x1p61, 0x1p61};
 #ifdef __SSE2__
-    return _mm_max_pd(_mm_min_pd(x, most), -most);
+    return _mm_max_pd(_mm_min_pd(x, farthest), -farthest);
 #else
-    x = x < most ? x : most;
-    return x > -most ? x : -most;
+    x = x < farthest ? x : farthest;
+    return x > -farthest ? x : -farthest;
 #endif
   }
   static std::int64_t cell_of(std::int64_t x) { return x >> lattice_bits; }

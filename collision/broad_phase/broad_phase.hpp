@@ -15,6 +15,10 @@ class PairListener {
   virtual ~PairListener() = default;
   /// A hint: about so many pairs will be reported at once.
   virtual void pairs_to_come(std::size_t) {}
+  /// Whether there are pairs that need not be reported; and which may be. The answer for two bodies stays the same for
+  /// as long as both are there.
+  virtual bool filters() const { return false; }
+  virtual bool may_collide(BodyId, BodyId) const { return true; }
   virtual void pair_began(BodyId a, BodyId b, double t) = 0;
   virtual void pair_ended(BodyId a, BodyId b, double t) = 0;
 };
@@ -40,7 +44,8 @@ struct BroadPhaseCounters {
 /// boxes, rounded as they say where `exact()` is false, or k-DOPs, see WorldOptions.kdop), and as ended not before they
 /// cease to; (2) where `exact()` is true, at exactly those instants; (3) reports alternate for each pair, beginning
 /// with pair_began, and removing a body ends its pairs; (4) a broad phase never reports a time before the last it was
-/// given. Swapping one broad phase for another changes neither contacts nor their times.
+/// given. Pairs that may not collide may be left out, begin and end: those that are cost no more than to be found
+/// again and again. Swapping one broad phase for another changes neither contacts nor their times.
 template <int Degree>
 class BroadPhase {
  public:

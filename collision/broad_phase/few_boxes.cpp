@@ -96,6 +96,7 @@ auto FewBoxes<Degree>::overlaps(const StaticBox& box, std::size_t count) const -
 /// Reports what has changed among the first `count` bodies, and keeps it.
 template <int Degree>
 void FewBoxes<Degree>::change(std::size_t place, Row row, std::size_t count, double now, PairListener& listener) {
+  row &= others_[place];
   const Row considered = first_places(count) & ~(Row{1} << place);
   const Row changed = (partners_[place] ^ row) & considered;
   partners_[place] ^= changed;
@@ -147,6 +148,18 @@ void FewBoxes<Degree>::begin_span(double now, double latest) {
   ++counters_.certificates;
 }
 
+/// Notes with whom a body that comes may collide. Rows say so too of places that are not in use.
+template <int Degree>
+void FewBoxes<Degree>::meet(std::size_t place, const PairListener& listener) {
+  others_[place] = ~Row{0};
+  if (!listener.filters()) return;
+  for (std::size_t other = 0; other < place; ++other) {
+    if (listener.may_collide(bodies_[place].id, bodies_[other].id)) continue;
+    others_[place] &= ~(Row{1} << other);
+    others_[other] &= ~(Row{1} << place);
+  }
+}
+
 template <int Degree>
 void FewBoxes<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
   const std::size_t before = bodies_.size();
@@ -160,6 +173,7 @@ void FewBoxes<Degree>::insert(std::span<const Entry> bodies, double now, PairLis
     const StaticBox box = swept(bodies_[place].box, now);
     put(place, box);
     partners_[place] = 0;
+    meet(place, listener);
     change(place, overlaps(box, place), place, now, listener);
   }
 }
@@ -176,10 +190,16 @@ void FewBoxes<Degree>::remove(BodyId id, double now, PairListener& listener) {
       row = (row & ~(Row{1} << last)) | Row{1} << place;
     }
     partners_[place] = partners_[last];
+    others_[place] = others_[last];
     bodies_[place] = bodies_[last];
     put(place, moved);
   }
   bodies_.pop_back();
+  if (!listener.filters()) return;
+  for (std::size_t other = 0; other < last; ++other) {
+    Row& row = others_[other];
+    row = (row & ~(Row{1} << place)) | (row >> last & 1) << place | Row{1} << last;
+  }
 }
 
 template <int Degree>
@@ -206,7 +226,7 @@ bool FewBoxes<Degree>::renew(double now, PairListener& listener) {
   for (std::size_t place = 0; place < bodies_.size(); ++place) put(place, swept(bodies_[place].box, now));
   bool any = false;
   for (std::size_t place = 1; place < bodies_.size(); ++place) {
-    const Row row = overlaps(box(place), place);
+    const Row row = overlaps(box(place), place) & others_[place];
     const Row below = first_places(place);
     any = any || ((partners_[place] ^ row) & below) != 0;
     change(place, row, place, now, listener);
@@ -236,7 +256,8 @@ void FewBoxes<Degree>::audit(double now) const {
     if (!box(i).contains(inner)) throw AuditFailure(who + " is outside its swept box");
     for (std::size_t j = 0; j < i; ++j) {
       const bool paired = (partners_[i] >> j & 1) != 0;
-      if (paired != ((partners_[j] >> i & 1) != 0) || paired != box(i).overlaps(box(j))) {
+      if (paired != ((partners_[j] >> i & 1) != 0) ||
+          paired != ((others_[i] >> j & 1) != 0 && box(i).overlaps(box(j)))) {
         throw AuditFailure(who + " and " + std::to_string(bodies_[j].id) + ": a pair that is not, or none that is");
       }
     }

@@ -72,11 +72,13 @@ class FewBoxes final : public BroadPhase<Degree> {
   void put(std::size_t place, const StaticBox& box);
   StaticBox box(std::size_t place) const;
   Row overlaps(const StaticBox& box, std::size_t count) const;
+  void meet(std::size_t place, const PairListener& listener);
   void change(std::size_t place, Row row, std::size_t count, double now, PairListener& listener);
   bool renew(double now, PairListener& listener);
 
   std::vector<Body> bodies_;
   std::array<Row, most> partners_{};                        ///< of each body
+  std::array<Row, most> others_{};                          ///< with which each may collide
   std::array<std::array<Two, most / 2>, 3> min_{}, max_{};  ///< ends of swept boxes, by axis and place
   double until_ = -never;                                   ///< for how long these hold
   double horizon_ = never;

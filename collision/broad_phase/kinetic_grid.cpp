@@ -11,12 +11,20 @@ template <int Degree>
 void KineticGrid<Degree>::report(BodyId id, double now, PairListener& listener) {
   if (changes_.ended.size() > 1) std::sort(changes_.ended.begin(), changes_.ended.end());
   if (changes_.began.size() > 1) std::sort(changes_.began.begin(), changes_.began.end());
+  const bool filters = listener.filters();
   for (const BodyId other : changes_.ended) {
+    if (filters && !listener.may_collide(id, other)) continue;
     --bodies_[id].partners;
     --bodies_[other].partners;
     listener.pair_ended(std::min(id, other), std::max(id, other), now);
   }
-  for (const BodyId other : changes_.began) report_pair(id, other, now, listener);
+  for (const BodyId other : changes_.began) {
+    if (filters && !listener.may_collide(id, other)) {
+      ++bodies_[id].in_vain;
+    } else {
+      report_pair(id, other, now, listener);
+    }
+  }
 }
 
 template <int Degree>

@@ -69,7 +69,7 @@ class KineticGrid final : public BroadPhase<Degree> {
       box = its_box;
       reach = its_reach;
       expiry = never;
-      begun = partners = changes = tests = 0;
+      begun = in_vain = partners = changes = tests = 0;
       jostled = 0;
     }
 
@@ -78,6 +78,7 @@ class KineticGrid final : public BroadPhase<Degree> {
     double fattened = 0;         ///< when its fat box was made
     double expiry = never;       ///< until when it holds
     std::uint32_t begun = 0;     ///< pairs since its last renewal
+    std::uint32_t in_vain = 0;   ///< pairs found since then that may not collide
     std::uint32_t partners = 0;  ///< bodies it makes pairs with
     std::uint32_t changes = 0;   ///< of its motion since its last renewal
     std::uint32_t tests = 0;     ///< of its pairs for these

@@ -101,8 +101,11 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
                    [&](BoxPairs::Index i) { return bodies[i].id; });
     fat_boxes_.settle(order);
     listener.pairs_to_come(pairs.pairs().size());
+    const bool filters = listener.filters();
     for (const auto& [i, j] : pairs.pairs()) {
-      if (paired(bodies[i].id, bodies[j].id)) report_pair(bodies[i].id, bodies[j].id, now, listener);
+      const BodyId a = bodies[i].id, b = bodies[j].id;
+      if (filters && !listener.may_collide(a, b)) continue;
+      if (paired(a, b)) report_pair(a, b, now, listener);
     }
     return;
   }

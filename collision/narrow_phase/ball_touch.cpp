@@ -104,7 +104,7 @@ bool BallTouch<Degree>::matters(const Path& path) const {
 
 template <int Degree>
 TimeSpans BallTouch<Degree>::within(const Path& path) const {
-  std::array<double, Degree + 1> reach = gap_.c;
+  std::array<double, std::size_t{Degree} + 1> reach = gap_.c;
   reach[0] += radius_;
   return near_spans(path, reach, horizon_);
 }
@@ -121,6 +121,12 @@ void BallTouch<Degree>::add_face() {
     const Vector3d out = unit(cross(triangle_.edge(i), normal));
     piece.conditions[piece.size++] =
         below(out, std::max(dot(out, triangle_.vertices[i]), dot(out, triangle_.vertices[(i + 1) % 3])));
+  }
+  // Across each corner: away from the middle between the directions of its edges.
+  const std::array<Vector3d, 3> along{unit(triangle_.edge(0)), unit(triangle_.edge(1)), unit(triangle_.edge(2))};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3d out = unit(along[(i + 2) % 3] - along[i]);
+    piece.conditions[piece.size++] = below(out, triangle_.project(out).high);
   }
   pieces_[size_++] = piece;
 }

@@ -26,15 +26,17 @@ NearestPoint nearest_point(const PlacedTriangle& triangle, const Eigen::Vector3d
 
 /// When a ball touches a triangle: their distance is below radius + contact gap. The set of such places of the ball's
 /// centre is the union of seven convex pieces: a prism over the face, three cylinders about the edges, three balls
-/// about the vertices. Same members as ConvexTouch; closed forms for linear motion, for quadratic motion quartics
-/// whose sign changes are bracketed between those of their derivatives.
+/// about the vertices. Each side of the prism lies a gap farther out, and so do sides across its corners, or a sharp
+/// one would reach out far: in no piece the ball is more than sqrt 3 gaps away from the triangle. Same members as
+/// ConvexTouch; closed forms for linear motion, for quadratic motion quartics whose sign changes are bracketed between
+/// those of their derivatives.
 ///
 /// Squared distances are never expanded about tau = 0 to decide a sign, only evaluated from the place of the centre at
 /// tau: so their error is that of the distance, which the contact gap covers, however small the ball.
 template <int Degree>
 class BallTouch {
  public:
-  using Path = std::array<Eigen::Vector3d, Degree + 1>;  ///< polynomial of tau
+  using Path = std::array<Eigen::Vector3d, std::size_t{Degree} + 1>;  ///< polynomial of tau
 
   /// Motion of the ball seen from the triangle's body. `horizon`: no contact after it; a function of the bodies and
   /// motion alone, or answers would not be. Parts of the triangle that the ball is not near within the window of
@@ -50,9 +52,9 @@ class BallTouch {
   double turning(double tau, double end) const;
 
  private:
-  /// Slab or cylinder and its ends; five conditions at most.
+  /// Slab or cylinder and its ends; eight conditions at most.
   struct Piece {
-    std::array<TimeSpans, 5> conditions;
+    std::array<TimeSpans, 8> conditions;
     std::size_t size = 0;
 
     std::span<const TimeSpans> spans() const { return {conditions.data(), size}; }

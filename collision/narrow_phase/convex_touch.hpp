@@ -42,13 +42,18 @@ class ConvexTouch {
  public:
   ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap)
       : a_(a), b_(b), motion_(motion), gap_(gap) {
-    every_condition([&](const Condition& condition) {
+    const auto add_side = [&](const Condition& condition, bool decides) {
       if constexpr (Degree == 1) {
-        add(condition);
+        add(condition, decides);
       } else {
         const auto& p = condition.separation;
         near_[size_++] = negative_spans(p[0] - gap.c[0], p[1] - gap.c[1], p[2] - gap.c[2]);
       }
+    };
+    every_condition([&](const Condition& condition) { add_side(condition, true); });
+    every_kdop_direction(a_, b_, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
+      both_sides(axis, of_a, of_b, [&](const Condition& condition) { add_side(condition, false); });
+      return true;
     });
     if constexpr (Degree == 1) near_[size_++] = TimeSpans::between(enter_, leave_);
   }
@@ -135,11 +140,13 @@ class ConvexTouch {
  private:
   /// Two sides of 17 axes.
   static constexpr std::size_t capacity = 34;
+  /// And of the directions of k-DOPs, which say when the two touch, and not in which direction.
+  static constexpr std::size_t capacity_near = capacity + 26;
   /// Separations nearer than gap / tie are equal: 16 roundings, where two computations of one separation differ by 8.
   static constexpr double tie = 4;
 
   struct Condition {
-    std::array<double, Degree + 1> separation;  ///< along the normal; below the gap: near
+    std::array<double, std::size_t{Degree} + 1> separation;  ///< along the normal; below the gap: near
     Eigen::Vector3d normal;                     ///< unit, from a to b
 
     double operator()(double tau) const {
@@ -187,8 +194,8 @@ class ConvexTouch {
     visit(opposite);
   }
 
-  /// Degree 1: the two are near from enter_ to leave_.
-  void add(const Condition& condition) {
+  /// Degree 1: the two are near from enter_ to leave_. `decides`: whether they may be said to touch along the normal.
+  void add(const Condition& condition, bool decides) {
     const double c0 = condition.separation[0] - gap_.c[0];
     const double c1 = condition.separation[1] - gap_.c[1];
     if (c1 > 0) {
@@ -197,7 +204,7 @@ class ConvexTouch {
       const double begin = -c0 / c1;
       if (begin > enter_) {
         enter_ = begin;
-        entry_speed_ = -condition.separation[1];
+        entry_speed_ = decides ? -condition.separation[1] : 0.0;
       }
     } else if (c0 >= 0) {
       leave_ = -TimeSpans::infinity;
@@ -208,7 +215,8 @@ class ConvexTouch {
   /// does is mostly told by its sign at both ends, on the axis as it is, without square root or quotient, and with
   /// `quick_margin` gaps to spare (as in may_touch). The window shrinks with what is known.
   bool add_within(TimeWindow window) {
-    return every_axis(a_, b_, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
+    bool decides = true;
+    const auto add_axis = [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
       const double length = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
       if (!(length > vanishing_axis)) return true;
       const double p0 = dot(axis, motion_.coefficients[0]);
@@ -226,11 +234,14 @@ class ConvexTouch {
           std::min(at_begin - spare_begin, at_end - spare_end) > low) {
         return true;
       }
-      both_sides(axis, of_a, of_b, [this](const Condition& condition) { add(condition); });
+      both_sides(axis, of_a, of_b, [&](const Condition& condition) { add(condition, decides); });
       window.begin = std::max(window.begin, enter_);
       window.end = std::min(window.end, leave_);
       return window.begin <= window.end;
-    });
+    };
+    if (!every_axis(a_, b_, add_axis)) return false;
+    decides = false;
+    return every_kdop_direction(a_, b_, add_axis);
   }
 
   class Conditions {
@@ -257,7 +268,7 @@ class ConvexTouch {
   B b_;
   const RelativeMotion<Degree>& motion_;
   ContactGap<Degree> gap_;
-  std::array<TimeSpans, Degree == 1 ? 1 : capacity> near_;  ///< when each separation is below the gap
+  std::array<TimeSpans, Degree == 1 ? 1 : capacity_near> near_;  ///< when each separation is below the gap
   std::size_t size_ = 0;
   // Degree 1:
   double enter_ = -TimeSpans::infinity;

@@ -35,7 +35,7 @@ struct ContactGap {
   static constexpr double roundings = 64 * 0x1p-53;
   static constexpr double clock = 4 * 0x1p-52;
 
-  std::array<double, Degree + 1> c;
+  std::array<double, std::size_t{Degree} + 1> c;
 
   double operator()(double tau) const {
     if constexpr (Degree == 1) {
@@ -60,8 +60,10 @@ ContactGap<Degree> contact_gap(const RelativeMotion<Degree>& motion, double radi
   return gap;
 }
 
-/// Gaps by which boxes and quick tests are widened, see BoxPairTest.
-inline constexpr double quick_margin = 4;
+/// Gaps by which boxes and quick tests are widened, see BoxPairTest. Contact may be reported while triangles are 3.4
+/// (every_kdop_direction) times 1 + 45/64 gaps apart, between two sharp corners; 8 leaves room for what is rounded in
+/// doubles.
+inline constexpr double quick_margin = 8;
 
 /// No contacts are predicted for times at which the contact gap has grown to this part of the radii, and fourfold. A
 /// straight path gets there only if its speed is nothing but rounding (bodies that move alike), a curved one if it goes
@@ -88,9 +90,9 @@ inline constexpr double box_margin = 0x1p-24;
 /// the brackets of both bodies are not below those of ContactGap. (2) The uncertainty of the relative coefficients is
 /// at most 14 u of these sums: seven operations, charged 2 u each. With the roundings of ContactGap that is 78 u. (3)
 /// Contact is reported up to 1 + 45/64 gaps along a separating axis; a ball in the corner of such conditions is up to
-/// sqrt 3 times as far away (ball_touch.hpp). That makes 231 u and 12 x 2^-52. (4) The time of a separation is rounded up
-/// to a double, by one spacing, 2^-52 (|s| + tau_a) at most, and tau by u: 1 x 2^-52 of `clock`, 1 u of `roundings`. 256
-/// and 16 leave room for what is rounded here and where ends are moved.
+/// sqrt 3 times as far away (ball_touch.hpp). That makes 231 u and 12 x 2^-52. (4) The time of a separation is rounded
+/// up to a double, by one spacing, 2^-52 (|s| + tau_a) at most, and tau by u: 1 x 2^-52 of `clock`, 1 u of `roundings`.
+/// 256 and 16 leave room for what is rounded here and where ends are moved.
 ///
 /// A volume is grown by a constant for as long as that will do: so its corners move alike, and it is not renewed. After
 /// that its ends move apart as the share grows, which holds for ever: one renewal a motion, if any.
@@ -123,13 +125,13 @@ class MeshClearance {
   bool is_least() const { return constant_ == least_; }
 
   /// Not less than the share, and than the constant, from the motion's start on.
-  std::array<double, Degree + 1> growing() const {
-    std::array<double, Degree + 1> growth = share_;
+  std::array<double, std::size_t{Degree} + 1> growing() const {
+    std::array<double, std::size_t{Degree} + 1> growth = share_;
     growth[0] = least_ + 2 * share_[0];
     return growth;
   }
 
-  const std::array<double, Degree + 1>& share() const { return share_; }
+  const std::array<double, std::size_t{Degree} + 1>& share() const { return share_; }
 
  private:
   /// A time, in seconds from the start, at which the share is not above the constant.
@@ -144,7 +146,7 @@ class MeshClearance {
     }
   }
 
-  std::array<double, Degree + 1> share_;
+  std::array<double, std::size_t{Degree} + 1> share_;
   double least_;
   double constant_;
   double holds_until_;
@@ -156,9 +158,9 @@ class MeshClearance {
 /// About another start, d earlier or later, the polynomial's value is the same; where its coefficients are rounded, by
 /// 2^-52 of their sum, the growth has more room than that.
 template <int Degree>
-void grow(KineticBox<Degree>& box, std::array<double, Degree + 1> growth, double start) {
+void grow(KineticBox<Degree>& box, std::array<double, std::size_t{Degree} + 1> growth, double start) {
   const auto about = [&](double epoch) {
-    std::array<double, Degree + 1> g = growth;
+    std::array<double, std::size_t{Degree} + 1> g = growth;
     const double d = epoch - start;
     if constexpr (Degree == 1) {
       g[0] += d * g[1];

@@ -32,7 +32,7 @@ class PairTimes {
   /// until it returns true. In each the margin is about the same and the path about straight, see `slice_end`.
   template <class Run>
   void slice_by_slice(const TimeWindow& window, const Run& run) const {
-    std::array<double, Degree + 1> reach = margin_;
+    std::array<double, std::size_t{Degree} + 1> reach = margin_;
     reach[0] += radii_;
     const TimeSpans spans = near_spans(motion_.coefficients, reach, last_);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -50,7 +50,7 @@ class PairTimes {
  protected:
   RelativeMotion<Degree> motion_;
   ContactGap<Degree> gap_;
-  std::array<double, Degree + 1> margin_;
+  std::array<double, std::size_t{Degree} + 1> margin_;
   double radii_;
   double last_;
 

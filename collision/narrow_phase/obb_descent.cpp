@@ -43,7 +43,7 @@ struct Chord {
   float deviation;
 };
 template <int Degree>
-Chord<Degree> chord(const std::array<Lanes, Degree + 1>& path, float bend, const StepWindow& window) {
+Chord<Degree> chord(const std::array<Lanes, std::size_t{Degree} + 1>& path, float bend, const StepWindow& window) {
   if constexpr (Degree == 1) {
     return {path[0], path[1], 0};
   } else {
@@ -63,7 +63,7 @@ Lanes along(const std::array<Lanes, 3>& axes, float x, float y, float z) {
 template <int Degree>
 SliceMotion<Degree>::SliceMotion(const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap,
                                  const TimeSlice& slice, double size_of_pair)
-    : size(size_of_pair), margin(rounding + rounded_up(4 * gap(slice.end) / size_of_pair)), bend(0) {
+    : size(size_of_pair), margin(rounding + rounded_up(quick_margin * gap(slice.end) / size_of_pair)), bend(0) {
   r[0] = motion.position(slice.begin) / size;
   r[1] = motion.velocity(slice.begin) * (slice.length() / size);
   if constexpr (Degree == 2) {
@@ -103,7 +103,7 @@ bool BoxPairTest<Degree>::operator()(const Frame& a, const ObbNode& b, StepWindo
   const Lanes ha = a.half_extents;
   const Lanes hb = splat(unit_b_) * b.half_extents;
   const Lanes centre = splat(unit_b_) * b.centre;
-  std::array<Lanes, Degree + 1> path = a.motion;
+  std::array<Lanes, std::size_t{Degree} + 1> path = a.motion;
   path[0] += along(a.turn, centre[0], centre[1], centre[2]);
   // Row i: axis i of a along the axes of b.
   std::array<Lanes, 3> turn;
@@ -150,7 +150,7 @@ BoxBallTest<Degree>::BoxBallTest(const TreePose& a, double radius, const SliceMo
 
 template <int Degree>
 bool BoxBallTest<Degree>::operator()(const ObbNode& a, StepWindow& window) const {
-  std::array<Lanes, Degree + 1> path;
+  std::array<Lanes, std::size_t{Degree} + 1> path;
   for (std::size_t i = 0; i <= Degree; ++i) path[i] = Lanes{motion_[i][0], motion_[i][1], motion_[i][2], 0};
   path[0] -= splat(unit_) * a.centre;
 

@@ -55,8 +55,8 @@ inline float in_steps(const TimeSlice& slice, double tau) {
 /// Motion during a slice, in units of the pair's size, for the box tests.
 ///
 /// All lengths of a pair are divided by `size`, the sum of the radii of the shapes; during a slice their centres are at
-/// most about that far apart, so that every number is of order 1 and floats will do. Margin: `rounding`, plus four
-/// contact gaps at the end of the slice, one for the gap itself, the others for what is rounded in doubles.
+/// most about that far apart, so that every number is of order 1 and floats will do. Margin: `rounding`, plus
+/// `quick_margin` contact gaps at the end of the slice.
 ///
 /// Derivation of `rounding`, in roundings of a float (2^-24) of numbers of order 1: the turned axes are good to 10, the
 /// place of a centre to 12, a projection of it to 20 and of both boxes' edges to 40; axes that are orthonormal only to
@@ -68,7 +68,8 @@ struct SliceMotion {
 
   SliceMotion(const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, const TimeSlice& slice, double size);
 
-  std::array<Eigen::Vector3d, Degree + 1> r;  ///< centre of b seen from a: coefficients about the slice's begin
+  std::array<Eigen::Vector3d, std::size_t{Degree} + 1>
+      r;  ///< centre of b seen from a: coefficients about the slice's begin
   double size;
   float margin;
   float bend;  ///< length of the quadratic coefficient, rounded up
@@ -91,7 +92,7 @@ class BoxPairTest {
   /// What depends on the box of a alone: kept while it meets several boxes of b.
   struct Frame {
     std::array<Lanes, 3> turn;             ///< column k: coordinate k of b's model along the axes of a's box
-    std::array<Lanes, Degree + 1> motion;  ///< of b's model origin along them
+    std::array<Lanes, std::size_t{Degree} + 1> motion;  ///< of b's model origin along them
     Lanes half_extents;
   };
   Frame frame(const ObbNode& a) const;
@@ -101,7 +102,7 @@ class BoxPairTest {
 
  private:
   std::array<std::array<float, 3>, 3> turn_;        ///< model of b -> model of a
-  std::array<Eigen::Vector3f, Degree + 1> motion_;  ///< of b's centre in the model coordinates of a
+  std::array<Eigen::Vector3f, std::size_t{Degree} + 1> motion_;  ///< of b's centre in the model coordinates of a
   float unit_a_;
   float unit_b_;
   float margin_;
@@ -116,7 +117,7 @@ class BoxBallTest {
   bool operator()(const ObbNode& a, StepWindow& window) const;
 
  private:
-  std::array<Eigen::Vector3f, Degree + 1> motion_;
+  std::array<Eigen::Vector3f, std::size_t{Degree} + 1> motion_;
   float unit_;
   float radius_;
   float margin_;

@@ -33,7 +33,7 @@ class QuickMotion {
  public:
   using Path = certificates::PointMotion<Degree>;
   /// axis . r(tau), constant first.
-  using Along = std::array<double, Degree + 1>;
+  using Along = std::array<double, std::size_t{Degree} + 1>;
 
   QuickMotion(const Path& a, const Path& b, double now, double horizon, double size);
 
@@ -79,7 +79,7 @@ class QuickMotion {
   static constexpr double unit = 0x1p-46;
   static constexpr double most_growth = 0x1p20;
 
-  std::array<Eigen::Vector3d, Degree + 1> r_;
+  std::array<Eigen::Vector3d, std::size_t{Degree} + 1> r_;
   double now_;
   double end_;
   double error_;
@@ -102,7 +102,7 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
   const double time_b = std::abs(elapsed_b);
   const auto& ca = a.coefficients;
   const auto& cb = b.coefficients;
-  std::array<double, Degree + 1> most;
+  std::array<double, std::size_t{Degree} + 1> most;
   const double speed_a = greatest(ca[1]);
   const double speed_b = greatest(cb[1]);
   most[0] = greatest(ca[0]) + greatest(cb[0]) + time_a * speed_a + time_b * speed_b;

@@ -24,8 +24,8 @@ inline Eigen::Vector3d cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
 /// not rotate, so this is all that moves in a pair.
 template <int Degree>
 struct RelativeMotion {
-  std::array<Eigen::Vector3d, Degree + 1> coefficients;
-  std::array<double, Degree + 1> uncertainty{};  ///< how far each coefficient may be from the true one
+  std::array<Eigen::Vector3d, std::size_t{Degree} + 1> coefficients;
+  std::array<double, std::size_t{Degree} + 1> uncertainty{};  ///< how far each coefficient may be from the true one
   double epoch = 0;                              ///< s; the clock's value at tau = 0
 
   Eigen::Vector3d position(double tau) const {

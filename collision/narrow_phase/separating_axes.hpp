@@ -130,15 +130,47 @@ bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
   return true;
 }
 
-/// Axes shorter than this are left out, which is always safe; with coordinates of 2^-100 to 2^100 they come from
-/// parallel edges alone, and squares of projections do not underflow.
-inline constexpr double vanishing_axis = 0x1p-320;
+/// The same for the directions of k-DOPs, the axes among them. They are needed where shapes are apart: the directions
+/// above tell whether convex shapes overlap, but say little of how far two sharp corners are apart that face each
+/// other, tip to tip, since all of them are nearly across the line between the tips.
+///
+/// With these the shapes are at most 3.4 times as far apart as the farthest that is seen along a direction. Let d lead
+/// from one nearest point to the other, two vertices, so that the directions for which they are the nearest are a
+/// convex set N of the sphere about d. Its sides are arcs along which the directions of every_axis follow each other in
+/// steps of 90 degrees at most (of a triangle's edge, half a circle with the normal in the plane in its middle). If d
+/// is within 27.6 degrees of a side, one of these is within 72.6 degrees of d: cos is 0.29. Else N holds one of the 26
+/// directions, none of which leaves more than 27.6 degrees to its neighbours: cos is 0.88.
+template <class A, class B, class Test>
+bool every_kdop_direction(const A& a, const B& b, Test&& test) {
+  constexpr std::array<std::array<int, 3>, 13> directions{{{1, 0, 0},
+                                                           {0, 1, 0},
+                                                           {0, 0, 1},
+                                                           {1, 1, 0},
+                                                           {1, -1, 0},
+                                                           {1, 0, 1},
+                                                           {1, 0, -1},
+                                                           {0, 1, 1},
+                                                           {0, 1, -1},
+                                                           {1, 1, 1},
+                                                           {1, 1, -1},
+                                                           {1, -1, 1},
+                                                           {1, -1, -1}}};
+  for (const auto& [x, y, z] : directions) {
+    const Eigen::Vector3d direction(x, y, z);
+    if (!test(direction, a.project(direction), b.project(direction))) return false;
+  }
+  return true;
+}
+
+/// Axes shorter than this are left out, which is always safe. With edges of 2^-110 or more that meet at sines of 2^-46
+/// or more (`shortest_edge`, Mesh::thinnest_sine) they come from parallel edges alone; their squares do not underflow.
+inline constexpr double vanishing_axis = 0x1p-400;
 
 /// Cheap test: shrinks the window to times at which a and b may touch, with b moving; false if there are none.
 /// Projections are widened by `margin` as in BoxPairTest, times the 1-norm of the axis, which is not below its length.
 template <int Degree, class A, class B>
 bool may_touch(const A& a, const B& b, const RelativeMotion<Degree>& motion,
-               const std::array<double, Degree + 1>& margin, TimeWindow& window) {
+               const std::array<double, std::size_t{Degree} + 1>& margin, TimeWindow& window) {
   return every_axis(a, b, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
     const double length = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
     if (!(length > vanishing_axis)) return true;

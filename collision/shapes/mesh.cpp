@@ -74,6 +74,12 @@ Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
       tree_(vertices_, triangles_) {
   for (const Vector3d& v : vertices_) bounding_radius_ = std::max(bounding_radius_, v.norm());
   bounding_radius_ *= 1 + 0x1p-50;  // three roundings of the norm, upward
+  shortest_edge_ = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : triangles_) {
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      shortest_edge_ = std::min(shortest_edge_, (vertices_[to] - vertices_[from]).stableNorm());
+    }
+  }
   std::vector<bool> used(vertices_.size());
   std::size_t count = 0;
   for (const Triangle& triangle : triangles_) {

@@ -65,6 +65,9 @@ class Mesh {
   /// Radius of the ball about the origin that holds all vertices, rounded up.
   double bounding_radius() const { return bounding_radius_; }
 
+  /// Length of the shortest edge, rounded.
+  double shortest_edge() const { return shortest_edge_; }
+
   /// All vertices, placed.
   std::vector<Eigen::Vector3d> placed_vertices(const Eigen::Matrix3d& rotation, double scale) const;
 
@@ -87,6 +90,7 @@ class Mesh {
   ObbTree tree_;
   std::vector<VertexPair> used_;  // vertices that triangles use, each once; of an odd number the last one twice
   double bounding_radius_ = 0;
+  double shortest_edge_ = 0;
 };
 
 }  // namespace kds::collision

@@ -4,6 +4,7 @@
 #include "collision/shapes/mesh.hpp"
 
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -13,9 +14,25 @@ namespace {
 /// How far from 1 the norm of an orientation may be; scene files carry few digits. The quaternion is normalised.
 constexpr double quaternion_tolerance = 1e-6;
 
-void require_size(double value, const char* what) {
-  if (!std::isfinite(value)) throw std::invalid_argument(std::string(what) + ": must be finite");
-  if (!(value > 0)) throw std::invalid_argument(std::string(what) + ": must be > 0");
+/// A number in a message, with digits enough to know it by.
+std::string text(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+/// What a mesh and its scale make together.
+void require_range(const Mesh& mesh, double scale) {
+  const double edge = mesh.shortest_edge() * scale;
+  const double radius = mesh.bounding_radius() * scale;
+  if (!(edge >= shortest_edge)) {
+    throw std::invalid_argument("scale: " + text(scale) + " makes an edge of the mesh " + text(edge) +
+                                " long; at least 2^-110 (7.7e-34) is supported");
+  }
+  if (!(radius <= Mesh::largest_coordinate * (1 + 0x1p-40) * std::sqrt(3.0))) {
+    throw std::invalid_argument("scale: " + text(scale) + " makes the mesh reach " + text(radius) +
+                                " from its origin; at most 2^100 (1.3e30) along each axis is supported");
+  }
 }
 
 /// What the axes of a turned box may be off orthonormal, and what adding up its extents may round.
@@ -27,11 +44,17 @@ void grow(PlacedShape& placed, double margin) {
 }
 
 /// Exactly representable orientations (the identity, quarter turns) give exact boxes, which need no margin.
-bool is_signed_permutation(const Eigen::Matrix3d& m) {
-  return ((m.array() == 0) || (m.array().abs() == 1)).all();
-}
+bool is_signed_permutation(const Eigen::Matrix3d& m) { return ((m.array() == 0) || (m.array().abs() == 1)).all(); }
 
 }  // namespace
+
+void require_size(double value, const char* what) {
+  const std::string name(what);
+  if (!std::isfinite(value)) throw std::invalid_argument(name + ": must be finite");
+  if (!(value > 0)) throw std::invalid_argument(name + ": must be > 0");
+  if (value < smallest_size) throw std::invalid_argument(name + ": " + text(value) + " is below 2^-205 (1.9e-62)");
+  if (value > largest_magnitude) throw std::invalid_argument(name + ": " + text(value) + " is above 2^205 (5.1e61)");
+}
 
 void require_radius(double radius) { require_size(radius, "radius"); }
 
@@ -70,7 +93,9 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
   } else {
     const auto& instance = std::get<MeshShape>(shape);
     if (!instance.mesh) throw std::invalid_argument("mesh: is missing");
-    require_size(instance.scale, "scale");
+    if (!std::isfinite(instance.scale)) throw std::invalid_argument("scale: must be finite");
+    if (!(instance.scale > 0)) throw std::invalid_argument("scale: must be > 0");
+    require_range(*instance.mesh, instance.scale);
     instance.mesh->extents(placed.rotation, instance.scale, placed.low, placed.high);
     const double radius = instance.mesh->bounding_radius() * instance.scale;
     grow(placed, box_margin * radius);

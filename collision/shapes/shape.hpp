@@ -12,6 +12,17 @@ namespace kds::collision {
 
 class Mesh;
 
+/// What numbers may be, in any units: sizes and masses from smallest_size to largest_magnitude; coordinates, speeds and
+/// halves of accelerations 0 or anything up to largest_magnitude, and times of the clock too. In this range squares of
+/// lengths, and what the tests of meshes multiply (squares of a speed times three edges), neither overflow nor, for
+/// sizes, underflow; beyond it contacts could be missed, so what is given beyond it is refused.
+inline constexpr double smallest_size = 0x1p-205;      ///< 1.9e-62
+inline constexpr double largest_magnitude = 0x1p205;  ///< 5.1e61
+
+/// Of the edges of a mesh as it is scaled, in units of length: below, the axes that separate its triangles, products of
+/// up to three edges, are too short to be told from nothing (`vanishing_axis`).
+inline constexpr double shortest_edge = 0x1p-110;  ///< 7.7e-34
+
 /// A ball about the body's centre. Radius > 0, in units of length.
 struct Sphere {
   double radius;
@@ -41,9 +52,9 @@ struct PlacedShape {
   double bounding_radius = 0;                      ///< of the ball about the centre that holds the shape
 };
 
-/// Validates and places a shape. Throws std::invalid_argument naming the member that is wrong: sizes must be finite
-/// and > 0, a mesh must be there, the orientation must be a unit quaternion to 1e-6 (it is normalised). What a mesh and
-/// its scale make together is not checked: their product should stay below Mesh::largest_coordinate.
+/// Validates and places a shape. Throws std::invalid_argument naming the member that is wrong: sizes must be > 0 and in
+/// the range above, a mesh must be there, the orientation must be a unit quaternion to 1e-6 (it is normalised). A mesh,
+/// scaled, must reach no farther than Mesh::largest_coordinate, and have no edge below `shortest_edge`.
 PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation);
 
 /// From where to where the shape reaches about its centre along a direction: least and greatest direction . x, rounded
@@ -53,7 +64,9 @@ std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& di
 
 /// What place() makes of a ball that is not turned; throws as it does.
 PlacedShape placed_ball(double radius);
-/// Throws as place() does for a radius that is not finite or not > 0.
+/// Throws as place() does for a radius that is not finite, not > 0 or out of range.
 void require_radius(double radius);
+/// Throws std::invalid_argument, naming `what`, for a number that is not finite, not > 0, or out of the range of sizes.
+void require_size(double value, const char* what);
 
 }  // namespace kds::collision

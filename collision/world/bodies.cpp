@@ -44,13 +44,13 @@ void World<Degree>::remove_body(BodyId id) {
 template <int Degree>
 void World<Degree>::take_out(BodyId id) {
   Body& removed = bodies_[id];
-  drop_holds(id);
+  resting_.forget(id);
   removed.alive = false;
   clear(pieces_, id);
   clear(volumes_, id);
   clear(walls_, id);
   if (removed.entered) {
-    broad_phase_->remove(id, now_, *this);
+    if (collides(id)) broad_phase_->remove(id, now_, *this);
   } else {
     std::erase(entering_, id);  // or the next of this id would enter in its stead
   }
@@ -76,7 +76,7 @@ template <int Degree>
 void World<Degree>::update_motion(BodyId id, const Motion& motion) {
   require_editable("World::update_motion");
   body(id);
-  if (!motion.finite()) throw std::invalid_argument("World::update_motion: the motion is not finite");
+  if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
   if (motion.start > now_) {
     throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(motion.start) +
                                 ", after the clock at " + std::to_string(now_));
@@ -98,9 +98,9 @@ void World<Degree>::give(BodyId id, const Motion& motion) {
     return;
   }
   const bool jumped = is_jump(id, motion);
-  if (jumped) drop_holds(id);
+  if (jumped) resting_.drop_all(id);
   set_motion(id, motion, jumped);
-  disturb(id);
+  resting_.disturb(id);
 }
 
 template <int Degree>
@@ -121,7 +121,7 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
     __builtin_prefetch(&movers_[link.other]);
   }
   inserting_ = jumped && mode() == ContactMode::resolved;
-  broad_phase_->update(id, renewed_box(id), now_, *this);
+  if (collides(id)) broad_phase_->update(id, renewed_box(id), now_, *this);
   for (const Link& link : links_.items(b.pairs)) mark_dirty(link.slot);
   if (inserting_) {
     for (const Link& link : links_.items(b.pairs)) pairs_[link.slot].fresh = true;
@@ -199,9 +199,7 @@ template <int Degree>
 void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   const Stopwatch watch(profile(), Work::prune);
   now_ = t;
-  Body& body_a = bodies_[a];
-  Body& body_b = bodies_[b];
-  if ((body_a.category & body_b.collides_with) == 0 || (body_b.category & body_a.collides_with) == 0) return;
+  if (!may_collide(a, b)) return;
   const PairSlot overlapping = unlisted_ > 0 ? find_pair(a, b) : no_pair;
   if (overlapping != no_pair) --unlisted_;
   const PairSlot slot = overlapping != no_pair ? overlapping : new_pair(a, b);

@@ -21,7 +21,7 @@ void World<Degree>::allow_for_meshes() {
 /// Makes known a volume that is another though nothing has moved.
 template <int Degree>
 void World<Degree>::update_volume(BodyId id, const KineticBox<Degree>& box) {
-  broad_phase_->update(id, box, now_, *this);
+  if (collides(id)) broad_phase_->update(id, box, now_, *this);
   if (options_.report_pairs && !broad_phase_->exact()) {  // when its box meets others is to be found anew
     for (const Link& link : links_.items(bodies_[id].pairs)) mark_dirty(link.slot);
   }

@@ -69,7 +69,7 @@ void World<Degree>::process_contact(PairSlot slot, double t) {
   }
   // A pair that is still pressed together (nobody can or will move it) passes through.
   const auto after = [&] {
-    if (!contains(event.a) || !contains(event.b) || find_hold(event.a, event.b) != no_hold) return;
+    if (!contains(event.a) || !contains(event.b) || resting_.find(event.a, event.b) != Resting::none) return;
     // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a
     // rounding.
     if (passes || parting(event.contact, movers_[event.a].motion, movers_[event.b].motion) < 0) {
@@ -150,8 +150,8 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
   const bool held = stays(restitution * approach, pressed, size, burst);
   if (held) {
     ++counters_.held;
-    add_hold({.a = a, .b = b, .normal = n});
-    disturb(a), disturb(b);
+    resting_.add({.a = a, .b = b, .normal = n});
+    resting_.disturb(a), resting_.disturb(b);
   } else {
     change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,
                              inverse_a, inverse_b);
@@ -159,10 +159,10 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
       if (bodies_[id].inverse_mass == 0) continue;
       ++counters_.motion_updates;
       set_motion(id, motion, false);
-      disturb(id);
+      resting_.disturb(id);
     }
   }
-  settle();
+  resting_.settle();
   return held;
 }
 

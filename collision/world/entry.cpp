@@ -21,14 +21,12 @@ void validate(const BodyDescription<Degree>& description) {
   if (description.motion.empty()) fail("motion: has no piece");
   for (std::size_t i = 0; i < description.motion.size(); ++i) {
     const auto& piece = description.motion[i];
-    if (!piece.finite()) fail("motion[" + std::to_string(i) + "]: must be finite");
+    if (!in_range(piece)) refuse_motion(piece, "motion[" + std::to_string(i) + "]");
     if (i > 0 && !(piece.start > description.motion[i - 1].start)) {
       fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
     }
   }
-  if (!description.fixed && (!std::isfinite(description.mass) || !(description.mass > 0))) {
-    fail("mass: must be finite and > 0");
-  }
+  if (!description.fixed) require_size(description.mass, "mass");
   switch (description.volume) {
     case BoundingVolume::shape:
     case BoundingVolume::sphere:
@@ -96,6 +94,7 @@ inline BodyId World<Degree>::put(const Description& description, std::shared_ptr
   added.restitution = description.restitution;
   added.category = description.category;
   added.collides_with = description.collides_with;
+  filters_ = filters_ || description.category != default_category || ~description.collides_with != 0;
   added.volume = description.volume;
   added.alive = true;
   movers_[id].motion = *piece;
@@ -163,10 +162,17 @@ void World<Degree>::enter_new_bodies() {
       entries[i].box = new (&boxes[i]) KineticBox<Degree>(renewed_box(entries[i].id));  // not copied there
     }
   });
+  const std::span<const Entry> all(entries);
+  std::size_t colliding = entries.size();
+  if (filters_) {
+    const auto rest =
+        std::stable_partition(entries.begin(), entries.end(), [&](const Entry& entry) { return collides(entry.id); });
+    colliding = static_cast<std::size_t>(rest - entries.begin());
+  }
   inserting_ = true;
   {
     const Stopwatch watch(profile(), Work::update);
-    broad_phase_->insert(entries, now_, *this);
+    broad_phase_->insert(all.first(colliding), now_, *this);
   }
   inserting_ = false;
   schedule_walls(entries);

@@ -72,24 +72,26 @@ void World<Degree>::Image::body(Archive& archive, BodyImage& body) const {
   if (!body.alive) return;
   shape(archive, body);
   archive(body.entered, body.motion, body.script, body.mass, body.inverse_mass, body.restitution, body.category,
-          body.collides_with, body.volume, body.meetings, body.burst_start, body.holds);
+          body.collides_with, body.volume, body.meetings, body.burst_start);
   vector(archive, body.force);
 }
 
 template <int Degree>
 template <class Archive>
 void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
-  archive(now, horizon, has_had_meshes, counters, edits, edits_start);
+  archive(now, clock, horizon, has_had_meshes, counters, edits, edits_start);
   each(archive, meshes, [&](auto& one) { mesh(archive, one, known); });
   each(archive, bodies, [&](BodyImage& one) { body(archive, one); });
-  archive(free_bodies, removed, removed_at, entering, disturbed, free_holds, releases);
+  archive(free_bodies, removed, removed_at, entering);
   each(archive, pairs, [&](PairImage& image) {
     Pair& p = image.pair;
     archive(p.a, p.b, p.listed, p.dirty, p.fresh, p.overlapping, p.boxes_overlap, p.estimated, p.passes_at,
             image.contact, image.boxes);
   });
-  each(archive, holds, [&](Hold& h) {
-    archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh);
+  archive(resting.free, resting.disturbed, resting.releases);
+  each(archive, resting.of, [&](auto& slots) { archive(slots); });
+  each(archive, resting.contacts, [&](auto& h) {
+    archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh, h.left_behind);
     vector(archive, h.normal);
   });
   each(archive, pending, [&](Pending& p) {

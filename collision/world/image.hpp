@@ -29,7 +29,6 @@ struct World<Degree>::Image {
     std::uint64_t meetings = 0;
     double burst_start = 0;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    std::vector<HoldSlot> holds;
   };
   struct PairImage {
     Pair pair;
@@ -37,16 +36,14 @@ struct World<Degree>::Image {
     double boxes = never;
   };
 
-  double now = 0, horizon = 0;
+  double now = 0, clock = 0, horizon = 0;
   bool has_had_meshes = false;
   WorldCounters counters;
   std::vector<std::shared_ptr<const Mesh>> meshes;
   std::vector<BodyImage> bodies;  // by id
-  std::vector<BodyId> free_bodies, removed, entering, disturbed;
+  std::vector<BodyId> free_bodies, removed, entering;
   std::vector<PairImage> pairs;
-  std::vector<Hold> holds;
-  std::vector<double> releases;  // by hold
-  std::vector<HoldSlot> free_holds;
+  typename RestingContacts<Degree>::Image resting;
   std::vector<Pending> pending;
   double removed_at = 0;
   std::uint64_t edits = 0;

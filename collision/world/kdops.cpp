@@ -73,22 +73,22 @@ KineticSlab<Degree> World<Degree>::slab(BodyId id, std::size_t i, double now) co
   return slab_around(bounding_box(id), directions_[i], now);
 }
 
-/// Whether the volumes that the broad phase sees overlap at now+.
+/// Whether the volumes that the broad phase sees overlap at t+.
 template <int Degree>
-bool World<Degree>::volumes_overlap(BodyId a, BodyId b) const {
-  const auto broken = [this](const kds::Motion<Degree>& left, const kds::Motion<Degree>& right) {
-    return sign_after(certificates::Order<Degree>{left, right}, now_) < 0;
+bool World<Degree>::volumes_overlap(BodyId a, BodyId b, double t) const {
+  const auto broken = [t](const kds::Motion<Degree>& left, const kds::Motion<Degree>& right) {
+    return sign_after(certificates::Order<Degree>{left, right}, t) < 0;
   };
   const KineticBox<Degree> box_a = bounding_box(a);
   const KineticBox<Degree> box_b = bounding_box(b);
   const BoxOverlap<Degree> boxes(box_a, box_b);
   for (const auto& side : boxes.separations()) {
-    if (sign_after(side, now_) >= 0) return false;
+    if (sign_after(side, t) >= 0) return false;
   }
-  if (!broad_phase_->exact() && !surely_overlap_rounded(box_a, box_b, now_)) return false;
+  if (!broad_phase_->exact() && !surely_overlap_rounded(box_a, box_b, t)) return false;
   for (std::size_t i = 0; i < directions_.size(); ++i) {
-    const KineticSlab<Degree> slab_a = slab(a, i, now_);
-    const KineticSlab<Degree> slab_b = slab(b, i, now_);
+    const KineticSlab<Degree> slab_a = slab(a, i, t);
+    const KineticSlab<Degree> slab_b = slab(b, i, t);
     if (!broken(slab_a.max, slab_b.min) || !broken(slab_b.max, slab_a.min)) return false;
   }
   return true;

@@ -48,7 +48,7 @@ bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
 
 template <int Degree>
 bool World<Degree>::balls_are_quick() const {
-  return mode() == ContactMode::resolved && holds_.size() == free_holds_.size();
+  return mode() == ContactMode::resolved && resting_.empty();
 }
 
 /// Most tests by far are these, and need two cache lines. They change nothing but estimates_: for some of the dirty
@@ -132,11 +132,11 @@ void World<Degree>::test(PairSlot slot) {
       pair.overlapping = in_contact(a, b, now_) && !only_touching(a, b, now_);
       if (pair.overlapping) report_overlap();
     }
-    if (find_hold(pair.a, pair.b) != no_hold) {
-      next.time = next_contact_of_held(pair);
-    } else if (pair.overlapping) {
+    if (pair.overlapping) {
       const double start = pair.passes_at == now_ ? next_up(now_) : now_;
       if (start <= horizon_) next.time = first_separation(a, b, start, horizon_);
+    } else if (resting_.find(pair.a, pair.b) != Resting::none) {
+      next.time = resting_.next_contact(pair.a, pair.b);
     } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
       next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory, &found);
     }

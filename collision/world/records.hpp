@@ -61,18 +61,14 @@ struct Body : std::conditional_t<Degree >= 2, Force, NoForce> {
   ListArena<Link>::List pairs;
   std::uint32_t category = 1;
   std::uint32_t collides_with = ~0u;
-  std::uint32_t island_place = 0;  ///< scratch
   BoundingVolume volume = BoundingVolume::shape;
   bool alive = false;
   bool entered = false;         ///< is in the broad phase
-  bool disturbed = false;       ///< is in disturbed_
   bool wall_estimated = false;  ///< its time in walls_ is a lower bound
   std::uint64_t meetings = 0;   ///< contacts since burst_start (Zeno)
   double burst_start = -never;
   std::shared_ptr<const PlacedShape> shape;  ///< none if it is placed_ball(bounding_radius)
   std::unique_ptr<Extras<Degree>> extras;
-  std::vector<HoldSlot> holds;
-  std::uint64_t island = 0;  ///< the last it was seen in
 };
 
 /// A body for the narrow phase; the shape of a ball is made for the occasion.
@@ -94,7 +90,8 @@ struct Hold {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
   double push = 0;                                   ///< half the relative acceleration that it gives
   bool alive = false;
-  bool fresh = false;  ///< its approach is still to be taken out
+  bool fresh = false;           ///< its approach is still to be taken out
+  double left_behind = -never;  ///< s, the epoch of a pair of motions: until it is another, rounding feigns a contact
 };
 
 struct HoldRank {
@@ -102,14 +99,6 @@ struct HoldRank {
   std::uint64_t operator()(std::uint32_t slot) const {
     return std::uint64_t{(*holds)[slot].a} << 32 | (*holds)[slot].b;
   }
-};
-
-/// Bodies that lean on each other, in the arithmetic of least_constraint.
-struct Island {
-  std::vector<BodyId> bodies;  ///< fixed ones last
-  std::size_t free = 0;        ///< how many are not fixed
-  std::vector<HoldSlot> holds;
-  std::vector<Touch> touches;  ///< of the holds
 };
 
 /// Two bodies that may meet. It is there while the broad phase lists it, and while they overlap: so what it knows is a

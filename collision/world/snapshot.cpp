@@ -59,7 +59,8 @@ std::vector<std::shared_ptr<const Mesh>> World<Degree>::meshes() const {
 template <int Degree>
 typename World<Degree>::Image World<Degree>::image() const {
   Image image;
-  image.now = now_, image.horizon = horizon_, image.has_had_meshes = meshes_, image.counters = counters();
+  image.now = now_, image.clock = clock_, image.horizon = horizon_, image.has_had_meshes = meshes_,
+  image.counters = counters();
   image.meshes = meshes();
   for (BodyId id = 0; id < bodies_.size(); ++id) {
     const Body& b = bodies_[id];
@@ -80,7 +81,6 @@ typename World<Degree>::Image World<Degree>::image() const {
     to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
     if constexpr (Degree >= 2) to.force = b.force;
-    to.holds = b.holds;
   }
   for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
     if (!pairs_[slot].alive) continue;
@@ -91,10 +91,9 @@ typename World<Degree>::Image World<Degree>::image() const {
   }
   std::sort(image.pairs.begin(), image.pairs.end(),
             [](const auto& x, const auto& y) { return std::pair(x.pair.a, x.pair.b) < std::pair(y.pair.a, y.pair.b); });
-  image.holds = holds_, image.free_holds = free_holds_;
-  for (HoldSlot slot = 0; slot < holds_.size(); ++slot) image.releases.push_back(releases_.time(slot));
+  image.resting = resting_.image();
   image.free_bodies = free_bodies_, image.removed = removed_, image.removed_at = removed_at_;
-  image.entering = entering_, image.disturbed = disturbed_;
+  image.entering = entering_;
   image.pending.assign(pending_.begin(), pending_.end());
   image.edits = edits_, image.edits_start = edits_start_;
   return image;
@@ -111,18 +110,17 @@ void World<Degree>::set_shape(BodyId id, PlacedShape placed) {
 
 template <int Degree>
 void World<Degree>::become(const Image& image) {
-  now_ = image.now, horizon_ = image.horizon, meshes_ = image.has_had_meshes;
-  idle_until_ = -never;
+  now_ = image.now, clock_ = image.clock, horizon_ = image.horizon, meshes_ = image.has_had_meshes;
+  idle_until_ = next_time_ = -never;
   inserting_ = false;
   edits_ = image.edits, edits_start_ = image.edits_start;
   free_bodies_ = image.free_bodies, removed_ = image.removed, removed_at_ = image.removed_at;
-  entering_ = image.entering, disturbed_ = image.disturbed;
+  entering_ = image.entering;
   pending_ = {image.pending.begin(), image.pending.end()};
   const std::size_t count = image.bodies.size();
   bodies_.clear(), movers_.clear(), links_.clear();
   bodies_.resize(count), movers_.resize(count);
   alive_ = 0;
-  islands_ = 0;
   pieces_.resize(0), volumes_.resize(0), walls_.resize(0);
   pieces_.resize(count);
   for (BodyId id = 0; id < count; ++id) {
@@ -135,19 +133,15 @@ void World<Degree>::become(const Image& image) {
     movers_[id].motion = from.motion;
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
     b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume;
+    filters_ = filters_ || b.category != default_category || ~b.collides_with != 0;
     place_extents(id);
     b.meetings = from.meetings, b.burst_start = from.burst_start;
     if constexpr (Degree >= 2) b.force = from.force;
-    b.holds = from.holds;
     if (from.script.empty()) continue;
     b.extras = std::make_unique<Extras>(Extras{from.script, {}, {}});
     pieces_.set(id, from.script.back().start);
   }
-  for (const BodyId id : disturbed_) bodies_[id].disturbed = bodies_[id].alive;
-  holds_ = image.holds, free_holds_ = image.free_holds;
-  releases_.resize(0);
-  releases_.resize(holds_.size());
-  for (HoldSlot slot = 0; slot < holds_.size(); ++slot) releases_.set(slot, image.releases[slot]);
+  resting_.become(image.resting);
   load_pairs(image);
 }
 
@@ -159,7 +153,7 @@ void World<Degree>::rebuild_broad_phase() {
   std::vector<typename BroadPhase<Degree>::Entry> entries;
   std::vector<KineticBox<Degree>> boxes;
   for (BodyId id = 0; id < bodies_.size(); ++id) {
-    if (!bodies_[id].entered) continue;
+    if (!bodies_[id].entered || !collides(id)) continue;
     entries.push_back({id, nullptr});
     boxes.push_back(renewed_box(id));
     schedule_volume(id);

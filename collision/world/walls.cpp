@@ -109,14 +109,14 @@ void World<Degree>::process_wall(BodyId id, double t) {
   const bool held = stays(rebound, pressed, size, count_meeting(id));
   if (held) {
     ++counters_.held;
-    add_hold({.a = id, .wall = wall, .normal = event.contact.normal});
+    resting_.add({.a = id, .wall = wall, .normal = event.contact.normal});
   } else {
     motion.coefficients[1][axis] = -rebound * out;
     ++counters_.motion_updates;
     set_motion(id, motion, false);
   }
-  disturb(id);
-  settle();
+  resting_.disturb(id);
+  resting_.settle();
   tell([&](Listener& listener) {
     listener.wall(*this, event);
     if (held) listener.held_at_wall(*this, event);

@@ -56,16 +56,16 @@ struct Ball {
   friend Ball operator-(const Ball& a, double b) { return a + (-b); }
   friend Ball operator*(const Ball& a, const Ball& b) {
     const T product = a.middle * b.middle;
-    double radius = magnitude(a.middle) * b.radius + magnitude(b.middle) * a.radius + a.radius * b.radius +
-                    rounding_unit<T> * magnitude(product);
-    if (magnitude(product) < tiny && !a.is_zero() && !b.is_zero()) radius += underflow;
-    return {product, radius};
+    double bound = magnitude(a.middle) * b.radius + magnitude(b.middle) * a.radius + a.radius * b.radius +
+                   rounding_unit<T> * magnitude(product);
+    if (magnitude(product) < tiny && !a.is_zero() && !b.is_zero()) bound += underflow;
+    return {product, bound};
   }
   friend Ball operator*(const Ball& a, double b) {
     const T product = a.middle * b;
-    double radius = std::abs(b) * a.radius + rounding_unit<T> * magnitude(product);
-    if (magnitude(product) < tiny && !a.is_zero() && b != 0) radius += underflow;
-    return {product, radius};
+    double bound = std::abs(b) * a.radius + rounding_unit<T> * magnitude(product);
+    if (magnitude(product) < tiny && !a.is_zero() && b != 0) bound += underflow;
+    return {product, bound};
   }
 
   /// Known to be zero exactly.

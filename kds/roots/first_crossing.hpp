@@ -47,8 +47,8 @@ namespace detail {
 
 /// 1 / binomial(Degree, i), rounded.
 template <int Degree>
-constexpr std::array<double, Degree + 1> inverse_binomials() {
-  std::array<double, Degree + 1> result{};
+constexpr std::array<double, std::size_t{Degree} + 1> inverse_binomials() {
+  std::array<double, std::size_t{Degree} + 1> result{};
   double binomial = 1;
   for (std::size_t i = 0; i <= Degree; ++i) {
     result[i] = 1 / binomial;
@@ -93,7 +93,7 @@ struct SignMasks {
 /// A polynomial over an interval, by its Bernstein coefficients, each known to +-error.
 template <int Degree>
 struct BernsteinPiece {
-  std::array<double, Degree + 1> b;
+  std::array<double, std::size_t{Degree} + 1> b;
   double error;
   ProjectivePoint begin;
   ProjectivePoint end;

@@ -3,8 +3,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <new>
 
 namespace {
 
@@ -32,6 +34,39 @@ TEST_CASE("a point has position, velocity and acceleration", "[point_motion]") {
   const PointMotion<3> jerk{{Vector3d(0, 0, 0), Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d(2, 0, 0)}, 0};
   CHECK(jerk.velocity(2) == Vector3d(4 + 24, 0, 0));
   CHECK(jerk.acceleration(2) == Vector3d(2 + 24, 0, 0));
+}
+
+TEST_CASE("coefficients that are left out are zero, whatever was in memory", "[point_motion]") {
+  using Path = PointMotion<3>;
+  alignas(Path) std::array<unsigned char, sizeof(Path)> memory;
+  const std::array<Vector3d, 4> given{Vector3d(1, 2, 3), Vector3d(4, 5, 6), Vector3d(7, 8, 9), Vector3d(0.5, 0, 1)};
+  const auto check = [&](auto&& make, std::size_t count) {
+    memory.fill(0x41);  // some two millions in every double
+    const Path* const path = make();
+    for (std::size_t i = 0; i < 4; ++i) {
+      CHECK(path->coefficients[i] == (i < count ? given[i] : Vector3d(Vector3d::Zero())));
+    }
+    CHECK(path->start == 0);
+  };
+  check([&] { return new (&memory) Path{{given[0]}}; }, 1);
+  check([&] { return new (&memory) Path{{given[0], given[1]}}; }, 2);
+  check([&] { return new (&memory) Path{{given[0], given[1], given[2]}, 0}; }, 3);
+  check([&] { return new (&memory) Path{{given[0], given[1], given[2], given[3]}, 0}; }, 4);
+  check([&] { return new (&memory) Path{.coefficients = {{1, 2, 3}, {4, 5, 6}}}; }, 2);
+  Path path{{given[3], given[3], given[3], given[3]}, 0};
+  path.coefficients = {given[0], Vector3d::Zero()};
+  CHECK(path == Path{{given[0]}});
+}
+
+TEST_CASE("lines and parabolas by position, velocity and acceleration at a time", "[point_motion]") {
+  const auto line = PointMotion<2>::line({1, 2, 3}, {4, 5, 6}, 7);
+  CHECK(line.position(7) == Vector3d(1, 2, 3));
+  CHECK(line.velocity(9) == Vector3d(4, 5, 6));
+  CHECK(line.acceleration(9) == Vector3d(0, 0, 0));
+  CHECK(PointMotion<1>::line({1, 2, 3}, {4, 5, 6}) == PointMotion<1>{{Vector3d(1, 2, 3), Vector3d(4, 5, 6)}, 0});
+  const auto thrown = PointMotion<2>::parabola({1, 2, 3}, {4, 0, 8}, {0, 0, -10}, 10);
+  CHECK(thrown == throw_of_a_ball);
+  CHECK(thrown.acceleration(12) == Vector3d(0, 0, -10));
 }
 
 TEST_CASE("an axis of a path is the motion of one coordinate", "[point_motion]") {

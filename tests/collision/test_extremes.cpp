@@ -3,8 +3,12 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -122,6 +126,121 @@ TEST_CASE("Bodies of size 1e-6 next to bodies of size 1e6", "[degenerate]") {
         CHECK(contacts[2].b == 1);
         CHECK(in_order_of_time(events));
       }
+    }
+  }
+}
+
+/// The scene with all lengths, speeds and accelerations times a power of two: the same, in other units.
+template <int Degree>
+Scene<Degree> in_units(Scene<Degree> scene, int exponent) {
+  const double unit = std::ldexp(1, exponent);
+  for (auto& b : scene.bodies) {
+    if (auto* const ball = std::get_if<Sphere>(&b.shape)) ball->radius *= unit;
+    if (auto* const box = std::get_if<Box>(&b.shape)) box->half_extents *= unit;
+    if (auto* const mesh = std::get_if<MeshShape>(&b.shape)) mesh->scale *= unit;
+    for (auto& piece : b.motion) {
+      for (auto& c : piece.coefficients) c *= unit;
+    }
+  }
+  return scene;
+}
+
+TEMPLATE_TEST_CASE_SIG("Very small and very large units: the same events, to the bit", "[extreme]",
+                       ((int Degree), Degree), 1, 2) {
+  for (const auto shapes : {Shapes::spheres, Shapes::boxes, Shapes::mixture, Shapes::cubes}) {
+    const bool meshes = shapes == Shapes::mixture || shapes == Shapes::cubes;
+    for (const int exponent : {meshes ? -100 : -200, -60, 60, meshes ? 95 : 200}) {
+      for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        INFO(name(shapes) << ", unit 2^" << exponent << ", seed " << seed);
+        Random random(seed);
+        SceneMaker maker(random, {.shapes = shapes, .bodies = 8, .side = 5, .end_time = 2});
+        const auto scene = maker.scene<Degree>();
+        for (const auto method : {BroadPhaseKind::automatic, BroadPhaseKind::kinetic_sap}) {
+          for (const auto response : {Response::none, Response::elastic}) {
+            const auto events = run(scene, with(response, method));
+            const auto scaled = run(in_units(scene, exponent), with(response, method));
+            REQUIRE(scaled.size() == events.size());
+            for (std::size_t i = 0; i < events.size(); ++i) {
+              CHECK(scaled[i].kind == events[i].kind);
+              CHECK(scaled[i].a == events[i].a);
+              CHECK(scaled[i].b == events[i].b);
+              CHECK(scaled[i].time() == events[i].time());
+              CHECK(scaled[i].contact.normal == events[i].contact.normal);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+template <class F>
+void refuses(F&& f, const std::string& what) {
+  INFO(what);
+  try {
+    f();
+    FAIL("nothing was thrown");
+  } catch (const std::invalid_argument& error) {
+    CHECK(std::string(error.what()).find(what) == 0);
+  }
+}
+
+TEST_CASE("Numbers out of range are refused by name, and the world goes on", "[extreme]") {
+  World<2> world({});
+  const auto refuse = [&](auto&& change, const std::string& what) {
+    auto description = ball<2>(1, zero);
+    change(description);
+    refuses([&] { world.add_body(description); }, what);
+  };
+  using Description = BodyDescription<2>;
+  for (const double size : {1e-320, 1e-300, 1e-200, 0x1p-206, 0x1p206, 1e155, 1e170, 1e308}) {
+    refuse([&](Description& b) { b.shape = Sphere{size}; }, "radius: ");
+    refuse([&](Description& b) { b.shape = Box{{1, size, 1}}; }, "half_extents: ");
+    refuse([&](Description& b) { b.mass = size; }, "mass: ");
+  }
+  for (const double scale : {1e-320, 1e-200, 1e-172, 1e-162, 1e-50, 1e-34, 1e31, 1e60, 1e200}) {
+    refuse([&](Description& b) { b.shape = MeshShape{tetrahedron(), scale}; }, "scale: ");
+  }
+  for (const double large : {0x1p206, -1e155, 1e308, -1e308}) {
+    refuse([&](Description& b) { b.motion[0].coefficients[0][1] = large; }, "motion[0].coefficients[0]: ");
+    refuse([&](Description& b) { b.motion[0].coefficients[1][0] = large; }, "motion[0].coefficients[1]: ");
+    refuse([&](Description& b) { b.motion[0].coefficients[2][2] = large; }, "motion[0].coefficients[2]: ");
+    refuse([&](Description& b) { b.motion[0].start = large; }, "motion[0].start: ");
+    WorldOptions options;
+    options.start_time = large;
+    refuses([&] { World<1> late(options); }, "WorldOptions.start_time: ");
+  }
+  CHECK(world.size() == 0);
+  // At the ends of the range, and what is small but no size, all is well.
+  for (const double size : {smallest_size, largest_magnitude}) {
+    const auto a = world.add_body(ball<2>(size, {-3 * size, 0, 0}, {size, 0, 0}));
+    const auto b = world.add_body(ball<2>(size, zero, {0, 5e-324, 0}, {0, 0, 5e-324}));
+    world.update_motion(a, motion<2>({-3 * size, 0, 0}, {0.5 * size, 0, 0}, zero, world.now()));
+    refuses([&] { world.update_motion(b, motion<2>({1e62, 0, 0}, zero, zero, world.now())); },
+            "World::update_motion: motion.coefficients[0]: ");
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    refuses([&] { world.update_motion(b, motion<2>({nan, 0, 0}, zero, zero, world.now())); },
+            "World::update_motion: motion: must be finite");
+    const double start = world.now();
+    world.advance_to(start + 2.5);
+    CHECK(world.touching(a, b));
+    world.remove_body(a), world.remove_body(b);
+  }
+}
+
+TEST_CASE("Meshes at the ends of their range meet as others do", "[extreme]") {
+  for (const double scale : {0x1p-110, 0x1p-90, 1.0, 0x1p90, 0x1p100}) {
+    for (const auto method : all_methods) {
+      WorldOptions options = with(Response::none, method);
+      INFO("scale " << scale << ", method " << static_cast<int>(method));
+      const auto events = run(
+          Scene<1>{{body<1>(MeshShape{tetrahedron(), scale}, motion<1>(zero, {scale, 0, 0})),
+                    body<1>(MeshShape{tetrahedron(), scale}, motion<1>({6 * scale, 0.1 * scale, 0.2 * scale}))},
+                   20},
+          options);
+      const auto contacts = contacts_of(events);
+      REQUIRE(contacts.size() == 1);
+      CHECK(contacts[0].time() == Approx(4));
     }
   }
 }

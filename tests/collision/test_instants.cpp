@@ -95,7 +95,7 @@ TEST_CASE("A body does not enter for one of its id that was removed before it di
     world.remove_body(0);
     auto later = ball<1>(1, {1, 0, 0});
     later.motion[0].start = 0.25;
-    REQUIRE(world.add_body(later) == 0);
+    REQUIRE(world.add_body(later) == 2);  // the id is given again at a later time
     world.advance_to(1);
   });
   REQUIRE(log.size() == 1);
@@ -134,7 +134,7 @@ TEST_CASE("A jump ends what touched in the order of the bodies, contacts among i
                                          "separation 0 1", "contact 1 2", "separation 1 3", "contact 1 4"});
 }
 
-TEST_CASE("A callback takes a body away before all of its overlaps are told, and gives its id to another",
+TEST_CASE("A callback takes a body away before all of its overlaps are told, and puts another in its place",
           "[instants]") {
   // Three balls overlap. When that of 0 and 1 is told, 1 goes and a smaller ball comes in its place.
   const auto log = with_each_broad_phase(
@@ -146,14 +146,13 @@ TEST_CASE("A callback takes a body away before all of its overlaps are told, and
         world.advance_to(1);
       },
       [](World<1>& world, const Event& e) {
-        if (e.kind != Kind::overlap || e.b != 1 || world.size() < 3) return;
-        if (world.shape(1).bounding_radius < 1) return;
+        if (e.kind != Kind::overlap || e.b != 1) return;
         world.remove_body(1);
-        CHECK(world.add_body(ball<1>(0.5, {1, 0, 0})) == 1);
+        CHECK(world.add_body(ball<1>(0.5, {1, 0, 0})) == 3);
       });
   CHECK(told(log) == Told{"pair_began 0 1", "pair_began 0 2", "pair_began 1 2", "overlap 0 1",  // then it goes
-                          "pair_ended 0 1", "pair_began 0 1", "pair_ended 1 2", "pair_began 1 2", "separation 0 1",
-                          "overlap 0 1", "overlap 0 2", "overlap 1 2"});
+                          "pair_ended 0 1", "pair_began 0 3", "pair_ended 1 2", "pair_began 2 3", "separation 0 1",
+                          "overlap 0 2", "overlap 0 3", "overlap 2 3"});
 }
 
 TEST_CASE("Bodies are said to touch until their separation is told", "[instants]") {

@@ -35,6 +35,8 @@ using Shape = std::variant<Sphere, Box>;
 struct Piece {
   double start = 0;
   std::vector<std::array<double, 3>> coefficients;
+
+  friend bool operator==(const Piece&, const Piece&) = default;
 };
 
 /// A piece holds until the next one starts; the first one also before its own start.

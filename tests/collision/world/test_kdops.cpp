@@ -120,7 +120,9 @@ TEST_CASE("k-DOPs of bodies that are removed, moved and added in the midst of a 
     for (int i = 0; i < 60; ++i) {
       world.advance_to(i * 0.03125);
       world.audit();
-      const BodyId id = static_cast<BodyId>(random.below(20));
+      BodyId id = 0;
+      do id = static_cast<BodyId>(random.below(21));  // one is not in use
+      while (!world.contains(id));
       if (i % 4 == 0) {
         world.remove_body(id);
         add(world.now());

@@ -1,0 +1,235 @@
+// Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
+#include "collision/world/resting_contacts.hpp"
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace kds::collision {
+namespace {
+
+using detail::no_body;
+using Eigen::Vector3d;
+
+/// How far a held pair may part before it is let go, relative to the smaller bounding radius: balls that slide over
+/// each other part by this from plane to plane, and fall back. Less makes that more exact, and costs more pieces.
+constexpr double slack = 0x1p-20;
+/// The same relative to the coordinates, which are rounded whenever a motion is restarted.
+constexpr double coordinate_slack = 0x1p-40;
+
+/// Normals as near as this are of one and the same place: cosine of the angle between them.
+constexpr double same_normal = 1 - 0x1p-20;
+
+template <int Degree>
+bool is_mesh(const MovingShape<Degree>& body) {
+  return std::holds_alternative<MeshShape>(body.shape.shape);
+}
+
+template <int Degree>
+certificates::PointMotion<Degree> shifted(certificates::PointMotion<Degree> motion, const Vector3d& by) {
+  motion.coefficients[0] += by;
+  return motion;
+}
+
+template <int Degree>
+double slack_of(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+  const double size = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+  const double coordinates = a.motion.position(t).cwiseAbs().maxCoeff() + b.motion.position(t).cwiseAbs().maxCoeff();
+  return std::max(slack * size, coordinate_slack * coordinates);
+}
+
+}  // namespace
+
+template <int Degree>
+typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find(BodyId a, BodyId b, int wall) const {
+  if (a >= of_.size()) return none;
+  for (const Slot slot : of_[a].contacts) {
+    const Contact& hold = contacts_[slot];
+    if (hold.a == a && hold.b == b && hold.wall == wall) return slot;
+  }
+  return none;
+}
+
+template <int Degree>
+void RestingContacts<Degree>::add(const Contact& hold) {
+  for (const Slot slot : member(hold.a).contacts) {
+    Contact& other = contacts_[slot];
+    if (other.a != hold.a || other.b != hold.b || !(other.normal.dot(hold.normal) > same_normal)) continue;
+    other.normal = hold.normal;
+    other.fresh = true;
+    return;
+  }
+  Slot slot;
+  if (free_.empty()) {
+    slot = static_cast<Slot>(contacts_.size());
+    contacts_.emplace_back();
+    if (releases_.slots() < contacts_.size()) releases_.resize(2 * contacts_.size());
+  } else {
+    slot = free_.back();
+    free_.pop_back();
+  }
+  contacts_[slot] = hold;
+  contacts_[slot].alive = true;
+  contacts_[slot].fresh = true;
+  member(hold.a).contacts.push_back(slot);
+  if (hold.b != no_body) member(hold.b).contacts.push_back(slot);
+}
+
+template <int Degree>
+void RestingContacts<Degree>::drop(Slot slot) {
+  Contact& hold = contacts_[slot];
+  hold.alive = false;
+  releases_.clear(slot);
+  free_.push_back(slot);
+  for (const BodyId id : {hold.a, hold.b}) {
+    if (id == no_body) continue;
+    auto& list = of_[id].contacts;
+    list.erase(std::find(list.begin(), list.end(), slot));
+    disturb(id);
+  }
+  if (hold.b != no_body) bodies_.changed(hold.a, hold.b);
+}
+
+template <int Degree>
+void RestingContacts<Degree>::drop_all(BodyId id) {
+  while (rests(id)) drop(of_[id].contacts.back());
+}
+
+/// Convex bodies that are held are on either side of a plane through the touch and stay there, so they cannot meet
+/// again before they are let go. A mesh may have something else in the way; where rounding makes it the held touch that
+/// is found, that is left behind by some roundings, for as long as the two move as they do: so the answer does not
+/// depend on how often it is asked for.
+template <int Degree>
+double RestingContacts<Degree>::next_contact(BodyId id_a, BodyId id_b) {
+  const auto a = bodies_.moving(id_a);
+  const auto b = bodies_.moving(id_b);
+  if (!is_mesh(a) && !is_mesh(b)) return never;
+  const double began = std::max(a.motion.start, b.motion.start);
+  Vector3d out = Vector3d::Zero();
+  bool left_behind = false;
+  for (const Slot slot : of_[id_a].contacts) {
+    if (contacts_[slot].b != id_b) continue;
+    out += contacts_[slot].normal;
+    left_behind = left_behind || contacts_[slot].left_behind == began;
+  }
+  const double now = bodies_.time();
+  if (!left_behind) {
+    const double t = first_contact(a, b, now, bodies_.horizon(), ContactMode::resolved);
+    if (t != now) return t;
+    contacts_[find(id_a, id_b)].left_behind = began;
+  }
+  const double coordinates =
+      a.motion.position(began).cwiseAbs().maxCoeff() + b.motion.position(began).cwiseAbs().maxCoeff();
+  const double size = a.shape.bounding_radius + b.shape.bounding_radius;
+  const Motion farther = shifted(b.motion, coordinate_slack * (size + coordinates) * out);
+  return first_contact(a, MovingShape<Degree>{b.shape, farther}, now, bodies_.horizon(), ContactMode::resolved);
+}
+
+/// Held pairs part by sliding off, or by `slack`.
+template <int Degree>
+void RestingContacts<Degree>::schedule_release(Slot slot) {
+  const Contact& hold = contacts_[slot];
+  if (hold.b == no_body) return;  // Walls have no edge to slide off.
+  const double now = bodies_.time();
+  const auto a = bodies_.moving(hold.a);
+  const auto b = bodies_.moving(hold.b);
+  bool together = true;
+  for (std::size_t i = 1; i <= Degree; ++i) {
+    together = together && a.motion.coefficients[i] == b.motion.coefficients[i];
+  }
+  if (together && (Degree == 1 || a.motion.start == b.motion.start || a.motion.coefficients[Degree].isZero(0))) {
+    return releases_.clear(slot);
+  }
+  const Motion nearer = shifted(b.motion, -slack_of(a, b, now) * hold.normal);
+  const double t = first_separation(a, MovingShape<Degree>{b.shape, nearer}, now, bodies_.horizon());
+  releases_.set(slot, t);
+}
+
+template <int Degree>
+void RestingContacts<Degree>::process() {
+  drop(releases_.top().slot);
+  settle();
+}
+
+template <int Degree>
+void RestingContacts<Degree>::extend_horizon() {
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) {
+    if (contacts_[slot].alive && !releases_.contains(slot)) schedule_release(slot);
+  }
+}
+
+/// Each hold is of two bodies that are there (or one and a wall), is listed with them and no others, and is held: along
+/// its normal the two have no relative velocity but for rounding, as drop_broken() measures it, and accelerations that
+/// cancel. What is due to be let go lies ahead.
+template <int Degree>
+void RestingContacts<Degree>::audit(double t, bool walls) const {
+  const auto fail = [](Slot slot, const char* what) {
+    throw AuditFailure("World: resting contact " + std::to_string(slot) + ": " + what);
+  };
+  std::size_t listed = 0;
+  std::size_t expected = 0;
+  for (BodyId id = 0; id < of_.size(); ++id) {
+    for (const Slot slot : of_[id].contacts) {
+      ++listed;
+      if (slot >= contacts_.size() || !contacts_[slot].alive) fail(slot, "a body is held by what is none");
+      if (contacts_[slot].a != id && contacts_[slot].b != id) fail(slot, "a body is held that has no part in it");
+    }
+  }
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) {
+    const Contact& hold = contacts_[slot];
+    if (!hold.alive) {
+      if (releases_.contains(slot)) fail(slot, "it is over, and is to be let go");
+      continue;
+    }
+    const bool at_wall = hold.b == no_body;
+    expected += at_wall ? 1 : 2;
+    for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) {
+      if (!bodies_.present(id)) fail(slot, "a body is not there");
+      const auto& known = of_[id].contacts;
+      if (std::count(known.begin(), known.end(), slot) != 1) fail(slot, "a body does not know it");
+    }
+    if (at_wall && (hold.wall < 0 || hold.wall > 5 || !walls)) fail(slot, "there is no such wall");
+    if (std::abs(hold.normal.norm() - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
+    if (releases_.time(slot) < t) fail(slot, "it should have been let go");
+    if (hold.fresh) continue;
+    const Eigen::Vector3d a = bodies_.path(hold.a).velocity(t);
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    if (!at_wall) b = bodies_.path(hold.b).velocity(t);
+    double largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+    if constexpr (Degree >= 2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
+      for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) {
+        largest += 2 * bodies_.free_acceleration(id).cwiseAbs().maxCoeff() * (1 + t - bodies_.path(id).start);
+      }
+    }
+    if (std::abs(hold.normal.dot(b - a)) > 16 * rate_rounding * largest) {
+      fail(slot, "the bodies part or press on along its normal");
+    }
+  }
+  if (listed != expected) fail(static_cast<Slot>(contacts_.size()), "bodies list more holds than there are");
+}
+
+template <int Degree>
+typename RestingContacts<Degree>::Image RestingContacts<Degree>::image() const {
+  Image image{contacts_, free_, disturbed_, {}, {}};
+  for (const Member& member : of_) image.of.push_back(member.contacts);
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(releases_.time(slot));
+  return image;
+}
+
+template <int Degree>
+void RestingContacts<Degree>::become(const Image& image) {
+  contacts_ = image.contacts, free_ = image.free, disturbed_ = image.disturbed;
+  islands_ = 0;
+  of_.clear();
+  for (BodyId id = 0; id < image.of.size(); ++id) member(id).contacts = image.of[id];
+  for (const BodyId id : disturbed_) member(id).disturbed = true;
+  releases_.resize(0);
+  releases_.resize(contacts_.size());
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) releases_.set(slot, image.releases[slot]);
+}
+
+template class RestingContacts<1>;
+template class RestingContacts<2>;
+
+}  // namespace kds::collision

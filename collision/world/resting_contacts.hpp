@@ -1,0 +1,149 @@
+// Contacts that last: bodies that lie, lean and slide on each other and on walls.
+#pragma once
+
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/response/least_constraint.hpp"
+#include "collision/world/records.hpp"
+#include "kds/events/dary_queue.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+
+/// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
+/// docs/resting.md says what the law is.
+///
+/// A part of World that owns its state and its queue. It knows of the world what `Bodies` says, and no more.
+///
+/// Cost: nothing while nothing rests. O(1) a contact that begins or ends; a change of motion of a body that rests
+/// solves for all that lean on each other with it (least_constraint.hpp).
+template <int Degree>
+class RestingContacts {
+ public:
+  using Motion = certificates::PointMotion<Degree>;
+  using Slot = detail::HoldSlot;
+  using Contact = detail::Hold;
+  static constexpr Slot none = detail::no_hold;
+
+  /// What resting contacts ask of a world, and tell it.
+  class Bodies {
+   public:
+    virtual bool present(BodyId id) const = 0;  ///< has entered, and is there
+    virtual detail::Moving<Degree> moving(BodyId id) const = 0;
+    virtual const Motion& path(BodyId id) const = 0;
+    virtual double inverse_mass(BodyId id) const = 0;
+    /// Half the acceleration that the body would have alone.
+    virtual Eigen::Vector3d free_acceleration(BodyId id) const = 0;
+    virtual double time() const = 0;
+    virtual double horizon() const = 0;
+
+    virtual void take_up(BodyId id, const Motion& motion) = 0;  ///< a new motion
+    virtual void changed(BodyId a, BodyId b) = 0;               ///< what the two may meet next has to be found anew
+    virtual void let_pass(BodyId a, BodyId b) = 0;
+    virtual void tell_held(BodyId a, BodyId b) = 0;  ///< that the policy has acted on the two
+
+   protected:
+    ~Bodies() = default;
+  };
+
+  explicit RestingContacts(Bodies& bodies) : bodies_(bodies), releases_(detail::HoldRank{&contacts_}) {}
+  RestingContacts(const RestingContacts&) = delete;
+  RestingContacts& operator=(const RestingContacts&) = delete;
+
+  /// Whether there are any.
+  bool empty() const { return contacts_.size() == free_.size(); }
+  /// One of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
+  Slot find(BodyId a, BodyId b, int wall = -1) const;
+  bool rests(BodyId id) const { return id < of_.size() && !of_[id].contacts.empty(); }
+
+  /// A contact begins to last. Between meshes several may last at once, in a groove, say; one for each normal.
+  void add(const Contact& contact);
+  /// All of a body end, since it jumps.
+  void drop_all(BodyId id);
+  /// All of a body end, since it goes.
+  void forget(BodyId id) {
+    drop_all(id);
+    if (id < of_.size()) of_[id] = {};
+  }
+
+  /// The motion of a body has changed: those that it rests with are to be looked at by settle().
+  void disturb(BodyId id) {
+    if (!contacts_.empty()) note(id);
+  }
+  bool settled() const { return disturbed_.empty(); }
+  /// Gives all that have been disturbed the motions that their contacts leave them.
+  void settle();
+
+  /// When two bodies that rest on each other may meet elsewhere.
+  double next_contact(BodyId a, BodyId b);
+
+  /// When the next contact ends, by sliding off or parting; process() ends it.
+  double next_time() const { return releases_.empty() ? never : releases_.top().time; }
+  void process();
+  void extend_horizon();
+
+  /// Checks all contacts at a time up to which nothing is due; throws AuditFailure. `walls`: whether there are any.
+  void audit(double t, bool walls) const;
+
+  /// All of it, as plain data.
+  struct Image {
+    std::vector<Contact> contacts;
+    std::vector<Slot> free;
+    std::vector<BodyId> disturbed;
+    std::vector<std::vector<Slot>> of;  ///< by body
+    std::vector<double> releases;       ///< by contact
+  };
+  Image image() const;
+  void become(const Image& image);
+
+ private:
+  /// Of a body.
+  struct Member {
+    std::vector<Slot> contacts;
+    std::uint64_t island = 0;  ///< the last it was seen in
+    std::uint32_t place = 0;   ///< in that
+    bool disturbed = false;
+  };
+  /// Bodies that lean on each other, in the arithmetic of least_constraint.
+  struct Island {
+    std::vector<BodyId> bodies;  ///< fixed ones last
+    std::size_t free = 0;        ///< how many are not fixed
+    std::vector<Slot> contacts;
+    std::vector<Touch> touches;  ///< of the contacts
+  };
+
+  bool fixed(BodyId id) const { return bodies_.inverse_mass(id) == 0; }
+  Member& member(BodyId id) {
+    if (of_.size() <= id) of_.resize(id + std::size_t{1});
+    return of_[id];
+  }
+  void note(BodyId id);
+  void drop(Slot slot);
+  void schedule_release(Slot slot);
+
+  // resting_islands.cpp
+  void settle_fixed(BodyId id);
+  bool settle_island(BodyId id);
+  Island find_island(BodyId id);
+  bool drop_broken(const Island& island);
+  bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
+  bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
+
+  Bodies& bodies_;
+  std::vector<Contact> contacts_;
+  std::vector<Slot> free_;
+  std::vector<Member> of_;  ///< by body, up to the last that has rested
+  std::vector<BodyId> disturbed_;
+  DaryQueue<detail::HoldRank> releases_;  ///< when contacts end; slots are contacts
+  std::uint64_t islands_ = 0;
+};
+
+extern template class RestingContacts<1>;
+extern template class RestingContacts<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,210 @@
+// Bodies that lean on each other: found, and moved as their resting contacts let them.
+#include "collision/world/resting_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace kds::collision {
+using detail::no_body;
+using Eigen::Vector3d;
+
+template <int Degree>
+void RestingContacts<Degree>::note(BodyId id) {
+  if (!bodies_.present(id)) return;
+  bool as_given = true;
+  if constexpr (Degree >= 2) as_given = fixed(id) || bodies_.path(id).coefficients[2] == bodies_.free_acceleration(id);
+  if (!rests(id) && as_given) return;
+  if (std::exchange(member(id).disturbed, true)) return;
+  disturbed_.push_back(id);
+}
+
+template <int Degree>
+void RestingContacts<Degree>::settle() {
+  while (!disturbed_.empty()) {
+    const BodyId id = disturbed_.back();
+    disturbed_.pop_back();
+    if (!std::exchange(member(id).disturbed, false) || !bodies_.present(id)) continue;
+    if (fixed(id)) {
+      settle_fixed(id);
+    } else {
+      while (!settle_island(id)) {
+      }
+    }
+  }
+}
+
+/// Nothing but walls holds a fixed body: they take the speed and the acceleration that lead out of the domain.
+template <int Degree>
+void RestingContacts<Degree>::settle_fixed(BodyId id) {
+  const Motion before = bodies_.path(id).restarted(bodies_.time());
+  Motion motion = before;
+  const std::vector<Slot> holds = of_[id].contacts;  // some may be dropped
+  const bool at_wall = std::any_of(holds.begin(), holds.end(), [&](Slot slot) { return contacts_[slot].wall >= 0; });
+  if constexpr (Degree >= 2) {
+    if (at_wall) motion.coefficients[2] = bodies_.free_acceleration(id);
+  }
+  for (const Slot slot : holds) {
+    Contact& hold = contacts_[slot];
+    if (hold.wall < 0) {
+      disturb(hold.a == id ? hold.b : hold.a);
+      continue;
+    }
+    const Eigen::Index axis = hold.wall / 2;
+    if (hold.fresh) motion.coefficients[1][axis] = 0;
+    bool parts = motion.coefficients[1][axis] != 0;  // inward, or outward: then it meets the wall anew
+    if constexpr (Degree >= 2) {
+      double& force = motion.coefficients[2][axis];
+      parts = parts || force * hold.normal[axis] < 0;
+      if (!parts) force = 0;
+    }
+    hold.fresh = false;
+    if (parts) drop(slot);
+  }
+  if (at_wall && !(motion == before)) bodies_.take_up(id, motion);
+}
+
+/// False if a hold had to be dropped: then it is to be called again. Each time there is one hold less.
+template <int Degree>
+bool RestingContacts<Degree>::settle_island(BodyId id) {
+  Island island = find_island(id);
+  if (drop_broken(island)) return false;
+  std::vector<Motion> motions;
+  for (const BodyId each : island.bodies) motions.push_back(bodies_.path(each).restarted(bodies_.time()));
+  const std::vector<Motion> before = motions;
+  if (!constrain(island, 1, motions)) return false;
+  const auto take_up_all = [&] {
+    for (std::size_t i = 0; i < island.free; ++i) {
+      if (!(motions[i] == before[i])) bodies_.take_up(island.bodies[i], motions[i]);
+    }
+  };
+  if constexpr (Degree >= 2) {
+    const std::vector<Motion> stopped = motions;
+    for (std::size_t i = 0; i < island.free; ++i)
+      motions[i].coefficients[2] = bodies_.free_acceleration(island.bodies[i]);
+    if (!constrain(island, 2, motions)) {  // What is pulled away at once has been stopped all the same.
+      motions = stopped;
+      take_up_all();
+      return false;
+    }
+  }
+  take_up_all();
+  for (const Slot slot : island.contacts) {
+    contacts_[slot].fresh = false;
+    schedule_release(slot);
+  }
+  return true;
+}
+
+/// The bodies that lean on each other, directly or not, but not through fixed ones; in the order of their ids, so that
+/// the arithmetic does not depend on how they were found.
+template <int Degree>
+typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(BodyId id) {
+  ++islands_;
+  Island island;
+  std::vector<BodyId> anchored;
+  const auto visit = [&](BodyId next) {
+    if (std::exchange(member(next).island, islands_) == islands_) return;
+    (fixed(next) ? anchored : island.bodies).push_back(next);
+  };
+  visit(id);
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    const BodyId at = island.bodies[i];
+    for (const Slot slot : std::vector<Slot>(of_[at].contacts)) {  // members may be made
+      const Contact& hold = contacts_[slot];
+      const BodyId other = hold.a == at ? hold.b : hold.a;
+      const bool met_first = hold.a == at || fixed(other);
+      if (met_first) island.contacts.push_back(slot);
+      if (other != no_body) visit(other);
+    }
+  }
+  std::sort(island.bodies.begin(), island.bodies.end());
+  island.free = island.bodies.size();
+  std::sort(anchored.begin(), anchored.end());
+  island.bodies.insert(island.bodies.end(), anchored.begin(), anchored.end());
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    of_[island.bodies[i]].place = static_cast<std::uint32_t>(i);
+  }
+  const auto key = [&](Slot slot) {
+    const Contact& h = contacts_[slot];
+    return std::tuple(h.a, h.b, h.wall, h.normal[0], h.normal[1], h.normal[2]);
+  };
+  std::sort(island.contacts.begin(), island.contacts.end(), [&](Slot x, Slot y) { return key(x) < key(y); });
+  for (const Slot slot : island.contacts) {
+    const Contact& hold = contacts_[slot];
+    const bool at_wall = hold.b == no_body;
+    const double a = bodies_.inverse_mass(hold.a);
+    const double b = at_wall ? 0 : bodies_.inverse_mass(hold.b);
+    // The walls come after the bodies.
+    const auto place_b = at_wall ? static_cast<std::uint32_t>(island.bodies.size()) : of_[hold.b].place;
+    island.touches.push_back({of_[hold.a].place, place_b, hold.normal, a, b});
+  }
+  return island;
+}
+
+/// Lets go what has been given speed along its normal; what approaches meets anew, and may bounce.
+template <int Degree>
+bool RestingContacts<Degree>::drop_broken(const Island& island) {
+  bool any = false;
+  for (const Slot slot : island.contacts) {
+    const Contact& hold = contacts_[slot];
+    if (hold.fresh) continue;
+    const Vector3d a = bodies_.path(hold.a).velocity(bodies_.time());
+    const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.path(hold.b).velocity(bodies_.time());
+    const double largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+    if (std::abs(hold.normal.dot(b - a)) <= rate_rounding * largest) continue;
+    drop(slot);
+    any = true;
+  }
+  return any;
+}
+
+/// Velocities (order 1) or accelerations (2) by least constraint. False if a hold had to be dropped: one that parts, or
+/// one that cannot be held.
+template <int Degree>
+bool RestingContacts<Degree>::constrain(Island& island, std::size_t order, std::vector<Motion>& motions) {
+  std::vector<Vector3d> rates;
+  for (const Motion& motion : motions) rates.push_back(motion.coefficients[order]);
+  rates.push_back(Vector3d::Zero());  // of the walls
+  for (std::size_t k = 0; k < island.contacts.size(); ++k) {
+    island.touches[k].push = order == 2 ? contacts_[island.contacts[k]].push : 0;
+  }
+  double largest = 0;
+  for (const Vector3d& rate : rates) largest = std::max(largest, rate.cwiseAbs().maxCoeff());
+  if (!least_constraint(rates, island.touches)) return !let_pass_worst(island, rates);
+  for (std::size_t k = 0; k < island.contacts.size(); ++k) {
+    if (parting_rate(rates, island.touches[k]) <= rate_rounding * largest) continue;
+    drop(island.contacts[k]);
+    return false;
+  }
+  for (std::size_t k = 0; k < island.contacts.size(); ++k) {
+    if (order == 2) contacts_[island.contacts[k]].push = island.touches[k].push;
+  }
+  for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[order] = rates[i];
+  return true;
+}
+
+/// Of bodies that cannot all be held the pair that is pressed together most passes through. Walls do not give way.
+template <int Degree>
+bool RestingContacts<Degree>::let_pass_worst(const Island& island, const std::vector<Vector3d>& rates) {
+  Slot worst = none;
+  double least = never;
+  for (std::size_t k = 0; k < island.contacts.size(); ++k) {
+    const double rate = parting_rate(rates, island.touches[k]);
+    if (contacts_[island.contacts[k]].b == no_body || !(rate < least)) continue;
+    least = rate;
+    worst = island.contacts[k];
+  }
+  if (worst == none) return false;
+  const Contact hold = contacts_[worst];
+  bodies_.let_pass(hold.a, hold.b);
+  drop(worst);
+  if (!hold.fresh) bodies_.tell_held(hold.a, hold.b);  // else the event that made it is about to be reported
+  return true;
+}
+
+template class RestingContacts<1>;
+template class RestingContacts<2>;
+
+}  // namespace kds::collision
