@@ -4,6 +4,7 @@
 #include "collision/shapes/mesh.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -93,7 +94,10 @@ typename World<Degree>::Image World<Degree>::image() const {
             [](const auto& x, const auto& y) { return std::pair(x.pair.a, x.pair.b) < std::pair(y.pair.a, y.pair.b); });
   image.holds = holds_, image.free_holds = free_holds_;
   for (HoldSlot slot = 0; slot < holds_.size(); ++slot) image.releases.push_back(releases_.time(slot));
-  image.free_bodies = free_bodies_, image.entering = entering_, image.disturbed = disturbed_;
+  image.free_bodies = free_bodies_, image.entering = entering_;
+  // Of bodies that were disturbed and are gone, or have been settled since, the list may still speak.
+  std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
+               [&](BodyId id) { return contains(id) && bodies_[id].disturbed; });
   image.passing = passing_;
   image.pending.assign(pending_.begin(), pending_.end());
   image.edits = edits_, image.edits_start = edits_start_;
@@ -143,7 +147,7 @@ void World<Degree>::become(const Image& image) {
     b.extras = std::make_unique<Extras>(Extras{from.script, {}, {}});
     pieces_.set(id, from.script.back().start);
   }
-  for (const BodyId id : disturbed_) bodies_[id].disturbed = bodies_[id].alive;
+  for (const BodyId id : disturbed_) bodies_[id].disturbed = true;
   holds_ = image.holds, free_holds_ = image.free_holds;
   releases_.resize(0);
   releases_.resize(holds_.size());
@@ -207,6 +211,7 @@ void World<Degree>::archive(Archive& archive) {
   if constexpr (Archive::loading) {
     Image loaded;
     loaded.archive(archive, meshes());
+    loaded.check(options_);
     change_or_fail([&] { become(loaded); });
     failure_ = nullptr;
   } else {
