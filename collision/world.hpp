@@ -66,6 +66,8 @@ struct WorldCounters {
 /// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
 class World final : private PairListener, private RestingContacts<Degree>::Bodies {
+  static_assert(Degree == 1 || Degree == 2, "World: bodies move on lines (degree 1) or parabolas (degree 2)");
+
  public:
   using Motion = certificates::PointMotion<Degree>;
   using Description = BodyDescription<Degree>;

@@ -24,6 +24,9 @@ class EditLimit {
                              " s; WorldOptions.most_edits allows no more");
   }
 
+  /// Whether they are counted from a time not after this.
+  bool began_by(double now) const { return since_ <= now; }
+
   template <class Archive>
   void archive(Archive& archive) {
     archive(edits_, since_);

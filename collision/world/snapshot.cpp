@@ -4,6 +4,7 @@
 #include "collision/shapes/mesh.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -223,6 +224,7 @@ void World<Degree>::archive(Archive& archive) {
   if constexpr (Archive::loading) {
     Image loaded;
     loaded.archive(archive, meshes());
+    loaded.check(options_);
     change_or_fail([&] { become(loaded); });
     failure_ = nullptr;
   } else {
