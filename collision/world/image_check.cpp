@@ -120,7 +120,7 @@ void World<Degree>::Image::check_pairs(const WorldOptions& options) const {
     need(is_to_come(pairs[i].contact, now) && is_to_come(pairs[i].boxes, now), "is due before now");
     need(is_past(pair.passes_at, now), "passes at a time after now");
     need(pair.passes_at == -never || options.response != Response::none, "passes where contacts are not resolved");
-    need(pair.listed || pair.overlapping, "is neither listed nor overlapping");
+    need(pair.listed || pair.overlapping || pair.dirty, "is neither listed nor overlapping");
     if (i == 0) continue;
     const Pair& before = pairs[i - 1].pair;
     need(std::pair(before.a, before.b) < std::pair(pair.a, pair.b), "is out of order, or there twice");
