@@ -100,7 +100,7 @@ void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shar
   archive(resting.free, resting.disturbed, resting.releases);
   each(archive, resting.of, [&](auto& slots) { archive(slots); });
   each(archive, resting.contacts, [&](auto& h) {
-    archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh, h.left_behind);
+    archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh, h.left_behind, h.solved);
     vector(archive, h.normal);
   });
   each(archive, pending, [&](auto& p) {

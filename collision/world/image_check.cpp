@@ -155,7 +155,7 @@ void World<Degree>::Image::check_resting(const WorldOptions& options) const {
       need(options.response == Response::elastic, "is of two bodies where none are held");
     }
     need(std::abs(hold.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
-    need(std::isfinite(hold.push), "its push is not finite");
+    need(std::isfinite(hold.push) && std::isfinite(hold.solved), "its push or rate is not finite");
     need(is_to_come(releases[slot], now), "is to be let go before now");
   }
   for (std::size_t id = 0; id < of.size(); ++id) {

@@ -89,6 +89,9 @@ struct Hold {
   int wall = -1;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
   double push = 0;                                   ///< half the relative acceleration that it gives
+  /// The largest of the velocities that were last solved for with it: what is left along the normal is a rounding of
+  /// that.
+  double solved = 0;
   bool alive = false;
   bool fresh = false;           ///< its approach is still to be taken out
   double left_behind = -never;  ///< s, the epoch of a pair of motions: until it is another, rounding feigns a contact

@@ -198,7 +198,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     const Eigen::Vector3d a = bodies_.path(hold.a).velocity(t);
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     if (!at_wall) b = bodies_.path(hold.b).velocity(t);
-    double largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+    double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
     if constexpr (Degree >= 2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
       for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) {
         largest += 2 * bodies_.free_acceleration(id).cwiseAbs().maxCoeff() * (1 + t - bodies_.path(id).start);

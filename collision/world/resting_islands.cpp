@@ -153,7 +153,7 @@ bool RestingContacts<Degree>::drop_broken(const Island& island) {
     if (hold.fresh) continue;
     const Vector3d a = bodies_.path(hold.a).velocity(bodies_.time());
     const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.path(hold.b).velocity(bodies_.time());
-    const double largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+    const double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
     if (std::abs(dot(hold.normal, b - a)) <= rate_rounding * largest) continue;
     drop(slot);
     any = true;
@@ -180,7 +180,9 @@ bool RestingContacts<Degree>::constrain(Island& island, std::size_t order, std::
     return false;
   }
   for (std::size_t k = 0; k < island.contacts.size(); ++k) {
-    if (order == 2) contacts_[island.contacts[k]].push = island.touches[k].push;
+    Contact& contact = contacts_[island.contacts[k]];
+    if (order == 1) contact.solved = largest;
+    if (order == 2) contact.push = island.touches[k].push;
   }
   for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[order] = rates[i];
   return true;

@@ -231,5 +231,24 @@ TEST_CASE("Resting: meshes rest on meshes and slide into what stands in the way"
   }
 }
 
+TEST_CASE("What is left along a normal is a rounding of the speeds there were, not of those that are left", "[resting]") {
+  // Ball 2 comes to rest against ball 0, which is left with next to no speed.
+  EventLog<2> log;
+  World<2> world(with_response(Response::elastic), &log);
+  auto a = body<2>(Sphere{0.75}, motion<2>({0.5, 0.5, 1}, {-2.5, 0, 0}), 4);
+  auto b = fixed_body<2>(Sphere{0.25}, motion<2>({-1, 0.5, 1}));
+  auto c = body<2>(Sphere{1.25}, motion<2>({-1.5, 0.5, 1}, {3, 1, -0.5}, {0.5, 1, -1}));
+  a.restitution = 0;
+  b.restitution = c.restitution = 1e-9;
+  for (const auto& each : {a, b, c}) world.add_body(each);
+  int steps = 0;
+  while (world.step(9)) {
+    REQUIRE_NOTHROW(world.audit());
+    ++steps;
+  }
+  CHECK(steps > 30);
+  CHECK(world.counters().held > 0);
+}
+
 }  // namespace
 }  // namespace kds::collision
