@@ -53,6 +53,7 @@ class ConvexTouch {
     };
     every_condition([&](const Condition& condition) { add_side(condition, true); });
     every_kdop_direction(a_, b_, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
+      if (Degree == 1 && !(enter_ <= leave_)) return false;  // they never touch
       both_sides(axis, of_a, of_b, [&](const Condition& condition) { add_side(condition, false); });
       return true;
     });

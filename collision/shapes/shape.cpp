@@ -75,12 +75,20 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
   if (std::abs(length - 1) > quaternion_tolerance) {
     throw std::invalid_argument("orientation: must be a unit quaternion");
   }
+  const bool identity = orientation.vec().isZero(0);
+  const Eigen::Quaterniond unit(orientation.coeffs() / length);
+  return place_turned(shape, identity ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : unit.toRotationMatrix());
+}
+
+PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation) {
+  const Eigen::Matrix3d off = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
+  if (!(off.cwiseAbs().maxCoeff() <= 2 * rotation_margin && rotation.determinant() > 0)) {
+    throw std::invalid_argument("orientation: its matrix is no rotation");
+  }
   PlacedShape placed;
   placed.shape = shape;
-  const bool identity = orientation.vec().isZero(0);
-  if (!identity) placed.rotation = Eigen::Quaterniond(orientation.coeffs() / length).toRotationMatrix();
+  placed.rotation = rotation;
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    const Eigen::Matrix3d rotation = placed.rotation;
     placed = placed_ball(sphere->radius);
     placed.rotation = rotation;
   } else if (const auto* box = std::get_if<Box>(&shape)) {

@@ -1,10 +1,11 @@
 // Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
-#include "collision/vectors.hpp"
 #include "collision/world/resting_contacts.hpp"
+#include "collision/vectors.hpp"
 #include "kds/audit.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 namespace kds::collision {
@@ -212,7 +213,10 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
 
 template <int Degree>
 typename RestingContacts<Degree>::Image RestingContacts<Degree>::image() const {
-  Image image{contacts_, free_, disturbed_, {}, {}};
+  Image image{contacts_, free_, {}, {}, {}};
+  // Of bodies that were disturbed and are gone, or have been settled since, the list may still speak.
+  std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
+               [&](BodyId id) { return of_[id].disturbed && bodies_.present(id); });
   for (const Member& member : of_) image.of.push_back(member.contacts);
   for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(releases_.time(slot));
   return image;

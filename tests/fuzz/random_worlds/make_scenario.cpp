@@ -10,8 +10,8 @@ namespace {
 enum class Size { few, many, lattice };
 
 Size draw_size_of_scenario(Random& random) {
-  if (random.one_in(1500)) return Size::lattice;
-  return random.one_in(40) ? Size::many : Size::few;
+  if (random.one_in(4000)) return Size::lattice;
+  return random.one_in(60) ? Size::many : Size::few;
 }
 
 void add(Scenario& scenario, const BodyPlan& body) {

@@ -24,9 +24,11 @@ Player<Degree>::Player(const Scenario& scenario, const Way& way, Reactor& reacto
 
 template <int Degree>
 std::vector<Line> Player<Degree>::run() {
+  // Of the many calls that fill a large world few can be saved between: to save it takes long.
+  const bool large = scenario_.bodies.size() > way_.most_bodies_saved_often;
   for (const Call& call : scenario_.calls) {
     if (given_up()) break;
-    if (way_.saves_between_calls) save_and_load();
+    if (way_.saves_between_calls && (!large || call.kind == Call::Kind::advance)) save_and_load();
     call_from_outside(call);
   }
   return std::move(log_);

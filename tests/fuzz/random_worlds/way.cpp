@@ -11,9 +11,6 @@ namespace {
 
 using kds::tests::Random;
 
-/// From so many bodies on, a run takes long.
-constexpr std::size_t many_bodies = 18;
-
 std::string_view name_of(BroadPhaseKind kind) {
   const auto& all = collision::broad_phases;
   return std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.kind == kind; })->name;
@@ -51,7 +48,7 @@ std::vector<Way> ways_of(const Scenario& scenario) {
   constexpr std::array plain{automatic, grid, kinetic_sap};
   std::vector<Way> ways;
   for (const BroadPhaseKind kind : plain) ways.push_back({.broad_phase = kind, .audits = random.one_in(8)});
-  const bool many = scenario.bodies.size() > many_bodies;
+  const bool many = scenario.bodies.size() > Way::most_bodies_saved_often;
   if (random.one_in(4)) ways.push_back({.broad_phase = sap, .rate = random.one_in(2) ? 8 : 1.7});
 
   Way varied{.broad_phase = plain[random.below(plain.size())]};

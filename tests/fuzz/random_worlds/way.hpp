@@ -24,7 +24,8 @@ struct Way {
   int stops = 0;               ///< each advance is made in so many more parts
   std::size_t save_every = 0;  ///< steps; each time the world is saved and loaded into another one (0: never)
   BroadPhaseKind load_into = BroadPhaseKind::all_pairs;  ///< that world's, in turn with `broad_phase`
-  bool saves_between_calls = false;                      ///< also before each call
+  bool saves_between_calls = false;                      ///< before each call; of large worlds, before each advance
+  static constexpr std::size_t most_bodies_saved_often = 18;
   bool runs_ahead = false;  ///< what is saved is loaded by the same world, after some steps more that are undone by it
   double growth = 1;        ///< of all shapes; one that is not 1 makes a wrong world, to check the comparison
 
