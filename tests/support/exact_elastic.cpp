@@ -19,7 +19,7 @@ struct Pair {
   Between<Rational> exact;
   Between<double> rough;
   bool passes = false;   ///< let pass until they are apart
-  double since = 0;      ///< when it got its present motion
+  double since = 0;      ///< when it got its present motion, or began to pass
   double allowance = 0;  ///< how deep they may be in each other by rounding while they part
   double next = never;
 
@@ -48,8 +48,23 @@ constexpr double one_rounding = 0x1p-52;
 constexpr double touch = 0x1p-41;
 constexpr double true_overlap = 0x1p-38;
 
-/// s; whoever is not deeper in another one by then never is.
-constexpr double ages = 0x1p40;
+/// Coordinate i of a path at t, its rate, and what of them is rounded when they are computed.
+struct Place {
+  Rational x, v, x_parts, v_parts;
+};
+
+Place place_on(const Piece& path, std::size_t i, double t) {
+  const Rational elapsed = rational(t) - rational(path.start);
+  const auto c = [&](std::size_t k) {
+    return k < path.coefficients.size() ? rational(path.coefficients[k][i]) : Rational(0);
+  };
+  const Rational way = c(1) * elapsed, bend = c(2) * elapsed, curve = bend * elapsed;
+  return {c(0) + way + curve, c(1) + bend + bend, abs(c(0)) + 2 * abs(way) + 4 * abs(curve), abs(c(1)) + 4 * abs(bend)};
+}
+
+Vector velocity(const Piece& path, double t) {
+  return {place_on(path, 0, t).v, place_on(path, 1, t).v, place_on(path, 2, t).v};
+}
 
 class Proof {
  public:
@@ -153,10 +168,7 @@ class Proof {
   /// Whether a pair that comes to penetrate at a time is never in each other by more than is rounded.
   bool grazes(const Pair& pair, double t) const {
     const double depth = pair.allowance + roundings(pair, t);
-    const double deepest = first_double(
-        t, ages, [&](double time) { return !pair.exact.just_after(time).nearing; },
-        [&](double time) { return !pair.rough.just_after(time).nearing; });
-    return pair.exact.no_deeper(std::min(deepest, ages), rational(depth));
+    return only_graze(pair.exact, pair.rough, t, rational(depth));
   }
 
   bool is_graze(const ElasticEvent& event) {
@@ -176,16 +188,10 @@ class Proof {
     pair.since = now_;
   }
 
-  /// The signed distance is convex in time. So where it falls it does so until it never does again, and while it falls
-  /// they come to penetrate once.
-  void predict(Pair& pair) {
-    pair.next = never;
-    if (pair.passes) return;
-    const auto decided = [](const Lie& lie) { return lie.penetrate || !lie.nearing; };
-    const double t = first_double(
-        now_, run_.end, [&](double time) { return decided(pair.exact.just_after(time)); },
-        [&](double time) { return decided(pair.rough.just_after(time)); });
-    if (t != never && pair.exact.just_after(t).nearing) pair.next = t;
+  void predict(Pair& pair) const {
+    double from = now_;
+    if (pair.passes) from = first_apart(pair.exact, now_, run_.end);
+    pair.next = from == never ? never : first_meeting(pair.exact, pair.rough, from, run_.end);
   }
 
   void look_at_walls(std::size_t id) {
@@ -194,40 +200,30 @@ class Proof {
       const std::size_t axis = wall / 2;
       const double out = wall % 2 != 0 ? 1 : -1;
       const double limit = out > 0 ? run_.walls->max[axis] : run_.walls->min[axis];
-      const Piece& path = motions_[id];
-      double& next = next_walls_[6 * id + wall];
-      next = never;
-      const double speed = out * path.coefficients[1][axis];
-      if (!(speed > 0)) continue;
-      const auto reached = [&](double t, const auto& zero) {
-        return number(out * path.coefficients[0][axis], zero) + number(body(id).bounding_radius, zero) +
-                   number(speed, zero) * (number(t, zero) - number(path.start, zero)) >=
-               number(out * limit, zero);
-      };
-      next = first_double(
-          now_, run_.end, [&](double t) { return reached(t, Rational(0)); }, [&](double t) { return reached(t, 0.0); });
+      next_walls_[6 * id + wall] =
+          first_beyond(motions_[id], axis, out, limit, body(id).bounding_radius, now_, run_.end);
     }
   }
 
   bool overlaps_at_start(const Pair& pair) const {
     const Rational size = rational(largest(pair.a) + largest(pair.b));
-    if (pair.exact.no_deeper(run_.start, size * rational(touch))) return false;
-    if (pair.exact.no_deeper(run_.start, size * rational(true_overlap))) wrong("an overlap too small for a test");
+    if (pair.exact.no_deeper(rational(run_.start), size * rational(touch))) return false;
+    if (pair.exact.no_deeper(rational(run_.start), size * rational(true_overlap)))
+      wrong("an overlap too small for a test");
     return true;
   }
 
   double largest(std::size_t id) const {
     double result = body(id).bounding_radius;
-    const Piece& path = motions_[id];
     for (std::size_t i = 0; i < 3; ++i) {
-      const double x = path.coefficients[0][i] + path.coefficients[1][i] * (now_ - path.start);
-      result = std::max({result, std::abs(x), std::abs(path.coefficients[0][i])});
+      result = std::max(result, approximate(place_on(motions_[id], i, now_).x_parts));
     }
     return result;
   }
-  double fastest(std::size_t id) const {
-    const auto& v = motions_[id].coefficients[1];
-    return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  double fastest(const Piece& path) const {
+    double result = 0;
+    for (std::size_t i = 0; i < 3; ++i) result = std::max(result, approximate(place_on(path, i, now_).v_parts));
+    return result;
   }
 
   // --- what has happened
@@ -272,7 +268,8 @@ class Proof {
       const bool this_one = !walls && pair.a == event.a && pair.b == event.b;
       if (this_one && body(event.a).fixed && body(event.b).fixed) {
         pair.passes = true;
-        pair.next = never;
+        pair.since = now_;
+        predict(pair);
       }
     }
   }
@@ -280,13 +277,14 @@ class Proof {
   void check_continuous(std::size_t id, const Piece& old, const Piece& piece) const {
     if (piece.start != now_) wrong("the motion of body ", id, " begins at ", piece.start, ", not at ", now_);
     for (std::size_t i = 0; i < 3; ++i) {
-      const Rational from = rational(old.coefficients[0][i]);
-      const Rational way = rational(old.coefficients[1][i]) * (rational(now_) - rational(old.start));
-      // The time since the start, its product with the speed, and the sum are each rounded.
-      const Rational roundings = rational(one_rounding) * (abs(way) + abs(from + way));
-      if (abs(rational(piece.coefficients[0][i]) - (from + way)) > roundings) {
+      const Place place = place_on(old, i, now_);
+      // The time since the start, the products with it, and the sums are each rounded.
+      if (abs(rational(piece.coefficients[0][i]) - place.x) > rational(one_rounding) * place.x_parts) {
         wrong("body ", id, " jumps at ", now_);
       }
+    }
+    for (std::size_t k = 2; k < old.coefficients.size(); ++k) {
+      if (piece.coefficients[k] != old.coefficients[k]) wrong("the acceleration of body ", id, " changes at ", now_);
     }
   }
 
@@ -294,10 +292,10 @@ class Proof {
     const std::size_t axis = event.b / 2;
     const double restitution = std::min(run_.walls->restitution, body(event.a).restitution);
     for (std::size_t i = 0; i < 3; ++i) {
-      const double was = old.coefficients[1][i];
+      const Place was = place_on(old, i, now_);
       const double is = motions_[event.a].coefficients[1][i];
-      const Rational right = rational(was) * (i == axis ? -rational(restitution) : Rational(1));
-      if (abs(rational(is) - right) > rational(one_rounding) * abs(right)) {
+      const Rational right = was.v * (i == axis ? -rational(restitution) : Rational(1));
+      if (abs(rational(is) - right) > rational(one_rounding) * was.v_parts) {
         wrong("body ", event.a, " goes on with speed ", is, " from wall ", event.b, " at ", now_, ", not ",
               approximate(right));
       }
@@ -313,7 +311,7 @@ class Proof {
     // The plane between them.
     Between<Rational> between(body_a.shape, body_b.shape);
     between.move(old[a], old[b]);
-    Rational gap = dot(n, between.at(now_)) - between.radius;
+    Rational gap = dot(n, between.at(rational(now_))) - between.radius;
     for (std::size_t i = 0; i < 3; ++i) gap += -(abs(n[i]) * between.reach[i]);
     const Pair& pair = pair_of(a, b);
     if (gap < -rational(pair.allowance + roundings(pair, now_))) {
@@ -321,19 +319,18 @@ class Proof {
             approximate(gap));
     }
     if (body_a.fixed && body_b.fixed) return;
-    const double fast = std::max({fastest(a), fastest(b), speed(old[a]), speed(old[b])});
+    const double fast = std::max({fastest(motions_[a]), fastest(motions_[b]), fastest(old[a]), fastest(old[b])});
     const Rational off = rational(impulse_rounding * fast);
-    const auto velocity = [](const Piece& path) { return exact(path.coefficients[1]); };
     const auto minus = [](const Vector& x, const Vector& y) { return Vector{x[0] - y[0], x[1] - y[1], x[2] - y[2]}; };
-    const Rational was = dot(n, minus(velocity(old[b]), velocity(old[a])));
-    const Rational is = dot(n, minus(velocity(motions_[b]), velocity(motions_[a])));
+    const Rational was = dot(n, minus(velocity(old[b], now_), velocity(old[a], now_)));
+    const Rational is = dot(n, minus(velocity(motions_[b], now_), velocity(motions_[a], now_)));
     const Rational kept = rational(std::min(body_a.restitution, body_b.restitution));
     if (was > off) wrong("bodies ", a, " and ", b, " part along their normal at ", now_, " and yet meet");
     if (abs(is + kept * was) > off) {
       wrong("bodies ", a, " and ", b, " approach at ", approximate(-was), " and part at ", approximate(is));
     }
-    const Vector gain_a = minus(velocity(motions_[a]), velocity(old[a]));
-    const Vector gain_b = minus(velocity(motions_[b]), velocity(old[b]));
+    const Vector gain_a = minus(velocity(motions_[a], now_), velocity(old[a], now_));
+    const Vector gain_b = minus(velocity(motions_[b], now_), velocity(old[b], now_));
     const Rational along_a = dot(n, gain_a), along_b = dot(n, gain_b);
     for (std::size_t i = 0; i < 3; ++i) {
       if (abs(gain_a[i] - along_a * n[i]) > off || abs(gain_b[i] - along_b * n[i]) > off) {
@@ -347,15 +344,12 @@ class Proof {
     }
   }
 
-  static double speed(const Piece& path) {
-    const auto& v = path.coefficients[1];
-    return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-  }
-
   /// One of the two has another motion.
   void change(Pair& pair) {
     // Until this instant, with the motions before.
-    if (pair.passes && pair.since < now_ && !pair.exact.just_after(before(now_)).penetrate) pair.passes = false;
+    if (pair.passes && pair.since < now_ && first_apart(pair.exact, pair.since, before(now_)) != never) {
+      pair.passes = false;
+    }
     const double before_it = roundings(pair, now_);
     moved(pair);
     const Lie lie = pair.exact.just_after(now_);
@@ -364,15 +358,19 @@ class Proof {
       pair.allowance = 0;
     } else if (!pair.passes) {
       pair.allowance += before_it + roundings(pair, now_);
-      if (!pair.exact.no_deeper(now_, rational(pair.allowance))) {
+      if (!pair.exact.no_deeper(rational(now_), rational(pair.allowance))) {
         wrong("bodies ", pair.a, " and ", pair.b, " are in each other by more than ", pair.allowance, " at ", now_);
       }
     }
     predict(pair);
   }
 
-  static double fastest_of(const Pair& pair) {
-    return std::max({std::abs(pair.rough.v[0]), std::abs(pair.rough.v[1]), std::abs(pair.rough.v[2])});
+  double fastest_of(const Pair& pair) const {
+    double result = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      result = std::max(result, std::abs(pair.rough.c[1][i]) + 2 * std::abs(pair.rough.c[2][i] * now_));
+    }
+    return result;
   }
 
   const ElasticRun& run_;

@@ -15,10 +15,10 @@
 
 namespace oracle {
 
-/// A ball, or a box along the axes, on a straight path.
+/// A ball, or a box along the axes, on a straight path or a parabola.
 struct ElasticBody {
   Shape shape;
-  Piece motion;                ///< two coefficients
+  Piece motion;                ///< two coefficients or three
   double bounding_radius = 1;  ///< of the ball that walls keep inside
   double mass = 1;
   bool fixed = false;  ///< no contact changes its motion, but walls do
@@ -70,7 +70,7 @@ struct Verdict {
 /// - A normal is that of a plane that separates the shapes, but for the same amount.
 /// - After a contact the rate along the normal is the one before times minus the lower restitution, momentum is the
 ///   same, speeds change along the normal alone, after a wall along its axis alone; each to a few roundings. Paths are
-///   continuous, to a rounding, and those of others stay as they are.
+///   continuous, to a rounding, accelerations stay, and so do the motions of others.
 Verdict prove(const ElasticRun& run);
 
 }  // namespace oracle

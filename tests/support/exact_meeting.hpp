@@ -1,5 +1,5 @@
-// How two balls or boxes on straight paths lie to each other, and since when: in rational numbers, or roughly in
-// doubles.
+// How two balls or boxes lie to each other, on straight paths or parabolas, and when they come to: in rational numbers,
+// or roughly in doubles.
 #pragma once
 
 #include "tests/support/exact_oracle.hpp"
@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <variant>
 
 namespace oracle::meeting {
@@ -73,40 +74,32 @@ double first_double(double from, double until, const Holds& holds, const Roughly
 
 // --- two shapes
 
-/// How two shapes lie to each other just after a time. For paths that are straight, their signed distance is a convex
-/// function of time.
+/// A quantity and its derivatives: what it and each of them is just after a time is told by the first that is not zero.
+template <class Number, std::size_t count>
+int sign_of(const std::array<Number, count>& derivatives, std::size_t first = 0) {
+  const Number zero(0);
+  for (std::size_t i = first; i < count; ++i) {
+    if (derivatives[i] != zero) return derivatives[i] < zero ? -1 : 1;
+  }
+  return 0;
+}
+
+/// How two shapes lie to each other just after a time.
 struct Lie {
   bool penetrate;
   bool nearing;  ///< their signed distance falls
 };
 
-template <class Number>
-struct Side {
-  Number gap;   ///< along an axis
-  Number rate;  ///< of the gap, just after
-  bool operator<(const Side& other) const { return gap != other.gap ? gap < other.gap : rate < other.rate; }
-};
-
-template <class Number>
-Three<Side<Number>> sides(const Three<Number>& r, const Three<Number>& v, const Three<Number>& reach) {
-  Three<Side<Number>> result;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const bool turned = r[i] != Number(0) ? r[i] < Number(0) : v[i] < Number(0);
-    result[i] = {magnitude(r[i]) - reach[i], turned ? Number(-v[i]) : v[i]};
-  }
-  return result;
-}
-
-/// The centre of b from that of a, r + v t, and what is between the shapes.
+/// The centre of b from that of a, c[0] + c[1] t + c[2] t^2, and what is between the shapes.
 template <class Number>
 struct Between {
-  Three<Number> r, v;
+  std::array<Three<Number>, 3> c;
   Three<Number> reach{};  ///< of boxes
   Number radius{};        ///< of balls
-  bool boxes = true;      ///< at least one box
-  bool balls = true;      ///< at least one ball
+  bool boxes = false;     ///< at least one box
+  bool balls = false;     ///< at least one ball
 
-  Between(const Shape& a, const Shape& b) : boxes(false), balls(false) {
+  Between(const Shape& a, const Shape& b) {
     for (const Shape* shape : {&a, &b}) {
       if (const auto* ball = std::get_if<Sphere>(shape)) {
         radius = radius + number(ball->radius, radius);
@@ -120,60 +113,115 @@ struct Between {
   }
 
   void move(const Piece& a, const Piece& b) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto at_zero = [&](const Piece& path) {
-        return number(path.coefficients[0][i], radius) -
-               number(path.coefficients[1][i], radius) * number(path.start, radius);
-      };
-      r[i] = at_zero(b) - at_zero(a);
-      v[i] = number(b.coefficients[1][i], radius) - number(a.coefficients[1][i], radius);
-    }
+    c = {};
+    add(b, Number(1));
+    add(a, Number(-1));
   }
 
-  Three<Number> at(double t) const {
-    const Number time = number(t, radius);
-    return {r[0] + v[0] * time, r[1] + v[1] * time, r[2] + v[2] * time};
+  /// Whether the one sees the other move straight on: then their signed distance is a convex function of time.
+  bool straight() const { return c[2] == Three<Number>{}; }
+
+  Three<Number> at(const Number& t) const {
+    Three<Number> here;
+    for (std::size_t i = 0; i < 3; ++i) here[i] = c[0][i] + (c[1][i] + c[2][i] * t) * t;
+    return here;
   }
 
-  Lie just_after(double t) const {
-    const Three<Number> here = at(t);
-    const Number zero(0);
+  Lie just_after(const Number& t) const {
+    const auto paths = derivatives(t);
     if (!boxes) {
-      const Number excess = dot(here, here) - radius * radius;
-      const bool nearing = dot(here, v) < zero;
-      return {excess < zero || (excess == zero && nearing), nearing};
+      const auto excess = excess_of(paths, {true, true, true});
+      return {sign_of(excess) < 0, sign_of(excess, 1) < 0};
     }
-    const auto gaps = sides(here, v, reach);
-    const auto& widest = *std::max_element(gaps.begin(), gaps.end());
-    const bool open = zero < widest.gap || (widest.gap == zero && !(widest.rate < zero));
-    if (!balls) return {!open, widest.rate < zero};
-    // A ball and a box: the distance of the ball's centre from the box, if it is beyond it.
-    Number square = zero, rate = zero;
-    bool beyond = false;
-    for (const auto& [gap, gap_rate] : gaps) {
-      if (gap < zero || (gap == zero && !(zero < gap_rate))) continue;
-      beyond = true;
-      square = square + gap * gap;
-      rate = rate + gap * gap_rate;
+    Three<Derivatives> gaps;
+    std::array<bool, 3> beyond{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      gaps[i] = paths[i];
+      if (sign_of(paths[i]) < 0) {
+        for (Number& x : gaps[i]) x = -x;
+      }
+      gaps[i][0] = gaps[i][0] - reach[i];
+      beyond[i] = sign_of(gaps[i]) > 0;
     }
-    if (!beyond) return {true, widest.rate < zero};
-    const Number excess = square - radius * radius;
-    return {excess < zero || (excess == zero && rate < zero), rate < zero};
+    if (balls && (beyond[0] || beyond[1] || beyond[2])) {  // the distance of the ball's centre from the box
+      const auto excess = excess_of(gaps, beyond);
+      return {sign_of(excess) < 0, sign_of(excess, 1) < 0};
+    }
+    const Derivatives& widest = *std::max_element(gaps.begin(), gaps.end());
+    return {balls || sign_of(widest) < 0, sign_of(widest, 1) < 0};
   }
+  Lie just_after(double t) const requires(!std::is_same_v<Number, double>) { return just_after(rational(t)); }
 
   /// Whether they are in each other by no more than this at t.
-  bool no_deeper(double t, const Number& depth) const {
+  bool no_deeper(const Number& t, const Number& depth) const {
     const Three<Number> here = at(t);
-    const Number least = radius - depth;
-    if (!boxes) return !(dot(here, here) < least * least) || least < Number(0);
-    const auto gaps = sides(here, v, reach);
-    Number square(0);
-    for (const auto& side : gaps) {
-      if (Number(0) < side.gap) square = square + side.gap * side.gap;
+    const Number zero(0), least = radius - depth;
+    if (!boxes) return least < zero || !(dot(here, here) < least * least);
+    Number square(0), widest = magnitude(here[0]) - reach[0];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Number gap = magnitude(here[i]) - reach[i];
+      widest = std::max(widest, gap);
+      if (zero < gap) square = square + gap * gap;
     }
-    if (Number(0) < square) return least < Number(0) || !(square < least * least);
-    return !(std::max_element(gaps.begin(), gaps.end())->gap < least);
+    return zero < square ? least < zero || !(square < least * least) : !(widest < least);
+  }
+
+ private:
+  using Derivatives = std::array<Number, 3>;
+
+  void add(const Piece& path, const Number& sign) {
+    const Number start = number(path.start, radius);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto of = [&](std::size_t k) {
+        return k < path.coefficients.size() ? sign * number(path.coefficients[k][i], radius) : Number(0);
+      };
+      c[0][i] = c[0][i] + of(0) + (of(2) * start - of(1)) * start;
+      c[1][i] = c[1][i] + of(1) - (of(2) + of(2)) * start;
+      c[2][i] = c[2][i] + of(2);
+    }
+  }
+
+  Three<Derivatives> derivatives(const Number& t) const {
+    const Three<Number> here = at(t);
+    Three<Derivatives> result;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Number twice = c[2][i] + c[2][i];
+      result[i] = {here[i], c[1][i] + twice * t, twice};
+    }
+    return result;
+  }
+
+  /// Sum of the squares of some, less that of the radius, with four derivatives, each up to a positive factor.
+  std::array<Number, 5> excess_of(const Three<Derivatives>& e, const std::array<bool, 3>& some) const {
+    std::array<Number, 5> f{};
+    f[0] = f[0] - radius * radius;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!some[i]) continue;
+      const auto& [x, v, a] = e[i];
+      f[0] = f[0] + x * x;
+      f[1] = f[1] + x * v;
+      f[2] = f[2] + v * v + x * a;
+      f[3] = f[3] + v * a;
+      f[4] = f[4] + a * a;
+    }
+    return f;
   }
 };
+
+/// The first double in [from, until] just after which the shapes penetrate and come nearer; `never` if there is none.
+double first_meeting(const Between<Rational>& exact, const Between<double>& rough, double from, double until);
+
+/// The first double in [from, until] just after which they do not penetrate; `never` if there is none.
+double first_apart(const Between<Rational>& exact, double from, double until);
+
+/// The first double in [from, until] just after which a ball of this radius on a path is beyond limit along an axis, or
+/// along it backwards (`out` = -1), and goes on; `never` if there is none.
+double first_beyond(const Piece& path, std::size_t axis, double out, double limit, double radius, double from,
+                    double until);
+
+/// Whether two that penetrate at a time are never in each other by more than this before they are apart again. Of paths
+/// that are not straight this is asked at some times until then (of the next second, if they stay in each other): a
+/// piece of a polynomial of degree 4 that is small at them is nowhere much greater.
+bool only_graze(const Between<Rational>& exact, const Between<double>& rough, double t, const Rational& depth);
 
 }  // namespace oracle::meeting

@@ -222,5 +222,47 @@ TEST_CASE("Two fixed bodies meet once and pass", "[exact_elastic]") {
   CHECK(complains(run, "body 0 meets body 1 at 1"));
 }
 
+Piece parabola(const Triple& place, const Triple& speed, const Triple& bend, double start = 0) {
+  return {start, {place, speed, bend}};
+}
+
+TEST_CASE("Bodies that fall meet where their parabolas do, also after they have left what they overlapped",
+          "[exact_elastic]") {
+  // Thrown up out of the floor, z = 1 + (t - 1/4) (17/4 - t): apart from t = 1/4 on, back at 17/4.
+  ElasticRun run;
+  run.bodies = {box({4, 4, 1}, {0, 0, -1}, {0, 0, 0}), box({1, 1, 1}, {0, 0, 0}, {0, 0, 0})};
+  run.bodies[0].fixed = true;
+  run.bodies[0].motion = parabola({0, 0, -1}, {0, 0, 0}, {0, 0, 0});
+  run.bodies[1].motion = parabola({0, 0, -0.0625}, {0, 0, 4.5}, {0, 0, -1});
+  run.end = 4.5;
+  run.events = {{Kind::overlap, 0, 1, 0, {0, 0, 1}, {run.bodies[0].motion, run.bodies[1].motion}}};
+  CHECK(complains(run, "body 0 meets body 1 at 4.25"));
+  run.events.push_back(
+      {Kind::contact, 0, 1, 4.25, {0, 0, 1}, {run.bodies[0].motion, parabola({0, 0, 1}, {0, 0, 4}, {0, 0, -1}, 4.25)}});
+  CHECK(prove(run).complaint == "");
+  run.events[1].motions[1].coefficients[1][2] = 3;
+  CHECK(complains(run, "part at"));
+  run.events[1].motions[1].coefficients[1][2] = 4;
+  run.events[1].motions[1].coefficients[2][2] = 0;
+  CHECK(complains(run, "acceleration"));
+  run.events[1].motions[1].coefficients[2][2] = -1;
+  // The top is at z = 5 at t = 9/4: a ceiling at 7 is not reached by the ball around it, one at 6.5 is.
+  run.walls = ElasticWalls{{-8, -8, -8}, {8, 8, 7}};
+  CHECK(prove(run).complaint == "");
+  run.walls->max[2] = 6.5;
+  CHECK(complains(run, "body 1 reaches wall 5 at 1.7"));
+}
+
+TEST_CASE("Balls whose parabolas touch do not meet, those that come nearer do", "[exact_elastic]") {
+  ElasticRun run;
+  run.bodies = {ball(1, {0, 0, 0}, {0, 0, 0}), ball(1, {0, 0, 3}, {0, 0, 0})};
+  run.bodies[0].motion = parabola({0, 0, 0}, {0, 0, 0}, {0, 0, 0});
+  run.bodies[1].motion = parabola({0, 0, 3}, {0, 0, -2}, {0, 0, 1});  // 2 + (t - 1)^2
+  run.end = 3;
+  CHECK(prove(run).complaint == "");
+  run.bodies[1].motion.coefficients[0][2] = 3 - 0x1p-20;  // first at t = 1 - 2^-10
+  CHECK(complains(run, "body 0 meets body 1 at 0.9990234375"));
+}
+
 }  // namespace
 }  // namespace oracle
