@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 namespace kds::certificates {
 
@@ -46,10 +47,11 @@ class BallsTogether {
   }
 
  private:
-  static const double* numbers_of(const MovingBall<PathDegree>& ball) {
+  static const std::byte* numbers_of(const MovingBall<PathDegree>& ball) {
+    static_assert(std::is_standard_layout_v<MovingBall<PathDegree>>);
     static_assert(sizeof ball.motion == (3 * (PathDegree + 1) + 1) * sizeof(double));
     static_assert(offsetof(MovingBall<PathDegree>, radius) == sizeof ball.motion);
-    return ball.motion.coefficients[0].data();
+    return reinterpret_cast<const std::byte*>(&ball);
   }
 
   detail::FourPairs pairs_;

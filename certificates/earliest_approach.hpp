@@ -4,14 +4,23 @@
 #include "certificates/relative_line.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
+#include <cstddef>
+
 namespace kds::certificates::detail {
 
-/// Four pairs of balls, each read as it lies in a MovingBall: the coefficients, each of three numbers, the start and
-/// the radius.
+/// Four pairs of balls, each read as the bytes of a MovingBall: the doubles of its coefficients, three of each, its
+/// start and its radius.
 struct FourPairs {
-  const double* a[4];
-  const double* b[4];
+  const std::byte* a[4];
+  const std::byte* b[4];
 };
+
+/// Some double of a ball, counted from 0.
+[[gnu::always_inline]] inline double number_of(const std::byte* ball, int i) {
+  double x;
+  __builtin_memcpy(&x, ball + i * static_cast<int>(sizeof x), sizeof x);
+  return x;
+}
 
 /// The numbers of a MovingBall, lane by lane.
 template <class Lanes, int PathDegree>
@@ -66,15 +75,14 @@ inline constexpr int lanes_of = sizeof(Lanes) / sizeof(double);
 
 /// Reads as many balls as a register has doubles.
 template <int PathDegree>
-[[gnu::always_inline]] inline void read(const double* const* balls, BallNumbers<Two, PathDegree>& numbers) {
-  const double* const one = balls[0];
-  const double* const other = balls[1];
+[[gnu::always_inline]] inline void read(const std::byte* const* balls, BallNumbers<Two, PathDegree>& numbers) {
+  const auto place = [&](int i) { return Two{number_of(balls[0], i), number_of(balls[1], i)}; };
   for (int k = 0; k <= PathDegree; ++k) {
-    for (int d = 0; d < 3; ++d) numbers.motion.coefficients[k][d] = Two{one[3 * k + d], other[3 * k + d]};
+    for (int d = 0; d < 3; ++d) numbers.motion.coefficients[k][d] = place(3 * k + d);
   }
   constexpr int start = 3 * (PathDegree + 1);
-  numbers.motion.start = Two{one[start], other[start]};
-  numbers.radius = Two{one[start + 1], other[start + 1]};
+  numbers.motion.start = place(start);
+  numbers.radius = place(start + 1);
 }
 
 template <class Lanes, int PathDegree>

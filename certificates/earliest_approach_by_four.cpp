@@ -6,10 +6,17 @@
 namespace kds::certificates::detail {
 namespace {
 
+/// Four doubles of a ball in a row.
+[[gnu::always_inline]] inline Four four_of(const std::byte* ball, int from) {
+  Four x;
+  __builtin_memcpy(&x, ball + from * static_cast<int>(sizeof(double)), sizeof x);
+  return x;
+}
+
 /// What four balls have in four places in a row, place by place.
-[[gnu::always_inline]] inline void transpose(const double* const* balls, int from, Four (&places)[4]) {
-  const Four b0 = _mm256_loadu_pd(balls[0] + from), b1 = _mm256_loadu_pd(balls[1] + from);
-  const Four b2 = _mm256_loadu_pd(balls[2] + from), b3 = _mm256_loadu_pd(balls[3] + from);
+[[gnu::always_inline]] inline void transpose(const std::byte* const* balls, int from, Four (&places)[4]) {
+  const Four b0 = four_of(balls[0], from), b1 = four_of(balls[1], from);
+  const Four b2 = four_of(balls[2], from), b3 = four_of(balls[3], from);
   const Four even01 = _mm256_unpacklo_pd(b0, b1), odd01 = _mm256_unpackhi_pd(b0, b1);
   const Four even23 = _mm256_unpacklo_pd(b2, b3), odd23 = _mm256_unpackhi_pd(b2, b3);
   places[0] = _mm256_permute2f128_pd(even01, even23, 0x20);
@@ -21,7 +28,7 @@ namespace {
 }  // namespace
 
 template <int PathDegree>
-[[gnu::always_inline]] inline void read(const double* const* balls, BallNumbers<Four, PathDegree>& numbers) {
+[[gnu::always_inline]] inline void read(const std::byte* const* balls, BallNumbers<Four, PathDegree>& numbers) {
   constexpr int count = 3 * (PathDegree + 1) + 2;
   Four all[count];
   for (int from = 0; from < count; from += 4) {

@@ -6,7 +6,7 @@
 #include "kds/arithmetic/unrolled.hpp"
 #include "kds/certificate.hpp"
 #include "kds/motion.hpp"
-#include "kds/roots/failure_time.hpp"
+#include "kds/roots/compiled_once.hpp"
 
 #include <cmath>
 #include <limits>
@@ -181,3 +181,11 @@ double Order<Degree>::quick_straight_failure_time(double now, double horizon) co
 }
 
 }  // namespace kds::certificates
+
+namespace kds {
+
+KDS_COMPILED_ONCE(extern template, certificates::Order<1>);
+KDS_COMPILED_ONCE(extern template, certificates::Order<2>);
+KDS_COMPILED_ONCE(extern template, certificates::Order<3>);
+
+}  // namespace kds

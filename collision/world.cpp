@@ -173,7 +173,7 @@ bool World<Degree>::next_event(double limit, Search search) {
     const Agenda due = agenda();
     const auto [piece, boxes, volume, wall, let_go, contact] = due;
     // What is pending is of this instant, all of which has to be known before any of it is told.
-    const bool reports = !pending_.empty();
+    const bool reports = !reports_.empty();
     // Nothing is known beyond the horizon: look that far, then farther.
     const double next = std::min({reports ? now_ : limit, horizon_, due.first()});
     if (next < never && certify_next(contact == next, wall == next)) continue;
@@ -345,20 +345,34 @@ bool World<Degree>::renew_volume(BodyId id) {
   return caller_makes_box(id);
 }
 
+template <int Degree>
+void World<Degree>::report_next() {
+  const Reports::Report event = reports_.take_first();
+  PairEvent pair{event.a, event.b, event.contact};
+  switch (event.kind) {
+    case Reports::Kind::overlap:
+      ++counters_.overlaps;
+      return tell([&](Listener& listener) { listener.overlap(*this, pair); });
+    case Reports::Kind::separation:
+      ++counters_.separations;
+      return tell([&](Listener& listener) { listener.separation(*this, pair); });
+    case Reports::Kind::held:
+      return tell([&](Listener& listener) { listener.held(*this, pair); });
+    case Reports::Kind::moved:
+      return tell([&](Listener& listener) { listener.moved(*this, event.a); });
+    case Reports::Kind::pair_began:
+      return tell([&](Listener& listener) { listener.pair_began(*this, event.a, event.b, event.contact.time); });
+    case Reports::Kind::pair_ended:
+      return tell([&](Listener& listener) { listener.pair_ended(*this, event.a, event.b, event.contact.time); });
+  }
+}
+
 /// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are
 /// counted, so that a run ends.
 template <int Degree>
 void World<Degree>::count_edit() {
   idle_until_ = next_time_ = -never;
-  if (!stepping_) return;
-  if (now_ - edits_start_ > options_.zeno.interval) {
-    edits_start_ = now_;
-    edits_ = 0;
-  }
-  if (++edits_ <= std::max<std::uint64_t>(options_.most_edits, 64 * alive_)) return;
-  throw std::runtime_error("World: callbacks have changed bodies " + std::to_string(edits_) + " times within " +
-                           std::to_string(now_ - edits_start_) + " s, at " + std::to_string(now_) +
-                           " s; WorldOptions.most_edits allows no more");
+  if (stepping_) edits_.count(now_, options_.zeno.interval, std::max<std::uint64_t>(options_.most_edits, 64 * alive_));
 }
 
 template <int Degree>

@@ -9,7 +9,9 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/earliest_wall_time.hpp"
+#include "collision/world/edit_limit.hpp"
 #include "collision/world/records.hpp"
+#include "collision/world/reports.hpp"
 #include "collision/world/resting_contacts.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
@@ -21,7 +23,6 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
-#include <set>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -65,6 +66,8 @@ struct WorldCounters {
 /// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
 class World final : private PairListener, private RestingContacts<Degree>::Bodies {
+  static_assert(Degree == 1 || Degree == 2, "World: bodies move on lines (degree 1) or parabolas (degree 2)");
+
  public:
   using Motion = certificates::PointMotion<Degree>;
   using Description = BodyDescription<Degree>;
@@ -177,7 +180,6 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
   using Resting = RestingContacts<Degree>;
   using Pair = detail::Pair;
   using PairRank = detail::PairRank;
-  using Pending = detail::Pending;
 
   // world.cpp: the clock
   /// When the next of each kind is due, but for what the broad phase does.
@@ -190,7 +192,7 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
   enum class Search { makes, looks };
   bool next_event(double limit, Search search = Search::makes);
   bool guarded_event(double limit, Search search);
-  bool work_left() const { return !entering_.empty() || !resting_.settled() || !dirty_.empty() || !pending_.empty(); }
+  bool work_left() const { return !entering_.empty() || !resting_.settled() || !dirty_.empty() || !reports_.empty(); }
   void make_broad_phase();
   void reach(double limit);
   void go_back(double t);
@@ -236,14 +238,7 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
     require_whole("World::step");  // The listener may have caught what interrupted a change that it made.
   }
 
-  // world/reports.cpp: what is told at one instant, in one order
   void report_next();
-  void report(typename Pending::Kind kind, BodyId a, BodyId b, const Contact& contact) {
-    pending_.insert({kind, a, b, contact});
-  }
-  void report_pair(bool began, BodyId a, BodyId b);
-  bool take_back(typename Pending::Kind kind, BodyId a, BodyId b);
-  void keep_reports_of(BodyId removed);
 
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }
 
@@ -371,7 +366,7 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
   std::vector<KdopDirection> directions_;       // beyond the axes
   std::vector<std::array<double, 2>> extents_;  // by body and direction
   Resting resting_;
-  std::multiset<Pending> pending_;
+  Reports reports_;
   // Queues that a scene does not need have no slots.
   DaryQueue<> pieces_;                // slots are bodies
   DaryQueue<> volumes_;               // slots are bodies
@@ -396,8 +391,7 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
   bool telling_ = false;          ///< a listener is being told, or has thrown
   bool in_box_function_ = false;  ///< a function of the caller's is making a box
   std::exception_ptr failure_;    ///< what has left the world in pieces
-  std::uint64_t edits_ = 0;       ///< by callbacks since edits_start_
-  double edits_start_ = -never;
+  EditLimit edits_;
 };
 
 extern template class World<1>;

@@ -95,6 +95,14 @@ class Pieces final : private MovingSet<E>::Observer {
     archive.tag("Pieces");
     archive(plans_, horizon_, counters_);
     if constexpr (Archive::loading) {
+      archive.require(!std::isnan(horizon_), "a horizon is not a number");
+      for (const auto& plan : plans_) {
+        for (std::size_t i = 0; i < plan.size(); ++i) {
+          archive.require(std::isfinite(plan[i].start) && (i == 0 || plan[i].start > plan[i - 1].start),
+                          "pieces do not start one after another");
+          archive.require(detail::finite(plan[i].motion), "the motion of a piece is not finite");
+        }
+      }
       for (Slot slot = 0; slot < queue_.slots(); ++slot) queue_.clear(slot);
       queue_.resize(plans_.size());
       for (Id id = 0; id < plans_.size(); ++id) schedule(id);

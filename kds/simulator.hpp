@@ -115,6 +115,10 @@ class Simulator {
   void archive(Archive& archive) {
     archive.tag("Simulator");
     archive(now_, horizon_, window_);
+    if constexpr (Archive::loading) {
+      archive.require(std::isfinite(now_), "the clock is not finite");
+      archive.require(window_ > 0 && !std::isnan(horizon_), "a window is not > 0, or a horizon not a number");
+    }
     std::apply([&](auto&... s) { (s.archive(archive), ...); }, structures_);
   }
 

@@ -5,6 +5,7 @@
 #include "kds/events/event_queue.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -118,6 +119,18 @@ class Bracket {
   template <class Archive>
   void archive(Archive& archive) {
     archive(entrants_, winners_);
+    if constexpr (Archive::loading) {
+      archive.require(winners_.size() == entrants_.size(), "a bracket has not one match for each place");
+      archive.require(entrants_.empty() || std::has_single_bit(entrants_.size()), "a bracket is no power of two");
+      for (std::size_t i = 0; i < entrants_.size(); ++i) {
+        archive.require(entrants_[i] == i || entrants_[i] == nobody, "an entrant of a bracket is at another place");
+      }
+      for (std::size_t match = capacity(); match-- > 1;) {
+        const Entrant left = winner(2 * match), right = winner(2 * match + 1), won = winner(match);
+        archive.require((won == left || won == right) && (won != nobody || left == right),
+                        "the winner of a match did not play");
+      }
+    }
   }
 
  private:

@@ -1,7 +1,7 @@
 // Kinetic closest pair in the plane.
 #pragma once
 
-#include "certificates/distance_order.hpp"
+#include "certificates/plane_certificates.hpp"
 #include "kds/audit.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "structures/bracket.hpp"

@@ -5,6 +5,7 @@
 #include "kds/framework/kinetic.hpp"
 #include "structures/ranking.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -81,6 +82,13 @@ class HeapRule {
   template <class Archive>
   void archive(Archive& archive) {
     archive(heap_, place_);
+    if constexpr (Archive::loading) {
+      for (std::size_t i = 0; i < heap_.size(); ++i) {
+        archive.require(heap_[i] < place_.size() && place_[heap_[i]] == i, "an element of a heap is at another place");
+      }
+      const auto absentees = static_cast<std::size_t>(std::count(place_.begin(), place_.end(), absent));
+      archive.require(place_.size() - absentees == heap_.size(), "a heap knows the place of an element it has not");
+    }
   }
 
  private:

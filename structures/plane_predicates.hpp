@@ -1,9 +1,7 @@
 // What is asked of points in the plane at an instant, answered by the exact signs of certificates.
 #pragma once
 
-#include "certificates/direction_order.hpp"
-#include "certificates/in_circle.hpp"
-#include "certificates/orientation.hpp"
+#include "certificates/plane_certificates.hpp"
 #include "kds/bounded.hpp"
 #include "kds/framework/moving_set.hpp"
 

@@ -4,6 +4,7 @@
 #include "structures/sorted_list.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -50,7 +51,25 @@ void SortedList<Degree, Listener, Queue, Solver>::archive(Archive& archive) {
   archive.tag("SortedList of degree " + std::to_string(Degree) + (by_place ? ", events by place" : ", events by id"));
   archive(order_, position_, disturbed_, schedule_, measures_);
   if constexpr (requires { listener_.archive(archive); }) listener_.archive(archive);
-  if constexpr (Archive::loading) settle();
+  if constexpr (Archive::loading) {
+    const std::size_t slots = schedule_.queue().slots();
+    archive.require(slots == (by_place ? order_.size() : position_.size()), "a list has not one event for each place");
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      const Id id = order_[i].id;
+      archive.require(id < position_.size() && position_[id] == i, "an element of a list stands at another place");
+      archive.require(is_finite(order_[i].motion), "the motion of an element of a list is not finite");
+    }
+    const auto absentees = std::count(position_.begin(), position_.end(), absent);
+    archive.require(position_.size() - static_cast<std::size_t>(absentees) == order_.size(),
+                    "a list knows the place of an element that it has not");
+    for (Slot event = 0; event < slots; ++event) {
+      if (!schedule_.contains(event)) continue;
+      archive.require((by_place || position_[event] != absent) && left_of(event) + 1 < order_.size(),
+                      "a list has an event of no pair");
+    }
+    archive.require(!std::isnan(disturbed_), "a time is not a number");
+    settle();
+  }
 }
 
 }  // namespace kds::structures

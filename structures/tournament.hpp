@@ -8,6 +8,7 @@
 #include "kds/motion.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -121,9 +122,33 @@ class Tournament {
   void archive(Archive& archive) {
     archive.tag("Tournament of degree " + std::to_string(Degree));
     archive(entrants_, winner_, schedule_, capacity_, size_, measures_);
+    if constexpr (Archive::loading) check(archive);
   }
 
  private:
+  /// What has been loaded.
+  template <class Archive>
+  void check(const Archive& archive) const {
+    archive.require(capacity_ == 0 || (capacity_ >= 2 && std::has_single_bit(capacity_)),
+                    "the size of a tournament is no power of two");
+    const bool sizes = entrants_.size() == capacity_ && winner_.size() == capacity_;
+    archive.require(sizes && schedule_.queue().slots() == capacity_, "a tournament has not one match for each place");
+    std::size_t found = 0;
+    for (const auto& entrant : entrants_) {
+      found += entrant.has_value();
+      archive.require(!entrant || is_finite(*entrant), "the motion of an entrant is not finite");
+    }
+    archive.require(found == size_, "a tournament has not as many entrants as it says");
+    for (std::size_t node = capacity_; node-- > 1;) {  // the matches below come before
+      const Id left = winner_of(2 * node);
+      const Id right = winner_of(2 * node + 1);
+      const bool played = winner_[node] == left || winner_[node] == right;
+      archive.require(played && (winner_[node] != nobody || left == right), "the winner of a match did not play");
+      archive.require(is_played(node) || !schedule_.contains(static_cast<Slot>(node)), "there is an event of no match");
+    }
+    archive.require(capacity_ == 0 || !schedule_.contains(0), "there is an event of no match");
+  }
+
   static constexpr Id nobody = std::numeric_limits<Id>::max();
 
   // A complete binary tree in heap order: matches 1 .. capacity - 1, entrant i at capacity + i.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/features/patch_paths.hpp"
+#include "certificates/vectors.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -60,17 +61,17 @@ class PlacedPatch {
     falling_ = -detail::dot(q, e_);
     u_ = detail::corner(e_, 0);
     v_ = -detail::corner(e_, last);
-    n_ = u_.cross(v_);
-    n2_ = n_.dot(n_);
+    n_ = cross(u_, v_);
+    n2_ = dot(n_, n_);
   }
 
   PatchPoint closest() const {
     const double uu = squared_[0];
     const double vv = squared_[last];
     if (n2_ > flat_patch * uu * vv) {
-      const double uv = u_.dot(v_);
+      const double uv = dot(u_, v_);
       const double fu = falling_[0];
-      const double fv = -v_.dot(detail::corner(q_, 0));
+      const double fv = -dot(v_, detail::corner(q_, 0));
       if (inside(vv * fu - uv * fv, uu * fv - uv * fu, n2_)) {
         const double height = volume();
         return {n_ * (height / n2_), height * height / n2_, PatchPart::interior, 0, 0};
@@ -113,7 +114,7 @@ class PlacedPatch {
       axes[4 + k] = across(across(axes[k], e), e);
     }
     axes[8] = across(n_, squared_[0] > squared_[last] ? u_ : v_);
-    if (axes[8].dot(axes[0]) < 0) axes[8] = -axes[8];
+    if (dot(axes[8], axes[0]) < 0) axes[8] = -axes[8];
     return axes;
   }
 
@@ -121,12 +122,12 @@ class PlacedPatch {
   const Eigen::Vector3d& normal() const { return n_; }
   double squared_normal() const { return n2_; }
   /// n . q0: six times the volume of the tetrahedron of the four points, up to its sign.
-  double volume() const { return n_.dot(detail::corner(q_, 0)); }
+  double volume() const { return dot(n_, detail::corner(q_, 0)); }
 
   /// For the foot q0 + x u + y v of the origin: x and y, times |n|^2.
   std::array<double, 2> foot() const {
     const Eigen::Vector3d q0 = detail::corner(q_, 0);
-    return {n_.dot(v_.cross(q0)), -n_.dot(u_.cross(q0))};
+    return {dot(n_, cross(v_, q0)), -dot(n_, cross(u_, q0))};
   }
 
  private:
@@ -141,8 +142,8 @@ class PlacedPatch {
 
   /// n less its part along e.
   static Eigen::Vector3d across(const Eigen::Vector3d& n, const Eigen::Vector3d& e) {
-    const double squared = e.dot(e);
-    return squared > 0 ? n - e * (n.dot(e) / squared) : n;
+    const double squared = dot(e, e);
+    return squared > 0 ? n - e * (dot(n, e) / squared) : n;
   }
 
   static bool inside(double x, double y, double n2) {
@@ -157,9 +158,9 @@ class PlacedPatch {
     y /= n2_;
     const Eigen::Vector3d p = detail::corner(q_, 0) + x * u_ + y * v_;
     if (squared_[0] > squared_[last]) {
-      x -= p.dot(u_) / squared_[0];
+      x -= dot(p, u_) / squared_[0];
     } else {
-      y -= p.dot(v_) / squared_[last];
+      y -= dot(p, v_) / squared_[last];
     }
     x = std::clamp(x, 0.0, 1.0);
     y = std::clamp(y, 0.0, kind == Patch::triangle ? 1 - x : 1.0);
@@ -173,7 +174,7 @@ class PlacedPatch {
     if (!inside(x, y, n2_)) return on_edges;
     const Eigen::Vector3d& longer = squared_[0] > squared_[last] ? u_ : v_;
     PatchPoint point{across(n_, longer) * (volume() / n2_), 0, PatchPart::interior, 0, 0};
-    const double distance = position(corner_weights(interior_place())).squaredNorm();
+    const double distance = squared_norm(position(corner_weights(interior_place())));
     if (!(distance < on_edges.squared_distance)) return on_edges;
     point.squared_distance = distance;
     return point;

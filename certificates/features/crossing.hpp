@@ -3,6 +3,7 @@
 
 #include "certificates/features/closest_point.hpp"
 #include "certificates/features/turning_axis.hpp"
+#include "certificates/vectors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -42,7 +43,7 @@ class Crossing {
     const double inverse = 1 / std::sqrt(now_.squared_normal());
     const double volume = now_.volume();
     const Eigen::Vector3d velocity = detail::weighted(paths_.velocity(s_), weights);
-    const double across = now_.normal().dot(velocity);
+    const double across = dot(now_.normal(), velocity);
     const double closing = (volume < 0 ? across : -across) * inverse;
     const double noise = turning_.volume_error() + 0x1p-48 * norm(turning_.volume());
     const double height = std::abs(volume) * inverse;

@@ -5,6 +5,7 @@
 #include "certificates/features/fixed_axis.hpp"
 #include "certificates/features/patch_paths.hpp"
 #include "certificates/features/turning_axis.hpp"
+#include "certificates/vectors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -88,8 +89,8 @@ class Search {
     until = std::max(until,
                      steps < plane_steps ? turning_->separated_by_plane_until(s) : turning_->separated_until(point, s));
     if (steps >= extrapolated_steps && until < 1) {
-      until = std::max(until,
-                       turning_->separated_turning_on(axis_.normalized(), axis_time_, point.position.normalized(), s));
+      until =
+          std::max(until, turning_->separated_turning_on(normalized(axis_), axis_time_, normalized(point.position), s));
     }
     if (!(until > s)) {
       for (const auto& axis : patch.careful_axes()) until = std::max(until, separated_until(paths_, margin_, axis, s));
@@ -100,7 +101,7 @@ class Search {
   bool touches(const PlacedPatch<kind>& patch, const PatchPoint& point, double s) {
     const auto w = patch.weights(point);
     const Eigen::Vector3d p = patch.position(w);
-    if (p.squaredNorm() > inner2_) return false;
+    if (squared_norm(p) > inner2_) return false;
     if (s == 0) {
       describe(patch, w, p, s, FeatureContactStatus::at_start);
       return true;
@@ -121,7 +122,7 @@ class Search {
     result_.time = s > 0 ? std::max(clock(s, -1), t0_) : t0_;
     // While the clock is rounded (see clock()) a corner moves on: by sqrt(3) 2 size a unit of s at most.
     const double rounding = s > 0 ? 0x1p-50 * (std::abs(result_.time) / (t1_ - t0_) + s) : 0;
-    const double distance = p.norm();
+    const double distance = norm(p);
     result_.distance = (distance + 3 * margin_ + 4 * paths_.size * rounding) * unscale_;
     if constexpr (kind == Patch::triangle) {
       result_.weights = {1, w[0] + w[3], w[1], w[2]};
@@ -134,13 +135,13 @@ class Search {
   /// The way from the one feature to the other, where it is longer than its error; else the last axis that separated
   /// them; else, at the start, the normal of the patch, against its motion; else any.
   Eigen::Vector3d normal(const PlacedPatch<kind>& patch, double s) const {
-    if (axis_.squaredNorm() > 0) return axis_.normalized();
+    if (squared_norm(axis_) > 0) return normalized(axis_);
     Eigen::Vector3d n = patch.normal();
     const Corners v = paths_.velocity(s);
     const Eigen::Vector3d velocity = detail::weighted(v, {0.25, 0.25, 0.25, 0.25});
-    if (!(n.squaredNorm() > 0)) n = -velocity;
-    if (!(n.squaredNorm() > 0)) return Eigen::Vector3d::UnitZ();
-    return (n.dot(velocity) > 0 ? -n : n).normalized();
+    if (!(squared_norm(n) > 0)) n = -velocity;
+    if (!(squared_norm(n) > 0)) return Eigen::Vector3d::UnitZ();
+    return normalized(dot(n, velocity) > 0 ? -n : n);
   }
 
   /// The time at s, rounded down or up by more than all its roundings: those of the duration, the product and the sum.

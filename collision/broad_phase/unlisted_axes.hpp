@@ -70,7 +70,7 @@ class UnlistedAxes {
     }
   };
 
-  /// Changes found by process() are appended to `changes`. There are 3 directions, or more.
+  /// Changes found by process() are appended to `changes`. There are 3 directions, or up to the 13 of a 26-DOP.
   UnlistedAxes(std::vector<PairChange>& changes, std::size_t directions)
       : changes_(&changes), directions_(directions), queue_(PairRank{&pairs_}) {}
   UnlistedAxes(const UnlistedAxes&) = delete;
@@ -142,6 +142,7 @@ class UnlistedAxes {
     }
   };
   class Sides;
+  static constexpr std::size_t most_directions = 13;  ///< of a 26-DOP, the most there is
 
   using Apart = certificates::Order<Degree>;
 
@@ -167,7 +168,6 @@ class UnlistedAxes {
   std::vector<Hull> hulls_;                      // by body
   std::vector<KineticSlab<Degree>> slabs_;       // by body and direction, if there are more than the axes
   std::vector<float> more_hulls_;                // by body and direction of more_: from, to
-  mutable std::vector<Apart> scratch_;           // of Sides
   std::vector<std::vector<PairSlot>> pairs_of_;  // by body
   std::vector<Pair> pairs_;                      // those that overlap, or will before the horizon
   std::vector<PairSlot> free_;

@@ -3,6 +3,8 @@
 
 #include "collision/broad_phase/unlisted_axes.hpp"
 
+#include <boost/container/static_vector.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,21 +22,18 @@ class UnlistedAxes<Degree>::Sides {
         apart_{Apart{ends_[0].a_max, ends_[0].b_min}, Apart{ends_[0].b_max, ends_[0].a_min},
                Apart{ends_[1].a_max, ends_[1].b_min}, Apart{ends_[1].b_max, ends_[1].a_min}},
         count_(axes.count_) {
-    if (axes.more_.empty()) return;
-    axes.scratch_.clear();
     for (const std::size_t d : axes.more_) {
       const KineticSlab<Degree>& slab_a = axes.slab(a, d);
       const KineticSlab<Degree>& slab_b = axes.slab(b, d);
-      axes.scratch_.push_back({slab_a.max, slab_b.min});
-      axes.scratch_.push_back({slab_b.max, slab_a.min});
+      more_.push_back({slab_a.max, slab_b.min});
+      more_.push_back({slab_b.max, slab_a.min});
     }
-    more_ = axes.scratch_;
   }
   Sides(const Sides&) = delete;
   Sides& operator=(const Sides&) = delete;
 
   std::span<const Apart> apart() const { return {apart_.data(), 2 * count_}; }  ///< on axes
-  std::span<const Apart> more() const { return more_; }                         ///< in other directions
+  std::span<const Apart> more() const { return {more_.data(), more_.size()}; }  ///< in other directions
 
   /// Whether the boxes certainly do not overlap from now to the horizon: straight paths in doubles.
   ///
@@ -88,7 +87,7 @@ class UnlistedAxes<Degree>::Sides {
   std::array<Ends, 2> ends_;
   std::array<Apart, 4> apart_;
   std::size_t count_;
-  std::span<const Apart> more_;
+  boost::container::static_vector<Apart, 2 * most_directions> more_;
 };
 
 }  // namespace kds::collision

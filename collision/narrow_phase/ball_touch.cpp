@@ -1,5 +1,7 @@
 #include "collision/narrow_phase/ball_touch.hpp"
 
+#include "collision/vectors.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -229,7 +231,7 @@ double BallTouch<Degree>::turning(double tau, double end) const {
       const auto points = quartic.turning_points(horizon_);
       for (std::size_t i = 0; i < points.size; ++i) {
         const double top = points.at[i];
-        if (quartic.bend(top) < 0) consider(top, place_on(path, top).norm());
+        if (quartic.bend(top) < 0) consider(top, norm(place_on(path, top)));
       }
     };
     const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));

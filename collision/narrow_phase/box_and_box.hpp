@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/gap_conditions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/quick_motion.hpp"
+#include "collision/vectors.hpp"
 
 #include <Eigen/Core>
 
@@ -35,7 +36,7 @@ void every_box_axis(const PlacedShape& a, const PlacedShape& b, const Visit& vis
   const int count = a.rotation == b.rotation ? 3 : 15;
   for (int k = 0; k < count; ++k) {
     const Eigen::Vector3d axis = box_axis(a, b, k);
-    if ((k < 6 || axis.squaredNorm() > parallel_edges) && !visit(axis, k)) return;
+    if ((k < 6 || squared_norm(axis) > parallel_edges) && !visit(axis, k)) return;
   }
 }
 

@@ -1,5 +1,7 @@
 #include "collision/narrow_phase/contact_patch.hpp"
 
+#include "collision/vectors.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -25,7 +27,7 @@ Vector3d between_segments(const Vector3d& p0, const Vector3d& p1, const Vector3d
   const Vector3d u = p1 - p0;
   const Vector3d v = q1 - q0;
   const Vector3d w = p0 - q0;
-  const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
   const double determinant = uu * vv - uv * uv;
   if (determinant <= parallel_sine * uu * vv) {
     // Parallel: the middle of the stretch they share, measured along u.
@@ -45,8 +47,8 @@ Vector3d between_segments(const Vector3d& p0, const Vector3d& p1, const Vector3d
 std::pair<Vector3d, Vector3d> tangents(const Vector3d& normal) {
   int smallest = 0;
   normal.cwiseAbs().minCoeff(&smallest);
-  const Vector3d first = normal.cross(Vector3d::Unit(smallest)).normalized();
-  return {first, normal.cross(first)};
+  const Vector3d first = normalized(cross(normal, Vector3d::Unit(smallest)));
+  return {first, cross(normal, first)};
 }
 
 /// Cuts a polygon or segment with the half plane left of the line from `from` to `to`, seen along the normal.
@@ -55,8 +57,8 @@ std::vector<Vector3d> clip(const std::vector<Vector3d>& polygon, const Vector3d&
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector3d& here = polygon[i];
     const Vector3d& next = polygon[(i + 1) % polygon.size()];
-    const double d_here = inward.dot(here - from);
-    const double d_next = inward.dot(next - from);
+    const double d_here = dot(inward, here - from);
+    const double d_next = dot(inward, next - from);
     if (d_here >= 0) kept.push_back(here);
     if ((d_here < 0) != (d_next < 0)) kept.push_back(here + (next - here) * (d_here / (d_here - d_next)));
   }
@@ -97,8 +99,8 @@ BoxSupport box_support(const PlacedShape& box, const Vector3d& direction) {
   BoxSide side;
   for (int d = 0; d < 3; ++d) {
     const Vector3d& u = box.half_axes[static_cast<std::size_t>(d)];
-    const double along = direction.dot(u);
-    side[d] = std::abs(along) <= parallel_sine * u.norm() ? 0 : (along > 0 ? 1 : -1);
+    const double along = dot(direction, u);
+    side[d] = std::abs(along) <= parallel_sine * norm(u) ? 0 : (along > 0 ? 1 : -1);
   }
   BoxSupport support{box_feature(side), {Vector3d::Zero()}};
   for (int d = 0; d < 3; ++d) {
@@ -131,12 +133,12 @@ Vector3d patch_centre(std::span<const Vector3d> a, std::span<const Vector3d> b, 
   for (std::size_t i = 0; i < window.size(); ++i) {
     const Vector3d& p = window[i];
     const Vector3d& q = window[(i + 1) % window.size()];
-    area += first.dot(p) * second.dot(q) - first.dot(q) * second.dot(p);
+    area += dot(first, p) * dot(second, q) - dot(first, q) * dot(second, p);
   }
   const double turn = area < 0 ? -1.0 : 1.0;
   for (std::size_t i = 0; i < window.size() && !cut.empty(); ++i) {
     const Vector3d along = window[(i + 1) % window.size()] - window[i];
-    cut = clip(cut, window[i], turn * normal.cross(along));
+    cut = clip(cut, window[i], turn * cross(normal, along));
   }
   // Empty only where rounding has just parted them.
   return cut.empty() ? mean(window) : mean(cut);

@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/box_and_box.hpp"
 #include "collision/narrow_phase/contact_patch.hpp"
 #include "collision/shapes/rotation.hpp"
+#include "collision/vectors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,9 +40,9 @@ Contact box_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>
   const Vector3d nearest = x.cwiseMax(-h).cwiseMin(h);
   Vector3d normal = x - nearest;
   BoxSide touched = BoxSide::Zero();
-  if (normal.squaredNorm() > 0) {
+  if (squared_norm(normal) > 0) {
     for (int d = 0; d < 3; ++d) touched[d] = normal[d] > 0 ? 1 : (normal[d] < 0 ? -1 : 0);
-    normal.normalize();
+    normal = normalized(normal);
   } else {  // The centre is inside: out through the nearest face.
     int axis = 0;
     (h - x.cwiseAbs()).minCoeff(&axis);
@@ -64,10 +65,10 @@ Contact box_box_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
   Contact contact;
   contact.time = t;
   every_box_axis(a.shape, b.shape, [&](const Vector3d& axis, int) {
-    const Vector3d n = axis.normalized() * (axis.dot(apart) < 0 ? -1.0 : 1.0);
-    double gap = n.dot(apart);
-    for (const auto& u : a.shape.half_axes) gap -= std::abs(n.dot(u));
-    for (const auto& u : b.shape.half_axes) gap -= std::abs(n.dot(u));
+    const Vector3d n = normalized(axis) * (dot(axis, apart) < 0 ? -1.0 : 1.0);
+    double gap = dot(n, apart);
+    for (const auto& u : a.shape.half_axes) gap -= std::abs(dot(n, u));
+    for (const auto& u : b.shape.half_axes) gap -= std::abs(dot(n, u));
     if (gap > deepest) {
       deepest = gap;
       contact.normal = n;
@@ -87,17 +88,17 @@ Contact box_box_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
 /// Whether b moves towards a along the normal just after t.
 template <int Degree>
 bool approaching(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
-  const double rate = contact.normal.dot(b.motion.velocity(contact.time) - a.motion.velocity(contact.time));
+  const double rate = dot(contact.normal, b.motion.velocity(contact.time) - a.motion.velocity(contact.time));
   if (rate != 0) return rate < 0;
-  return contact.normal.dot(b.motion.acceleration(contact.time) - a.motion.acceleration(contact.time)) < 0;
+  return dot(contact.normal, b.motion.acceleration(contact.time) - a.motion.acceleration(contact.time)) < 0;
 }
 
 /// When bodies that move apart along the contact's normal will turn towards each other.
 template <int Degree>
 double turning_time(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
   const double t = contact.time;
-  const double rate = contact.normal.dot(b.motion.velocity(t) - a.motion.velocity(t));
-  const double bend = contact.normal.dot(b.motion.acceleration(t) - a.motion.acceleration(t));
+  const double rate = dot(contact.normal, b.motion.velocity(t) - a.motion.velocity(t));
+  const double bend = dot(contact.normal, b.motion.acceleration(t) - a.motion.acceleration(t));
   return bend < 0 ? std::max(next_up(t), t + rate / -bend) : never;
 }
 

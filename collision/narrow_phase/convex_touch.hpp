@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
+#include "collision/vectors.hpp"
 
 #include <Eigen/Core>
 
@@ -28,9 +29,9 @@ template <int Degree>
 std::array<double, 2> smallest_speeds(const RelativeMotion<Degree>& motion) {
   constexpr double rounding = 8 * 0x1p-53;
   if constexpr (Degree == 1) {
-    return {rounding * motion.coefficients[1].norm(), 0};
+    return {rounding * norm(motion.coefficients[1]), 0};
   } else {
-    return {rounding * motion.coefficients[1].norm(), 2 * rounding * motion.coefficients[2].norm()};
+    return {rounding * norm(motion.coefficients[1]), 2 * rounding * norm(motion.coefficients[2])};
   }
 }
 
@@ -52,6 +53,7 @@ class ConvexTouch {
     };
     every_condition([&](const Condition& condition) { add_side(condition, true); });
     every_kdop_direction(a_, b_, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
+      if (Degree == 1 && !(enter_ <= leave_)) return false;  // they never touch
       both_sides(axis, of_a, of_b, [&](const Condition& condition) { add_side(condition, false); });
       return true;
     });

@@ -4,6 +4,7 @@
 #include "certificates/point_motion.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/vectors.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
 #include <Eigen/Core>
@@ -52,9 +53,9 @@ ContactGap<Degree> contact_gap(const RelativeMotion<Degree>& motion, double radi
   const double clock = ContactGap<Degree>::clock * std::abs(motion.epoch);
   double size = radii;
   for (std::size_t i = 0; i <= Degree; ++i) {
-    size += motion.coefficients[i].norm();
+    size += norm(motion.coefficients[i]);
     gap.c[i] = ContactGap<Degree>::roundings * size + motion.uncertainty[i];
-    if (i < Degree) gap.c[i] += clock * static_cast<double>(i + 1) * motion.coefficients[i + 1].norm();
+    if (i < Degree) gap.c[i] += clock * static_cast<double>(i + 1) * norm(motion.coefficients[i + 1]);
     size = 0;
   }
   return gap;

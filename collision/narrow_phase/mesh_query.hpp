@@ -12,6 +12,7 @@
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/vectors.hpp"
 
 #include <Eigen/Core>
 
@@ -250,7 +251,7 @@ class Query : private PairTimes<Degree> {
   /// Asked at a time when nothing is near: halfway between the centres.
   MeshTouchPlace without_contact(double tau) const {
     const Eigen::Vector3d offset = motion_.position(tau);
-    const double distance = offset.norm();
+    const double distance = norm(offset);
     return {0.5 * offset,
             distance > 0 ? Eigen::Vector3d(offset / distance) : Eigen::Vector3d(Eigen::Vector3d::UnitX()),
             {},

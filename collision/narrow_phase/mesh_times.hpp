@@ -7,6 +7,7 @@
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
+#include "collision/vectors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -67,9 +68,9 @@ class PairTimes {
       if (g[1] > 0 || g[2] > 0) last = std::min(last, quadratic_roots(excess, g[1], g[2]).rising);
       // By the triangle inequality: |r2| tau^2 <= |r0| + |r1| tau + reach.
       const auto& r = motion_.coefficients;
-      const double c2 = r[2].norm() - margin_[2];
+      const double c2 = norm(r[2]) - margin_[2];
       if (!(c2 > 0)) return last;
-      const auto roots = quadratic_roots(-(r[0].norm() + radii_ + margin_[0]), -(r[1].norm() + margin_[1]), c2);
+      const auto roots = quadratic_roots(-(norm(r[0]) + radii_ + margin_[0]), -(norm(r[1]) + margin_[1]), c2);
       return std::min(roots.rising * (1 + ContactGap<Degree>::roundings), last);
     }
   }
@@ -84,7 +85,7 @@ class PairTimes {
     if constexpr (Degree == 1) {
       if (r[1].isZero(0) && gap_.c[1] == 0) return begin;
     } else {
-      const double bend = r[2].norm();
+      const double bend = norm(r[2]);
       if (bend > 0) end = std::min(end, begin + std::sqrt(4 * most_bend * radii_ / bend));
     }
     const double most = std::max(2 * gap_(begin), large * radii_);

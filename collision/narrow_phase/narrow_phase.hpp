@@ -4,6 +4,7 @@
 #include "certificates/point_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/vectors.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
 #include <cstdint>
@@ -91,7 +92,7 @@ Contact ball_contact_at(const certificates::PointMotion<Degree>& a, const certif
   contact.time = t;
   const Eigen::Vector3d centre_a = a.position(t);
   const Eigen::Vector3d apart = b.position(t) - centre_a;
-  if (apart.norm() > 0) contact.normal = apart.normalized();
+  if (norm(apart) > 0) contact.normal = normalized(apart);
   contact.point = centre_a + contact.normal * radius_a;
   return contact;
 }

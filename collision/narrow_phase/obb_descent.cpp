@@ -1,5 +1,7 @@
 #include "collision/narrow_phase/obb_descent.hpp"
 
+#include "collision/vectors.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -68,7 +70,7 @@ SliceMotion<Degree>::SliceMotion(const RelativeMotion<Degree>& motion, const Con
   r[1] = motion.velocity(slice.begin) * (slice.length() / size);
   if constexpr (Degree == 2) {
     r[2] = motion.coefficients[2] * (slice.length() * slice.length() / size);
-    bend = rounded_up(r[2].norm());
+    bend = rounded_up(norm(r[2]));
   }
 }
 

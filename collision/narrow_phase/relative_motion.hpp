@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/point_motion.hpp"
+#include "collision/vectors.hpp"
 #include "kds/arithmetic/ball.hpp"
 
 #include <Eigen/Core>
@@ -11,14 +12,6 @@
 #include <cstddef>
 
 namespace kds::collision {
-
-/// Products and sums in one fixed order: the same bits whatever Eigen is told about vector instructions.
-inline double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Eigen::Vector3d cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// Centre of b minus centre of a: coefficients of a polynomial in tau, the time since the epoch of the pair. Bodies do
 /// not rotate, so this is all that moves in a pair.

@@ -1,6 +1,7 @@
 #include "collision/response/least_constraint.hpp"
 
-#include <Eigen/Dense>
+#include "collision/response/least_norm.hpp"
+#include "collision/vectors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,7 +31,9 @@ double greatest(std::span<const Vector3d> rates) {
   return result;
 }
 
-bool along_axis(const Vector3d& normal) { return normal.cwiseAbs().sum() == 1 && normal.cwiseAbs().maxCoeff() == 1; }
+bool along_axis(const Vector3d& normal) {
+  return std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2]) == 1 && normal.cwiseAbs().maxCoeff() == 1;
+}
 
 /// Of a fixed partner nothing is taken, and the other takes all of it, exactly.
 void push(Rates rates, Touch& touch, double amount) {
@@ -90,10 +93,11 @@ class ActiveSet {
  public:
   ActiveSet(Rates rates, Touches touches, double target, double scale)
       : rates_(rates), touches_(touches), target_(target), scale_(scale), active_(touches.size(), false) {
-    const auto n = static_cast<Eigen::Index>(touches.size());
-    matrix_.resize(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j <= i; ++j) matrix_(i, j) = matrix_(j, i) = coupling(touch(i), touch(j));
+    const std::size_t n = touches.size();
+    matrix_.resize(n * n);
+    for (std::size_t i = 0; i < n; ++i) {
+      matrix_[i * n + i] = 1;
+      for (std::size_t j = 0; j < i; ++j) matrix_[i * n + j] = matrix_[j * n + i] = coupling(touches[i], touches[j]);
     }
   }
 
@@ -111,7 +115,8 @@ class ActiveSet {
   }
 
  private:
-  Touch& touch(Eigen::Index i) const { return touches_[static_cast<std::size_t>(i)]; }
+  static constexpr std::size_t none = ~std::size_t{0};
+
   static double sum(const Touch& touch) { return touch.inverse_mass_a + touch.inverse_mass_b; }
 
   static double coupling(const Touch& x, const Touch& y) {
@@ -120,7 +125,7 @@ class ActiveSet {
     if (x.b == y.b) shared += x.inverse_mass_b;
     if (x.a == y.b) shared -= x.inverse_mass_a;
     if (x.b == y.a) shared -= x.inverse_mass_b;
-    return shared * x.normal.dot(y.normal) / (std::sqrt(sum(x)) * std::sqrt(sum(y)));
+    return shared * dot(x.normal, y.normal) / (std::sqrt(sum(x)) * std::sqrt(sum(y)));
   }
 
   double lack(std::size_t i) const { return aim_of(touches_[i], target_) - parting_rate(rates_, touches_[i]); }
@@ -139,43 +144,37 @@ class ActiveSet {
   /// Solves for the active touches, lets go those that would pull, on the way, and repeats.
   bool improve() {
     for (std::size_t round = 0; round <= touches_.size() + 4; ++round) {
-      std::vector<Eigen::Index> places;
+      std::vector<std::size_t> places;
       for (std::size_t i = 0; i < touches_.size(); ++i) {
-        if (active_[i]) places.push_back(static_cast<Eigen::Index>(i));
+        if (active_[i]) places.push_back(i);
       }
       if (places.empty()) return true;
-      const auto n = static_cast<Eigen::Index>(places.size());
-      Eigen::MatrixXd matrix(n, n);
-      Eigen::VectorXd lacks(n);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const Touch& t = touch(places[static_cast<std::size_t>(i)]);
-        lacks[i] = lack(static_cast<std::size_t>(places[static_cast<std::size_t>(i)])) / std::sqrt(sum(t));
-        for (Eigen::Index j = 0; j < n; ++j) {
-          matrix(i, j) = matrix_(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
-        }
+      const std::size_t n = places.size();
+      std::vector<double> matrix(n * n), lacks(n);
+      for (std::size_t i = 0; i < n; ++i) {
+        lacks[i] = lack(places[i]) / std::sqrt(sum(touches_[places[i]]));
+        for (std::size_t j = 0; j < n; ++j) matrix[i * n + j] = matrix_[places[i] * touches_.size() + places[j]];
       }
-      const Eigen::VectorXd change = matrix.completeOrthogonalDecomposition().solve(lacks);
-      if (!change.allFinite()) return false;
+      const std::vector<double> change = least_norm_solution(matrix, lacks);
+      if (!std::all_of(change.begin(), change.end(), [](double x) { return std::isfinite(x); })) return false;
       // As far as no push becomes a pull.
       double part = 1;
-      Eigen::Index first = -1;
+      std::size_t first = none;
       std::vector<double> amounts;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const Touch& t = touch(places[static_cast<std::size_t>(i)]);
+      for (std::size_t i = 0; i < n; ++i) {
+        const Touch& t = touches_[places[i]];
         amounts.push_back(change[i] * std::sqrt(sum(t)));
         if (t.push + part * amounts.back() < 0) {
           part = t.push / -amounts.back();
-          first = places[static_cast<std::size_t>(i)];
+          first = places[i];
         }
       }
       double largest_lack = 0;
-      for (std::size_t i = 0; i < places.size(); ++i) push(rates_, touch(places[i]), part * amounts[i]);
-      for (const Eigen::Index place : places) {
-        largest_lack = std::max(largest_lack, std::abs(lack(static_cast<std::size_t>(place))));
-      }
-      if (first >= 0) {
-        push(rates_, touch(first), -touch(first).push);
-        active_[static_cast<std::size_t>(first)] = false;
+      for (std::size_t i = 0; i < n; ++i) push(rates_, touches_[places[i]], part * amounts[i]);
+      for (const std::size_t place : places) largest_lack = std::max(largest_lack, std::abs(lack(place)));
+      if (first != none) {
+        push(rates_, touches_[first], -touches_[first].push);
+        active_[first] = false;
       } else if (largest_lack <= 0x1p-48 * scale_) {
         return true;
       } else if (round > 4 && largest_lack > rate_rounding * scale_) {
@@ -190,7 +189,7 @@ class ActiveSet {
   double target_;
   double scale_;
   std::vector<bool> active_;
-  Eigen::MatrixXd matrix_;
+  std::vector<double> matrix_;  // row by row
 };
 
 constexpr std::size_t most_active = 64;

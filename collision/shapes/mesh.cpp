@@ -1,5 +1,7 @@
 #include "collision/shapes/mesh.hpp"
 
+#include "collision/vectors.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -34,8 +36,8 @@ bool in_a_line(const Vector3d& p, const Vector3d& q, const Vector3d& r) {
   v /= size;
   w /= size;
   // The angle between the two longest edges is the smallest one: the sine that counts.
-  const double longest = std::max({u.norm(), v.norm(), w.norm()});
-  return u.cross(v).norm() <= Mesh::thinnest_sine * longest * longest;
+  const double longest = std::max({norm(u), norm(v), norm(w)});
+  return norm(cross(u, v)) <= Mesh::thinnest_sine * longest * longest;
 }
 
 void check_triangles(std::span<const Vector3d> vertices, std::span<const Mesh::Triangle> triangles) {
@@ -72,7 +74,7 @@ Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
     : vertices_(std::move(vertices)),
       triangles_(checked(vertices_, std::move(triangles))),
       tree_(vertices_, triangles_) {
-  for (const Vector3d& v : vertices_) bounding_radius_ = std::max(bounding_radius_, v.norm());
+  for (const Vector3d& v : vertices_) bounding_radius_ = std::max(bounding_radius_, norm(v));
   bounding_radius_ *= 1 + 0x1p-50;  // three roundings of the norm, upward
   shortest_edge_ = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : triangles_) {
@@ -136,7 +138,7 @@ std::array<double, 2> Mesh::extent(const Eigen::Matrix3d& rotation, double scale
   std::array<double, 2> ends{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const VertexPair& pair : used_) {
     for (int i = 0; i < 2; ++i) {
-      const double along = direction.dot(placed_vertex(rotation, scale, {pair.x[i], pair.y[i], pair.z[i]}));
+      const double along = dot(direction, placed_vertex(rotation, scale, {pair.x[i], pair.y[i], pair.z[i]}));
       ends = {std::min(ends[0], along), std::max(ends[1], along)};
     }
   }

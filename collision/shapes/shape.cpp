@@ -2,6 +2,7 @@
 
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/shapes/mesh.hpp"
+#include "collision/vectors.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -70,15 +71,24 @@ PlacedShape placed_ball(double radius) {
 
 PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
   if (!orientation.coeffs().allFinite()) throw std::invalid_argument("orientation: must be finite");
-  if (std::abs(orientation.norm() - 1) > quaternion_tolerance) {
+  const double length = norm(orientation);
+  if (std::abs(length - 1) > quaternion_tolerance) {
     throw std::invalid_argument("orientation: must be a unit quaternion");
+  }
+  const bool identity = orientation.vec().isZero(0);
+  const Eigen::Quaterniond unit(orientation.coeffs() / length);
+  return place_turned(shape, identity ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : unit.toRotationMatrix());
+}
+
+PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation) {
+  const Eigen::Matrix3d off = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
+  if (!(off.cwiseAbs().maxCoeff() <= 2 * rotation_margin && rotation.determinant() > 0)) {
+    throw std::invalid_argument("orientation: its matrix is no rotation");
   }
   PlacedShape placed;
   placed.shape = shape;
-  const bool identity = orientation.vec().isZero(0);
-  if (!identity) placed.rotation = orientation.normalized().toRotationMatrix();
+  placed.rotation = rotation;
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    const Eigen::Matrix3d rotation = placed.rotation;
     placed = placed_ball(sphere->radius);
     placed.rotation = rotation;
   } else if (const auto* box = std::get_if<Box>(&shape)) {
@@ -88,8 +98,8 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
       placed.high += placed.half_axes[static_cast<std::size_t>(d)].cwiseAbs();
     }
     placed.low = -placed.high;
-    if (!is_signed_permutation(placed.rotation)) grow(placed, rotation_margin * placed.high.norm());
-    placed.bounding_radius = box->half_extents.norm() * (1 + rotation_margin);
+    if (!is_signed_permutation(placed.rotation)) grow(placed, rotation_margin * norm(placed.high));
+    placed.bounding_radius = norm(box->half_extents) * (1 + rotation_margin);
   } else {
     const auto& instance = std::get<MeshShape>(shape);
     if (!instance.mesh) throw std::invalid_argument("mesh: is missing");
@@ -105,13 +115,13 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation) {
 }
 
 std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction) {
-  const double length = direction.norm() * (1 + rotation_margin);
+  const double length = norm(direction) * (1 + rotation_margin);
   double low = 0, high = 0, margin = 0;
   if (const auto* sphere = std::get_if<Sphere>(&shape.shape)) {
     high = sphere->radius * length;
     low = -high;
   } else if (std::holds_alternative<Box>(shape.shape)) {
-    for (const Eigen::Vector3d& half : shape.half_axes) high += std::abs(direction.dot(half));
+    for (const Eigen::Vector3d& half : shape.half_axes) high += std::abs(dot(direction, half));
     low = -high;
     margin = rotation_margin * shape.bounding_radius * length;
   } else {

@@ -56,6 +56,8 @@ struct PlacedShape {
 /// the range above, a mesh must be there, the orientation must be a unit quaternion to 1e-6 (it is normalised). A mesh,
 /// scaled, must reach no farther than Mesh::largest_coordinate, and have no edge below `shortest_edge`.
 PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation);
+/// The same with the matrix that place() makes of the orientation, which must be a rotation up to its rounding.
+PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation);
 
 /// From where to where the shape reaches about its centre along a direction: least and greatest direction . x, rounded
 /// outward, with the margin of its bounding box; in units of length times that of the direction. Of a mesh it costs a

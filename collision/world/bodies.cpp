@@ -58,13 +58,14 @@ void World<Degree>::take_out(BodyId id) {
     const PairSlot slot = links_.items(removed.pairs).back().slot;
     const Pair& pair = pairs_[slot];
     // They separate, unless it has not been told yet that they overlap.
-    if (mode() == ContactMode::transparent && pair.overlapping && !take_back(Pending::Kind::overlap, pair.a, pair.b)) {
-      report(Pending::Kind::separation, pair.a, pair.b, contact_of(pair.a, pair.b, now_));
+    if (mode() == ContactMode::transparent && pair.overlapping &&
+        !reports_.take_back(Reports::Kind::overlap, pair.a, pair.b)) {
+      reports_.add(Reports::Kind::separation, pair.a, pair.b, contact_of(pair.a, pair.b, now_));
     }
     release_pair(slot);
   }
   links_.free(removed.pairs);
-  if (!pending_.empty()) keep_reports_of(id);
+  if (!reports_.empty()) reports_.keep_of(id);
   removed = Body{};
   free_removed();
   removed_.push_back(id);
@@ -208,7 +209,7 @@ void World<Degree>::pair_began(BodyId a, BodyId b, double t) {
   pair.fresh = pair.fresh || inserting_;
   ++counters_.pairs_begun;
   mark_dirty(slot);
-  if (options_.report_pairs && broad_phase_->exact()) report_pair(true, a, b);
+  if (options_.report_pairs && broad_phase_->exact()) reports_.add_volumes(true, a, b, now_);
 }
 
 template <int Degree>
@@ -257,7 +258,8 @@ void World<Degree>::pair_ended(BodyId a, BodyId b, double t) {
 template <int Degree>
 void World<Degree>::unlist(PairSlot slot) {
   Pair& pair = pairs_[slot];
-  if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap)) report_pair(false, pair.a, pair.b);
+  if (options_.report_pairs && (broad_phase_->exact() || pair.boxes_overlap))
+    reports_.add_volumes(false, pair.a, pair.b, now_);
   pair.boxes_overlap = false;
   pair.listed = false;
   ++unlisted_;

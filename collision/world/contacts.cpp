@@ -1,6 +1,7 @@
 // Contacts of the world, and how bodies respond to them.
 #include "collision/profile.hpp"
 #include "collision/response/impulse.hpp"
+#include "collision/vectors.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -17,8 +18,8 @@ template <int Degree>
 double parting(const Contact& contact, const certificates::PointMotion<Degree>& a,
                const certificates::PointMotion<Degree>& b) {
   const double t = contact.time;
-  const double rate = contact.normal.dot(b.velocity(t) - a.velocity(t));
-  return rate != 0 ? rate : contact.normal.dot(b.acceleration(t) - a.acceleration(t));
+  const double rate = dot(contact.normal, b.velocity(t) - a.velocity(t));
+  return rate != 0 ? rate : dot(contact.normal, b.acceleration(t) - a.acceleration(t));
 }
 
 }  // namespace
@@ -133,7 +134,7 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
   Motion motion_b = movers_[b].motion.restarted(contact.time);
   const Vector3d& n = contact.normal;
   const auto relative = [&](std::size_t order) {
-    return n.dot(motion_b.coefficients[order] - motion_a.coefficients[order]);
+    return dot(n, motion_b.coefficients[order] - motion_a.coefficients[order]);
   };
   const double approach = -relative(1);
   const double restitution = std::min(bodies_[a].restitution, bodies_[b].restitution);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -35,7 +36,11 @@ void World<Degree>::Image::mesh(Archive& archive, std::shared_ptr<const Mesh>& m
       return equal(other->vertices(), vertices) &&
              std::equal(triangles.begin(), triangles.end(), other->triangles().begin(), other->triangles().end());
     });
-    mesh = same != known.end() ? *same : std::make_shared<const Mesh>(std::move(vertices), std::move(triangles));
+    try {
+      mesh = same != known.end() ? *same : std::make_shared<const Mesh>(std::move(vertices), std::move(triangles));
+    } catch (const InvalidMesh& error) {
+      throw std::runtime_error(std::string("snapshot: a mesh: ") + error.what());
+    }
   }
 }
 
@@ -46,7 +51,7 @@ void World<Degree>::Image::shape(Archive& archive, BodyImage& body) const {
   std::uint32_t kind = static_cast<std::uint32_t>(placed.shape.index());
   archive(kind);
   if constexpr (Archive::loading) {
-    if (kind > 2) throw std::runtime_error("snapshot: it is damaged");
+    if (kind > 2) throw std::runtime_error("snapshot: a shape is of an unknown kind");
     if (kind == 0) placed.shape = Sphere{0};
     if (kind == 1) placed.shape = Box{Eigen::Vector3d::Zero()};
     if (kind == 2) placed.shape = MeshShape{};
@@ -58,7 +63,11 @@ void World<Degree>::Image::shape(Archive& archive, BodyImage& body) const {
   }
   if (auto* const mesh = std::get_if<MeshShape>(&placed.shape)) {
     archive(body.mesh, mesh->scale);
-    mesh->mesh = meshes.at(body.mesh);
+    if (body.mesh >= meshes.size()) {
+      throw std::runtime_error("snapshot: a body has mesh " + std::to_string(body.mesh) + ", and there are " +
+                               std::to_string(meshes.size()));
+    }
+    mesh->mesh = meshes[body.mesh];
   }
   for (double& entry : placed.rotation.reshaped()) archive(entry);
   vector(archive, placed.low), vector(archive, placed.high);
@@ -79,7 +88,7 @@ void World<Degree>::Image::body(Archive& archive, BodyImage& body) const {
 template <int Degree>
 template <class Archive>
 void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
-  archive(now, clock, horizon, has_had_meshes, counters, edits, edits_start);
+  archive(now, clock, horizon, has_had_meshes, counters, edits);
   each(archive, meshes, [&](auto& one) { mesh(archive, one, known); });
   each(archive, bodies, [&](BodyImage& one) { body(archive, one); });
   archive(free_bodies, removed, removed_at, entering);
@@ -94,7 +103,7 @@ void World<Degree>::Image::archive(Archive& archive, const std::vector<std::shar
     archive(h.a, h.b, h.wall, h.push, h.alive, h.fresh, h.left_behind);
     vector(archive, h.normal);
   });
-  each(archive, pending, [&](Pending& p) {
+  each(archive, pending, [&](auto& p) {
     archive(p.kind, p.a, p.b, p.removed, p.contact.time);
     for (Feature* f : {&p.contact.feature_a, &p.contact.feature_b}) archive(f->kind, f->first, f->second);
     vector(archive, p.contact.point), vector(archive, p.contact.normal);

@@ -44,23 +44,31 @@ struct World<Degree>::Image {
   std::vector<BodyId> free_bodies, removed, entering;
   std::vector<PairImage> pairs;
   typename RestingContacts<Degree>::Image resting;
-  std::vector<Pending> pending;
+  std::vector<detail::Pending> pending;
   double removed_at = 0;
-  std::uint64_t edits = 0;
-  double edits_start = 0;
+  EditLimit edits;
 
   /// Loading, meshes that are among `known` are not built again.
   template <class Archive>
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known);
 
+  /// Throws std::runtime_error, naming what is wrong, unless it may be an image of a world with these options: then it
+  /// can become one. See image_check.cpp.
+  void check(const WorldOptions& options) const;
+
  private:
+  /// How far the normal of a hold may be from unit length: far above what normalising rounds.
+  static constexpr double normal_rounding = 0x1p-40;
+
+  bool is_alive(BodyId id) const;
+  bool is_entered(BodyId id) const;
+  void check_bodies() const;
+  void check_pairs(const WorldOptions& options) const;
+  void check_resting(const WorldOptions& options) const;
+  void check_reports() const;
   template <class Archive, class T, class One>
   static void each(Archive& archive, std::vector<T>& values, One&& one) {
-    std::uint64_t size = values.size();
-    archive(size);
-    archive.room(size);
-    values.resize(size);
-    for (T& value : values) one(value);
+    archive.each(values, one);
   }
   template <class Archive>
   static void vector(Archive& archive, Eigen::Vector3d& v) {

@@ -1,5 +1,6 @@
 // The k-DOPs of the world's bodies.
 #include "collision/broad_phase/swept_box.hpp"
+#include "collision/vectors.hpp"
 #include "collision/world.hpp"
 #include "structures/extents.hpp"
 
@@ -17,7 +18,7 @@ bool surely_overlap_rounded(const KineticBox<Degree>& a, const KineticBox<Degree
   const StaticBox box_b = box_at(b, now);
   const double coordinates = std::max(box_a.min.abs().max(box_a.max.abs()).maxCoeff(), radius);
   const Eigen::Array3d gap = ((box_a.min - box_b.max).max(box_b.min - box_a.max) + radius).max(0);
-  return radius == 0 || gap.matrix().norm() < radius * (1 - 0x1p-18) - 0x1p-44 * coordinates;
+  return radius == 0 || norm(gap.matrix()) < radius * (1 - 0x1p-18) - 0x1p-44 * coordinates;
 }
 
 }  // namespace
@@ -45,7 +46,7 @@ void World<Degree>::place_extents(BodyId id) {
     const Eigen::Vector3d direction(directions_[i].data());
     auto& reach = extents_[id * directions_.size() + i];
     if (!b.shape || b.volume == BoundingVolume::sphere) {
-      const double radius = b.bounding_radius * direction.norm() * (1 + 0x1p-48);
+      const double radius = b.bounding_radius * norm(direction) * (1 + 0x1p-48);
       reach = {-radius, radius};
     } else {
       reach = extent(*b.shape, direction);
@@ -63,7 +64,7 @@ KineticSlab<Degree> World<Degree>::slab(BodyId id, std::size_t i, double now) co
     KineticSlab<Degree> slab = slab_around(movers_[id].motion, low, high, directions_[i]);
     if (!meshes_) return slab;
     const auto by = growth(id);
-    const double length = Eigen::Vector3d(directions_[i].data()).norm() * (1 + 0x1p-48);
+    const double length = norm(Eigen::Vector3d(directions_[i].data())) * (1 + 0x1p-48);
     for (std::size_t k = 0; k <= Degree; ++k) {
       slab.min.position.c[k] -= by[k] * length;
       slab.max.position.c[k] += by[k] * length;

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,8 +21,13 @@ namespace kds::collision {
 /// Room that a list has outgrown, or that is given back, serves the next one of that room. Memory: twice the room of
 /// all lists, at most, and what has been given back.
 /// Cost: O(1), amortised where a list or the arena grows.
-template <class T>
+///
+/// The arena has room for `Most` items, those not in use included; what would go beyond throws std::length_error, and
+/// then nothing is changed.
+template <class T, std::uint64_t Most = std::uint64_t{1} << 32>
 class ListArena {
+  static_assert(Most <= std::uint64_t{1} << 32, "places are numbered by 32 bits");
+
  public:
   /// A list is known by this; copying it does not copy the list. Spans of items are valid until the next push_back()
   /// to any list, or reserve().
@@ -65,7 +72,7 @@ class ListArena {
   static std::size_t place(std::uint32_t room) { return static_cast<std::size_t>(std::countr_zero(room)); }
 
   void grow(List& list, std::uint32_t room) {
-    const std::uint32_t begin = block(room);
+    const std::uint32_t begin = block(room);  // first: it may throw
     const std::uint32_t size = list.size;
     if (list.room > 0) {
       std::copy_n(memory_.get() + list.begin, size, memory_.get() + begin);
@@ -76,15 +83,18 @@ class ListArena {
 
   /// Where there is so much room.
   std::uint32_t block(std::uint32_t room) {
-    if (auto& free = free_[place(room)]; !free.empty()) {
+    if (room > 0 && !free_[place(room)].empty()) {
+      auto& free = free_[place(room)];
       const std::uint32_t begin = free.back();
       free.pop_back();
       return begin;
     }
-    const std::size_t begin = used_;
-    used_ += room;
-    if (used_ > room_) enlarge(std::max<std::size_t>(2 * room_, used_ + 16 * room));
-    return static_cast<std::uint32_t>(begin);
+    if (room == 0 || room > Most - used_) {  // 0: twice the largest room has no number
+      throw std::length_error("ListArena: its lists need more room than for " + std::to_string(Most) + " items");
+    }
+    const std::size_t used = used_ + room;
+    if (used > room_) enlarge(std::max<std::size_t>(2 * room_, used + 16 * std::size_t{room}));
+    return static_cast<std::uint32_t>(std::exchange(used_, used));
   }
 
   /// What is not used yet is not written to.

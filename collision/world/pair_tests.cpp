@@ -112,7 +112,7 @@ void World<Degree>::test(PairSlot slot) {
   const auto a = moving(pair.a);
   const auto b = moving(pair.b);
   FoundTouch found;
-  const auto report_overlap = [&] { report(Pending::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_)); };
+  const auto report_overlap = [&] { reports_.add(Reports::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_)); };
   ContactEstimate next{never, true};
   if (mode() == ContactMode::transparent) {
     if (pair.fresh && in_contact(a, b, now_)) {
@@ -197,7 +197,7 @@ void World<Degree>::process_boxes(PairSlot slot, double t) {
   Pair& pair = pairs_[slot];
   pair.boxes_overlap = !pair.boxes_overlap;
   now_ = t;
-  report_pair(pair.boxes_overlap, pair.a, pair.b);
+  reports_.add_volumes(pair.boxes_overlap, pair.a, pair.b, now_);
   test_boxes(slot);
 }
 

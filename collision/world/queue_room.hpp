@@ -17,10 +17,14 @@ void clear(Queue& queue, Slot slot) {
 /// Slots that a queue has at first: small scenes never need more, and growing slot by slot would be much of their cost.
 inline constexpr std::size_t first_slots = 32;
 
-/// Gives a queue at least this many slots. Queues grow by doubling, as vectors do.
+/// Gives a queue at least this many slots; throws as its resize() does. Queues grow by doubling, as vectors do, up to
+/// what they can have.
 template <class Queue>
 void make_room(Queue& queue, std::size_t slots) {
-  if (queue.slots() < slots) queue.resize(std::max({slots, 2 * queue.slots(), first_slots}));
+  if (queue.slots() >= slots) return;
+  std::size_t room = std::max(2 * queue.slots(), first_slots);
+  if constexpr (requires { Queue::most_slots; }) room = std::min(room, Queue::most_slots);
+  queue.resize(std::max(slots, room));
 }
 
 }  // namespace kds::collision

@@ -1,4 +1,4 @@
-// What the world keeps of bodies, pairs, contacts that last, and reports to be made.
+// What the world keeps of bodies, pairs and contacts that last.
 #pragma once
 
 #include "certificates/balls_together.hpp"
@@ -123,16 +123,6 @@ struct PairRank {
   std::uint64_t operator()(std::uint32_t slot) const {
     return std::uint64_t{(*pairs)[slot].a} << 32 | (*pairs)[slot].b;
   }
-};
-
-/// A report to be made at this instant. They are in the order in which WorldListener is told of them.
-struct Pending {
-  enum class Kind { held, moved, pair_ended, pair_began, separation, overlap } kind;
-  BodyId a, b;
-  Contact contact;
-  bool removed = false;  ///< one of the bodies has been removed since: nothing undoes it
-
-  bool operator<(const Pending& other) const;
 };
 
 }  // namespace kds::collision::detail

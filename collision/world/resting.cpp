@@ -20,7 +20,7 @@ template <int Degree>
 void World<Degree>::take_up(BodyId id, const Motion& motion) {
   ++counters_.motion_updates;
   set_motion(id, motion, false);
-  report(Pending::Kind::moved, id, no_body, {.time = now_});
+  reports_.add(Reports::Kind::moved, id, no_body, {.time = now_});
 }
 
 template <int Degree>
@@ -32,7 +32,7 @@ void World<Degree>::changed(BodyId a, BodyId b) {
 template <int Degree>
 void World<Degree>::tell_held(BodyId a, BodyId b) {
   ++counters_.held;
-  report(Pending::Kind::held, a, b, contact_at(moving(a), moving(b), now_));
+  reports_.add(Reports::Kind::held, a, b, contact_at(moving(a), moving(b), now_));
 }
 
 template <int Degree>

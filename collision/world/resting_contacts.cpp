@@ -1,9 +1,11 @@
 // Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
 #include "collision/world/resting_contacts.hpp"
+#include "collision/vectors.hpp"
 #include "kds/audit.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 namespace kds::collision {
@@ -55,7 +57,7 @@ template <int Degree>
 void RestingContacts<Degree>::add(const Contact& hold) {
   for (const Slot slot : member(hold.a).contacts) {
     Contact& other = contacts_[slot];
-    if (other.a != hold.a || other.b != hold.b || !(other.normal.dot(hold.normal) > same_normal)) continue;
+    if (other.a != hold.a || other.b != hold.b || !(dot(other.normal, hold.normal) > same_normal)) continue;
     other.normal = hold.normal;
     other.fresh = true;
     return;
@@ -190,7 +192,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
       if (std::count(known.begin(), known.end(), slot) != 1) fail(slot, "a body does not know it");
     }
     if (at_wall && (hold.wall < 0 || hold.wall > 5 || !walls)) fail(slot, "there is no such wall");
-    if (std::abs(hold.normal.norm() - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
+    if (std::abs(norm(hold.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
     if (releases_.time(slot) < t) fail(slot, "it should have been let go");
     if (hold.fresh) continue;
     const Eigen::Vector3d a = bodies_.path(hold.a).velocity(t);
@@ -202,7 +204,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
         largest += 2 * bodies_.free_acceleration(id).cwiseAbs().maxCoeff() * (1 + t - bodies_.path(id).start);
       }
     }
-    if (std::abs(hold.normal.dot(b - a)) > 16 * rate_rounding * largest) {
+    if (std::abs(dot(hold.normal, b - a)) > 16 * rate_rounding * largest) {
       fail(slot, "the bodies part or press on along its normal");
     }
   }
@@ -211,7 +213,10 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
 
 template <int Degree>
 typename RestingContacts<Degree>::Image RestingContacts<Degree>::image() const {
-  Image image{contacts_, free_, disturbed_, {}, {}};
+  Image image{contacts_, free_, {}, {}, {}};
+  // Of bodies that were disturbed and are gone, or have been settled since, the list may still speak.
+  std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
+               [&](BodyId id) { return of_[id].disturbed && bodies_.present(id); });
   for (const Member& member : of_) image.of.push_back(member.contacts);
   for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(releases_.time(slot));
   return image;

@@ -1,4 +1,5 @@
 // Bodies that lean on each other: found, and moved as their resting contacts let them.
+#include "collision/vectors.hpp"
 #include "collision/world/resting_contacts.hpp"
 
 #include <algorithm>
@@ -153,7 +154,7 @@ bool RestingContacts<Degree>::drop_broken(const Island& island) {
     const Vector3d a = bodies_.path(hold.a).velocity(bodies_.time());
     const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.path(hold.b).velocity(bodies_.time());
     const double largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
-    if (std::abs(hold.normal.dot(b - a)) <= rate_rounding * largest) continue;
+    if (std::abs(dot(hold.normal, b - a)) <= rate_rounding * largest) continue;
     drop(slot);
     any = true;
   }

@@ -4,6 +4,7 @@
 #include "collision/shapes/mesh.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -94,8 +95,8 @@ typename World<Degree>::Image World<Degree>::image() const {
   image.resting = resting_.image();
   image.free_bodies = free_bodies_, image.removed = removed_, image.removed_at = removed_at_;
   image.entering = entering_;
-  image.pending.assign(pending_.begin(), pending_.end());
-  image.edits = edits_, image.edits_start = edits_start_;
+  image.pending = reports_.image();
+  image.edits = edits_;
   return image;
 }
 
@@ -113,10 +114,10 @@ void World<Degree>::become(const Image& image) {
   now_ = image.now, clock_ = image.clock, horizon_ = image.horizon, meshes_ = image.has_had_meshes;
   idle_until_ = next_time_ = -never;
   inserting_ = false;
-  edits_ = image.edits, edits_start_ = image.edits_start;
+  edits_ = image.edits;
   free_bodies_ = image.free_bodies, removed_ = image.removed, removed_at_ = image.removed_at;
   entering_ = image.entering;
-  pending_ = {image.pending.begin(), image.pending.end()};
+  reports_.become(image.pending);
   const std::size_t count = image.bodies.size();
   bodies_.clear(), movers_.clear(), links_.clear();
   bodies_.resize(count), movers_.resize(count);
@@ -223,6 +224,7 @@ void World<Degree>::archive(Archive& archive) {
   if constexpr (Archive::loading) {
     Image loaded;
     loaded.archive(archive, meshes());
+    loaded.check(options_);
     change_or_fail([&] { become(loaded); });
     failure_ = nullptr;
   } else {

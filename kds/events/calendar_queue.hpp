@@ -8,14 +8,16 @@
 #include <bit>
 #include <cassert>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace kds {
 
-/// A calendar queue: amortised O(1) for set, clear and pop, without allocation after resize(). At most 2^27 - 1 slots
-/// (asserted).
+/// A calendar queue: amortised O(1) for set, clear and pop, without allocation after resize(). At most `most_slots`:
+/// resize() throws std::length_error for more, and then changes nothing.
 ///
 /// A year begins at the earliest event and has a few days for each event; what comes later waits in an unsorted list,
 /// the years to come. A day is an unsorted, doubly linked list of its slots, so that set and clear touch a constant
@@ -65,6 +67,11 @@ class CalendarQueue {
   static constexpr std::uint32_t payload = first_of_day - 1;
   static constexpr std::uint32_t none = payload;
 
+ public:
+  /// 2^27 - 1, some 134 million: the days, a power of two and so up to twice as many as asked for, are numbered too.
+  static constexpr std::size_t most_slots = none / (2 * days_per_event);
+
+ private:
   struct Node {
     double time = detail::no_event;
     std::uint32_t next = none;
@@ -126,7 +133,10 @@ class CalendarQueue {
 
 template <QueueRank Rank>
 void CalendarQueue<Rank>::resize(std::size_t slots) {
-  assert(slots <= none / (2 * days_per_event));  // the days, rounded up, must be numbered too
+  if (slots > most_slots) {
+    throw std::length_error("CalendarQueue::resize: " + std::to_string(slots) + " slots, and it can have at most " +
+                            std::to_string(most_slots));
+  }
   for (std::size_t slot = slots; slot < nodes_.size(); ++slot) {
     if (contains(static_cast<Slot>(slot))) drop(static_cast<Slot>(slot));
   }

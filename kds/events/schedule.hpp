@@ -160,6 +160,8 @@ class Schedule {
     }
     archive(times, horizon_, counters_);
     if constexpr (Archive::loading) {
+      archive.require(!std::isnan(horizon_), "a horizon is not a number");
+      for (const double time : times) archive.require(time > -never, "a failure time is not a number, or -infinity");
       queue_.resize(0);
       queue_.resize(times.size());
       for (Slot slot = 0; slot < times.size(); ++slot) set(slot, times[slot]);

@@ -195,6 +195,17 @@ class MovingSet {
   void archive(Archive& archive) {
     archive.tag("MovingSet");
     archive(elements_, present_, size_, samples_, backwards_);
+    if constexpr (Archive::loading) {
+      archive.require(present_.size() == elements_.size(), "a set has not as many places as elements");
+      std::size_t found = 0;
+      for (std::size_t id = 0; id < present_.size(); ++id) {
+        archive.require(present_[id] <= 1, "an element of a set is neither there nor not");
+        if (present_[id] == 0) continue;
+        archive.require(detail::finite(elements_[id]), "the motion of an element of a set is not finite");
+        ++found;
+      }
+      archive.require(found == size_, "a set has not as many elements as it says");
+    }
   }
 
  private:

@@ -61,9 +61,25 @@ class Archive {
     const std::vector<char> expected = letters;
     one(letters);
     if (letters != expected) {
+      constexpr std::size_t most_shown = 80;
+      const auto shown = static_cast<std::ptrdiff_t>(std::min(letters.size(), most_shown));
       throw std::runtime_error("snapshot: expected " + std::string(name) + ", found " +
-                               std::string(letters.begin(), letters.end()));
+                               std::string(letters.begin(), letters.begin() + shown));
     }
+  }
+
+  /// For what is loaded to check itself by, before it relies on what it has loaded.
+  static void require(bool right, const char* otherwise) {
+    if (!right) throw std::runtime_error(std::string("snapshot: ") + otherwise);
+  }
+
+  /// The size of a list, and each of its entries by one(entry). When it is loaded entries are made one after another,
+  /// so that a size that cannot be is noticed when the bytes are at an end, and not when there is no memory left.
+  template <class T, class One>
+  void each(std::vector<T>& values, const One& one_of) {
+    std::uint64_t size = values.size();
+    one(size);
+    entries(values, size, one_of);
   }
 
  private:
@@ -74,8 +90,13 @@ class Archive {
       value.archive(self);
     } else if constexpr (requires { archive_members(self, value); }) {
       archive_members(self, value);
+    } else if constexpr (std::is_same_v<T, bool>) {
+      std::uint8_t byte = value;
+      self.bytes(reinterpret_cast<char*>(&byte), 1);
+      if (byte > 1) throw std::runtime_error("snapshot: a flag is neither true nor false");
+      value = byte == 1;
     } else if constexpr (OptionalLike<T>) {
-      std::uint8_t there = value.has_value();
+      bool there = value.has_value();
       one(there);
       if constexpr (Derived::loading) there ? void(value.emplace()) : value.reset();
       if (value.has_value()) one(*value);
@@ -100,12 +121,23 @@ class Archive {
     one(size);
     one(length);
     if (length != (plain ? sizeof(Entry) : 0)) throw std::runtime_error("snapshot: it is one of other types");
-    self.room(size);
-    values.resize(size);
     if constexpr (plain) {
+      self.room(size, sizeof(Entry));
+      values.resize(size);
       self.bytes(reinterpret_cast<char*>(values.data()), size * sizeof(Entry));
     } else {
-      for (auto& entry : values) one(entry);
+      entries(values, size, [this](Entry& entry) { one(entry); });
+    }
+  }
+
+  /// What is there already is loaded where it is: it may know more than is saved.
+  template <class Values, class One>
+  void entries(Values& values, std::uint64_t size, const One& one_of) {
+    static_cast<Derived&>(*this).room(size, 1);
+    if (size < values.size()) values.resize(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      if (i == values.size()) values.emplace_back();
+      one_of(values[i]);
     }
   }
 };
@@ -114,7 +146,7 @@ class Writer : public Archive<Writer> {
  public:
   static constexpr bool loading = false;
   void bytes(char* data, std::size_t size) { out_.insert(out_.end(), data, data + size); }
-  void room(std::uint64_t /*size*/) const {}
+  void room(std::uint64_t /*entries*/, std::size_t /*length*/) const {}
   std::vector<char> take() { return std::move(out_); }
 
  private:
@@ -126,13 +158,13 @@ class Reader : public Archive<Reader> {
   static constexpr bool loading = true;
   explicit Reader(const std::vector<char>& in) : in_(in) {}
   void bytes(char* data, std::size_t size) {
-    room(size);
+    room(size, 1);
     std::copy_n(in_.begin() + static_cast<std::ptrdiff_t>(at_), size, data);
     at_ += size;
   }
-  /// Every entry takes a byte at least: refuses sizes that cannot be.
-  void room(std::uint64_t size) const {
-    if (size > in_.size() - at_) throw std::runtime_error("snapshot: it ends before its time");
+  /// Refuses sizes that cannot be: so many entries of so many bytes each, at least, are to come.
+  void room(std::uint64_t entries, std::size_t length) const {
+    if (entries > (in_.size() - at_) / length) throw std::runtime_error("snapshot: it ends before its time");
   }
   bool at_end() const { return at_ == in_.size(); }
 
@@ -161,7 +193,11 @@ Snapshot save(Parts&... parts) {
 
 /// Puts parts back into a saved state. They must be those that were saved, or others made of the same types in the same
 /// order; structures must be attached to the sets. Listeners and queues may be others. Throws std::runtime_error for a
-/// snapshot of other parts, and then leaves the parts as they were. Cost: that of a save() and a load.
+/// snapshot of other parts, or one that is damaged, and then leaves the parts as they were. What comes from elsewhere
+/// may be changed in ways that cannot be told from a right state: the events to come are then other ones. Worlds, sets,
+/// and lists and tournaments that are not made of rules check all that they rely on. Structures made of rules check
+/// lengths and times, but not all links, nor that they fit the elements: load them from files of your own only. Cost:
+/// that of a save() and a load.
 template <class... Parts>
 void restore(const Snapshot& snapshot, Parts&... parts) {
   const auto load = [&](const Snapshot& from) {

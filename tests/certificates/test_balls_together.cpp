@@ -41,8 +41,8 @@ template <int PathDegree>
 Times earliest_by_two(const FourPairs<PathDegree>& pairs, double now, double horizon) {
   certificates::detail::FourPairs numbers;
   for (std::size_t k = 0; k < 4; ++k) {
-    numbers.a[k] = pairs[k].a.motion.coefficients[0].data();
-    numbers.b[k] = pairs[k].b.motion.coefficients[0].data();
+    numbers.a[k] = reinterpret_cast<const std::byte*>(&pairs[k].a);
+    numbers.b[k] = reinterpret_cast<const std::byte*>(&pairs[k].b);
   }
   Times times;
   certificates::detail::find_approaches_by_two<PathDegree>(numbers, now, horizon, times.data());

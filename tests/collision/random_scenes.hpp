@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/shapes/mesh.hpp"
+#include "collision/vectors.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
@@ -46,6 +47,12 @@ inline std::shared_ptr<const Mesh> ring() {
   return mesh;
 }
 
+/// The same bits whatever Eigen is told about vector instructions.
+inline Eigen::Quaterniond unit_quaternion(double w, double x, double y, double z) {
+  const Eigen::Quaterniond q(w, x, y, z);
+  return Eigen::Quaterniond(q.coeffs() / norm(q));
+}
+
 /// How numbers are drawn: `coarse` ones make ties, touches and double roots common.
 enum class Numbers { fine, coarse };
 
@@ -87,7 +94,7 @@ class SceneMaker {
     const double y = random_.between(-1, 1);
     const double x = random_.between(-1, 1);
     const double w = random_.between(-1, 1);
-    return Eigen::Quaterniond(w, x, y, z).normalized();
+    return unit_quaternion(w, x, y, z);
   }
 
   template <int Degree>

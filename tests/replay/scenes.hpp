@@ -53,7 +53,7 @@ Scene<Degree> random_scene(const SceneOptions& options, std::uint64_t seed) {
         break;
       case 1:
         scene.bodies[i].shape = Box{{0.5, 0.4, 0.3}};
-        scene.bodies[i].orientation = Eigen::Quaterniond(0.5, 0.1, 0.7, -0.5).normalized();
+        scene.bodies[i].orientation = unit_quaternion(0.5, 0.1, 0.7, -0.5);
         break;
       case 2:
         scene.bodies[i].shape = MeshShape{tetrahedron(), 0.6};
@@ -74,11 +74,35 @@ inline Scene<2> bouncing_scene() {
   scene.bodies.push_back(ball<2>(0.5, {0, 0, 3}, zero, gravity));
   scene.bodies.push_back(ball<2>(0.25, {0.01, 0.02, 5}, zero, gravity));
   auto turned = box<2>({0.5, 0.4, 0.3}, {2, 2, 2}, {0, 0.125, 0}, gravity);
-  turned.orientation = Eigen::Quaterniond(0.9, 0.1, 0.3, -0.3).normalized();
+  turned.orientation = unit_quaternion(0.9, 0.1, 0.3, -0.3);
   scene.bodies.push_back(turned);
   auto ring = body<2>(MeshShape{rational_torus(), 1}, motion<2>({-2, -2, 2}, {0.125, 0, 0}, gravity));
-  ring.orientation = Eigen::Quaterniond(0.9, -0.4, 0.1, 0.1).normalized();
+  ring.orientation = unit_quaternion(0.9, -0.4, 0.1, 0.1);
   scene.bodies.push_back(ring);
+  return scene;
+}
+
+/// Balls that fall without rebound on a bed of fixed ones, uneven, and come to lie in its hollows and on each other.
+inline Scene<2> resting_scene() {
+  Random random(3);
+  Scene<2> scene;
+  scene.end_time = 1.25;
+  const auto jitter = [&] { return random.between(-0.1, 0.1); };
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      const double x = 1.7 * i + jitter(), y = 1.7 * j + jitter(), z = jitter();
+      scene.bodies.push_back(fixed_body<2>(Sphere{1}, motion<2>({x, y, z})));
+    }
+  }
+  for (int i = 0; i < 12; ++i) {
+    const double x = 0.9 + 1.7 * (i % 4) + jitter(), y = 0.9 + 1.7 * (i / 4) + jitter();
+    scene.bodies.push_back(ball<2>(0.8, {x, y, 2.5 + 0.125 * i}, zero, {0, 0, -4.905}));
+    scene.bodies.back().restitution = 0;
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    scene.bodies[i].category = scene.bodies[i].fixed ? 1 : 2;
+    if (scene.bodies[i].fixed) scene.bodies[i].collides_with = 2;
+  }
   return scene;
 }
 

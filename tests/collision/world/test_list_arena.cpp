@@ -6,10 +6,34 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 namespace kds::collision {
 namespace {
+
+TEST_CASE("An arena that is full says so, and keeps what it has", "[list_arena]") {
+  constexpr std::uint64_t most = 64;
+  ListArena<int, most> arena;
+  ListArena<int, most>::List list, other;
+  arena.push_back(other, 77);  // takes room for 4
+  int count = 0;
+  const auto fill = [&] {
+    for (;; ++count) arena.push_back(list, count);
+  };
+  CHECK_THROWS_WITH(fill(), Catch::Contains("ListArena") && Catch::Contains("64"));
+  // Rooms for 4 and for 4, 8, 16 and 32 are all there is.
+  CHECK(count == 32);
+  CHECK_THROWS_AS(arena.push_back(list, 1), std::length_error);
+  REQUIRE(arena.items(list).size() == 32);
+  for (int i = 0; i < 32; ++i) CHECK(arena.items(list)[static_cast<std::size_t>(i)] == i);
+  arena.push_back(other, 78);  // there is room in what it has
+  CHECK(arena.items(other)[1] == 78);
+  arena.free(list);
+  ListArena<int, most>::List again;
+  for (int i = 0; i < 32; ++i) arena.push_back(again, i);
+  CHECK(again.size == 32);
+}
 
 TEST_CASE("Lists in an arena hold what vectors hold", "[list_arena]") {
   constexpr std::uint64_t seed = 1;

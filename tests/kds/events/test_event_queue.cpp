@@ -344,3 +344,12 @@ TEMPLATE_TEST_CASE("entries in falling order, a hundred thousand deep, do not ex
   for (Slot s = 0; s < slots; ++s) queue.set(s, -static_cast<double>(s));
   REQUIRE(queue.top() == QueuedEvent{1.0 - slots, slots - 1});
 }
+
+TEST_CASE("a calendar queue refuses slots that it cannot number, and keeps what it has", "[event_queue]") {
+  kds::CalendarQueue<> queue;
+  queue.resize(2);
+  queue.set(1, 3.0);
+  REQUIRE_THROWS_WITH(queue.resize(kds::CalendarQueue<>::most_slots + 1), Catch::Contains("at most 134217727"));
+  REQUIRE(queue.slots() == 2);
+  REQUIRE(queue.top() == QueuedEvent{3.0, 1});
+}

@@ -1,0 +1,22 @@
+// Certificates of points of the plane whose failure times the library has compiled.
+#pragma once
+
+#include "certificates/direction_order.hpp"
+#include "certificates/distance_order.hpp"
+#include "certificates/in_circle.hpp"
+#include "certificates/orientation.hpp"
+#include "certificates/plane_motion.hpp"
+#include "kds/roots/compiled_once.hpp"
+
+namespace kds {
+
+KDS_COMPILED_ONCE(extern template, certificates::InCircle<certificates::PlaneMotion<1>>);
+KDS_COMPILED_ONCE(extern template, certificates::Orientation<certificates::PlaneMotion<1>>);
+KDS_COMPILED_ONCE(extern template, certificates::DirectionOrder<certificates::PlaneMotion<1>, 2>);
+KDS_COMPILED_ONCE(extern template, certificates::DistanceOrder<certificates::PlaneMotion<1>>);
+KDS_COMPILED_ONCE(extern template, certificates::InCircle<certificates::PlaneMotion<2>>);
+KDS_COMPILED_ONCE(extern template, certificates::Orientation<certificates::PlaneMotion<2>>);
+KDS_COMPILED_ONCE(extern template, certificates::DirectionOrder<certificates::PlaneMotion<2>, 2>);
+KDS_COMPILED_ONCE(extern template, certificates::DistanceOrder<certificates::PlaneMotion<2>>);
+
+}  // namespace kds

@@ -1,0 +1,40 @@
+// A bound on what callbacks change while the clock hardly moves.
+#pragma once
+
+#include "kds/roots/failure_time.hpp"
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace kds::collision {
+
+/// Counts the changes that callbacks make. Those that go on for ever at one time would never let the clock move.
+class EditLimit {
+ public:
+  /// One more, at `now`. Throws std::runtime_error if it exceeds `most` within `interval` seconds.
+  void count(double now, double interval, std::uint64_t most) {
+    if (now - since_ > interval) {
+      since_ = now;
+      edits_ = 0;
+    }
+    if (++edits_ <= most) return;
+    throw std::runtime_error("World: callbacks have changed bodies " + std::to_string(edits_) + " times within " +
+                             std::to_string(now - since_) + " s, at " + std::to_string(now) +
+                             " s; WorldOptions.most_edits allows no more");
+  }
+
+  /// Whether they are counted from a time not after this.
+  bool began_by(double now) const { return since_ <= now; }
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(edits_, since_);
+  }
+
+ private:
+  std::uint64_t edits_ = 0;  ///< since that time
+  double since_ = -never;    ///< s
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,58 @@
+// What a world has to tell of one instant.
+#pragma once
+
+#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/narrow_phase/contact.hpp"
+
+#include <set>
+#include <span>
+#include <vector>
+
+namespace kds::collision {
+
+namespace detail {
+
+/// A report to be made at this instant. They are in the order in which WorldListener is told of them.
+struct Pending {
+  enum class Kind { held, moved, pair_ended, pair_began, separation, overlap } kind;
+  BodyId a, b;
+  Contact contact;
+  bool removed = false;  ///< one of the bodies has been removed since: nothing undoes it
+
+  bool operator<(const Pending& other) const;
+};
+
+}  // namespace detail
+
+/// The reports of an instant, collected until all that is due then is known, and told in the order that WorldListener
+/// states: so the log does not depend on the order in which they were found.
+class Reports {
+ public:
+  using Report = detail::Pending;
+  using Kind = Report::Kind;
+
+  bool empty() const { return reports_.empty(); }
+  void add(Kind kind, BodyId a, BodyId b, const Contact& contact) { reports_.insert({kind, a, b, contact}); }
+
+  /// Bounding volumes meet, or part. Those that meet and part at one instant, or part and meet (bodies that are moved
+  /// in turn, lists of ends that are brought into order one after the other), have done neither.
+  void add_volumes(bool meet, BodyId a, BodyId b, double now);
+
+  /// Forgets a report that has been undone before it was made; false if there is none.
+  bool take_back(Kind kind, BodyId a, BodyId b);
+
+  /// A body has been removed, and has no pairs any more: its separations are told as they were, and what would be told
+  /// of a body that is there is not.
+  void keep_of(BodyId removed);
+
+  /// The next to be told. Precondition: not empty.
+  Report take_first();
+
+  std::vector<Report> image() const { return {reports_.begin(), reports_.end()}; }
+  void become(std::span<const Report> reports) { reports_ = {reports.begin(), reports.end()}; }
+
+ private:
+  std::multiset<Report> reports_;
+};
+
+}  // namespace kds::collision
