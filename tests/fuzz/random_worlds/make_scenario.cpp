@@ -52,8 +52,8 @@ void edit(Random& random, const Style& style, Size size, Scenario& scenario) {
 
 /// Bodies at the points of a lattice, of few velocities: thousands of contacts happen at one instant.
 void add_lattice(Random& random, const Style& style, Scenario& scenario) {
-  const int side = random.integer(5, 8);
   BodyPlan body = draw_body(random, style);
+  const int side = body.shape == ShapeKind::mesh ? 4 : random.integer(5, 7);  // meshes take ten times as long
   body.size = Vector3d::Constant(0.25 * random.integer(1, 2));
   body.orientation = Eigen::Quaterniond::Identity();
   body.fixed = false;

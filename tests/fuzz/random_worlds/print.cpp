@@ -180,7 +180,8 @@ void print_program(const Scenario& scenario, const Way& way, const Difference& d
   print_reactions(scenario);
   std::printf("  p.begin();\n");
   for (const Call& call : scenario.calls) {
-    std::printf("  p.between();\n");
+    const bool large = scenario.bodies.size() > Way::most_bodies_saved_often;
+    if (!large || call.kind == Call::Kind::advance) std::printf("  p.between();\n");
     print_call(scenario, call, "  ");
   }
   std::printf(

@@ -47,8 +47,8 @@ std::vector<Way> ways_of(const Scenario& scenario) {
   Random random(scenario.seed ^ 0x5851f42d4c957f2du);  // other numbers than those of the scenario
   constexpr std::array plain{automatic, grid, kinetic_sap};
   std::vector<Way> ways;
-  for (const BroadPhaseKind kind : plain) ways.push_back({.broad_phase = kind, .audits = random.one_in(8)});
   const bool many = scenario.bodies.size() > Way::most_bodies_saved_often;
+  for (const BroadPhaseKind kind : plain) ways.push_back({.broad_phase = kind, .audits = !many && random.one_in(8)});
   if (random.one_in(4)) ways.push_back({.broad_phase = sap, .rate = random.one_in(2) ? 8 : 1.7});
 
   Way varied{.broad_phase = plain[random.below(plain.size())]};
