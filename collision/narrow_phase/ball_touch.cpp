@@ -49,15 +49,15 @@ NearestPoint nearest_point(const PlacedTriangle& triangle, const Vector3d& to) {
 
 template <int Degree>
 BallTouch<Degree>::BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball,
-                             const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, double horizon,
-                             const TimeWindow& interest)
+                             const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, bool sharp,
+                             double horizon, const TimeWindow& interest)
     : triangle_(triangle),
       radius_(ball.radius),
       motion_(motion),
       gap_(gap),
       horizon_(horizon),
       interest_{std::max(interest.begin, 0.0), std::min(interest.end, horizon)} {
-  add_face();
+  add_face(sharp);
   for (std::size_t i = 0; i < 3; ++i) add_edge(i);
   for (std::size_t i = 0; i < 3; ++i) add_vertex(i);
 }
@@ -112,7 +112,7 @@ TimeSpans BallTouch<Degree>::within(const Path& path) const {
 }
 
 template <int Degree>
-void BallTouch<Degree>::add_face() {
+void BallTouch<Degree>::add_face(bool sharp) {
   const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));
   Piece piece;
   for (const double side : {1.0, -1.0}) {
@@ -125,9 +125,9 @@ void BallTouch<Degree>::add_face() {
         below(out, std::max(dot(out, triangle_.vertices[i]), dot(out, triangle_.vertices[(i + 1) % 3])));
   }
   // Across each corner: away from the middle between the directions of its edges.
-  const std::array<Vector3d, 3> along{unit(triangle_.edge(0)), unit(triangle_.edge(1)), unit(triangle_.edge(2))};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3d out = unit(along[(i + 2) % 3] - along[i]);
+  const auto along = [this](std::size_t i) { return unit(triangle_.edge(i)); };
+  for (std::size_t i = 0; sharp && i < 3; ++i) {
+    const Vector3d out = unit(along((i + 2) % 3) - along(i));
     piece.conditions[piece.size++] = below(out, triangle_.project(out).high);
   }
   pieces_[size_++] = piece;

@@ -26,10 +26,10 @@ NearestPoint nearest_point(const PlacedTriangle& triangle, const Eigen::Vector3d
 
 /// When a ball touches a triangle: their distance is below radius + contact gap. The set of such places of the ball's
 /// centre is the union of seven convex pieces: a prism over the face, three cylinders about the edges, three balls
-/// about the vertices. Each side of the prism lies a gap farther out, and so do sides across its corners, or a sharp
-/// one would reach out far: in no piece the ball is more than sqrt 3 gaps away from the triangle. Same members as
-/// ConvexTouch; closed forms for linear motion, for quadratic motion quartics whose sign changes are bracketed between
-/// those of their derivatives.
+/// about the vertices. Each side of the prism lies a gap farther out, so that a corner of half the angle theta does by
+/// a gap / sin(theta); where there may be sharp ones, sides across the corners cut them off. So in no piece the ball is
+/// more than 8.1 gaps away from the triangle. Same members as ConvexTouch; closed forms for linear motion, for
+/// quadratic motion quartics whose sign changes are bracketed between those of their derivatives.
 ///
 /// Squared distances are never expanded about tau = 0 to decide a sign, only evaluated from the place of the centre at
 /// tau: so their error is that of the distance, which the contact gap covers, however small the ball.
@@ -40,9 +40,10 @@ class BallTouch {
 
   /// Motion of the ball seen from the triangle's body. `horizon`: no contact after it; a function of the bodies and
   /// motion alone, or answers would not be. Parts of the triangle that the ball is not near within the window of
-  /// interest are left out: what is said about times outside is not to be used.
+  /// interest are left out: what is said about times outside is not to be used. `sharp`: whether the triangle may have
+  /// a sharp corner (Mesh::sharp).
   BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball, const RelativeMotion<Degree>& motion,
-            const ContactGap<Degree>& gap, double horizon, const TimeWindow& interest);
+            const ContactGap<Degree>& gap, bool sharp, double horizon, const TimeWindow& interest);
 
   double first_inside(double tau) const;
   double enter(double tau) const;
@@ -61,7 +62,7 @@ class BallTouch {
     bool contains(double tau) const { return first_inside_all(spans(), tau) == tau; }
   };
 
-  void add_face();
+  void add_face(bool sharp);
   void add_edge(std::size_t i);
   void add_vertex(std::size_t i);
   TimeSpans below(const Eigen::Vector3d& normal, double reach) const;

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 
 namespace kds::collision {
 
@@ -41,7 +42,9 @@ std::array<double, 2> smallest_speeds(const RelativeMotion<Degree>& motion) {
 template <int Degree, class B>
 class ConvexTouch {
  public:
-  ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap)
+  /// `sharp`: whether both may have sharp corners, see every_kdop_direction; those of a box are none.
+  ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap,
+              bool sharp)
       : a_(a), b_(b), motion_(motion), gap_(gap) {
     const auto add_side = [&](const Condition& condition, bool decides) {
       if constexpr (Degree == 1) {
@@ -52,20 +55,22 @@ class ConvexTouch {
       }
     };
     every_condition([&](const Condition& condition) { add_side(condition, true); });
-    every_kdop_direction(a_, b_, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
-      if (Degree == 1 && !(enter_ <= leave_)) return false;  // they never touch
-      both_sides(axis, of_a, of_b, [&](const Condition& condition) { add_side(condition, false); });
-      return true;
-    });
+    if (with_kdops && sharp) {
+      every_kdop_direction(a_, b_, [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
+        if (Degree == 1 && !(enter_ <= leave_)) return false;  // they never touch
+        both_sides(axis, of_a, of_b, [&](const Condition& condition) { add_side(condition, false); });
+        return true;
+      });
+    }
     if constexpr (Degree == 1) near_[size_++] = TimeSpans::between(enter_, leave_);
   }
 
   /// The same where only what happens within a window is of interest, for less. Precondition: if the two touch in the
   /// window, they do not before it, or what happens at its begin alone is asked.
   ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap,
-              const TimeWindow& interest) requires(Degree == 1)
+              bool sharp, const TimeWindow& interest) requires(Degree == 1)
       : a_(a), b_(b), motion_(motion), gap_(gap) {
-    near_[size_++] = add_within(interest) ? TimeSpans::between(enter_, leave_) : TimeSpans{};
+    near_[size_++] = add_within(interest, sharp) ? TimeSpans::between(enter_, leave_) : TimeSpans{};
   }
 
   /// The first time >= tau at which they touch, or infinity.
@@ -143,7 +148,8 @@ class ConvexTouch {
   /// Two sides of 17 axes.
   static constexpr std::size_t capacity = 34;
   /// And of the directions of k-DOPs, which say when the two touch, and not in which direction.
-  static constexpr std::size_t capacity_near = capacity + 26;
+  static constexpr bool with_kdops = std::is_same_v<B, PlacedTriangle>;
+  static constexpr std::size_t capacity_near = capacity + (with_kdops ? 26 : 0);
   /// Separations nearer than gap / tie are equal: 16 roundings, where two computations of one separation differ by 8.
   static constexpr double tie = 4;
 
@@ -216,7 +222,7 @@ class ConvexTouch {
   /// Adds the conditions that may change within the window; false if one surely never holds there. What a condition
   /// does is mostly told by its sign at both ends, on the axis as it is, without square root or quotient, and with
   /// `quick_margin` gaps to spare (as in may_touch). The window shrinks with what is known.
-  bool add_within(TimeWindow window) {
+  bool add_within(TimeWindow window, bool sharp) {
     bool decides = true;
     const auto add_axis = [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
       const double length = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
@@ -242,6 +248,7 @@ class ConvexTouch {
       return window.begin <= window.end;
     };
     if (!every_axis(a_, b_, add_axis)) return false;
+    if (!with_kdops || !sharp) return true;
     decides = false;
     return every_kdop_direction(a_, b_, add_axis);
   }

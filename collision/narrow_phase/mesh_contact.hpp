@@ -36,8 +36,8 @@ struct MeshTouchPlace {
 ///
 /// Laws. (1) Never late, never missed: contact is reported while surfaces are nearer than the contact gap (see
 /// ContactGap for its size and derivation), and so no vertex or edge slips between two triangles that share an edge.
-/// (Predictions end where the gap has grown to a sixteenth of the shapes: see `widest_gap` in mesh_margins.hpp.)
-/// (2) Early by the gap and the rounding of the tests, at most 45/64 of it, measured along each separating axis
+/// (Predictions end where the gap has grown to 2^-7 of the shapes: see `widest_gap` in mesh_margins.hpp.)
+/// (2) Early by the gap and the rounding of the tests, at most 53/64 of it, measured along each separating axis
 /// (docs/accuracy.md: 1.03 gaps were seen). (3) The times are closed forms of the shapes and
 /// the motion polynomial: they do not depend on the window asked about, on the order of the walk through the trees or
 /// on who asks. (4) Contact holds from its beginning until just before its end: at the time that first_free_time

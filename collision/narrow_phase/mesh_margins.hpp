@@ -25,12 +25,13 @@ namespace kds::collision {
 /// gap(tau) = `roundings` (S + |r0| + |r1| tau + |r2| tau^2) + `clock` |epoch| |velocity| + uncertainty of r, with S
 /// the sum of the shapes' radii. Derivation, in units of 2^-53 and of the bracket: the rotation matrix has entries
 /// good to 6 and placed_vertex adds 4 (in all at most 10 sqrt 3 < 18 times a vertex); projections of vertices on a
-/// unit axis and their differences 8; of r 4 for each coefficient and 3 for their sum; normalising the axis 4; the
-/// roots of the closed forms solve a polynomial whose coefficients are off by 6, and rounding tau moves it by 2. That
-/// is 45 at most; 64 leaves room, and makes the time in which two parallel faces pass each other last at least 19
-/// roundings of tau, so that it never falls between two doubles. `clock`: the time of a contact, epoch + tau, is
-/// rounded to a double by less than one spacing (2^-52 |epoch|); within four spacings two bodies must not pass each
-/// other unseen nor, after an impulse at the rounded time, find themselves on the wrong side.
+/// unit axis and their differences 8; of r 4 for each coefficient and 3 for their sum; normalising the axis 4, axes
+/// that are not quite across their edges 8 (every_axis); the roots of the closed forms solve a polynomial whose
+/// coefficients are off by 6, and rounding tau moves it by 2. That is 53 at most; 64 leaves room, and makes the time in
+/// which two parallel faces pass each other last at least 11 roundings of tau, so that it never falls between two
+/// doubles. `clock`: the time of a contact, epoch + tau, is rounded to a double by less than one spacing (2^-52
+/// |epoch|); within four spacings two bodies must not pass each other unseen nor, after an impulse at the rounded time,
+/// find themselves on the wrong side.
 template <int Degree>
 struct ContactGap {
   static constexpr double roundings = 64 * 0x1p-53;
@@ -61,18 +62,23 @@ ContactGap<Degree> contact_gap(const RelativeMotion<Degree>& motion, double radi
   return gap;
 }
 
-/// Gaps by which boxes and quick tests are widened, see BoxPairTest. Contact may be reported while triangles are 3.4
-/// (every_kdop_direction) times 1 + 45/64 gaps apart, between two sharp corners; 8 leaves room for what is rounded in
-/// doubles.
-inline constexpr double quick_margin = 8;
+/// Contact is reported while shapes are no farther than this many contact gaps apart: 1 + 53/64 gaps along each
+/// separating axis (see ContactGap), and between corners that face each other up to 11.4 times as far, if one of them
+/// is blunt (every_kdop_direction). Of corners of 60 degrees or more it is 5.2 gaps; most contacts are not of corners.
+inline constexpr double farthest_contact = 21;
+
+/// Gaps by which boxes and quick tests are widened, see BoxPairTest: so they hold every contact, with room for what is
+/// rounded in doubles.
+inline constexpr double quick_margin = 24;
+static_assert(quick_margin > farthest_contact);
 
 /// No contacts are predicted for times at which the contact gap has grown to this part of the radii, and fourfold. A
 /// straight path gets there only if its speed is nothing but rounding (bodies that move alike), a curved one if it goes
-/// out 2^43 radii and comes back. Larger predicts more of such contacts, and more slowly.
-inline constexpr double widest_gap = 0x1p-4;
+/// out 2^40 radii and comes back. Larger predicts more of such contacts, and more slowly.
+inline constexpr double widest_gap = 0x1p-7;
 
-/// The bounding box of a mesh is grown by this part of its radius, which is enough for paths of a million radii: see
-/// MeshClearance, which grows volumes where it is not. Larger has more pairs tested.
+/// The bounding box of a mesh is grown by this part of its radius, which is enough for paths of a quarter of a million
+/// radii: see MeshClearance, which grows volumes where it is not. Larger has more pairs tested.
 inline constexpr double box_margin = 0x1p-24;
 
 /// By how much the bounding volume of a body has to reach beyond its shape where there are meshes, so that volumes
@@ -81,27 +87,25 @@ inline constexpr double box_margin = 0x1p-24;
 ///
 /// The share of a body with path p0 + v tau + a tau^2 from its start s on, and of radius R, is the polynomial
 ///     share(tau) = `roundings` (R + |p0| + |v| tau + |a| tau^2) + `clock` (|s| + tau) (|v| + 2 |a| tau)
-/// with the sums of magnitudes of coordinates for |.|, which are not below the lengths. Law: what a mesh and another
-/// shape leave between them along any of the axes and directions of k-DOPs, while contact is reported, is not above the
-/// sum of the two shares; nor are their distances, where the other is a ball.
+/// with the sums of magnitudes of coordinates for |.|, which are not below the lengths. Law: while contact is
+/// reported, a mesh and another shape are no farther apart, in any direction, than the sum of their two shares.
 ///
 /// Derivation. u = 2^-53; tau_a and tau_b count from the starts of the two bodies, tau from the later one, the epoch.
 /// (1) Written about the epoch, a path has |p0'| + |v'| tau + |a| tau^2 <= |p0| + |v| tau_a + |a| tau_a^2 (the triangle
 /// inequality), and |v'| + 2 |a| tau <= |v| + 2 |a| tau_a; |epoch| <= |s| + tau_a, for each of the two. So the sums of
 /// the brackets of both bodies are not below those of ContactGap. (2) The uncertainty of the relative coefficients is
 /// at most 14 u of these sums: seven operations, charged 2 u each. With the roundings of ContactGap that is 78 u. (3)
-/// Contact is reported up to 1 + 45/64 gaps along a separating axis; a ball in the corner of such conditions is up to
-/// sqrt 3 times as far away (ball_touch.hpp). That makes 231 u and 12 x 2^-52. (4) The time of a separation is rounded
-/// up to a double, by one spacing, 2^-52 (|s| + tau_a) at most, and tau by u: 1 x 2^-52 of `clock`, 1 u of `roundings`.
-/// 256 and 16 leave room for what is rounded here and where ends are moved.
+/// Contact is reported up to `farthest_contact` gaps away: 1638 u and 84 x 2^-52. (4) The time of a separation is
+/// rounded up to a double, by one spacing, 2^-52 (|s| + tau_a) at most, and tau by u: 1 x 2^-52 of `clock`, 1 u of
+/// `roundings`. 1792 and 96 leave room for what is rounded here and where ends are moved.
 ///
 /// A volume is grown by a constant for as long as that will do: so its corners move alike, and it is not renewed. After
 /// that its ends move apart as the share grows, which holds for ever: one renewal a motion, if any.
 template <int Degree>
 class MeshClearance {
  public:
-  static constexpr double roundings = 256 * 0x1p-53;
-  static constexpr double clock = 16 * 0x1p-52;
+  static constexpr double roundings = 1792 * 0x1p-53;
+  static constexpr double clock = 96 * 0x1p-52;
 
   MeshClearance(const certificates::PointMotion<Degree>& motion, double radius) : least_(box_margin * radius) {
     std::array<double, 3> size{};

@@ -146,12 +146,18 @@ class Query : private PairTimes<Degree> {
     }
   }
 
+  /// Whether sharp corners may meet.
+  bool sharp() const {
+    if constexpr (std::is_same_v<Part, PlacedTriangle>) return a_.mesh.sharp() && b_.mesh.sharp();
+    return a_.mesh.sharp();
+  }
+
   /// Good for times in the window.
   Touching touching_of(const PlacedTriangle& triangle, const Part& part, const TimeWindow& window) const {
     if constexpr (with_ball) {
-      return Touching(triangle, part, motion_, gap_, last_, window);
+      return Touching(triangle, part, motion_, gap_, sharp(), last_, window);
     } else {
-      return Touching(triangle, part, motion_, gap_);
+      return Touching(triangle, part, motion_, gap_, sharp());
     }
   }
 
@@ -172,7 +178,7 @@ class Query : private PairTimes<Degree> {
   double first_time(const PlacedTriangle& triangle, const Part& part, TimeWindow window, double tau0, ContactMode mode,
                     double& passed_over) const {
     if constexpr (Degree == 1 && !with_ball) {
-      return first_time(Touching(triangle, part, motion_, gap_, window), tau0, window.end, mode, passed_over);
+      return first_time(Touching(triangle, part, motion_, gap_, sharp(), window), tau0, window.end, mode, passed_over);
     } else {
       if (!may_touch(triangle, part, motion_, margin_, window)) return TimeSpans::infinity;
       return first_time(touching_of(triangle, part, window), tau0, window.end, mode, passed_over);

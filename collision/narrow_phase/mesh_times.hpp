@@ -79,7 +79,7 @@ class PairTimes {
   /// bodies hardly move but their speeds are known less well than they are slow), and before a curved path is too far
   /// from its chord for the box tests to be any use. At rest there is nothing but the present.
   double slice_end(double begin, double end) const {
-    constexpr double large = 0x1p-8;
+    constexpr double large = 0x1p-11;  // of the gap: quick_margin times that is the margin
     constexpr double most_bend = 0x1p-3;
     const auto& r = motion_.coefficients;
     if constexpr (Degree == 1) {

@@ -62,11 +62,19 @@ inline Interval interval(double x, double y) { return x < y ? Interval{x, y} : I
 /// Two triangles: the two normals, the nine products of edges, and the normals of the six edges in their planes, which
 /// alone separate triangles of one plane, and keep those of nearly one plane from counting as touching far away from
 /// each other. Any direction is a valid witness of separation, however it was rounded, so a bad one (from nearly
-/// parallel edges) only fails to separate.
+/// parallel edges) only fails to separate. That an axis is perpendicular to the edges it was made of is made use of
+/// only where it is so but for rounding: a product u x v is off by 2 roundings of |u| |v|, so the ends of u project to
+/// points 2 |u| / sine of the angle apart. Where the sine is below 1/2 all vertices are projected; else that is 8 of
+/// the radius.
 template <class Test>
 bool every_axis(const PlacedTriangle& a, const PlacedTriangle& b, Test&& test) {
   const std::array<Eigen::Vector3d, 3> u{a.edge(0), a.edge(1), a.edge(2)};
   const std::array<Eigen::Vector3d, 3> v{b.edge(0), b.edge(1), b.edge(2)};
+  const auto nearly_parallel = [](const Eigen::Vector3d& axis, double square_u, double square_v) {
+    return 4 * dot(axis, axis) < square_u * square_v;
+  };
+  const std::array<double, 3> uu{dot(u[0], u[0]), dot(u[1], u[1]), dot(u[2], u[2])};
+  const std::array<double, 3> vv{dot(v[0], v[0]), dot(v[1], v[1]), dot(v[2], v[2])};
   // The ends of an edge project to one point, up to rounding, on an axis across it.
   const auto across = [](const PlacedTriangle& t, std::size_t i, const Eigen::Vector3d& axis) {
     return interval(dot(axis, t.vertices[i]), dot(axis, t.vertices[i == 0 ? 2 : i - 1]));
@@ -76,13 +84,19 @@ bool every_axis(const PlacedTriangle& a, const PlacedTriangle& b, Test&& test) {
     return Interval{height, height};
   };
   const Eigen::Vector3d normal_a = cross(u[0], u[1]);
-  if (!test(normal_a, flat(a, normal_a), b.project(normal_a))) return false;
+  const Interval height_a = nearly_parallel(normal_a, uu[0], uu[1]) ? a.project(normal_a) : flat(a, normal_a);
+  if (!test(normal_a, height_a, b.project(normal_a))) return false;
   const Eigen::Vector3d normal_b = cross(v[0], v[1]);
-  if (!test(normal_b, a.project(normal_b), flat(b, normal_b))) return false;
+  const Interval height_b = nearly_parallel(normal_b, vv[0], vv[1]) ? b.project(normal_b) : flat(b, normal_b);
+  if (!test(normal_b, a.project(normal_b), height_b)) return false;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       const Eigen::Vector3d axis = cross(u[i], v[j]);
-      if (!test(axis, across(a, i, axis), across(b, j, axis))) return false;
+      if (nearly_parallel(axis, uu[i], vv[j])) [[unlikely]] {
+        if (!test(axis, a.project(axis), b.project(axis))) return false;
+      } else if (!test(axis, across(a, i, axis), across(b, j, axis))) {
+        return false;
+      }
     }
   }
   for (std::size_t i = 0; i < 3; ++i) {
@@ -130,16 +144,22 @@ bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
   return true;
 }
 
-/// The same for the directions of k-DOPs, the axes among them. They are needed where shapes are apart: the directions
-/// above tell whether convex shapes overlap, but say little of how far two sharp corners are apart that face each
-/// other, tip to tip, since all of them are nearly across the line between the tips.
+/// The same for the directions of k-DOPs, the axes among them. They are needed where sharp corners may face each other,
+/// tip to tip: the directions above tell whether convex shapes overlap, but are all nearly across the line between such
+/// tips, and so say little of how far they are apart.
 ///
-/// With these the shapes are at most 3.4 times as far apart as the farthest that is seen along a direction. Let d lead
-/// from one nearest point to the other, two vertices, so that the directions for which they are the nearest are a
-/// convex set N of the sphere about d. Its sides are arcs along which the directions of every_axis follow each other in
-/// steps of 90 degrees at most (of a triangle's edge, half a circle with the normal in the plane in its middle). If d
-/// is within 27.6 degrees of a side, one of these is within 72.6 degrees of d: cos is 0.29. Else N holds one of the 26
-/// directions, none of which leaves more than 27.6 degrees to its neighbours: cos is 0.88.
+/// How far? Let d lead from the nearest point of one shape to that of the other, two vertices (else a direction above
+/// is within 45 degrees of d), so that the directions for which these are the nearest are a convex set N of the sphere
+/// about d. Its sides are arcs along which directions of every_axis follow each other in steps of 90 degrees at most:
+/// of a triangle's edge, half a circle with the normal in the plane in its middle; of a box's, a quarter. So, if a side
+/// is delta from d, some direction has a cosine of cos(delta) sqrt(1/2) with d at least, and the distance is at most
+/// sqrt(2) / cos(delta) times the greatest separation that is seen.
+/// - N lies in the set of each of the two vertices. A corner of a triangle with the angle theta has a sector of 180
+///   degrees - theta, so that delta <= 90 degrees - theta / 2: where one of the triangles has no corner that is sharp
+///   (Mesh::sharp_half_sine), 11.4 times. Of a vertex of a box, delta <= 35.3 degrees: 1.74 times.
+/// - None of the 26 directions here leaves more than 27.6 degrees to its neighbours, so either delta is less, or N
+/// holds
+///   one of them: 1.6 times; and what k-DOPs see is no more than what is seen here.
 template <class A, class B, class Test>
 bool every_kdop_direction(const A& a, const B& b, Test&& test) {
   constexpr std::array<std::array<int, 3>, 13> directions{{{1, 0, 0},

@@ -78,9 +78,15 @@ Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
   bounding_radius_ *= 1 + 0x1p-50;  // three roundings of the norm, upward
   shortest_edge_ = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : triangles_) {
-    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
-      shortest_edge_ = std::min(shortest_edge_, (vertices_[to] - vertices_[from]).stableNorm());
-    }
+    const auto corner = [&](std::uint32_t at, std::uint32_t next, std::uint32_t last) {
+      const Vector3d u = vertices_[next] - vertices_[at];
+      const Vector3d v = vertices_[last] - vertices_[at];
+      shortest_edge_ = std::min(shortest_edge_, u.stableNorm());
+      // The cosine is 1 - 2 sine^2 of the half angle.
+      const double cosine = u.stableNormalized().dot(v.stableNormalized());
+      sharp_ = sharp_ || !(cosine < 1 - 2 * sharp_half_sine * sharp_half_sine);
+    };
+    corner(a, b, c), corner(b, c, a), corner(c, a, b);
   }
   std::vector<bool> used(vertices_.size());
   std::size_t count = 0;

@@ -65,6 +65,9 @@ class Mesh {
   /// Radius of the ball about the origin that holds all vertices, rounded up.
   double bounding_radius() const { return bounding_radius_; }
 
+  /// Whether some triangle has a corner so sharp that the sine of half its angle is below `sharp_half_sine`.
+  bool sharp() const { return sharp_; }
+
   /// Length of the shortest edge, rounded.
   double shortest_edge() const { return shortest_edge_; }
 
@@ -81,6 +84,9 @@ class Mesh {
   /// Degenerate below: the sine of the angle at which two edges meet. 64 roundings of the cross product; a triangle
   /// so thin has no normal to speak of.
   static constexpr double thinnest_sine = 0x1p-46;
+  /// Of 14.4 degrees. Contacts of meshes with sharper corners need more tests; a smaller number would have contact of
+  /// corners reported from farther away (farthest_contact).
+  static constexpr double sharp_half_sine = 0.125;
   /// 1.3e30: squares of products of three lengths and a speed must not overflow.
   static constexpr double largest_coordinate = 0x1p100;
 
@@ -91,6 +97,7 @@ class Mesh {
   std::vector<VertexPair> used_;  // vertices that triangles use, each once; of an odd number the last one twice
   double bounding_radius_ = 0;
   double shortest_edge_ = 0;
+  bool sharp_ = false;
 };
 
 }  // namespace kds::collision

@@ -137,7 +137,7 @@ void single_tests() {
     const auto k = static_cast<std::size_t>(i);
     const auto gap = contact_gap(motions[k], 4);
     const ConvexTouch<Degree, PlacedTriangle> touch(triangles[k], triangles[(k + 1) % triangles.size()], motions[k],
-                                                    gap);
+                                                    gap, false);
     sum += touch.first_inside(0) < 1;
   });
   std::printf("triangles, closed forms            degree %d: %6.1f ns (%.0f)\n", Degree, full, sum);

@@ -86,12 +86,13 @@ TEST_CASE("Within a window two triangles touch as they do at all", "[found_touch
     motion.coefficients = {random.vector(3), random.vector(3)};
     if (random.below(8) == 0) motion.coefficients[1].setZero();
     const ContactGap<1> gap = contact_gap(motion, 4);
-    const ConvexTouch<1, PlacedTriangle> whole(a, b, motion, gap);
+    const bool sharp = random.below(2) == 0;
+    const ConvexTouch<1, PlacedTriangle> whole(a, b, motion, gap, sharp);
     TimeWindow window{random.uniform(0, 2), 0};
     window.end = window.begin + random.uniform(0, 3);
     const double first = whole.first_inside(0);
     if (first < window.begin && whole.first_inside(window.begin) != window.begin) continue;  // against the precondition
-    const ConvexTouch<1, PlacedTriangle> part(a, b, motion, gap, window);
+    const ConvexTouch<1, PlacedTriangle> part(a, b, motion, gap, sharp, window);
     const double wanted = whole.first_inside(window.begin);
     const double got = part.first_inside(window.begin);
     if (wanted > window.end) {

@@ -1,4 +1,5 @@
-// Meshes against meshes, boxes and balls: against brute force over all pairs of triangles, and against static distances.
+// Meshes against meshes, boxes and balls: against brute force over all pairs of triangles, and against static
+// distances.
 #include "collision/narrow_phase/ball_touch.hpp"
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "tests/collision/narrow_phase/mesh_distances.hpp"
@@ -22,21 +23,23 @@ template <int Degree, class Visit>
 void every_touch(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion, const Visit& visit) {
   const auto gap = contact_gap(motion, a.bounding_radius + b.bounding_radius);
   const auto of_a = triangles_of(a);
+  const auto sharp = [](const PlacedShape& shape) { return std::get<MeshShape>(shape.shape).mesh->sharp(); };
   if (const auto* ball = std::get_if<Sphere>(&b.shape)) {
     // The same horizon is not known here: only degree 1, which does not use it.
     for (std::uint32_t i = 0; i < of_a.size(); ++i) {
-      visit(i, 0u, BallTouch<Degree>(of_a[i], PlacedBall{ball->radius}, motion, gap, 0x1p200, {0, 0x1p200}));
+      visit(i, 0u, BallTouch<Degree>(of_a[i], PlacedBall{ball->radius}, motion, gap, sharp(a), 0x1p200, {0, 0x1p200}));
     }
   } else if (std::holds_alternative<Box>(b.shape)) {
     const PlacedBox box{b.half_axes, b.rotation};
     for (std::uint32_t i = 0; i < of_a.size(); ++i) {
-      visit(i, 0u, ConvexTouch<Degree, PlacedBox>(of_a[i], box, motion, gap));
+      visit(i, 0u, ConvexTouch<Degree, PlacedBox>(of_a[i], box, motion, gap, false));
     }
   } else {
     const auto of_b = triangles_of(b);
     for (std::uint32_t i = 0; i < of_a.size(); ++i) {
       for (std::uint32_t j = 0; j < of_b.size(); ++j) {
-        visit(i, j, ConvexTouch<Degree, PlacedTriangle>(of_a[i], of_b[j], motion, gap));
+        const bool both_sharp = sharp(a) && sharp(b);
+        visit(i, j, ConvexTouch<Degree, PlacedTriangle>(of_a[i], of_b[j], motion, gap, both_sharp));
       }
     }
   }
