@@ -45,7 +45,7 @@ template <int Degree>
 void World<Degree>::Image::check(const WorldOptions& options) const {
   if (!std::isfinite(now)) fail("now: is not finite");
   if (!is_to_come(horizon, now)) fail("horizon: is before now");
-  if (!(clock <= now)) fail("clock: is after now, or not a number");
+  if (!std::isfinite(clock) || clock > now) fail("clock: is after now, or not finite");
   if (!edits.began_by(now)) fail("edits: are counted from a time after now");
   if (!is_past(removed_at, now)) fail("removed_at: is after now");
   check_bodies();
