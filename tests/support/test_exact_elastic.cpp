@@ -184,7 +184,7 @@ TEST_CASE("An overlap at the start is told, passes, and counts again once they h
   CHECK(complains(apart, "that is none"));
 }
 
-TEST_CASE("Events at one time are in the order of walls, then of pairs; bodies without a part go on",
+TEST_CASE("Events at one time are in the order of walls, then of pairs, and bodies without a part go on",
           "[exact_elastic]") {
   ElasticRun run = two_balls();
   run.bodies.push_back(ball(1, {0, 8, 0}, {0, 0, 0}));
