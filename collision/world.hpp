@@ -298,7 +298,7 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
   // world/clearance.cpp: what volumes reach beyond bodies, for the contact gap of meshes
   void allow_for_meshes();
   void update_volume(BodyId id, const KineticBox<Degree>& box);
-  std::array<double, Degree + 1> growth(BodyId id) const;
+  std::array<double, std::size_t{Degree} + 1> growth(BodyId id) const;
   KineticBox<Degree> grown(BodyId id, KineticBox<Degree> box) const;
   double clearance_until(BodyId id) const;
 

@@ -31,8 +31,8 @@ void World<Degree>::update_volume(BodyId id, const KineticBox<Degree>& box) {
 /// By what a body's volume is grown from now on, on all sides. Meshes in the box around their shape have the least of
 /// that in place already.
 template <int Degree>
-std::array<double, Degree + 1> World<Degree>::growth(BodyId id) const {
-  std::array<double, Degree + 1> growth{};
+std::array<double, std::size_t{Degree} + 1> World<Degree>::growth(BodyId id) const {
+  std::array<double, std::size_t{Degree} + 1> growth{};
   if (!meshes_) return growth;
   const Body& b = bodies_[id];
   const MeshClearance<Degree> clearance(movers_[id].motion, b.bounding_radius);
