@@ -3,57 +3,36 @@
 
 #include "collision/body_description.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
-#include "collision/broad_phase/kdop.hpp"
 #include "collision/narrow_phase/contact.hpp"
-#include "collision/narrow_phase/mesh_margins.hpp"
-#include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
-#include "collision/world/earliest_wall_time.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/clock.hpp"
 #include "collision/world/edit_limit.hpp"
-#include "collision/world/records.hpp"
+#include "collision/world/pairs.hpp"
 #include "collision/world/reports.hpp"
 #include "collision/world/resting_contacts.hpp"
+#include "collision/world/scripts.hpp"
+#include "collision/world/volumes.hpp"
+#include "collision/world/wall_times.hpp"
+#include "collision/world_counters.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
-#include "kds/events/calendar_queue.hpp"
-#include "kds/events/dary_queue.hpp"
-#include "kds/statistics.hpp"
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <memory>
-#include <span>
 #include <string_view>
-#include <vector>
 
 namespace kds::collision {
-
-/// What a world has done so far.
-struct WorldCounters {
-  BroadPhaseCounters broad_phase;
-  std::uint64_t pairs_begun = 0;  ///< pairs handed on by the broad phase
-  std::uint64_t pair_tests = 0;   ///< dynamic intersection tests
-  std::uint64_t contacts = 0;
-  std::uint64_t separations = 0;
-  std::uint64_t overlaps = 0;
-  std::uint64_t wall_contacts = 0;
-  std::uint64_t motion_updates = 0;  ///< by response, walls, scripts and callers
-  std::uint64_t held = 0;            ///< times the Zeno policy acted
-
-  friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
-  /// As a kinetic structure's: what has happened, and failure times asked for.
-  operator Counters() const {
-    return {.events = contacts + separations + overlaps + wall_contacts, .certificates = pair_tests};
-  }
-};
 
 /// Runs bodies through time and reports their contacts at exact times.
 ///
 /// [Paper] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
-/// broad phase, bounding volumes that expire, walls, held pairs let go, contacts and separations by (a, b). Which broad
-/// phase finds them makes no difference: WorldListener says in what order they are reported. Dynamic test results are
-/// kept until a motion changes; then only the pairs of that body that are active are tested again.
+/// broad phase, bounding volumes that have to be renewed, walls, resting contacts that end, contacts and separations by
+/// (a, b). Which broad phase finds them makes no difference: WorldListener says in what order they are reported.
+///
+/// It is made of parts (world/), which docs/design.md lists.
 ///
 /// Adding, removing and moving bodies calls no listener: what follows from it is reported by the next step, at now().
 ///
@@ -65,7 +44,7 @@ struct WorldCounters {
 /// Degree 1 (straight paths) never pays for degree 2. Lengths and masses are in units of the caller's own, times in
 /// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
-class World final : private PairListener, private RestingContacts<Degree>::Bodies {
+class World final : private RestingContacts<Degree>::Listener {
   static_assert(Degree == 1 || Degree == 2, "World: bodies move on lines (degree 1) or parabolas (degree 2)");
 
  public:
@@ -77,7 +56,7 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
   /// std::runtime_error where arithmetic is not that of kds/arithmetic/strict.hpp.
   /// The listener, if there is one, must outlive the world.
   explicit World(const WorldOptions& options, Listener* listener = nullptr);
-  ~World() override;
+  ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
@@ -128,18 +107,18 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
   /// As audit(), at a time from now() on before which nothing is due.
   void audit(double t) const;
 
-  double now() const { return stepping_ ? now_ : clock_; }
-  std::size_t size() const { return alive_; }
-  bool contains(BodyId id) const { return id < bodies_.size() && bodies_[id].alive; }
+  double now() const { return stepping_ ? clock_.now : callers_now_; }
+  std::size_t size() const { return bodies_.size(); }
+  bool contains(BodyId id) const { return bodies_.contains(id); }
 
   /// Includes what held contacts do to the acceleration; to change a motion, begin with free_motion(). The reference is
   /// valid until bodies are added, removed or moved, or the clock advances.
-  const Motion& motion(BodyId id) const { return body(id), movers_[id].motion; }
+  const Motion& motion(BodyId id) const { return bodies_.at(id), bodies_.motion(id); }
   /// The motion as it would go on without the contacts that hold it: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
-  PlacedShape shape(BodyId id) const { return body(id), moving(id).shape; }
-  double mass(BodyId id) const { return body(id).mass; }
-  bool fixed(BodyId id) const { return body(id).inverse_mass == 0; }
+  PlacedShape shape(BodyId id) const { return bodies_.at(id), bodies_.shape(id); }
+  double mass(BodyId id) const { return bodies_.at(id).mass; }
+  bool fixed(BodyId id) const { return bodies_.at(id), bodies_.fixed(id); }
 
   /// Whether a and b are in contact (mode `none`).
   bool touching(BodyId a, BodyId b) const;
@@ -167,37 +146,40 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
   void archive(Archive& archive);
 
  private:
-  using PairSlot = detail::PairSlot;
-  static constexpr PairSlot no_pair = detail::no_pair;
-  static constexpr BodyId no_body = detail::no_body;
-  // world/records.hpp
-  using Mover = detail::Mover<Degree>;
-  using Extras = detail::Extras<Degree>;
-  using Link = detail::Link;
   using Body = detail::Body<Degree>;
+  using Mover = typename Bodies<Degree>::Mover;
   using Entry = typename BroadPhase<Degree>::Entry;
-  using Moving = detail::Moving<Degree>;
   using Resting = RestingContacts<Degree>;
-  using Pair = detail::Pair;
-  using PairRank = detail::PairRank;
 
   // world.cpp: the clock
-  /// When the next of each kind is due, but for what the broad phase does.
-  struct Agenda {
-    double piece, boxes, volume, wall, let_go, contact;
-    double first() const { return std::min({piece, boxes, volume, wall, let_go, contact}); }
+  /// What the parts of the world do, in the order in which it is done where it is due at one time.
+  enum class Task {
+    start_pieces,     ///< scripts_
+    meet_boxes,       ///< pairs_
+    renew_volume,     ///< volumes_
+    meet_wall,        ///< walls_
+    end_resting,      ///< resting_
+    meet_or_separate  ///< pairs_
   };
-  Agenda agenda() const;
+  struct Due {
+    double time;
+    Task task;
+  };
+  Due next_due() const;
+  bool certify(Task task);
+  bool happens(Task task) const;
+  bool process(Task task);
   /// Whether the search for the next event makes it, or stops before it.
   enum class Search { makes, looks };
   bool next_event(double limit, Search search = Search::makes);
   bool guarded_event(double limit, Search search);
-  bool work_left() const { return !entering_.empty() || !resting_.settled() || !dirty_.empty() || !reports_.empty(); }
+  bool work_left() const { return bodies_.any_waits() || !resting_.settled() || !pairs_.tested() || !reports_.empty(); }
   void make_broad_phase();
+  void rebuild_broad_phase();
   void reach(double limit);
   void go_back(double t);
   void start_pieces();
-  bool renew_volume(BodyId id);
+  void report_next();
   void count_edit();
 
   // world/guards.cpp: what may be called when, and what is left when something throws
@@ -208,14 +190,14 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
   }
   /// For what changes bodies. Callbacks may.
   void require_editable(const char* function) {
-    if (failure_ || in_box_function_) [[unlikely]]
+    if (failure_ || volumes_.calling()) [[unlikely]]
       refuse(function);
-    if (!stepping_ && now_ > clock_) [[unlikely]]
-      change_or_fail([&] { go_back(clock_); });
+    if (!stepping_ && clock_.now > callers_now_) [[unlikely]]
+      change_or_fail([&] { go_back(callers_now_); });
   }
   /// For what runs, saves or loads the world.
   void require_idle(const char* function) const {
-    if (failure_ || in_box_function_ || stepping_) [[unlikely]]
+    if (failure_ || volumes_.calling() || stepping_) [[unlikely]]
       refuse(function);
   }
   void note_failure();
@@ -238,160 +220,60 @@ class World final : private PairListener, private RestingContacts<Degree>::Bodie
     require_whole("World::step");  // The listener may have caught what interrupted a change that it made.
   }
 
-  void report_next();
-
-  Profile* profile() { return options_.profile ? &profile_ : nullptr; }
-
-  // world/snapshot.cpp: saving and loading; world/image.cpp: what is saved, written and read
-  struct Image;
-  Image image() const;
-  void become(const Image& image);
-  void set_shape(BodyId id, PlacedShape placed);
-  void load_pairs(const Image& image);
-  void rebuild_broad_phase();
-  std::vector<std::shared_ptr<const Mesh>> meshes() const;
-
-  // world/entry.cpp: bodies that come
+  // world/edits.cpp: bodies that come, move otherwise, and go
   BodyId put(const Description& description, std::shared_ptr<const PlacedShape> shape);
-  BodyId new_body();
-  void free_removed();
-  void set_extras(BodyId id, std::span<const Motion> script, const typename Description::BoxFunction& box_function);
+  void make_room_for_meshes();
   void enter_new_bodies();
-
-  // world/bodies.cpp: bodies and pairs
-  const Body& body(BodyId id) const;
-  Body& body(BodyId id);
-  void pairs_to_come(std::size_t pairs) override;
-  bool filters() const override { return filters_; }
-  /// What collides with nothing the broad phase does not know.
-  bool collides(BodyId id) const { return bodies_[id].category != 0 && bodies_[id].collides_with != 0; }
-  bool may_collide(BodyId a, BodyId b) const override {
-    return (bodies_[a].category & bodies_[b].collides_with) != 0 &&
-           (bodies_[b].category & bodies_[a].collides_with) != 0;
-  }
-  void pair_began(BodyId a, BodyId b, double t) override;
-  void pair_ended(BodyId a, BodyId b, double t) override;
   void take_out(BodyId id);
   void give(BodyId id, const Motion& motion);
-  PairSlot find_pair(BodyId a, BodyId b) const;
-  PairSlot new_pair(BodyId a, BodyId b);
-  void unlist(PairSlot slot);
-  void release_pair(PairSlot slot);
-  void mark_dirty(PairSlot slot);
   void set_motion(BodyId id, const Motion& motion, bool jumped);
-  bool is_jump(BodyId id, const Motion& to) const;
-  KineticBox<Degree> bounding_box(BodyId id) const;
-  KineticBox<Degree> bare_box(BodyId id) const;
-  bool caller_makes_box(BodyId id) const { return bodies_[id].extras && bodies_[id].extras->box_function; }
-  KineticBox<Degree> renewed_box(BodyId id);
-  void note_wall(BodyId id, double earliest);
-  void schedule_wall(BodyId id);
-  void schedule_walls(std::span<const Entry> bodies);
-  void schedule_volume(BodyId id);
-
-  // world/kdops.cpp: bounding volumes in more directions than the axes
-  Kdops<Degree> kdops();
-  void place_extents(BodyId id);
-  KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;
-  bool volumes_overlap(BodyId a, BodyId b, double t) const;
-
-  // world/clearance.cpp: what volumes reach beyond bodies, for the contact gap of meshes
-  void allow_for_meshes();
   void update_volume(BodyId id, const KineticBox<Degree>& box);
-  std::array<double, std::size_t{Degree} + 1> growth(BodyId id) const;
-  KineticBox<Degree> grown(BodyId id, KineticBox<Degree> box) const;
-  double clearance_until(BodyId id) const;
 
-  // world/contacts.cpp: tests, contacts, response
-  ContactMode mode() const {
-    return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
-  }
-  void test_dirty_pairs();
-  void test(PairSlot slot);
-  bool balls_are_quick() const;
-  void estimate_dirty_pairs();
-  void estimate_balls(std::size_t first, std::size_t last);
-  void set_contact(PairSlot slot, double time);
-  void remember(PairSlot slot, const FoundTouch& found);
-  bool certify_next(bool contact, bool wall);
-  void certify_contact(PairSlot slot);
-  void certify_wall(BodyId id);
-  void test_boxes(PairSlot slot);
-  void process_boxes(PairSlot slot, double t);
-  Contact contact_of(BodyId a, BodyId b, double t, const FoundTouch& found = {}) const;
-  void process_contact(PairSlot slot, double t);
-  void process_separation(PairSlot slot, double t);
-  void process_wall(BodyId id, double t);
-  bool respond(PairSlot slot, const Contact& contact);
+  // world/response.cpp: what follows from contacts
+  void process_meeting();
+  void process_contact(BodyId a, BodyId b, const Contact& contact);
+  void process_wall();
+  bool respond(BodyId a, BodyId b, const Contact& contact);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
-  double earliest_wall_time(BodyId id, int wall) const {
-    return collision::earliest_wall_time(movers_[id].motion, bodies_[id].bounding_radius, *options_.walls, wall, now_);
-  }
-  double next_wall_time(BodyId id, int wall, double horizon) const;
   std::uint64_t count_meeting(BodyId a, BodyId b);
   std::uint64_t count_meeting(BodyId id);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
-  // What resting contacts ask, and tell (RestingContacts::Bodies).
-  bool present(BodyId id) const override { return contains(id) && bodies_[id].entered; }
-  Moving moving(BodyId id) const override { return Moving(bodies_[id], movers_[id].motion); }
-  const Motion& path(BodyId id) const override { return movers_[id].motion; }
-  double inverse_mass(BodyId id) const override { return bodies_[id].inverse_mass; }
-  Eigen::Vector3d free_acceleration(BodyId id) const override;
-  double time() const override { return now_; }
-  double horizon() const override { return horizon_; }
+  // What resting contacts tell (RestingContacts::Listener).
   void take_up(BodyId id, const Motion& motion) override;
-  void changed(BodyId a, BodyId b) override;
-  void let_pass(BodyId a, BodyId b) override;
+  void changed(BodyId a, BodyId b) override { pairs_.changed(a, b); }
+  void let_pass(BodyId a, BodyId b) override { pairs_.let_pass(a, b); }
   void tell_held(BodyId a, BodyId b) override;
 
-  // world/audit.cpp
-  void audit_overlapping(double t) const;
+  // world/snapshot.cpp
+  struct Image;
+  Image image() const;
+  void become(const Image& image);
 
-  WorldOptions options_;
+  Profile* profile() { return options_.profile ? &profile_ : nullptr; }
+
+  const WorldOptions options_;
   Listener* listener_;
   Listener silent_;
-  std::unique_ptr<BroadPhase<Degree>> broad_phase_;
-  std::vector<Mover> movers_;  // by body
-  std::vector<Body> bodies_;
-  ListArena<Link> links_;  // pairs of each body
-  std::vector<BodyId> free_bodies_;
-  std::vector<BodyId> removed_;  ///< at removed_at_: their ids are not given again at that time
-  std::vector<BodyId> entering_;
-  std::vector<Pair> pairs_;
-  std::vector<PairSlot> free_pairs_;
-  std::vector<PairSlot> dirty_;
-  std::vector<double> estimates_;               // by place in dirty_: see estimate_balls()
-  std::vector<FoundTouch> found_;               // by pair, as far as known; of no use once a motion has changed
-  std::vector<KdopDirection> directions_;       // beyond the axes
-  std::vector<std::array<double, 2>> extents_;  // by body and direction
-  Resting resting_;
-  Reports reports_;
-  // Queues that a scene does not need have no slots.
-  DaryQueue<> pieces_;                // slots are bodies
-  DaryQueue<> volumes_;               // slots are bodies
-  CalendarQueue<> walls_;             // slots are bodies
-  CalendarQueue<PairRank> contacts_;  // slots are pairs
-  DaryQueue<PairRank> boxes_;         // slots are pairs; used where the broad phase is not exact
+  Clock clock_;  ///< ahead of callers_now_ when next_time() has looked ahead
   WorldCounters counters_;
   Profile profile_;
-  double now_;    ///< of what is being done; ahead of clock_ when next_time() has looked ahead
-  double clock_;  ///< as callers know it
-  double horizon_;
+  // The parts, each with a state, a queue and laws of its own.
+  Bodies<Degree> bodies_;
+  Scripts<Degree> scripts_;
+  Volumes<Degree> volumes_;
+  WallTimes<Degree> walls_;
+  Reports reports_;
+  Resting resting_;
+  Pairs<Degree> pairs_;
+  std::unique_ptr<BroadPhase<Degree>> broad_phase_;
+  EditLimit edits_;
+  double callers_now_;          ///< the clock as callers know it
   double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
   double next_time_ = -never;   ///< as next_time() has found it; -never if it has not been asked for
-  double removed_at_ = -never;
-  std::size_t alive_ = 0;
-  std::size_t unlisted_ = 0;    ///< pairs that the broad phase does not list
-  bool meshes_ = false;         ///< there is or has been one, so volumes have room for contact gaps
-  bool box_functions_ = false;  ///< some body has or had one
-  bool filters_ = false;        ///< some body does not collide with all others, or did not
-  bool inserting_ = false;
   bool stepping_ = false;
-  bool telling_ = false;          ///< a listener is being told, or has thrown
-  bool in_box_function_ = false;  ///< a function of the caller's is making a box
-  std::exception_ptr failure_;    ///< what has left the world in pieces
-  EditLimit edits_;
+  bool telling_ = false;        ///< a listener is being told, or has thrown
+  std::exception_ptr failure_;  ///< what has left the world in pieces
 };
 
 extern template class World<1>;

@@ -74,4 +74,7 @@ struct WorldOptions {
   std::uint64_t most_edits = 1'000'000;
 };
 
+/// Throws std::invalid_argument, naming the option, for one that is out of range by itself.
+void validate(const WorldOptions& options);
+
 }  // namespace kds::collision

@@ -16,7 +16,7 @@ void World<Degree>::note_failure() {
 template <int Degree>
 void World<Degree>::refuse(const char* function) const {
   const std::string called = std::string(function) + ": ";
-  if (!failure_ && in_box_function_) throw std::logic_error(called + "a box function must not change the world");
+  if (!failure_ && volumes_.calling()) throw std::logic_error(called + "a box function must not change the world");
   if (!failure_) throw std::logic_error(called + "must not be called from within a callback");
   std::string why = "what was thrown is no std::exception";
   try {

@@ -4,7 +4,7 @@
 #include "certificates/conjunction.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
-#include "collision/world.hpp"
+#include "collision/world/pairs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -47,33 +47,33 @@ bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
 }  // namespace
 
 template <int Degree>
-bool World<Degree>::balls_are_quick() const {
+bool Pairs<Degree>::balls_are_quick() const {
   return mode() == ContactMode::resolved && resting_.empty();
 }
 
 /// Most tests by far are these, and need two cache lines. They change nothing but estimates_: for some of the dirty
 /// pairs, a time before which the balls do not meet, as BallsTogether tells it. Precondition: balls_are_quick().
 template <int Degree>
-void World<Degree>::estimate_balls(std::size_t first, std::size_t last) {
+void Pairs<Degree>::estimate_balls(std::size_t first, std::size_t last) {
   certificates::BallsTogether<Degree> together;
   const auto put = [&](std::size_t place, std::size_t i) {
     const Pair& pair = pairs_[dirty_[i]];
-    together.put(place, movers_[pair.a], movers_[pair.b]);
+    together.put(place, bodies_.mover(pair.a), bodies_.mover(pair.b));
   };
   std::size_t i = first;
   for (; i + together.size <= last; i += together.size) {
     for (std::size_t k = 0; k < together.size; ++k) put(k, i + k);
-    together.earliest_approaches(now_, horizon_, &estimates_[i]);
+    together.earliest_approaches(clock_.now, clock_.horizon, &estimates_[i]);
   }
   if (i == last) return;
   for (std::size_t k = 0; k < together.size; ++k) put(k, std::min(i + k, last - 1));
   std::array<double, together.size> rest;
-  together.earliest_approaches(now_, horizon_, rest.data());
+  together.earliest_approaches(clock_.now, clock_.horizon, rest.data());
   for (std::size_t k = 0; i + k < last; ++k) estimates_[i + k] = rest[k];
 }
 
 template <int Degree>
-void World<Degree>::estimate_dirty_pairs() {
+void Pairs<Degree>::estimate_dirty() {
   if (!balls_are_quick()) return estimates_.assign(dirty_.size(), undecided);
   estimates_.resize(dirty_.size());
   in_parts(dirty_.size(), threads_for(dirty_.size(), options_.threads),
@@ -81,12 +81,11 @@ void World<Degree>::estimate_dirty_pairs() {
 }
 
 template <int Degree>
-void World<Degree>::test_dirty_pairs() {
-  const Stopwatch watch(profile(), Work::test);
-  const bool boxes = options_.report_pairs && !broad_phase_->exact();
-  estimate_dirty_pairs();
+void Pairs<Degree>::test() {
+  const Stopwatch watch(profile_, Work::test);
+  estimate_dirty();
   for (std::size_t i = 0; i < dirty_.size(); ++i) {
-    const PairSlot slot = dirty_[i];
+    const Slot slot = dirty_[i];
     Pair& pair = pairs_[slot];
     pair.dirty = false;
     if (!pair.alive) continue;
@@ -100,45 +99,47 @@ void World<Degree>::test_dirty_pairs() {
       if (pair.estimated || contacts_.contains(slot)) contacts_.set(slot, pair.estimated ? estimate : never);
     }
     pair.fresh = false;
-    if (boxes && pair.listed) test_boxes(slot);
-    if (unlisted_ > 0 && !pair.listed && !pair.overlapping) release_pair(slot);
+    if (follows_boxes_ && pair.listed) test_boxes(slot);
+    if (unlisted_ > 0 && !pair.listed && !pair.overlapping) release(slot);
   }
   dirty_.clear();
 }
 
 template <int Degree>
-void World<Degree>::test(PairSlot slot) {
+void Pairs<Degree>::test(Slot slot) {
   Pair& pair = pairs_[slot];
-  const auto a = moving(pair.a);
-  const auto b = moving(pair.b);
+  const auto a = bodies_.moving(pair.a);
+  const auto b = bodies_.moving(pair.b);
   FoundTouch found;
-  const auto report_overlap = [&] { reports_.add(Reports::Kind::overlap, pair.a, pair.b, contact_at(a, b, now_)); };
+  const auto report_overlap = [&] {
+    reports_.add(Reports::Kind::overlap, pair.a, pair.b, contact_at(a, b, clock_.now));
+  };
   ContactEstimate next{never, true};
   if (mode() == ContactMode::transparent) {
-    if (pair.fresh && in_contact(a, b, now_)) {
+    if (pair.fresh && in_contact(a, b, clock_.now)) {
       pair.overlapping = true;
       report_overlap();
     }
     if (at_rest(a.motion) && at_rest(b.motion)) {  // Nothing will happen, but a jump may have happened.
-      next.time = in_contact(a, b, now_) == pair.overlapping ? never : now_;
+      next.time = in_contact(a, b, clock_.now) == pair.overlapping ? never : clock_.now;
     } else if (pair.overlapping) {
-      next.time = first_separation(a, b, now_, horizon_);
+      next.time = first_separation(a, b, clock_.now, clock_.horizon);
     } else {
-      next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory, &found);
+      next = estimated_first_contact(a, b, clock_.now, clock_.horizon, mode(), pair.memory, &found);
     }
   } else {
     if (pair.fresh) {
       pair.passes_at = -never;
-      pair.overlapping = in_contact(a, b, now_) && !only_touching(a, b, now_);
+      pair.overlapping = in_contact(a, b, clock_.now) && !only_touching(a, b, clock_.now);
       if (pair.overlapping) report_overlap();
     }
     if (pair.overlapping) {
-      const double start = pair.passes_at == now_ ? next_up(now_) : now_;
-      if (start <= horizon_) next.time = first_separation(a, b, start, horizon_);
+      const double start = pair.passes_at == clock_.now ? next_up(clock_.now) : clock_.now;
+      if (start <= clock_.horizon) next.time = first_separation(a, b, start, clock_.horizon);
     } else if (resting_.find(pair.a, pair.b) != Resting::none) {
       next.time = resting_.next_contact(pair.a, pair.b);
     } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
-      next = estimated_first_contact(a, b, now_, horizon_, mode(), pair.memory, &found);
+      next = estimated_first_contact(a, b, clock_.now, clock_.horizon, mode(), pair.memory, &found);
     }
   }
   contacts_.set(slot, next.time);
@@ -148,7 +149,7 @@ void World<Degree>::test(PairSlot slot) {
 
 /// For the contact, if nothing comes before it.
 template <int Degree>
-void World<Degree>::remember(PairSlot slot, const FoundTouch& found) {
+void Pairs<Degree>::remember(Slot slot, const FoundTouch& found) {
   if (slot >= found_.size()) {
     if (found.time == never) return;
     found_.resize(pairs_.capacity());
@@ -157,51 +158,56 @@ void World<Degree>::remember(PairSlot slot, const FoundTouch& found) {
 }
 
 template <int Degree>
-void World<Degree>::set_contact(PairSlot slot, double time) {
+void Pairs<Degree>::set_contact(Slot slot, double time) {
   pairs_[slot].estimated = false;
   contacts_.set(slot, time);
 }
 
-/// What comes first is no more than a lower bound: finds the exact time, which may be later. Most estimates never come
-/// first, since motions change before.
+/// Most bounds never come first, since motions change before.
 template <int Degree>
-void World<Degree>::certify_contact(PairSlot slot) {
+bool Pairs<Degree>::certify() {
+  const Slot slot = contacts_.top().slot;
   const Pair& pair = pairs_[slot];
-  const Mover& a = movers_[pair.a];
-  const Mover& b = movers_[pair.b];
+  if (!pair.estimated) return false;
+  const auto& a = bodies_.mover(pair.a);
+  const auto& b = bodies_.mover(pair.b);
   if (a.radius > 0 && b.radius > 0) {
     const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.radius, b.radius};
-    return set_contact(slot, apart.first_approach(now_, horizon_));
+    set_contact(slot, apart.first_approach(clock_.now, clock_.horizon));
+    return true;
   }
   FoundTouch found;
-  set_contact(slot, first_contact(moving(pair.a), moving(pair.b), now_, horizon_, mode(), &found));
+  set_contact(
+      slot, first_contact(bodies_.moving(pair.a), bodies_.moving(pair.b), clock_.now, clock_.horizon, mode(), &found));
   remember(slot, found);
+  return true;
 }
 
 template <int Degree>
-void World<Degree>::test_boxes(PairSlot slot) {
+void Pairs<Degree>::test_boxes(Slot slot) {
   Pair& pair = pairs_[slot];
-  const BoxOverlap<Degree> boxes(bounding_box(pair.a), bounding_box(pair.b));
+  const BoxOverlap<Degree> boxes(volumes_.box(pair.a), volumes_.box(pair.b));
   const auto apart = boxes.separations();
   const std::span<const typename BoxOverlap<Degree>::Apart> sides(apart);
   // A change of motion may leave boxes that touch for good: they do not overlap, although no side has a gap.
-  const double next = !pair.boxes_overlap                     ? certificates::first_all_broken(now_, horizon_, sides)
-                      : certificates::all_broken(now_, sides) ? certificates::first_any_holds(now_, horizon_, sides)
-                                                              : now_;
+  const double next = !pair.boxes_overlap ? certificates::first_all_broken(clock_.now, clock_.horizon, sides)
+                      : certificates::all_broken(clock_.now, sides)
+                          ? certificates::first_any_holds(clock_.now, clock_.horizon, sides)
+                          : clock_.now;
   boxes_.set(slot, next);
-  if (next == now_) process_boxes(slot, now_);
+  if (next == clock_.now) process_boxes(slot, clock_.now);
 }
 
 template <int Degree>
-void World<Degree>::process_boxes(PairSlot slot, double t) {
+void Pairs<Degree>::process_boxes(Slot slot, double t) {
   Pair& pair = pairs_[slot];
   pair.boxes_overlap = !pair.boxes_overlap;
-  now_ = t;
-  reports_.add_volumes(pair.boxes_overlap, pair.a, pair.b, now_);
+  clock_.now = t;
+  reports_.add_volumes(pair.boxes_overlap, pair.a, pair.b, clock_.now);
   test_boxes(slot);
 }
 
-template class World<1>;
-template class World<2>;
+template class Pairs<1>;
+template class Pairs<2>;
 
 }  // namespace kds::collision

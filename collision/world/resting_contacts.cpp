@@ -11,7 +11,6 @@
 namespace kds::collision {
 namespace {
 
-using detail::no_body;
 using Eigen::Vector3d;
 
 /// How far a held pair may part before it is let go, relative to the smaller bounding radius: balls that slide over
@@ -90,7 +89,7 @@ void RestingContacts<Degree>::drop(Slot slot) {
     list.erase(std::find(list.begin(), list.end(), slot));
     disturb(id);
   }
-  if (hold.b != no_body) bodies_.changed(hold.a, hold.b);
+  if (hold.b != no_body) listener_.changed(hold.a, hold.b);
 }
 
 template <int Degree>
@@ -115,9 +114,9 @@ double RestingContacts<Degree>::next_contact(BodyId id_a, BodyId id_b) {
     out += contacts_[slot].normal;
     left_behind = left_behind || contacts_[slot].left_behind == began;
   }
-  const double now = bodies_.time();
+  const double now = clock_.now;
   if (!left_behind) {
-    const double t = first_contact(a, b, now, bodies_.horizon(), ContactMode::resolved);
+    const double t = first_contact(a, b, now, clock_.horizon, ContactMode::resolved);
     if (t != now) return t;
     contacts_[find(id_a, id_b)].left_behind = began;
   }
@@ -125,7 +124,7 @@ double RestingContacts<Degree>::next_contact(BodyId id_a, BodyId id_b) {
       a.motion.position(began).cwiseAbs().maxCoeff() + b.motion.position(began).cwiseAbs().maxCoeff();
   const double size = a.shape.bounding_radius + b.shape.bounding_radius;
   const Motion farther = shifted(b.motion, coordinate_slack * (size + coordinates) * out);
-  return first_contact(a, MovingShape<Degree>{b.shape, farther}, now, bodies_.horizon(), ContactMode::resolved);
+  return first_contact(a, MovingShape<Degree>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
 }
 
 /// Held pairs part by sliding off, or by `slack`.
@@ -133,7 +132,7 @@ template <int Degree>
 void RestingContacts<Degree>::schedule_release(Slot slot) {
   const Contact& hold = contacts_[slot];
   if (hold.b == no_body) return;  // Walls have no edge to slide off.
-  const double now = bodies_.time();
+  const double now = clock_.now;
   const auto a = bodies_.moving(hold.a);
   const auto b = bodies_.moving(hold.b);
   bool together = true;
@@ -144,7 +143,7 @@ void RestingContacts<Degree>::schedule_release(Slot slot) {
     return releases_.clear(slot);
   }
   const Motion nearer = shifted(b.motion, -slack_of(a, b, now) * hold.normal);
-  const double t = first_separation(a, MovingShape<Degree>{b.shape, nearer}, now, bodies_.horizon());
+  const double t = first_separation(a, MovingShape<Degree>{b.shape, nearer}, now, clock_.horizon);
   releases_.set(slot, t);
 }
 
@@ -187,7 +186,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     const bool at_wall = hold.b == no_body;
     expected += at_wall ? 1 : 2;
     for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) {
-      if (!bodies_.present(id)) fail(slot, "a body is not there");
+      if (!bodies_.entered(id)) fail(slot, "a body is not there");
       const auto& known = of_[id].contacts;
       if (std::count(known.begin(), known.end(), slot) != 1) fail(slot, "a body does not know it");
     }
@@ -195,13 +194,13 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     if (std::abs(norm(hold.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
     if (releases_.time(slot) < t) fail(slot, "it should have been let go");
     if (hold.fresh) continue;
-    const Eigen::Vector3d a = bodies_.path(hold.a).velocity(t);
+    const Eigen::Vector3d a = bodies_.motion(hold.a).velocity(t);
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    if (!at_wall) b = bodies_.path(hold.b).velocity(t);
+    if (!at_wall) b = bodies_.motion(hold.b).velocity(t);
     double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
     if constexpr (Degree >= 2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
       for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) {
-        largest += 2 * bodies_.free_acceleration(id).cwiseAbs().maxCoeff() * (1 + t - bodies_.path(id).start);
+        largest += 2 * bodies_.free_acceleration(id).cwiseAbs().maxCoeff() * (1 + t - bodies_.motion(id).start);
       }
     }
     if (std::abs(dot(hold.normal, b - a)) > 16 * rate_rounding * largest) {
@@ -216,7 +215,7 @@ typename RestingContacts<Degree>::Image RestingContacts<Degree>::image() const {
   Image image{contacts_, free_, {}, {}, {}};
   // Of bodies that were disturbed and are gone, or have been settled since, the list may still speak.
   std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
-               [&](BodyId id) { return of_[id].disturbed && bodies_.present(id); });
+               [&](BodyId id) { return of_[id].disturbed && bodies_.entered(id); });
   for (const Member& member : of_) image.of.push_back(member.contacts);
   for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(releases_.time(slot));
   return image;

@@ -3,7 +3,9 @@
 
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/response/least_constraint.hpp"
-#include "collision/world/records.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/clock.hpp"
+#include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
 
 #include <Eigen/Core>
@@ -15,10 +17,38 @@
 
 namespace kds::collision {
 
+namespace detail {
+
+using RestingSlot = std::uint32_t;
+
+/// Two bodies, or a body (a) and a wall, that stay in touch.
+struct RestingContact {
+  BodyId a = 0;
+  BodyId b = no_body;  ///< of a wall
+  int wall = -1;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
+  double push = 0;                                   ///< half the relative acceleration that it gives
+  /// The largest of the velocities that were last solved for with it: what is left along the normal is a rounding of
+  /// that.
+  double solved = 0;
+  bool alive = false;
+  bool fresh = false;           ///< its approach is still to be taken out
+  double left_behind = -never;  ///< s, the epoch of a pair of motions: until it is another, rounding feigns a contact
+};
+
+struct RestingRank {
+  const std::vector<RestingContact>* contacts = nullptr;
+  std::uint64_t operator()(std::uint32_t slot) const {
+    return std::uint64_t{(*contacts)[slot].a} << 32 | (*contacts)[slot].b;
+  }
+};
+
+}  // namespace detail
+
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
 /// docs/resting.md says what the law is.
 ///
-/// A part of World that owns its state and its queue. It knows of the world what `Bodies` says, and no more.
+/// A part of World that owns its state and its queue. It reads the bodies, and tells its listener what follows.
 ///
 /// Cost: nothing while nothing rests. O(1) a contact that begins or ends; a change of motion of a body that rests
 /// solves for all that lean on each other with it (least_constraint.hpp).
@@ -26,32 +56,24 @@ template <int Degree>
 class RestingContacts {
  public:
   using Motion = certificates::PointMotion<Degree>;
-  using Slot = detail::HoldSlot;
-  using Contact = detail::Hold;
-  static constexpr Slot none = detail::no_hold;
+  using Slot = detail::RestingSlot;
+  using Contact = detail::RestingContact;
+  static constexpr Slot none = ~Slot{0};
 
-  /// What resting contacts ask of a world, and tell it.
-  class Bodies {
+  /// What resting contacts tell a world.
+  class Listener {
    public:
-    virtual bool present(BodyId id) const = 0;  ///< has entered, and is there
-    virtual detail::Moving<Degree> moving(BodyId id) const = 0;
-    virtual const Motion& path(BodyId id) const = 0;
-    virtual double inverse_mass(BodyId id) const = 0;
-    /// Half the acceleration that the body would have alone.
-    virtual Eigen::Vector3d free_acceleration(BodyId id) const = 0;
-    virtual double time() const = 0;
-    virtual double horizon() const = 0;
-
     virtual void take_up(BodyId id, const Motion& motion) = 0;  ///< a new motion
     virtual void changed(BodyId a, BodyId b) = 0;               ///< what the two may meet next has to be found anew
     virtual void let_pass(BodyId a, BodyId b) = 0;
     virtual void tell_held(BodyId a, BodyId b) = 0;  ///< that the policy has acted on the two
 
    protected:
-    ~Bodies() = default;
+    ~Listener() = default;
   };
 
-  explicit RestingContacts(Bodies& bodies) : bodies_(bodies), releases_(detail::HoldRank{&contacts_}) {}
+  RestingContacts(const Bodies<Degree>& bodies, const Clock& clock, Listener& listener)
+      : bodies_(bodies), clock_(clock), listener_(listener), releases_(detail::RestingRank{&contacts_}) {}
   RestingContacts(const RestingContacts&) = delete;
   RestingContacts& operator=(const RestingContacts&) = delete;
 
@@ -97,6 +119,15 @@ class RestingContacts {
     std::vector<BodyId> disturbed;
     std::vector<std::vector<Slot>> of;  ///< by body
     std::vector<double> releases;       ///< by contact
+
+    template <class Archive>
+    void archive(Archive& archive);
+    /// Throws std::runtime_error, naming what is wrong.
+    void check(const typename Bodies<Degree>::Image& bodies, double now, const WorldOptions& options) const;
+
+   private:
+    /// How far a normal may be from unit length: far above what normalising rounds.
+    static constexpr double normal_rounding = 0x1p-40;
   };
   Image image() const;
   void become(const Image& image);
@@ -117,7 +148,6 @@ class RestingContacts {
     std::vector<Touch> touches;  ///< of the contacts
   };
 
-  bool fixed(BodyId id) const { return bodies_.inverse_mass(id) == 0; }
   Member& member(BodyId id) {
     if (of_.size() <= id) of_.resize(id + std::size_t{1});
     return of_[id];
@@ -134,12 +164,14 @@ class RestingContacts {
   bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
   bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
 
-  Bodies& bodies_;
+  const Bodies<Degree>& bodies_;
+  const Clock& clock_;
+  Listener& listener_;
   std::vector<Contact> contacts_;
   std::vector<Slot> free_;
   std::vector<Member> of_;  ///< by body, up to the last that has rested
   std::vector<BodyId> disturbed_;
-  DaryQueue<detail::HoldRank> releases_;  ///< when contacts end; slots are contacts
+  DaryQueue<detail::RestingRank> releases_;  ///< when contacts end; slots are contacts
   std::uint64_t islands_ = 0;
 };
 

@@ -8,14 +8,14 @@
 #include <utility>
 
 namespace kds::collision {
-using detail::no_body;
 using Eigen::Vector3d;
 
 template <int Degree>
 void RestingContacts<Degree>::note(BodyId id) {
-  if (!bodies_.present(id)) return;
+  if (!bodies_.entered(id)) return;
   bool as_given = true;
-  if constexpr (Degree >= 2) as_given = fixed(id) || bodies_.path(id).coefficients[2] == bodies_.free_acceleration(id);
+  if constexpr (Degree >= 2)
+    as_given = bodies_.fixed(id) || bodies_.motion(id).coefficients[2] == bodies_.free_acceleration(id);
   if (!rests(id) && as_given) return;
   if (std::exchange(member(id).disturbed, true)) return;
   disturbed_.push_back(id);
@@ -26,8 +26,8 @@ void RestingContacts<Degree>::settle() {
   while (!disturbed_.empty()) {
     const BodyId id = disturbed_.back();
     disturbed_.pop_back();
-    if (!std::exchange(member(id).disturbed, false) || !bodies_.present(id)) continue;
-    if (fixed(id)) {
+    if (!std::exchange(member(id).disturbed, false) || !bodies_.entered(id)) continue;
+    if (bodies_.fixed(id)) {
       settle_fixed(id);
     } else {
       while (!settle_island(id)) {
@@ -39,7 +39,7 @@ void RestingContacts<Degree>::settle() {
 /// Nothing but walls holds a fixed body: they take the speed and the acceleration that lead out of the domain.
 template <int Degree>
 void RestingContacts<Degree>::settle_fixed(BodyId id) {
-  const Motion before = bodies_.path(id).restarted(bodies_.time());
+  const Motion before = bodies_.motion(id).restarted(clock_.now);
   Motion motion = before;
   const std::vector<Slot> holds = of_[id].contacts;  // some may be dropped
   const bool at_wall = std::any_of(holds.begin(), holds.end(), [&](Slot slot) { return contacts_[slot].wall >= 0; });
@@ -63,7 +63,7 @@ void RestingContacts<Degree>::settle_fixed(BodyId id) {
     hold.fresh = false;
     if (parts) drop(slot);
   }
-  if (at_wall && !(motion == before)) bodies_.take_up(id, motion);
+  if (at_wall && !(motion == before)) listener_.take_up(id, motion);
 }
 
 /// False if a hold had to be dropped: then it is to be called again. Each time there is one hold less.
@@ -72,12 +72,12 @@ bool RestingContacts<Degree>::settle_island(BodyId id) {
   Island island = find_island(id);
   if (drop_broken(island)) return false;
   std::vector<Motion> motions;
-  for (const BodyId each : island.bodies) motions.push_back(bodies_.path(each).restarted(bodies_.time()));
+  for (const BodyId each : island.bodies) motions.push_back(bodies_.motion(each).restarted(clock_.now));
   const std::vector<Motion> before = motions;
   if (!constrain(island, 1, motions)) return false;
   const auto take_up_all = [&] {
     for (std::size_t i = 0; i < island.free; ++i) {
-      if (!(motions[i] == before[i])) bodies_.take_up(island.bodies[i], motions[i]);
+      if (!(motions[i] == before[i])) listener_.take_up(island.bodies[i], motions[i]);
     }
   };
   if constexpr (Degree >= 2) {
@@ -107,7 +107,7 @@ typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(Bo
   std::vector<BodyId> anchored;
   const auto visit = [&](BodyId next) {
     if (std::exchange(member(next).island, islands_) == islands_) return;
-    (fixed(next) ? anchored : island.bodies).push_back(next);
+    (bodies_.fixed(next) ? anchored : island.bodies).push_back(next);
   };
   visit(id);
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
@@ -115,7 +115,7 @@ typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(Bo
     for (const Slot slot : std::vector<Slot>(of_[at].contacts)) {  // members may be made
       const Contact& hold = contacts_[slot];
       const BodyId other = hold.a == at ? hold.b : hold.a;
-      const bool met_first = hold.a == at || fixed(other);
+      const bool met_first = hold.a == at || bodies_.fixed(other);
       if (met_first) island.contacts.push_back(slot);
       if (other != no_body) visit(other);
     }
@@ -135,8 +135,8 @@ typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(Bo
   for (const Slot slot : island.contacts) {
     const Contact& hold = contacts_[slot];
     const bool at_wall = hold.b == no_body;
-    const double a = bodies_.inverse_mass(hold.a);
-    const double b = at_wall ? 0 : bodies_.inverse_mass(hold.b);
+    const double a = bodies_[hold.a].inverse_mass;
+    const double b = at_wall ? 0 : bodies_[hold.b].inverse_mass;
     // The walls come after the bodies.
     const auto place_b = at_wall ? static_cast<std::uint32_t>(island.bodies.size()) : of_[hold.b].place;
     island.touches.push_back({of_[hold.a].place, place_b, hold.normal, a, b});
@@ -151,8 +151,8 @@ bool RestingContacts<Degree>::drop_broken(const Island& island) {
   for (const Slot slot : island.contacts) {
     const Contact& hold = contacts_[slot];
     if (hold.fresh) continue;
-    const Vector3d a = bodies_.path(hold.a).velocity(bodies_.time());
-    const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.path(hold.b).velocity(bodies_.time());
+    const Vector3d a = bodies_.motion(hold.a).velocity(clock_.now);
+    const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.motion(hold.b).velocity(clock_.now);
     const double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
     if (std::abs(dot(hold.normal, b - a)) <= rate_rounding * largest) continue;
     drop(slot);
@@ -201,9 +201,9 @@ bool RestingContacts<Degree>::let_pass_worst(const Island& island, const std::ve
   }
   if (worst == none) return false;
   const Contact hold = contacts_[worst];
-  bodies_.let_pass(hold.a, hold.b);
+  listener_.let_pass(hold.a, hold.b);
   drop(worst);
-  if (!hold.fresh) bodies_.tell_held(hold.a, hold.b);  // else the event that made it is about to be reported
+  if (!hold.fresh) listener_.tell_held(hold.a, hold.b);  // else the event that made it is about to be reported
   return true;
 }
 

@@ -1,11 +1,9 @@
-// Contacts of the world, and how bodies respond to them.
-#include "collision/profile.hpp"
+// What follows from contacts: what is told, how bodies bounce, and which contacts last.
 #include "collision/response/impulse.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace kds::collision {
@@ -24,58 +22,39 @@ double parting(const Contact& contact, const certificates::PointMotion<Degree>& 
 
 }  // namespace
 
-/// Balls need not be made into shapes for it.
 template <int Degree>
-Contact World<Degree>::contact_of(BodyId a, BodyId b, double t, const FoundTouch& found) const {
-  const Mover& of_a = movers_[a];
-  const Mover& of_b = movers_[b];
-  if (of_a.radius > 0 && of_b.radius > 0) {
-    return ball_contact_at(of_a.motion, of_b.motion, of_a.radius, t);
-  }
-  return contact_at(moving(a), moving(b), t, found);
-}
-
-/// Two bodies that overlap separate; what was let pass may meet again from now on.
-template <int Degree>
-void World<Degree>::process_separation(PairSlot slot, double t) {
-  Pair& pair = pairs_[slot];
-  contacts_.clear(slot);
-  pair.overlapping = false;
-  mark_dirty(slot);
-  if (mode() == ContactMode::resolved) return;
+void World<Degree>::process_meeting() {
+  const auto [a, b, separates, found] = pairs_.take_next();
+  const auto contact = [&] { return pairs_.contact(a, b, clock_.now, found); };
+  if (!separates) return process_contact(a, b, contact());
+  // What was let pass may meet again from now on.
+  if (pairs_.mode() == ContactMode::resolved) return;
   ++counters_.separations;
-  const PairEvent event{pair.a, pair.b, contact_of(pair.a, pair.b, t)};
+  const PairEvent event{a, b, contact()};
   tell([&](Listener& listener) { listener.separation(*this, event); });
 }
 
 template <int Degree>
-void World<Degree>::process_contact(PairSlot slot, double t) {
-  contacts_.clear(slot);
-  Pair& pair = pairs_[slot];
-  const FoundTouch found = slot < found_.size() ? found_[slot] : FoundTouch{};
-  const PairEvent event{pair.a, pair.b, contact_of(pair.a, pair.b, t, found)};
+void World<Degree>::process_contact(BodyId a, BodyId b, const Contact& contact) {
+  const PairEvent event{a, b, contact};
   ++counters_.contacts;
-  mark_dirty(slot);
-  if (mode() == ContactMode::transparent) {
-    pair.overlapping = true;
+  if (pairs_.mode() == ContactMode::transparent) {
     return tell([&](Listener& listener) { listener.contact(*this, event); });
   }
   bool held = false;
   bool passes = false;
   if (options_.response == Response::elastic) {
-    held = respond(slot, event.contact);
+    held = respond(a, b, contact);
   } else {
-    held = passes = count_meeting(event.a, event.b) > patience();
+    held = passes = count_meeting(a, b) > patience();
     counters_.held += held;
   }
   // A pair that is still pressed together (nobody can or will move it) passes through.
   const auto after = [&] {
-    if (!contains(event.a) || !contains(event.b) || resting_.find(event.a, event.b) != Resting::none) return;
+    if (!contains(a) || !contains(b) || resting_.find(a, b) != Resting::none) return;
     // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a
     // rounding.
-    if (passes || parting(event.contact, movers_[event.a].motion, movers_[event.b].motion) < 0) {
-      let_pass(event.a, event.b);
-    }
+    if (passes || parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) pairs_.let_pass(a, b);
   };
   try {
     tell([&](Listener& listener) {
@@ -89,11 +68,47 @@ void World<Degree>::process_contact(PairSlot slot, double t) {
   after();
 }
 
+template <int Degree>
+void World<Degree>::process_wall() {
+  const BodyId id = walls_.next_body();
+  const Body& body = bodies_[id];
+  const int wall = walls_.next_wall();
+  const int axis = wall / 2;
+  const double out = wall % 2 != 0 ? 1 : -1;
+  Motion motion = bodies_.motion(id).restarted(clock_.now);
+  const double approach = motion.coefficients[1][axis] * out;
+  double pressed = 0;
+  if constexpr (Degree >= 2) pressed = 2 * motion.coefficients[2][axis] * out;
+  const double rebound = std::min(body.restitution, options_.walls->restitution) * approach;
+  WallEvent event{id, wall, {.time = clock_.now}};
+  event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
+  event.contact.normal[axis] = out;
+  event.contact.point = motion.coefficients[0];
+  event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
+  ++counters_.wall_contacts;
+  const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
+  const bool held = stays(rebound, pressed, size, count_meeting(id));
+  if (held) {
+    ++counters_.held;
+    resting_.add({.a = id, .wall = wall, .normal = event.contact.normal});
+  } else {
+    motion.coefficients[1][axis] = -rebound * out;
+    ++counters_.motion_updates;
+    set_motion(id, motion, false);
+  }
+  resting_.disturb(id);
+  resting_.settle();
+  tell([&](Listener& listener) {
+    listener.wall(*this, event);
+    if (held) listener.held_at_wall(*this, event);
+  });
+}
+
 /// Both have met others so often; a fixed body's meetings count only with another fixed one.
 template <int Degree>
 std::uint64_t World<Degree>::count_meeting(BodyId a, BodyId b) {
-  const bool a_fixed = bodies_[a].inverse_mass == 0;
-  const bool b_fixed = bodies_[b].inverse_mass == 0;
+  const bool a_fixed = bodies_.fixed(a);
+  const bool b_fixed = bodies_.fixed(b);
   if (a_fixed != b_fixed) return count_meeting(a_fixed ? b : a);
   const std::uint64_t of_a = count_meeting(a);
   return std::min(of_a, count_meeting(b));
@@ -102,9 +117,9 @@ std::uint64_t World<Degree>::count_meeting(BodyId a, BodyId b) {
 template <int Degree>
 std::uint64_t World<Degree>::count_meeting(BodyId id) {
   Body& body = bodies_[id];
-  if (now_ - body.burst_start > options_.zeno.interval) {
+  if (clock_.now - body.burst_start > options_.zeno.interval) {
     body.meetings = 0;
-    body.burst_start = now_;
+    body.burst_start = clock_.now;
   }
   return ++body.meetings;
 }
@@ -117,21 +132,19 @@ bool World<Degree>::stays(double rebound, double pressed, double size, std::uint
   if (!(pressed > 0)) return false;
   // Near a large clock doubles are sparse: a flight lasts some of them at least. And it rises by some roundings of the
   // coordinates: bodies with a light one between them bounce for ever where positions cannot come nearer.
-  const double spacing = next_up(std::abs(now_)) - std::abs(now_);
+  const double spacing = next_up(std::abs(clock_.now)) - std::abs(clock_.now);
   const double shortest = std::max(options_.zeno.interval / std::max(options_.zeno.contacts, 1u), 16 * spacing);
   const double lowest = 0x1p-48 * size;
   return 2 * rebound < shortest * pressed || rebound * rebound < 2 * pressed * lowest;
 }
 
 template <int Degree>
-bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
-  const BodyId a = pairs_[slot].a;
-  const BodyId b = pairs_[slot].b;
+bool World<Degree>::respond(BodyId a, BodyId b, const Contact& contact) {
   const double inverse_a = bodies_[a].inverse_mass;
   const double inverse_b = bodies_[b].inverse_mass;
   if (inverse_a + inverse_b == 0) return false;
-  Motion motion_a = movers_[a].motion.restarted(contact.time);
-  Motion motion_b = movers_[b].motion.restarted(contact.time);
+  Motion motion_a = bodies_.motion(a).restarted(contact.time);
+  Motion motion_b = bodies_.motion(b).restarted(contact.time);
   const Vector3d& n = contact.normal;
   const auto relative = [&](std::size_t order) {
     return dot(n, motion_b.coefficients[order] - motion_a.coefficients[order]);
@@ -143,7 +156,7 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
   const std::uint64_t burst = count_meeting(a, b);
   if (burst > patience()) {  // Holding does not help: the pair is left as it is, and so passes through.
     ++counters_.held;
-    let_pass(a, b);
+    pairs_.let_pass(a, b);
     return true;
   }
   const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
@@ -157,7 +170,7 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
     change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,
                              inverse_a, inverse_b);
     for (const auto& [id, motion] : {std::pair<BodyId, const Motion&>{a, motion_a}, {b, motion_b}}) {
-      if (bodies_[id].inverse_mass == 0) continue;
+      if (bodies_.fixed(id)) continue;
       ++counters_.motion_updates;
       set_motion(id, motion, false);
       resting_.disturb(id);
@@ -165,6 +178,19 @@ bool World<Degree>::respond(PairSlot slot, const Contact& contact) {
   }
   resting_.settle();
   return held;
+}
+
+template <int Degree>
+void World<Degree>::take_up(BodyId id, const Motion& motion) {
+  ++counters_.motion_updates;
+  set_motion(id, motion, false);
+  reports_.add(Reports::Kind::moved, id, no_body, {.time = clock_.now});
+}
+
+template <int Degree>
+void World<Degree>::tell_held(BodyId a, BodyId b) {
+  ++counters_.held;
+  reports_.add(Reports::Kind::held, a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
 }
 
 template class World<1>;

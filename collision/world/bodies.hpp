@@ -1,0 +1,157 @@
+// The bodies of a world: what callers have said of them, and how they move.
+#pragma once
+
+#include "certificates/balls_together.hpp"
+#include "collision/body_description.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/shapes/shape.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+
+inline constexpr BodyId no_body = ~BodyId{0};
+
+namespace detail {
+
+/// Half the acceleration that callers gave. At degree 1 there is none.
+struct Force {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+};
+struct NoForce {};
+
+/// A body, but for its motion and its radius, which the tests of balls read and which have a place of their own.
+template <int Degree>
+struct Body : std::conditional_t<Degree >= 2, Force, NoForce> {
+  Body() {}  // not the implicit one, for which all is set to zero first
+
+  double inverse_mass = 1;
+  double restitution = 1;
+  double mass = 1;
+  double bounding_radius = 0;
+  std::uint32_t category = 1;
+  std::uint32_t collides_with = ~0u;
+  BoundingVolume volume = BoundingVolume::shape;
+  bool alive = false;
+  bool entered = false;        ///< its motion has begun; it is in the broad phase, if it collides with anything
+  std::uint64_t meetings = 0;  ///< contacts since burst_start (ZenoPolicy)
+  double burst_start = -never;
+  std::shared_ptr<const PlacedShape> shape;  ///< none if it is placed_ball(bounding_radius)
+};
+
+/// A body for the narrow phase; the shape of a ball is made for the occasion.
+template <int Degree>
+class Moving : private std::optional<PlacedShape>, public MovingShape<Degree> {
+ public:
+  Moving(const Body<Degree>& body, const certificates::PointMotion<Degree>& path)
+      : std::optional<PlacedShape>(body.shape ? std::nullopt : std::optional(placed_ball(body.bounding_radius))),
+        MovingShape<Degree>{body.shape ? *body.shape : **this, path} {}
+  Moving(const Moving&) = delete;
+  Moving& operator=(const Moving&) = delete;
+};
+
+}  // namespace detail
+
+/// The bodies of a world, by id, and which of them are about to enter.
+///
+/// The id of a body that has been removed is given again, but not at the instant of its removal, so that what is told
+/// of an instant never names two bodies by one id.
+///
+/// Cost: O(1) each; memory for the largest number of bodies that there have been at once.
+template <int Degree>
+class Bodies {
+ public:
+  using Motion = certificates::PointMotion<Degree>;
+  using Description = BodyDescription<Degree>;
+  using Body = detail::Body<Degree>;
+  using Moving = detail::Moving<Degree>;
+  using Mover = certificates::MovingBall<Degree>;  ///< what the tests of balls read of a body
+
+  std::size_t size() const { return alive_; }
+  /// All ids are below this.
+  std::size_t slots() const { return bodies_.size(); }
+  bool contains(BodyId id) const { return id < bodies_.size() && bodies_[id].alive; }
+  bool entered(BodyId id) const { return contains(id) && bodies_[id].entered; }
+
+  /// Throws std::out_of_range, naming the id, if there is none.
+  const Body& at(BodyId id) const;
+  /// Precondition, here and below: id < slots().
+  const Body& operator[](BodyId id) const { return bodies_[id]; }
+  Body& operator[](BodyId id) { return bodies_[id]; }
+  const Mover& mover(BodyId id) const { return movers_[id]; }
+  const Motion& motion(BodyId id) const { return movers_[id].motion; }
+  Moving moving(BodyId id) const { return Moving(bodies_[id], movers_[id].motion); }
+  PlacedShape shape(BodyId id) const { return moving(id).shape; }
+  /// Whether no other body changes its motion.
+  bool fixed(BodyId id) const { return bodies_[id].inverse_mass == 0; }
+
+  void move(BodyId id, const Motion& motion) { movers_[id].motion = motion; }
+  /// Half the acceleration that the body has by itself: that of the motion that callers gave last.
+  Eigen::Vector3d free_acceleration(BodyId id) const {
+    if constexpr (Degree >= 2) {
+      return bodies_[id].force;
+    } else {
+      return Eigen::Vector3d::Zero();
+    }
+  }
+  void accelerate_freely(BodyId id, const Motion& motion) {
+    if constexpr (Degree >= 2) bodies_[id].force = motion.coefficients[2];
+  }
+  /// Whether a body that takes up another motion at t is then elsewhere, by more than rounding.
+  bool is_jump(BodyId id, const Motion& to, double t) const;
+
+  /// Whether some body does not collide with all others, or did not.
+  bool filters() const { return filters_; }
+  /// Whether there is something that it may collide with. What collides with nothing no broad phase knows.
+  bool collides(BodyId id) const { return bodies_[id].category != 0 && bodies_[id].collides_with != 0; }
+  bool may_collide(BodyId a, BodyId b) const {
+    return (bodies_[a].category & bodies_[b].collides_with) != 0 &&
+           (bodies_[b].category & bodies_[a].collides_with) != 0;
+  }
+
+  /// Adds one with a motion to begin with. No `shape` is that of a ball that is not turned. Precondition: valid.
+  BodyId add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion,
+             double now);
+  void remove(BodyId id, double now);
+  void reserve(std::size_t bodies);
+
+  /// A body's motion begins now: it waits to enter.
+  void wait(BodyId id) { waiting_.push_back(id); }
+  bool any_waits() const { return !waiting_.empty(); }
+  bool waits(BodyId id) const;
+  std::vector<BodyId> take_waiting() { return std::exchange(waiting_, {}); }
+
+  /// All of it, as plain data: what a snapshot holds.
+  struct Image;
+  Image image() const;
+  /// Precondition: the image has been checked.
+  void become(const Image& image);
+  /// Every mesh that some body has, once.
+  std::vector<std::shared_ptr<const Mesh>> meshes() const;
+
+ private:
+  BodyId new_id(double now);
+  void set_shape(BodyId id, PlacedShape placed);
+
+  std::vector<Mover> movers_;
+  std::vector<Body> bodies_;
+  std::vector<BodyId> free_;
+  std::vector<BodyId> removed_;  ///< at removed_at_: their ids are not given again at that time
+  double removed_at_ = -never;
+  std::vector<BodyId> waiting_;
+  std::size_t alive_ = 0;
+  bool filters_ = false;
+};
+
+extern template class Bodies<1>;
+extern template class Bodies<2>;
+
+}  // namespace kds::collision

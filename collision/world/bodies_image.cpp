@@ -1,0 +1,155 @@
+// The image of a world's bodies, written, read and checked.
+#include "collision/world/bodies_image.hpp"
+
+#include "collision/shapes/mesh.hpp"
+#include "collision/world/image_tools.hpp"
+#include "kds/framework/snapshot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace kds::collision {
+namespace {
+
+bool equal(std::span<const Eigen::Vector3d> a, const std::vector<Eigen::Vector3d>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+/// A shape as place() makes it of some orientation.
+void check_shape(const PlacedShape& placed, std::size_t id) {
+  try {
+    const PlacedShape again = place_turned(placed.shape, placed.rotation);
+    const bool same_axes = !std::holds_alternative<Box>(placed.shape) || again.half_axes == placed.half_axes;
+    image::require(same_axes && again.low == placed.low && again.high == placed.high &&
+                       again.bounding_radius == placed.bounding_radius,
+                   "bodies", id, "its bounds are not those of its shape");
+  } catch (const std::invalid_argument& error) {
+    image::require(false, "bodies", id, error.what());
+  }
+}
+
+}  // namespace
+
+template <int Degree>
+template <class Archive>
+void Bodies<Degree>::Image::mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
+                                 const std::vector<std::shared_ptr<const Mesh>>& known) {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Mesh::Triangle> triangles;
+  if (mesh) {
+    vertices.assign(mesh->vertices().begin(), mesh->vertices().end());
+    triangles.assign(mesh->triangles().begin(), mesh->triangles().end());
+  }
+  archive.each(vertices, [&](Eigen::Vector3d& v) { image::vector(archive, v); });
+  archive(triangles);
+  if constexpr (Archive::loading) {
+    const auto same = std::find_if(known.begin(), known.end(), [&](const auto& other) {
+      return equal(other->vertices(), vertices) &&
+             std::equal(triangles.begin(), triangles.end(), other->triangles().begin(), other->triangles().end());
+    });
+    try {
+      mesh = same != known.end() ? *same : std::make_shared<const Mesh>(std::move(vertices), std::move(triangles));
+    } catch (const InvalidMesh& error) {
+      throw std::runtime_error(std::string("snapshot: a mesh: ") + error.what());
+    }
+  }
+}
+
+template <int Degree>
+template <class Archive>
+void Bodies<Degree>::Image::shape(Archive& archive, One& body) const {
+  PlacedShape& placed = body.placed;
+  std::uint32_t kind = static_cast<std::uint32_t>(placed.shape.index());
+  archive(kind);
+  if constexpr (Archive::loading) {
+    if (kind > 2) throw std::runtime_error("snapshot: a shape is of an unknown kind");
+    if (kind == 0) placed.shape = Sphere{0};
+    if (kind == 1) placed.shape = Box{Eigen::Vector3d::Zero()};
+    if (kind == 2) placed.shape = MeshShape{};
+  }
+  if (auto* const sphere = std::get_if<Sphere>(&placed.shape)) archive(sphere->radius);
+  if (auto* const box = std::get_if<Box>(&placed.shape)) {
+    image::vector(archive, box->half_extents);
+    for (Eigen::Vector3d& half : placed.half_axes) image::vector(archive, half);
+  }
+  if (auto* const mesh = std::get_if<MeshShape>(&placed.shape)) {
+    archive(body.mesh, mesh->scale);
+    if (body.mesh >= meshes.size()) {
+      throw std::runtime_error("snapshot: a body has mesh " + std::to_string(body.mesh) + ", and there are " +
+                               std::to_string(meshes.size()));
+    }
+    mesh->mesh = meshes[body.mesh];
+  }
+  for (double& entry : placed.rotation.reshaped()) archive(entry);
+  image::vector(archive, placed.low), image::vector(archive, placed.high);
+  archive(placed.bounding_radius);
+}
+
+template <int Degree>
+template <class Archive>
+void Bodies<Degree>::Image::body(Archive& archive, One& body) const {
+  archive(body.alive);
+  if (!body.alive) return;
+  shape(archive, body);
+  archive(body.entered, body.motion, body.mass, body.inverse_mass, body.restitution, body.category, body.collides_with,
+          body.volume, body.meetings, body.burst_start);
+  image::vector(archive, body.force);
+}
+
+template <int Degree>
+template <class Archive>
+void Bodies<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
+  archive.each(meshes, [&](auto& one) { mesh(archive, one, known); });
+  archive.each(bodies, [&](One& one) { body(archive, one); });
+  archive(free, removed, removed_at, waiting);
+}
+
+template <int Degree>
+void Bodies<Degree>::Image::check(double now) const {
+  if (!image::is_past(removed_at, now)) image::fail("removed_at: is after now");
+  if (bodies.size() > no_body) image::fail("bodies: there are more than there are ids");
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    image::require(alive(waiting[i]) && !bodies[waiting[i]].entered, "waiting", i, "is no body that waits to enter");
+    image::require(bodies[waiting[i]].motion.start <= now, "waiting", i, "its motion begins after now");
+  }
+  std::size_t dead = 0;
+  for (std::size_t id = 0; id < bodies.size(); ++id) {
+    const One& body = bodies[id];
+    const auto need = [id](bool right, const char* what) { image::require(right, "bodies", id, what); };
+    dead += !body.alive;
+    if (!body.alive) continue;
+    check_shape(body.placed, id);
+    need(body.motion.finite(), "its motion is not finite");
+    need(!body.entered || body.motion.start <= now, "its motion begins after now");
+    const bool has_mass = std::isfinite(body.mass) && body.mass > 0 && body.inverse_mass == 1 / body.mass;
+    need(has_mass || body.inverse_mass == 0, "its mass is not > 0, or not that of its inverse");
+    need(body.restitution >= 0 && body.restitution <= 1, "its restitution is not in [0, 1]");
+    need(body.volume == BoundingVolume::shape || body.volume == BoundingVolume::sphere, "its volume is unknown");
+    need(image::is_past(body.burst_start, now), "its meetings are counted from a time after now");
+    need(body.force.allFinite(), "its acceleration is not finite");
+  }
+  std::vector<char> listed(bodies.size());
+  const auto check_free = [&](const std::vector<BodyId>& ids, const char* list) {
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      image::require(ids[i] < bodies.size() && !bodies[ids[i]].alive && !std::exchange(listed[ids[i]], 1), list, i,
+                     "is no free id, or listed twice");
+    }
+  };
+  check_free(free, "free");
+  check_free(removed, "removed");
+  if (free.size() + removed.size() != dead) image::fail("free: not all that are free are listed");
+}
+
+template struct Bodies<1>::Image;
+template struct Bodies<2>::Image;
+template void Bodies<1>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&);
+template void Bodies<1>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
+template void Bodies<2>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&);
+template void Bodies<2>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
+
+}  // namespace kds::collision

@@ -1,0 +1,55 @@
+// The bodies of a world as plain data, which can be written down.
+#pragma once
+
+#include "collision/world/bodies.hpp"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace kds::collision {
+
+template <int Degree>
+struct Bodies<Degree>::Image {
+  struct One {
+    bool alive = false;
+    bool entered = false;
+    PlacedShape placed;
+    std::uint32_t mesh = 0;  ///< number in `meshes`, of a mesh
+    Motion motion;
+    double mass = 1, inverse_mass = 1, restitution = 1;
+    std::uint32_t category = 1, collides_with = ~0u;
+    BoundingVolume volume = BoundingVolume::shape;
+    std::uint64_t meetings = 0;
+    double burst_start = 0;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  };
+
+  std::vector<std::shared_ptr<const Mesh>> meshes;
+  std::vector<One> bodies;  // by id
+  std::vector<BodyId> free, removed, waiting;
+  double removed_at = 0;
+
+  bool alive(BodyId id) const { return id < bodies.size() && bodies[id].alive; }
+  bool entered(BodyId id) const { return alive(id) && bodies[id].entered; }
+
+  /// Loading, meshes that are among `known` are not built again.
+  template <class Archive>
+  void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known);
+
+  /// Throws std::runtime_error, naming what is wrong. Precondition: shapes have been loaded, so that meshes are there.
+  void check(double now) const;
+
+ private:
+  template <class Archive>
+  static void mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
+                   const std::vector<std::shared_ptr<const Mesh>>& known);
+  template <class Archive>
+  void shape(Archive& archive, One& body) const;
+  template <class Archive>
+  void body(Archive& archive, One& body) const;
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,207 @@
+// How bodies come into the world, change and go.
+#include "collision/parallel.hpp"
+#include "collision/profile.hpp"
+#include "collision/world.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <new>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace kds::collision {
+namespace {
+
+template <int Degree>
+void validate(const BodyDescription<Degree>& description) {
+  const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
+  if (description.motion.empty()) fail("motion: has no piece");
+  for (std::size_t i = 0; i < description.motion.size(); ++i) {
+    const auto& piece = description.motion[i];
+    if (!in_range(piece)) refuse_motion(piece, "motion[" + std::to_string(i) + "]");
+    if (i > 0 && !(piece.start > description.motion[i - 1].start)) {
+      fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
+    }
+  }
+  if (!description.fixed) require_size(description.mass, "mass");
+  switch (description.volume) {
+    case BoundingVolume::shape:
+    case BoundingVolume::sphere:
+      break;
+    default:
+      fail("volume: unknown");
+  }
+  if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
+}
+
+}  // namespace
+
+template <int Degree>
+void World<Degree>::reserve(std::size_t bodies) {
+  require_editable("World::reserve");
+  if (bodies > no_body) {
+    throw std::length_error("World::reserve: " + std::to_string(bodies) + " bodies are more than there are ids");
+  }
+  bodies_.reserve(bodies);
+  walls_.reserve(bodies);
+}
+
+template <int Degree>
+BodyId World<Degree>::add_body(const Description& description) {
+  require_editable("World::add_body");
+  validate(description);
+  count_edit();
+  const auto* const ball = std::get_if<Sphere>(&description.shape);
+  std::shared_ptr<const PlacedShape> shape;
+  if (ball && description.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs()) [[likely]] {
+    require_radius(ball->radius);
+  } else {
+    shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
+  }
+  return change_or_fail([&] { return put(description, std::move(shape)); });
+}
+
+/// No shape is that of a ball that is not turned.
+template <int Degree>
+inline BodyId World<Degree>::put(const Description& description, std::shared_ptr<const PlacedShape> shape) {
+  // Pieces that are over are skipped; the rest is a script.
+  auto piece = description.motion.begin();
+  while (std::next(piece) != description.motion.end() && std::next(piece)->start <= clock_.now) ++piece;
+  if (std::holds_alternative<MeshShape>(description.shape)) make_room_for_meshes();
+  const BodyId id = bodies_.add(description, std::move(shape), *piece, clock_.now);
+  if (piece->start <= clock_.now) {
+    bodies_.wait(id);
+    ++piece;
+  }
+  volumes_.add(id, description.box);
+  if (piece != description.motion.end()) scripts_.add(id, {piece, description.motion.end()});
+  return id;
+}
+
+/// From the first mesh on all volumes have room for contact gaps: those of bodies that are there already get it now.
+template <int Degree>
+void World<Degree>::make_room_for_meshes() {
+  if (!volumes_.make_room_for_meshes()) return;
+  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+    if (bodies_[id].entered) update_volume(id, volumes_.box(id));
+  }
+}
+
+/// Makes known a volume that is another though nothing has moved.
+template <int Degree>
+void World<Degree>::update_volume(BodyId id, const KineticBox<Degree>& box) {
+  if (bodies_.collides(id)) broad_phase_->update(id, box, clock_.now, pairs_);
+  pairs_.box_changed(id);
+  volumes_.schedule(id);
+}
+
+template <int Degree>
+void World<Degree>::enter_new_bodies() {
+  const std::vector<BodyId> entering = bodies_.take_waiting();
+  // What is due now among the others comes first, lest it count as what the new ones bring.
+  while (broad_phase_->advance(clock_.now, pairs_)) {
+  }
+  std::vector<Entry> entries;
+  entries.reserve(entering.size());
+  for (const BodyId id : entering) {
+    Body& b = bodies_[id];
+    if (!b.alive || b.entered) continue;
+    b.entered = true;
+    entries.push_back({id, nullptr});
+  }
+  const auto boxes = std::make_unique_for_overwrite<KineticBox<Degree>[]>(entries.size());
+  // The functions of callers are called by their own thread, and in order.
+  const std::size_t threads = volumes_.any_from_callers() ? 1 : threads_for(entries.size(), options_.threads);
+  in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      entries[i].box = new (&boxes[i]) KineticBox<Degree>(volumes_.renew(entries[i].id));  // not copied there
+    }
+  });
+  const std::span<const Entry> all(entries);
+  std::size_t colliding = entries.size();
+  if (bodies_.filters()) {
+    const auto rest = std::stable_partition(entries.begin(), entries.end(),
+                                            [&](const Entry& entry) { return bodies_.collides(entry.id); });
+    colliding = static_cast<std::size_t>(rest - entries.begin());
+  }
+  pairs_.begin_fresh(true);
+  {
+    const Stopwatch watch(profile(), Work::update);
+    broad_phase_->insert(all.first(colliding), clock_.now, pairs_);
+  }
+  pairs_.begin_fresh(false);
+  walls_.schedule(entries);
+  if (!volumes_.any_from_callers() && !volumes_.has_room_for_meshes()) return;
+  for (const Entry& entry : entries) volumes_.schedule(entry.id);
+}
+
+template <int Degree>
+void World<Degree>::update_motion(BodyId id, const Motion& motion) {
+  require_editable("World::update_motion");
+  bodies_.at(id);
+  if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
+  if (motion.start > clock_.now) {
+    throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(motion.start) +
+                                ", after the clock at " + std::to_string(clock_.now));
+  }
+  count_edit();
+  change_or_fail([&] { give(id, motion); });
+}
+
+template <int Degree>
+void World<Degree>::give(BodyId id, const Motion& motion) {
+  scripts_.clear(id);
+  ++counters_.motion_updates;
+  bodies_.accelerate_freely(id, motion);
+  if (!bodies_[id].entered) {
+    bodies_.move(id, motion);
+    if (!bodies_.waits(id)) bodies_.wait(id);
+    return;
+  }
+  const bool jumped = bodies_.is_jump(id, motion, clock_.now);
+  if (jumped) resting_.drop_all(id);
+  set_motion(id, motion, jumped);
+  resting_.disturb(id);
+}
+
+template <int Degree>
+void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
+  const Stopwatch watch(profile(), Work::update);
+  bodies_.move(id, motion);
+  pairs_.prefetch(id);  // while the broad phase is at work
+  const bool fresh = jumped && pairs_.mode() == ContactMode::resolved;
+  pairs_.begin_fresh(fresh);
+  if (bodies_.collides(id)) broad_phase_->update(id, volumes_.renew(id), clock_.now, pairs_);
+  pairs_.begin_fresh(false);
+  pairs_.motion_changed(id, fresh);
+  walls_.schedule(id);
+  volumes_.schedule(id);
+}
+
+template <int Degree>
+void World<Degree>::remove_body(BodyId id) {
+  require_editable("World::remove_body");
+  bodies_.at(id);
+  count_edit();
+  change_or_fail([&] { take_out(id); });
+}
+
+template <int Degree>
+void World<Degree>::take_out(BodyId id) {
+  resting_.forget(id);
+  scripts_.clear(id);
+  walls_.remove(id);
+  if (bodies_[id].entered && bodies_.collides(id)) broad_phase_->remove(id, clock_.now, pairs_);
+  volumes_.remove(id);
+  pairs_.remove(id);
+  if (!reports_.empty()) reports_.keep_of(id);
+  bodies_.remove(id, clock_.now);
+}
+
+template class World<1>;
+template class World<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,40 @@
+#include "collision/world/new_broad_phase.hpp"
+
+#include "collision/broad_phase/adaptive_broad_phase.hpp"
+#include "collision/broad_phase/all_pairs.hpp"
+#include "collision/broad_phase/kinetic_grid.hpp"
+#include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
+#include "collision/broad_phase/swept_sweep_and_prune.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace kds::collision {
+
+template <int Degree>
+std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options, double now, Profile* profile,
+                                                    Kdops<Degree> kdops) {
+  switch (options.broad_phase) {
+    case BroadPhaseKind::automatic:
+      return std::make_unique<AdaptiveBroadPhase<Degree>>(options.threads);
+    case BroadPhaseKind::grid:
+      return std::make_unique<KineticGrid<Degree>>(options.threads);
+    case BroadPhaseKind::kinetic_sap:
+      return std::make_unique<KineticSweepAndPrune<Degree>>(now, ListedAxes::automatic, std::move(kdops));
+    case BroadPhaseKind::sap:
+      if (!(options.rate > 0) || !std::isfinite(1 / options.rate)) {
+        throw std::invalid_argument(
+            "WorldOptions.rate: sweep and prune with swept boxes needs a rate > 0, finite and with a finite 1 / rate");
+      }
+      return std::make_unique<SweptSweepAndPrune<Degree>>(now, options.rate, profile);
+    case BroadPhaseKind::all_pairs:
+      return std::make_unique<AllPairs<Degree>>();
+  }
+  throw std::invalid_argument("WorldOptions.broad_phase: unknown");
+}
+
+template std::unique_ptr<BroadPhase<1>> new_broad_phase(const WorldOptions&, double, Profile*, Kdops<1>);
+template std::unique_ptr<BroadPhase<2>> new_broad_phase(const WorldOptions&, double, Profile*, Kdops<2>);
+
+}  // namespace kds::collision

@@ -1,0 +1,286 @@
+#include "collision/world/pairs.hpp"
+
+#include "collision/world/queue_room.hpp"
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace kds::collision {
+
+template <int Degree>
+Pairs<Degree>::Pairs(const Bodies<Degree>& bodies, const Volumes<Degree>& volumes, Resting& resting, Reports& reports,
+                     const WorldOptions& options, Clock& clock, WorldCounters& counters, Profile* profile)
+    : bodies_(bodies),
+      volumes_(volumes),
+      resting_(resting),
+      reports_(reports),
+      options_(options),
+      clock_(clock),
+      counters_(counters),
+      profile_(profile),
+      contacts_(detail::PairRank{&pairs_}),
+      boxes_(detail::PairRank{&pairs_}) {}
+
+/// Room for them and some more, if they are the first.
+template <int Degree>
+void Pairs<Degree>::pairs_to_come(std::size_t pairs) {
+  if (!pairs_.empty()) return;
+  const std::size_t room = pairs + pairs / 4;
+  pairs_.reserve(room);
+  dirty_.reserve(room);
+  make_room(contacts_, room);
+  links_.reserve(2 * first_pairs * pairs);
+}
+
+template <int Degree>
+void Pairs<Degree>::pair_began(BodyId a, BodyId b, double t) {
+  const Stopwatch watch(profile_, Work::prune);
+  clock_.now = t;
+  if (!bodies_.may_collide(a, b)) return;
+  const Slot overlapping = unlisted_ > 0 ? find(a, b) : none;
+  if (overlapping != none) --unlisted_;
+  const Slot slot = overlapping != none ? overlapping : add(a, b);
+  Pair& pair = pairs_[slot];
+  pair.listed = true;
+  pair.fresh = pair.fresh || begins_fresh_;
+  ++counters_.pairs_begun;
+  mark_dirty(slot);
+  if (options_.report_pairs && exact_) reports_.add_volumes(true, a, b, clock_.now);
+}
+
+template <int Degree>
+inline typename Pairs<Degree>::Slot Pairs<Degree>::add(BodyId a, BodyId b) {
+  Slot slot;
+  if (free_.empty()) {
+    slot = static_cast<Slot>(pairs_.size());
+    if (pairs_.capacity() == 0) pairs_.reserve(first_slots), dirty_.reserve(first_slots);
+    pairs_.emplace_back();
+    make_room(contacts_, pairs_.size());
+    if (follows_boxes_) make_room(boxes_, pairs_.size());
+  } else {
+    slot = free_.back();
+    free_.pop_back();
+  }
+  Pair& pair = pairs_[slot];
+  pair = Pair{};
+  pair.a = a;
+  pair.b = b;
+  pair.alive = true;
+  link(slot, bodies_.size() <= few_pairs + 1 ? few_pairs : first_pairs);
+  return slot;
+}
+
+/// Makes a pair known to its bodies.
+template <int Degree>
+inline void Pairs<Degree>::link(Slot slot, std::uint32_t first_room) {
+  Pair& pair = pairs_[slot];
+  if (of_.size() <= pair.b) of_.resize(bodies_.slots());
+  pair.place_in_a = of_[pair.a].size;
+  pair.place_in_b = of_[pair.b].size;
+  links_.push_back(of_[pair.a], {pair.b, slot}, first_room);
+  links_.push_back(of_[pair.b], {pair.a, slot}, first_room);
+}
+
+template <int Degree>
+void Pairs<Degree>::pair_ended(BodyId a, BodyId b, double t) {
+  const Stopwatch watch(profile_, Work::prune);
+  clock_.now = t;
+  const Slot slot = find(a, b);
+  if (slot == none) return;  // filtered
+  unlist(slot);
+  if (pairs_[slot].overlapping) {
+    mark_dirty(slot);
+  } else {
+    release(slot);
+  }
+}
+
+template <int Degree>
+void Pairs<Degree>::list_anew(std::span<const std::pair<BodyId, BodyId>> listed) {
+  for (Slot slot = 0; slot < pairs_.size(); ++slot) {
+    const Pair& pair = pairs_[slot];
+    if (!pair.alive || !pair.listed) continue;
+    if (!std::binary_search(listed.begin(), listed.end(), std::pair(pair.a, pair.b))) {
+      pair_ended(pair.a, pair.b, clock_.now);
+    }
+  }
+  for (const auto& [a, b] : listed) {
+    if (!this->listed(a, b)) pair_began(a, b, clock_.now);
+  }
+}
+
+/// The broad phase does not list the pair any more.
+template <int Degree>
+void Pairs<Degree>::unlist(Slot slot) {
+  Pair& pair = pairs_[slot];
+  if (options_.report_pairs && (exact_ || pair.boxes_overlap)) reports_.add_volumes(false, pair.a, pair.b, clock_.now);
+  pair.boxes_overlap = false;
+  pair.listed = false;
+  ++unlisted_;
+  if (slot < boxes_.slots()) boxes_.clear(slot);
+}
+
+template <int Degree>
+typename Pairs<Degree>::Slot Pairs<Degree>::find(BodyId a, BodyId b) const {
+  const auto of_a = links(a);
+  const auto of_b = links(b);
+  const bool from_a = of_a.size() <= of_b.size();
+  const BodyId other = from_a ? b : a;
+  for (const Link& link : from_a ? of_a : of_b) {
+    if (link.other == other) return link.slot;
+  }
+  return none;
+}
+
+/// Precondition: it is not listed.
+template <int Degree>
+void Pairs<Degree>::release(Slot slot) {
+  Pair& pair = pairs_[slot];
+  // Each body's list closes up with its last entry.
+  for (const BodyId id : {pair.a, pair.b}) {
+    const auto of_body = links_.items(of_[id]);
+    const std::uint32_t place = id == pair.a ? pair.place_in_a : pair.place_in_b;
+    const Link moved = of_body.back();
+    of_body[place] = moved;
+    links_.pop_back(of_[id]);
+    (id < moved.other ? pairs_[moved.slot].place_in_a : pairs_[moved.slot].place_in_b) = place;
+  }
+  contacts_.clear(slot);
+  --unlisted_;
+  pair.alive = false;
+  free_.push_back(slot);
+}
+
+template <int Degree>
+inline void Pairs<Degree>::mark_dirty(Slot slot) {
+  if (pairs_[slot].dirty) return;
+  pairs_[slot].dirty = true;
+  dirty_.push_back(slot);
+}
+
+template <int Degree>
+void Pairs<Degree>::prefetch(BodyId id) const {
+  for (const Link& link : links(id)) {
+    __builtin_prefetch(&pairs_[link.slot], 1);
+    __builtin_prefetch(&bodies_.mover(link.other));
+  }
+}
+
+template <int Degree>
+void Pairs<Degree>::motion_changed(BodyId id, bool fresh) {
+  for (const Link& link : links(id)) mark_dirty(link.slot);
+  if (!fresh) return;
+  for (const Link& link : links(id)) pairs_[link.slot].fresh = true;
+}
+
+template <int Degree>
+void Pairs<Degree>::box_changed(BodyId id) {
+  if (!follows_boxes_) return;  // when it meets others is the broad phase's to find anew
+  for (const Link& link : links(id)) mark_dirty(link.slot);
+}
+
+template <int Degree>
+void Pairs<Degree>::changed(BodyId a, BodyId b) {
+  const Slot slot = find(a, b);
+  if (slot != none) mark_dirty(slot);
+}
+
+template <int Degree>
+void Pairs<Degree>::let_pass(BodyId a, BodyId b) {
+  Slot slot = find(a, b);
+  if (slot == none) {
+    slot = add(a, b);
+    ++unlisted_;
+  }
+  Pair& pair = pairs_[slot];
+  pair.overlapping = true;
+  pair.fresh = false;
+  pair.passes_at = clock_.now;
+  mark_dirty(slot);
+}
+
+template <int Degree>
+void Pairs<Degree>::remove(BodyId id) {
+  while (!links(id).empty()) {  // those that overlap, or have just separated
+    const Slot slot = links(id).back().slot;
+    const Pair& pair = pairs_[slot];
+    // They separate, unless it has not been told yet that they overlap.
+    if (mode() == ContactMode::transparent && pair.overlapping &&
+        !reports_.take_back(Reports::Kind::overlap, pair.a, pair.b)) {
+      reports_.add(Reports::Kind::separation, pair.a, pair.b, contact(pair.a, pair.b, clock_.now));
+    }
+    release(slot);
+  }
+  if (id < of_.size()) links_.free(of_[id]);
+}
+
+template <int Degree>
+void Pairs<Degree>::extend_horizon() {
+  for (Slot slot = 0; slot < pairs_.size(); ++slot) {
+    const bool boxes_known = slot >= boxes_.slots() || boxes_.contains(slot);
+    if (pairs_[slot].alive && !(contacts_.contains(slot) && boxes_known)) mark_dirty(slot);
+  }
+}
+
+template <int Degree>
+typename Pairs<Degree>::Event Pairs<Degree>::take_next() {
+  const Slot slot = contacts_.top().slot;
+  Pair& pair = pairs_[slot];
+  const Event event{pair.a, pair.b, pair.overlapping, slot < found_.size() ? found_[slot] : FoundTouch{}};
+  contacts_.clear(slot);
+  if (pair.overlapping) {
+    pair.overlapping = false;
+  } else if (mode() == ContactMode::transparent) {
+    pair.overlapping = true;
+  }
+  mark_dirty(slot);
+  return event;
+}
+
+template <int Degree>
+bool Pairs<Degree>::overlapping(BodyId a, BodyId b) const {
+  const Slot slot = find(a, b);
+  return slot != none && pairs_[slot].overlapping;
+}
+
+template <int Degree>
+bool Pairs<Degree>::listed(BodyId a, BodyId b) const {
+  const Slot slot = find(a, b);
+  return slot != none && pairs_[slot].listed;
+}
+
+/// Balls need not be made into shapes for it.
+template <int Degree>
+Contact Pairs<Degree>::contact(BodyId a, BodyId b, double t, const FoundTouch& found) const {
+  const auto& of_a = bodies_.mover(a);
+  const auto& of_b = bodies_.mover(b);
+  if (of_a.radius > 0 && of_b.radius > 0) {
+    return ball_contact_at(of_a.motion, of_b.motion, of_a.radius, t);
+  }
+  return contact_at(bodies_.moving(a), bodies_.moving(b), t, found);
+}
+
+template <int Degree>
+void Pairs<Degree>::audit(double t) const {
+  std::size_t unlisted = 0;
+  for (Slot slot = 0; slot < pairs_.size(); ++slot) {
+    const Pair& pair = pairs_[slot];
+    if (!pair.alive) continue;
+    const auto fail = [&](const char* what) {
+      throw AuditFailure("World: bodies " + std::to_string(pair.a) + " and " + std::to_string(pair.b) + ": " + what);
+    };
+    unlisted += pair.listed ? 0 : 1;
+    if (!pair.overlapping && !pair.listed) fail("a pair that neither overlaps nor is listed");
+    if (!pair.overlapping || pair.passes_at == t || contacts_.time(slot) <= t) continue;
+    if (!in_contact(bodies_.moving(pair.a), bodies_.moving(pair.b), t)) {
+      fail("they count as overlapping, and do not penetrate");
+    }
+  }
+  if (unlisted != unlisted_) throw AuditFailure("World: pairs that are not listed are miscounted");
+}
+
+template class Pairs<1>;
+template class Pairs<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,218 @@
+// The pairs of bodies that may meet, and when they do.
+#pragma once
+
+#include "collision/broad_phase/broad_phase.hpp"
+#include "collision/narrow_phase/contact.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/profile.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/clock.hpp"
+#include "collision/world/list_arena.hpp"
+#include "collision/world/reports.hpp"
+#include "collision/world/resting_contacts.hpp"
+#include "collision/world/volumes.hpp"
+#include "collision/world_counters.hpp"
+#include "collision/world_options.hpp"
+#include "kds/events/calendar_queue.hpp"
+#include "kds/events/dary_queue.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+
+namespace detail {
+
+using PairSlot = std::uint32_t;
+
+/// Two bodies that may meet. It is there while the broad phase lists it, and while they overlap: so what it knows is a
+/// function of what has happened to the two, whatever the broad phase.
+struct Pair {
+  BodyId a = 0, b = 0;
+  std::uint32_t place_in_a = 0, place_in_b = 0;  ///< in the lists of the two bodies
+  bool alive = false;
+  bool listed = false;  ///< by the broad phase
+  bool dirty = false;   ///< to be tested
+  bool fresh = false;   ///< one of the bodies has entered or jumped at this instant
+  /// In contact, in mode `none`; in the modes that resolve contacts, let pass. Its next event is that they separate.
+  bool overlapping = false;
+  bool boxes_overlap = false;
+  bool estimated = false;  ///< its contact time is a lower bound
+  PairMemory memory;
+  double passes_at = -never;  ///< it overlaps at this time at least, whatever else happens at it
+};
+
+struct PairRank {
+  const std::vector<Pair>* pairs = nullptr;
+  std::uint64_t operator()(std::uint32_t slot) const {
+    return std::uint64_t{(*pairs)[slot].a} << 32 | (*pairs)[slot].b;
+  }
+};
+
+}  // namespace detail
+
+/// The pairs that a broad phase lists, and those that overlap: what is known of each, and when its next contact or
+/// separation is. With WorldOptions.report_pairs and a broad phase that is not exact, also when its boxes meet and
+/// part.
+///
+/// [Paper] Figure 2: the result of a dynamic test is kept until the motion of one of the bodies changes. Then the pair
+/// is dirty, until test(). Most tests give no more than a lower bound, which costs less; only what comes first is
+/// certified.
+///
+/// Cost: O(1) a pair that begins, ends or becomes dirty; one dynamic test a dirty pair; O(log n) an event.
+template <int Degree>
+class Pairs final : public PairListener {
+ public:
+  using Slot = detail::PairSlot;
+  using Pair = detail::Pair;
+  using Resting = RestingContacts<Degree>;
+
+  Pairs(const Bodies<Degree>& bodies, const Volumes<Degree>& volumes, Resting& resting, Reports& reports,
+        const WorldOptions& options, Clock& clock, WorldCounters& counters, Profile* profile);
+  Pairs(const Pairs&) = delete;
+  Pairs& operator=(const Pairs&) = delete;
+
+  ContactMode mode() const {
+    return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
+  }
+  /// Whether the broad phase says exactly which boxes overlap. To be set before the first pair.
+  void expect_exact(bool exact) { follows_boxes_ = options_.report_pairs && !exact, exact_ = exact; }
+
+  // What the broad phase tells. It runs ahead to t, and the clock with it.
+  void pairs_to_come(std::size_t pairs) override;
+  bool filters() const override { return bodies_.filters(); }
+  bool may_collide(BodyId a, BodyId b) const override { return bodies_.may_collide(a, b); }
+  void pair_began(BodyId a, BodyId b, double t) override;
+  void pair_ended(BodyId a, BodyId b, double t) override;
+  /// A broad phase has been made anew, and this is all it lists, in order.
+  void list_anew(std::span<const std::pair<BodyId, BodyId>> listed);
+
+  /// While bodies enter or jump: pairs that begin may overlap.
+  void begin_fresh(bool fresh) { begins_fresh_ = fresh; }
+
+  /// A body has another motion, or has jumped. prefetch() may be called before.
+  void motion_changed(BodyId id, bool fresh);
+  void prefetch(BodyId id) const;
+  /// A body has another box, and moves as before.
+  void box_changed(BodyId id);
+  /// What the two may meet next has to be found anew.
+  void changed(BodyId a, BodyId b);
+  /// Lets a pair pass until it has separated, and at this time whatever else happens, even if its boxes do not overlap
+  /// just now.
+  void let_pass(BodyId a, BodyId b);
+  /// A body goes; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.
+  void remove(BodyId id);
+
+  /// Tests all dirty pairs.
+  void test();
+  bool tested() const { return dirty_.empty(); }
+
+  /// A time up to which there is no contact and no separation.
+  double next_time() const { return contacts_.empty() ? never : contacts_.top().time; }
+  /// Where that is no more than a bound, puts the exact time in its place, which may be later: true if so.
+  bool certify();
+  /// A contact or separation that is due. What the pair does next has to be found anew.
+  struct Event {
+    BodyId a, b;
+    bool separates;
+    FoundTouch found;  ///< of a contact, as far as known
+  };
+  /// Precondition: certify() has returned false.
+  Event take_next();
+
+  /// When boxes meet or part, where that is to be reported and the broad phase does not say so; process_boxes() reports
+  /// it.
+  double next_box_time() const { return boxes_.empty() ? never : boxes_.top().time; }
+  void process_boxes() { process_boxes(boxes_.top().slot, boxes_.top().time); }
+
+  void extend_horizon();
+
+  bool overlapping(BodyId a, BodyId b) const;
+  bool listed(BodyId a, BodyId b) const;
+  /// Where and how two bodies touch at t.
+  Contact contact(BodyId a, BodyId b, double t, const FoundTouch& found = {}) const;
+
+  /// Throws AuditFailure unless pairs that the broad phase does not list are those that overlap, and what overlaps
+  /// penetrates or is about to separate at this instant.
+  void audit(double t) const;
+
+  /// All of it, as plain data, in the order of (a, b).
+  struct Image {
+    struct One {
+      Pair pair;
+      double contact = never;  ///< when it is due in the queues
+      double boxes = never;
+    };
+    std::vector<One> pairs;
+
+    template <class Archive>
+    void archive(Archive& archive);
+    /// Throws std::runtime_error, naming what is wrong.
+    void check(const typename Bodies<Degree>::Image& bodies, double now, const WorldOptions& options) const;
+  };
+  Image image() const;
+  void become(const Image& image);
+
+ private:
+  static constexpr Slot none = ~Slot{0};
+  /// Room for pairs that a body gets with its first; where there are few bodies, for all.
+  static constexpr std::uint32_t first_pairs = 4;
+  static constexpr std::uint32_t few_pairs = 8;
+
+  /// A pair as one of its bodies sees it.
+  struct Link {
+    BodyId other;
+    Slot slot;
+  };
+
+  std::span<const Link> links(BodyId id) const {
+    return id < of_.size() ? links_.items(of_[id]) : std::span<const Link>();
+  }
+  Slot find(BodyId a, BodyId b) const;
+  Slot add(BodyId a, BodyId b);
+  void link(Slot slot, std::uint32_t first_room = first_pairs);
+  void unlist(Slot slot);
+  void release(Slot slot);
+  void mark_dirty(Slot slot);
+
+  // pair_tests.cpp
+  bool balls_are_quick() const;
+  void estimate_dirty();
+  void estimate_balls(std::size_t first, std::size_t last);
+  void test(Slot slot);
+  void set_contact(Slot slot, double time);
+  void remember(Slot slot, const FoundTouch& found);
+  void test_boxes(Slot slot);
+  void process_boxes(Slot slot, double t);
+
+  const Bodies<Degree>& bodies_;
+  const Volumes<Degree>& volumes_;
+  Resting& resting_;
+  Reports& reports_;
+  const WorldOptions& options_;
+  Clock& clock_;
+  WorldCounters& counters_;
+  Profile* profile_;
+
+  std::vector<Pair> pairs_;
+  std::vector<Slot> free_;
+  ListArena<Link> links_;
+  std::vector<typename ListArena<Link>::List> of_;  ///< the pairs of each body, up to the last that has had one
+  std::vector<Slot> dirty_;
+  std::vector<double> estimates_;             ///< by place in dirty_: see estimate_balls()
+  std::vector<FoundTouch> found_;             ///< by pair, as far as known; of no use once a motion has changed
+  CalendarQueue<detail::PairRank> contacts_;  ///< slots are pairs
+  DaryQueue<detail::PairRank> boxes_;         ///< slots are pairs; used where follows_boxes_
+  std::size_t unlisted_ = 0;                  ///< pairs that the broad phase does not list
+  bool follows_boxes_ = false;                ///< has to find itself when boxes meet and part
+  bool exact_ = false;
+  bool begins_fresh_ = false;
+};
+
+extern template class Pairs<1>;
+extern template class Pairs<2>;
+
+}  // namespace kds::collision

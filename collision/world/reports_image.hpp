@@ -1,0 +1,51 @@
+// The pending reports of a world as plain data: written, read and checked.
+#pragma once
+
+#include "collision/narrow_phase/feature.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/image_tools.hpp"
+#include "collision/world/reports.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace kds::collision {
+
+namespace detail {
+
+template <class Archive>
+void archive_members(Archive& archive, detail::Pending& report) {
+  archive(report.kind, report.a, report.b, report.removed, report.contact.time);
+  for (Feature* f : {&report.contact.feature_a, &report.contact.feature_b}) archive(f->kind, f->first, f->second);
+  image::vector(archive, report.contact.point), image::vector(archive, report.contact.normal);
+}
+
+}  // namespace detail
+
+/// Throws std::runtime_error, naming what is wrong. `bodies`: the image of a world's Bodies.
+template <class BodiesImage>
+void check_reports(const std::vector<Reports::Report>& pending, const BodiesImage& bodies, double now) {
+  using Report = Reports::Report;
+  using Kind = Reports::Kind;
+  for (std::size_t i = 0; i < pending.size(); ++i) {
+    const Report& event = pending[i];
+    const auto need = [i](bool right, const char* what) { image::require(right, "pending", i, what); };
+    need(event.kind >= Kind::held && event.kind <= Kind::overlap, "is of an unknown kind");
+    if (event.kind == Kind::moved) {
+      need(bodies.entered(event.a) && event.b == no_body && !event.removed, "is not of a body in the world");
+    } else {
+      need(event.a < event.b && event.b < bodies.bodies.size(), "is of no pair");
+      need(event.removed || (bodies.entered(event.a) && bodies.entered(event.b)), "is not of two bodies in the world");
+      need(!event.removed || event.kind != Kind::overlap, "is an overlap of a body that has been removed");
+    }
+    const Contact& contact = event.contact;
+    need(std::isfinite(contact.time) && contact.time <= now, "is of no time up to now");
+    need(!contact.point.hasNaN() && !contact.normal.hasNaN(), "its point or normal is not a number");
+    for (const Feature& feature : {contact.feature_a, contact.feature_b}) {
+      need(feature.kind <= Feature::Kind::face, "has a feature of an unknown kind");
+    }
+  }
+}
+
+}  // namespace kds::collision

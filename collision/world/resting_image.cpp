@@ -1,0 +1,82 @@
+// The resting contacts of a world as plain data: written, read and checked.
+#include "collision/world/bodies_image.hpp"
+#include "collision/world/image_tools.hpp"
+#include "collision/world/resting_contacts.hpp"
+#include "kds/framework/snapshot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kds::collision {
+
+template <int Degree>
+template <class Archive>
+void RestingContacts<Degree>::Image::archive(Archive& archive) {
+  archive(free, disturbed, releases);
+  archive.each(of, [&](auto& slots) { archive(slots); });
+  archive.each(contacts, [&](Contact& c) {
+    archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.left_behind, c.solved);
+    image::vector(archive, c.normal);
+  });
+}
+
+template <int Degree>
+void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image& bodies, double now,
+                                           const WorldOptions& options) const {
+  if (releases.size() != contacts.size()) image::fail("releases: are not as many as resting contacts");
+  if (of.size() > bodies.bodies.size()) image::fail("resting: of more bodies than there are");
+  for (std::size_t i = 0; i < disturbed.size(); ++i) {
+    image::require(bodies.entered(disturbed[i]), "disturbed", i, "is no body in the world");
+  }
+  std::size_t dead = 0;
+  std::size_t sides = 0;
+  for (std::size_t slot = 0; slot < contacts.size(); ++slot) {
+    const auto& contact = contacts[slot];
+    const auto need = [slot](bool right, const char* what) { image::require(right, "resting", slot, what); };
+    dead += !contact.alive;
+    if (!contact.alive) {
+      need(releases[slot] == never, "is over, and is to be let go");
+      continue;
+    }
+    const bool at_wall = contact.b == no_body;
+    sides += at_wall ? 1 : 2;
+    need(bodies.entered(contact.a), "is not of a body in the world");
+    if (at_wall) {
+      need(options.walls && contact.wall >= 0 && contact.wall < 6, "is at no wall");
+    } else {
+      need(contact.a < contact.b && bodies.entered(contact.b) && contact.wall == -1,
+           "is not of two bodies in the world");
+      need(options.response == Response::elastic, "is of two bodies where none are held");
+    }
+    need(std::abs(contact.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
+    need(std::isfinite(contact.push) && std::isfinite(contact.solved), "its push or rate is not finite");
+    need(image::is_to_come(releases[slot], now), "is to be let go before now");
+  }
+  for (std::size_t id = 0; id < of.size(); ++id) {
+    const auto& of_body = of[id];
+    for (auto slot = of_body.begin(); slot != of_body.end(); ++slot) {
+      const bool known =
+          *slot < contacts.size() && contacts[*slot].alive && (contacts[*slot].a == id || contacts[*slot].b == id);
+      image::require(known && std::find(of_body.begin(), slot, *slot) == slot, "bodies", id, "is held by what is none");
+      --sides;
+    }
+  }
+  if (sides != 0) image::fail("resting: there is one that a body does not know");
+  std::vector<char> listed(contacts.size());
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const Slot slot = free[i];
+    image::require(slot < contacts.size() && !contacts[slot].alive && !std::exchange(listed[slot], 1),
+                   "free of resting", i, "is no free slot, or listed twice");
+  }
+  if (free.size() != dead) image::fail("resting: not all that are free are listed");
+}
+
+template class RestingContacts<1>;
+template class RestingContacts<2>;
+template void RestingContacts<1>::Image::archive(kds::detail::Writer&);
+template void RestingContacts<1>::Image::archive(kds::detail::Reader&);
+template void RestingContacts<2>::Image::archive(kds::detail::Writer&);
+template void RestingContacts<2>::Image::archive(kds::detail::Reader&);
+
+}  // namespace kds::collision

@@ -1,0 +1,81 @@
+// The motions that bodies will take up: pieces of motion still to come.
+#pragma once
+
+#include "certificates/point_motion.hpp"
+#include "collision/broad_phase/kinetic_box.hpp"
+#include "kds/events/dary_queue.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace kds::collision {
+
+/// The scripts of a world's bodies: for each the pieces of motion to come, and when the next of all begins.
+///
+/// Cost: nothing for bodies without a script; O(log n) a piece.
+template <int Degree>
+class Scripts {
+ public:
+  using Motion = certificates::PointMotion<Degree>;
+
+  /// Gives a body pieces to come, in order of their starts. Precondition: it has none.
+  void add(BodyId id, std::span<const Motion> pieces);
+  /// Forgets what was to come.
+  void clear(BodyId id);
+
+  /// When the next piece begins.
+  double next_time() const { return starts_.empty() ? never : starts_.top().time; }
+
+  struct Piece {
+    BodyId id;
+    Motion motion;
+  };
+  /// Takes all that begin at next_time(), by id.
+  std::vector<Piece> take_next();
+
+  /// All of it, as plain data: the pieces of each body, last first.
+  struct Image {
+    std::vector<std::vector<Motion>> of;
+
+    template <class Archive>
+    void archive(Archive& archive) {
+      archive(of);
+    }
+    /// Throws std::runtime_error, naming what is wrong. `alive(id)`: whether there is such a body.
+    template <class Alive>
+    void check(double now, const Alive& alive) const;
+  };
+  Image image() const { return {scripts_}; }
+  void become(const Image& image);
+
+ private:
+  std::vector<std::vector<Motion>> scripts_;  ///< by body, up to the last that has had one; next piece last
+  DaryQueue<> starts_;                        ///< slots are bodies
+};
+
+extern template class Scripts<1>;
+extern template class Scripts<2>;
+
+}  // namespace kds::collision
+
+#include "collision/world/image_tools.hpp"
+
+namespace kds::collision {
+
+template <int Degree>
+template <class Alive>
+void Scripts<Degree>::Image::check(double now, const Alive& alive) const {
+  for (std::size_t id = 0; id < of.size(); ++id) {
+    const auto need = [id](bool right, const char* what) { image::require(right, "scripts", id, what); };
+    need(of[id].empty() || alive(static_cast<BodyId>(id)), "is of no body");
+    double next = never;  // pieces are listed last first
+    for (const Motion& piece : of[id]) {
+      need(piece.finite(), "a piece of motion to come is not finite");
+      need(image::is_to_come(piece.start, now) && piece.start < next, "pieces of motion to come are out of order");
+      next = piece.start;
+    }
+  }
+}
+
+}  // namespace kds::collision

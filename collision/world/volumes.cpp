@@ -1,0 +1,171 @@
+#include "collision/world/volumes.hpp"
+
+#include "collision/broad_phase/swept_box.hpp"
+#include "collision/vectors.hpp"
+#include "collision/world/queue_room.hpp"
+#include "kds/raised_flag.hpp"
+#include "structures/extents.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace kds::collision {
+namespace {
+
+std::vector<KdopDirection> directions_of(const WorldOptions& options) {
+  const int k = options.kdop;
+  if (k == 6) return {};
+  if (k != 14 && k != 18 && k != 26) throw std::invalid_argument("WorldOptions.kdop: must be 6, 14, 18 or 26");
+  if (options.broad_phase != BroadPhaseKind::kinetic_sap) {
+    throw std::invalid_argument("WorldOptions.kdop: more than 6 is for kinetic sweep and prune alone");
+  }
+  const auto all = structures::kdop_directions(k);
+  return {all.begin() + 3, all.end()};
+}
+
+/// Whether two boxes overlap, rounded as they say, by more than what is rounded here can feign.
+template <int Degree>
+bool surely_overlap_rounded(const KineticBox<Degree>& a, const KineticBox<Degree>& b, double now) {
+  const double radius = a.rounding + b.rounding;
+  const StaticBox box_a = box_at(a, now);
+  const StaticBox box_b = box_at(b, now);
+  const double coordinates = std::max(box_a.min.abs().max(box_a.max.abs()).maxCoeff(), radius);
+  const Eigen::Array3d gap = ((box_a.min - box_b.max).max(box_b.min - box_a.max) + radius).max(0);
+  return radius == 0 || norm(gap.matrix()) < radius * (1 - 0x1p-18) - 0x1p-44 * coordinates;
+}
+
+}  // namespace
+
+template <int Degree>
+Volumes<Degree>::Volumes(const Bodies<Degree>& bodies, const WorldOptions& options, const Clock& clock)
+    : bodies_(bodies), options_(options), clock_(clock), directions_(directions_of(options)) {}
+
+template <int Degree>
+Kdops<Degree> Volumes<Degree>::kdops() const {
+  if (directions_.empty()) return {};
+  return {directions_, [this](BodyId id, std::size_t i, double now) { return slab(id, i, now); }};
+}
+
+template <int Degree>
+void Volumes<Degree>::add(BodyId id, const BoxFunction& function) {
+  if (!directions_.empty()) place_extents(id);
+  if (!function) return;
+  make_room(ends_, bodies_.slots());
+  if (given_.size() <= id) given_.resize(id + std::size_t{1});
+  given_[id] = std::make_unique<Given>(Given{function, {}});
+}
+
+template <int Degree>
+void Volumes<Degree>::remove(BodyId id) {
+  clear(ends_, id);
+  if (from_caller(id)) given_[id] = nullptr;
+}
+
+template <int Degree>
+KineticBox<Degree> Volumes<Degree>::renew(BodyId id) {
+  if (!from_caller(id)) [[likely]]
+    return box(id);
+  const Box made = [&] {
+    const kds::detail::RaisedFlag calling(calling_);
+    return given_[id]->function(clock_.now, bodies_.motion(id));
+  }();
+  if (!made.min.finite() || !made.max.finite()) {
+    throw std::invalid_argument("BodyDescription.box: returned a box that is not finite");
+  }
+  if (!(made.valid_until > clock_.now)) {
+    throw std::invalid_argument("BodyDescription.box: returned a box whose validity has ended");
+  }
+  given_[id]->box = made;
+  return box(id);
+}
+
+template <int Degree>
+void Volumes<Degree>::schedule(BodyId id) {
+  if (!from_caller(id) && !meshes_) return;
+  const double until = from_caller(id) ? given_[id]->box.valid_until : clearance_until(id);
+  if (until <= clock_.horizon && until < never) {
+    make_room(ends_, bodies_.slots());
+    ends_.set(id, until);
+  } else {
+    clear(ends_, id);
+  }
+}
+
+template <int Degree>
+void Volumes<Degree>::extend_horizon() {
+  if (given_.empty() && !meshes_) return;
+  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+    if (bodies_[id].entered) schedule(id);
+  }
+}
+
+template <int Degree>
+void Volumes<Degree>::become(bool room_for_meshes) {
+  meshes_ = room_for_meshes;
+  given_.clear();
+  ends_.resize(0);
+  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+    if (bodies_.contains(id) && !directions_.empty()) place_extents(id);
+  }
+}
+
+/// How far a body that comes in reaches in the directions beyond the axes: that stays so, as it does not turn.
+template <int Degree>
+void Volumes<Degree>::place_extents(BodyId id) {
+  const detail::Body<Degree>& b = bodies_[id];
+  extents_.resize(std::max(extents_.size(), (id + std::size_t{1}) * directions_.size()));
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const Eigen::Vector3d direction(directions_[i].data());
+    auto& reach = extents_[id * directions_.size() + i];
+    if (!b.shape || b.volume == BoundingVolume::sphere) {
+      const double radius = b.bounding_radius * norm(direction) * (1 + 0x1p-48);
+      reach = {-radius, radius};
+    } else {
+      reach = extent(*b.shape, direction);
+    }
+  }
+}
+
+/// What a body covers along a direction from now on.
+template <int Degree>
+KineticSlab<Degree> Volumes<Degree>::slab(BodyId id, std::size_t i, double now) const {
+  const auto& [low, high] = extents_[id * directions_.size() + i];
+  if (!from_caller(id) && bodies_.motion(id).start <= now) {
+    KineticSlab<Degree> slab = slab_around(bodies_.motion(id), low, high, directions_[i]);
+    if (!meshes_) return slab;
+    const auto by = growth(id);
+    const double length = norm(Eigen::Vector3d(directions_[i].data())) * (1 + 0x1p-48);
+    for (std::size_t k = 0; k <= Degree; ++k) {
+      slab.min.position.c[k] -= by[k] * length;
+      slab.max.position.c[k] += by[k] * length;
+    }
+    return slab;
+  }
+  return slab_around(box(id), directions_[i], now);
+}
+
+template <int Degree>
+bool Volumes<Degree>::overlap(BodyId a, BodyId b, double t, bool exact) const {
+  const auto broken = [t](const kds::Motion<Degree>& left, const kds::Motion<Degree>& right) {
+    return sign_after(certificates::Order<Degree>{left, right}, t) < 0;
+  };
+  const Box box_a = box(a);
+  const Box box_b = box(b);
+  const BoxOverlap<Degree> boxes(box_a, box_b);
+  for (const auto& side : boxes.separations()) {
+    if (sign_after(side, t) >= 0) return false;
+  }
+  if (!exact && !surely_overlap_rounded(box_a, box_b, t)) return false;
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const KineticSlab<Degree> slab_a = slab(a, i, t);
+    const KineticSlab<Degree> slab_b = slab(b, i, t);
+    if (!broken(slab_a.max, slab_b.min) || !broken(slab_b.max, slab_a.min)) return false;
+  }
+  return true;
+}
+
+template class Volumes<1>;
+template class Volumes<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,112 @@
+// The bounding volumes of a world's bodies.
+#pragma once
+
+#include "collision/broad_phase/kdop.hpp"
+#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/clock.hpp"
+#include "collision/world_options.hpp"
+#include "kds/events/dary_queue.hpp"
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace kds::collision {
+
+/// What the broad phase knows of each body: a kinetic box, for kinetic sweep and prune perhaps a k-DOP, and until when
+/// they hold the body.
+///
+/// Boxes are made from shape and motion, or by a function of the caller's. From the first mesh on all have room for the
+/// contact gaps of meshes (mesh_margins.hpp). Most hold their body for good.
+///
+/// Cost: O(1) a volume; nothing is kept of bodies whose volumes hold for good, but for k-DOPs.
+template <int Degree>
+class Volumes {
+ public:
+  using Motion = certificates::PointMotion<Degree>;
+  using BoxFunction = typename BodyDescription<Degree>::BoxFunction;
+  using Box = KineticBox<Degree>;
+
+  /// Throws std::invalid_argument, naming the option, for a k-DOP that there is not.
+  Volumes(const Bodies<Degree>& bodies, const WorldOptions& options, const Clock& clock);
+
+  /// For the broad phase.
+  Kdops<Degree> kdops() const;
+
+  /// A body comes. `function`: the caller's, or an empty one. Throws std::length_error, before anything is changed, if
+  /// there is no room.
+  void add(BodyId id, const BoxFunction& function);
+  void remove(BodyId id);
+
+  /// The first mesh comes: true if it is. Then the volumes of all bodies are others.
+  bool make_room_for_meshes() { return !std::exchange(meshes_, true); }
+  bool has_room_for_meshes() const { return meshes_; }
+
+  /// Whether some body has or had a function of the caller's; and this one.
+  bool any_from_callers() const { return !given_.empty(); }
+  bool from_caller(BodyId id) const { return id < given_.size() && given_[id]; }
+  /// A function of the caller's is making a box just now.
+  bool calling() const { return calling_; }
+
+  /// The box as it is: what the caller's function gave last, or what the motion gives.
+  Box box(BodyId id) const { return meshes_ ? grown(id, bare_box(id)) : bare_box(id); }
+  /// A box for the present motion. Throws what the caller's function throws, and std::invalid_argument for a box of its
+  /// that cannot be. Where there are no such functions, threads may call it at once.
+  Box renew(BodyId id);
+  /// Whether the volumes that the broad phase sees overlap just after t. `exact`: as for the broad phase.
+  bool overlap(BodyId a, BodyId b, double t, bool exact) const;
+
+  /// Takes note of until when the body's box holds it.
+  void schedule(BodyId id);
+  /// When the next box has to be renewed, and whose. Precondition of next_body(): next_time() < never.
+  double next_time() const { return ends_.empty() ? never : ends_.top().time; }
+  BodyId next_body() const { return ends_.top().slot; }
+  void extend_horizon();
+
+  /// As loaded: no body's volume is a caller's. Those of all bodies are scheduled with schedule().
+  void become(bool room_for_meshes);
+
+ private:
+  struct Given {
+    BoxFunction function;
+    Box box;  ///< the last it gave
+  };
+
+  Box bare_box(BodyId id) const;
+  void place_extents(BodyId id);
+  KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;
+
+  // clearance.cpp: what boxes reach beyond bodies, for the contact gap of meshes
+  std::array<double, std::size_t{Degree} + 1> growth(BodyId id) const;
+  Box grown(BodyId id, Box box) const;
+  double clearance_until(BodyId id) const;
+
+  const Bodies<Degree>& bodies_;
+  const WorldOptions& options_;
+  const Clock& clock_;
+  std::vector<std::unique_ptr<Given>> given_;   ///< by body, up to the last that has had one
+  std::vector<KdopDirection> directions_;       ///< beyond the axes
+  std::vector<std::array<double, 2>> extents_;  ///< by body and direction
+  DaryQueue<> ends_;                            ///< slots are bodies
+  bool meshes_ = false;                         ///< there is or has been one
+  bool calling_ = false;
+};
+
+/// The same without room for the contact gap of meshes.
+template <int Degree>
+inline KineticBox<Degree> Volumes<Degree>::bare_box(BodyId id) const {
+  if (from_caller(id)) return given_[id]->box;
+  const detail::Body<Degree>& b = bodies_[id];
+  const bool sphere = !b.shape || b.volume == BoundingVolume::sphere;
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
+  const double rounding = sphere && !options_.report_pairs ? b.bounding_radius : 0;  // of boxes those are told
+  return box_around<Degree>(bodies_.motion(id), sphere ? -reach : b.shape->low, sphere ? reach : b.shape->high,
+                            rounding);
+}
+
+extern template class Volumes<1>;
+extern template class Volumes<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,138 @@
+#include "collision/world/wall_times.hpp"
+
+#include "certificates/conjunction.hpp"
+#include "certificates/wall_separation.hpp"
+#include "collision/world/earliest_wall_time.hpp"
+#include "collision/world/queue_room.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace kds::collision {
+
+template <int Degree>
+inline void WallTimes<Degree>::make_room(std::size_t slots) {
+  collision::make_room(times_, slots);
+  if (is_bound_.size() < times_.slots()) is_bound_.resize(times_.slots());
+}
+
+/// Takes note that a body is at no wall before some time. Precondition: there is room for it.
+template <int Degree>
+inline void WallTimes<Degree>::note(BodyId id, double earliest) {
+  is_bound_[id] = true;
+  // An earlier one is a lower bound as well: most are replaced again before they are due.
+  if (times_.contains(id) && times_.time(id) > clock_.now && times_.time(id) <= earliest) return;
+  if (earliest <= clock_.horizon) {
+    times_.set(id, std::max(earliest, clock_.now));
+  } else {
+    times_.clear(id);
+  }
+}
+
+template <int Degree>
+void WallTimes<Degree>::schedule(BodyId id) {
+  if (!walls_) return;
+  make_room(bodies_.slots());
+  double earliest = clock_.now;
+  if constexpr (Degree == 1) {
+    earliest = earliest_wall_time_of_all(bodies_.motion(id), bodies_[id].bounding_radius, *walls_, clock_.now);
+  }
+  note(id, earliest);
+}
+
+template <int Degree>
+void WallTimes<Degree>::schedule(std::span<const Entry> entries) {
+  if (!walls_) return;
+  make_room(bodies_.slots());
+  for (std::size_t i = 0; i < entries.size(); i += 2) {
+    const BodyId a = entries[i].id;
+    const BodyId b = entries[std::min(i + 1, entries.size() - 1)].id;
+    std::array earliest{clock_.now, clock_.now};
+    if constexpr (Degree == 1) {
+      const Two radii{bodies_[a].bounding_radius, bodies_[b].bounding_radius};
+      earliest = earliest_wall_times_of_all({&bodies_.motion(a), &bodies_.motion(b)}, radii, *walls_, clock_.now);
+    }
+    note(a, earliest[0]);
+    if (b != a) note(b, earliest[1]);
+  }
+}
+
+template <int Degree>
+void WallTimes<Degree>::remove(BodyId id) {
+  clear(times_, id);
+}
+
+template <int Degree>
+void WallTimes<Degree>::reserve(std::size_t bodies) {
+  if (!walls_ || times_.slots() >= bodies) return;
+  times_.resize(bodies);
+  make_room(bodies);
+}
+
+template <int Degree>
+void WallTimes<Degree>::extend_horizon() {
+  if (!walls_) return;
+  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+    if (bodies_[id].entered) schedule(id);
+  }
+}
+
+template <int Degree>
+void WallTimes<Degree>::become() {
+  times_.resize(0);
+  is_bound_.clear();
+  extend_horizon();
+}
+
+template <int Degree>
+bool WallTimes<Degree>::certify() {
+  const BodyId id = times_.top().slot;
+  if (!is_bound_[id]) return false;
+  is_bound_[id] = false;
+  double first = never;
+  for (int wall = 0; wall < 6; ++wall) {
+    const double horizon = std::min(first, clock_.horizon);
+    if (earliest_wall_time(bodies_.motion(id), bodies_[id].bounding_radius, *walls_, wall, clock_.now) > horizon) {
+      continue;
+    }
+    first = std::min(first, exact_time(id, wall, horizon));
+  }
+  times_.set(id, first);
+  return true;
+}
+
+/// When the ball around a body is outside a wall and still going outward.
+template <int Degree>
+double WallTimes<Degree>::exact_time(BodyId id, int wall, double horizon) const {
+  const int axis = wall / 2;
+  const double out = wall % 2 != 0 ? 1 : -1;
+  const Motion& motion = bodies_.motion(id);
+  using Wall = certificates::WallSeparation<Degree>;
+  const auto inside = [&] {
+    return Wall{motion.axis(axis), out > 0 ? walls_->max[axis] : walls_->min[axis], bodies_[id].bounding_radius, out};
+  };
+  if constexpr (Degree == 1) {
+    return motion.coefficients[1][axis] * out > 0 ? failure_time(inside(), clock_.now, horizon) : never;
+  } else {
+    bool moves = false;
+    for (std::size_t i = 1; i <= Degree; ++i) moves = moves || motion.coefficients[i][axis] != 0;
+    if (!moves) return never;
+    const Wall wall_inside = inside();
+    const DerivativeCertificate<Wall> leaving{wall_inside};
+    return certificates::first_all_broken<Wall, DerivativeCertificate<Wall>>(clock_.now, horizon, {&wall_inside, 1},
+                                                                             {&leaving, 1});
+  }
+}
+
+template <int Degree>
+int WallTimes<Degree>::next_wall() const {
+  const double t = next_time();
+  int wall = 0;
+  while (wall < 6 && exact_time(next_body(), wall, t) != t) ++wall;
+  return wall;
+}
+
+template class WallTimes<1>;
+template class WallTimes<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,66 @@
+// When the bodies of a world reach its walls.
+#pragma once
+
+#include "collision/broad_phase/broad_phase.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/clock.hpp"
+#include "collision/world_options.hpp"
+#include "kds/events/calendar_queue.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace kds::collision {
+
+/// For each body that has entered a world with walls, a time before which the ball around it goes through none of them:
+/// a bound that costs little, and only for the body that comes first the exact time.
+///
+/// A ball reaches a wall when it is outside and still going outward. Walls have the numbers of WallEvent.
+///
+/// Cost: nothing where there are no walls; O(1) for a change of motion.
+template <int Degree>
+class WallTimes {
+ public:
+  using Motion = certificates::PointMotion<Degree>;
+  using Entry = typename BroadPhase<Degree>::Entry;
+
+  WallTimes(const Bodies<Degree>& bodies, const std::optional<Walls>& walls, const Clock& clock)
+      : bodies_(bodies), walls_(walls), clock_(clock) {}
+
+  /// Bodies have entered, or one has another motion.
+  void schedule(std::span<const Entry> entries);
+  void schedule(BodyId id);
+  void remove(BodyId id);
+  void reserve(std::size_t bodies);
+
+  /// A time up to which no body reaches a wall.
+  double next_time() const { return times_.empty() ? never : times_.top().time; }
+  /// The body that this is the time of. Precondition: next_time() < never.
+  BodyId next_body() const { return times_.top().slot; }
+  /// Where next_time() is no more than a bound, puts the exact time in its place, which may be later: true if so.
+  bool certify();
+  /// Which wall the body that comes next reaches then. Precondition: certify() has returned false.
+  int next_wall() const;
+  void extend_horizon();
+
+  /// All bodies are others. Nothing is saved or loaded of them: times are functions of the motions.
+  void become();
+
+ private:
+  void make_room(std::size_t slots);
+  void note(BodyId id, double earliest);
+  double exact_time(BodyId id, int wall, double horizon) const;
+
+  const Bodies<Degree>& bodies_;
+  const std::optional<Walls>& walls_;
+  const Clock& clock_;
+  CalendarQueue<> times_;       ///< slots are bodies
+  std::vector<char> is_bound_;  ///< by body: its time is a lower bound
+};
+
+extern template class WallTimes<1>;
+extern template class WallTimes<2>;
+
+}  // namespace kds::collision

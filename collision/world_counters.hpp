@@ -1,0 +1,30 @@
+// What a world counts.
+#pragma once
+
+#include "collision/broad_phase/broad_phase.hpp"
+#include "kds/statistics.hpp"
+
+#include <cstdint>
+
+namespace kds::collision {
+
+/// What a world has done so far.
+struct WorldCounters {
+  BroadPhaseCounters broad_phase;
+  std::uint64_t pairs_begun = 0;  ///< pairs handed on by the broad phase
+  std::uint64_t pair_tests = 0;   ///< dynamic intersection tests
+  std::uint64_t contacts = 0;
+  std::uint64_t separations = 0;
+  std::uint64_t overlaps = 0;
+  std::uint64_t wall_contacts = 0;
+  std::uint64_t motion_updates = 0;  ///< by response, walls, scripts and callers
+  std::uint64_t held = 0;            ///< times the Zeno policy acted
+
+  friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
+  /// As a kinetic structure's: what has happened, and failure times asked for.
+  operator Counters() const {
+    return {.events = contacts + separations + overlaps + wall_contacts, .certificates = pair_tests};
+  }
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,43 @@
+#include "collision/world_options.hpp"
+
+#include "collision/shapes/shape.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace kds::collision {
+
+void validate(const WorldOptions& options) {
+  if (!std::isfinite(options.start_time)) throw std::invalid_argument("WorldOptions.start_time: must be finite");
+  if (std::abs(options.start_time) > largest_magnitude) {
+    throw std::invalid_argument("WorldOptions.start_time: must not be beyond 2^205 (5.1e61)");
+  }
+  if (!(options.window > 0)) throw std::invalid_argument("WorldOptions.window: must be > 0");
+  if (!(options.rate >= 0) || !std::isfinite(options.rate)) {
+    throw std::invalid_argument("WorldOptions.rate: must be finite and >= 0");
+  }
+  switch (options.response) {
+    case Response::none:
+    case Response::elastic:
+    case Response::callback:
+      break;
+    default:
+      throw std::invalid_argument("WorldOptions.response: unknown");
+  }
+  if (options.zeno.contacts == 0) throw std::invalid_argument("WorldOptions.zeno.contacts: must be > 0");
+  if (!(options.zeno.interval >= 0)) throw std::invalid_argument("WorldOptions.zeno.interval: must be >= 0");
+  if (options.walls) {
+    const Walls& walls = *options.walls;
+    if (!walls.min.allFinite() || !walls.max.allFinite()) {
+      throw std::invalid_argument("WorldOptions.walls: must be finite");
+    }
+    if (!(walls.min.array() < walls.max.array()).all()) {
+      throw std::invalid_argument("WorldOptions.walls: min must be below max");
+    }
+    if (!(walls.restitution >= 0 && walls.restitution <= 1)) {
+      throw std::invalid_argument("WorldOptions.walls.restitution: must be in [0, 1]");
+    }
+  }
+}
+
+}  // namespace kds::collision
