@@ -204,13 +204,18 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
   const double rate = dot(normal, velocity);
   bool approaching = rate < 0;
   if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
-    // Second derivative of the distance: bending towards the surface beats leaving its round.
+    // Second derivative of the distance: bending towards the surface beats leaving its round. What is round is the part
+    // of the triangle that the ball comes to: it may be about to pass from an edge to the face.
     Vector3d sideways = velocity - rate * normal;
-    if (nearest.dimension == 1) {
-      const Vector3d along = unit(triangle_.edge(nearest.index));
+    NearestPoint ahead = nearest;
+    if (nearest.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {
+      ahead = nearest_point(triangle_, centre + gap_(tau) * unit(sideways));
+    }
+    if (ahead.dimension == 1) {
+      const Vector3d along = unit(triangle_.edge(ahead.index));
       sideways -= dot(along, sideways) * along;
     }
-    const double round = nearest.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
+    const double round = ahead.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
     approaching = dot(normal, motion_.acceleration()) + round < -speeds[1];
   }
   return {normal, distance - radius_, approaching};

@@ -249,6 +249,21 @@ TEST_CASE("After an impulse bodies that part are not in contact, and meet again 
                 ->tau == Approx(1e-9).epsilon(1e-6));
     }
   }
+  SECTION("a ball that touches an edge or a vertex, moves sideways and is pressed down") {
+    const PlacedShape ball = place(Sphere{0.5}, Eigen::Quaterniond::Identity());
+    const auto first = [&](const Vector3d& start, const Vector3d& velocity) {
+      const auto touch = MeshPair<2>(cube, ball, {{start, velocity, Vector3d{0, 0, -5}}})
+                             .first_contact(0, 1, ContactMode::resolved);
+      return touch ? touch->tau : infinity;
+    };
+    // Onto the face it is pressed at once, however fast; off the face it leaves if fast enough.
+    CHECK(first({1, 0.2, 1.5}, {-7, 0, 0}) == 0);
+    CHECK(first({1, 1, 1.5}, {-7, -7, 0}) == 0);
+    CHECK(first({1, 1, 1.5}, {0, -7, 0}) == 0);
+    CHECK(first({1, 0.2, 1.5}, {7, 0, 0}) == infinity);
+    CHECK(first({1, 1, 1.5}, {7, 7, 0}) == infinity);
+    CHECK(first({1, 0.2, 1.5}, {1, 0, 0}) == 0);
+  }
 }
 
 TEST_CASE("A mesh touches with its surface: what is inside touches nothing") {

@@ -1,0 +1,66 @@
+// The parts of a world without the world: for tests of each by itself.
+#pragma once
+
+#include "collision/world/bodies.hpp"
+#include "collision/world/clock.hpp"
+#include "collision/world/pairs.hpp"
+#include "collision/world/reports.hpp"
+#include "collision/world/resting_contacts.hpp"
+#include "collision/world/volumes.hpp"
+#include "collision/world_counters.hpp"
+#include "collision/world_options.hpp"
+#include "tests/collision/random_scenes.hpp"
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace kds::collision::tests {
+
+/// Bodies, volumes, pairs and resting contacts that know each other, with a record of what resting contacts tell.
+template <int Degree>
+struct Parts final : RestingContacts<Degree>::Listener {
+  using Motion = certificates::PointMotion<Degree>;
+
+  explicit Parts(const WorldOptions& chosen = {})
+      : options(chosen),
+        clock{options.start_time, options.start_time + options.window},
+        volumes(bodies, options, clock),
+        resting(bodies, clock, *this),
+        pairs(bodies, volumes, resting, reports, options, clock, counters, nullptr) {}
+
+  /// Adds a body that has entered.
+  BodyId add(const BodyDescription<Degree>& description) {
+    auto shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
+    const BodyId id = bodies.add(description, std::move(shape), description.motion.front(), clock.now);
+    bodies[id].entered = true;
+    volumes.add(id, description.box);
+    return id;
+  }
+  void move(BodyId id, const Motion& motion) {
+    bodies.move(id, motion);
+    bodies.accelerate_freely(id, motion);
+    pairs.motion_changed(id, false);
+  }
+
+  void take_up(BodyId id, const Motion& motion) override {
+    bodies.move(id, motion);
+    taken_up.push_back(id);
+  }
+  void changed(BodyId a, BodyId b) override { pairs.changed(a, b); }
+  void let_pass(BodyId a, BodyId b) override { pairs.let_pass(a, b); }
+  void tell_held(BodyId a, BodyId b) override { told.emplace_back(a, b); }
+
+  WorldOptions options;
+  Clock clock;
+  WorldCounters counters;
+  Bodies<Degree> bodies;
+  Volumes<Degree> volumes;
+  Reports reports;
+  RestingContacts<Degree> resting;
+  Pairs<Degree> pairs;
+  std::vector<BodyId> taken_up;
+  std::vector<std::pair<BodyId, BodyId>> told;
+};
+
+}  // namespace kds::collision::tests

@@ -1,0 +1,336 @@
+// The parts of a world, each by itself.
+#include "tests/collision/world/parts.hpp"
+
+#include "collision/world/scripts.hpp"
+#include "collision/world/wall_times.hpp"
+#include "kds/audit.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace kds::collision {
+namespace {
+
+using namespace tests;
+
+constexpr double no_limit = never;
+
+WorldOptions resolved() {
+  WorldOptions options;
+  options.response = Response::elastic;
+  return options;
+}
+
+TEST_CASE("Bodies: an id is given again, but not at the instant of its removal") {
+  Parts<1> parts;
+  const auto one = ball<1>(1, {0, 0, 0});
+  CHECK(parts.add(one) == 0);
+  CHECK(parts.add(one) == 1);
+  parts.bodies.remove(0, parts.clock.now);
+  CHECK_FALSE(parts.bodies.contains(0));
+  CHECK_THROWS_AS(parts.bodies.at(0), std::out_of_range);
+  CHECK(parts.add(one) == 2);
+  parts.clock.now = 1;
+  CHECK(parts.add(one) == 0);
+  CHECK(parts.bodies.size() == 3);
+  CHECK(parts.bodies.slots() == 3);
+  parts.bodies.remove(1, 2.0);
+  parts.bodies.remove(2, 3.0);  // then 1 was removed at an earlier time
+  parts.clock.now = 3;
+  CHECK(parts.add(one) == 1);
+  CHECK(parts.add(one) == 3);
+}
+
+TEST_CASE("Bodies: one that is removed does not enter any more") {
+  Parts<1> parts;
+  const BodyId id = parts.bodies.add(ball<1>(1, {0, 0, 0}), nullptr, motion<1>({0, 0, 0}), 0);
+  parts.bodies.wait(id);
+  CHECK(parts.bodies.waits(id));
+  parts.bodies.remove(id, 0);
+  CHECK_FALSE(parts.bodies.any_waits());
+}
+
+TEST_CASE("Bodies: a jump is what rounding is not") {
+  Parts<1> parts;
+  const BodyId id = parts.add(ball<1>(1, {100, 0, 0}, {1, 0, 0}));
+  const auto there = [](double x) { return motion<1>({x, 0, 0}, zero, zero, 2); };
+  CHECK_FALSE(parts.bodies.is_jump(id, there(102), 2));
+  CHECK_FALSE(parts.bodies.is_jump(id, there(102 + 1e-11), 2));
+  CHECK(parts.bodies.is_jump(id, there(102 + 1e-9), 2));
+}
+
+TEST_CASE("Bodies: two may collide if each one's category is in the other's mask") {
+  Parts<1> parts;
+  CHECK_FALSE(parts.bodies.filters());
+  auto description = ball<1>(1, {0, 0, 0});
+  const BodyId plain = parts.add(description);
+  description.category = 2;
+  const BodyId second = parts.add(description);
+  description.collides_with = 1;
+  const BodyId choosy = parts.add(description);
+  description.collides_with = 0;
+  const BodyId alone = parts.add(description);
+  CHECK(parts.bodies.filters());
+  CHECK(parts.bodies.may_collide(plain, second));
+  CHECK(parts.bodies.may_collide(plain, choosy));
+  CHECK_FALSE(parts.bodies.may_collide(second, choosy));
+  CHECK_FALSE(parts.bodies.may_collide(plain, alone));
+  CHECK(parts.bodies.collides(choosy));
+  CHECK_FALSE(parts.bodies.collides(alone));
+}
+
+TEST_CASE("Scripts: pieces begin in order of time, all of one time at once, by id") {
+  Scripts<1> scripts;
+  CHECK(scripts.next_time() == never);
+  const auto piece = [](double start) { return motion<1>({start, 0, 0}, zero, zero, start); };
+  const std::vector of_5{piece(1), piece(2)};
+  const std::vector of_2{piece(2), piece(4)};
+  const std::vector of_9{piece(3)};
+  scripts.add(5, of_5);
+  scripts.add(2, of_2);
+  scripts.add(9, of_9);
+  REQUIRE(scripts.next_time() == 1);
+  auto next = scripts.take_next();
+  REQUIRE(next.size() == 1);
+  CHECK(next[0].id == 5);
+  CHECK(next[0].motion.start == 1);
+  REQUIRE(scripts.next_time() == 2);
+
+  Scripts<1> copy;
+  copy.become(scripts.image());
+  for (Scripts<1>* each : {&scripts, &copy}) {
+    next = each->take_next();
+    REQUIRE(next.size() == 2);
+    CHECK(next[0].id == 2);
+    CHECK(next[1].id == 5);
+    each->clear(9);
+    CHECK(each->next_time() == 4);
+    each->clear(2);
+    each->clear(7);  // has none
+    CHECK(each->next_time() == never);
+  }
+}
+
+TEST_CASE("Wall times: the body that comes next, its exact time and its wall") {
+  const std::optional<Walls> walls(Walls{{0, 0, 0}, {10, 10, 10}, 1});
+  Parts<2> parts;
+  WallTimes<2> times(parts.bodies, walls, parts.clock);
+  const BodyId to_right = parts.add(ball<2>(1, {5, 5, 5}, {1, 0, 0}));            // at 4
+  const BodyId falls = parts.add(ball<2>(1, {5, 5, 3}, {0, 0, 0}, {0, 0, -0.5}));  // at 2, on wall -z
+  const BodyId rests = parts.add(ball<2>(1, {5, 5, 1}));
+  const std::array<BroadPhase<2>::Entry, 3> all{{{to_right, nullptr}, {falls, nullptr}, {rests, nullptr}}};
+  times.schedule(all);
+  const auto certified = [&] {
+    while (times.next_time() < never && times.certify()) {
+    }
+    return times.next_time();
+  };
+  REQUIRE(certified() == 2);
+  CHECK(times.next_body() == falls);
+  parts.clock.now = 2;
+  CHECK(times.next_wall() == 4);
+  times.remove(falls);
+  REQUIRE(certified() == 4);
+  CHECK(times.next_body() == to_right);
+  parts.clock.now = 4;
+  CHECK(times.next_wall() == 1);
+  parts.bodies.move(to_right, motion<2>({9, 5, 5}, {-1, 0, 0}, zero, 4));
+  times.schedule(to_right);
+  CHECK(certified() == 12);
+  CHECK(times.next_wall() == 0);
+}
+
+TEST_CASE("Wall times: nothing beyond the horizon, until it is extended") {
+  const std::optional<Walls> walls(Walls{{0, 0, 0}, {10, 10, 10}, 1});
+  Parts<1> parts;
+  parts.clock.horizon = 3;
+  WallTimes<1> times(parts.bodies, walls, parts.clock);
+  const BodyId id = parts.add(ball<1>(1, {5, 5, 5}, {1, 0, 0}));
+  times.schedule(id);
+  CHECK(times.next_time() == never);
+  parts.clock.horizon = 5;
+  times.extend_horizon();
+  CHECK(times.certify());
+  CHECK(times.next_time() == 4);
+}
+
+TEST_CASE("Volumes: a caller's box is asked for when it is renewed, and ends when it says") {
+  Parts<1> parts;
+  int calls = 0;
+  auto described = ball<1>(1, {0, 0, 0}, {1, 0, 0});
+  described.box = [&](double t, const certificates::PointMotion<1>& path) {
+    ++calls;
+    const Vector3d at = path.position(t);
+    KineticBox<1> box{motion<1>(at - Vector3d(2, 2, 2), zero, zero, t), motion<1>(at + Vector3d(2, 2, 2), zero, zero, t)};
+    box.valid_until = t + 1;
+    return box;
+  };
+  const BodyId plain = parts.add(ball<1>(1, {9, 9, 9}));
+  const BodyId id = parts.add(described);
+  CHECK(parts.volumes.from_caller(id));
+  CHECK_FALSE(parts.volumes.from_caller(plain));
+  parts.volumes.renew(id);
+  parts.volumes.schedule(id);
+  parts.volumes.schedule(plain);
+  CHECK(calls == 1);
+  CHECK(parts.volumes.box(id).min.position(0.0) == Vector3d(-2, -2, -2));
+  CHECK(parts.volumes.next_time() == 1);
+  CHECK(parts.volumes.next_body() == id);
+  parts.volumes.remove(id);
+  CHECK(parts.volumes.next_time() == never);
+}
+
+TEST_CASE("Pairs: contacts of the pairs that are listed, the earliest first, each at its exact time") {
+  const auto seed = GENERATE(range(1u, 9u));
+  CAPTURE(seed);
+  Random random(seed);
+  Parts<2> parts(resolved());
+  for (int i = 0; i < 8; ++i) {
+    const auto place = [&] { return Vector3d(random.between(-9, 9), random.between(-9, 9), random.between(-9, 9)); };
+    const Vector3d c0 = place();
+    const Shape shape = i % 2 == 0 ? Shape(Sphere{0.5}) : Shape(Box{{0.4, 0.5, 0.6}});
+    parts.add(body<2>(shape, motion<2>(c0, -0.5 * c0 + 0.02 * place(), 0.01 * place())));
+  }
+  std::vector<double> expected;
+  for (BodyId a = 0; a < 8; ++a) {
+    for (BodyId b = a + 1; b < 8; ++b) {
+      parts.pairs.pair_began(a, b, 0);
+      const double t = first_contact<2>(parts.bodies.moving(a), parts.bodies.moving(b), 0, no_limit,
+                                        ContactMode::resolved);
+      if (t < never) expected.push_back(t);
+    }
+  }
+  std::sort(expected.begin(), expected.end());
+  REQUIRE(!expected.empty());
+  CHECK_FALSE(parts.pairs.tested());
+  parts.pairs.test();
+  CHECK(parts.pairs.tested());
+  CHECK(parts.counters.pair_tests == 28);
+  for (const double t : expected) {
+    while (parts.pairs.certify()) {
+    }
+    REQUIRE(parts.pairs.next_time() == t);
+    const auto event = parts.pairs.take_next();
+    CHECK_FALSE(event.separates);
+    CHECK(event.a < event.b);
+    CHECK(parts.pairs.contact(event.a, event.b, t, event.found).time == t);
+  }
+  while (parts.pairs.next_time() < never && parts.pairs.certify()) {
+  }
+  CHECK(parts.pairs.next_time() == never);
+  parts.pairs.audit(0);
+}
+
+TEST_CASE("Pairs: what overlaps lives on when the broad phase does not list it, until it has separated") {
+  Parts<1> parts;  // mode none
+  parts.add(ball<1>(1, {0, 0, 0}));
+  parts.add(ball<1>(1, {1, 0, 0}, {1, 0, 0}));
+  parts.pairs.begin_fresh(true);
+  parts.pairs.pair_began(0, 1, 0);
+  parts.pairs.begin_fresh(false);
+  parts.pairs.test();
+  CHECK(parts.pairs.overlapping(0, 1));
+  REQUIRE(parts.reports.take_first().kind == Reports::Kind::overlap);
+  parts.pairs.pair_ended(0, 1, 0.5);  // as a broad phase would that knows other boxes
+  CHECK_FALSE(parts.pairs.listed(0, 1));
+  CHECK(parts.pairs.overlapping(0, 1));
+  parts.pairs.test();
+  parts.pairs.audit(0.5);
+  REQUIRE(parts.pairs.next_time() == 1);
+  parts.clock.now = 1;
+  CHECK(parts.pairs.take_next().separates);
+  CHECK_FALSE(parts.pairs.overlapping(0, 1));
+  parts.pairs.test();
+  CHECK(parts.pairs.next_time() == never);
+  parts.pairs.pair_began(0, 1, 1);  // a pair of its own, with nothing of the old one
+  CHECK_FALSE(parts.pairs.overlapping(0, 1));
+}
+
+TEST_CASE("Pairs: one that is let pass meets again only after it has separated") {
+  Parts<1> parts(resolved());
+  parts.add(ball<1>(1, {0, 0, 0}));
+  parts.add(ball<1>(1, {4, 0, 0}, {-1, 0, 0}));
+  parts.pairs.pair_began(0, 1, 0);
+  parts.pairs.test();
+  CHECK_FALSE(parts.pairs.certify());  // of two balls in lanes the bound of a straight path may be exact
+  REQUIRE(parts.pairs.next_time() == 2);
+  parts.clock.now = 2;
+  CHECK_FALSE(parts.pairs.take_next().separates);
+  parts.pairs.let_pass(0, 1);
+  parts.pairs.test();
+  REQUIRE(parts.pairs.next_time() == 6);
+  parts.clock.now = 6;
+  CHECK(parts.pairs.take_next().separates);
+  parts.pairs.test();
+  CHECK(parts.pairs.next_time() == never);
+}
+
+TEST_CASE("Pairs: a copy made of the image goes on alike") {
+  Parts<2> parts(resolved());
+  Parts<2> copy(resolved());
+  for (Parts<2>* each : {&parts, &copy}) {
+    each->add(ball<2>(1, {0, 0, 0}));
+    each->add(ball<2>(1, {5, 0, 0}, {-1, 0, 0}));
+    each->add(ball<2>(1, {-9, 0, 0}, {1, 0, 0}, {0.1, 0, 0}));
+  }
+  parts.pairs.pair_began(0, 1, 0);
+  parts.pairs.pair_began(0, 2, 0);
+  parts.pairs.test();
+  copy.pairs.become(parts.pairs.image());
+  for (int i = 0; i < 2; ++i) {
+    while (parts.pairs.certify()) {
+    }
+    while (copy.pairs.certify()) {
+    }
+    REQUIRE(parts.pairs.next_time() < never);
+    CHECK(copy.pairs.next_time() == parts.pairs.next_time());
+    const auto event = parts.pairs.take_next();
+    const auto same = copy.pairs.take_next();
+    CHECK(same.a == event.a);
+    CHECK(same.b == event.b);
+  }
+}
+
+TEST_CASE("Resting contacts: a ball that is pressed on a fixed box stays, and slides off its edge") {
+  Parts<2> parts(resolved());
+  const BodyId floor = parts.add(fixed_body<2>(Box{{4, 4, 1}}, motion<2>({0, 0, -1})));
+  const BodyId resting = parts.add(ball<2>(1, {0, 0, 1}, {1, 0, 0}, {0, 0, -5}));
+  CHECK(parts.resting.empty());
+  parts.resting.add({.a = floor, .b = resting, .normal = Vector3d(0, 0, 1)});
+  CHECK_FALSE(parts.resting.empty());
+  CHECK(parts.resting.rests(resting));
+  parts.resting.disturb(resting);
+  CHECK_FALSE(parts.resting.settled());
+  parts.resting.settle();
+  CHECK(parts.resting.settled());
+  REQUIRE(std::find(parts.taken_up.begin(), parts.taken_up.end(), resting) != parts.taken_up.end());
+  CHECK(parts.bodies.motion(resting).coefficients[2].isZero(0));
+  CHECK(parts.bodies.motion(resting).coefficients[1] == Vector3d(1, 0, 0));
+  parts.resting.audit(0, false);
+  const double off = parts.resting.next_time();
+  CHECK(off == Approx(4).epsilon(1e-6));
+  parts.clock.now = off;
+  parts.resting.process();
+  CHECK(parts.resting.empty());
+  CHECK(parts.bodies.motion(resting).coefficients[2] == Vector3d(0, 0, -5));
+  CHECK(parts.resting.next_time() == never);
+}
+
+TEST_CASE("Resting contacts: a body that jumps has none any more") {
+  Parts<2> parts(resolved());
+  const BodyId floor = parts.add(fixed_body<2>(Box{{4, 4, 1}}, motion<2>({0, 0, -1})));
+  const BodyId resting = parts.add(ball<2>(1, {0, 0, 1}, zero, {0, 0, -5}));
+  parts.resting.add({.a = floor, .b = resting, .normal = Vector3d(0, 0, 1)});
+  parts.resting.disturb(resting);
+  parts.resting.settle();
+  parts.resting.audit(0, false);
+  parts.resting.drop_all(resting);
+  CHECK(parts.resting.empty());
+  CHECK(parts.resting.find(floor, resting) == RestingContacts<2>::none);
+}
+
+}  // namespace
+}  // namespace kds::collision
