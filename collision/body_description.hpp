@@ -51,6 +51,9 @@ struct BodyDescription {
   double restitution = 1;
   std::uint32_t category = default_category;  ///< bits
   std::uint32_t collides_with = ~0u;  ///< a pair is tested if each one's category shares a bit with the other's mask
+  /// Passes through all bodies and walls, and no other body changes its motion: its contacts and separations are
+  /// reported as in mode `none`, whatever the response of the world.
+  bool sensor = false;
   BoundingVolume volume = BoundingVolume::shape;
   BoxFunction box{};  ///< if given: the caller's own conservative boxes, instead of `volume`
 };

@@ -75,7 +75,7 @@ class World final : private RestingContacts<Degree>::Listener {
 
   /// Replaces the motion from now() on, and discards the pieces still to come. A body that was to enter later enters
   /// now. In the modes that resolve contacts a body that jumps enters anew: what it meets there is an overlap. In mode
-  /// `none` a jump begins and ends contacts. Throws std::invalid_argument for a motion that is not finite or starts
+  /// `none`, and of sensors, a jump begins and ends contacts. Throws std::invalid_argument for a motion that is not finite or starts
   /// after now().
   void update_motion(BodyId id, const Motion& motion);
 
@@ -118,9 +118,10 @@ class World final : private RestingContacts<Degree>::Listener {
   Motion free_motion(BodyId id) const;
   PlacedShape shape(BodyId id) const { return bodies_.at(id), bodies_.shape(id); }
   double mass(BodyId id) const { return bodies_.at(id).mass; }
+  bool sensor(BodyId id) const { return bodies_.at(id).sensor; }
   bool fixed(BodyId id) const { return bodies_.at(id), bodies_.fixed(id); }
 
-  /// Whether a and b are in contact (mode `none`).
+  /// Whether a and b are in contact; of two that pass through each other (mode `none`, sensors), else false.
   bool touching(BodyId a, BodyId b) const;
 
   /// Whether a and b are held together (mode `elastic` alone), or a is held at a wall, numbered as in WallEvent (all
@@ -150,6 +151,7 @@ class World final : private RestingContacts<Degree>::Listener {
   using Mover = typename Bodies<Degree>::Mover;
   using Entry = typename BroadPhase<Degree>::Entry;
   using Resting = RestingContacts<Degree>;
+  using Begin = typename Pairs<Degree>::Begin;
 
   // world.cpp: the clock
   /// What the parts of the world do, in the order in which it is done where it is due at one time.

@@ -41,10 +41,12 @@ template <int Degree>
 class WorldListener {
  public:
   virtual ~WorldListener() = default;
-  virtual void contact(World<Degree>&, const PairEvent&) {}     ///< penetration begins; motions are as after response
-  virtual void separation(World<Degree>&, const PairEvent&) {}  ///< `none` alone: penetration ends
-  /// In contact when one of the two enters the world or, in the modes that resolve contacts, jumps. (In mode `none` a
-  /// jump into contact is a contact.)
+  /// Penetration begins; motions are as after response.
+  virtual void contact(World<Degree>&, const PairEvent&) {}
+  /// Penetration ends: in mode `none`, and of sensors in every mode.
+  virtual void separation(World<Degree>&, const PairEvent&) {}
+  /// In contact when one of the two enters the world or, where contacts are resolved, jumps. (In mode `none`, and for
+  /// sensors, a jump into contact is a contact.)
   virtual void overlap(World<Degree>&, const PairEvent&) {}
   virtual void wall(World<Degree>&, const WallEvent&) {}  ///< motions are as after response
   /// With WorldOptions.report_pairs: the bounding volumes of a < b begin and cease to overlap at a time in s.

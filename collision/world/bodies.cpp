@@ -65,6 +65,8 @@ BodyId Bodies<Degree>::add(const Description& description, std::shared_ptr<const
   added.collides_with = description.collides_with;
   filters_ = filters_ || description.category != default_category || ~description.collides_with != 0;
   added.volume = description.volume;
+  added.sensor = description.sensor;
+  sensors_ = sensors_ || description.sensor;
   added.alive = true;
   movers_[id].motion = motion;
   movers_[id].radius = ball ? ball->radius : Mover::no_radius;
@@ -123,7 +125,7 @@ typename Bodies<Degree>::Image Bodies<Degree>::image() const {
     }
     to.motion = movers_[id].motion;
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
-    to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume;
+    to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume, to.sensor = b.sensor;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
     to.force = free_acceleration(id);
   }
@@ -158,7 +160,8 @@ void Bodies<Degree>::become(const Image& image) {
     set_shape(id, from.placed);
     movers_[id].motion = from.motion;
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
-    b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume;
+    b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume, b.sensor = from.sensor;
+    sensors_ = sensors_ || b.sensor;
     filters_ = filters_ || b.category != default_category || ~b.collides_with != 0;
     b.meetings = from.meetings, b.burst_start = from.burst_start;
     if constexpr (Degree >= 2) b.force = from.force;

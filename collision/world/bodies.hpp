@@ -40,6 +40,7 @@ struct Body : std::conditional_t<Degree >= 2, Force, NoForce> {
   std::uint32_t category = 1;
   std::uint32_t collides_with = ~0u;
   BoundingVolume volume = BoundingVolume::shape;
+  bool sensor = false;
   bool alive = false;
   bool entered = false;        ///< its motion has begun; it is in the broad phase, if it collides with anything
   std::uint64_t meetings = 0;  ///< contacts since burst_start (ZenoPolicy)
@@ -108,6 +109,9 @@ class Bodies {
   /// Whether a body that takes up another motion at t is then elsewhere, by more than rounding.
   bool is_jump(BodyId id, const Motion& to, double t) const;
 
+  /// Whether some body is a sensor, or was.
+  bool any_sensor() const { return sensors_; }
+
   /// Whether some body does not collide with all others, or did not.
   bool filters() const { return filters_; }
   /// Whether there is something that it may collide with. What collides with nothing no broad phase knows.
@@ -149,6 +153,7 @@ class Bodies {
   std::vector<BodyId> waiting_;
   std::size_t alive_ = 0;
   bool filters_ = false;
+  bool sensors_ = false;
 };
 
 extern template class Bodies<1>;

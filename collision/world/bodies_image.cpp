@@ -96,7 +96,7 @@ void Bodies<Degree>::Image::body(Archive& archive, One& body) const {
   archive(body.alive);
   if (!body.alive) return;
   shape(archive, body);
-  archive(body.entered, body.motion, body.mass, body.inverse_mass, body.restitution, body.category, body.collides_with,
+  archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category, body.collides_with,
           body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
 }

@@ -16,6 +16,7 @@ struct Bodies<Degree>::Image {
   struct One {
     bool alive = false;
     bool entered = false;
+    bool sensor = false;
     PlacedShape placed;
     std::uint32_t mesh = 0;  ///< number in `meshes`, of a mesh
     Motion motion;

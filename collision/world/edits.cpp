@@ -127,12 +127,12 @@ void World<Degree>::enter_new_bodies() {
                                             [&](const Entry& entry) { return bodies_.collides(entry.id); });
     colliding = static_cast<std::size_t>(rest - entries.begin());
   }
-  pairs_.begin_fresh(true);
+  pairs_.set_begin(Begin::entering);
   {
     const Stopwatch watch(profile(), Work::update);
     broad_phase_->insert(all.first(colliding), clock_.now, pairs_);
   }
-  pairs_.begin_fresh(false);
+  pairs_.set_begin(Begin::moving);
   walls_.schedule(entries);
   if (!volumes_.any_from_callers() && !volumes_.has_room_for_meshes()) return;
   for (const Entry& entry : entries) volumes_.schedule(entry.id);
@@ -172,11 +172,10 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   bodies_.move(id, motion);
   pairs_.prefetch(id);  // while the broad phase is at work
-  const bool fresh = jumped && pairs_.mode() == ContactMode::resolved;
-  pairs_.begin_fresh(fresh);
+  if (jumped) pairs_.set_begin(Begin::jumping);
   if (bodies_.collides(id)) broad_phase_->update(id, volumes_.renew(id), clock_.now, pairs_);
-  pairs_.begin_fresh(false);
-  pairs_.motion_changed(id, fresh);
+  pairs_.set_begin(Begin::moving);
+  pairs_.motion_changed(id, jumped);
   walls_.schedule(id);
   volumes_.schedule(id);
 }

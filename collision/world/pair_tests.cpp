@@ -48,7 +48,7 @@ bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
 
 template <int Degree>
 bool Pairs<Degree>::balls_are_quick() const {
-  return mode() == ContactMode::resolved && resting_.empty();
+  return options_.response != Response::none && resting_.empty();
 }
 
 /// Most tests by far are these, and need two cache lines. They change nothing but estimates_: for some of the dirty
@@ -92,7 +92,8 @@ void Pairs<Degree>::test() {
     ++counters_.pair_tests;
     const double estimate = estimates_[i];
     const bool may_be_together = std::isnan(estimate) || (estimate == -never && pair.fresh);
-    if (may_be_together || pair.overlapping) [[unlikely]] {
+    const bool passes = bodies_.any_sensor() && mode(pair.a, pair.b) == ContactMode::transparent;
+    if (may_be_together || pair.overlapping || passes) [[unlikely]] {
       test(slot);
     } else {
       pair.estimated = std::abs(estimate) != never;
@@ -115,7 +116,8 @@ void Pairs<Degree>::test(Slot slot) {
     reports_.add(Reports::Kind::overlap, pair.a, pair.b, contact_at(a, b, clock_.now));
   };
   ContactEstimate next{never, true};
-  if (mode() == ContactMode::transparent) {
+  const ContactMode mode = this->mode(pair.a, pair.b);
+  if (mode == ContactMode::transparent) {
     if (pair.fresh && in_contact(a, b, clock_.now)) {
       pair.overlapping = true;
       report_overlap();
@@ -125,7 +127,7 @@ void Pairs<Degree>::test(Slot slot) {
     } else if (pair.overlapping) {
       next.time = first_separation(a, b, clock_.now, clock_.horizon);
     } else {
-      next = estimated_first_contact(a, b, clock_.now, clock_.horizon, mode(), pair.memory, &found);
+      next = estimated_first_contact(a, b, clock_.now, clock_.horizon, mode, pair.memory, &found);
     }
   } else {
     if (pair.fresh) {
@@ -139,7 +141,7 @@ void Pairs<Degree>::test(Slot slot) {
     } else if (resting_.find(pair.a, pair.b) != Resting::none) {
       next.time = resting_.next_contact(pair.a, pair.b);
     } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
-      next = estimated_first_contact(a, b, clock_.now, clock_.horizon, mode(), pair.memory, &found);
+      next = estimated_first_contact(a, b, clock_.now, clock_.horizon, mode, pair.memory, &found);
     }
   }
   contacts_.set(slot, next.time);
@@ -178,7 +180,7 @@ bool Pairs<Degree>::certify() {
   }
   FoundTouch found;
   set_contact(
-      slot, first_contact(bodies_.moving(pair.a), bodies_.moving(pair.b), clock_.now, clock_.horizon, mode(), &found));
+      slot, first_contact(bodies_.moving(pair.a), bodies_.moving(pair.b), clock_.now, clock_.horizon, mode(pair.a, pair.b), &found));
   remember(slot, found);
   return true;
 }

@@ -43,7 +43,9 @@ void Pairs<Degree>::pair_began(BodyId a, BodyId b, double t) {
   const Slot slot = overlapping != none ? overlapping : add(a, b);
   Pair& pair = pairs_[slot];
   pair.listed = true;
-  pair.fresh = pair.fresh || begins_fresh_;
+  const bool fresh = begin_ == Begin::entering ||
+                     (begin_ == Begin::jumping && mode(a, b) == ContactMode::resolved);
+  pair.fresh = pair.fresh || fresh;
   ++counters_.pairs_begun;
   mark_dirty(slot);
   if (options_.report_pairs && exact_) reports_.add_volumes(true, a, b, clock_.now);
@@ -168,10 +170,12 @@ void Pairs<Degree>::prefetch(BodyId id) const {
 }
 
 template <int Degree>
-void Pairs<Degree>::motion_changed(BodyId id, bool fresh) {
+void Pairs<Degree>::motion_changed(BodyId id, bool jumped) {
   for (const Link& link : links(id)) mark_dirty(link.slot);
-  if (!fresh) return;
-  for (const Link& link : links(id)) pairs_[link.slot].fresh = true;
+  if (!jumped) return;
+  for (const Link& link : links(id)) {
+    if (mode(id, link.other) == ContactMode::resolved) pairs_[link.slot].fresh = true;
+  }
 }
 
 template <int Degree>
@@ -206,7 +210,7 @@ void Pairs<Degree>::remove(BodyId id) {
     const Slot slot = links(id).back().slot;
     const Pair& pair = pairs_[slot];
     // They separate, unless it has not been told yet that they overlap.
-    if (mode() == ContactMode::transparent && pair.overlapping &&
+    if (mode(pair.a, pair.b) == ContactMode::transparent && pair.overlapping &&
         !reports_.take_back(Reports::Kind::overlap, pair.a, pair.b)) {
       reports_.add(Reports::Kind::separation, pair.a, pair.b, contact(pair.a, pair.b, clock_.now));
     }
@@ -231,7 +235,7 @@ typename Pairs<Degree>::Event Pairs<Degree>::take_next() {
   contacts_.clear(slot);
   if (pair.overlapping) {
     pair.overlapping = false;
-  } else if (mode() == ContactMode::transparent) {
+  } else if (mode(pair.a, pair.b) == ContactMode::transparent) {
     pair.overlapping = true;
   }
   mark_dirty(slot);

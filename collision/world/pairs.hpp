@@ -75,8 +75,10 @@ class Pairs final : public PairListener {
   Pairs(const Pairs&) = delete;
   Pairs& operator=(const Pairs&) = delete;
 
-  ContactMode mode() const {
-    return options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
+  /// Whether contacts of two bodies are resolved, or they pass through each other.
+  ContactMode mode(BodyId a, BodyId b) const {
+    const bool sensor = bodies_.any_sensor() && (bodies_[a].sensor || bodies_[b].sensor);
+    return sensor || options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
   }
   /// Whether the broad phase says exactly which boxes overlap. To be set before the first pair.
   void expect_exact(bool exact) { follows_boxes_ = options_.report_pairs && !exact, exact_ = exact; }
@@ -90,11 +92,13 @@ class Pairs final : public PairListener {
   /// A broad phase has been made anew, and this is all it lists, in order.
   void list_anew(std::span<const std::pair<BodyId, BodyId>> listed);
 
-  /// While bodies enter or jump: pairs that begin may overlap.
-  void begin_fresh(bool fresh) { begins_fresh_ = fresh; }
+  /// What bodies do while pairs begin. What enters may overlap others from the start; so may what jumps, but where they
+  /// pass through each other that is a contact.
+  enum class Begin { moving, jumping, entering };
+  void set_begin(Begin begin) { begin_ = begin; }
 
   /// A body has another motion, or has jumped. prefetch() may be called before.
-  void motion_changed(BodyId id, bool fresh);
+  void motion_changed(BodyId id, bool jumped);
   void prefetch(BodyId id) const;
   /// A body has another box, and moves as before.
   void box_changed(BodyId id);
@@ -209,7 +213,7 @@ class Pairs final : public PairListener {
   std::size_t unlisted_ = 0;                  ///< pairs that the broad phase does not list
   bool follows_boxes_ = false;                ///< has to find itself when boxes meet and part
   bool exact_ = false;
-  bool begins_fresh_ = false;
+  Begin begin_ = Begin::moving;
 };
 
 extern template class Pairs<1>;

@@ -27,7 +27,7 @@ void Pairs<Degree>::become(const Image& image) {
   pairs_.clear(), free_.clear(), dirty_.clear(), found_.clear(), links_.clear();
   of_.assign(bodies_.slots(), {});
   unlisted_ = 0;
-  begins_fresh_ = false;
+  begin_ = Begin::moving;
   contacts_.resize(0), boxes_.resize(0);
   contacts_.resize(image.pairs.size());
   if (follows_boxes_) boxes_.resize(image.pairs.size());
@@ -65,7 +65,8 @@ void Pairs<Degree>::Image::check(const typename Bodies<Degree>::Image& bodies, d
     need((a.category & b.collides_with) != 0 && (b.category & a.collides_with) != 0, "is of bodies that never meet");
     need(image::is_to_come(pairs[i].contact, now) && image::is_to_come(pairs[i].boxes, now), "is due before now");
     need(image::is_past(pair.passes_at, now), "passes at a time after now");
-    need(pair.passes_at == -never || options.response != Response::none, "passes where contacts are not resolved");
+    const bool resolved = options.response != Response::none && !a.sensor && !b.sensor;
+    need(pair.passes_at == -never || resolved, "passes where contacts are not resolved");
     need(pair.listed || pair.overlapping || pair.dirty, "is neither listed nor overlapping");
     if (i == 0) continue;
     const Pair& before = pairs[i - 1].pair;

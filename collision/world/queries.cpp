@@ -10,7 +10,7 @@ namespace kds::collision {
 template <int Degree>
 bool World<Degree>::touching(BodyId a, BodyId b) const {
   bodies_.at(a), bodies_.at(b);
-  return pairs_.mode() == ContactMode::transparent && pairs_.overlapping(a, b);
+  return pairs_.mode(a, b) == ContactMode::transparent && pairs_.overlapping(a, b);
 }
 
 template <int Degree>

@@ -28,7 +28,7 @@ void World<Degree>::process_meeting() {
   const auto contact = [&] { return pairs_.contact(a, b, clock_.now, found); };
   if (!separates) return process_contact(a, b, contact());
   // What was let pass may meet again from now on.
-  if (pairs_.mode() == ContactMode::resolved) return;
+  if (pairs_.mode(a, b) == ContactMode::resolved) return;
   ++counters_.separations;
   const PairEvent event{a, b, contact()};
   tell([&](Listener& listener) { listener.separation(*this, event); });
@@ -38,7 +38,7 @@ template <int Degree>
 void World<Degree>::process_contact(BodyId a, BodyId b, const Contact& contact) {
   const PairEvent event{a, b, contact};
   ++counters_.contacts;
-  if (pairs_.mode() == ContactMode::transparent) {
+  if (pairs_.mode(a, b) == ContactMode::transparent) {
     return tell([&](Listener& listener) { listener.contact(*this, event); });
   }
   bool held = false;

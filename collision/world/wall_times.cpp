@@ -19,6 +19,7 @@ inline void WallTimes<Degree>::make_room(std::size_t slots) {
 /// Takes note that a body is at no wall before some time. Precondition: there is room for it.
 template <int Degree>
 inline void WallTimes<Degree>::note(BodyId id, double earliest) {
+  if (bodies_[id].sensor) return;
   is_bound_[id] = true;
   // An earlier one is a lower bound as well: most are replaced again before they are due.
   if (times_.contains(id) && times_.time(id) > clock_.now && times_.time(id) <= earliest) return;

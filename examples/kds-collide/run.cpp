@@ -132,6 +132,7 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
     description.orientation = body.orientation;
     description.mass = body.mass;
     description.fixed = body.fixed;
+    description.sensor = body.sensor;
     description.restitution = body.restitution;
     for (const MotionPiece& piece : body.motion) description.motion.push_back(to_degree<Degree>(piece));
     world.add_body(description);

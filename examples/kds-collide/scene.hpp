@@ -25,6 +25,7 @@ struct SceneBody {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit
   double mass = 1;
   bool fixed = false;               ///< infinite mass
+  bool sensor = false;              ///< only reports
   double restitution = 1;           ///< in [0, 1]; of two bodies the lower counts
   std::vector<MotionPiece> motion;  ///< not empty; starts ascend
 };

@@ -118,13 +118,14 @@ double read_restitution(const JsonNode& node, double of_scene) {
 }
 
 SceneBody read_body(const JsonNode& node, const Scene& scene, double restitution) {
-  node.object({"name", "shape", "orientation", "mass", "fixed", "restitution", "motion"});
+  node.object({"name", "shape", "orientation", "mass", "fixed", "sensor", "restitution", "motion"});
   SceneBody body;
   body.name = node["name"].string();
   body.shape = read_shape(node["shape"], scene.meshes);
   if (node.has("orientation")) body.orientation = read_orientation(node["orientation"]);
   if (node.has("mass")) body.mass = node["mass"].positive();
   if (node.has("fixed")) body.fixed = node["fixed"].boolean();
+  if (node.has("sensor")) body.sensor = node["sensor"].boolean();
   body.restitution = read_restitution(node, restitution);
   body.motion = read_motion(node["motion"], scene.response);
   return body;
@@ -211,7 +212,7 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
   scene.end_time = until.value_or(scene.end_time);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     check_range(bodies[i], scene.bodies[i], scene);
-    if (scene.domain && scene.domain->walls == Walls::reflect) {
+    if (scene.domain && scene.domain->walls == Walls::reflect && !scene.bodies[i].sensor) {
       check_inside_walls(bodies[i], scene.bodies[i], *scene.domain);
     }
   }

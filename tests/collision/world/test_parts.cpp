@@ -228,9 +228,9 @@ TEST_CASE("Pairs: what overlaps lives on when the broad phase does not list it, 
   Parts<1> parts;  // mode none
   parts.add(ball<1>(1, {0, 0, 0}));
   parts.add(ball<1>(1, {1, 0, 0}, {1, 0, 0}));
-  parts.pairs.begin_fresh(true);
+  parts.pairs.set_begin(Pairs<1>::Begin::entering);
   parts.pairs.pair_began(0, 1, 0);
-  parts.pairs.begin_fresh(false);
+  parts.pairs.set_begin(Pairs<1>::Begin::moving);
   parts.pairs.test();
   CHECK(parts.pairs.overlapping(0, 1));
   REQUIRE(parts.reports.take_first().kind == Reports::Kind::overlap);
