@@ -30,7 +30,6 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding
 
 /// Cells of two levels may share a bucket, so a box may be found twice, or find itself.
 void BoxGrid::begin_search(Id id) {
-  found_.clear();
   if (++search_ == 0) {  // all numbers have been used
     for (Item& other : items_) other.reported = 0;
     search_ = 1;
@@ -47,21 +46,22 @@ void BoxGrid::enter(Id id, Changes& changes) {
   items_[id].entered = true;
   const Item item = items_[id];
   const BoxOverlaps overlaps = overlaps_with(item);
+  CellTable::Found found;
   begin_search(id);
   for (Level& level : levels_) {
     if (level.exponent < item.level) continue;
     const Ends ends(item.bounds, level.scale);
-    search(natives_, level, level.natives, ends);
+    search(natives_, level, level.natives, ends, found);
     if (level.exponent == item.level) {
       level.idle = 0;
-      search(guests_, level, level.guests, ends);
+      search(guests_, level, level.guests, ends, found);
       add(natives_, level, level.natives, ends, id);
     } else {
       count_guest(level);
       add(guests_, level, level.guests, ends, id);
     }
   }
-  for (const Id other : found_.numbers()) {
+  for (const Id other : found.numbers()) {
     const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
     if (overlap && report_once(other)) changes.began.push_back(other);
   }
@@ -129,19 +129,20 @@ void BoxGrid::leave(Id id, Changes& changes) {
   items_[id].entered = false;
   const Item item = items_[id];
   const BoxOverlaps overlaps = overlaps_with(item);
+  CellTable::Found found;
   begin_search(id);
   for (Level& level : levels_) {
     if (level.exponent < item.level) continue;
     const Ends ends(item.bounds, level.scale);
     if (level.exponent == item.level) {
       remove(natives_, level, level.natives, ends, id);
-      search(guests_, level, level.guests, ends);
+      search(guests_, level, level.guests, ends, found);
     } else {
       remove(guests_, level, level.guests, ends, id);
     }
-    search(natives_, level, level.natives, ends);
+    search(natives_, level, level.natives, ends, found);
   }
-  for (const Id other : found_.numbers()) {
+  for (const Id other : found.numbers()) {
     const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
     if (overlap && report_once(other)) changes.ended.push_back(other);
   }
@@ -164,21 +165,22 @@ void BoxGrid::move(Id id, const Item& to, Changes& changes) {
   const Ends own_either = own_before.joined(own_after);
   items_[id] = to;
   items_[id].entered = true;
+  CellTable::Found found;
   begin_search(id);
   level->idle = 0;
-  search(natives_, *level, level->natives, own_either);
-  search(guests_, *level, level->guests, own_either);
+  search(natives_, *level, level->natives, own_either, found);
+  search(guests_, *level, level->guests, own_either, found);
   replace(natives_, *level, level->natives, own_before, own_after, id);
   while (++level != levels_.end()) {
     const Ends before(from.bounds, level->scale);
     const Ends after(to.bounds, level->scale);
-    search(natives_, *level, level->natives, before.joined(after));
+    search(natives_, *level, level->natives, before.joined(after), found);
     count_guest(*level);
     replace(guests_, *level, level->guests, before, after, id);
   }
   const BoxOverlaps overlaps(from.bounds, from.rounding, to.bounds, to.rounding);
   constexpr unsigned only_before = 1, only_after = 2;
-  for (const Id other : found_.numbers()) {
+  for (const Id other : found.numbers()) {
     const unsigned overlap = overlaps.with(items_[other].bounds, items_[other].rounding);
     if ((overlap != only_before && overlap != only_after) || !report_once(other)) continue;
     (overlap == only_after ? changes.began : changes.ended).push_back(other);

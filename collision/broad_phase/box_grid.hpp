@@ -6,6 +6,8 @@
 #include "collision/broad_phase/swept_box.hpp"
 #include "kds/arithmetic/two.hpp"
 
+#include <boost/container/small_vector.hpp>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -40,9 +42,11 @@ class BoxGrid {
  public:
   using Id = std::uint32_t;
 
-  /// Boxes with which overlap began and ended.
+  /// Boxes with which overlap began and ended. Made for a change: few of them need memory of their own.
   struct Changes {
-    std::vector<Id> began, ended;
+    boost::container::small_vector<Id, 16> began, ended;
+
+    bool empty() const { return began.empty() && ended.empty(); }
 
     void clear() {
       began.clear();
@@ -182,13 +186,13 @@ class BoxGrid {
   void grow();
   void restart(std::size_t room);
   void refine();
-  void search(const CellTable& table, const Level& level, const Population& population, const Ends& box);
+  void search(const CellTable& table, const Level& level, const Population& population, const Ends& box,
+              CellTable::Found& found);
 
   std::vector<Item> items_;    // by id
   std::vector<Level> levels_;  // finest first
   CellTable natives_;
   CellTable guests_;
-  CellTable::Found found_;  // by the present search
   std::uint32_t search_ = 0;
   std::uint64_t families_ = 0;
   std::size_t size_ = 0;

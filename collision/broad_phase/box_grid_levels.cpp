@@ -159,9 +159,10 @@ void BoxGrid::replace(CellTable& table, const Level& level, Population& populati
   }
 }
 
-/// Appends to found_ the boxes that overlap on the lattice, and maybe some others. Precondition: the box is at most a
+/// Appends to `found` the boxes that overlap on the lattice, and maybe some others. Precondition: the box is at most a
 /// few cells large, or the population is in few.
-void BoxGrid::search(const CellTable& table, const Level& level, const Population& population, const Ends& box) {
+void BoxGrid::search(const CellTable& table, const Level& level, const Population& population, const Ends& box,
+                     CellTable::Found& found) {
   if (population.count == 0) return;
   CellTable::Block block;
   block.family = level.family;
@@ -178,7 +179,7 @@ void BoxGrid::search(const CellTable& table, const Level& level, const Populatio
     }
   }
   const auto cells = static_cast<std::int64_t>(block.lengths[0] * block.lengths[1] * block.lengths[2]);
-  const auto walked = static_cast<std::int64_t>(table.find(block, found_));
+  const auto walked = static_cast<std::int64_t>(table.find(block, found));
   crowding_ = std::max<std::int64_t>(crowding_ + walked - crowded_chain * cells, 0);
 }
 

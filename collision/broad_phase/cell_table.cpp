@@ -5,8 +5,17 @@
 #endif
 
 #include <cstring>
+#include <utility>
 
 namespace kds::collision {
+
+void CellTable::Found::grow(std::size_t count) {
+  std::vector<std::uint32_t> more(2 * room_ + count);
+  std::copy_n(numbers_, size_, more.begin());
+  many_ = std::move(more);
+  numbers_ = many_.data();
+  room_ = many_.size();
+}
 
 void CellTable::restart(std::size_t numbers) {
   const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(numbers, 64));

@@ -56,24 +56,35 @@ class CellTable {
   /// Removes one such number of these ends; false if there is none.
   bool remove(std::size_t place, Ends ends, std::uint32_t number);
 
-  /// What a search finds. Keeps its memory, and writes nothing before it is used.
+  /// What a search finds. Made for a search and forgotten after it: it allocates only for what is more than usual, and
+  /// writes nothing before it is used.
   class Found {
    public:
+    Found() {}  // not the implicit one, for which all might be set to zero first
+    Found(const Found&) = delete;
+    Found& operator=(const Found&) = delete;
+
     void clear() { size_ = 0; }
-    std::span<const std::uint32_t> numbers() const { return {numbers_.data(), size_}; }
+    std::span<const std::uint32_t> numbers() const { return {numbers_, size_}; }
 
    private:
     friend CellTable;
 
     /// To be written to from there on; the end is told afterwards.
     std::uint32_t* room_for(std::size_t count) {
-      if (size_ + count > numbers_.size()) numbers_.resize(2 * numbers_.size() + count);
-      return numbers_.data() + size_;
+      if (size_ + count > room_) grow(count);
+      return numbers_ + size_;
     }
-    void end_at(const std::uint32_t* end) { size_ = static_cast<std::size_t>(end - numbers_.data()); }
+    void end_at(const std::uint32_t* end) { size_ = static_cast<std::size_t>(end - numbers_); }
+    void grow(std::size_t count);
 
-    std::vector<std::uint32_t> numbers_;
+    /// Searches of a kinetic grid find some dozens; 64 more than there are have to fit.
+    static constexpr std::size_t usual = 256;
+    std::array<std::uint32_t, usual> few_;
+    std::vector<std::uint32_t> many_;
+    std::uint32_t* numbers_ = few_.data();
     std::size_t size_ = 0;
+    std::size_t room_ = usual;
   };
 
   /// A block of cells to search in, and the limits: for each axis, by cell along it, bytes that do not overlap those of

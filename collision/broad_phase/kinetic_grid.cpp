@@ -8,17 +8,17 @@
 namespace kds::collision {
 /// In the order of bodies, whatever cells they were found in.
 template <int Degree>
-void KineticGrid<Degree>::report(BodyId id, double now, PairListener& listener) {
-  if (changes_.ended.size() > 1) std::sort(changes_.ended.begin(), changes_.ended.end());
-  if (changes_.began.size() > 1) std::sort(changes_.began.begin(), changes_.began.end());
+void KineticGrid<Degree>::report(BodyId id, BoxGrid::Changes& changes, double now, PairListener& listener) {
+  if (changes.ended.size() > 1) std::sort(changes.ended.begin(), changes.ended.end());
+  if (changes.began.size() > 1) std::sort(changes.began.begin(), changes.began.end());
   const bool filters = listener.filters();
-  for (const BodyId other : changes_.ended) {
+  for (const BodyId other : changes.ended) {
     if (filters && !listener.may_collide(id, other)) continue;
     --bodies_[id].partners;
     --bodies_[other].partners;
     listener.pair_ended(std::min(id, other), std::max(id, other), now);
   }
-  for (const BodyId other : changes_.began) {
+  for (const BodyId other : changes.began) {
     if (filters && !listener.may_collide(id, other)) {
       ++bodies_[id].in_vain;
     } else {
@@ -50,23 +50,25 @@ void KineticGrid<Degree>::extend_horizon(double now, double horizon) {
   visit([&](BodyId id, const KineticBox<Degree>&) { set_expiry(id, bodies_[id].expiry, now); });
 }
 
+/// True if its fat box has begun or ceased to overlap others.
 template <int Degree>
-void KineticGrid<Degree>::renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
+bool KineticGrid<Degree>::renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
                                 PairListener& listener) {
   ++counters_.box_updates;
   const FatBox fat = fat_box(id, sweep, present, now);
   set_expiry(id, fat.expiry, now);
-  changes_.clear();
-  fat_boxes_.put(id, fat.box, changes_, bodies_[id].box.rounding);
-  report(id, now, listener);
+  BoxGrid::Changes changes;
+  fat_boxes_.put(id, fat.box, changes, bodies_[id].box.rounding);
+  report(id, changes, now, listener);
+  return !changes.empty();
 }
 
 template <int Degree>
 void KineticGrid<Degree>::remove(BodyId id, double now, PairListener& listener) {
-  changes_.clear();
-  fat_boxes_.remove(id, changes_);
+  BoxGrid::Changes changes;
+  fat_boxes_.remove(id, changes);
   expiry_.clear(id);
-  report(id, now, listener);
+  report(id, changes, now, listener);
 }
 
 template <int Degree>
@@ -98,8 +100,7 @@ bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
     }
     adapt_reach(id, time);
     const BoxSweep<Degree> sweep(bodies_[id].box, time);
-    renew(id, sweep, sweep.begin(), time, listener);
-    if (!changes_.began.empty() || !changes_.ended.empty()) return true;
+    if (renew(id, sweep, sweep.begin(), time, listener)) return true;
   }
   return false;
 }

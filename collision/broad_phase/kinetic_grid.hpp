@@ -103,16 +103,15 @@ class KineticGrid final : public BroadPhase<Degree> {
   static double lifetime(const Body& body, const Sweep& sweep);
   double kept_until(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
   void adapt_reach(BodyId id, double now);
-  void renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
+  bool renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
   void set_expiry(BodyId id, double expiry, double now);
-  void report(BodyId id, double now, PairListener& listener);
+  void report(BodyId id, BoxGrid::Changes& changes, double now, PairListener& listener);
 
   std::vector<Body> bodies_;  // by id
   BoxGrid fat_boxes_;
   CalendarQueue<> expiry_;  // slots are bodies; none later than the horizon
   std::size_t threads_;
   double horizon_ = never;
-  BoxGrid::Changes changes_;
   double first_reach_ = 0;    ///< of a body that comes
   std::uint64_t wishes_ = 0;  ///< for a coarser level, since there was one
   BroadPhaseCounters counters_;

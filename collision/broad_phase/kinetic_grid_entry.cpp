@@ -110,9 +110,9 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
     return;
   }
   const auto enter = [&](BodyId id) {
-    changes_.clear();
-    fat_boxes_.enter(id, changes_);
-    report(id, now, listener);
+    BoxGrid::Changes changes;
+    fat_boxes_.enter(id, changes);
+    report(id, changes, now, listener);
   };
   if (bodies.size() < few) {
     for (const Entry& entry : bodies) enter(entry.id);

@@ -16,7 +16,6 @@ KineticSweepAndPrune<Degree>::KineticSweepAndPrune(double now, ListedAxes listed
       all_axes_((1u << (3 + kdops_.directions.size())) - 1),
       listed_(all_axes_),
       unlisted_(changes_, 3 + kdops_.directions.size()),
-      slabs_(kdops_.directions.size()),
       simulator_(now, lists_, unlisted_) {
   std::vector<std::size_t> directions;
   for (std::size_t d = 0; d < 3 + kdops_.directions.size(); ++d) {
@@ -28,9 +27,11 @@ KineticSweepAndPrune<Degree>::KineticSweepAndPrune(double now, ListedAxes listed
 
 template <int Degree>
 void KineticSweepAndPrune<Degree>::set_volume(BodyId id, const KineticBox<Degree>& box, double now) {
-  for (std::size_t i = 0; i < slabs_.size(); ++i) slabs_[i] = kdops_.slab(id, i, now);
-  for (const auto& slab : slabs_) require_finite(slab, id);
-  unlisted_.set_box(id, box, slabs_, now);
+  if (kdops_.directions.empty()) return unlisted_.set_box(id, box, {}, now);
+  std::vector<KineticSlab<Degree>> slabs(kdops_.directions.size());
+  for (std::size_t i = 0; i < slabs.size(); ++i) slabs[i] = kdops_.slab(id, i, now);
+  for (const auto& slab : slabs) require_finite(slab, id);
+  unlisted_.set_box(id, box, slabs, now);
 }
 
 template <int Degree>
@@ -207,9 +208,11 @@ bool KineticSweepAndPrune<Degree>::advance(double limit, PairListener& listener)
     // Lists come first, up to the next event where there are none, which what is looked at may bring nearer.
     const double until = std::min({limit, unlisted_.next_time(), std::numeric_limits<double>::max()});
     looked_ = false;
-    for (double t; !looked_ && (t = lists_.next_time()) <= until;) {
-      simulator_.set_clock(t);
-      lists_.process();
+    while (!looked_) {
+      List& list = lists_.all[lists_.first()];
+      if (!(list.next_time() <= until)) break;
+      simulator_.set_clock(list.next_time());
+      list.process();
     }
     if (!looked_ && !simulator_.step(limit)) return false;
     if (changes_.empty()) continue;

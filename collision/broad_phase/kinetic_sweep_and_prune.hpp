@@ -77,16 +77,18 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
     std::vector<List> all;          ///< by direction; empty where there is none
     std::vector<std::size_t> used;  ///< which are not
 
-    void use(std::vector<std::size_t> directions) {
-      used = std::move(directions);
-      first_ = used.front();
+    void use(std::vector<std::size_t> directions) { used = std::move(directions); }
+    /// Whose event is next; any, if there is no event.
+    std::size_t first() const {
+      std::size_t first = used.front();
+      for (std::size_t i = 1; i < used.size(); ++i) {
+        if (all[used[i]].next_time() < all[first].next_time()) first = used[i];
+      }
+      return first;
     }
-    double next_time() const {
-      if (used.size() > 1) find_first();
-      return all[first_].next_time();
-    }
-    /// Precondition: next_time() has been asked for since the last change.
-    void process() { all[first_].process(); }
+    double next_time() const { return all[first()].next_time(); }
+    /// Precondition: there is an event.
+    void process() { all[first()].process(); }
     void extend_horizon(double now, double horizon) {
       for (List& list : all) list.extend_horizon(now, horizon);
     }
@@ -98,16 +100,6 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
       for (const List& list : all) sum = sum + list.counters();
       return sum;
     }
-
-   private:
-    void find_first() const {
-      double time = never;
-      for (const std::size_t d : used) {
-        if (const double t = all[d].next_time(); t < time) time = t, first_ = d;
-      }
-    }
-
-    mutable std::size_t first_ = 0;  ///< of those in use: whose event is next
   };
 
   static std::uint32_t min_end(BodyId id) { return 2 * id; }
@@ -172,7 +164,6 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
 
   Lists lists_;
   UnlistedAxes<Degree> unlisted_;
-  std::vector<KineticSlab<Degree>> slabs_;  // scratch
   Simulator<Lists, UnlistedAxes<Degree>> simulator_;
   std::uint64_t box_updates_ = 0;
   std::uint64_t update_swaps_ = 0;

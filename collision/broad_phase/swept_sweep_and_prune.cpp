@@ -29,21 +29,21 @@ void SweptSweepAndPrune<Degree>::sweep(BodyId id, double from) {
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::add_pair(BodyId a, BodyId b, double now, PairListener& listener) {
+void SweptSweepAndPrune<Degree>::add_pair(BodyId a, BodyId b, Reports& reports) {
   if (!pairs_.insert(key(a, b)).second) return;
-  reported_ = true;
-  listener.pair_began(a, b, now);
+  reports.any = true;
+  reports.listener.pair_began(a, b, reports.now);
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::drop_pair(BodyId a, BodyId b, double now, PairListener& listener) {
+void SweptSweepAndPrune<Degree>::drop_pair(BodyId a, BodyId b, Reports& reports) {
   if (pairs_.erase(key(a, b)) == 0) return;
-  reported_ = true;
-  listener.pair_ended(a, b, now);
+  reports.any = true;
+  reports.listener.pair_ended(a, b, reports.now);
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::exchange(std::size_t axis, std::size_t left, double now, PairListener& listener) {
+void SweptSweepAndPrune<Degree>::exchange(std::size_t axis, std::size_t left, Reports& reports) {
   auto& ends = ends_[axis];
   std::swap(ends[left], ends[left + 1]);
   ++counters_.swaps;
@@ -55,22 +55,22 @@ void SweptSweepAndPrune<Degree>::exchange(std::size_t axis, std::size_t left, do
   const BodyId a = std::min(now_left, now_right) / 2;
   const BodyId b = std::max(now_left, now_right) / 2;
   if ((now_left & 1) != 0) {
-    drop_pair(a, b, now, listener);  // a maximum has moved left of a minimum
+    drop_pair(a, b, reports);  // a maximum has moved left of a minimum
   } else if (overlap(a, b)) {
-    add_pair(a, b, now, listener);
+    add_pair(a, b, reports);
   }
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::sort_axis(std::size_t axis, double now, PairListener& listener) {
+void SweptSweepAndPrune<Degree>::sort_axis(std::size_t axis, Reports& reports) {
   auto& ends = ends_[axis];
   for (std::size_t i = 1; i < ends.size(); ++i) {
-    for (std::size_t j = i; j > 0 && before(ends[j], ends[j - 1]); --j) exchange(axis, j - 1, now, listener);
+    for (std::size_t j = i; j > 0 && before(ends[j], ends[j - 1]); --j) exchange(axis, j - 1, reports);
   }
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::frame(double now, PairListener& listener) {
+void SweptSweepAndPrune<Degree>::frame(double now, Reports& reports) {
   ++frames_;
   frame_end_ = start_ + static_cast<double>(frames_) / rate_;
   {
@@ -80,24 +80,25 @@ void SweptSweepAndPrune<Degree>::frame(double now, PairListener& listener) {
       for (End& end : ends_[axis]) end.value = value(end.id, axis);
     }
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) sort_axis(axis, now, listener);
+  for (std::size_t axis = 0; axis < 3; ++axis) sort_axis(axis, reports);
 }
 
 template <int Degree>
 bool SweptSweepAndPrune<Degree>::advance(double limit, PairListener& listener) {
   while (frame_end_ <= limit) {
-    reported_ = false;
-    frame(frame_end_, listener);
-    if (reported_) return true;
+    Reports reports{listener, frame_end_};
+    frame(frame_end_, reports);
+    if (reports.any) return true;
   }
   return false;
 }
 
 template <int Degree>
 void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
+  Reports reports{listener, now};
   if (frame_end_ <= now) {  // the others' boxes reach no farther
     frames_ = static_cast<std::uint64_t>(std::floor((now - start_) * rate_));
-    frame(now, listener);
+    frame(now, reports);
   }
   std::vector<BodyId> added;
   for (const Entry& body : bodies) {
@@ -137,7 +138,7 @@ void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double no
     }
   }
   std::sort(found.begin(), found.end());
-  for (const auto& [a, b] : found) add_pair(a, b, now, listener);
+  for (const auto& [a, b] : found) add_pair(a, b, reports);
 }
 
 template <int Degree>
@@ -149,26 +150,28 @@ void SweptSweepAndPrune<Degree>::remove(BodyId id, double now, PairListener& lis
       places_[axis][ends_[axis][i].id] = static_cast<std::uint32_t>(i);
     }
   }
-  for (const BodyId other : bodies_) drop_pair(std::min(id, other), std::max(id, other), now, listener);
+  Reports reports{listener, now};
+  for (const BodyId other : bodies_) drop_pair(std::min(id, other), std::max(id, other), reports);
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::move_end(std::size_t axis, std::uint32_t id, double now, PairListener& listener) {
+void SweptSweepAndPrune<Degree>::move_end(std::size_t axis, std::uint32_t id, Reports& reports) {
   auto& ends = ends_[axis];
   std::size_t i = places_[axis][id];
   ends[i].value = value(id, axis);
-  for (; i > 0 && before(ends[i], ends[i - 1]); --i) exchange(axis, i - 1, now, listener);
-  for (; i + 1 < ends.size() && before(ends[i + 1], ends[i]); ++i) exchange(axis, i, now, listener);
+  for (; i > 0 && before(ends[i], ends[i - 1]); --i) exchange(axis, i - 1, reports);
+  for (; i + 1 < ends.size() && before(ends[i + 1], ends[i]); ++i) exchange(axis, i, reports);
 }
 
 template <int Degree>
 void SweptSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
   boxes_[id] = box;
   sweep(id, now);
+  Reports reports{listener, now};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     // Growing ends first, so that the two never pass each other.
-    move_end(axis, 2 * id, now, listener);
-    move_end(axis, 2 * id + 1, now, listener);
+    move_end(axis, 2 * id, reports);
+    move_end(axis, 2 * id + 1, reports);
   }
 }
 

@@ -43,6 +43,12 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
     double value;
     std::uint32_t id;
   };
+  /// To whom changes are told, at what time, and whether any has been.
+  struct Reports {
+    PairListener& listener;
+    double now;
+    bool any = false;
+  };
   /// Maxima before minima at one value, so that boxes that merely touch are apart. Swept boxes are rounded outward.
   static bool before(const End& a, const End& b) {
     return a.value < b.value || (a.value == b.value && (a.id & 1) > (b.id & 1));
@@ -56,12 +62,12 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   }
   bool overlap(BodyId a, BodyId b) const;
   void sweep(BodyId id, double from);
-  void sort_axis(std::size_t axis, double now, PairListener& listener);
-  void move_end(std::size_t axis, std::uint32_t id, double now, PairListener& listener);
-  void exchange(std::size_t axis, std::size_t left, double now, PairListener& listener);
-  void frame(double now, PairListener& listener);
-  void add_pair(BodyId a, BodyId b, double now, PairListener& listener);
-  void drop_pair(BodyId a, BodyId b, double now, PairListener& listener);
+  void sort_axis(std::size_t axis, Reports& reports);
+  void move_end(std::size_t axis, std::uint32_t id, Reports& reports);
+  void exchange(std::size_t axis, std::size_t left, Reports& reports);
+  void frame(double now, Reports& reports);
+  void add_pair(BodyId a, BodyId b, Reports& reports);
+  void drop_pair(BodyId a, BodyId b, Reports& reports);
 
   double start_;
   double rate_;
@@ -75,7 +81,6 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   std::array<std::vector<std::uint32_t>, 3> places_;  // of ends, by end id; right between frames
   std::unordered_set<std::uint64_t> pairs_;
   BroadPhaseCounters counters_;
-  bool reported_ = false;
 };
 
 extern template class SweptSweepAndPrune<1>;
