@@ -1,4 +1,4 @@
-// Compiled for processors with AVX2, whatever the rest is compiled for: see kds/arithmetic/four.hpp for what that asks.
+// Compiled for processors with AVX2, whatever the rest is compiled for: see kds/simd/four_wide.hpp for what that asks.
 #include "certificates/earliest_approach.hpp"
 
 #ifdef __AVX2__
@@ -13,18 +13,6 @@ namespace {
   return x;
 }
 
-/// What four balls have in four places in a row, place by place.
-[[gnu::always_inline]] inline void transpose(const std::byte* const* balls, int from, Four (&places)[4]) {
-  const Four b0 = four_of(balls[0], from), b1 = four_of(balls[1], from);
-  const Four b2 = four_of(balls[2], from), b3 = four_of(balls[3], from);
-  const Four even01 = _mm256_unpacklo_pd(b0, b1), odd01 = _mm256_unpackhi_pd(b0, b1);
-  const Four even23 = _mm256_unpacklo_pd(b2, b3), odd23 = _mm256_unpackhi_pd(b2, b3);
-  places[0] = _mm256_permute2f128_pd(even01, even23, 0x20);
-  places[1] = _mm256_permute2f128_pd(odd01, odd23, 0x20);
-  places[2] = _mm256_permute2f128_pd(even01, even23, 0x31);
-  places[3] = _mm256_permute2f128_pd(odd01, odd23, 0x31);
-}
-
 }  // namespace
 
 template <int PathDegree>
@@ -34,7 +22,8 @@ template <int PathDegree>
   for (int from = 0; from < count; from += 4) {
     const int begin = from + 4 <= count ? from : count - 4;  // the last four may overlap those before
     Four places[4];
-    transpose(balls, begin, places);
+    transpose(four_of(balls[0], begin), four_of(balls[1], begin), four_of(balls[2], begin), four_of(balls[3], begin),
+              places);
     for (int i = 0; i < 4; ++i) all[begin + i] = places[i];
   }
   for (int k = 0; k <= PathDegree; ++k) {

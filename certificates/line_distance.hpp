@@ -4,7 +4,7 @@
 #include "certificates/point_motion.hpp"
 #include "kds/arithmetic/ball.hpp"
 #include "kds/arithmetic/double_double.hpp"
-#include "kds/arithmetic/two.hpp"
+#include "kds/arithmetic/two_double_doubles.hpp"
 
 #include <limits>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kds/arithmetic/lattice.hpp"
-#include "kds/arithmetic/two.hpp"
+#include "kds/arithmetic/two_double_doubles.hpp"
 #include "kds/motion.hpp"
 
 #include <cstdint>

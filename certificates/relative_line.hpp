@@ -2,8 +2,8 @@
 #pragma once
 
 #include "kds/arithmetic/double_double.hpp"
-#include "kds/arithmetic/four.hpp"
-#include "kds/arithmetic/two.hpp"
+#include "kds/simd/four_wide.hpp"
+#include "kds/simd/two_doubles.hpp"
 
 namespace kds::certificates::detail {
 

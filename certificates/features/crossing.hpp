@@ -32,8 +32,8 @@ class Crossing {
     radius_ = std::sqrt(highest(detail::dot(now.corners(), now.corners())));
     Lanes fastest(0.0);
     for (std::size_t d = 0; d < 3; ++d) {
-      Lanes v = absolute(paths.c[1][d]);
-      if constexpr (Degree == 2) v = v + absolute(paths.c[2][d]) * Lanes(2.0);
+      Lanes v = magnitude(paths.c[1][d]);
+      if constexpr (Degree == 2) v = v + magnitude(paths.c[2][d]) * Lanes(2.0);
       fastest = greater(fastest, v);
     }
     speed_ = 1.74 * highest(fastest);  // sqrt(3)

@@ -61,8 +61,8 @@ double size_of(const PatchPaths<Degree>& paths) {
   Lanes size(0.0);
   Lanes all(0.0);
   for (std::size_t d = 0; d < 3; ++d) {
-    Lanes reach = absolute(paths.c[0][d]);
-    for (std::size_t i = 1; i <= Degree; ++i) reach = reach + absolute(paths.c[i][d]);
+    Lanes reach = magnitude(paths.c[0][d]);
+    for (std::size_t i = 1; i <= Degree; ++i) reach = reach + magnitude(paths.c[i][d]);
     size = greater(reach, size);
     all = all + reach;
   }

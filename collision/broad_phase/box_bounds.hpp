@@ -2,11 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/swept_box.hpp"
-#include "kds/arithmetic/two.hpp"
-
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
+#include "kds/simd/two_doubles.hpp"
 
 #include <algorithm>
 
@@ -27,14 +23,7 @@ struct BoxBounds {
     return result;
   }
   bool contains(const BoxBounds& other) const {
-#ifdef __SSE2__
-    const Two contains =
-        _mm_and_pd(_mm_and_pd(_mm_cmple_pd(xy, other.xy), _mm_cmple_pd(zx, other.zx)), _mm_cmple_pd(yz, other.yz));
-    return _mm_movemask_pd(contains) == 3;
-#else
-    const auto contains = (xy <= other.xy) & (zx <= other.zx) & (yz <= other.yz);
-    return (contains[0] & contains[1]) != 0;
-#endif
+    return (set_of_two(xy <= other.xy) & set_of_two(zx <= other.zx) & set_of_two(yz <= other.yz)) == 3;
   }
   double extent() const { return std::max({-zx[1] - xy[0], -yz[0] - xy[1], -yz[1] - zx[0]}); }
 };
@@ -70,20 +59,13 @@ class BoxOverlaps {
     const Two z = greater(both(other.zx[0]) + minus_max_[2], both(other.yz[1]) + min_[2]);
     const Two gap = square(x + radius) + square(y + radius) + square(z + radius);
     const Two apart = greater(greater(greater(x, y), z), gap - radius * radius);
-    return not_above_zero(apart);
+    return set_of_two(apart <= 0);
   }
 
  private:
   static Two square(Two x) {
     x = greater(x, Two{0, 0});
     return x * x;
-  }
-  static unsigned not_above_zero(Two x) {
-#ifdef __SSE2__
-    return static_cast<unsigned>(_mm_movemask_pd(_mm_cmple_pd(x, _mm_setzero_pd())));
-#else
-    return unsigned{x[0] <= 0} | unsigned{x[1] <= 0} << 1;
-#endif
   }
 
   Two min_[3];

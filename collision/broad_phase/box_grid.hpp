@@ -4,7 +4,7 @@
 #include "collision/broad_phase/box_bounds.hpp"
 #include "collision/broad_phase/cell_table.hpp"
 #include "collision/broad_phase/swept_box.hpp"
-#include "kds/arithmetic/two.hpp"
+#include "kds/simd/two_doubles.hpp"
 
 #include <boost/container/small_vector.hpp>
 
@@ -42,9 +42,12 @@ class BoxGrid {
  public:
   using Id = std::uint32_t;
 
-  /// Boxes with which overlap began and ended. Made for a change: few of them need memory of their own.
+  /// Few changes have more, and need memory of their own.
+  using Ids = boost::container::small_vector<Id, 16>;
+
+  /// Boxes with which overlap began and ended.
   struct Changes {
-    boost::container::small_vector<Id, 16> began, ended;
+    Ids began, ended;
 
     bool empty() const { return began.empty() && ended.empty(); }
 

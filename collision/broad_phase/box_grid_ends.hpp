@@ -53,12 +53,7 @@ struct BoxGrid::Ends {
   static std::int64_t on_lattice(double x) { return std::llrint(clamped(both(x))[0]); }
   static Two clamped(Two x) {
     constexpr Two farthest{0x1p61, 0x1p61};
-#ifdef __SSE2__
-    return _mm_max_pd(_mm_min_pd(x, farthest), -farthest);
-#else
-    x = x < farthest ? x : farthest;
-    return x > -farthest ? x : -farthest;
-#endif
+    return greater(lesser(x, farthest), -farthest);
   }
   static std::int64_t cell_of(std::int64_t x) { return x >> lattice_bits; }
 

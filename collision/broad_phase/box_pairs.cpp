@@ -2,10 +2,6 @@
 
 #include "collision/parallel.hpp"
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,14 +24,7 @@ constexpr std::size_t small = 256;
 
 }  // namespace
 
-inline bool BoxPairs::overlap(const Rough& a, const Rough& b) {
-#ifdef __SSE2__
-  return _mm_movemask_ps(_mm_and_ps(_mm_cmple_ps(a.low, b.high), _mm_cmple_ps(b.low, a.high))) == 0xF;
-#else
-  const auto overlap = (a.low <= b.high) & (b.low <= a.high);
-  return (overlap[0] & overlap[1] & overlap[2]) != 0;
-#endif
-}
+inline bool BoxPairs::overlap(const Rough& a, const Rough& b) { return all_set((a.low <= b.high) & (b.low <= a.high)); }
 
 bool BoxPairs::choose_cells(std::span<const StaticBox> boxes) {
   Eigen::Array3d begin = boxes[0].min;
@@ -92,7 +81,7 @@ bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
       const StaticBox& box = boxes[order_[place]];
       const auto rough = [&](const Eigen::Array3d& end) {
         const auto at = [&](int d) { return static_cast<float>(end[d] - corner[d]); };
-        return Four{at(0), at(1), at(2), 0};
+        return FourFloats{at(0), at(1), at(2), 0};
       };
       rough_[place].low = rough(box.min);
       rough_[place].high = rough(box.max);

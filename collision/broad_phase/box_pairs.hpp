@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/swept_box.hpp"
+#include "kds/simd/four_floats.hpp"
 
 #include <array>
 #include <cstddef>
@@ -37,11 +38,10 @@ class BoxPairs {
 
  private:
   /// A box in single precision, rounded by a monotone rule: boxes that overlap do so here too.
-  using Four = float __attribute__((vector_size(16)));
   struct Rough {
     Rough() {}  // not the implicit one, for which all is set to zero first
 
-    Four low, high;
+    FourFloats low, high;
   };
   static bool overlap(const Rough& a, const Rough& b);
 

@@ -1,10 +1,7 @@
 #include "collision/broad_phase/cell_table.hpp"
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
+#include "kds/simd/target.hpp"
 
-#include <cstring>
 #include <utility>
 
 namespace kds::collision {
@@ -48,28 +45,7 @@ void CellTable::add(std::size_t place, Ends ends, std::uint32_t number) {
 }
 
 inline std::uint64_t CellTable::Bucket::within(Ends limits) const {
-#ifdef __SSE2__
-  const __m128i most_allowed = _mm_set1_epi64x(static_cast<long long>(limits));
-  const auto* const from = reinterpret_cast<const __m128i*>(ends.data());
-  const auto exceed = [&](const __m128i& two) { return _mm_cmpgt_epi8(_mm_load_si128(&two), most_allowed); };
-  const __m128i four = _mm_packs_epi32(exceed(from[0]), exceed(from[1]));  // zero remains zero, and nothing else
-  const __m128i none_exceeds = _mm_cmpeq_epi32(four, _mm_setzero_si128());
-  return static_cast<std::uint64_t>(_mm_movemask_ps(_mm_castsi128_ps(none_exceeds)));
-#else
-  using Bytes = signed char __attribute__((vector_size(8)));
-  Bytes most_allowed;
-  std::memcpy(&most_allowed, &limits, sizeof most_allowed);
-  std::uint64_t within = 0;
-  for (std::size_t i = 0; i < most; ++i) {
-    Bytes bytes;
-    std::memcpy(&bytes, &ends[i], sizeof bytes);
-    const auto over = bytes > most_allowed;
-    std::uint64_t any = 0;
-    std::memcpy(&any, &over, sizeof any);
-    within |= std::uint64_t{any == 0} << i;
-  }
-  return within;
-#endif
+  return simd::target::within_limits(ends.data(), limits);
 }
 
 /// Which numbers of a bucket count nobody can predict; so they are gathered as bits, and taken from those of many

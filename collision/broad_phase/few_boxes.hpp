@@ -3,7 +3,7 @@
 
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/swept_box.hpp"
-#include "kds/arithmetic/two.hpp"
+#include "kds/simd/two_doubles.hpp"
 
 #include <array>
 #include <cstddef>

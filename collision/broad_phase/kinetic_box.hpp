@@ -3,8 +3,8 @@
 
 #include "certificates/order.hpp"
 #include "certificates/point_motion.hpp"
-#include "kds/arithmetic/two.hpp"
 #include "kds/roots/failure_time.hpp"
+#include "kds/simd/two_doubles.hpp"
 
 #include <array>
 #include <bit>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/kinetic_box.hpp"
-#include "kds/arithmetic/two.hpp"
+#include "kds/simd/two_doubles.hpp"
 
 #include <Eigen/Core>
 

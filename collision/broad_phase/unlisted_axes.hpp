@@ -5,6 +5,7 @@
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
 #include "kds/events/dary_queue.hpp"
+#include "kds/simd/four_floats.hpp"
 #include "kds/statistics.hpp"
 
 #include <array>
@@ -13,10 +14,6 @@
 #include <limits>
 #include <span>
 #include <vector>
-
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
 
 namespace kds::collision {
 
@@ -45,28 +42,18 @@ class UnlistedAxes {
  public:
   /// What a box covers from some time to the horizon, rounded outward to floats, which are half as much to fetch.
   struct Hull {
-    std::array<float, 4> ends{0, 0, 0, 0};  ///< low on two axes, then high
+    FourFloats ends{0, 0, 0, 0};  ///< low on two axes, then high
 
     static Hull everywhere() {
       constexpr float far = std::numeric_limits<float>::infinity();
-      return {{-far, -far, far, far}};
+      return {FourFloats{-far, -far, far, far}};
     }
     /// Without a branch.
     bool meets(const Hull& other) const {
-#ifdef __SSE2__
-      const __m128 mine = _mm_loadu_ps(ends.data());
-      const __m128 others = _mm_loadu_ps(other.ends.data());
-      const __m128 crossed = _mm_shuffle_ps(others, others, _MM_SHUFFLE(1, 0, 3, 2));  // its high ones first
-      const __m128 begin = _mm_cmple_ps(mine, crossed);
-      const __m128 end = _mm_cmple_ps(crossed, mine);
-      return _mm_movemask_ps(_mm_shuffle_ps(begin, end, _MM_SHUFFLE(3, 2, 1, 0))) == 0xF;
-#else
-      unsigned meet = 1;
-      for (std::size_t i = 0; i < 2; ++i) {
-        meet &= unsigned{ends[i] <= other.ends[i + 2]} & unsigned{other.ends[i] <= ends[i + 2]};
-      }
-      return meet != 0;
-#endif
+      const FourFloats crossed = __builtin_shufflevector(other.ends, other.ends, 2, 3, 0, 1);  // its high ones first
+      const auto begin = ends <= crossed;
+      const auto end = crossed <= ends;
+      return all_set(__builtin_shufflevector(begin, end, 0, 1, 6, 7));
     }
   };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/obb_tree.hpp"
-#include "kds/arithmetic/two.hpp"
+#include "kds/simd/two_doubles.hpp"
 
 #include <Eigen/Core>
 

@@ -3,7 +3,7 @@
 
 #include "certificates/point_motion.hpp"
 #include "collision/world_options.hpp"
-#include "kds/arithmetic/two.hpp"
+#include "kds/simd/two_doubles.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,14 +1,11 @@
 // Eight times in a cache line: which is the least, all compared at once.
 #pragma once
 
-#include <algorithm>
+#include "kds/simd/target.hpp"
+
 #include <cstddef>
 #include <limits>
 #include <new>
-
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
 
 namespace kds::detail {
 
@@ -41,22 +38,8 @@ struct LeastTime {
 
 /// Precondition: eight times, none a NaN, at the beginning of a cache line.
 inline LeastTime least_of_eight(const double* times) {
-#ifdef __SSE2__
-  const __m128d a = _mm_load_pd(times);
-  const __m128d b = _mm_load_pd(times + 2);
-  const __m128d c = _mm_load_pd(times + 4);
-  const __m128d d = _mm_load_pd(times + 6);
-  const __m128d m = _mm_min_pd(_mm_min_pd(a, b), _mm_min_pd(c, d));
-  const __m128d least = _mm_min_pd(m, _mm_shuffle_pd(m, m, 1));
-  const auto has = [&](__m128d x) { return _mm_castpd_si128(_mm_cmpeq_pd(x, least)); };
-  const __m128i who = _mm_packs_epi16(_mm_packs_epi32(has(a), has(b)), _mm_packs_epi32(has(c), has(d)));
-  return {_mm_cvtsd_f64(least), static_cast<unsigned>(_mm_movemask_epi8(who))};
-#else
-  const double least = *std::min_element(times, times + 8);
-  unsigned who = 0;
-  for (std::size_t i = 0; i < 8; ++i) who |= times[i] == least ? 3u << (2 * i) : 0;
-  return {least, who};
-#endif
+  const auto [time, who] = simd::target::least_of_eight(times);
+  return {time, who};
 }
 
 }  // namespace kds::detail

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "kds/arithmetic/ball.hpp"
-#include "kds/arithmetic/two.hpp"
 #include "kds/arithmetic/unrolled.hpp"
 #include "kds/polynomial.hpp"
+#include "kds/simd/two_doubles.hpp"
 
 #include <algorithm>
 #include <array>

@@ -78,18 +78,18 @@ TEST_CASE("Boxes of no extent, and ones that fill all space, have their place in
   BoxGrid::Changes changes;
   grid.put(0, point, changes);
   grid.put(1, all, changes);
-  CHECK(changes.began == std::vector<BoxGrid::Id>{0});
+  CHECK(changes.began == BoxGrid::Ids{0});
   changes.clear();
   grid.put(2, far, changes);
-  CHECK(changes.began == std::vector<BoxGrid::Id>{1});
+  CHECK(changes.began == BoxGrid::Ids{1});
   changes.clear();
   grid.put(3, point, changes);
   std::sort(changes.began.begin(), changes.began.end());
-  CHECK(changes.began == std::vector<BoxGrid::Id>{0, 1});
+  CHECK(changes.began == BoxGrid::Ids{0, 1});
   changes.clear();
   grid.remove(1, changes);
   std::sort(changes.ended.begin(), changes.ended.end());
-  CHECK(changes.ended == std::vector<BoxGrid::Id>{0, 2, 3});
+  CHECK(changes.ended == BoxGrid::Ids{0, 2, 3});
 }
 
 TEST_CASE("Boxes that jump far or come in crowds are found in a box grid", "[box_grid]") {

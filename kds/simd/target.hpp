@@ -1,0 +1,19 @@
+// The instructions of the processor that is compiled for, where they do better than what is portable: kds::simd::target
+// has the functions of portable.hpp. For the lane types of this folder; others include those.
+#pragma once
+
+#ifdef __SSE2__
+#include "kds/simd/x86.hpp"
+#else
+#include "kds/simd/portable.hpp"
+#endif
+
+namespace kds::simd {
+
+#ifdef __SSE2__
+namespace target = x86;
+#else
+namespace target = portable;
+#endif
+
+}  // namespace kds::simd
