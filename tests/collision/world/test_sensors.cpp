@@ -40,7 +40,7 @@ std::vector<Event> run(BroadPhaseKind kind, std::uint64_t seed, bool with_sensor
     const Shape shape = i % 2 == 0 ? Shape(Sphere{1}) : Shape(Box{{0.8, 0.9, 1}});
     world->add_body(body<2>(shape, motion<2>(place(8), place(3), place(0.2))));
   }
-  auto sensor = ball<2>(2.5, {-14, 0.1, 0.2}, {7, 0, 0});
+  auto sensor = ball<2>(5, {-14, 0.1, 0.2}, {7, 0, 0});
   sensor.sensor = true;
   if (with_sensor) world->add_body(sensor);
   for (const double t : {1.3, 3.0, 4.5}) {
