@@ -1,31 +1,58 @@
 // Dynamic tests of spheres and boxes, by exact signs.
 #pragma once
 
+#include "collision/narrow_phase/box_and_ball.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/piecewise_contact.hpp"
 
 namespace kds::collision {
 
-/// The functions of narrow_phase.hpp for shapes that are spheres or boxes. Precondition: none of the two is a mesh.
-///
-/// Method: the set of relative positions in which two convex shapes penetrate is a union of convex *pieces* (one for
-/// two spheres or two boxes; slabs, edge cylinders and vertex balls for a box and a sphere), and each piece is a
-/// conjunction of polynomial certificates that are all broken inside it. The first contact is the least of the
-/// pieces' first times, each found by jumping from one failure time to the next. A filter in doubles decides most of
-/// it (quick_motion.hpp).
-/// Paper: [Eberly01] for the separating axes; [Basch99] for certificates that witness disjointness.
+// The tests (see pair_tests.hpp) of balls and boxes.
+//
+// Method: the set of relative positions in which two convex shapes penetrate is a union of convex *pieces* (one for
+// two spheres or two boxes; slabs, edge cylinders and vertex balls for a box and a sphere), and each piece is a
+// conjunction of polynomial certificates that are all broken inside it. The first contact is the least of the
+// pieces' first times, each found by jumping from one failure time to the next. A filter in doubles decides most of
+// it (quick_motion.hpp).
+// Paper: [Eberly01] for the separating axes; [Basch99] for certificates that witness disjointness.
+
+/// Two balls.
 template <int Degree>
-struct ConvexContact {
+struct BallsContact {
   using Body = MovingShape<Degree>;
 
-  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
-  /// A time in [t0, never] before which there is no contact; later than the horizon if there is none until then.
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*);
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
   static bool in_contact(const Body& a, const Body& b, double t);
   static double first_separation(const Body& a, const Body& b, double t0, double horizon);
-  static Contact contact_at(const Body& a, const Body& b, double t);
+  static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch&);
 };
 
-extern template struct ConvexContact<1>;
-extern template struct ConvexContact<2>;
+/// Two boxes.
+template <int Degree>
+struct BoxesContact {
+  using Body = MovingShape<Degree>;
+
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*);
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
+  static bool in_contact(const Body& a, const Body& b, double t);
+  static double first_separation(const Body& a, const Body& b, double t0, double horizon);
+  static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch&);
+};
+
+/// How a box (a) and a ball (b) touch: at the point of the box nearest the ball's centre.
+template <int Degree>
+Contact box_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+
+/// A box (a) and a ball (b).
+template <int Degree>
+using BoxBallContact = PiecewiseContact<Degree, BoxAndBall<Degree>, box_ball_contact<Degree>>;
+
+extern template struct BallsContact<1>;
+extern template struct BallsContact<2>;
+extern template struct BoxesContact<1>;
+extern template struct BoxesContact<2>;
+extern template Contact box_ball_contact(const MovingShape<1>&, const MovingShape<1>&, double);
+extern template Contact box_ball_contact(const MovingShape<2>&, const MovingShape<2>&, double);
 
 }  // namespace kds::collision

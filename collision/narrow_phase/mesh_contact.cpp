@@ -95,12 +95,7 @@ template <int Degree>
 struct ClockedPair {
   using Body = MovingShape<Degree>;
 
-  ClockedPair(const Body& first, const Body& second)
-      : swapped(!std::holds_alternative<MeshShape>(first.shape.shape)),
-        a(swapped ? second : first),
-        b(swapped ? first : second),
-        motion(relative_to(a.motion, b.motion)),
-        pair(a.shape, b.shape, motion) {}
+  ClockedPair(const Body& a, const Body& b) : motion(relative_to(a.motion, b.motion)), pair(a.shape, b.shape, motion) {}
 
   /// Before the epoch one of the bodies has not begun to move so: nothing is asked about that.
   double tau(double t) const { return std::max(t - motion.epoch, 0.0); }
@@ -111,9 +106,6 @@ struct ClockedPair {
     return t <= horizon ? t : infinity;
   }
 
-  bool swapped;
-  Body a;
-  Body b;
   RelativeMotion<Degree> motion;
   MeshPair<Degree> pair;
 };
@@ -132,7 +124,7 @@ double MeshContact<Degree>::first_contact(const Body& a, const Body& b, double t
 }
 
 template <int Degree>
-double MeshContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon) {
+double MeshContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
   const ClockedPair<Degree> clocked(a, b);
   const double tau = clocked.pair.apart_until(clocked.tau(t0), clocked.tau(horizon));
   if (tau == infinity) return infinity;
@@ -156,12 +148,7 @@ Contact MeshContact<Degree>::contact_at(const Body& a, const Body& b, double t, 
   const ClockedPair<Degree> clocked(a, b);
   const MeshTouch known{found.tau, found.triangle_a, found.triangle_b, true};
   const auto where = clocked.pair.where(clocked.tau(t), found.time == t ? &known : nullptr);
-  Contact contact{t, clocked.a.motion.position(t) + where.point, where.normal, where.feature_a, where.feature_b};
-  if (clocked.swapped) {
-    contact.normal = -contact.normal;
-    std::swap(contact.feature_a, contact.feature_b);
-  }
-  return contact;
+  return {t, a.motion.position(t) + where.point, where.normal, where.feature_a, where.feature_b};
 }
 
 template struct MeshContact<1>;

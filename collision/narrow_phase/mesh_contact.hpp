@@ -83,7 +83,7 @@ class MeshPair {
 extern template class MeshPair<1>;
 extern template class MeshPair<2>;
 
-/// The functions of narrow_phase.hpp for pairs with a mesh among them.
+/// The tests (see pair_tests.hpp) of a mesh (a) with any shape.
 ///
 /// The time of a contact is the first double t of the clock with t - epoch >= tau, where the difference is rounded, or
 /// t0 if that is later.
@@ -93,8 +93,7 @@ struct MeshContact {
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                               FoundTouch* found = nullptr);
-  /// A time in [t0, never] before which there is no contact; `never` if there is none until the horizon.
-  static double apart_until(const Body& a, const Body& b, double t0, double horizon);
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
   static bool in_contact(const Body& a, const Body& b, double t);
   static double first_separation(const Body& a, const Body& b, double t0, double horizon);
   static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch& found = {});

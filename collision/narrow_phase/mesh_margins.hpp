@@ -4,6 +4,7 @@
 #include "certificates/point_motion.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/shapes/shape.hpp"
 #include "collision/vectors.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
@@ -76,10 +77,6 @@ static_assert(quick_margin > farthest_contact);
 /// straight path gets there only if its speed is nothing but rounding (bodies that move alike), a curved one if it goes
 /// out 2^40 radii and comes back. Larger predicts more of such contacts, and more slowly.
 inline constexpr double widest_gap = 0x1p-7;
-
-/// The bounding box of a mesh is grown by this part of its radius, which is enough for paths of a quarter of a million
-/// radii: see MeshClearance, which grows volumes where it is not. Larger has more pairs tested.
-inline constexpr double box_margin = 0x1p-24;
 
 /// By how much the bounding volume of a body has to reach beyond its shape where there are meshes, so that volumes
 /// overlap for as long as contact may be reported, and the broad phase makes no difference to contacts: the contact gap

@@ -1,11 +1,11 @@
 // Walking down two trees of oriented boxes while one of them moves.
 #pragma once
 
-#include "collision/narrow_phase/lanes.hpp"
+#include "collision/lanes.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
-#include "collision/narrow_phase/obb_tree.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
+#include "collision/shapes/obb_tree.hpp"
 
 #include <Eigen/Core>
 
@@ -91,7 +91,7 @@ class BoxPairTest {
 
   /// What depends on the box of a alone: kept while it meets several boxes of b.
   struct Frame {
-    std::array<Lanes, 3> turn;             ///< column k: coordinate k of b's model along the axes of a's box
+    std::array<Lanes, 3> turn;  ///< column k: coordinate k of b's model along the axes of a's box
     std::array<Lanes, std::size_t{Degree} + 1> motion;  ///< of b's model origin along them
     Lanes half_extents;
   };
@@ -101,7 +101,7 @@ class BoxPairTest {
   bool operator()(const Frame& a, const ObbNode& b, StepWindow& window) const;
 
  private:
-  std::array<std::array<float, 3>, 3> turn_;        ///< model of b -> model of a
+  std::array<std::array<float, 3>, 3> turn_;                     ///< model of b -> model of a
   std::array<Eigen::Vector3f, std::size_t{Degree} + 1> motion_;  ///< of b's centre in the model coordinates of a
   float unit_a_;
   float unit_b_;

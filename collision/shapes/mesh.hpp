@@ -1,7 +1,7 @@
 // Triangle surfaces, immutable and shared by bodies.
 #pragma once
 
-#include "collision/narrow_phase/obb_tree.hpp"
+#include "collision/shapes/obb_tree.hpp"
 #include "kds/simd/two_doubles.hpp"
 
 #include <Eigen/Core>

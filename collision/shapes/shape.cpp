@@ -1,51 +1,31 @@
 #include "collision/shapes/shape.hpp"
 
-#include "collision/narrow_phase/mesh_margins.hpp"
-#include "collision/shapes/mesh.hpp"
+#include "collision/shapes/box.hpp"
+#include "collision/shapes/mesh_shape.hpp"
+#include "collision/shapes/number_text.hpp"
+#include "collision/shapes/sphere.hpp"
 #include "collision/vectors.hpp"
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace kds::collision {
 namespace {
 
+using detail::number_text;
+using detail::rotation_margin;
+
 /// How far from 1 the norm of an orientation may be; scene files carry few digits. The quaternion is normalised.
 constexpr double quaternion_tolerance = 1e-6;
 
-/// A number in a message, with digits enough to know it by.
-std::string text(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
+/// Calls ask(kind, shape) with the ShapeKind of what the shape is.
+template <class Ask>
+auto of_kind(const Shape& shape, const Ask& ask) {
+  return std::visit([&](const auto& each) { return ask(detail::ShapeKind<std::decay_t<decltype(each)>>{}, each); },
+                    shape);
 }
-
-/// What a mesh and its scale make together.
-void require_range(const Mesh& mesh, double scale) {
-  const double edge = mesh.shortest_edge() * scale;
-  const double radius = mesh.bounding_radius() * scale;
-  if (!(edge >= shortest_edge)) {
-    throw std::invalid_argument("scale: " + text(scale) + " makes an edge of the mesh " + text(edge) +
-                                " long; at least 2^-110 (7.7e-34) is supported");
-  }
-  if (!(radius <= Mesh::largest_coordinate * (1 + 0x1p-40) * std::sqrt(3.0))) {
-    throw std::invalid_argument("scale: " + text(scale) + " makes the mesh reach " + text(radius) +
-                                " from its origin; at most 2^100 (1.3e30) along each axis is supported");
-  }
-}
-
-/// What the axes of a turned box may be off orthonormal, and what adding up its extents may round.
-constexpr double rotation_margin = 16 * 0x1p-52;
-
-void grow(PlacedShape& placed, double margin) {
-  placed.low.array() -= margin;
-  placed.high.array() += margin;
-}
-
-/// Exactly representable orientations (the identity, quarter turns) give exact boxes, which need no margin.
-bool is_signed_permutation(const Eigen::Matrix3d& m) { return ((m.array() == 0) || (m.array().abs() == 1)).all(); }
 
 }  // namespace
 
@@ -53,19 +33,18 @@ void require_size(double value, const char* what) {
   const std::string name(what);
   if (!std::isfinite(value)) throw std::invalid_argument(name + ": must be finite");
   if (!(value > 0)) throw std::invalid_argument(name + ": must be > 0");
-  if (value < smallest_size) throw std::invalid_argument(name + ": " + text(value) + " is below 2^-205 (1.9e-62)");
-  if (value > largest_magnitude) throw std::invalid_argument(name + ": " + text(value) + " is above 2^205 (5.1e61)");
+  if (value < smallest_size)
+    throw std::invalid_argument(name + ": " + number_text(value) + " is below 2^-205 (1.9e-62)");
+  if (value > largest_magnitude)
+    throw std::invalid_argument(name + ": " + number_text(value) + " is above 2^205 (5.1e61)");
 }
 
 void require_radius(double radius) { require_size(radius, "radius"); }
 
 PlacedShape placed_ball(double radius) {
-  require_radius(radius);
   PlacedShape placed;
   placed.shape = Sphere{radius};
-  placed.bounding_radius = radius;
-  placed.high.setConstant(radius);
-  placed.low = -placed.high;
+  detail::ShapeKind<Sphere>::place(Sphere{radius}, placed);
   return placed;
 }
 
@@ -88,50 +67,32 @@ PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation) {
   PlacedShape placed;
   placed.shape = shape;
   placed.rotation = rotation;
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    placed = placed_ball(sphere->radius);
-    placed.rotation = rotation;
-  } else if (const auto* box = std::get_if<Box>(&shape)) {
-    for (int d = 0; d < 3; ++d) require_size(box->half_extents[d], "half_extents");
-    for (int d = 0; d < 3; ++d) {
-      placed.half_axes[static_cast<std::size_t>(d)] = placed.rotation.col(d) * box->half_extents[d];
-      placed.high += placed.half_axes[static_cast<std::size_t>(d)].cwiseAbs();
-    }
-    placed.low = -placed.high;
-    if (!is_signed_permutation(placed.rotation)) grow(placed, rotation_margin * norm(placed.high));
-    placed.bounding_radius = norm(box->half_extents) * (1 + rotation_margin);
-  } else {
-    const auto& instance = std::get<MeshShape>(shape);
-    if (!instance.mesh) throw std::invalid_argument("mesh: is missing");
-    if (!std::isfinite(instance.scale)) throw std::invalid_argument("scale: must be finite");
-    if (!(instance.scale > 0)) throw std::invalid_argument("scale: must be > 0");
-    require_range(*instance.mesh, instance.scale);
-    instance.mesh->extents(placed.rotation, instance.scale, placed.low, placed.high);
-    const double radius = instance.mesh->bounding_radius() * instance.scale;
-    grow(placed, box_margin * radius);
-    placed.bounding_radius = radius * (1 + rotation_margin);
-  }
+  of_kind(shape, [&](auto kind, const auto& each) { kind.place(each, placed); });
   return placed;
 }
 
+bool is_placed(const PlacedShape& shape) {
+  const PlacedShape again = place_turned(shape.shape, shape.rotation);
+  const bool has_axes = of_kind(shape.shape, [](auto kind, const auto&) { return kind.has_half_axes; });
+  return again.shape.index() == shape.shape.index() && (!has_axes || again.half_axes == shape.half_axes) &&
+         again.low == shape.low && again.high == shape.high && again.bounding_radius == shape.bounding_radius;
+}
+
 std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction) {
-  const double length = norm(direction) * (1 + rotation_margin);
-  double low = 0, high = 0, margin = 0;
-  if (const auto* sphere = std::get_if<Sphere>(&shape.shape)) {
-    high = sphere->radius * length;
-    low = -high;
-  } else if (std::holds_alternative<Box>(shape.shape)) {
-    for (const Eigen::Vector3d& half : shape.half_axes) high += std::abs(dot(direction, half));
-    low = -high;
-    margin = rotation_margin * shape.bounding_radius * length;
-  } else {
-    const auto& instance = std::get<MeshShape>(shape.shape);
-    const std::array<double, 2> ends = instance.mesh->extent(shape.rotation, instance.scale, direction);
-    low = ends[0];
-    high = ends[1];
-    margin = (box_margin + rotation_margin) * shape.bounding_radius * length;
-  }
-  return {low - margin, high + margin};
+  return of_kind(shape.shape, [&](auto kind, const auto& each) { return kind.extent(each, shape, direction); });
+}
+
+const char* kind_name(const Shape& shape) {
+  return of_kind(shape, [](auto kind, const auto&) { return kind.name; });
+}
+
+Eigen::Vector3d measures(const Shape& shape) {
+  return of_kind(shape, [](auto kind, const auto& each) { return kind.measures(each); });
+}
+
+std::shared_ptr<const Mesh> mesh_of(const Shape& shape) {
+  const auto* const instance = std::get_if<MeshShape>(&shape);
+  return instance ? instance->mesh : nullptr;
 }
 
 }  // namespace kds::collision

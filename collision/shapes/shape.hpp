@@ -16,7 +16,7 @@ class Mesh;
 /// halves of accelerations 0 or anything up to largest_magnitude, and times of the clock too. In this range squares of
 /// lengths, and what the tests of meshes multiply (squares of a speed times three edges), neither overflow nor, for
 /// sizes, underflow; beyond it contacts could be missed, so what is given beyond it is refused.
-inline constexpr double smallest_size = 0x1p-205;      ///< 1.9e-62
+inline constexpr double smallest_size = 0x1p-205;     ///< 1.9e-62
 inline constexpr double largest_magnitude = 0x1p205;  ///< 5.1e61
 
 /// Of the edges of a mesh as it is scaled, in units of length: below, the axes that separate its triangles, products of
@@ -39,13 +39,38 @@ struct MeshShape {
   double scale = 1;
 };
 
+/// Each kind says in a file of its own what the functions below have to know of it: sphere.hpp, box.hpp,
+/// mesh_shape.hpp. To add one: a struct, its place in this list, its file, and its row in the table of pair tests
+/// (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
 using Shape = std::variant<Sphere, Box, MeshShape>;
+
+/// "sphere", "box", "mesh".
+const char* kind_name(const Shape& shape);
+
+/// The numbers of the shape: half of what a model of it measures along its own axes, or of a mesh its scale, thrice.
+Eigen::Vector3d measures(const Shape& shape);
+
+/// The radius of what looks alike from all sides; 0 of other shapes.
+inline double ball_radius(const Shape& shape) {
+  const auto* const ball = std::get_if<Sphere>(&shape);
+  return ball ? ball->radius : 0;
+}
+
+/// Whether the shape is a surface, which is tested in doubles, with a margin: bounding volumes need room for that.
+inline bool has_mesh(const Shape& shape) { return std::holds_alternative<MeshShape>(shape); }
+
+/// The mesh of such a shape, else null.
+std::shared_ptr<const Mesh> mesh_of(const Shape& shape);
+
+/// The bounding box of a mesh is grown by this part of its radius, which is enough for paths of a quarter of a million
+/// radii: see MeshClearance (mesh_margins.hpp), which grows volumes where it is not. Larger has more pairs tested.
+inline constexpr double box_margin = 0x1p-24;
 
 /// A shape turned into the orientation it keeps: bodies translate and do not rotate.
 struct PlacedShape {
   Shape shape;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  /// Half edges of a box in world orientation, rounded; these doubles *are* the box from here on.
+  /// Half edges of a box in world orientation, rounded; these doubles *are* the box from here on. Unset for others.
   std::array<Eigen::Vector3d, 3> half_axes{};
   Eigen::Vector3d low = Eigen::Vector3d::Zero();   ///< corner of the bounding box about the centre, rounded outward
   Eigen::Vector3d high = Eigen::Vector3d::Zero();  ///< the other
@@ -58,6 +83,8 @@ struct PlacedShape {
 PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation);
 /// The same with the matrix that place() makes of the orientation, which must be a rotation up to its rounding.
 PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation);
+/// Whether it is what place_turned() makes of its shape and rotation, which throws if they cannot be placed.
+bool is_placed(const PlacedShape& shape);
 
 /// From where to where the shape reaches about its centre along a direction: least and greatest direction . x, rounded
 /// outward, with the margin of its bounding box; in units of length times that of the direction. Of a mesh it costs a

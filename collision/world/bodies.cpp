@@ -6,7 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <variant>
 
 namespace kds::collision {
 namespace {
@@ -53,10 +52,10 @@ inline BodyId Bodies<Degree>::new_id(double now) {
 template <int Degree>
 BodyId Bodies<Degree>::add(const Description& description, std::shared_ptr<const PlacedShape> shape,
                            const Motion& motion, double now) {
-  const auto* const ball = std::get_if<Sphere>(&description.shape);
+  const double ball = ball_radius(shape ? shape->shape : description.shape);
   const BodyId id = new_id(now);
   Body& added = bodies_[id];
-  added.bounding_radius = shape ? shape->bounding_radius : ball->radius;
+  added.bounding_radius = shape ? shape->bounding_radius : ball;
   added.shape = std::move(shape);
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
@@ -69,7 +68,7 @@ BodyId Bodies<Degree>::add(const Description& description, std::shared_ptr<const
   sensors_ = sensors_ || description.sensor;
   added.alive = true;
   movers_[id].motion = motion;
-  movers_[id].radius = ball ? ball->radius : Mover::no_radius;
+  movers_[id].radius = ball > 0 ? ball : Mover::no_radius;
   accelerate_freely(id, motion);
   ++alive_;
   return id;
@@ -102,9 +101,8 @@ std::vector<std::shared_ptr<const Mesh>> Bodies<Degree>::meshes() const {
   std::vector<std::shared_ptr<const Mesh>> result;
   for (BodyId id = 0; id < bodies_.size(); ++id) {
     if (!bodies_[id].alive) continue;
-    const PlacedShape placed = shape(id);
-    const auto* const mesh = std::get_if<MeshShape>(&placed.shape);
-    if (mesh && std::find(result.begin(), result.end(), mesh->mesh) == result.end()) result.push_back(mesh->mesh);
+    const auto mesh = mesh_of(shape(id).shape);
+    if (mesh && std::find(result.begin(), result.end(), mesh) == result.end()) result.push_back(mesh);
   }
   return result;
 }
@@ -119,9 +117,9 @@ typename Bodies<Degree>::Image Bodies<Degree>::image() const {
     if (!b.alive) continue;
     to.alive = true, to.entered = b.entered;
     to.placed = shape(id);
-    if (const auto* const mesh = std::get_if<MeshShape>(&to.placed.shape)) {
-      to.mesh = static_cast<std::uint32_t>(std::find(image.meshes.begin(), image.meshes.end(), mesh->mesh) -
-                                           image.meshes.begin());
+    if (const auto mesh = mesh_of(to.placed.shape)) {
+      to.mesh =
+          static_cast<std::uint32_t>(std::find(image.meshes.begin(), image.meshes.end(), mesh) - image.meshes.begin());
     }
     to.motion = movers_[id].motion;
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
@@ -137,10 +135,10 @@ typename Bodies<Degree>::Image Bodies<Degree>::image() const {
 template <int Degree>
 void Bodies<Degree>::set_shape(BodyId id, PlacedShape placed) {
   Body& b = bodies_[id];
-  const auto* const ball = std::get_if<Sphere>(&placed.shape);
+  const double ball = ball_radius(placed.shape);
   b.bounding_radius = placed.bounding_radius;
-  movers_[id].radius = ball ? ball->radius : Mover::no_radius;
-  if (!ball || !placed.rotation.isIdentity(0)) b.shape = std::make_shared<const PlacedShape>(std::move(placed));
+  movers_[id].radius = ball > 0 ? ball : Mover::no_radius;
+  if (!(ball > 0) || !placed.rotation.isIdentity(0)) b.shape = std::make_shared<const PlacedShape>(std::move(placed));
 }
 
 template <int Degree>

@@ -2,6 +2,7 @@
 #include "collision/world/bodies_image.hpp"
 
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/shape_archive.hpp"
 #include "collision/world/image_tools.hpp"
 #include "kds/framework/snapshot.hpp"
 
@@ -11,7 +12,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace kds::collision {
 namespace {
@@ -23,11 +23,7 @@ bool equal(std::span<const Eigen::Vector3d> a, const std::vector<Eigen::Vector3d
 /// A shape as place() makes it of some orientation.
 void check_shape(const PlacedShape& placed, std::size_t id) {
   try {
-    const PlacedShape again = place_turned(placed.shape, placed.rotation);
-    const bool same_axes = !std::holds_alternative<Box>(placed.shape) || again.half_axes == placed.half_axes;
-    image::require(same_axes && again.low == placed.low && again.high == placed.high &&
-                       again.bounding_radius == placed.bounding_radius,
-                   "bodies", id, "its bounds are not those of its shape");
+    image::require(is_placed(placed), "bodies", id, "its bounds are not those of its shape");
   } catch (const std::invalid_argument& error) {
     image::require(false, "bodies", id, error.what());
   }
@@ -62,40 +58,10 @@ void Bodies<Degree>::Image::mesh(Archive& archive, std::shared_ptr<const Mesh>& 
 
 template <int Degree>
 template <class Archive>
-void Bodies<Degree>::Image::shape(Archive& archive, One& body) const {
-  PlacedShape& placed = body.placed;
-  std::uint32_t kind = static_cast<std::uint32_t>(placed.shape.index());
-  archive(kind);
-  if constexpr (Archive::loading) {
-    if (kind > 2) throw std::runtime_error("snapshot: a shape is of an unknown kind");
-    if (kind == 0) placed.shape = Sphere{0};
-    if (kind == 1) placed.shape = Box{Eigen::Vector3d::Zero()};
-    if (kind == 2) placed.shape = MeshShape{};
-  }
-  if (auto* const sphere = std::get_if<Sphere>(&placed.shape)) archive(sphere->radius);
-  if (auto* const box = std::get_if<Box>(&placed.shape)) {
-    image::vector(archive, box->half_extents);
-    for (Eigen::Vector3d& half : placed.half_axes) image::vector(archive, half);
-  }
-  if (auto* const mesh = std::get_if<MeshShape>(&placed.shape)) {
-    archive(body.mesh, mesh->scale);
-    if (body.mesh >= meshes.size()) {
-      throw std::runtime_error("snapshot: a body has mesh " + std::to_string(body.mesh) + ", and there are " +
-                               std::to_string(meshes.size()));
-    }
-    mesh->mesh = meshes[body.mesh];
-  }
-  for (double& entry : placed.rotation.reshaped()) archive(entry);
-  image::vector(archive, placed.low), image::vector(archive, placed.high);
-  archive(placed.bounding_radius);
-}
-
-template <int Degree>
-template <class Archive>
 void Bodies<Degree>::Image::body(Archive& archive, One& body) const {
   archive(body.alive);
   if (!body.alive) return;
-  shape(archive, body);
+  archive_shape(archive, body.placed, body.mesh, meshes);
   archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category, body.collides_with,
           body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);

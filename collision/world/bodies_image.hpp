@@ -48,8 +48,6 @@ struct Bodies<Degree>::Image {
   static void mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
                    const std::vector<std::shared_ptr<const Mesh>>& known);
   template <class Archive>
-  void shape(Archive& archive, One& body) const;
-  template <class Archive>
   void body(Archive& archive, One& body) const;
 };
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <variant>
 
 namespace kds::collision {
 
@@ -19,7 +18,7 @@ std::array<double, std::size_t{Degree} + 1> Volumes<Degree>::growth(BodyId id) c
   // A caller's box is valid for as long as the caller says.
   if (from_caller(id) || clearance.holds_until() <= clock_.now) return clearance.growing();
   const bool in_place = b.shape && b.volume == BoundingVolume::shape && clearance.is_least() &&
-                        std::holds_alternative<MeshShape>(b.shape->shape);
+                        has_mesh(b.shape->shape);
   if (!in_place) growth[0] = clearance.constant();
   return growth;
 }

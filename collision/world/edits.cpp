@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace kds::collision {
 namespace {
@@ -54,10 +53,10 @@ BodyId World<Degree>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
   count_edit();
-  const auto* const ball = std::get_if<Sphere>(&description.shape);
+  const double ball = ball_radius(description.shape);
   std::shared_ptr<const PlacedShape> shape;
-  if (ball && description.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs()) [[likely]] {
-    require_radius(ball->radius);
+  if (ball > 0 && description.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs()) [[likely]] {
+    require_radius(ball);
   } else {
     shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
   }
@@ -70,7 +69,7 @@ inline BodyId World<Degree>::put(const Description& description, std::shared_ptr
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= clock_.now) ++piece;
-  if (std::holds_alternative<MeshShape>(description.shape)) make_room_for_meshes();
+  if (has_mesh(description.shape)) make_room_for_meshes();
   const BodyId id = bodies_.add(description, std::move(shape), *piece, clock_.now);
   if (piece->start <= clock_.now) {
     bodies_.wait(id);

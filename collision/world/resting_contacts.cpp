@@ -23,11 +23,6 @@ constexpr double coordinate_slack = 0x1p-40;
 constexpr double same_normal = 1 - 0x1p-20;
 
 template <int Degree>
-bool is_mesh(const MovingShape<Degree>& body) {
-  return std::holds_alternative<MeshShape>(body.shape.shape);
-}
-
-template <int Degree>
 certificates::PointMotion<Degree> shifted(certificates::PointMotion<Degree> motion, const Vector3d& by) {
   motion.coefficients[0] += by;
   return motion;
@@ -105,7 +100,7 @@ template <int Degree>
 double RestingContacts<Degree>::next_contact(BodyId id_a, BodyId id_b) {
   const auto a = bodies_.moving(id_a);
   const auto b = bodies_.moving(id_b);
-  if (!is_mesh(a) && !is_mesh(b)) return never;
+  if (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape)) return never;
   const double began = std::max(a.motion.start, b.motion.start);
   Vector3d out = Vector3d::Zero();
   bool left_behind = false;

@@ -78,18 +78,15 @@ void append_piece(std::string& text, const MotionPiece& piece, double begin) {
 
 void append_shape(std::string& text, const kds::collision::Shape& shape,
                   const std::map<const kds::collision::Mesh*, std::size_t>& mesh_numbers) {
-  if (const auto* sphere = std::get_if<kds::collision::Sphere>(&shape)) {
-    text += "\"sphere\",\"size\":";
-    append_list(text, {sphere->radius, sphere->radius, sphere->radius});
-  } else if (const auto* box = std::get_if<kds::collision::Box>(&shape)) {
-    text += "\"box\",\"size\":";
-    append_vector(text, box->half_extents);
+  if (const auto mesh = mesh_of(shape)) {
+    append_number(text, mesh_numbers.at(mesh.get()));
   } else {
-    const auto& instance = std::get<kds::collision::MeshShape>(shape);
-    append_number(text, mesh_numbers.at(instance.mesh.get()));
-    text += ",\"size\":";
-    append_list(text, {instance.scale, instance.scale, instance.scale});
+    text += '"';
+    text += kind_name(shape);
+    text += '"';
   }
+  text += ",\"size\":";
+  append_vector(text, measures(shape));
 }
 
 std::string read_script(const std::filesystem::path& folder, const char* name) {

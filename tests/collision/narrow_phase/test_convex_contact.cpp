@@ -182,7 +182,6 @@ TEMPLATE_TEST_CASE_SIG("Filtered contacts of boxes are those of exact signs alon
     const MovingShape<Degree> b{other, path_b};
     const double t0 = pairs.start();
     const double horizon = pairs.horizon();
-    using Tests = ConvexContact<Degree>;
     const auto pieces = pieces_of(a, b);
     const bool inside = all_inside(pieces, t0);
     const double first = first_inside(pieces, t0, horizon);
@@ -192,15 +191,15 @@ TEMPLATE_TEST_CASE_SIG("Filtered contacts of boxes are those of exact signs alon
     PairMemory memory;
     if (random.one_in(2)) memory.axis = static_cast<std::uint8_t>(random.below(15));
     const ContactEstimate estimate = estimated_first_contact(x, y, t0, horizon, ContactMode::transparent, memory);
-    bool right = Tests::in_contact(x, y, t0) == inside &&
-                 Tests::first_contact(x, y, t0, horizon, ContactMode::transparent) == first &&
+    bool right = in_contact(x, y, t0) == inside &&
+                 first_contact(x, y, t0, horizon, ContactMode::transparent) == first &&
                  (estimate.exact ? estimate.time == first : estimate.time > t0 && estimate.time <= first);
     estimates += !estimate.exact;
     contacts += inside;
     meetings += first > t0 && first != never;
     if (first != never) {
       const double last = first_outside(pieces, first, horizon);
-      right = right && Tests::in_contact(x, y, first) && Tests::first_separation(x, y, first, horizon) == last;
+      right = right && in_contact(x, y, first) && first_separation(x, y, first, horizon) == last;
       partings += last != never;
     }
     if (!right) wrong.push_back(seed);

@@ -301,25 +301,24 @@ void on_the_clock(std::uint64_t seed, double epoch) {
     path_a.start = path_b.start = epoch;
     const MovingShape<Degree> a{shape_a, path_a};
     const MovingShape<Degree> b{shape_b, path_b};
-    using Test = MeshContact<Degree>;
-    const double begin = Test::first_contact(a, b, epoch, infinity, ContactMode::transparent);
-    REQUIRE(begin == Test::first_contact(b, a, epoch, infinity, ContactMode::transparent));
+    const double begin = first_contact(a, b, epoch, infinity, ContactMode::transparent);
+    REQUIRE(begin == first_contact(b, a, epoch, infinity, ContactMode::transparent));
     if (begin == infinity) continue;
     ++met;
     REQUIRE(begin >= epoch);
-    REQUIRE(Test::in_contact(a, b, begin));
-    if (begin > epoch) REQUIRE_FALSE(Test::in_contact(a, b, std::nextafter(begin, -infinity)));
-    REQUIRE(Test::first_contact(a, b, epoch, begin, ContactMode::transparent) == begin);
-    const Contact contact = Test::contact_at(a, b, begin);
-    const Contact reverse = Test::contact_at(b, a, begin);
+    REQUIRE(in_contact(a, b, begin));
+    if (begin > epoch) REQUIRE_FALSE(in_contact(a, b, std::nextafter(begin, -infinity)));
+    REQUIRE(first_contact(a, b, epoch, begin, ContactMode::transparent) == begin);
+    const Contact contact = contact_at(a, b, begin);
+    const Contact reverse = contact_at(b, a, begin);
     REQUIRE(contact.normal.norm() == Approx(1));
     REQUIRE((contact.normal + reverse.normal).norm() < 1e-9);
     REQUIRE(contact.normal.dot(path_b.velocity(begin) - path_a.velocity(begin)) < 0);
-    const double end = Test::first_separation(a, b, begin, infinity);
+    const double end = first_separation(a, b, begin, infinity);
     REQUIRE(end > begin);
     if (end == infinity) continue;
-    REQUIRE_FALSE(Test::in_contact(a, b, end));
-    const Contact last = Test::contact_at(a, b, end);
+    REQUIRE_FALSE(in_contact(a, b, end));
+    const Contact last = contact_at(a, b, end);
     REQUIRE(last.normal.norm() == Approx(1));
     // An elastic impulse: nothing more of this contact.
     const double t = begin;
@@ -327,7 +326,7 @@ void on_the_clock(std::uint64_t seed, double epoch) {
     PointMotion<Degree> after_b = path_b.restarted(t);
     const double approach = contact.normal.dot(after_b.coefficients[1] - after_a.coefficients[1]);
     after_b.coefficients[1] -= 2 * approach * contact.normal;
-    const double next = Test::first_contact({shape_a, after_a}, {shape_b, after_b}, t, infinity, ContactMode::resolved);
+    const double next = first_contact({shape_a, after_a}, {shape_b, after_b}, t, infinity, ContactMode::resolved);
     REQUIRE((next == infinity || next > t));
   }
   CHECK(met > 10);
@@ -352,15 +351,14 @@ TEST_CASE("A contact near clock 0 of bodies that have begun long before") {
       const PointMotion<1> path_b{{Vector3d::Zero(), Vector3d::UnitX()}, epoch};
       const MovingShape<1> a{placed(cuboid()), path_a};
       const MovingShape<1> b{place(Box{{0.5, 0.5, 0.5}}, Eigen::Quaterniond::Identity()), path_b};
-      using Test = MeshContact<1>;
-      const double begin = Test::first_contact(a, b, epoch, infinity, ContactMode::transparent);
+      const double begin = first_contact(a, b, epoch, infinity, ContactMode::transparent);
       CHECK(std::abs(begin) < 1e-13 * -epoch);
-      CHECK(Test::in_contact(a, b, begin));
-      CHECK_FALSE(Test::in_contact(a, b, std::nextafter(begin, -infinity)));
-      const double end = Test::first_separation(a, b, begin, infinity);
+      CHECK(in_contact(a, b, begin));
+      CHECK_FALSE(in_contact(a, b, std::nextafter(begin, -infinity)));
+      const double end = first_separation(a, b, begin, infinity);
       CHECK(end == Approx(1).margin(1e-4));  // within: a mesh is a surface
-      CHECK_FALSE(Test::in_contact(a, b, end));
-      CHECK(Test::in_contact(a, b, std::nextafter(end, -infinity)));
+      CHECK_FALSE(in_contact(a, b, end));
+      CHECK(in_contact(a, b, std::nextafter(end, -infinity)));
     }
   }
 }

@@ -1,7 +1,7 @@
 // Trees of oriented bounding boxes around the triangles of a mesh.
 #pragma once
 
-#include "collision/narrow_phase/lanes.hpp"
+#include "collision/lanes.hpp"
 
 #include <Eigen/Core>
 

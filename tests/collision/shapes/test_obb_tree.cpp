@@ -1,5 +1,5 @@
 #include "collision/narrow_phase/obb_descent.hpp"
-#include "collision/narrow_phase/obb_tree.hpp"
+#include "collision/shapes/obb_tree.hpp"
 #include "kds/audit.hpp"
 #include "tests/collision/sample_meshes.hpp"
 

@@ -1,4 +1,4 @@
-#include "collision/narrow_phase/obb_tree.hpp"
+#include "collision/shapes/obb_tree.hpp"
 
 #include "kds/audit.hpp"
 

@@ -1,0 +1,102 @@
+// The seam at which kinds of shapes meet: what is asked of a pair of them, as a table.
+#pragma once
+
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/shapes/shape.hpp"
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace kds::collision {
+
+/// The tests of two shapes of given kinds. They answer as the functions of narrow_phase.hpp.
+template <int Degree>
+struct PairTests {
+  using Body = MovingShape<Degree>;
+
+  double (*first_contact)(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch* found);
+  /// A time in [t0, never] before which there is no contact; later than the horizon if there is none until then.
+  double (*apart_until)(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
+  bool (*in_contact)(const Body& a, const Body& b, double t);
+  double (*first_separation)(const Body& a, const Body& b, double t0, double horizon);
+  Contact (*contact_at)(const Body& a, const Body& b, double t, const FoundTouch& found);
+};
+
+/// The tests of the kinds of two shapes.
+template <int Degree>
+const PairTests<Degree>& pair_tests(const PlacedShape& a, const PlacedShape& b);
+
+/// Tests, given as a struct of static functions with these names, of the same pair named the other way round.
+template <int Degree, class Tests>
+struct Swapped {
+  using Body = MovingShape<Degree>;
+
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
+                              FoundTouch* found) {
+    return Tests::first_contact(b, a, t0, horizon, mode, found);
+  }
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory) {
+    return Tests::apart_until(b, a, t0, horizon, memory);
+  }
+  static bool in_contact(const Body& a, const Body& b, double t) { return Tests::in_contact(b, a, t); }
+  static double first_separation(const Body& a, const Body& b, double t0, double horizon) {
+    return Tests::first_separation(b, a, t0, horizon);
+  }
+  static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch& found) {
+    Contact contact = Tests::contact_at(b, a, t, found);
+    contact.normal = -contact.normal;
+    std::swap(contact.feature_a, contact.feature_b);
+    return contact;
+  }
+};
+
+/// Pair tests by the kinds of a and b, the places of their shapes in the list of Shape.
+template <int Degree>
+class PairTable {
+ public:
+  static constexpr std::size_t kinds = std::variant_size_v<Shape>;
+
+  constexpr const PairTests<Degree>& of(std::size_t a, std::size_t b) const { return tests_[a][b]; }
+
+  /// Adds the tests of an A with each of the Others, and of them with it.
+  template <class A, class... Others, class Tests>
+  constexpr void add(Tests) {
+    (add_pair<A, Others, Tests>(), ...);
+  }
+
+  constexpr bool complete() const {
+    for (const auto& row : tests_) {
+      for (const auto& tests : row) {
+        if (!tests.first_contact) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  template <class Alternative>
+  static constexpr std::size_t kind_of() {
+    return []<class... Each>(std::type_identity<std::variant<Each...>>) {
+      std::size_t place = 0;
+      bool found = false;
+      ((found = found || std::is_same_v<Each, Alternative>, place += found ? 0 : 1), ...);
+      return place;
+    }(std::type_identity<Shape>{});
+  }
+  template <class Tests>
+  static constexpr PairTests<Degree> functions_of() {
+    return {Tests::first_contact, Tests::apart_until, Tests::in_contact, Tests::first_separation, Tests::contact_at};
+  }
+  template <class A, class B, class Tests>
+  constexpr void add_pair() {
+    tests_[kind_of<A>()][kind_of<B>()] = functions_of<Tests>();
+    if (!std::is_same_v<A, B>) tests_[kind_of<B>()][kind_of<A>()] = functions_of<Swapped<Degree, Tests>>();
+  }
+
+  std::array<std::array<PairTests<Degree>, kinds>, kinds> tests_{};
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,108 @@
+// Tests of convex shapes that penetrate in pieces of the space of their relative positions.
+#pragma once
+
+#include "collision/narrow_phase/gap_conditions.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/vectors.hpp"
+
+#include <algorithm>
+
+namespace kds::collision {
+
+/// Whether b moves towards a along the normal just after t.
+template <int Degree>
+bool approaching(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+  const double rate = dot(contact.normal, b.motion.velocity(contact.time) - a.motion.velocity(contact.time));
+  if (rate != 0) return rate < 0;
+  return dot(contact.normal, b.motion.acceleration(contact.time) - a.motion.acceleration(contact.time)) < 0;
+}
+
+/// When bodies that move apart along the contact's normal will turn towards each other.
+template <int Degree>
+double turning_time(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+  const double t = contact.time;
+  const double rate = dot(contact.normal, b.motion.velocity(t) - a.motion.velocity(t));
+  const double bend = dot(contact.normal, b.motion.acceleration(t) - a.motion.acceleration(t));
+  return bend < 0 ? std::max(next_up(t), t + rate / -bend) : never;
+}
+
+/// Where to begin to look for a contact that counts, from t0 on: later where the bodies have just been in contact, do
+/// not approach, and part before they turn. Exact signs would say whether they overlap by a rounding, and until when.
+template <class P, int Degree, class Where>
+double after_contact(const P& piece, const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
+                     const Where& where) {
+  const double opened = opened_after_touch(piece, t0);
+  if (opened == t0) return t0;
+  const Contact contact = where(t0);
+  return !approaching(contact, a, b) && turning_time(contact, a, b) > opened ? opened : t0;
+}
+
+/// First contact of one piece. `resolved` counts only the times at which the bodies approach.
+template <class P, int Degree, class Where>
+double first_piece_contact(const P& piece, const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
+                           double horizon, ContactMode mode, Where&& where) {
+  for (double t = mode == ContactMode::resolved ? after_contact(piece, a, b, t0, where) : t0;;) {
+    t = piece.first_inside(t, horizon);
+    if (t == never || mode == ContactMode::transparent) return t;
+    const Contact contact = where(t);
+    if (approaching(contact, a, b)) return t;
+    // Overlapping by rounding and moving apart: next when they have parted, or turn before they have.
+    t = std::min(piece.first_outside(t, horizon), turning_time(contact, a, b));
+    if (t == never || t > horizon) return never;
+  }
+}
+
+/// The tests (see pair_tests.hpp) of a pair whose relative positions in contact are a union of convex pieces.
+///
+/// `Pieces`: made of (a, b, now, horizon); `every_piece` and `earliest_pieces` of it are as those of BoxAndBall, and
+/// its pieces have `earliest`, `inside`, `first_inside` and `first_outside`. `where`: contact_at.
+template <int Degree, class Pieces, Contact (*where)(const MovingShape<Degree>&, const MovingShape<Degree>&, double)>
+struct PiecewiseContact {
+  using Body = MovingShape<Degree>;
+
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*) {
+    if (!(t0 <= horizon)) return never;
+    double first = never;
+    Pieces(a, b, t0, horizon).earliest_pieces(horizon, [&](const auto& piece) {
+      const auto contact = [&](double t) { return where(a, b, t); };
+      first = std::min(first, first_piece_contact(piece, a, b, t0, std::min(horizon, first), mode, contact));
+      return first;
+    });
+    return first;
+  }
+
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
+    if (!(t0 <= horizon)) return never;
+    double first = never;
+    Pieces(a, b, t0, horizon).earliest_pieces(horizon, [&](const auto& piece) {
+      return first = std::min(first, piece.earliest());
+    });
+    return first;
+  }
+
+  static bool in_contact(const Body& a, const Body& b, double t) {
+    bool inside = false;
+    Pieces(a, b, t, t).every_piece([&](const auto& piece) { return !(inside = piece.inside(t)); });
+    return inside;
+  }
+
+  /// Out of one piece may be into another: until no piece holds them.
+  static double first_separation(const Body& a, const Body& b, double t0, double horizon) {
+    const Pieces pair(a, b, t0, horizon);
+    double t = t0;
+    for (bool moved = true; moved && t != never;) {
+      moved = false;
+      pair.every_piece([&](const auto& piece) {
+        if (!piece.inside(t)) return true;
+        t = piece.first_outside(t, horizon);
+        moved = true;
+        return t != never;
+      });
+    }
+    return t;
+  }
+
+  static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch&) { return where(a, b, t); }
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,45 @@
+// Boxes as shapes.
+#pragma once
+
+#include "collision/shapes/shape_kind.hpp"
+#include "collision/vectors.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace kds::collision::detail {
+
+template <>
+struct ShapeKind<Box> {
+  static constexpr const char* name = "box";
+  static constexpr bool has_half_axes = true;
+
+  static void place(const Box& box, PlacedShape& placed) {
+    for (int d = 0; d < 3; ++d) require_size(box.half_extents[d], "half_extents");
+    for (int d = 0; d < 3; ++d) {
+      Eigen::Vector3d& half = placed.half_axes[static_cast<std::size_t>(d)];
+      half = placed.rotation.col(d) * box.half_extents[d];
+      placed.high += half.cwiseAbs();
+    }
+    placed.low = -placed.high;
+    if (!is_signed_permutation(placed.rotation)) grow(placed, rotation_margin * norm(placed.high));
+    placed.bounding_radius = norm(box.half_extents) * (1 + rotation_margin);
+  }
+
+  static std::array<double, 2> extent(const Box&, const PlacedShape& placed, const Eigen::Vector3d& direction) {
+    double reach = 0;
+    for (const Eigen::Vector3d& half : placed.half_axes) reach += std::abs(dot(direction, half));
+    reach += rotation_margin * placed.bounding_radius * (norm(direction) * (1 + rotation_margin));
+    return {-reach, reach};
+  }
+
+  static Eigen::Vector3d measures(const Box& box) { return box.half_extents; }
+
+  template <class Archive>
+  static void archive(Archive& archive, Box& box, PlacedShape& placed, const NumberedMeshes&) {
+    archive_vector(archive, box.half_extents);
+    for (Eigen::Vector3d& half : placed.half_axes) archive_vector(archive, half);
+  }
+};
+
+}  // namespace kds::collision::detail

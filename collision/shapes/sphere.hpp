@@ -1,0 +1,34 @@
+// Balls as shapes.
+#pragma once
+
+#include "collision/shapes/shape_kind.hpp"
+#include "collision/vectors.hpp"
+
+namespace kds::collision::detail {
+
+template <>
+struct ShapeKind<Sphere> {
+  static constexpr const char* name = "sphere";
+  static constexpr bool has_half_axes = false;
+
+  static void place(const Sphere& sphere, PlacedShape& placed) {
+    require_radius(sphere.radius);
+    placed.bounding_radius = sphere.radius;
+    placed.high.setConstant(sphere.radius);
+    placed.low = -placed.high;
+  }
+
+  static std::array<double, 2> extent(const Sphere& sphere, const PlacedShape&, const Eigen::Vector3d& direction) {
+    const double reach = sphere.radius * (norm(direction) * (1 + rotation_margin));
+    return {-reach, reach};
+  }
+
+  static Eigen::Vector3d measures(const Sphere& sphere) { return Eigen::Vector3d::Constant(sphere.radius); }
+
+  template <class Archive>
+  static void archive(Archive& archive, Sphere& sphere, PlacedShape&, const NumberedMeshes&) {
+    archive(sphere.radius);
+  }
+};
+
+}  // namespace kds::collision::detail
