@@ -1,7 +1,7 @@
 // A contact of two bodies.
 #pragma once
 
-#include "collision/narrow_phase/feature.hpp"
+#include "collision/shapes/feature.hpp"
 
 #include <Eigen/Core>
 
@@ -9,10 +9,10 @@ namespace kds::collision {
 
 /// When, where and how two bodies touch.
 struct Contact {
-  double time = 0;                                           ///< s
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();           ///< in world coordinates
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();         ///< unit, from a to b
-  Feature feature_a{};                                       ///< of a, what touches; none for spheres and walls
+  double time = 0;                                    ///< s
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< in world coordinates
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< unit, from a to b
+  Feature feature_a{};                                ///< of a, what touches; none for spheres and walls
   Feature feature_b{};
 };
 

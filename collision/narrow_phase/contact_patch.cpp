@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/contact_patch.hpp"
 
+#include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
@@ -11,10 +12,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-/// An edge of a box counts as across the direction when its sine is below this: a choice between naming, say, an
-/// edge and its end point, without effect on times.
-constexpr double parallel_sine = 0x1p-30;
 
 Vector3d mean(std::span<const Vector3d> points) {
   Vector3d sum = Vector3d::Zero();
@@ -60,63 +57,14 @@ std::vector<Vector3d> clip(const std::vector<Vector3d>& polygon, const Vector3d&
     const double d_here = dot(inward, here - from);
     const double d_next = dot(inward, next - from);
     if (d_here >= 0) kept.push_back(here);
-    if ((d_here < 0) != (d_next < 0)) kept.push_back(here + (next - here) * (d_here / (d_here - d_next)));
+    const bool there_and_back = polygon.size() == 2 && i == 1;  // a segment has one edge
+    if (!there_and_back && (d_here < 0) != (d_next < 0))
+      kept.push_back(here + (next - here) * (d_here / (d_here - d_next)));
   }
   return kept;
 }
 
 }  // namespace
-
-Feature box_feature(const BoxSide& side) {
-  const auto vertex = [](const BoxSide& s) {
-    std::uint32_t index = 0;
-    for (int d = 0; d < 3; ++d) index |= s[d] > 0 ? 1u << d : 0u;
-    return index;
-  };
-  const int free_axes = static_cast<int>((side.array() == 0).count());
-  Feature feature;
-  if (free_axes == 0) {
-    feature.kind = Feature::Kind::vertex;
-    feature.first = vertex(side);
-  } else if (free_axes == 1) {
-    BoxSide low = side, high = side;
-    for (int d = 0; d < 3; ++d) {
-      if (side[d] == 0) low[d] = -1, high[d] = 1;
-    }
-    feature.kind = Feature::Kind::edge;
-    feature.first = vertex(low);
-    feature.second = vertex(high);
-  } else {
-    feature.kind = Feature::Kind::face;
-    for (int d = 0; d < 3; ++d) {
-      if (side[d] != 0) feature.first = static_cast<std::uint32_t>(2 * d + (side[d] > 0));
-    }
-  }
-  return feature;
-}
-
-BoxSupport box_support(const PlacedShape& box, const Vector3d& direction) {
-  BoxSide side;
-  for (int d = 0; d < 3; ++d) {
-    const Vector3d& u = box.half_axes[static_cast<std::size_t>(d)];
-    const double along = dot(direction, u);
-    side[d] = std::abs(along) <= parallel_sine * norm(u) ? 0 : (along > 0 ? 1 : -1);
-  }
-  BoxSupport support{box_feature(side), {Vector3d::Zero()}};
-  for (int d = 0; d < 3; ++d) {
-    const Vector3d& u = box.half_axes[static_cast<std::size_t>(d)];
-    if (side[d] != 0) {
-      for (Vector3d& v : support.vertices) v += side[d] * u;
-      continue;
-    }
-    // Out along -u, back along +u: the four corners of a face come in cyclic order.
-    std::vector<Vector3d> doubled;
-    for (const Vector3d& v : support.vertices) doubled.push_back(v - u);
-    for (auto v = support.vertices.rbegin(); v != support.vertices.rend(); ++v) doubled.push_back(*v + u);
-    support.vertices = std::move(doubled);
-  }
-  return support;
-}
 
 Vector3d patch_centre(std::span<const Vector3d> a, std::span<const Vector3d> b, const Vector3d& offset,
                       const Vector3d& normal) {

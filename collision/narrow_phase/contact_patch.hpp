@@ -1,30 +1,11 @@
-// Where two touching polyhedra meet: supporting features and the middle of what they share.
+// Where two touching shapes meet: the middle of what their supporting features share.
 #pragma once
-
-#include "collision/narrow_phase/feature.hpp"
-#include "collision/shapes/shape.hpp"
 
 #include <Eigen/Core>
 
-#include <array>
-#include <cstdint>
 #include <span>
-#include <vector>
 
 namespace kds::collision {
-
-/// A vertex, edge or face of a box: per axis +1 or -1 for a side, 0 for "anywhere along it".
-using BoxSide = Eigen::Matrix<int, 3, 1>;
-
-/// Numbered as Feature says.
-Feature box_feature(const BoxSide& side);
-
-/// The part of a box farthest along a direction.
-struct BoxSupport {
-  Feature feature;
-  std::vector<Eigen::Vector3d> vertices;  ///< relative to the centre; 1, 2, or 4 in cyclic order
-};
-BoxSupport box_support(const PlacedShape& box, const Eigen::Vector3d& direction);
 
 /// Middle of what two supporting features share, seen along the contact normal. The vertices of `b` are relative to a
 /// centre that lies at `offset` from that of `a`; the result is relative to the centre of `a`, halfway between the

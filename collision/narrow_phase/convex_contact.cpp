@@ -3,6 +3,7 @@
 #include "certificates/ball_separation.hpp"
 #include "collision/narrow_phase/box_and_box.hpp"
 #include "collision/narrow_phase/contact_patch.hpp"
+#include "collision/shapes/box.hpp"
 #include "collision/shapes/rotation.hpp"
 #include "collision/vectors.hpp"
 
@@ -44,8 +45,8 @@ Contact box_box_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
     }
     return true;
   });
-  const BoxSupport of_a = box_support(a.shape, contact.normal);
-  const BoxSupport of_b = box_support(b.shape, -contact.normal);
+  const SupportingFeature of_a = supporting_feature(a.shape, contact.normal);
+  const SupportingFeature of_b = supporting_feature(b.shape, -contact.normal);
   contact.feature_a = of_a.feature;
   contact.feature_b = of_b.feature;
   contact.point = a.motion.position(t) + patch_centre(of_a.vertices, of_b.vertices, apart, contact.normal);

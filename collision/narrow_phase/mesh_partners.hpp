@@ -2,9 +2,9 @@
 #pragma once
 
 #include "collision/narrow_phase/ball_touch.hpp"
-#include "collision/narrow_phase/feature.hpp"
 #include "collision/narrow_phase/obb_descent.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
+#include "collision/shapes/feature.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
 

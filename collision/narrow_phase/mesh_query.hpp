@@ -12,6 +12,7 @@
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/Core>
@@ -245,7 +246,7 @@ class Query : private PairTimes<Degree> {
         where.point = patch_centre(of_a.vertices, of_b.vertices, offset, direction.normal);
       };
       if constexpr (Partner::solid) {
-        finish(box_support(shape_b_, -direction.normal));
+        finish(supporting_feature(shape_b_, -direction.normal));
       } else {
         const LeafTriangle leaf_b{b_.mesh.triangles()[j], j};
         finish(triangle_support(b_.triangle(leaf_b), leaf_b, -direction.normal, tolerance));

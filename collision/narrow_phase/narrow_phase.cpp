@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 
+#include "collision/narrow_phase/capsule_contact.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
 #include "collision/narrow_phase/pair_tests.hpp"
@@ -14,7 +15,8 @@ constexpr PairTable<Degree> make_table() {
   table.template add<Sphere, Sphere>(BallsContact<Degree>{});
   table.template add<Box, Sphere>(BoxBallContact<Degree>{});
   table.template add<Box, Box>(BoxesContact<Degree>{});
-  table.template add<MeshShape, Sphere, Box, MeshShape>(MeshContact<Degree>{});
+  table.template add<Capsule, Sphere, Box, Capsule>(CapsuleContact<Degree>{});
+  table.template add<MeshShape, Sphere, Box, Capsule, MeshShape>(MeshContact<Degree>{});
   return table;
 }
 

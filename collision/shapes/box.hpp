@@ -7,7 +7,15 @@
 #include <cmath>
 #include <cstddef>
 
-namespace kds::collision::detail {
+namespace kds::collision {
+
+/// A vertex, edge or face of a box: per axis +1 or -1 for a side, 0 for "anywhere along it".
+using BoxSide = Eigen::Matrix<int, 3, 1>;
+
+/// Numbered as Feature says.
+Feature box_feature(const BoxSide& side);
+
+namespace detail {
 
 template <>
 struct ShapeKind<Box> {
@@ -35,6 +43,14 @@ struct ShapeKind<Box> {
 
   static Eigen::Vector3d measures(const Box& box) { return box.half_extents; }
 
+  static SupportingFeature support(const Box&, const PlacedShape& placed, const Eigen::Vector3d& direction);
+
+  static RoundedCore core(const Box& box, const PlacedShape& placed) {
+    RoundedCore core;
+    for (int d = 0; d < 3; ++d) core.generators.push_back({placed.rotation.col(d), box.half_extents[d]});
+    return core;
+  }
+
   template <class Archive>
   static void archive(Archive& archive, Box& box, PlacedShape& placed, const NumberedMeshes&) {
     archive_vector(archive, box.half_extents);
@@ -42,4 +58,6 @@ struct ShapeKind<Box> {
   }
 };
 
-}  // namespace kds::collision::detail
+}  // namespace detail
+
+}  // namespace kds::collision

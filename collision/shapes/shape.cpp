@@ -1,6 +1,7 @@
 #include "collision/shapes/shape.hpp"
 
 #include "collision/shapes/box.hpp"
+#include "collision/shapes/capsule.hpp"
 #include "collision/shapes/mesh_shape.hpp"
 #include "collision/shapes/number_text.hpp"
 #include "collision/shapes/sphere.hpp"
@@ -25,6 +26,10 @@ template <class Ask>
 auto of_kind(const Shape& shape, const Ask& ask) {
   return std::visit([&](const auto& each) { return ask(detail::ShapeKind<std::decay_t<decltype(each)>>{}, each); },
                     shape);
+}
+
+[[noreturn]] void refuse(const char* kind, const char* function) {
+  throw std::logic_error(std::string(function) + ": asked of a " + kind);
 }
 
 }  // namespace
@@ -80,6 +85,26 @@ bool is_placed(const PlacedShape& shape) {
 
 std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction) {
   return of_kind(shape.shape, [&](auto kind, const auto& each) { return kind.extent(each, shape, direction); });
+}
+
+SupportingFeature supporting_feature(const PlacedShape& shape, const Eigen::Vector3d& direction) {
+  return of_kind(shape.shape, [&](auto kind, const auto& each) -> SupportingFeature {
+    if constexpr (requires { kind.support(each, shape, direction); }) {
+      return kind.support(each, shape, direction);
+    } else {
+      refuse(kind.name, "supporting_feature");
+    }
+  });
+}
+
+RoundedCore rounded_core(const PlacedShape& shape) {
+  return of_kind(shape.shape, [&](auto kind, const auto& each) -> RoundedCore {
+    if constexpr (requires { kind.core(each, shape); }) {
+      return kind.core(each, shape);
+    } else {
+      refuse(kind.name, "rounded_core");
+    }
+  });
 }
 
 const char* kind_name(const Shape& shape) {

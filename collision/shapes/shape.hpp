@@ -11,6 +11,7 @@
 namespace kds::collision {
 
 class Mesh;
+struct RoundedCore;
 
 /// What numbers may be, in any units: sizes and masses from smallest_size to largest_magnitude; coordinates, speeds and
 /// halves of accelerations 0 or anything up to largest_magnitude, and times of the clock too. In this range squares of
@@ -39,15 +40,23 @@ struct MeshShape {
   double scale = 1;
 };
 
+/// All that is nearer than `radius` > 0 to the segment of the length 2 `half_length` on the z axis of the body, whose
+/// middle is its centre. In units of length. A half length of 0 makes a ball: it is placed as the Sphere that it is.
+struct Capsule {
+  double radius;
+  double half_length;
+};
+
 /// Each kind says in a file of its own what the functions below have to know of it: sphere.hpp, box.hpp,
 /// mesh_shape.hpp. To add one: a struct, its place in this list, its file, and its row in the table of pair tests
 /// (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
-using Shape = std::variant<Sphere, Box, MeshShape>;
+using Shape = std::variant<Sphere, Box, MeshShape, Capsule>;
 
-/// "sphere", "box", "mesh".
+/// "sphere", "box", "mesh", "capsule".
 const char* kind_name(const Shape& shape);
 
-/// The numbers of the shape: half of what a model of it measures along its own axes, or of a mesh its scale, thrice.
+/// The numbers of the shape: half of what it measures along its own axes; of a mesh its scale, thrice; of a capsule its
+/// radius twice, and its half length.
 Eigen::Vector3d measures(const Shape& shape);
 
 /// The radius of what looks alike from all sides; 0 of other shapes.
@@ -85,6 +94,9 @@ PlacedShape place(const Shape& shape, const Eigen::Quaterniond& orientation);
 PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation);
 /// Whether it is what place_turned() makes of its shape and rotation, which throws if they cannot be placed.
 bool is_placed(const PlacedShape& shape);
+
+/// The shape as a zonotope grown by a radius. Precondition: it is no mesh.
+RoundedCore rounded_core(const PlacedShape& shape);
 
 /// From where to where the shape reaches about its centre along a direction: least and greatest direction . x, rounded
 /// outward, with the margin of its bounding box; in units of length times that of the direction. Of a mesh it costs a

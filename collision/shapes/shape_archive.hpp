@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/shapes/box.hpp"
+#include "collision/shapes/capsule.hpp"
 #include "collision/shapes/mesh_shape.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/shapes/sphere.hpp"

@@ -1,7 +1,9 @@
 // What each kind of shape says of itself, for shape.cpp to pass on.
 #pragma once
 
+#include "collision/shapes/rounded_core.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/shapes/support.hpp"
 
 #include <Eigen/Core>
 
@@ -30,6 +32,8 @@ inline void grow(PlacedShape& placed, double margin) {
 /// - `place(shape, placed)`: checks the numbers of the shape, naming the member that is wrong in std::invalid_argument,
 ///   and fills in the bounds and axes of `placed`, whose shape and rotation are there already;
 /// - `extent(shape, placed, direction)`: see extent() in shape.hpp;
+/// - `support(shape, placed, direction)`: see supporting_feature() in support.hpp; none for meshes;
+/// - `core(shape, placed)`: see rounded_core() in shape.hpp; none for meshes;
 /// - `measures(shape)`: see measures() in shape.hpp;
 /// - `archive(archive, shape, placed, meshes)`: for snapshots, the numbers of the shape, and what is not a function of
 ///   them and of the rotation to the last bit. A mesh is named by its number among the meshes of the snapshot.

@@ -25,6 +25,12 @@ struct ShapeKind<Sphere> {
 
   static Eigen::Vector3d measures(const Sphere& sphere) { return Eigen::Vector3d::Constant(sphere.radius); }
 
+  static SupportingFeature support(const Sphere& sphere, const PlacedShape&, const Eigen::Vector3d& direction) {
+    return {{}, {sphere.radius * direction}};
+  }
+
+  static RoundedCore core(const Sphere& sphere, const PlacedShape&) { return {{}, sphere.radius}; }
+
   template <class Archive>
   static void archive(Archive& archive, Sphere& sphere, PlacedShape&, const NumberedMeshes&) {
     archive(sphere.radius);

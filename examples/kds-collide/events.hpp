@@ -1,7 +1,7 @@
 // What a run tells while it goes on.
 #pragma once
 
-#include "collision/narrow_phase/feature.hpp"
+#include "collision/shapes/feature.hpp"
 #include "examples/kds-collide/scene.hpp"
 
 #include <Eigen/Core>

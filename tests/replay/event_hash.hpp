@@ -1,7 +1,7 @@
 // A hash of everything an event log says, bit for bit, and the log itself in hexadecimal for when hashes differ.
 #pragma once
 
-#include "collision/narrow_phase/feature.hpp"
+#include "collision/shapes/feature.hpp"
 #include "tests/collision/event_log.hpp"
 
 #include <bit>

@@ -1,4 +1,4 @@
-#include "collision/narrow_phase/feature.hpp"
+#include "collision/shapes/feature.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "tests/collision/sample_meshes.hpp"
 

@@ -1,0 +1,23 @@
+// Dynamic tests of capsules with balls, capsules and boxes, by exact signs.
+#pragma once
+
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/piecewise_contact.hpp"
+#include "collision/narrow_phase/rounded_zonotope.hpp"
+
+namespace kds::collision {
+
+/// How two shapes that have a rounded_core() touch, in doubles: the normal leads from the nearest point of the zonotope
+/// that is the difference of their cores to the place of b; where the cores overlap, out of its nearest face. The point
+/// is in the middle of what both turn towards each other, as for boxes.
+template <int Degree>
+Contact rounded_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+
+/// The tests (see pair_tests.hpp) of a capsule with a ball, a capsule or a box.
+template <int Degree>
+using CapsuleContact = PiecewiseContact<Degree, RoundedZonotope<Degree>, rounded_contact<Degree>>;
+
+extern template Contact rounded_contact(const MovingShape<1>&, const MovingShape<1>&, double);
+extern template Contact rounded_contact(const MovingShape<2>&, const MovingShape<2>&, double);
+
+}  // namespace kds::collision
