@@ -31,6 +31,7 @@ auto MeshPair<Degree>::ask(const Question& question) const {
     constexpr int degree = static_cast<int>(std::tuple_size_v<std::decay_t<decltype(gap.c)>>) - 1;
     if (std::holds_alternative<Sphere>(b_.shape)) return question(Query<degree, BallPartner>(a_, b_, motion, gap));
     if (std::holds_alternative<Box>(b_.shape)) return question(Query<degree, BoxPartner>(a_, b_, motion, gap));
+    if (std::holds_alternative<Capsule>(b_.shape)) return question(Query<degree, CapsulePartner>(a_, b_, motion, gap));
     return question(Query<degree, PlacedMesh>(a_, b_, motion, gap));
   };
   if constexpr (Degree == 2) {

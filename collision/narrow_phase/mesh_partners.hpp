@@ -2,6 +2,8 @@
 #pragma once
 
 #include "collision/narrow_phase/ball_touch.hpp"
+#include "collision/narrow_phase/capsule_touch.hpp"
+#include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/obb_descent.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/shapes/feature.hpp"
@@ -17,7 +19,7 @@
 
 namespace kds::collision::detail {
 
-// ---- The three kinds of b ------------------------------------------------------------------------------------------
+// ---- The kinds of b ------------------------------------------------------------------------------------------------
 
 /// A mesh in the orientation and scale of its body.
 struct PlacedMesh {
@@ -27,6 +29,8 @@ struct PlacedMesh {
       : mesh(m), scale(s), pose{m.tree().nodes(), s * m.tree().unit(), rotation} {}
 
   using Part = PlacedTriangle;
+  template <int Degree>
+  using Touching = ConvexTouch<Degree, Part>;
   static constexpr bool solid = false;
 
   PlacedTriangle triangle(const LeafTriangle& leaf) const {
@@ -59,6 +63,8 @@ struct BoxPartner {
   BoxPartner& operator=(const BoxPartner&) = delete;
 
   using Part = PlacedBox;
+  template <int Degree>
+  using Touching = ConvexTouch<Degree, Part>;
   static constexpr bool solid = true;
 
   static ObbNode node_of(const Eigen::Vector3d& half_extents) {
@@ -76,10 +82,40 @@ struct BoxPartner {
   TreePose pose;
 };
 
+/// A capsule: for the tree it is the box around it.
+struct CapsulePartner {
+  explicit CapsulePartner(const PlacedShape& shape) : CapsulePartner(shape, std::get<Capsule>(shape.shape)) {}
+  CapsulePartner(const CapsulePartner&) = delete;  // pose refers to node
+  CapsulePartner& operator=(const CapsulePartner&) = delete;
+
+  using Part = PlacedCapsule;
+  template <int Degree>
+  using Touching = CapsuleTouch<Degree>;
+  static constexpr bool solid = true;
+
+  template <class Visit>
+  void each(const ObbNode&, const Visit& visit) const {
+    visit(0u, part);
+  }
+
+  PlacedCapsule part;
+  ObbNode node;
+  TreePose pose;
+
+ private:
+  CapsulePartner(const PlacedShape& shape, const Capsule& capsule)
+      : part{capsule.half_length * shape.rotation.col(2), capsule.radius},
+        node(BoxPartner::node_of(Eigen::Vector3d(capsule.radius, capsule.radius, capsule.half_length + capsule.radius) /
+                                 shape.bounding_radius)),
+        pose{{&node, 1}, shape.bounding_radius, shape.rotation} {}
+};
+
 struct BallPartner {
   explicit BallPartner(const PlacedShape& shape) : part{std::get<Sphere>(shape.shape).radius} {}
 
   using Part = PlacedBall;
+  template <int Degree>
+  using Touching = BallTouch<Degree>;
 
   PlacedBall part;
 };
@@ -105,6 +141,12 @@ inline Support triangle_support(const PlacedTriangle& placed, const LeafTriangle
                     : names.size() == 2 ? Feature::edge(names[0], names[1])
                                         : Feature::face(leaf.index);
   return support;
+}
+
+/// An end of a capsule, or its side.
+inline Feature capsule_feature(const NearestStretch& nearest) {
+  if (nearest.high == -1) return Feature::vertex(0);
+  return nearest.low == 1 ? Feature::vertex(1) : Feature::edge(0, 1);
 }
 
 inline Feature nearest_feature(const NearestPoint& nearest, const LeafTriangle& leaf) {

@@ -33,7 +33,9 @@ class Query : private PairTimes<Degree> {
  public:
   using Part = typename Partner::Part;
   static constexpr bool with_ball = std::is_same_v<Part, PlacedBall>;
-  using Touching = std::conditional_t<with_ball, BallTouch<Degree>, ConvexTouch<Degree, Part>>;
+  using Touching = typename Partner::template Touching<Degree>;
+  /// Times are those of convex pieces, of which those are made that matter within a window.
+  static constexpr bool in_pieces = !std::is_same_v<Touching, ConvexTouch<Degree, Part>>;
 
   Query(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap)
       : PairTimes<Degree>(motion, gap, a.bounding_radius + b.bounding_radius), a_(a), b_(b), shape_b_(b) {}
@@ -155,7 +157,7 @@ class Query : private PairTimes<Degree> {
 
   /// Good for times in the window.
   Touching touching_of(const PlacedTriangle& triangle, const Part& part, const TimeWindow& window) const {
-    if constexpr (with_ball) {
+    if constexpr (in_pieces) {
       return Touching(triangle, part, motion_, gap_, sharp(), last_, window);
     } else {
       return Touching(triangle, part, motion_, gap_, sharp());
@@ -178,7 +180,7 @@ class Query : private PairTimes<Degree> {
   /// The same of two parts that touch, if at all, within a window.
   double first_time(const PlacedTriangle& triangle, const Part& part, TimeWindow window, double tau0, ContactMode mode,
                     double& passed_over) const {
-    if constexpr (Degree == 1 && !with_ball) {
+    if constexpr (Degree == 1 && !in_pieces) {
       return first_time(Touching(triangle, part, motion_, gap_, sharp(), window), tau0, window.end, mode, passed_over);
     } else {
       if (!may_touch(triangle, part, motion_, margin_, window)) return TimeSpans::infinity;
@@ -237,6 +239,11 @@ class Query : private PairTimes<Degree> {
       const NearestPoint nearest = nearest_point(triangle, offset);
       where.point = nearest.point;
       where.feature_a = nearest_feature(nearest, leaf_a);
+    } else if constexpr (std::is_same_v<Part, PlacedCapsule>) {
+      const NearestStretch nearest = nearest_stretch(triangle, offset, b_.part.half, gap_(tau));
+      where.point = nearest.point;
+      where.feature_a = nearest_feature(nearest_point(triangle, nearest.core), leaf_a);
+      where.feature_b = capsule_feature(nearest);
     } else {
       const double tolerance = gap_(tau);
       const Support of_a = triangle_support(triangle, leaf_a, direction.normal, tolerance);

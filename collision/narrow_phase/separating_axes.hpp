@@ -54,6 +54,17 @@ struct PlacedBall {
   }
 };
 
+/// All that is nearer than a radius to a segment about its centre.
+struct PlacedCapsule {
+  Eigen::Vector3d half;  ///< of the segment
+  double radius;
+
+  Interval project(const Eigen::Vector3d& axis) const {
+    const double reach = std::abs(dot(axis, half)) + radius * std::sqrt(dot(axis, axis));
+    return {-reach, reach};
+  }
+};
+
 inline Interval interval(double x, double y) { return x < y ? Interval{x, y} : Interval{y, x}; }
 
 /// Calls test(axis, interval of a, interval of b) for the directions that can separate the two, until it says false;
@@ -140,6 +151,22 @@ bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
   }
   for (const auto& e : u) {
     if (!try_axis(cross(e, normal))) return false;
+  }
+  return true;
+}
+
+/// A triangle and a capsule: as for a ball, and what is across the capsule and the edges.
+template <class Test>
+bool every_axis(const PlacedTriangle& a, const PlacedCapsule& b, Test&& test) {
+  const auto try_axis = [&](const Eigen::Vector3d& axis) { return test(axis, a.project(axis), b.project(axis)); };
+  const std::array<Eigen::Vector3d, 3> u{a.edge(0), a.edge(1), a.edge(2)};
+  const Eigen::Vector3d normal = cross(u[0], u[1]);
+  if (!try_axis(normal)) return false;
+  for (int d = 0; d < 3; ++d) {
+    if (!try_axis(Eigen::Vector3d::Unit(d))) return false;
+  }
+  for (const auto& e : u) {
+    if (!try_axis(cross(e, normal)) || !try_axis(cross(e, b.half))) return false;
   }
   return true;
 }

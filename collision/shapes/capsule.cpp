@@ -4,6 +4,7 @@
 #include "collision/vectors.hpp"
 #include "kds/arithmetic/double_double.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -44,7 +45,9 @@ SupportingFeature ShapeKind<Capsule>::support(const Capsule& capsule, const Plac
   const Eigen::Vector3d half = capsule.half_length * axis;
   const Eigen::Vector3d out = capsule.radius * direction;
   const double along = dot(direction, axis);
-  if (std::abs(along) <= parallel_sine) return {Feature::edge(0, 1), {out - half, out + half}};
+  // Directions that lead from one thing to another that is a radius away are known the less, the thinner the capsule.
+  const double rounding = 64 * 0x1p-52 * (capsule.half_length / capsule.radius);
+  if (std::abs(along) <= std::max(parallel_sine, rounding)) return {Feature::edge(0, 1), {out - half, out + half}};
   return along < 0 ? SupportingFeature{Feature::vertex(0), {out - half}}
                    : SupportingFeature{Feature::vertex(1), {out + half}};
 }

@@ -56,6 +56,13 @@ double JsonNode::positive() const {
   return x;
 }
 
+double JsonNode::length() const {
+  const double x = number();
+  require(x >= 0, "must be >= 0");
+  require(x == 0 || x >= smallest_size, "must be 0, or at least " + number_text(smallest_size));
+  return x;
+}
+
 double JsonNode::fraction() const {
   const double x = number();
   require(x >= 0 && x <= 1, "must be in [0, 1]");

@@ -39,6 +39,7 @@ class JsonNode {
 
   double number() const;    ///< of magnitude up to largest_number
   double positive() const;  ///< from smallest_size on
+  double length() const;    ///< the same, or 0
   double fraction() const;  ///< in [0, 1]
   Eigen::Vector3d vector() const;
   std::string string() const;  ///< not empty, without control characters

@@ -41,19 +41,26 @@ std::shared_ptr<const kds::collision::Mesh> read_mesh(const JsonNode& node, cons
   }
 }
 
-kds::collision::Shape read_shape(const JsonNode& node, const std::vector<SceneMesh>& meshes) {
-  node.object({"sphere", "box", "mesh", "scale"});
-  const int kinds = int{node.has("sphere")} + int{node.has("box")} + int{node.has("mesh")};
-  if (kinds != 1) node.fail("must have exactly one of \"sphere\", \"box\" and \"mesh\"");
-  if (node.has("scale") && !node.has("mesh")) node["scale"].fail("is for meshes only");
-  if (node.has("sphere")) {
-    return kds::collision::Sphere{node["sphere"].object({"radius"})["radius"].positive()};
-  }
-  if (node.has("box")) {
-    const JsonNode half = node["box"].object({"half_extents"})["half_extents"];
-    const std::vector<JsonNode> parts = half.tuple(3);
-    return kds::collision::Box{{parts[0].positive(), parts[1].positive(), parts[2].positive()}};
-  }
+using kds::collision::Shape;
+using Meshes = std::vector<SceneMesh>;
+
+Shape read_sphere(const JsonNode& node, const Meshes&) {
+  return kds::collision::Sphere{node["sphere"].object({"radius"})["radius"].positive()};
+}
+
+Shape read_box(const JsonNode& node, const Meshes&) {
+  const JsonNode half = node["box"].object({"half_extents"})["half_extents"];
+  const std::vector<JsonNode> parts = half.tuple(3);
+  return kds::collision::Box{{parts[0].positive(), parts[1].positive(), parts[2].positive()}};
+}
+
+Shape read_capsule(const JsonNode& node, const Meshes&) {
+  const JsonNode capsule = node["capsule"];
+  capsule.object({"radius", "half_length"});
+  return kds::collision::Capsule{capsule["radius"].positive(), capsule["half_length"].length()};
+}
+
+Shape read_mesh_shape(const JsonNode& node, const Meshes& meshes) {
   const std::string name = node["mesh"].string();
   const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const SceneMesh& m) { return m.name == name; });
   if (found == meshes.end()) node["mesh"].fail("there is no mesh \"" + name + "\" in \"meshes\"");
@@ -67,6 +74,27 @@ kds::collision::Shape read_shape(const JsonNode& node, const std::vector<SceneMe
                                                     " is supported");
   }
   return kds::collision::MeshShape{found->mesh, scale};
+}
+
+struct ShapeReader {
+  const char* key;
+  Shape (*read)(const JsonNode& node, const Meshes& meshes);
+};
+constexpr const char* one_shape = "must have exactly one of \"sphere\", \"box\", \"mesh\" and \"capsule\"";
+constexpr ShapeReader shape_readers[] = {
+    {"sphere", read_sphere}, {"box", read_box}, {"mesh", read_mesh_shape}, {"capsule", read_capsule}};
+
+Shape read_shape(const JsonNode& node, const Meshes& meshes) {
+  node.object({"sphere", "box", "mesh", "capsule", "scale"});
+  const ShapeReader* found = nullptr;
+  for (const ShapeReader& each : shape_readers) {
+    if (!node.has(each.key)) continue;
+    if (found) node.fail(one_shape);
+    found = &each;
+  }
+  if (!found) node.fail(one_shape);
+  if (node.has("scale") && !node.has("mesh")) node["scale"].fail("is for meshes only");
+  return found->read(node, meshes);
 }
 
 Eigen::Quaterniond read_orientation(const JsonNode& node) {

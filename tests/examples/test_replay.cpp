@@ -52,6 +52,17 @@ TEST_CASE("replay: the record holds pieces of motion and contacts, counted from 
   CHECK(data["touches"] == json::parse("[[1,0,0,1]]"));
 }
 
+TEST_CASE("replay: shapes by their names and measures") {
+  Scene scene = scene_of_two();
+  scene.bodies[0].shape = kds::collision::Box{{1, 2, 3}};
+  scene.bodies[1].shape = kds::collision::Capsule{0.5, 2};
+  const json data = json::parse(ReplayRecorder(scene).to_json("a"));
+  CHECK(data["bodies"][0]["shape"] == "box");
+  CHECK(data["bodies"][0]["size"] == json::parse("[1,2,3]"));
+  CHECK(data["bodies"][1]["shape"] == "capsule");
+  CHECK(data["bodies"][1]["size"] == json::parse("[0.5,0.5,2]"));
+}
+
 TEST_CASE("replay: a change of motion stands before the pieces of the script that come after it") {
   Scene scene = scene_of_two();
   MotionPiece piece = scene.bodies[0].motion[0];

@@ -47,6 +47,18 @@ TEST_CASE("scene reader: a valid scene is read as it says") {
   CHECK(c.motion[1].start == 0.5);
 }
 
+TEST_CASE("scene reader: a capsule, and one of no length") {
+  const auto read = [](const std::string& numbers) {
+    const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "bodies": [{"name": "a", "shape": {"capsule": {)" +
+                                        numbers + R"(}}, "motion": [{"start": 0, "position": [[0,0,0]]}]}]})",
+                                    "scene.json");
+    return std::get<kds::collision::Capsule>(scene.bodies[0].shape);
+  };
+  CHECK(read(R"("radius": 0.5, "half_length": 2)").radius == 0.5);
+  CHECK(read(R"("radius": 0.5, "half_length": 2)").half_length == 2);
+  CHECK(read(R"("radius": 0.5, "half_length": 0)").half_length == 0);
+}
+
 TEST_CASE("scene reader: keys that may be left out") {
   const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "bodies": []})", "scene.json");
   CHECK(scene.response == Response::none);

@@ -132,6 +132,7 @@ void add_bounces(std::vector<Replay>& replays) {
   options.response = Response::elastic;
   replays.push_back(with_each_broad_phase<2>("bounces", options, [] { return bouncing_scene(); }));
   replays.push_back(with_each_broad_phase<2>("rest", options, [] { return resting_scene(); }));
+  replays.push_back(with_each_broad_phase<2>("capsules", options, [] { return capsule_scene(); }));
 }
 
 std::vector<Replay> all_replays() {

@@ -82,6 +82,34 @@ inline Scene<2> bouncing_scene() {
   return scene;
 }
 
+/// Capsules, two of them parallel, dropped on a floor, on a fixed box and ring, and on each other, some without
+/// rebound.
+inline Scene<2> capsule_scene() {
+  Scene<2> scene;
+  scene.end_time = 4;
+  const Vector3d gravity(0, 0, -4.905);
+  const auto along_x = unit_quaternion(0.5, 0.5, 0.5, 0.5);
+  scene.bodies.push_back(fixed_body<2>(Box{{6, 6, 1}}, motion<2>({0, 0, -1})));
+  auto ring = fixed_body<2>(MeshShape{rational_torus(), 1}, motion<2>({-3, -3, 0.5}));
+  ring.orientation = unit_quaternion(0.9, -0.4, 0.1, 0.1);
+  scene.bodies.push_back(ring);
+  auto bar = fixed_body<2>(Capsule{0.25, 2}, motion<2>({2, 0, 1}));
+  bar.orientation = along_x;
+  scene.bodies.push_back(bar);
+  scene.bodies.push_back(ball<2>(0.25, {2.5, 0.125, 4}, zero, gravity));
+  for (int i = 0; i < 8; ++i) {
+    const double column = i % 4, row = i / 4;
+    auto capsule =
+        body<2>(Capsule{0.25 + 0.0625 * i, i % 3 == 0 ? 0.125 : 0.5},
+                motion<2>({2 * column - 3, 0.25 * column + row - 3, 2.5 + 2 * row}, {0.125, 0.25, 0}, gravity));
+    if (i % 4 == 1) capsule.orientation = along_x;
+    if (i % 4 >= 2) capsule.orientation = unit_quaternion(0.9, 0.1 * i, 0.3, -0.3);
+    capsule.restitution = i % 2 == 0 ? 1 : 0.5;
+    scene.bodies.push_back(capsule);
+  }
+  return scene;
+}
+
 /// Balls that fall without rebound on a bed of fixed ones, uneven, and come to lie in its hollows and on each other.
 inline Scene<2> resting_scene() {
   Random random(3);

@@ -14,7 +14,7 @@ enum class Cubes {
   facing,  ///< of one size, every other one not turned: faces that meet at once
 };
 
-/// A ring, a cube of triangles, a solid box or a ball: kinds 0 to 3, of which the first two are meshes.
+/// A ring, a cube of triangles, a solid box, a ball or a capsule: kinds 0 to 4, of which the first two are meshes.
 inline PlacedShape shape_of_kind(Random& random, std::uint32_t kind, Cubes cubes = Cubes::any) {
   static const auto ring = torus(8, 4);
   static const auto cube = cuboid();
@@ -27,8 +27,10 @@ inline PlacedShape shape_of_kind(Random& random, std::uint32_t kind, Cubes cubes
       return place(MeshShape{cube, 0.5}, random.below(2) == 0 ? Eigen::Quaterniond::Identity() : random.orientation());
     case 2:
       return place(Box{{size, 0.5 * size, 0.7 * size}}, random.orientation());
-    default:
+    case 3:
       return placed_ball(size);
+    default:
+      return place(Capsule{0.5 * size, 0.7 * size}, random.orientation());
   }
 }
 

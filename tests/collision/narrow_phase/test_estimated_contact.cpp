@@ -25,7 +25,7 @@ TEMPLATE_TEST_CASE_SIG("Until its estimate a pair with a mesh needs no test", "[
     Random random(seed);
     const double clock = random.below(4) == 0 ? 0x1p20 : 0.0;
     const PlacedShape mesh = samples::shape_of_kind(random, random.below(2));
-    const PlacedShape other = samples::shape_of_kind(random, random.below(4));
+    const PlacedShape other = samples::shape_of_kind(random, random.below(5));
     const auto path_a = samples::random_path<Degree>(random, clock, 2);
     auto path_b = samples::random_path<Degree>(random, clock, 2);
     path_b.coefficients[1] += path_a.coefficients[0] - path_b.coefficients[0];

@@ -31,7 +31,7 @@ TEMPLATE_TEST_CASE_SIG("A contact is described alike with and without what was f
     Random random(seed);
     const double clock = random.below(4) == 0 ? 0x1p20 : 0.0;
     const PlacedShape mesh = samples::shape_of_kind(random, random.below(2), samples::Cubes::facing);
-    const PlacedShape other = samples::shape_of_kind(random, random.below(4), samples::Cubes::facing);
+    const PlacedShape other = samples::shape_of_kind(random, random.below(5), samples::Cubes::facing);
     auto path_a = samples::random_path<Degree>(random, clock, 1);
     auto path_b = samples::random_path<Degree>(random, clock, 1);
     path_b.coefficients[1] += path_a.coefficients[0] - path_b.coefficients[0];

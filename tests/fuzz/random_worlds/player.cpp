@@ -120,6 +120,9 @@ BodyDescription<Degree> Player<Degree>::description(const BodyPlan& plan) {
     case ShapeKind::box:
       result.shape = collision::Box{size};
       break;
+    case ShapeKind::capsule:
+      result.shape = collision::Capsule{size[0], size[1]};
+      break;
     case ShapeKind::mesh:
       result.shape = collision::MeshShape{sample_meshes()[plan.mesh], size[0]};
       break;

@@ -70,6 +70,10 @@ void print_body(const Scenario& scenario, std::size_t number_of_body) {
   if (body.shape == ShapeKind::box) {
     std::printf("  d.shape = Box{p.length * Vector3d%s};\n", vector(body.size).c_str());
   }
+  if (body.shape == ShapeKind::capsule) {
+    std::printf("  d.shape = Capsule{p.length * %s, p.length * %s};\n", number(body.size[0]).c_str(),
+                number(body.size[1]).c_str());
+  }
   if (body.shape == ShapeKind::mesh) {
     std::printf("  d.shape = MeshShape{mesh_%zu(), p.length * %s};\n", body.mesh, number(body.size[0]).c_str());
   }

@@ -1,0 +1,389 @@
+#include "collision/narrow_phase/capsule_touch.hpp"
+
+#include "collision/narrow_phase/ball_touch.hpp"
+#include "collision/narrow_phase/near_spans.hpp"
+#include "collision/narrow_phase/zonotope_cells.hpp"
+#include "collision/vectors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Zero stays zero.
+Vector3d unit(const Vector3d& v) {
+  const double largest = v.cwiseAbs().maxCoeff();
+  if (!(largest > 0)) return Vector3d::Zero();
+  const Vector3d scaled = v / largest;
+  return scaled / std::sqrt(dot(scaled, scaled));
+}
+
+/// What is left of v across a unit vector.
+Vector3d across(const Vector3d& v, const Vector3d& along) { return v - dot(along, v) * along; }
+
+/// The directions of the parallelogram of an edge and a segment: that of the longer one, across it within the
+/// parallelogram, and across both.
+struct Frame {
+  Vector3d along;
+  Vector3d beside;
+  Vector3d normal;
+};
+Frame frame_of(const Vector3d& edge, const Vector3d& segment) {
+  const Vector3d along = unit(dot(edge, edge) > dot(segment, segment) ? edge : segment);
+  Vector3d normal = unit(across(unit(accurate_cross(edge, segment)), along));
+  if (normal.isZero(0)) {
+    int smallest = 0;
+    along.cwiseAbs().minCoeff(&smallest);
+    normal = unit(cross(along, Vector3d::Unit(smallest)));
+  }
+  return {along, cross(normal, along), normal};
+}
+
+/// A way from a triangle to a segment, and what it is across: nothing (from corner to end), a line, or a plane.
+struct Way {
+  Vector3d apart = Vector3d::Zero();
+  int dimension = 0;
+  Vector3d along = Vector3d::Zero();  ///< of a line; not unit
+  double part = 0;                    ///< where on the segment it ends: from -1 to 1
+};
+
+/// Calls visit(way) for ways of which one is the shortest, if the segment does not go through the triangle.
+template <class Visit>
+void every_way(const PlacedTriangle& triangle, const Vector3d& centre, const Vector3d& half, const Visit& visit) {
+  for (const double end : {-1.0, 1.0}) {
+    const Vector3d at = centre + end * half;
+    const NearestPoint nearest = nearest_point(triangle, at);
+    visit(Way{at - nearest.point, nearest.dimension, triangle.edge(nearest.index), end});
+  }
+  const double square = dot(half, half);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3d from = centre - triangle.vertices[i];
+    const double part = -dot(from, half) / square;
+    if (std::abs(part) < 1) visit(Way{from + part * half, 1, half, part});
+    // Where both an edge and the segment are nearest within: the common perpendicular.
+    const Vector3d edge = triangle.edge(i);
+    const Vector3d normal = accurate_cross(edge, half);
+    const double sine_square = dot(normal, normal);
+    if (!(sine_square > 0)) continue;
+    const double on_edge = dot(cross(from, half), normal) / sine_square;
+    const double on_half = dot(cross(from, edge), normal) / sine_square;
+    if (!(on_edge > 0 && on_edge < 1 && std::abs(on_half) < 1)) continue;
+    const Vector3d out = unit(normal);
+    visit(Way{dot(out, from) * out, 2, {}, on_half});
+  }
+}
+
+Way shortest_way(const PlacedTriangle& triangle, const Vector3d& centre, const Vector3d& half) {
+  double least = TimeSpans::infinity;
+  Way best;
+  every_way(triangle, centre, half, [&](const Way& way) {
+    const double square = dot(way.apart, way.apart);
+    if (square < least) {
+      least = square;
+      best = way;
+    }
+  });
+  return best;
+}
+
+}  // namespace
+
+NearestStretch nearest_stretch(const PlacedTriangle& triangle, const Vector3d& centre, const Vector3d& half,
+                               double tolerance) {
+  const Way best = shortest_way(triangle, centre, half);
+  const double enough = norm(best.apart) + tolerance;
+  Way low = best, high = best;
+  every_way(triangle, centre, half, [&](const Way& way) {
+    if (norm(way.apart) > enough) return;
+    if (way.part < low.part) low = way;
+    if (way.part > high.part) high = way;
+  });
+  const Vector3d core = centre + (0.5 * (low.part + high.part)) * half;
+  return {core, core - 0.5 * (low.apart + high.apart), low.part, high.part};
+}
+
+template <int Degree>
+CapsuleTouch<Degree>::CapsuleTouch(const PlacedTriangle& triangle, const PlacedCapsule& capsule,
+                                   const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, bool sharp,
+                                   double horizon, const TimeWindow& interest)
+    : triangle_(triangle),
+      half_(capsule.half),
+      radius_(capsule.radius),
+      motion_(motion),
+      gap_(gap),
+      horizon_(horizon),
+      interest_{std::max(interest.begin, 0.0), std::min(interest.end, horizon)} {
+  add_inside();
+  for (const double end : {-1.0, 1.0}) add_triangle(end, sharp);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    add_parallelogram(i);
+    add_line(corner(i, -1), corner(i, 1));
+    for (const double end : {-1.0, 1.0}) {
+      add_line(corner(i, end), corner(next, end));
+      add_point(corner(i, end));
+    }
+  }
+}
+
+template <int Degree>
+auto CapsuleTouch<Degree>::from(const Vector3d& at) const -> Path {
+  Path path = motion_.coefficients;
+  path[0] -= at;
+  return path;
+}
+
+/// When normal . r - reach < gap, or < 0.
+template <int Degree>
+TimeSpans CapsuleTouch<Degree>::below(const Vector3d& normal, double reach, bool with_gap) const {
+  const auto& r = motion_.coefficients;
+  std::array<double, std::size_t{Degree} + 1> c;
+  for (std::size_t i = 0; i <= Degree; ++i) c[i] = dot(normal, r[i]) - (with_gap ? gap_.c[i] : 0.0);
+  c[0] -= reach;
+  if constexpr (Degree == 1) {
+    return negative_spans(c[0], c[1]);
+  } else {
+    return negative_spans(c[0], c[1], c[2]);
+  }
+}
+
+/// Not farther out than the corners, and some more.
+template <int Degree>
+void CapsuleTouch<Degree>::bound(Piece& piece, const Vector3d& out, Corners corners, double more) const {
+  double reach = -TimeSpans::infinity;
+  for (const Vector3d& each : corners) reach = std::max(reach, dot(out, each));
+  piece.conditions.push_back(below(out, reach + more));
+}
+
+/// As BallTouch::matters().
+template <int Degree>
+bool CapsuleTouch<Degree>::matters(const Path& path) const {
+  const double length = interest_.end - interest_.begin;
+  const Vector3d begin = place_on(path, interest_.begin);
+  const Vector3d along = place_on(path, interest_.end) - begin;
+  const double square = dot(along, along);
+  const double part = square > 0 ? std::clamp(-dot(begin, along) / square, 0.0, 1.0) : 0.0;
+  const Vector3d nearest = begin + part * along;
+  double reach = radius_ + 4 * gap_(interest_.end);
+  if constexpr (Degree == 2) reach += 0.25 * length * length * std::sqrt(dot(path[2], path[2]));
+  return !(dot(nearest, nearest) > reach * reach);
+}
+
+template <int Degree>
+TimeSpans CapsuleTouch<Degree>::within(const Path& path) const {
+  std::array<double, std::size_t{Degree} + 1> reach = gap_.c;
+  reach[0] += radius_;
+  return near_spans(path, reach, horizon_);
+}
+
+/// Pieces that hold at no time of interest are left out.
+template <int Degree>
+void CapsuleTouch<Degree>::add(const Piece& piece) {
+  if (first_inside_all(piece.spans(), interest_.begin) <= interest_.end) pieces_.push_back(piece);
+}
+
+template <int Degree>
+void CapsuleTouch<Degree>::add_inside() {
+  const Vector3d normal = unit(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+  const double thickness = std::abs(dot(normal, half_));
+  if (!(thickness > radius_)) return;
+  Piece piece;
+  const double inset = 0.5 * radius_;
+  const double height = dot(normal, triangle_.vertices[0]);
+  piece.conditions.push_back(below(normal, height + thickness - inset, false));
+  piece.conditions.push_back(below(-normal, -height + thickness - inset, false));
+  for (std::size_t i = 0; i < 3; ++i) {
+    Vector3d out = frame_of(triangle_.edge(i), half_).normal;
+    const Vector3d& third = triangle_.vertices[(i + 2) % 3];
+    if (dot(out, third - triangle_.vertices[i]) > 0) out = -out;
+    piece.conditions.push_back(below(out, dot(out, triangle_.vertices[i]) - inset, false));
+  }
+  add(piece);
+}
+
+/// The triangle at one end of the segment.
+template <int Degree>
+void CapsuleTouch<Degree>::add_triangle(double end, bool sharp) {
+  const Vector3d normal = unit(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+  const std::array<Vector3d, 3> corners{corner(0, end), corner(1, end), corner(2, end)};
+  Piece piece;
+  bound(piece, normal, corners, radius_);
+  bound(piece, -normal, corners, radius_);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::array<Vector3d, 2> ends{corners[i], corners[(i + 1) % 3]};
+    bound(piece, unit(cross(triangle_.edge(i), normal)), ends);
+  }
+  // Across each corner: away from the middle between the directions of its edges.
+  for (std::size_t i = 0; sharp && i < 3; ++i) {
+    bound(piece, unit(unit(triangle_.edge((i + 2) % 3)) - unit(triangle_.edge(i))), corners);
+  }
+  add(piece);
+}
+
+template <int Degree>
+void CapsuleTouch<Degree>::add_parallelogram(std::size_t edge) {
+  const std::size_t next = (edge + 1) % 3;
+  const std::array<Vector3d, 4> corners{corner(edge, -1), corner(next, -1), corner(next, 1), corner(edge, 1)};
+  const Vector3d e = triangle_.edge(edge);
+  const Frame frame = frame_of(e, half_);
+  Piece piece;
+  bound(piece, frame.normal, corners, radius_);
+  bound(piece, -frame.normal, corners, radius_);
+  // Across the longer sides, the shorter ones, and the corners.
+  const Vector3d shorter = unit(across(dot(e, e) > dot(half_, half_) ? half_ : e, frame.normal));
+  for (const Vector3d& out :
+       {frame.beside, unit(cross(frame.normal, shorter)), unit(frame.along + shorter), unit(frame.along - shorter)}) {
+    bound(piece, out, corners);
+    bound(piece, -out, corners);
+  }
+  add(piece);
+}
+
+template <int Degree>
+void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& end) {
+  const Vector3d along = unit(end - begin);
+  Piece piece;
+  piece.conditions.push_back(below(along, dot(along, end)));
+  piece.conditions.push_back(below(-along, -dot(along, begin)));
+  // The costly condition last, and only if it counts.
+  if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
+  Path path = from(begin);
+  for (Vector3d& c : path) c = across(c, along);
+  if (!matters(path)) return;
+  piece.conditions.push_back(within(path));
+  add(piece);
+}
+
+template <int Degree>
+void CapsuleTouch<Degree>::add_point(const Vector3d& at) {
+  const Path path = from(at);
+  if (!matters(path)) return;
+  Piece piece;
+  piece.conditions.push_back(within(path));
+  add(piece);
+}
+
+template <int Degree>
+double CapsuleTouch<Degree>::first_inside(double tau) const {
+  double first = TimeSpans::infinity;
+  for (const Piece& piece : pieces_) first = std::min(first, first_inside_all(piece.spans(), tau));
+  return first;
+}
+
+template <int Degree>
+double CapsuleTouch<Degree>::enter(double tau) const {
+  double begin = TimeSpans::infinity;
+  for (const Piece& piece : pieces_) {
+    if (piece.contains(tau)) begin = std::min(begin, enter_all(piece.spans(), tau));
+  }
+  return begin;
+}
+
+template <int Degree>
+double CapsuleTouch<Degree>::leave(double tau) const {
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const Piece& piece : pieces_) {
+      if (tau == TimeSpans::infinity) return tau;
+      if (!piece.contains(tau)) continue;
+      tau = leave_all(piece.spans(), tau);
+      moved = true;
+    }
+  }
+  return tau;
+}
+
+template <int Degree>
+TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
+  const Vector3d centre = motion_.position(tau);
+  const Vector3d velocity = motion_.velocity(tau);
+  const auto speeds = smallest_speeds(motion_);
+  const Vector3d face = unit(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+  // How deep the segment goes through the triangle, by the faces of their prism.
+  TouchDirection deepest{face, -TimeSpans::infinity, false};
+  const auto look = [&](const Vector3d& normal) {
+    const double high = triangle_.project(normal).high + std::abs(dot(normal, half_));
+    const double separation = dot(normal, centre) - high;
+    if (separation > deepest.separation) deepest = {normal, separation, dot(normal, velocity) < 0};
+  };
+  look(face), look(-face);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3d normal = frame_of(triangle_.edge(i), half_).normal;
+    look(normal), look(-normal);
+  }
+  const Way way = shortest_way(triangle_, centre, half_);
+  const bool through = deepest.separation < 0;
+  if (through || !(way.apart.cwiseAbs().maxCoeff() > 0)) {
+    return {deepest.normal, deepest.separation - radius_, through && deepest.approaching};
+  }
+  const Vector3d normal = unit(way.apart);
+  const double distance = std::sqrt(dot(way.apart, way.apart));
+  const double rate = dot(normal, velocity);
+  bool approaching = rate < 0;
+  if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
+    // Second derivative of the distance: bending towards the surface beats leaving its round. What is round is the part
+    // that the capsule comes to.
+    Vector3d sideways = across(velocity, normal);
+    Way ahead = way;
+    if (way.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {
+      ahead = shortest_way(triangle_, centre + gap_(tau) * unit(sideways), half_);
+    }
+    if (ahead.dimension == 1) sideways = across(sideways, unit(ahead.along));
+    const double round = ahead.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
+    approaching = dot(normal, motion_.acceleration()) + round < -speeds[1];
+  }
+  return {normal, distance - radius_, approaching};
+}
+
+template <int Degree>
+double CapsuleTouch<Degree>::turning(double tau, double end) const {
+  if constexpr (Degree >= 2) {
+    // Where the distance to a part of the prism has a maximum while that part is the nearest.
+    const auto consider = [&](double top, double distance) {
+      if (!(top > tau && top < end)) return;
+      const Vector3d apart = shortest_way(triangle_, motion_.position(top), half_).apart;
+      if (distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4) end = top;
+    };
+    const auto consider_path = [&](const Path& path) {
+      const DistanceQuartic quartic(path, {0, 0, 0});
+      const auto points = quartic.turning_points(horizon_);
+      for (std::size_t i = 0; i < points.size; ++i) {
+        const double top = points.at[i];
+        if (quartic.bend(top) < 0) consider(top, norm(place_on(path, top)));
+      }
+    };
+    const auto consider_plane = [&](const Vector3d& normal, const Vector3d& at) {
+      const double p1 = dot(normal, motion_.coefficients[1]);
+      const double p2 = dot(normal, motion_.coefficients[2]);
+      if (p2 == 0) return;
+      const double top = -p1 / (2 * p2);
+      const double height = dot(normal, motion_.position(top) - at);
+      if ((height > 0) == (p2 < 0)) consider(top, std::abs(height));
+    };
+    const auto consider_line = [&](const Vector3d& at, const Vector3d& along) {
+      Path path = from(at);
+      for (Vector3d& c : path) c = across(c, along);
+      consider_path(path);
+    };
+    const Vector3d face = unit(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+    for (const double side : {-1.0, 1.0}) consider_plane(face, corner(0, side));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3d edge = triangle_.edge(i);
+      consider_plane(frame_of(edge, half_).normal, corner(i, 0));
+      consider_line(corner(i, 0), unit(half_));
+      for (const double side : {-1.0, 1.0}) {
+        consider_line(corner(i, side), unit(edge));
+        consider_path(from(corner(i, side)));
+      }
+    }
+  }
+  return end;
+}
+
+template class CapsuleTouch<1>;
+template class CapsuleTouch<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,101 @@
+// A moving capsule and a triangle.
+#pragma once
+
+#include "collision/narrow_phase/convex_touch.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
+#include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/narrow_phase/separating_axes.hpp"
+#include "collision/narrow_phase/time_spans.hpp"
+
+#include <Eigen/Core>
+#include <boost/container/static_vector.hpp>
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace kds::collision {
+
+/// Where a segment about `centre` is nearest to a triangle.
+struct NearestStretch {
+  Eigen::Vector3d core;   ///< on the segment: the middle of all that is nearest, up to the tolerance
+  Eigen::Vector3d point;  ///< on the triangle
+  double low, high;       ///< from where to where that is, -1 and 1 being the ends of the segment
+};
+NearestStretch nearest_stretch(const PlacedTriangle& triangle, const Eigen::Vector3d& centre,
+                               const Eigen::Vector3d& half, double tolerance);
+
+/// When a capsule touches a triangle: their distance is below radius + contact gap. Bodies do not rotate, so that is
+/// when the centre of the capsule is so near to a prism, the sum of the triangle and the capsule's segment. The set of
+/// such places is the union of 21 convex pieces: slabs over two triangles and three parallelograms, cylinders about
+/// nine edges, balls about six corners, and the inside of the prism, where the segment goes through the triangle. Same
+/// members as BallTouch, whose remarks hold here too.
+///
+/// Margins. The sides of a slab lie a gap farther out each, and so do those across its corners (each corner of a
+/// parallelogram, the sharp ones of a triangle): seen along a slab, no place in it is more than sqrt(2) gaps from the
+/// parallelogram, 8.1 from the triangle; see BallTouch. The inside of the prism, half a radius within its faces, has no
+/// margin: what is nearer to a face is in another piece. It is left out where the prism is no thicker than that.
+///
+/// An edge e and the segment s may be parallel, or nearly so. The slab of the two stands in a frame of the longer one
+/// of them, L: a direction across both, from their product, made orthogonal to L; and one across that and L. The
+/// product is known to 2^-53 of itself (accurate_cross), but e itself to a rounding of the corners alone, which tilts
+/// the frame about L by 3 x 2^-53 of the size of the triangle over the width of the parallelogram: so no corner of it
+/// is out of the plane by more than 3 roundings, and places over its rim that the tilt takes off are nearer to an edge
+/// than that and the radius. ContactGap has 8 roundings for axes that are not quite across their edges. Where the
+/// product vanishes the parallelogram is an edge, and any direction across does.
+template <int Degree>
+class CapsuleTouch {
+ public:
+  using Path = std::array<Eigen::Vector3d, std::size_t{Degree} + 1>;  ///< polynomial of tau
+
+  /// As that of BallTouch.
+  CapsuleTouch(const PlacedTriangle& triangle, const PlacedCapsule& capsule, const RelativeMotion<Degree>& motion,
+               const ContactGap<Degree>& gap, bool sharp, double horizon, const TimeWindow& interest);
+
+  double first_inside(double tau) const;
+  double enter(double tau) const;
+  double leave(double tau) const;
+  bool approaching(double tau) const { return direction(tau).approaching; }
+  TouchDirection direction(double tau) const;
+  double turning(double tau, double end) const;
+
+ private:
+  static constexpr std::size_t most_pieces = 21;
+  using Corners = std::span<const Eigen::Vector3d>;
+
+  /// The sides of a parallelogram's slab: both of five directions.
+  struct Piece {
+    boost::container::static_vector<TimeSpans, 10> conditions;
+
+    std::span<const TimeSpans> spans() const { return {conditions.data(), conditions.size()}; }
+    bool contains(double tau) const { return first_inside_all(spans(), tau) == tau; }
+  };
+
+  Eigen::Vector3d corner(std::size_t i, double end) const { return triangle_.vertices[i] + end * half_; }
+
+  void add_inside();
+  void add_triangle(double end, bool sharp);
+  void add_parallelogram(std::size_t edge);
+  void add_line(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  void add_point(const Eigen::Vector3d& at);
+  void add(const Piece& piece);
+  TimeSpans below(const Eigen::Vector3d& normal, double reach, bool with_gap = true) const;
+  void bound(Piece& piece, const Eigen::Vector3d& out, Corners corners, double more = 0) const;
+  bool matters(const Path& path) const;
+  TimeSpans within(const Path& path) const;
+  Path from(const Eigen::Vector3d& at) const;
+
+  PlacedTriangle triangle_;
+  Eigen::Vector3d half_;
+  double radius_;
+  RelativeMotion<Degree> motion_;
+  ContactGap<Degree> gap_;
+  double horizon_;
+  TimeWindow interest_;
+  boost::container::static_vector<Piece, most_pieces> pieces_;
+};
+
+extern template class CapsuleTouch<1>;
+extern template class CapsuleTouch<2>;
+
+}  // namespace kds::collision
