@@ -124,6 +124,15 @@ struct PointMotion {
   }
 };
 
+/// The motion without its last coefficient, which counts as zero.
+template <int Degree>
+PointMotion<Degree - 1> without_last(const PointMotion<Degree>& path) requires(Degree >= 2) {
+  PointMotion<Degree - 1> result;
+  for (std::size_t i = 0; i < Degree; ++i) result.coefficients[i] = path.coefficients[i];
+  result.start = path.start;
+  return result;
+}
+
 /// The same motion in time that runs backwards, exactly: see Motion.
 template <int Degree>
 PointMotion<Degree> reversed(const PointMotion<Degree>& path) {

@@ -3,6 +3,7 @@
 
 #include "collision/body_description.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/bodies.hpp"
@@ -45,7 +46,7 @@ namespace kds::collision {
 /// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
 class World final : private RestingContacts<Degree>::Listener {
-  static_assert(Degree == 1 || Degree == 2, "World: bodies move on lines (degree 1) or parabolas (degree 2)");
+  static_assert(Degree >= 1 && Degree <= 5, "World: bodies move on lines (degree 1), parabolas, or splines up to degree 5");
 
  public:
   using Motion = certificates::PointMotion<Degree>;
@@ -278,7 +279,8 @@ class World final : private RestingContacts<Degree>::Listener {
   std::exception_ptr failure_;  ///< what has left the world in pieces
 };
 
-extern template class World<1>;
-extern template class World<2>;
+#define KDS_DECLARE(degree) extern template class World<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/ball_touch.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
@@ -80,9 +81,14 @@ auto BallTouch<Degree>::across_edge(std::size_t i) const -> Path {
 
 /// When normal . r - reach < gap.
 template <int Degree>
-TimeSpans BallTouch<Degree>::below(const Vector3d& normal, double reach) const {
+SpansOf<Degree> BallTouch<Degree>::below(const Vector3d& normal, double reach) const {
   const auto& r = motion_.coefficients;
-  if constexpr (Degree == 1) {
+  if constexpr (Degree >= 3) {
+    Polynomial<Degree> apart;
+    for (std::size_t i = 0; i <= Degree; ++i) apart.c[i] = dot(normal, r[i]) - gap_.c[i];
+    apart.c[0] = dot(normal, r[0]) - reach - gap_.c[0];
+    return broken_spans<std::size_t{Degree} + 1>(PolynomialCertificate<Degree>{{apart, 0.0}}, horizon_);
+  } else if constexpr (Degree == 1) {
     return negative_spans(dot(normal, r[0]) - reach - gap_.c[0], dot(normal, r[1]) - gap_.c[1]);
   } else {
     return negative_spans(dot(normal, r[0]) - reach - gap_.c[0], dot(normal, r[1]) - gap_.c[1],
@@ -90,7 +96,8 @@ TimeSpans BallTouch<Degree>::below(const Vector3d& normal, double reach) const {
   }
 }
 
-/// Whether the path comes near the origin within the window of interest, judged by its chord.
+/// Whether the path comes near the origin within the window of interest, judged by its chord: which it leaves by no more
+/// than an eighth of the second derivative's bound times length^2.
 template <int Degree>
 bool BallTouch<Degree>::matters(const Path& path) const {
   const double length = interest_.end - interest_.begin;
@@ -101,11 +108,18 @@ bool BallTouch<Degree>::matters(const Path& path) const {
   const Vector3d nearest = begin + part * along;
   double reach = radius_ + 4 * gap_(interest_.end);
   if constexpr (Degree == 2) reach += 0.25 * length * length * std::sqrt(dot(path[2], path[2]));
+  if constexpr (Degree >= 3) {
+    double bend = 0;
+    for (std::size_t i = Degree; i >= 2; --i) {
+      bend = bend * interest_.end + static_cast<double>(i * (i - 1)) * std::sqrt(dot(path[i], path[i]));
+    }
+    reach += 0.125 * length * length * bend;
+  }
   return !(dot(nearest, nearest) > reach * reach);
 }
 
 template <int Degree>
-TimeSpans BallTouch<Degree>::within(const Path& path) const {
+SpansOf<Degree> BallTouch<Degree>::within(const Path& path) const {
   std::array<double, std::size_t{Degree} + 1> reach = gap_.c;
   reach[0] += radius_;
   return near_spans(path, reach, horizon_);
@@ -203,7 +217,9 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
   const double distance = std::sqrt(dot(apart, apart));
   const double rate = dot(normal, velocity);
   bool approaching = rate < 0;
-  if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
+  if constexpr (Degree >= 3) {
+    approaching = curve_approaches(tau, nearest);
+  } else if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
     // Second derivative of the distance: bending towards the surface beats leaving its round. What is round is the part
     // of the triangle that the ball comes to: it may be about to pass from an edge to the face.
     Vector3d sideways = velocity - rate * normal;
@@ -221,8 +237,84 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
   return {normal, distance - radius_, approaching};
 }
 
+/// Of degree 3 and above: the sign of the first derivative of the squared distance from the nearest part of the
+/// triangle that is more than rounding; of the part that the ball comes to, if it is about to pass from an edge, say, to
+/// the face.
+///
+/// About tau the centre moves on y0 + y1 x + ..., across the edge or along the normal if those are near, and the square
+/// of the distance is a polynomial with the coefficients q_k = sum y_j . y_(k-j), q_k / (2 |y0|) the first of the
+/// distance that is not zero. A y_k is known as well as smallest_speeds() says, and the products to a few roundings.
+template <int Degree>
+bool BallTouch<Degree>::curve_approaches(double tau, const NearestPoint& nearest) const {
+  constexpr double rounding = 16 * 0x1p-53;
+  const auto speeds = smallest_speeds(motion_);
+  Path y;
+  std::array<double, std::size_t{Degree} + 1> error;
+  for (std::size_t k = 0; k <= Degree; ++k) {
+    const int order = static_cast<int>(k);
+    y[k] = motion_.coefficient(order, tau);
+    error[k] = derivative_at(speeds, order, tau);  // up to the factorial, which is left out: more than it is
+  }
+  y[0] -= nearest.point;
+  NearestPoint ahead = nearest;
+  for (std::size_t k = 1; k <= Degree && nearest.dimension != 2; ++k) {
+    const Vector3d sideways = y[k] - (dot(y[0], y[k]) / dot(y[0], y[0])) * y[0];
+    if (!(sideways.cwiseAbs().maxCoeff() > error[k])) continue;
+    ahead = nearest_point(triangle_, nearest.point + y[0] + gap_(tau) * unit(sideways));
+    break;
+  }
+  const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));
+  const Vector3d along = ahead.dimension == 1 ? unit(triangle_.edge(ahead.index)) : Vector3d(Vector3d::Zero());
+  for (Vector3d& c : y) {
+    if (ahead.dimension == 2) c = dot(normal, c) * normal;
+    if (ahead.dimension == 1) c -= dot(along, c) * along;
+  }
+  const double distance = std::sqrt(dot(y[0], y[0]));
+  for (std::size_t k = 1; k <= Degree; ++k) {
+    double q = 0;
+    double size = 0;
+    for (std::size_t j = 0; j <= k; ++j) {
+      const double product = dot(y[j], y[k - j]);
+      q += product;
+      if (j > 0 && j < k) size += std::abs(product);
+    }
+    if (std::abs(q) > 2 * distance * error[k] + rounding * size) return q < 0;
+  }
+  return false;
+}
+
+/// Of degree 3 and above: where the distance from a part of the triangle has a maximum while that part is the nearest.
+template <int Degree>
+double BallTouch<Degree>::curve_turning(double tau, double end) const {
+  const auto consider = [&](double top, double distance) {
+    const Vector3d centre = motion_.position(top);
+    const Vector3d apart = centre - nearest_point(triangle_, centre).point;
+    if (!(distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4)) return false;
+    end = top;
+    return true;
+  };
+  const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));
+  for (const double side : {1.0, -1.0}) {
+    Motion<Degree> height;
+    for (std::size_t i = 0; i <= Degree; ++i) height.position.c[i] = side * dot(normal, motion_.coefficients[i]);
+    height.position.c[0] -= side * dot(normal, triangle_.vertices[0]);
+    each_maximum(PolynomialCertificate<Degree>{height}, tau, end, [&](double top) {
+      const double above = height(top);
+      return above > 0 && consider(top, above);
+    });
+  }
+  const auto consider_path = [&](const Path& path) {
+    each_maximum(FarCurve<Degree>(path, {}), tau, end,
+                 [&](double top) { return consider(top, std::sqrt(dot(place_on(path, top), place_on(path, top)))); });
+  };
+  for (std::size_t i = 0; i < 3; ++i) consider_path(across_edge(i));
+  for (std::size_t i = 0; i < 3; ++i) consider_path(from(i));
+  return end;
+}
+
 template <int Degree>
 double BallTouch<Degree>::turning(double tau, double end) const {
+  if constexpr (Degree >= 3) return curve_turning(tau, end);
   if constexpr (Degree == 2) {
     // Where the distance to a part of the triangle has a maximum while that part is the nearest.
     const auto consider = [&](double top, double distance) {
@@ -253,7 +345,8 @@ double BallTouch<Degree>::turning(double tau, double end) const {
   return end;
 }
 
-template class BallTouch<1>;
-template class BallTouch<2>;
+#define KDS_INSTANTIATE(degree) template class BallTouch<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

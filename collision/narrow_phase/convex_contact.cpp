@@ -1,6 +1,7 @@
 #include "collision/narrow_phase/convex_contact.hpp"
 
 #include "certificates/ball_separation.hpp"
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/box_and_ball.hpp"
 #include "collision/narrow_phase/box_and_box.hpp"
 #include "collision/narrow_phase/contact_patch.hpp"
@@ -14,6 +15,7 @@ namespace kds::collision {
 namespace {
 
 using certificates::BallSeparation;
+using certificates::PlaneSeparation;
 using Eigen::Vector3d;
 
 template <int Degree>
@@ -85,9 +87,18 @@ Contact box_box_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
 
 // ---- When --------------------------------------------------------------------------------------------------------
 
+/// Of degree 3 and above whether bodies part along a normal, and when they cease to, is told exactly: by the derivative
+/// of their place along it. (In doubles a path that comes to rest would be lost in the roundings of its terms.)
+template <int Degree>
+DerivativeCertificate<PlaneSeparation<Degree>> parting(const Contact& contact, const MovingShape<Degree>& a,
+                                                       const MovingShape<Degree>& b) {
+  return {{a.motion, b.motion, contact.normal, 1.0, {}, {}}};
+}
+
 /// Whether b moves towards a along the normal just after t.
 template <int Degree>
 bool approaching(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+  if constexpr (Degree >= 3) return sign_after(parting(contact, a, b), contact.time) < 0;
   const double rate = dot(contact.normal, b.motion.velocity(contact.time) - a.motion.velocity(contact.time));
   if (rate != 0) return rate < 0;
   return dot(contact.normal, b.motion.acceleration(contact.time) - a.motion.acceleration(contact.time)) < 0;
@@ -97,6 +108,7 @@ bool approaching(const Contact& contact, const MovingShape<Degree>& a, const Mov
 template <int Degree>
 double turning_time(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
   const double t = contact.time;
+  if constexpr (Degree >= 3) return std::max(next_up(t), failure_time(parting(contact, a, b), t));
   const double rate = dot(contact.normal, b.motion.velocity(t) - a.motion.velocity(t));
   const double bend = dot(contact.normal, b.motion.acceleration(t) - a.motion.acceleration(t));
   return bend < 0 ? std::max(next_up(t), t + rate / -bend) : never;
@@ -215,7 +227,8 @@ Contact ConvexContact<Degree>::contact_at(const Body& a, const Body& b, double t
   return box_box_contact(a, b, t);
 }
 
-template struct ConvexContact<1>;
-template struct ConvexContact<2>;
+#define KDS_INSTANTIATE(degree) template struct ConvexContact<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

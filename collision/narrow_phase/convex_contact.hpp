@@ -1,6 +1,7 @@
 // Dynamic tests of spheres and boxes, by exact signs.
 #pragma once
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 
 namespace kds::collision {
@@ -25,7 +26,8 @@ struct ConvexContact {
   static Contact contact_at(const Body& a, const Body& b, double t);
 };
 
-extern template struct ConvexContact<1>;
-extern template struct ConvexContact<2>;
+#define KDS_DECLARE(degree) extern template struct ConvexContact<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

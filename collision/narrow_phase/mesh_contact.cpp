@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/mesh_contact.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/mesh_query.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
@@ -68,8 +69,9 @@ MeshTouchPlace MeshPair<Degree>::where(double tau, const MeshTouch* known) const
   return ask([&](const auto& query) { return query.where(tau, known); });
 }
 
-template class MeshPair<1>;
-template class MeshPair<2>;
+#define KDS_INSTANTIATE(degree) template class MeshPair<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 // ---- MeshContact ---------------------------------------------------------------------------------------------------
 
@@ -164,7 +166,8 @@ Contact MeshContact<Degree>::contact_at(const Body& a, const Body& b, double t, 
   return contact;
 }
 
-template struct MeshContact<1>;
-template struct MeshContact<2>;
+#define KDS_INSTANTIATE(degree) template struct MeshContact<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

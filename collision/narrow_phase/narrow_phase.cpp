@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
 
@@ -11,20 +12,39 @@ bool has_mesh(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
   return std::holds_alternative<MeshShape>(a.shape.shape) || std::holds_alternative<MeshShape>(b.shape.shape);
 }
 
+/// Calls ask(a, b) with the motions as they are, or of the least degree from 2 on that both have: what is asked of them
+/// is then answered as in a world of that degree, bit for bit, and by its quicker tests.
+template <int Degree, class Ask>
+auto in_least_degree(const MovingShape<Degree>& a, const MovingShape<Degree>& b, const Ask& ask) {
+  if constexpr (Degree >= 3) {
+    if (a.motion.coefficients[Degree].isZero(0) && b.motion.coefficients[Degree].isZero(0)) {
+      const auto motion_a = without_last(a.motion);
+      const auto motion_b = without_last(b.motion);
+      return in_least_degree(MovingShape<Degree - 1>{a.shape, motion_a}, MovingShape<Degree - 1>{b.shape, motion_b},
+                             ask);
+    }
+  }
+  return ask(a, b);
+}
+
 }  // namespace
 
 template <int Degree>
 double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
                      ContactMode mode, FoundTouch* found) {
-  return has_mesh(a, b) ? MeshContact<Degree>::first_contact(a, b, t0, horizon, mode, found)
-                        : ConvexContact<Degree>::first_contact(a, b, t0, horizon, mode);
+  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return has_mesh(x, y) ? MeshContact<D>::first_contact(x, y, t0, horizon, mode, found)
+                          : ConvexContact<D>::first_contact(x, y, t0, horizon, mode);
+  });
 }
 
 template <int Degree>
 ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
                                         double horizon, ContactMode mode, PairMemory& memory, FoundTouch* found) {
-  const double time = has_mesh(a, b) ? MeshContact<Degree>::apart_until(a, b, t0, horizon)
-                                     : ConvexContact<Degree>::apart_until(a, b, t0, horizon, memory);
+  const double time = in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return has_mesh(x, y) ? MeshContact<D>::apart_until(x, y, t0, horizon)
+                          : ConvexContact<D>::apart_until(x, y, t0, horizon, memory);
+  });
   if (time == never || time > horizon) return {never, true};
   if (time > t0) return {time, false};
   return {first_contact(a, b, t0, horizon, mode, found), true};
@@ -32,31 +52,33 @@ ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const Movi
 
 template <int Degree>
 bool in_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
-  return has_mesh(a, b) ? MeshContact<Degree>::in_contact(a, b, t) : ConvexContact<Degree>::in_contact(a, b, t);
+  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return has_mesh(x, y) ? MeshContact<D>::in_contact(x, y, t) : ConvexContact<D>::in_contact(x, y, t);
+  });
 }
 
 template <int Degree>
 double first_separation(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon) {
-  return has_mesh(a, b) ? MeshContact<Degree>::first_separation(a, b, t0, horizon)
-                        : ConvexContact<Degree>::first_separation(a, b, t0, horizon);
+  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return has_mesh(x, y) ? MeshContact<D>::first_separation(x, y, t0, horizon)
+                          : ConvexContact<D>::first_separation(x, y, t0, horizon);
+  });
 }
 
 template <int Degree>
 Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t, const FoundTouch& found) {
-  return has_mesh(a, b) ? MeshContact<Degree>::contact_at(a, b, t, found) : ConvexContact<Degree>::contact_at(a, b, t);
+  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return has_mesh(x, y) ? MeshContact<D>::contact_at(x, y, t, found) : ConvexContact<D>::contact_at(x, y, t);
+  });
 }
 
-template double first_contact(const MovingShape<1>&, const MovingShape<1>&, double, double, ContactMode, FoundTouch*);
-template double first_contact(const MovingShape<2>&, const MovingShape<2>&, double, double, ContactMode, FoundTouch*);
-template ContactEstimate estimated_first_contact(const MovingShape<1>&, const MovingShape<1>&, double, double,
-                                                 ContactMode, PairMemory&, FoundTouch*);
-template ContactEstimate estimated_first_contact(const MovingShape<2>&, const MovingShape<2>&, double, double,
-                                                 ContactMode, PairMemory&, FoundTouch*);
-template bool in_contact(const MovingShape<1>&, const MovingShape<1>&, double);
-template bool in_contact(const MovingShape<2>&, const MovingShape<2>&, double);
-template double first_separation(const MovingShape<1>&, const MovingShape<1>&, double, double);
-template double first_separation(const MovingShape<2>&, const MovingShape<2>&, double, double);
-template Contact contact_at(const MovingShape<1>&, const MovingShape<1>&, double, const FoundTouch&);
-template Contact contact_at(const MovingShape<2>&, const MovingShape<2>&, double, const FoundTouch&);
+#define KDS_INSTANTIATE(degree) \
+  template double first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double, double, ContactMode, FoundTouch*); \
+  template ContactEstimate estimated_first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double, double, ContactMode, PairMemory&, FoundTouch*); \
+  template bool in_contact(const MovingShape<degree>&, const MovingShape<degree>&, double); \
+  template double first_separation(const MovingShape<degree>&, const MovingShape<degree>&, double, double); \
+  template Contact contact_at(const MovingShape<degree>&, const MovingShape<degree>&, double, const FoundTouch&);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 #include "collision/world/bodies.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/world/bodies_image.hpp"
 
 #include <algorithm>
@@ -168,7 +169,8 @@ void Bodies<Degree>::become(const Image& image) {
   }
 }
 
-template class Bodies<1>;
-template class Bodies<2>;
+#define KDS_INSTANTIATE(degree) template class Bodies<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -3,6 +3,7 @@
 
 #include "certificates/balls_together.hpp"
 #include "collision/body_description.hpp"
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
 
@@ -156,7 +157,8 @@ class Bodies {
   bool sensors_ = false;
 };
 
-extern template class Bodies<1>;
-extern template class Bodies<2>;
+#define KDS_DECLARE(degree) extern template class Bodies<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,6 +1,7 @@
 // The image of a world's bodies, written, read and checked.
 #include "collision/world/bodies_image.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/world/image_tools.hpp"
 #include "kds/framework/snapshot.hpp"
@@ -145,11 +146,11 @@ void Bodies<Degree>::Image::check(double now) const {
   if (free.size() + removed.size() != dead) image::fail("free: not all that are free are listed");
 }
 
-template struct Bodies<1>::Image;
-template struct Bodies<2>::Image;
-template void Bodies<1>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&);
-template void Bodies<1>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
-template void Bodies<2>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&);
-template void Bodies<2>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
+#define KDS_INSTANTIATE(degree) \
+  template struct Bodies<degree>::Image; \
+  template void Bodies<degree>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&); \
+  template void Bodies<degree>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

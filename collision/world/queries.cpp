@@ -1,4 +1,5 @@
 // What can be asked of a world.
+#include "collision/degrees.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -44,7 +45,8 @@ WorldCounters World<Degree>::counters() const {
   return counters;
 }
 
-template class World<1>;
-template class World<2>;
+#define KDS_INSTANTIATE(degree) template class World<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

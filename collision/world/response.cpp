@@ -1,4 +1,5 @@
 // What follows from contacts: what is told, how bodies bounce, and which contacts last.
+#include "collision/degrees.hpp"
 #include "collision/response/impulse.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world.hpp"
@@ -193,7 +194,8 @@ void World<Degree>::tell_held(BodyId a, BodyId b) {
   reports_.add(Reports::Kind::held, a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
 }
 
-template class World<1>;
-template class World<2>;
+#define KDS_INSTANTIATE(degree) template class World<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 // Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
 #include "collision/world/resting_contacts.hpp"
+#include "collision/degrees.hpp"
 #include "collision/vectors.hpp"
 #include "kds/audit.hpp"
 
@@ -233,7 +234,8 @@ void RestingContacts<Degree>::become(const Image& image) {
   for (Slot slot = 0; slot < contacts_.size(); ++slot) releases_.set(slot, image.releases[slot]);
 }
 
-template class RestingContacts<1>;
-template class RestingContacts<2>;
+#define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

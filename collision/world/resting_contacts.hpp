@@ -1,6 +1,7 @@
 // Contacts that last: bodies that lie, lean and slide on each other and on walls.
 #pragma once
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/response/least_constraint.hpp"
 #include "collision/world/bodies.hpp"
@@ -175,7 +176,8 @@ class RestingContacts {
   std::uint64_t islands_ = 0;
 };
 
-extern template class RestingContacts<1>;
-extern template class RestingContacts<2>;
+#define KDS_DECLARE(degree) extern template class RestingContacts<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,4 +1,5 @@
 // The resting contacts of a world as plain data: written, read and checked.
+#include "collision/degrees.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/resting_contacts.hpp"
@@ -72,11 +73,11 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
   if (free.size() != dead) image::fail("resting: not all that are free are listed");
 }
 
-template class RestingContacts<1>;
-template class RestingContacts<2>;
-template void RestingContacts<1>::Image::archive(kds::detail::Writer&);
-template void RestingContacts<1>::Image::archive(kds::detail::Reader&);
-template void RestingContacts<2>::Image::archive(kds::detail::Writer&);
-template void RestingContacts<2>::Image::archive(kds::detail::Reader&);
+#define KDS_INSTANTIATE(degree) \
+  template class RestingContacts<degree>; \
+  template void RestingContacts<degree>::Image::archive(kds::detail::Writer&); \
+  template void RestingContacts<degree>::Image::archive(kds::detail::Reader&);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

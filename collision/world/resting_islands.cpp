@@ -1,4 +1,5 @@
 // Bodies that lean on each other: found, and moved as their resting contacts let them.
+#include "collision/degrees.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting_contacts.hpp"
 
@@ -207,7 +208,8 @@ bool RestingContacts<Degree>::let_pass_worst(const Island& island, const std::ve
   return true;
 }
 
-template class RestingContacts<1>;
-template class RestingContacts<2>;
+#define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision
