@@ -250,10 +250,12 @@ bool BallTouch<Degree>::curve_approaches(double tau, const NearestPoint& nearest
   const auto speeds = smallest_speeds(motion_);
   Path y;
   std::array<double, std::size_t{Degree} + 1> error;
+  double factorial = 1;
   for (std::size_t k = 0; k <= Degree; ++k) {
     const int order = static_cast<int>(k);
+    factorial *= std::max(order, 1);
     y[k] = motion_.coefficient(order, tau);
-    error[k] = derivative_at(speeds, order, tau);  // up to the factorial, which is left out: more than it is
+    error[k] = derivative_at(speeds, order, tau) / factorial;
   }
   y[0] -= nearest.point;
   NearestPoint ahead = nearest;

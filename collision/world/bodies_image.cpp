@@ -100,6 +100,7 @@ void Bodies<Degree>::Image::body(Archive& archive, One& body) const {
   archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category, body.collides_with,
           body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
+  if constexpr (Degree >= 3) archive(body.given);
 }
 
 template <int Degree>
@@ -133,6 +134,7 @@ void Bodies<Degree>::Image::check(double now) const {
     need(body.volume == BoundingVolume::shape || body.volume == BoundingVolume::sphere, "its volume is unknown");
     need(image::is_past(body.burst_start, now), "its meetings are counted from a time after now");
     need(body.force.allFinite(), "its acceleration is not finite");
+    if constexpr (Degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
   }
   std::vector<char> listed(bodies.size());
   const auto check_free = [&](const std::vector<BodyId>& ids, const char* list) {

@@ -34,7 +34,7 @@ typename World<Degree>::Motion World<Degree>::free_motion(BodyId id) const {
   bodies_.at(id);
   if (!resting_.rests(id)) return bodies_.motion(id);
   Motion motion = bodies_.motion(id).restarted(now());
-  if constexpr (Degree >= 2) motion.coefficients[2] = bodies_.free_acceleration(id);
+  for (std::size_t i = 2; i <= Degree; ++i) motion.coefficients[i] = bodies_.free_term(id, i, now());
   return motion;
 }
 

@@ -19,6 +19,7 @@ void RestingContacts<Degree>::Image::archive(Archive& archive) {
   archive.each(contacts, [&](Contact& c) {
     archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.left_behind, c.solved);
     image::vector(archive, c.normal);
+    if constexpr (Degree >= 3) archive(c.ends);
   });
 }
 
@@ -53,6 +54,7 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
     need(std::abs(contact.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
     need(std::isfinite(contact.push) && std::isfinite(contact.solved), "its push or rate is not finite");
     need(image::is_to_come(releases[slot], now), "is to be let go before now");
+    if constexpr (Degree >= 3) need(image::is_to_come(contact.ends, now), "is pressed together until before now");
   }
   for (std::size_t id = 0; id < of.size(); ++id) {
     const auto& of_body = of[id];
