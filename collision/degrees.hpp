@@ -15,7 +15,9 @@
 /// The same for all that a program is linked with, in a header: for `extern template`. (KDS_SPLINES is defined for all
 /// that link kds::collision_splines.)
 #ifdef KDS_SPLINES
+#define KDS_GREATEST_DEGREE 5
 #define KDS_FOR_ALL_DEGREES(declare) declare(1) declare(2) declare(3) declare(4) declare(5)
 #else
+#define KDS_GREATEST_DEGREE 2
 #define KDS_FOR_ALL_DEGREES(declare) declare(1) declare(2)
 #endif
