@@ -90,13 +90,13 @@ struct PointMotion {
     return {{position, velocity, 0.5 * acceleration}, t};
   }
 
-  /// From place p0 with velocity v0 at time t0 to place p1 with velocity v1 at t1, the only cubic that does (Hermite's):
-  /// a piece of a trajectory that is given by places and velocities.
+  /// From place p0 with velocity v0 at time t0 to place p1 with velocity v1 at t1, the only cubic that does
+  /// (Hermite's): a piece of a trajectory that is given by places and velocities.
   ///
   /// Precondition: t0 < t1, all finite (else std::invalid_argument). It starts at t0, as given, and goes on after t1.
-  /// There it is off p1 by less than 2^-48 (|p0| + |p1| + T (|v0| + |v1|)) in each coordinate, T = t1 - t0, and off v1 by
-  /// less than three times that over T: some 20 roundings of the terms of its coefficients, which are up to three times
-  /// those sums, and of Horner's rule. Where the next piece begins so little aside, a world takes it for no jump.
+  /// There it is off p1 by less than 2^-48 (|p0| + |p1| + T (|v0| + |v1|)) in each coordinate, T = t1 - t0, and off v1
+  /// by less than three times that over T: some 20 roundings of the terms of its coefficients, which are up to three
+  /// times those sums, and of Horner's rule. Where the next piece begins so little aside, a world takes it for no jump.
   static PointMotion cubic(const Eigen::Vector3d& p0, const Eigen::Vector3d& v0, const Eigen::Vector3d& p1,
                            const Eigen::Vector3d& v1, double t0, double t1) requires(Degree >= 3) {
     const double duration = detail::duration_of_piece("PointMotion::cubic", t0, t1);

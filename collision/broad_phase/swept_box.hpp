@@ -35,8 +35,7 @@ inline StaticBox whole_space() {
 /// Horner's rule over |elapsed| errs by at most 2 Degree + 1 roundings of the sum of the magnitudes of its terms, and
 /// the elapsed time by one more a factor; 8 units in the last place of that sum cover degrees 1 and 2.
 template <int Degree>
-  requires(Degree <= 2)
-StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double from, double to) {
+requires(Degree <= 2) StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double from, double to) {
   using Eigen::Array3d;
   const double begin = from - motion.start;
   const double end = to - motion.start;
@@ -73,13 +72,12 @@ StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double fr
 /// the span, which is wider than the curve by less the shorter the span is.
 ///
 /// Error bound, with u = 2^-53 and n = 5 the greatest degree in use. The coefficients are those about `from`, times
-/// powers of the span: shift, scaling and change of basis take at most 5 n + 8 roundings (see positive_until()) of parts
-/// whose magnitudes sum to at most S, the sum of |c_i| (|begin| + span)^i. The ends of the span are known to u of its
-/// size, which moves what is swept by another 2 n u S. That is 43 u S; 64 u S is charged. An S of 2^1000 leaves it all
-/// unknown.
+/// powers of the span: shift, scaling and change of basis take at most 5 n + 8 roundings (see positive_until()) of
+/// parts whose magnitudes sum to at most S, the sum of |c_i| (|begin| + span)^i. The ends of the span are known to u of
+/// its size, which moves what is swept by another 2 n u S. That is 43 u S; 64 u S is charged. An S of 2^1000 leaves it
+/// all unknown.
 template <int Degree>
-  requires(Degree >= 3)
-StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double from, double to) {
+requires(Degree >= 3) StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double from, double to) {
   static_assert(Degree <= 5, "the bound on the roundings is derived for degrees up to 5");
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double begin = from - motion.start;

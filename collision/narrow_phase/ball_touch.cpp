@@ -7,46 +7,7 @@
 #include <cmath>
 
 namespace kds::collision {
-namespace {
-
 using Eigen::Vector3d;
-
-Vector3d unit(const Vector3d& v) {
-  const double largest = v.cwiseAbs().maxCoeff();
-  const Vector3d scaled = v / largest;
-  return scaled / std::sqrt(dot(scaled, scaled));
-}
-
-}  // namespace
-
-NearestPoint nearest_point(const PlacedTriangle& triangle, const Vector3d& to) {
-  const auto& v = triangle.vertices;
-  const Vector3d normal = unit(cross(triangle.edge(0), triangle.edge(1)));
-  bool inside = true;
-  NearestPoint best{v[0], 0, 0};
-  double least = TimeSpans::infinity;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3d edge = triangle.edge(i);
-    const Vector3d d = to - v[i];
-    inside = inside && dot(cross(normal, edge), d) > 0;
-    const double along = dot(edge, d);
-    const double length = dot(edge, edge);
-    NearestPoint candidate{v[i], 0, i};
-    if (along >= length) {
-      candidate = {v[(i + 1) % 3], 0, (i + 1) % 3};
-    } else if (along > 0) {
-      candidate = {v[i] + (along / length) * edge, 1, i};
-    }
-    const Vector3d apart = to - candidate.point;
-    const double distance = dot(apart, apart);
-    if (distance < least) {
-      least = distance;
-      best = candidate;
-    }
-  }
-  if (inside) return {to - dot(normal, to - v[0]) * normal, 2, 0};
-  return best;
-}
 
 template <int Degree>
 BallTouch<Degree>::BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball,
@@ -96,8 +57,8 @@ SpansOf<Degree> BallTouch<Degree>::below(const Vector3d& normal, double reach) c
   }
 }
 
-/// Whether the path comes near the origin within the window of interest, judged by its chord: which it leaves by no more
-/// than an eighth of the second derivative's bound times length^2.
+/// Whether the path comes near the origin within the window of interest, judged by its chord: which it leaves by no
+/// more than an eighth of the second derivative's bound times length^2.
 template <int Degree>
 bool BallTouch<Degree>::matters(const Path& path) const {
   const double length = interest_.end - interest_.begin;
@@ -238,8 +199,8 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
 }
 
 /// Of degree 3 and above: the sign of the first derivative of the squared distance from the nearest part of the
-/// triangle that is more than rounding; of the part that the ball comes to, if it is about to pass from an edge, say, to
-/// the face.
+/// triangle that is more than rounding; of the part that the ball comes to, if it is about to pass from an edge, say,
+/// to the face.
 ///
 /// About tau the centre moves on y0 + y1 x + ..., across the edge or along the normal if those are near, and the square
 /// of the distance is a polynomial with the coefficients q_k = sum y_j . y_(k-j), q_k / (2 |y0|) the first of the

@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/near_spans.hpp"
+#include "collision/narrow_phase/nearest_point.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
@@ -16,14 +17,6 @@
 #include <span>
 
 namespace kds::collision {
-
-/// The point of a triangle nearest to another point, and what part of the triangle it lies on.
-struct NearestPoint {
-  Eigen::Vector3d point;
-  int dimension;      ///< 0: a vertex, 1: inside an edge, 2: inside the triangle
-  std::size_t index;  ///< of the vertex or edge; edge i leads from vertex i to vertex i + 1 (mod 3)
-};
-NearestPoint nearest_point(const PlacedTriangle& triangle, const Eigen::Vector3d& to);
 
 /// When a ball touches a triangle: their distance is below radius + contact gap. The set of such places of the ball's
 /// centre is the union of seven convex pieces: a prism over the face, three cylinders about the edges, three balls

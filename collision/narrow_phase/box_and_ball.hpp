@@ -27,8 +27,8 @@ namespace kds::collision {
 ///
 /// When the centre may be there is found once for each axis and place, by quadratics in doubles; a piece then takes the
 /// greatest of three beginnings and the least of three ends, which mostly leaves nothing. What is left of edges and
-/// vertices is cut by Bernstein coefficients of the squared distance, of twice the degree of the paths. Exact signs have the last
-/// word, of the pieces that may be the first.
+/// vertices is cut by Bernstein coefficients of the squared distance, of twice the degree of the paths. Exact signs
+/// have the last word, of the pieces that may be the first.
 ///
 /// Cost: 0.1 us where they do not meet, 1 us (straight paths) to 1.5 us (parabolas) where they do.
 template <int Degree>

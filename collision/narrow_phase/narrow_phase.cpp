@@ -72,11 +72,13 @@ Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
   });
 }
 
-#define KDS_INSTANTIATE(degree) \
-  template double first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double, double, ContactMode, FoundTouch*); \
-  template ContactEstimate estimated_first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double, double, ContactMode, PairMemory&, FoundTouch*); \
-  template bool in_contact(const MovingShape<degree>&, const MovingShape<degree>&, double); \
-  template double first_separation(const MovingShape<degree>&, const MovingShape<degree>&, double, double); \
+#define KDS_INSTANTIATE(degree)                                                                                      \
+  template double first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double, double, ContactMode, \
+                                FoundTouch*);                                                                        \
+  template ContactEstimate estimated_first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double,   \
+                                                   double, ContactMode, PairMemory&, FoundTouch*);                   \
+  template bool in_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);                          \
+  template double first_separation(const MovingShape<degree>&, const MovingShape<degree>&, double, double);          \
   template Contact contact_at(const MovingShape<degree>&, const MovingShape<degree>&, double, const FoundTouch&);
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE

@@ -198,9 +198,9 @@ bool BoxBallTest<Degree>::operator()(const ObbNode& a, StepWindow& window) const
   return clip.gather(window);
 }
 
-#define KDS_INSTANTIATE(degree) \
+#define KDS_INSTANTIATE(degree)        \
   template struct SliceMotion<degree>; \
-  template class BoxPairTest<degree>; \
+  template class BoxPairTest<degree>;  \
   template class BoxBallTest<degree>;
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE

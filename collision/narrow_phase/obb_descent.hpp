@@ -98,7 +98,7 @@ class BoxPairTest {
 
   /// What depends on the box of a alone: kept while it meets several boxes of b.
   struct Frame {
-    std::array<Lanes, 3> turn;             ///< column k: coordinate k of b's model along the axes of a's box
+    std::array<Lanes, 3> turn;  ///< column k: coordinate k of b's model along the axes of a's box
     std::array<Lanes, std::size_t{Degree} + 1> motion;  ///< of b's model origin along them
     Lanes half_extents;
   };
@@ -108,7 +108,7 @@ class BoxPairTest {
   bool operator()(const Frame& a, const ObbNode& b, StepWindow& window) const;
 
  private:
-  std::array<std::array<float, 3>, 3> turn_;        ///< model of b -> model of a
+  std::array<std::array<float, 3>, 3> turn_;                     ///< model of b -> model of a
   std::array<Eigen::Vector3f, std::size_t{Degree} + 1> motion_;  ///< of b's centre in the model coordinates of a
   float unit_a_;
   float unit_b_;
@@ -131,9 +131,9 @@ class BoxBallTest {
   float bend_;
 };
 
-#define KDS_DECLARE(degree) \
+#define KDS_DECLARE(degree)                   \
   extern template struct SliceMotion<degree>; \
-  extern template class BoxPairTest<degree>; \
+  extern template class BoxPairTest<degree>;  \
   extern template class BoxBallTest<degree>;
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 #undef KDS_DECLARE

@@ -254,8 +254,8 @@ bool QuickMotion<Degree>::opens_for_good(const Along& p, double side, double rea
   if constexpr (Degree == 1) {
     return side * p[1] > rate_error_;
   } else if constexpr (Degree >= 3) {
-    // All derivatives at the end have the sign of opening. A coefficient there is a sum of at most 10 of those now, with
-    // binomials up to 10, each times its power of the end within the error.
+    // All derivatives at the end have the sign of opening. A coefficient there is a sum of at most 10 of those now,
+    // with binomials up to 10, each times its power of the end within the error.
     double power = 1;
     for (int order = 1; order <= Degree; ++order) {
       power *= end_ / order;

@@ -1,8 +1,8 @@
 // Separating axes of a triangle with a triangle or a box, one of them moving.
 #pragma once
 
-#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/curve_spans.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
 

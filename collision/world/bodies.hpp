@@ -109,7 +109,8 @@ class Bodies {
       return Eigen::Vector3d::Zero();
     }
   }
-  /// The same at t, and its derivatives up to factors: coefficient `order` >= 2 about t of the motion that callers gave.
+  /// The same at t, and its derivatives up to factors: coefficient `order` >= 2 about t of the motion that callers
+  /// gave.
   Eigen::Vector3d free_term(BodyId id, [[maybe_unused]] std::size_t order, [[maybe_unused]] double t) const {
     if constexpr (Degree >= 3) {
       return bodies_[id].given.restarted(t).coefficients[order];

@@ -97,8 +97,8 @@ void Bodies<Degree>::Image::body(Archive& archive, One& body) const {
   archive(body.alive);
   if (!body.alive) return;
   shape(archive, body);
-  archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category, body.collides_with,
-          body.volume, body.meetings, body.burst_start);
+  archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category,
+          body.collides_with, body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
   if constexpr (Degree >= 3) archive(body.given);
 }
@@ -148,8 +148,8 @@ void Bodies<Degree>::Image::check(double now) const {
   if (free.size() + removed.size() != dead) image::fail("free: not all that are free are listed");
 }
 
-#define KDS_INSTANTIATE(degree) \
-  template struct Bodies<degree>::Image; \
+#define KDS_INSTANTIATE(degree)                                                                                        \
+  template struct Bodies<degree>::Image;                                                                               \
   template void Bodies<degree>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&); \
   template void Bodies<degree>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)

@@ -75,8 +75,8 @@ void Pairs<Degree>::Image::check(const typename Bodies<Degree>::Image& bodies, d
   }
 }
 
-#define KDS_INSTANTIATE(degree) \
-  template class Pairs<degree>; \
+#define KDS_INSTANTIATE(degree)                                      \
+  template class Pairs<degree>;                                      \
   template void Pairs<degree>::Image::archive(kds::detail::Writer&); \
   template void Pairs<degree>::Image::archive(kds::detail::Reader&);
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Rate at which b parts from a along the normal just after the contact; of two that have none, its first derivative that
-/// is not zero, up to a factor.
+/// Rate at which b parts from a along the normal just after the contact; of two that have none, its first derivative
+/// that is not zero, up to a factor.
 template <int Degree>
 double parting(const Contact& contact, const certificates::PointMotion<Degree>& a,
                const certificates::PointMotion<Degree>& b) {

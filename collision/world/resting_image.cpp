@@ -75,8 +75,8 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
   if (free.size() != dead) image::fail("resting: not all that are free are listed");
 }
 
-#define KDS_INSTANTIATE(degree) \
-  template class RestingContacts<degree>; \
+#define KDS_INSTANTIATE(degree)                                                \
+  template class RestingContacts<degree>;                                      \
   template void RestingContacts<degree>::Image::archive(kds::detail::Writer&); \
   template void RestingContacts<degree>::Image::archive(kds::detail::Reader&);
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)

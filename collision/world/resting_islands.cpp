@@ -98,7 +98,9 @@ bool RestingContacts<Degree>::settle_island(BodyId id) {
       }
       if constexpr (Degree >= 3) of_[island.bodies[i]].carried = !island.contacts.empty();
     }
-    if (!constrain(island, 2, motions) || (Degree >= 3 && !constrain_curves(island, motions))) {  // What is pulled away at once has been stopped all the same.
+    if (!constrain(island, 2, motions) ||
+        (Degree >= 3 &&
+         !constrain_curves(island, motions))) {  // What is pulled away at once has been stopped all the same.
       motions = stopped;
       take_up_all();
       return false;

@@ -1,6 +1,6 @@
 // Worlds saved, and loaded again: the sum of their parts.
-#include "collision/degrees.hpp"
 #include "kds/framework/snapshot.hpp"
+#include "collision/degrees.hpp"
 #include "collision/world.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
@@ -141,8 +141,8 @@ void World<Degree>::archive(Archive& archive) {
   }
 }
 
-#define KDS_INSTANTIATE(degree) \
-  template class World<degree>; \
+#define KDS_INSTANTIATE(degree)                               \
+  template class World<degree>;                               \
   template void World<degree>::archive(kds::detail::Writer&); \
   template void World<degree>::archive(kds::detail::Reader&);
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)

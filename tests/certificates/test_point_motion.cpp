@@ -125,8 +125,8 @@ TEST_CASE("cubic pieces go where they are told, at the velocities that they are 
   }
   // What doubles hold is exact: half a second, halves of lengths.
   const auto swing = PointMotion<3>::cubic({0, 0, 0}, {0, 0, 0}, {2, 0, 1}, {0, 0, 0}, 1, 3);
-  CHECK(swing == PointMotion<3>{{Vector3d(0, 0, 0), Vector3d(0, 0, 0), Vector3d(1.5, 0, 0.75), Vector3d(-0.5, 0, -0.25)},
-                                1});
+  CHECK(swing ==
+        PointMotion<3>{{Vector3d(0, 0, 0), Vector3d(0, 0, 0), Vector3d(1.5, 0, 0.75), Vector3d(-0.5, 0, -0.25)}, 1});
 }
 
 TEST_CASE("a piece of a trajectory lasts some time, and is finite", "[point_motion]") {

@@ -1,4 +1,5 @@
-// Stretches of contact as a clock of doubles sees them: those of exact arithmetic, and those that the narrow phase finds.
+// Stretches of contact as a clock of doubles sees them: those of exact arithmetic, and those that the narrow phase
+// finds.
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"

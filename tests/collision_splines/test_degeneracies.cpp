@@ -83,7 +83,8 @@ TEST_CASE("Curves: a triple root is one contact", "[splines][degeneracies]") {
 TEST_CASE("Curves: a quintic that stops at a body is no contact, and one that stops within is", "[splines]") {
   const Vector3d far(6, 0, 0);
   const auto stop_at = [&](double x) {
-    return std::vector<Path<5>>{Path<5>::quintic(far, zero, zero, {x, 0, 0}, zero, zero, 0, 2), Path<5>{{{x, 0, 0}}, 2}};
+    return std::vector<Path<5>>{Path<5>::quintic(far, zero, zero, {x, 0, 0}, zero, zero, 0, 2),
+                                Path<5>{{{x, 0, 0}}, 2}};
   };
   Scene<5> scene = against_rest<5>(Sphere{1}, Sphere{1}, {}, 4);
   scene.bodies[1].motion = stop_at(2);

@@ -59,8 +59,7 @@ int compare_pairs(int kinds, bool coarse, std::uint64_t seeds) {
     // The estimate is a lower bound of it, or says that it is exact.
     PairMemory memory;
     const double first = expected.empty() ? never : expected[0].begin;
-    const auto estimate =
-        estimated_first_contact(moving_b, moving_a, 0, limit, ContactMode::transparent, memory);
+    const auto estimate = estimated_first_contact(moving_b, moving_a, 0, limit, ContactMode::transparent, memory);
     REQUIRE(estimate.time <= first);
     if (estimate.exact) REQUIRE(estimate.time == first);
     contacts += static_cast<int>(expected.size());

@@ -95,7 +95,8 @@ TEST_CASE("Curves: a stack on a lift parts where it is no longer pressed", "[spl
   CHECK(lift.world.held(1, 2));
   lift.audit_until(g / 6 + 0.25);
   CHECK_FALSE(lift.world.held(0, 1));
-  const double gap = lift.world.motion(2).position(lift.world.now())[2] - lift.world.motion(1).position(lift.world.now())[2];
+  const double gap =
+      lift.world.motion(2).position(lift.world.now())[2] - lift.world.motion(1).position(lift.world.now())[2];
   CHECK(std::abs(gap - 2) < 1e-12);
 }
 

@@ -65,7 +65,7 @@ TEMPLATE_TEST_CASE_SIG("Curves: without higher terms they are the parabolas of W
       }
     }
   }
-  CHECK(events > 300);
+  CHECK(events > 200);
 }
 
 /// Bodies that lose speed fall on each other and on a floor, and come to rest.
@@ -79,7 +79,8 @@ TEMPLATE_TEST_CASE_SIG("Curves: without higher terms bodies come to rest as in W
   scene.bodies.push_back(fixed_body<2>(Box{{20, 20, 1}}, motion<2>({0, 0, -1})));
   for (int i = 0; i < 6; ++i) {
     const Vector3d place(random.between(-2, 2), random.between(-2, 2), 2 + 2.5 * i);
-    auto description = i % 2 == 0 ? box<2>({0.8, 0.8, 0.8}, place, zero, {0, 0, -5}) : ball<2>(0.7, place, zero, {0, 0, -5});
+    auto description =
+        i % 2 == 0 ? box<2>({0.8, 0.8, 0.8}, place, zero, {0, 0, -5}) : ball<2>(0.7, place, zero, {0, 0, -5});
     description.restitution = 0.4;
     scene.bodies.push_back(description);
   }
