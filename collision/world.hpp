@@ -42,9 +42,9 @@ namespace kds::collision {
 /// that throws, want of memory) the world can no longer be used: it can be looked at and destroyed, and all that would
 /// run, change, check or save it throws std::logic_error and says why.
 ///
-/// Degree 1 (straight paths) never pays for degree 2, nor either for degrees 3 to 5 (splines), which are in a library of
-/// their own, kds::collision_splines (docs/splines.md). Lengths and masses are in units of the caller's own, times in
-/// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
+/// Degree 1 (straight paths) never pays for degree 2, nor either for degrees 3 to 5 (splines), which are in a library
+/// of their own, kds::collision_splines (docs/splines.md). Lengths and masses are in units of the caller's own, times
+/// in seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
 class World final : private RestingContacts<Degree>::Listener {
   static_assert(Degree >= 1 && Degree <= KDS_GREATEST_DEGREE,
