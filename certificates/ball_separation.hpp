@@ -15,7 +15,7 @@
 
 namespace kds::certificates {
 
-/// |b(t) - a(t)|^2 >= (radius_a + radius_b)^2: two balls do not penetrate. Degree 2 for linear, 4 for quadratic paths.
+/// |b(t) - a(t)|^2 >= (radius_a + radius_b)^2: two balls do not penetrate. Degree: twice that of the paths.
 /// The motions are referred to, and must outlive it; the radii are finite and not negative.
 template <int PathDegree>
 struct BallSeparation {
@@ -57,8 +57,11 @@ struct BallSeparation {
     if constexpr (PathDegree == 1) {
       return true;
     } else {
-      static_assert(PathDegree == 2);
-      return a.coefficients[2] == b.coefficients[2];
+      bool line = a.coefficients[2] == b.coefficients[2];
+      for (std::size_t i = 3; i <= PathDegree; ++i) {  // What they share goes, if both count from one start.
+        line = line && a.coefficients[i] == b.coefficients[i] && (a.start == b.start || a.coefficients[i].isZero(0));
+      }
+      return line;
     }
   }
 
@@ -72,10 +75,12 @@ struct BallSeparation {
 
 namespace detail {
 
+/// Up to degree 2: of two balls of which one moves along a line as seen from the other, higher coefficients are zero or
+/// cancel.
 template <int PathDegree>
-MotionNumbers<double, PathDegree> numbers_of(const PointMotion<PathDegree>& motion) {
-  MotionNumbers<double, PathDegree> numbers;
-  for (std::size_t k = 0; k <= PathDegree; ++k) {
+MotionNumbers<double, std::min(PathDegree, 2)> numbers_of(const PointMotion<PathDegree>& motion) {
+  MotionNumbers<double, std::min(PathDegree, 2)> numbers;
+  for (std::size_t k = 0; k <= std::min(PathDegree, 2); ++k) {
     for (int d = 0; d < 3; ++d) numbers.coefficients[k][d] = motion.coefficients[k][d];
   }
   numbers.start = motion.start;

@@ -4,6 +4,7 @@
 #include "certificates/earliest_approach.hpp"
 #include "certificates/point_motion.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
@@ -24,6 +25,8 @@ struct alignas(64) MovingBall {
 /// they meet, so a lower bound is what is wanted of them first. Known are the paths that
 /// BallSeparation::quick_failure_time() knows.
 ///
+/// Of paths of degree 3 and above it tells nothing: their pairs are tested one by one.
+///
 /// Computed in registers of four doubles where the processor has them (found out when a program runs), else of two,
 /// with the same results bit by bit. Cost: some 50 or 90 instructions a pair.
 template <int PathDegree>
@@ -43,7 +46,11 @@ class BallsTogether {
   /// they surely do not meet and are apart now, `-never` where they surely do not meet, but may be together now; a NaN
   /// where it takes more care.
   void earliest_approaches(double now, double horizon, double* earliest) const {
-    detail::find_approaches<PathDegree>(pairs_, now, horizon, earliest);
+    if constexpr (PathDegree <= 2) {
+      detail::find_approaches<PathDegree>(pairs_, now, horizon, earliest);
+    } else {
+      std::fill_n(earliest, size, std::numeric_limits<double>::quiet_NaN());
+    }
   }
 
  private:

@@ -6,7 +6,10 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 
 namespace kds::certificates {
 
@@ -48,6 +51,24 @@ struct std::tuple_element<I, kds::certificates::PointCoefficients<Degree>> {
 
 namespace kds::certificates {
 
+namespace detail {
+
+/// Of a piece of a trajectory, s. Throws std::invalid_argument where it is not one.
+inline double duration_of_piece(const char* function, double t0, double t1) {
+  const double duration = t1 - t0;
+  if (duration > 0 && std::isfinite(duration) && std::isfinite(t0)) return duration;
+  throw std::invalid_argument(std::string(function) + ": from " + std::to_string(t0) + " to " + std::to_string(t1) +
+                              " is no stretch of time");
+}
+
+template <class Motion>
+void require_finite(const char* function, const Motion& motion) {
+  if (motion.finite()) return;
+  throw std::invalid_argument(std::string(function) + ": a coefficient is not finite");
+}
+
+}  // namespace detail
+
 /// x(t) = c[0] + c[1] (t - start) + c[2] (t - start)^2: position, velocity, *half* the acceleration.
 template <int Degree>
 struct PointMotion {
@@ -67,6 +88,52 @@ struct PointMotion {
   static PointMotion parabola(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
                               const Eigen::Vector3d& acceleration, double t = 0) requires(Degree >= 2) {
     return {{position, velocity, 0.5 * acceleration}, t};
+  }
+
+  /// From place p0 with velocity v0 at time t0 to place p1 with velocity v1 at t1, the only cubic that does
+  /// (Hermite's): a piece of a trajectory that is given by places and velocities.
+  ///
+  /// Precondition: t0 < t1, all finite (else std::invalid_argument). It starts at t0, as given, and goes on after t1.
+  /// There it is off p1 by less than 2^-48 (|p0| + |p1| + T (|v0| + |v1|)) in each coordinate, T = t1 - t0, and off v1
+  /// by less than three times that over T: some 20 roundings of the terms of its coefficients, which are up to three
+  /// times those sums, and of Horner's rule. Where the next piece begins so little aside, a world takes it for no jump.
+  static PointMotion cubic(const Eigen::Vector3d& p0, const Eigen::Vector3d& v0, const Eigen::Vector3d& p1,
+                           const Eigen::Vector3d& v1, double t0, double t1) requires(Degree >= 3) {
+    const double duration = detail::duration_of_piece("PointMotion::cubic", t0, t1);
+    const Eigen::Vector3d way = p1 - p0;
+    const Eigen::Vector3d w0 = v0 * duration;
+    const Eigen::Vector3d w1 = v1 * duration;
+    const PointMotion motion{{p0, v0, (3 * way - (2 * w0 + w1)) / duration / duration,
+                              ((w0 + w1) - 2 * way) / duration / duration / duration},
+                             t0};
+    detail::require_finite("PointMotion::cubic", motion);
+    return motion;
+  }
+
+  /// The same with accelerations a0 and a1 (all of them) too: Hermite's quintic. Pieces that share places, velocities
+  /// and accelerations make a path of which even those do not jump.
+  ///
+  /// Off p1 by less than 2^-45 (|p0| + |p1| + T (|v0| + |v1|) + T^2 (|a0| + |a1|)), off v1 by less than five times that
+  /// over T, off a1 by less than twenty times that over T^2.
+  static PointMotion quintic(const Eigen::Vector3d& p0, const Eigen::Vector3d& v0, const Eigen::Vector3d& a0,
+                             const Eigen::Vector3d& p1, const Eigen::Vector3d& v1, const Eigen::Vector3d& a1, double t0,
+                             double t1) requires(Degree >= 5) {
+    const double duration = detail::duration_of_piece("PointMotion::quintic", t0, t1);
+    // What is left of the way, the velocity and the acceleration when a parabola has had its share, times T^k.
+    const Eigen::Vector3d bend = a0 * duration * duration;
+    const Eigen::Vector3d way = p1 - p0 - v0 * duration - 0.5 * bend;
+    const Eigen::Vector3d rate = (v1 - v0) * duration - bend;
+    const Eigen::Vector3d turn = a1 * duration * duration - bend;
+    const Eigen::Vector3d c3 = 10 * way - 4 * rate + 0.5 * turn;
+    const Eigen::Vector3d c4 = 7 * rate - 15 * way - turn;
+    const Eigen::Vector3d c5 = 6 * way - 3 * rate + 0.5 * turn;
+    const auto over = [duration](Eigen::Vector3d c, int power) {
+      for (int i = 0; i < power; ++i) c /= duration;
+      return c;
+    };
+    const PointMotion motion{{p0, v0, Eigen::Vector3d(0.5 * a0), over(c3, 3), over(c4, 4), over(c5, 5)}, t0};
+    detail::require_finite("PointMotion::quintic", motion);
+    return motion;
   }
 
   /// Motion of one coordinate.
@@ -101,9 +168,19 @@ struct PointMotion {
     return a;
   }
 
-  /// The same motion restarted at t, equal up to the rounding of its new coefficients.
+  /// The same motion restarted at t, equal up to the rounding of its new coefficients. Where the last coefficients are
+  /// zero it is restarted as a motion of the lower degree, bit for bit.
   PointMotion restarted(double t) const {
     PointMotion result;
+    if constexpr (Degree >= 3) {
+      if (coefficients[Degree].isZero(0)) {
+        const auto shorter = without_last(*this).restarted(t);
+        for (std::size_t i = 0; i < Degree; ++i) result.coefficients[i] = shorter.coefficients[i];
+        result.coefficients[Degree] = Eigen::Vector3d::Zero();
+        result.start = t;
+        return result;
+      }
+    }
     for (int d = 0; d < 3; ++d) {
       const auto shifted = kds::restarted(axis(d), t);
       for (std::size_t i = 0; i <= Degree; ++i) result.coefficients[i][d] = shifted.position.c[i];
@@ -123,6 +200,15 @@ struct PointMotion {
     return a.start == b.start && a.coefficients == b.coefficients;
   }
 };
+
+/// The motion without its last coefficient, which counts as zero.
+template <int Degree>
+PointMotion<Degree - 1> without_last(const PointMotion<Degree>& path) requires(Degree >= 2) {
+  PointMotion<Degree - 1> result;
+  for (std::size_t i = 0; i < Degree; ++i) result.coefficients[i] = path.coefficients[i];
+  result.start = path.start;
+  return result;
+}
 
 /// The same motion in time that runs backwards, exactly: see Motion.
 template <int Degree>

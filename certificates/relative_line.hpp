@@ -57,6 +57,7 @@ struct RelativeLine {
     [[gnu::always_inline]] inline Part(const MotionNumbers<Number, PathDegree>& of_a,
                                        const MotionNumbers<Number, PathDegree>& of_b, int d, Number since_a,
                                        Number since_b) {
+      static_assert(PathDegree <= 2);
       const Number a0 = of_a.coefficients[0][d], a1 = of_a.coefficients[1][d];
       const Number b0 = of_b.coefficients[0][d], b1 = of_b.coefficients[1][d];
       Number moved_a = a1 * since_a;

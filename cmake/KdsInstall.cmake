@@ -5,6 +5,9 @@ include(CMakePackageConfigHelpers)
 set(config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kds")
 get_property(targets GLOBAL PROPERTY KDS_LAYER_TARGETS)
 list(REMOVE_ITEM targets kds_gsl)
+if(KDS_BUILD_SPLINES)
+  list(APPEND targets kds_collision_splines)
+endif()
 install(TARGETS ${targets} EXPORT kdsTargets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT kds
   FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kds" COMPONENT kds)

@@ -1,6 +1,7 @@
 // The clock of the world: which event is next, and what the callers of the engine see.
 #include "collision/world.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/new_broad_phase.hpp"
 #include "kds/arithmetic/strict.hpp"
@@ -347,7 +348,8 @@ void World<Degree>::count_edit() {
     edits_.count(clock_.now, options_.zeno.interval, std::max<std::uint64_t>(options_.most_edits, 64 * bodies_.size()));
 }
 
-template class World<1>;
-template class World<2>;
+#define KDS_INSTANTIATE(degree) template class World<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -3,6 +3,7 @@
 
 #include "collision/body_description.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/bodies.hpp"
@@ -41,11 +42,14 @@ namespace kds::collision {
 /// that throws, want of memory) the world can no longer be used: it can be looked at and destroyed, and all that would
 /// run, change, check or save it throws std::logic_error and says why.
 ///
-/// Degree 1 (straight paths) never pays for degree 2. Lengths and masses are in units of the caller's own, times in
-/// seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
+/// Degree 1 (straight paths) never pays for degree 2, nor either for degrees 3 to 5 (splines), which are in a library
+/// of their own, kds::collision_splines (docs/splines.md). Lengths and masses are in units of the caller's own, times
+/// in seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
 template <int Degree>
 class World final : private RestingContacts<Degree>::Listener {
-  static_assert(Degree == 1 || Degree == 2, "World: bodies move on lines (degree 1) or parabolas (degree 2)");
+  static_assert(Degree >= 1 && Degree <= KDS_GREATEST_DEGREE,
+                "World: bodies move on lines (degree 1) or parabolas (degree 2), and with kds::collision_splines on "
+                "curves of degree 3 to 5");
 
  public:
   using Motion = certificates::PointMotion<Degree>;
@@ -278,7 +282,8 @@ class World final : private RestingContacts<Degree>::Listener {
   std::exception_ptr failure_;  ///< what has left the world in pieces
 };
 
-extern template class World<1>;
-extern template class World<2>;
+#define KDS_DECLARE(degree) extern template class World<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

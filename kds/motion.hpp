@@ -17,7 +17,7 @@ namespace kds {
 /// x(t) = c0 + c1 (t - start) + c2 (t - start)^2 + ...: [Paper] Equation 1, written about its own start.
 ///
 /// Law (epochs): a motion is never evaluated with a large absolute t, so a clock at 1e9 is as good as one at 0. The
-/// coefficients and the start are taken as exact; c2 is half the acceleration. Degrees above 8 are refused at compile
+/// coefficients and the start are taken as exact; c2 is half the acceleration. Degrees above 10 are refused at compile
 /// time by what evaluates motions in double-double (compensated_value()), and so by most certificates.
 template <int Degree>
 struct Motion {

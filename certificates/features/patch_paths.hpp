@@ -26,6 +26,7 @@ using Corners = std::array<Lanes, 3>;
 /// docs/features.md, "Rounding".
 template <int Degree>
 struct PatchPaths {
+  static_assert(Degree == 1 || Degree == 2, "features: margins and turning axes are derived for lines and parabolas");
   static constexpr int degree = Degree;
 
   std::array<Corners, std::size_t{Degree} + 1> c;

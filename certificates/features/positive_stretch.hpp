@@ -101,10 +101,10 @@ double halley_guess(const Polynomial<Degree>& p, double width, double level) {
 /// gains quadratically on a simple root, by halves on a double one.
 ///
 /// Rounding: shift, scaling and change of basis take at most 5 Degree + 8 roundings of parts whose absolute values sum
-/// to at most norm(p); 64 x 2^-53 norm(p) is added to the margin, which covers degree 8.
+/// to at most norm(p); 64 x 2^-53 norm(p) is added to the margin, which covers degree 10.
 template <int Degree>
 double positive_until(const Polynomial<Degree>& p, double s, double margin) {
-  static_assert(Degree >= 1 && Degree <= 8);
+  static_assert(Degree >= 1 && Degree <= 10);
   constexpr int most_stretches = 48;
   const double level = margin + 0x1p-47 * norm(p);
   double width = 1 - s;

@@ -1,5 +1,7 @@
 #include "collision/broad_phase/adaptive_broad_phase.hpp"
 
+#include "collision/degrees.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -104,7 +106,8 @@ BroadPhaseCounters AdaptiveBroadPhase<Degree>::counters() const {
   return sum;
 }
 
-template class AdaptiveBroadPhase<1>;
-template class AdaptiveBroadPhase<2>;
+#define KDS_INSTANTIATE(degree) template class AdaptiveBroadPhase<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

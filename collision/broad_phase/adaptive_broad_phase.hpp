@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/few_boxes.hpp"
 #include "collision/broad_phase/kinetic_grid.hpp"
+#include "collision/degrees.hpp"
 
 #include <memory>
 #include <string_view>
@@ -54,7 +55,8 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   BroadPhaseCounters done_;  ///< by grids that have been given up
 };
 
-extern template class AdaptiveBroadPhase<1>;
-extern template class AdaptiveBroadPhase<2>;
+#define KDS_DECLARE(degree) extern template class AdaptiveBroadPhase<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 #include "collision/broad_phase/few_boxes.hpp"
 
+#include "collision/degrees.hpp"
 #include "kds/audit.hpp"
 #include "kds/roots/failure_time.hpp"
 
@@ -119,10 +120,21 @@ void FewBoxes<Degree>::change(std::size_t place, Row row, std::size_t count, dou
 template <int Degree>
 double FewBoxes<Degree>::first_span(double now) const {
   double size = 0, speed = 0, bend = 0;
+  if constexpr (Degree >= 3) {
+    double extent = 0;
+    for (const auto& [id, box] : bodies_) extent += (box.max.coefficients[0] - box.min.coefficients[0]).maxCoeff();
+    const double reach = first_reach_per_size * extent / static_cast<double>(bodies_.size());
+    double time = greatest_double;
+    for (const auto& [id, box] : bodies_) {
+      const double moves = time_to_move(box.min, now, reach);
+      if (moves > 0) time = std::min(time, moves);
+    }
+    return time;
+  }
   for (const auto& [id, box] : bodies_) {
     const double velocity = box.min.velocity(now).cwiseAbs().maxCoeff();
     double force = 0;
-    if constexpr (Degree >= 2) force = box.min.coefficients[2].cwiseAbs().maxCoeff();
+    if constexpr (Degree == 2) force = box.min.coefficients[2].cwiseAbs().maxCoeff();
     if (velocity == 0 && force == 0) continue;
     size += (box.max.coefficients[0] - box.min.coefficients[0]).maxCoeff();
     speed += velocity;
@@ -264,7 +276,8 @@ void FewBoxes<Degree>::audit(double now) const {
   }
 }
 
-template class FewBoxes<1>;
-template class FewBoxes<2>;
+#define KDS_INSTANTIATE(degree) template class FewBoxes<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

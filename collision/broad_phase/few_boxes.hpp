@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/swept_box.hpp"
+#include "collision/degrees.hpp"
 #include "kds/simd/two_doubles.hpp"
 
 #include <array>
@@ -87,7 +88,8 @@ class FewBoxes final : public BroadPhase<Degree> {
   BroadPhaseCounters counters_;
 };
 
-extern template class FewBoxes<1>;
-extern template class FewBoxes<2>;
+#define KDS_DECLARE(degree) extern template class FewBoxes<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 #include "collision/broad_phase/kinetic_grid.hpp"
 
+#include "collision/degrees.hpp"
 #include "kds/audit.hpp"
 
 #include <algorithm>
@@ -122,7 +123,8 @@ void KineticGrid<Degree>::audit(double now) const {
   }
 }
 
-template class KineticGrid<1>;
-template class KineticGrid<2>;
+#define KDS_INSTANTIATE(degree) template class KineticGrid<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

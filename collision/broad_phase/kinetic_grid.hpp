@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/box_grid.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/degrees.hpp"
 #include "kds/events/calendar_queue.hpp"
 
 #include <cstdint>
@@ -117,7 +118,8 @@ class KineticGrid final : public BroadPhase<Degree> {
   BroadPhaseCounters counters_;
 };
 
-extern template class KineticGrid<1>;
-extern template class KineticGrid<2>;
+#define KDS_DECLARE(degree) extern template class KineticGrid<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

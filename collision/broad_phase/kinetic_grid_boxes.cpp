@@ -1,5 +1,6 @@
 // The fat boxes of a kinetic grid: how far each reaches, and how long it holds.
 #include "collision/broad_phase/kinetic_grid.hpp"
+#include "collision/degrees.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,9 +63,10 @@ double exit_time(const KineticBox<Degree>& box, const BoxBounds& present, const 
 template <int Degree>
 template <class Sweep>
 inline double KineticGrid<Degree>::lifetime(const Body& body, const Sweep& sweep) {
+  if constexpr (Degree >= 3) return sweep.time_to_move(body.reach);
   const double speed = sweep.speed();
   double time = speed > 0 ? std::min(body.reach / speed, largest) : never;
-  if constexpr (Degree >= 2) {
+  if constexpr (Degree == 2) {
     const KineticBox<Degree>& box = body.box;
     const double bend = box.min.coefficients[2].cwiseAbs().cwiseMax(box.max.coefficients[2].cwiseAbs()).maxCoeff();
     if (bend > 0) time = std::min(time, std::sqrt(body.reach / bend));
@@ -206,7 +208,8 @@ double KineticGrid<Degree>::kept_until(BodyId id, const BoxSweep<Degree>& sweep,
   return expiry;
 }
 
-template class KineticGrid<1>;
-template class KineticGrid<2>;
+#define KDS_INSTANTIATE(degree) template class KineticGrid<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -2,6 +2,7 @@
 #include "collision/broad_phase/box_pairs.hpp"
 #include "collision/broad_phase/kinetic_grid.hpp"
 #include "collision/broad_phase/typical_spacing.hpp"
+#include "collision/degrees.hpp"
 #include "collision/parallel.hpp"
 
 #include <algorithm>
@@ -161,7 +162,8 @@ void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span
   }
 }
 
-template class KineticGrid<1>;
-template class KineticGrid<2>;
+#define KDS_INSTANTIATE(degree) template class KineticGrid<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 
+#include "collision/degrees.hpp"
 #include "kds/audit.hpp"
 
 #include <algorithm>
@@ -271,7 +272,8 @@ BroadPhaseCounters KineticSweepAndPrune<Degree>::counters() const {
   return {swaps.events + update_swaps_, swaps.certificates + unlisted_.counters().certificates, box_updates_};
 }
 
-template class KineticSweepAndPrune<1>;
-template class KineticSweepAndPrune<2>;
+#define KDS_INSTANTIATE(degree) template class KineticSweepAndPrune<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -4,6 +4,7 @@
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/broad_phase/unlisted_axes.hpp"
+#include "collision/degrees.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
 
@@ -191,7 +192,8 @@ inline void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::ui
   if ((kinds_differ & (near | one_body | unsigned{updating_})) != 0) intervals_changed(axis, left, right, t);
 }
 
-extern template class KineticSweepAndPrune<1>;
-extern template class KineticSweepAndPrune<2>;
+#define KDS_DECLARE(degree) extern template class KineticSweepAndPrune<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

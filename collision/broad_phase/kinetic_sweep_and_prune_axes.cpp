@@ -1,5 +1,6 @@
 // Which directions have lists, and who overlaps on them.
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
+#include "collision/degrees.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -175,7 +176,8 @@ void KineticSweepAndPrune<Degree>::partners_on_lists(BodyId id, std::vector<Body
   }
 }
 
-template class KineticSweepAndPrune<1>;
-template class KineticSweepAndPrune<2>;
+#define KDS_INSTANTIATE(degree) template class KineticSweepAndPrune<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 #include "collision/broad_phase/swept_sweep_and_prune.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/profile.hpp"
 #include "kds/audit.hpp"
 
@@ -187,7 +188,8 @@ void SweptSweepAndPrune<Degree>::audit(double) const {
   }
 }
 
-template class SweptSweepAndPrune<1>;
-template class SweptSweepAndPrune<2>;
+#define KDS_INSTANTIATE(degree) template class SweptSweepAndPrune<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/swept_box.hpp"
+#include "collision/degrees.hpp"
 #include "collision/profile.hpp"
 
 #include <array>
@@ -83,7 +84,8 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   BroadPhaseCounters counters_;
 };
 
-extern template class SweptSweepAndPrune<1>;
-extern template class SweptSweepAndPrune<2>;
+#define KDS_DECLARE(degree) extern template class SweptSweepAndPrune<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

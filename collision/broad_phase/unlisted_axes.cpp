@@ -2,6 +2,7 @@
 #include "collision/broad_phase/unlisted_sides.hpp"
 
 #include "certificates/conjunction.hpp"
+#include "collision/degrees.hpp"
 #include "kds/audit.hpp"
 
 #include <algorithm>
@@ -293,7 +294,8 @@ void UnlistedAxes<Degree>::audit_pair(BodyId a, BodyId b, double now) const {
   }
 }
 
-template class UnlistedAxes<1>;
-template class UnlistedAxes<2>;
+#define KDS_INSTANTIATE(degree) template class UnlistedAxes<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -4,6 +4,7 @@
 #include "certificates/order.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
+#include "collision/degrees.hpp"
 #include "kds/events/dary_queue.hpp"
 #include "kds/simd/four_floats.hpp"
 #include "kds/statistics.hpp"
@@ -162,7 +163,8 @@ class UnlistedAxes {
   Counters counters_;
 };
 
-extern template class UnlistedAxes<1>;
-extern template class UnlistedAxes<2>;
+#define KDS_DECLARE(degree) extern template class UnlistedAxes<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

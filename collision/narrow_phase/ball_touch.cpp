@@ -1,51 +1,14 @@
 #include "collision/narrow_phase/ball_touch.hpp"
 
+#include "collision/degrees.hpp"
+#include "collision/narrow_phase/round_touch.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace kds::collision {
-namespace {
-
 using Eigen::Vector3d;
-
-Vector3d unit(const Vector3d& v) {
-  const double largest = v.cwiseAbs().maxCoeff();
-  const Vector3d scaled = v / largest;
-  return scaled / std::sqrt(dot(scaled, scaled));
-}
-
-}  // namespace
-
-NearestPoint nearest_point(const PlacedTriangle& triangle, const Vector3d& to) {
-  const auto& v = triangle.vertices;
-  const Vector3d normal = unit(cross(triangle.edge(0), triangle.edge(1)));
-  bool inside = true;
-  NearestPoint best{v[0], 0, 0};
-  double least = TimeSpans::infinity;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3d edge = triangle.edge(i);
-    const Vector3d d = to - v[i];
-    inside = inside && dot(cross(normal, edge), d) > 0;
-    const double along = dot(edge, d);
-    const double length = dot(edge, edge);
-    NearestPoint candidate{v[i], 0, i};
-    if (along >= length) {
-      candidate = {v[(i + 1) % 3], 0, (i + 1) % 3};
-    } else if (along > 0) {
-      candidate = {v[i] + (along / length) * edge, 1, i};
-    }
-    const Vector3d apart = to - candidate.point;
-    const double distance = dot(apart, apart);
-    if (distance < least) {
-      least = distance;
-      best = candidate;
-    }
-  }
-  if (inside) return {to - dot(normal, to - v[0]) * normal, 2, 0};
-  return best;
-}
 
 template <int Degree>
 BallTouch<Degree>::BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball,
@@ -80,32 +43,22 @@ auto BallTouch<Degree>::across_edge(std::size_t i) const -> Path {
 
 /// When normal . r - reach < gap.
 template <int Degree>
-TimeSpans BallTouch<Degree>::below(const Vector3d& normal, double reach) const {
+SpansOf<Degree> BallTouch<Degree>::below(const Vector3d& normal, double reach) const {
   const auto& r = motion_.coefficients;
-  if constexpr (Degree == 1) {
-    return negative_spans(dot(normal, r[0]) - reach - gap_.c[0], dot(normal, r[1]) - gap_.c[1]);
-  } else {
-    return negative_spans(dot(normal, r[0]) - reach - gap_.c[0], dot(normal, r[1]) - gap_.c[1],
-                          dot(normal, r[2]) - gap_.c[2]);
-  }
+  std::array<double, std::size_t{Degree} + 1> c;
+  c[0] = dot(normal, r[0]) - reach - gap_.c[0];
+  for (std::size_t i = 1; i <= Degree; ++i) c[i] = dot(normal, r[i]) - gap_.c[i];
+  return spans_below_zero<Degree>(c, horizon_);
 }
 
-/// Whether the path comes near the origin within the window of interest, judged by its chord.
+/// Whether the path comes near the origin within the window of interest.
 template <int Degree>
 bool BallTouch<Degree>::matters(const Path& path) const {
-  const double length = interest_.end - interest_.begin;
-  const Vector3d begin = place_on(path, interest_.begin);
-  const Vector3d along = place_on(path, interest_.end) - begin;
-  const double square = dot(along, along);
-  const double part = square > 0 ? std::clamp(-dot(begin, along) / square, 0.0, 1.0) : 0.0;
-  const Vector3d nearest = begin + part * along;
-  double reach = radius_ + 4 * gap_(interest_.end);
-  if constexpr (Degree == 2) reach += 0.25 * length * length * std::sqrt(dot(path[2], path[2]));
-  return !(dot(nearest, nearest) > reach * reach);
+  return may_come_near<Degree>(path, interest_, radius_ + 4 * gap_(interest_.end));
 }
 
 template <int Degree>
-TimeSpans BallTouch<Degree>::within(const Path& path) const {
+SpansOf<Degree> BallTouch<Degree>::within(const Path& path) const {
   std::array<double, std::size_t{Degree} + 1> reach = gap_.c;
   reach[0] += radius_;
   return near_spans(path, reach, horizon_);
@@ -203,7 +156,15 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
   const double distance = std::sqrt(dot(apart, apart));
   const double rate = dot(normal, velocity);
   bool approaching = rate < 0;
-  if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
+  if constexpr (Degree >= 3) {
+    approaching = curve_approaches(motion_, gap_, tau, [&](const Vector3d& place) -> NearestPart {
+      const NearestPoint at = nearest_point(triangle_, place);
+      const Vector3d direction = at.dimension == 2   ? unit(cross(triangle_.edge(0), triangle_.edge(1)))
+                                 : at.dimension == 1 ? unit(triangle_.edge(at.index))
+                                                     : Vector3d(Vector3d::Zero());
+      return {place - at.point, at.dimension, direction};
+    });
+  } else if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
     // Second derivative of the distance: bending towards the surface beats leaving its round. What is round is the part
     // of the triangle that the ball comes to: it may be about to pass from an edge to the face.
     Vector3d sideways = velocity - rate * normal;
@@ -221,39 +182,27 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
   return {normal, distance - radius_, approaching};
 }
 
+/// Where the distance to a part of the triangle has a maximum while that part is the nearest.
 template <int Degree>
 double BallTouch<Degree>::turning(double tau, double end) const {
-  if constexpr (Degree == 2) {
-    // Where the distance to a part of the triangle has a maximum while that part is the nearest.
-    const auto consider = [&](double top, double distance) {
-      if (!(top > tau && top < end)) return;
-      const Vector3d centre = motion_.position(top);
-      const Vector3d apart = centre - nearest_point(triangle_, centre).point;
-      if (distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4) end = top;
-    };
-    const auto consider_path = [&](const Path& path) {
-      const DistanceQuartic quartic(path, {0, 0, 0});
-      const auto points = quartic.turning_points(horizon_);
-      for (std::size_t i = 0; i < points.size; ++i) {
-        const double top = points.at[i];
-        if (quartic.bend(top) < 0) consider(top, norm(place_on(path, top)));
-      }
-    };
+  const auto consider = [&](double top, double distance) {
+    const Vector3d centre = motion_.position(top);
+    const Vector3d apart = centre - nearest_point(triangle_, centre).point;
+    if (!(distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4)) return false;
+    end = top;
+    return true;
+  };
+  if constexpr (Degree >= 2) {
     const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));
-    const double p1 = dot(normal, motion_.coefficients[1]);
-    const double p2 = dot(normal, motion_.coefficients[2]);
-    if (p2 != 0) {
-      const double top = -p1 / (2 * p2);
-      const double height = dot(normal, motion_.position(top) - triangle_.vertices[0]);
-      if ((height > 0) == (p2 < 0)) consider(top, std::abs(height));
-    }
-    for (std::size_t i = 0; i < 3; ++i) consider_path(across_edge(i));
-    for (std::size_t i = 0; i < 3; ++i) consider_path(from(i));
+    distance_maxima(motion_, normal, triangle_.vertices[0], tau, end, consider);
+    for (std::size_t i = 0; i < 3; ++i) distance_maxima<Degree>(across_edge(i), horizon_, tau, end, consider);
+    for (std::size_t i = 0; i < 3; ++i) distance_maxima<Degree>(from(i), horizon_, tau, end, consider);
   }
   return end;
 }
 
-template class BallTouch<1>;
-template class BallTouch<2>;
+#define KDS_INSTANTIATE(degree) template class BallTouch<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

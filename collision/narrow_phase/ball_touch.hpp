@@ -1,9 +1,11 @@
 // A moving ball and a triangle.
 #pragma once
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/near_spans.hpp"
+#include "collision/narrow_phase/nearest_point.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
@@ -16,23 +18,16 @@
 
 namespace kds::collision {
 
-/// The point of a triangle nearest to another point, and what part of the triangle it lies on.
-struct NearestPoint {
-  Eigen::Vector3d point;
-  int dimension;      ///< 0: a vertex, 1: inside an edge, 2: inside the triangle
-  std::size_t index;  ///< of the vertex or edge; edge i leads from vertex i to vertex i + 1 (mod 3)
-};
-NearestPoint nearest_point(const PlacedTriangle& triangle, const Eigen::Vector3d& to);
-
 /// When a ball touches a triangle: their distance is below radius + contact gap. The set of such places of the ball's
 /// centre is the union of seven convex pieces: a prism over the face, three cylinders about the edges, three balls
 /// about the vertices. Each side of the prism lies a gap farther out, so that a corner of half the angle theta does by
 /// a gap / sin(theta); where there may be sharp ones, sides across the corners cut them off. So in no piece the ball is
 /// more than 8.1 gaps away from the triangle. Same members as ConvexTouch; closed forms for linear motion, for
-/// quadratic motion quartics whose sign changes are bracketed between those of their derivatives.
+/// quadratic motion quartics whose sign changes are bracketed between those of their derivatives, beyond that exact
+/// signs (curve_spans.hpp).
 ///
 /// Squared distances are never expanded about tau = 0 to decide a sign, only evaluated from the place of the centre at
-/// tau: so their error is that of the distance, which the contact gap covers, however small the ball.
+/// tau, or exactly: so their error is that of the distance, which the contact gap covers, however small the ball.
 template <int Degree>
 class BallTouch {
  public:
@@ -55,19 +50,19 @@ class BallTouch {
  private:
   /// Slab or cylinder and its ends; eight conditions at most.
   struct Piece {
-    std::array<TimeSpans, 8> conditions;
+    std::array<SpansOf<Degree>, 8> conditions;
     std::size_t size = 0;
 
-    std::span<const TimeSpans> spans() const { return {conditions.data(), size}; }
+    std::span<const SpansOf<Degree>> spans() const { return {conditions.data(), size}; }
     bool contains(double tau) const { return first_inside_all(spans(), tau) == tau; }
   };
 
   void add_face(bool sharp);
   void add_edge(std::size_t i);
   void add_vertex(std::size_t i);
-  TimeSpans below(const Eigen::Vector3d& normal, double reach) const;
+  SpansOf<Degree> below(const Eigen::Vector3d& normal, double reach) const;
   bool matters(const Path& path) const;
-  TimeSpans within(const Path& path) const;
+  SpansOf<Degree> within(const Path& path) const;
   Path from(std::size_t vertex) const;
   Path across_edge(std::size_t i) const;
 
@@ -81,7 +76,8 @@ class BallTouch {
   std::size_t size_ = 0;
 };
 
-extern template class BallTouch<1>;
-extern template class BallTouch<2>;
+#define KDS_DECLARE(degree) extern template class BallTouch<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

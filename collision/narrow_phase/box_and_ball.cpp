@@ -1,6 +1,7 @@
 #include "collision/narrow_phase/box_and_ball.hpp"
 
 #include "certificates/features/positive_stretch.hpp"
+#include "collision/degrees.hpp"
 #include "kds/polynomial.hpp"
 
 namespace kds::collision {
@@ -57,7 +58,8 @@ bool BoxAndBall<Degree>::Piece::cut(double until) {
   for (std::size_t d = 0; d < 3; ++d) {
     if (!around(d)) continue;
     Polynomial<Degree> y = taylor_shift<double>(Polynomial<Degree>{pair_->from_middle(d, place_[d])}, begin);
-    for (std::size_t i = 1; i <= Degree; ++i) y.c[i] *= i == 1 ? length : length * length;
+    double power = 1;
+    for (std::size_t i = 1; i <= Degree; ++i) y.c[i] *= power *= length;
     const double size = certificates::norm(y);
     f = f + square(y);
     margin += (2 * size + e) * e + 0x1p-48 * size * size;
@@ -92,7 +94,12 @@ double BoxAndBall<Degree>::Piece::distance_opened_by() const {
   for (std::size_t d = 0; d < 3; ++d) {
     if (!around(d)) continue;
     const Along y = pair_->from_middle(d, place_[d]);
-    const double acceleration = Degree == 2 ? 2 * std::abs(y[Degree]) : 0;
+    double acceleration = Degree == 2 ? 2 * std::abs(y[Degree]) : 0;
+    if constexpr (Degree >= 3) {  // at most, until it has opened
+      for (std::size_t i = Degree; i >= 2; --i) {
+        acceleration = acceleration * opened + static_cast<double>(i * (i - 1)) * std::abs(y[i]);
+      }
+    }
     const double speed = std::abs(y[1]) + acceleration * opened;
     bend += 2 * (speed * speed + (std::abs(y[0]) + speed * opened) * acceleration);
   }
@@ -126,7 +133,8 @@ double BoxAndBall<Degree>::Piece::closed_until(std::size_t i, double t) const {
   return pair_->motion_.closed_until(pair_->along_[d], side(i), reach, t);
 }
 
-template class BoxAndBall<1>;
-template class BoxAndBall<2>;
+#define KDS_INSTANTIATE(degree) template class BoxAndBall<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

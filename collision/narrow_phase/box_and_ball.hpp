@@ -3,6 +3,7 @@
 
 #include "certificates/feature_separation.hpp"
 #include "certificates/plane_separation.hpp"
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/gap_conditions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/quick_motion.hpp"
@@ -26,8 +27,8 @@ namespace kds::collision {
 ///
 /// When the centre may be there is found once for each axis and place, by quadratics in doubles; a piece then takes the
 /// greatest of three beginnings and the least of three ends, which mostly leaves nothing. What is left of edges and
-/// vertices is cut by Bernstein coefficients of the distance, of degree 4 for parabolas. Exact signs have the last
-/// word, of the pieces that may be the first.
+/// vertices is cut by Bernstein coefficients of the squared distance, of twice the degree of the paths. Exact signs
+/// have the last word, of the pieces that may be the first.
 ///
 /// Cost: 0.1 us where they do not meet, 1 us (straight paths) to 1.5 us (parabolas) where they do.
 template <int Degree>
@@ -196,7 +197,8 @@ void BoxAndBall<Degree>::earliest_pieces(double horizon, const Visit& visit) con
   }
 }
 
-extern template class BoxAndBall<1>;
-extern template class BoxAndBall<2>;
+#define KDS_DECLARE(degree) extern template class BoxAndBall<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/capsule_contact.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/contact_patch.hpp"
 #include "collision/narrow_phase/zonotope_cells.hpp"
 #include "collision/shapes/rounded_core.hpp"
@@ -109,7 +110,9 @@ Contact rounded_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
   return contact;
 }
 
-template Contact rounded_contact(const MovingShape<1>&, const MovingShape<1>&, double);
-template Contact rounded_contact(const MovingShape<2>&, const MovingShape<2>&, double);
+#define KDS_INSTANTIATE(degree) \
+  template Contact rounded_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,6 +1,7 @@
 // Dynamic tests of capsules with balls, capsules and boxes, by exact signs.
 #pragma once
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/piecewise_contact.hpp"
 #include "collision/narrow_phase/rounded_zonotope.hpp"
@@ -17,7 +18,9 @@ Contact rounded_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
 template <int Degree>
 using CapsuleContact = PiecewiseContact<Degree, RoundedZonotope<Degree>, rounded_contact<Degree>>;
 
-extern template Contact rounded_contact(const MovingShape<1>&, const MovingShape<1>&, double);
-extern template Contact rounded_contact(const MovingShape<2>&, const MovingShape<2>&, double);
+#define KDS_DECLARE(degree) \
+  extern template Contact rounded_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

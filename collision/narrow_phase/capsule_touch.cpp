@@ -2,6 +2,7 @@
 
 #include "collision/narrow_phase/ball_touch.hpp"
 #include "collision/narrow_phase/near_spans.hpp"
+#include "collision/narrow_phase/round_touch.hpp"
 #include "collision/narrow_phase/zonotope_cells.hpp"
 #include "collision/vectors.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// Zero stays zero.
-Vector3d unit(const Vector3d& v) {
+Vector3d unit_or_zero(const Vector3d& v) {
   const double largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0)) return Vector3d::Zero();
   const Vector3d scaled = v / largest;
@@ -32,12 +33,12 @@ struct Frame {
   Vector3d normal;
 };
 Frame frame_of(const Vector3d& edge, const Vector3d& segment) {
-  const Vector3d along = unit(dot(edge, edge) > dot(segment, segment) ? edge : segment);
-  Vector3d normal = unit(across(unit(accurate_cross(edge, segment)), along));
+  const Vector3d along = unit_or_zero(dot(edge, edge) > dot(segment, segment) ? edge : segment);
+  Vector3d normal = unit_or_zero(across(unit_or_zero(accurate_cross(edge, segment)), along));
   if (normal.isZero(0)) {
     int smallest = 0;
     along.cwiseAbs().minCoeff(&smallest);
-    normal = unit(cross(along, Vector3d::Unit(smallest)));
+    normal = unit_or_zero(cross(along, Vector3d::Unit(smallest)));
   }
   return {along, cross(normal, along), normal};
 }
@@ -71,7 +72,7 @@ void every_way(const PlacedTriangle& triangle, const Vector3d& centre, const Vec
     const double on_edge = dot(cross(from, half), normal) / sine_square;
     const double on_half = dot(cross(from, edge), normal) / sine_square;
     if (!(on_edge > 0 && on_edge < 1 && std::abs(on_half) < 1)) continue;
-    const Vector3d out = unit(normal);
+    const Vector3d out = unit_or_zero(normal);
     visit(Way{dot(out, from) * out, 2, {}, on_half});
   }
 }
@@ -138,16 +139,12 @@ auto CapsuleTouch<Degree>::from(const Vector3d& at) const -> Path {
 
 /// When normal . r - reach < gap, or < 0.
 template <int Degree>
-TimeSpans CapsuleTouch<Degree>::below(const Vector3d& normal, double reach, bool with_gap) const {
+SpansOf<Degree> CapsuleTouch<Degree>::below(const Vector3d& normal, double reach, bool with_gap) const {
   const auto& r = motion_.coefficients;
   std::array<double, std::size_t{Degree} + 1> c;
   for (std::size_t i = 0; i <= Degree; ++i) c[i] = dot(normal, r[i]) - (with_gap ? gap_.c[i] : 0.0);
   c[0] -= reach;
-  if constexpr (Degree == 1) {
-    return negative_spans(c[0], c[1]);
-  } else {
-    return negative_spans(c[0], c[1], c[2]);
-  }
+  return spans_below_zero<Degree>(c, horizon_);
 }
 
 /// Not farther out than the corners, and some more.
@@ -161,19 +158,11 @@ void CapsuleTouch<Degree>::bound(Piece& piece, const Vector3d& out, Corners corn
 /// As BallTouch::matters().
 template <int Degree>
 bool CapsuleTouch<Degree>::matters(const Path& path) const {
-  const double length = interest_.end - interest_.begin;
-  const Vector3d begin = place_on(path, interest_.begin);
-  const Vector3d along = place_on(path, interest_.end) - begin;
-  const double square = dot(along, along);
-  const double part = square > 0 ? std::clamp(-dot(begin, along) / square, 0.0, 1.0) : 0.0;
-  const Vector3d nearest = begin + part * along;
-  double reach = radius_ + 4 * gap_(interest_.end);
-  if constexpr (Degree == 2) reach += 0.25 * length * length * std::sqrt(dot(path[2], path[2]));
-  return !(dot(nearest, nearest) > reach * reach);
+  return may_come_near<Degree>(path, interest_, radius_ + 4 * gap_(interest_.end));
 }
 
 template <int Degree>
-TimeSpans CapsuleTouch<Degree>::within(const Path& path) const {
+SpansOf<Degree> CapsuleTouch<Degree>::within(const Path& path) const {
   std::array<double, std::size_t{Degree} + 1> reach = gap_.c;
   reach[0] += radius_;
   return near_spans(path, reach, horizon_);
@@ -187,7 +176,7 @@ void CapsuleTouch<Degree>::add(const Piece& piece) {
 
 template <int Degree>
 void CapsuleTouch<Degree>::add_inside() {
-  const Vector3d normal = unit(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+  const Vector3d normal = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
   const double thickness = std::abs(dot(normal, half_));
   if (!(thickness > radius_)) return;
   Piece piece;
@@ -207,18 +196,18 @@ void CapsuleTouch<Degree>::add_inside() {
 /// The triangle at one end of the segment.
 template <int Degree>
 void CapsuleTouch<Degree>::add_triangle(double end, bool sharp) {
-  const Vector3d normal = unit(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+  const Vector3d normal = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
   const std::array<Vector3d, 3> corners{corner(0, end), corner(1, end), corner(2, end)};
   Piece piece;
   bound(piece, normal, corners, radius_);
   bound(piece, -normal, corners, radius_);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::array<Vector3d, 2> ends{corners[i], corners[(i + 1) % 3]};
-    bound(piece, unit(cross(triangle_.edge(i), normal)), ends);
+    bound(piece, unit_or_zero(cross(triangle_.edge(i), normal)), ends);
   }
   // Across each corner: away from the middle between the directions of its edges.
   for (std::size_t i = 0; sharp && i < 3; ++i) {
-    bound(piece, unit(unit(triangle_.edge((i + 2) % 3)) - unit(triangle_.edge(i))), corners);
+    bound(piece, unit_or_zero(unit_or_zero(triangle_.edge((i + 2) % 3)) - unit_or_zero(triangle_.edge(i))), corners);
   }
   add(piece);
 }
@@ -233,9 +222,9 @@ void CapsuleTouch<Degree>::add_parallelogram(std::size_t edge) {
   bound(piece, frame.normal, corners, radius_);
   bound(piece, -frame.normal, corners, radius_);
   // Across the longer sides, the shorter ones, and the corners.
-  const Vector3d shorter = unit(across(dot(e, e) > dot(half_, half_) ? half_ : e, frame.normal));
-  for (const Vector3d& out :
-       {frame.beside, unit(cross(frame.normal, shorter)), unit(frame.along + shorter), unit(frame.along - shorter)}) {
+  const Vector3d shorter = unit_or_zero(across(dot(e, e) > dot(half_, half_) ? half_ : e, frame.normal));
+  for (const Vector3d& out : {frame.beside, unit_or_zero(cross(frame.normal, shorter)),
+                              unit_or_zero(frame.along + shorter), unit_or_zero(frame.along - shorter)}) {
     bound(piece, out, corners);
     bound(piece, -out, corners);
   }
@@ -244,7 +233,7 @@ void CapsuleTouch<Degree>::add_parallelogram(std::size_t edge) {
 
 template <int Degree>
 void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& end) {
-  const Vector3d along = unit(end - begin);
+  const Vector3d along = unit_or_zero(end - begin);
   Piece piece;
   piece.conditions.push_back(below(along, dot(along, end)));
   piece.conditions.push_back(below(-along, -dot(along, begin)));
@@ -301,7 +290,7 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
   const Vector3d centre = motion_.position(tau);
   const Vector3d velocity = motion_.velocity(tau);
   const auto speeds = smallest_speeds(motion_);
-  const Vector3d face = unit(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+  const Vector3d face = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
   // How deep the segment goes through the triangle, by the faces of their prism.
   TouchDirection deepest{face, -TimeSpans::infinity, false};
   const auto look = [&](const Vector3d& normal) {
@@ -319,71 +308,68 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
   if (through || !(way.apart.cwiseAbs().maxCoeff() > 0)) {
     return {deepest.normal, deepest.separation - radius_, through && deepest.approaching};
   }
-  const Vector3d normal = unit(way.apart);
+  const Vector3d normal = unit_or_zero(way.apart);
   const double distance = std::sqrt(dot(way.apart, way.apart));
   const double rate = dot(normal, velocity);
   bool approaching = rate < 0;
-  if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
+  if constexpr (Degree >= 3) {
+    approaching = curve_approaches(motion_, gap_, tau, [&](const Vector3d& place) -> NearestPart {
+      const Way to = shortest_way(triangle_, place, half_);
+      const Vector3d direction = to.dimension == 2   ? unit_or_zero(to.apart)
+                                 : to.dimension == 1 ? unit_or_zero(to.along)
+                                                     : Vector3d(Vector3d::Zero());
+      return {to.apart, to.dimension, direction};
+    });
+  } else if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
     // Second derivative of the distance: bending towards the surface beats leaving its round. What is round is the part
     // that the capsule comes to.
     Vector3d sideways = across(velocity, normal);
     Way ahead = way;
     if (way.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {
-      ahead = shortest_way(triangle_, centre + gap_(tau) * unit(sideways), half_);
+      ahead = shortest_way(triangle_, centre + gap_(tau) * unit_or_zero(sideways), half_);
     }
-    if (ahead.dimension == 1) sideways = across(sideways, unit(ahead.along));
+    if (ahead.dimension == 1) sideways = across(sideways, unit_or_zero(ahead.along));
     const double round = ahead.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
     approaching = dot(normal, motion_.acceleration()) + round < -speeds[1];
   }
   return {normal, distance - radius_, approaching};
 }
 
+/// Where the distance to a part of the prism has a maximum while that part is the nearest.
 template <int Degree>
 double CapsuleTouch<Degree>::turning(double tau, double end) const {
+  const auto consider = [&](double top, double distance) {
+    const Vector3d apart = shortest_way(triangle_, motion_.position(top), half_).apart;
+    if (!(distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4)) return false;
+    end = top;
+    return true;
+  };
   if constexpr (Degree >= 2) {
-    // Where the distance to a part of the prism has a maximum while that part is the nearest.
-    const auto consider = [&](double top, double distance) {
-      if (!(top > tau && top < end)) return;
-      const Vector3d apart = shortest_way(triangle_, motion_.position(top), half_).apart;
-      if (distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4) end = top;
-    };
-    const auto consider_path = [&](const Path& path) {
-      const DistanceQuartic quartic(path, {0, 0, 0});
-      const auto points = quartic.turning_points(horizon_);
-      for (std::size_t i = 0; i < points.size; ++i) {
-        const double top = points.at[i];
-        if (quartic.bend(top) < 0) consider(top, norm(place_on(path, top)));
-      }
-    };
     const auto consider_plane = [&](const Vector3d& normal, const Vector3d& at) {
-      const double p1 = dot(normal, motion_.coefficients[1]);
-      const double p2 = dot(normal, motion_.coefficients[2]);
-      if (p2 == 0) return;
-      const double top = -p1 / (2 * p2);
-      const double height = dot(normal, motion_.position(top) - at);
-      if ((height > 0) == (p2 < 0)) consider(top, std::abs(height));
+      distance_maxima(motion_, normal, at, tau, end, consider);
     };
     const auto consider_line = [&](const Vector3d& at, const Vector3d& along) {
       Path path = from(at);
       for (Vector3d& c : path) c = across(c, along);
-      consider_path(path);
+      distance_maxima<Degree>(path, horizon_, tau, end, consider);
     };
-    const Vector3d face = unit(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+    const Vector3d face = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
     for (const double side : {-1.0, 1.0}) consider_plane(face, corner(0, side));
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3d edge = triangle_.edge(i);
       consider_plane(frame_of(edge, half_).normal, corner(i, 0));
-      consider_line(corner(i, 0), unit(half_));
+      consider_line(corner(i, 0), unit_or_zero(half_));
       for (const double side : {-1.0, 1.0}) {
-        consider_line(corner(i, side), unit(edge));
-        consider_path(from(corner(i, side)));
+        consider_line(corner(i, side), unit_or_zero(edge));
+        distance_maxima<Degree>(from(corner(i, side)), horizon_, tau, end, consider);
       }
     }
   }
   return end;
 }
 
-template class CapsuleTouch<1>;
-template class CapsuleTouch<2>;
+#define KDS_INSTANTIATE(degree) template class CapsuleTouch<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

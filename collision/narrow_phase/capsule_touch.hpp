@@ -1,6 +1,7 @@
 // A moving capsule and a triangle.
 #pragma once
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
@@ -65,9 +66,9 @@ class CapsuleTouch {
 
   /// The sides of a parallelogram's slab: both of five directions.
   struct Piece {
-    boost::container::static_vector<TimeSpans, 10> conditions;
+    boost::container::static_vector<SpansOf<Degree>, 10> conditions;
 
-    std::span<const TimeSpans> spans() const { return {conditions.data(), conditions.size()}; }
+    std::span<const SpansOf<Degree>> spans() const { return {conditions.data(), conditions.size()}; }
     bool contains(double tau) const { return first_inside_all(spans(), tau) == tau; }
   };
 
@@ -79,10 +80,10 @@ class CapsuleTouch {
   void add_line(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   void add_point(const Eigen::Vector3d& at);
   void add(const Piece& piece);
-  TimeSpans below(const Eigen::Vector3d& normal, double reach, bool with_gap = true) const;
+  SpansOf<Degree> below(const Eigen::Vector3d& normal, double reach, bool with_gap = true) const;
   void bound(Piece& piece, const Eigen::Vector3d& out, Corners corners, double more = 0) const;
   bool matters(const Path& path) const;
-  TimeSpans within(const Path& path) const;
+  SpansOf<Degree> within(const Path& path) const;
   Path from(const Eigen::Vector3d& at) const;
 
   PlacedTriangle triangle_;
@@ -95,7 +96,8 @@ class CapsuleTouch {
   boost::container::static_vector<Piece, most_pieces> pieces_;
 };
 
-extern template class CapsuleTouch<1>;
-extern template class CapsuleTouch<2>;
+#define KDS_DECLARE(degree) extern template class CapsuleTouch<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

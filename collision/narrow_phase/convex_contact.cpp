@@ -1,6 +1,7 @@
 #include "collision/narrow_phase/convex_contact.hpp"
 
 #include "certificates/ball_separation.hpp"
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/box_and_box.hpp"
 #include "collision/narrow_phase/contact_patch.hpp"
 #include "collision/shapes/box.hpp"
@@ -147,11 +148,11 @@ Contact BoxesContact<Degree>::contact_at(const Body& a, const Body& b, double t,
   return box_box_contact(a, b, t);
 }
 
-template struct BallsContact<1>;
-template struct BallsContact<2>;
-template struct BoxesContact<1>;
-template struct BoxesContact<2>;
-template Contact box_ball_contact(const MovingShape<1>&, const MovingShape<1>&, double);
-template Contact box_ball_contact(const MovingShape<2>&, const MovingShape<2>&, double);
+#define KDS_INSTANTIATE(degree)         \
+  template struct BallsContact<degree>; \
+  template struct BoxesContact<degree>; \
+  template Contact box_ball_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

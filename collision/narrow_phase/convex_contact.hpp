@@ -1,6 +1,7 @@
 // Dynamic tests of spheres and boxes, by exact signs.
 #pragma once
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/box_and_ball.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/piecewise_contact.hpp"
@@ -48,11 +49,11 @@ Contact box_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>
 template <int Degree>
 using BoxBallContact = PiecewiseContact<Degree, BoxAndBall<Degree>, box_ball_contact<Degree>>;
 
-extern template struct BallsContact<1>;
-extern template struct BallsContact<2>;
-extern template struct BoxesContact<1>;
-extern template struct BoxesContact<2>;
-extern template Contact box_ball_contact(const MovingShape<1>&, const MovingShape<1>&, double);
-extern template Contact box_ball_contact(const MovingShape<2>&, const MovingShape<2>&, double);
+#define KDS_DECLARE(degree)                    \
+  extern template struct BallsContact<degree>; \
+  extern template struct BoxesContact<degree>; \
+  extern template Contact box_ball_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,6 +1,7 @@
 // When a triangle touches another triangle or a box, one of them moving.
 #pragma once
 
+#include "collision/narrow_phase/curve_spans.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
@@ -27,13 +28,23 @@ struct TouchDirection {
 
 /// Speeds along an axis up to [0] + tau [1] are rounding: zero.
 template <int Degree>
-std::array<double, 2> smallest_speeds(const RelativeMotion<Degree>& motion) {
+std::array<double, 2> smallest_speeds(const RelativeMotion<Degree>& motion) requires(Degree <= 2) {
   constexpr double rounding = 8 * 0x1p-53;
   if constexpr (Degree == 1) {
     return {rounding * norm(motion.coefficients[1]), 0};
   } else {
     return {rounding * norm(motion.coefficients[1]), 2 * rounding * norm(motion.coefficients[2])};
   }
+}
+
+/// The same for degree n = 3 to 5, and for all derivatives: up to those of this polynomial they are rounding. A
+/// coefficient along an axis takes 4 of them, Horner's rule for its derivatives 2 n + 1.
+template <int Degree>
+std::array<double, std::size_t{Degree} + 1> smallest_speeds(const RelativeMotion<Degree>& motion) {
+  constexpr double rounding = 16 * 0x1p-53;
+  std::array<double, std::size_t{Degree} + 1> smallest;
+  for (std::size_t i = 0; i <= Degree; ++i) smallest[i] = rounding * norm(motion.coefficients[i]);
+  return smallest;
 }
 
 /// When a triangle and another convex shape touch: while all the conditions "their gap along this direction is below
@@ -46,10 +57,14 @@ class ConvexTouch {
   ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap,
               bool sharp)
       : a_(a), b_(b), motion_(motion), gap_(gap) {
+    if constexpr (Degree >= 3) {
+      add_curves(sharp);
+      return;
+    }
     const auto add_side = [&](const Condition& condition, bool decides) {
       if constexpr (Degree == 1) {
         add(condition, decides);
-      } else {
+      } else if constexpr (Degree == 2) {
         const auto& p = condition.separation;
         near_[size_++] = negative_spans(p[0] - gap.c[0], p[1] - gap.c[1], p[2] - gap.c[2]);
       }
@@ -128,6 +143,18 @@ class ConvexTouch {
   /// The first time after tau, before `end`, at which bodies that move apart turn towards each other: where a
   /// separation that is the greatest of all has its maximum, or `end`. Elsewhere the greatest separation rises on.
   double turning(double tau, double end) const {
+    if constexpr (Degree >= 3) {
+      const Conditions conditions(*this);
+      for (const Condition& each : conditions) {
+        each_maximum(PolynomialCertificate<Degree>{{{each.separation}, 0.0}}, tau, end, [&](double top) {
+          const double least = each(top) + gap_(top) / tie;
+          const bool greatest =
+              std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) { return c(top) <= least; });
+          if (greatest) end = top;
+          return greatest;
+        });
+      }
+    }
     if constexpr (Degree == 2) {
       const Conditions conditions(*this);
       for (const Condition& each : conditions) {
@@ -160,15 +187,24 @@ class ConvexTouch {
     double operator()(double tau) const {
       if constexpr (Degree == 1) {
         return separation[0] + tau * separation[1];
+      } else if constexpr (Degree >= 3) {
+        return derivative_at(separation, 0, tau);
       } else {
         return separation[0] + tau * (separation[1] + tau * separation[2]);
       }
     }
 
     /// 1 if it rises just after tau, -1 if it falls, 0 if it does neither but for rounding.
-    int trend(double tau, const std::array<double, 2>& speeds) const {
+    template <class Speeds>
+    int trend(double tau, const Speeds& speeds) const {
       const auto sign = [](double x, double rounding) { return x > rounding ? 1 : (x < -rounding ? -1 : 0); };
-      if constexpr (Degree == 1) {
+      if constexpr (Degree >= 3) {
+        int trend = 0;
+        for (int order = 1; order <= Degree && trend == 0; ++order) {
+          trend = sign(derivative_at(separation, order, tau), derivative_at(speeds, order, tau));
+        }
+        return trend;
+      } else if constexpr (Degree == 1) {
         return sign(separation[1], speeds[0]);
       } else {
         const int now = sign(separation[1] + 2 * tau * separation[2], speeds[0] + tau * speeds[1]);
@@ -200,6 +236,23 @@ class ConvexTouch {
     opposite.separation[0] -= (of_b.high - of_a.low) * inverse;
     visit(condition);
     visit(opposite);
+  }
+
+  /// Degree 3 and above: of conditions one that never holds is enough.
+  void add_curves(bool sharp) {
+    constexpr std::size_t most = std::size_t{Degree} + 1;
+    const auto add_sides = [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
+      bool near = true;
+      both_sides(axis, of_a, of_b, [&](const Condition& condition) {
+        if (!near) return;
+        Polynomial<Degree> apart{condition.separation};
+        for (std::size_t i = 0; i <= Degree; ++i) apart.c[i] -= gap_.c[i];
+        near_[size_] = broken_spans<most>(PolynomialCertificate<Degree>{{apart, 0.0}}, never);
+        near = !near_[size_++].empty();
+      });
+      return near;
+    };
+    if (every_axis(a_, b_, add_sides) && with_kdops && sharp) every_kdop_direction(a_, b_, add_sides);
   }
 
   /// Degree 1: the two are near from enter_ to leave_. `decides`: whether they may be said to touch along the normal.
@@ -271,13 +324,13 @@ class ConvexTouch {
     return (&condition - conditions.begin()) % 2 == 0 ? *(&condition + 1) : *(&condition - 1);
   }
 
-  std::span<const TimeSpans> near() const { return {near_.data(), size_}; }
+  std::span<const SpansOf<Degree>> near() const { return {near_.data(), size_}; }
 
   PlacedTriangle a_;
   B b_;
   const RelativeMotion<Degree>& motion_;
   ContactGap<Degree> gap_;
-  std::array<TimeSpans, Degree == 1 ? 1 : capacity_near> near_;  ///< when each separation is below the gap
+  std::array<SpansOf<Degree>, Degree == 1 ? 1 : capacity_near> near_;  ///< when each separation is below the gap
   std::size_t size_ = 0;
   // Degree 1:
   double enter_ = -TimeSpans::infinity;

@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/mesh_contact.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/mesh_query.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
@@ -69,8 +70,9 @@ MeshTouchPlace MeshPair<Degree>::where(double tau, const MeshTouch* known) const
   return ask([&](const auto& query) { return query.where(tau, known); });
 }
 
-template class MeshPair<1>;
-template class MeshPair<2>;
+#define KDS_INSTANTIATE(degree) template class MeshPair<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 // ---- MeshContact ---------------------------------------------------------------------------------------------------
 
@@ -152,7 +154,8 @@ Contact MeshContact<Degree>::contact_at(const Body& a, const Body& b, double t, 
   return {t, a.motion.position(t) + where.point, where.normal, where.feature_a, where.feature_b};
 }
 
-template struct MeshContact<1>;
-template struct MeshContact<2>;
+#define KDS_INSTANTIATE(degree) template struct MeshContact<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

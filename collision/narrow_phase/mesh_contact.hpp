@@ -1,6 +1,7 @@
 // Dynamic intersection tests of triangle meshes with meshes, boxes and balls.
 #pragma once
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
@@ -80,8 +81,9 @@ class MeshPair {
   ContactGap<Degree> gap_;
 };
 
-extern template class MeshPair<1>;
-extern template class MeshPair<2>;
+#define KDS_DECLARE(degree) extern template class MeshPair<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 /// The tests (see pair_tests.hpp) of a mesh (a) with any shape.
 ///
@@ -99,7 +101,8 @@ struct MeshContact {
   static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch& found = {});
 };
 
-extern template struct MeshContact<1>;
-extern template struct MeshContact<2>;
+#define KDS_DECLARE(degree) extern template struct MeshContact<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -8,6 +8,9 @@
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
 #include "collision/vectors.hpp"
+#include "kds/arithmetic/lattice.hpp"
+#include "kds/certificate.hpp"
+#include "kds/roots/failure_time.hpp"
 
 #include <algorithm>
 #include <array>
@@ -35,8 +38,8 @@ class PairTimes {
   void slice_by_slice(const TimeWindow& window, const Run& run) const {
     std::array<double, std::size_t{Degree} + 1> reach = margin_;
     reach[0] += radii_;
-    const TimeSpans spans = near_spans(motion_.coefficients, reach, last_);
-    for (std::size_t i = 0; i < 2; ++i) {
+    const auto spans = near_spans(motion_.coefficients, reach, last_);
+    for (std::size_t i = 0; i < stretches(spans); ++i) {
       double begin = std::max(window.begin, spans.begin[i]);
       const double end = std::min({window.end, spans.end[i], last_});
       while (begin <= end) {
@@ -56,12 +59,25 @@ class PairTimes {
   double last_;
 
  private:
+  static std::size_t stretches(const TimeSpans&) { return 2; }
+  template <std::size_t Most>
+  static std::size_t stretches(const CurveSpans<Most>& spans) {
+    return spans.size;
+  }
+
   /// A time after which there is nothing to look for; a function of shapes and motion alone. By then even the bounding
   /// balls are apart for good, or the gap has become so wide that it tells nothing: see `widest_gap`.
   double last_time() const {
     const auto& g = gap_.c;
     const double excess = g[0] - std::max(4 * g[0], widest_gap * radii_);
-    if constexpr (Degree == 1) {
+    if constexpr (Degree >= 3) {
+      // The gap, which only grows, has grown to that. (Bodies that part without end need no bound of their own: they
+      // have ceased to be in reach of each other.)
+      std::array<double, std::size_t{Degree} + 1> room;
+      for (std::size_t i = 0; i <= Degree; ++i) room[i] = -g[i];
+      room[0] = -excess;
+      return std::min(failure_time(PolynomialCertificate<Degree>{{{room}, 0.0}}, 0.0, farthest), farthest);
+    } else if constexpr (Degree == 1) {
       return g[1] > 0 ? std::min(-excess / g[1], farthest) : farthest;
     } else {
       double last = farthest;
@@ -82,7 +98,9 @@ class PairTimes {
     constexpr double large = 0x1p-11;  // of the gap: quick_margin times that is the margin
     constexpr double most_bend = 0x1p-3;
     const auto& r = motion_.coefficients;
-    if constexpr (Degree == 1) {
+    if constexpr (Degree >= 3) {
+      end = std::max(std::min(end, begin + nearly_straight(begin, end - begin)), std::min(end, next_up(begin)));
+    } else if constexpr (Degree == 1) {
       if (r[1].isZero(0) && gap_.c[1] == 0) return begin;
     } else {
       const double bend = norm(r[2]);
@@ -95,6 +113,21 @@ class PairTimes {
       end = earlier;
     }
     return end;
+  }
+
+  /// A time, the whole one or so many halves of it, in which the terms of the path above the linear one come to no more
+  /// than half of the shapes: as far off the chord as a parabola may be.
+  double nearly_straight(double begin, double whole) const {
+    std::array<double, std::size_t{Degree} + 1> size;
+    for (int i = 2; i <= Degree; ++i) size[static_cast<std::size_t>(i)] = norm(motion_.coefficient(i, begin));
+    const auto curve = [&](double time) {
+      double sum = 0;
+      for (std::size_t i = Degree; i >= 2; --i) sum = (sum + size[i]) * time;
+      return sum * time;
+    };
+    double time = whole;
+    while (time > 0 && !(curve(time) <= 0.5 * radii_)) time *= 0.5;
+    return time;
   }
 };
 

@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/capsule_contact.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
@@ -23,7 +24,20 @@ constexpr PairTable<Degree> make_table() {
 template <int Degree>
 constexpr PairTable<Degree> table = make_table<Degree>();
 
-static_assert(table<1>.complete() && table<2>.complete());
+/// Calls ask(a, b) with the motions as they are, or of the least degree from 2 on that both have: what is asked of them
+/// is then answered as in a world of that degree, bit for bit, and by its quicker tests.
+template <int Degree, class Ask>
+auto in_least_degree(const MovingShape<Degree>& a, const MovingShape<Degree>& b, const Ask& ask) {
+  if constexpr (Degree >= 3) {
+    if (a.motion.coefficients[Degree].isZero(0) && b.motion.coefficients[Degree].isZero(0)) {
+      const auto motion_a = without_last(a.motion);
+      const auto motion_b = without_last(b.motion);
+      return in_least_degree(MovingShape<Degree - 1>{a.shape, motion_a}, MovingShape<Degree - 1>{b.shape, motion_b},
+                             ask);
+    }
+  }
+  return ask(a, b);
+}
 
 }  // namespace
 
@@ -35,47 +49,54 @@ const PairTests<Degree>& pair_tests(const PlacedShape& a, const PlacedShape& b) 
 template <int Degree>
 double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
                      ContactMode mode, FoundTouch* found) {
-  return pair_tests<Degree>(a.shape, b.shape).first_contact(a, b, t0, horizon, mode, found);
+  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return pair_tests<D>(x.shape, y.shape).first_contact(x, y, t0, horizon, mode, found);
+  });
 }
 
 template <int Degree>
 ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
                                         double horizon, ContactMode mode, PairMemory& memory, FoundTouch* found) {
-  const PairTests<Degree>& tests = pair_tests<Degree>(a.shape, b.shape);
-  const double time = tests.apart_until(a, b, t0, horizon, memory);
+  const double time = in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return pair_tests<D>(x.shape, y.shape).apart_until(x, y, t0, horizon, memory);
+  });
   if (time == never || time > horizon) return {never, true};
   if (time > t0) return {time, false};
-  return {tests.first_contact(a, b, t0, horizon, mode, found), true};
+  return {first_contact(a, b, t0, horizon, mode, found), true};
 }
 
 template <int Degree>
 bool in_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
-  return pair_tests<Degree>(a.shape, b.shape).in_contact(a, b, t);
+  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return pair_tests<D>(x.shape, y.shape).in_contact(x, y, t);
+  });
 }
 
 template <int Degree>
 double first_separation(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon) {
-  return pair_tests<Degree>(a.shape, b.shape).first_separation(a, b, t0, horizon);
+  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return pair_tests<D>(x.shape, y.shape).first_separation(x, y, t0, horizon);
+  });
 }
 
 template <int Degree>
 Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t, const FoundTouch& found) {
-  return pair_tests<Degree>(a.shape, b.shape).contact_at(a, b, t, found);
+  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
+    return pair_tests<D>(x.shape, y.shape).contact_at(x, y, t, found);
+  });
 }
 
-template const PairTests<1>& pair_tests(const PlacedShape&, const PlacedShape&);
-template const PairTests<2>& pair_tests(const PlacedShape&, const PlacedShape&);
-template double first_contact(const MovingShape<1>&, const MovingShape<1>&, double, double, ContactMode, FoundTouch*);
-template double first_contact(const MovingShape<2>&, const MovingShape<2>&, double, double, ContactMode, FoundTouch*);
-template ContactEstimate estimated_first_contact(const MovingShape<1>&, const MovingShape<1>&, double, double,
-                                                 ContactMode, PairMemory&, FoundTouch*);
-template ContactEstimate estimated_first_contact(const MovingShape<2>&, const MovingShape<2>&, double, double,
-                                                 ContactMode, PairMemory&, FoundTouch*);
-template bool in_contact(const MovingShape<1>&, const MovingShape<1>&, double);
-template bool in_contact(const MovingShape<2>&, const MovingShape<2>&, double);
-template double first_separation(const MovingShape<1>&, const MovingShape<1>&, double, double);
-template double first_separation(const MovingShape<2>&, const MovingShape<2>&, double, double);
-template Contact contact_at(const MovingShape<1>&, const MovingShape<1>&, double, const FoundTouch&);
-template Contact contact_at(const MovingShape<2>&, const MovingShape<2>&, double, const FoundTouch&);
+#define KDS_INSTANTIATE(degree)                                                                                      \
+  static_assert(table<degree>.complete());                                                                           \
+  template const PairTests<degree>& pair_tests(const PlacedShape&, const PlacedShape&);                              \
+  template double first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double, double, ContactMode, \
+                                FoundTouch*);                                                                        \
+  template ContactEstimate estimated_first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double,   \
+                                                   double, ContactMode, PairMemory&, FoundTouch*);                   \
+  template bool in_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);                          \
+  template double first_separation(const MovingShape<degree>&, const MovingShape<degree>&, double, double);          \
+  template Contact contact_at(const MovingShape<degree>&, const MovingShape<degree>&, double, const FoundTouch&);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

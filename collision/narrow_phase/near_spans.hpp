@@ -1,6 +1,7 @@
 // When a moving point is near the origin.
 #pragma once
 
+#include "collision/narrow_phase/curve_spans.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
 
@@ -28,6 +29,14 @@ TimeSpans near_spans(const std::array<Eigen::Vector3d, 2>& s, const std::array<d
 /// The same for a quadratic path and reach, from tau = 0 to the horizon: the sign changes of a quartic, bracketed
 /// between those of its derivatives.
 TimeSpans near_spans(const std::array<Eigen::Vector3d, 3>& s, const std::array<double, 3>& g, double horizon);
+
+/// The same for paths of degree 3 and above, exactly (curve_spans.hpp).
+template <std::size_t Count>
+CurveSpans<Count> near_spans(const std::array<Eigen::Vector3d, Count>& s, const std::array<double, Count>& g,
+                             double horizon) {
+  static_assert(Count >= 4);
+  return broken_spans<Count>(FarCurve<static_cast<int>(Count) - 1>(s, g), horizon);
+}
 
 /// f(tau) = |s(tau)|^2 - g(tau)^2 and its derivatives.
 class DistanceQuartic {

@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/obb_descent.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
@@ -48,6 +49,16 @@ template <int Degree>
 Chord<Degree> chord(const std::array<Lanes, std::size_t{Degree} + 1>& path, float bend, const StepWindow& window) {
   if constexpr (Degree == 1) {
     return {path[0], path[1], 0};
+  } else if constexpr (Degree >= 3) {
+    const float length = window.end - window.begin;
+    const Lanes middle = splat(0.5F * (window.begin + window.end));
+    Lanes place = path[Degree];
+    Lanes speed{};
+    for (std::size_t i = Degree; i-- > 0;) {
+      speed = speed * middle + place;
+      place = place * middle + path[i];
+    }
+    return {place - speed * middle, speed, bend * (length * length * 0.25F)};
   } else {
     const float length = window.end - window.begin;
     return {path[0] - path[2] * splat(window.begin * window.end), path[1] + path[2] * splat(window.begin + window.end),
@@ -68,7 +79,16 @@ SliceMotion<Degree>::SliceMotion(const RelativeMotion<Degree>& motion, const Con
     : size(size_of_pair), margin(rounding + rounded_up(quick_margin * gap(slice.end) / size_of_pair)), bend(0) {
   r[0] = motion.position(slice.begin) / size;
   r[1] = motion.velocity(slice.begin) * (slice.length() / size);
-  if constexpr (Degree == 2) {
+  if constexpr (Degree >= 3) {
+    double power = slice.length();
+    double most_bend = 0;
+    for (int i = 2; i <= Degree; ++i) {
+      power *= slice.length();
+      Eigen::Vector3d& c = r[static_cast<std::size_t>(i)] = motion.coefficient(i, slice.begin) * (power / size);
+      most_bend += 0.5 * i * (i - 1) * norm(c);
+    }
+    bend = rounded_up(most_bend);
+  } else if constexpr (Degree == 2) {
     r[2] = motion.coefficients[2] * (slice.length() * slice.length() / size);
     bend = rounded_up(norm(r[2]));
   }
@@ -119,7 +139,7 @@ bool BoxPairTest<Degree>::operator()(const Frame& a, const ObbNode& b, StepWindo
   auto r = chord<Degree>(path, bend_, window);
   clip.add(r.p0, r.p1, ha + sums(size[0] * hb, size[1] * hb, size[2] * hb) + splat(margin_ + r.deviation));
   if (!clip.gather(window)) return false;
-  if constexpr (Degree == 2) r = chord<Degree>(path, bend_, window);
+  if constexpr (Degree >= 2) r = chord<Degree>(path, bend_, window);
 
   const Lanes margin = splat(margin_ + r.deviation);
   clip.add(along(turn, r.p0[0], r.p0[1], r.p0[2]), along(turn, r.p1[0], r.p1[1], r.p1[2]),
@@ -169,7 +189,7 @@ bool BoxBallTest<Degree>::operator()(const ObbNode& a, StepWindow& window) const
     window.begin = std::max(window.begin, nearest - half);
     window.end = std::min(window.end, nearest + half);
     if (!(window.begin <= window.end)) return false;
-    if constexpr (Degree == 2) r = chord<Degree>(path, bend_, window);
+    if constexpr (Degree >= 2) r = chord<Degree>(path, bend_, window);
   }
 
   Clip clip{splat(window.begin), splat(window.end)};
@@ -178,11 +198,11 @@ bool BoxBallTest<Degree>::operator()(const ObbNode& a, StepWindow& window) const
   return clip.gather(window);
 }
 
-template struct SliceMotion<1>;
-template struct SliceMotion<2>;
-template class BoxPairTest<1>;
-template class BoxPairTest<2>;
-template class BoxBallTest<1>;
-template class BoxBallTest<2>;
+#define KDS_INSTANTIATE(degree)        \
+  template struct SliceMotion<degree>; \
+  template class BoxPairTest<degree>;  \
+  template class BoxBallTest<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

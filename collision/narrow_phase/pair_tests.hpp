@@ -1,6 +1,7 @@
 // The seam at which kinds of shapes meet: what is asked of a pair of them, as a table.
 #pragma once
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
 
@@ -28,6 +29,10 @@ struct PairTests {
 /// The tests of the kinds of two shapes.
 template <int Degree>
 const PairTests<Degree>& pair_tests(const PlacedShape& a, const PlacedShape& b);
+
+#define KDS_DECLARE(degree) extern template const PairTests<degree>& pair_tests(const PlacedShape&, const PlacedShape&);
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 /// Tests, given as a struct of static functions with these names, of the same pair named the other way round.
 template <int Degree, class Tests>

@@ -1,6 +1,7 @@
 // Tests of convex shapes that penetrate in pieces of the space of their relative positions.
 #pragma once
 
+#include "certificates/plane_separation.hpp"
 #include "collision/narrow_phase/gap_conditions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/vectors.hpp"
@@ -9,9 +10,19 @@
 
 namespace kds::collision {
 
+/// Of degree 3 and above whether bodies part along a normal, and when they cease to, is told exactly: by the derivative
+/// of their place along it. (In doubles a path that comes to rest would be lost in the roundings of its terms.)
+template <int Degree>
+DerivativeCertificate<certificates::PlaneSeparation<Degree>> parting(const Contact& contact,
+                                                                     const MovingShape<Degree>& a,
+                                                                     const MovingShape<Degree>& b) {
+  return {{a.motion, b.motion, contact.normal, 1.0, {}, {}}};
+}
+
 /// Whether b moves towards a along the normal just after t.
 template <int Degree>
 bool approaching(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+  if constexpr (Degree >= 3) return sign_after(parting(contact, a, b), contact.time) < 0;
   const double rate = dot(contact.normal, b.motion.velocity(contact.time) - a.motion.velocity(contact.time));
   if (rate != 0) return rate < 0;
   return dot(contact.normal, b.motion.acceleration(contact.time) - a.motion.acceleration(contact.time)) < 0;
@@ -21,6 +32,7 @@ bool approaching(const Contact& contact, const MovingShape<Degree>& a, const Mov
 template <int Degree>
 double turning_time(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
   const double t = contact.time;
+  if constexpr (Degree >= 3) return std::max(next_up(t), failure_time(parting(contact, a, b), t));
   const double rate = dot(contact.normal, b.motion.velocity(t) - a.motion.velocity(t));
   const double bend = dot(contact.normal, b.motion.acceleration(t) - a.motion.acceleration(t));
   return bend < 0 ? std::max(next_up(t), t + rate / -bend) : never;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/point_motion.hpp"
+#include "collision/narrow_phase/curve_spans.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
 #include "kds/arithmetic/lattice.hpp"
@@ -28,6 +29,12 @@ namespace kds::collision {
 /// 60 u (M + 2 size); charged are 128 u, so that a gap that is closed by rounding alone is never taken for one that
 /// stays open, nor the other way round. T is no longer than it takes for the highest term to outgrow the others, after
 /// which boxes part for good (settle()); where M would be 2^20 times what it is now the filter ends in any case.
+///
+/// Degree n = 3 to 5: M has the terms M_i T^i, and the filter ends at that growth alone. Moving a coefficient to now
+/// takes a term through 5 n roundings (detail::shifted_balls() in kds/motion.hpp) and one for the difference; the axis
+/// makes that 1.74 (5 n + 4) u M_i; a window is cut by Bernstein coefficients, which are good to 5 n + 8 of the sum of
+/// the magnitudes (certificates::positive_until() charges that itself), and values by Horner's rule to 2 n + 1. That is
+/// below 51 + 33 + 11 u (M + 2 size); charged are 256 u.
 template <int Degree>
 class QuickMotion {
  public:
@@ -68,15 +75,19 @@ class QuickMotion {
   static double value(const Along& p, double tau) {
     if constexpr (Degree == 1) {
       return p[0] + tau * p[1];
-    } else {
+    } else if constexpr (Degree == 2) {
       return p[0] + tau * (p[1] + tau * p[2]);
+    } else {
+      return derivative_at(p, 0, tau);
     }
   }
 
  private:
   bool opens_for_good(const Along& p, double side, double reach) const;
+  void begin_curve(const Path& a, const Path& b, double horizon, double size);
+  std::array<double, std::size_t{Degree} + 1> gap(const Along& p, double side, double constant) const;
 
-  static constexpr double unit = 0x1p-46;
+  static constexpr double unit = Degree <= 2 ? 0x1p-46 : 0x1p-45;
   static constexpr double most_growth = 0x1p20;
 
   std::array<Eigen::Vector3d, std::size_t{Degree} + 1> r_;
@@ -86,13 +97,17 @@ class QuickMotion {
   double rate_error_;  ///< of the derivative of a gap now
   double bend_error_;  ///< of half its second derivative
   bool whole_;
+  std::array<bool, std::size_t{Degree} + 1> still_{};  ///< degree 3 and above: coefficients known to be zero
 };
 
 // ---------------------------------------------------------------------------------------------------------------
 
 template <int Degree>
 QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, double horizon, double size) : now_(now) {
-  static_assert(Degree == 1 || Degree == 2);
+  if constexpr (Degree >= 3) {
+    begin_curve(a, b, horizon, size);
+    return;
+  }
   const auto greatest = [](const Eigen::Vector3d& v) {
     return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   };
@@ -110,7 +125,7 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
     r_[0] = (cb[0] + elapsed_b * cb[1]) - (ca[0] + elapsed_a * ca[1]);
     r_[1] = cb[1] - ca[1];
     most[1] = greatest(r_[1]);
-  } else {
+  } else if constexpr (Degree == 2) {
     const Eigen::Vector3d bend_a = elapsed_a * ca[2];
     const Eigen::Vector3d bend_b = elapsed_b * cb[2];
     r_[0] = (cb[0] + elapsed_b * (cb[1] + bend_b)) - (ca[0] + elapsed_a * (ca[1] + bend_a));
@@ -151,6 +166,59 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
   if (!(end_ >= 0)) end_ = 0;  // a horizon that is past: nothing will be asked
 }
 
+/// Degree 3 and above. Nothing is done to find out earlier when bodies part: the end is the horizon, or where the path
+/// has grown so much that it must be dominated by its highest term, or else unknown.
+template <int Degree>
+void QuickMotion<Degree>::begin_curve(const Path& a, const Path& b, double horizon, double size) {
+  const auto greatest = [](const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff(); };
+  std::array<double, std::size_t{Degree} + 1> most{};
+  const double time_a = std::abs(now_ - a.start);
+  const double time_b = std::abs(now_ - b.start);
+  for (int d = 0; d < 3; ++d) {
+    const auto of_a = taylor_shift<double>(a.axis(d).position, now_ - a.start);
+    const auto of_b = taylor_shift<double>(b.axis(d).position, now_ - b.start);
+    for (std::size_t i = 0; i <= Degree; ++i) r_[i][d] = of_b.c[i] - of_a.c[i];
+  }
+  for (std::size_t i = 0; i <= Degree; ++i) {
+    double power_a = 1, power_b = 1, binomial = 1;  // of j over i
+    for (std::size_t j = i; j <= Degree; ++j) {
+      most[i] += binomial * (greatest(a.coefficients[j]) * power_a + greatest(b.coefficients[j]) * power_b);
+      power_a *= time_a, power_b *= time_b;
+      binomial = binomial * static_cast<double>(j + 1) / static_cast<double>(j + 1 - i);
+    }
+  }
+  // What the two share from a common start on, or have as their highest terms, is exactly nothing.
+  bool same = true, nothing_above = true;
+  for (std::size_t i = Degree; i > 0; --i) {
+    same = same && a.coefficients[i] == b.coefficients[i] && (a.start == b.start || nothing_above);
+    still_[i] = same;
+    if (same) most[i] = 0;
+    nothing_above = nothing_above && a.coefficients[i].isZero(0) && b.coefficients[i].isZero(0);
+  }
+  const double base = most[0] + 2 * size;
+  const auto growth = [&most](double time) {
+    double sum = 0;
+    for (std::size_t i = Degree; i > 0; --i) sum = (sum + most[i]) * time;
+    return sum;
+  };
+  const double wanted = std::max(horizon - now_, 0.0);  // a horizon that is past: nothing will be asked
+  end_ = std::min(wanted, 0x1p200);
+  while (end_ > 0 && !(growth(end_) <= most_growth * base)) end_ *= 0.5;
+  whole_ = end_ == wanted;
+  error_ = unit * (base + growth(end_));
+  rate_error_ = unit * most[1];
+  bend_error_ = unit * most[2];
+}
+
+/// side * axis . r - reach, without its reach, as a polynomial of the time, with a constant of its own.
+template <int Degree>
+auto QuickMotion<Degree>::gap(const Along& p, double side, double constant) const -> Along {
+  Along gap;
+  for (std::size_t i = 0; i <= Degree; ++i) gap[i] = side * p[i];
+  gap[0] += constant;
+  return gap;
+}
+
 template <int Degree>
 auto QuickMotion<Degree>::along(const Eigen::Vector3d& axis) const -> Along {
   Along p;
@@ -168,6 +236,8 @@ template <int Degree>
 bool QuickMotion<Degree>::clip(const Along& p, double side, double reach, TimeWindow& window) const {
   if constexpr (Degree == 1) {
     return clip_to_negative(side * p[0] - reach - error_, side * p[1], window);
+  } else if constexpr (Degree >= 3) {
+    return clip_to_negative(gap(p, side, -reach - error_), window);
   } else {
     return clip_to_negative(side * p[0] - reach - error_, side * p[1], side * p[2], window);
   }
@@ -183,6 +253,16 @@ bool QuickMotion<Degree>::opens_for_good(const Along& p, double side, double rea
   if (!(side * value(p, end_) - reach > 2 * error_)) return false;
   if constexpr (Degree == 1) {
     return side * p[1] > rate_error_;
+  } else if constexpr (Degree >= 3) {
+    // All derivatives at the end have the sign of opening. A coefficient there is a sum of at most 10 of those now,
+    // with binomials up to 10, each times its power of the end within the error.
+    double power = 1;
+    for (int order = 1; order <= Degree; ++order) {
+      power *= end_ / order;
+      if (still_[static_cast<std::size_t>(order)]) return order > 1;
+      if (!(side * derivative_at(p, order, end_) * power > 32 * error_)) return false;
+    }
+    return true;
   } else {
     const double bend = side * p[2];
     const double rate = side * p[1] + 2 * end_ * bend;
@@ -198,6 +278,13 @@ double QuickMotion<Degree>::opened_by(const Along& p, double side, double reach)
   const double rate = side * p[1];
   const double opened = 64 * error_ / rate;
   if (!(rate > 4 * rate_error_) || !(opened < end_)) return TimeSpans::infinity;
+  if constexpr (Degree >= 3) {
+    double slowed = 0;
+    for (std::size_t i = Degree; i >= 2; --i) {
+      slowed = (slowed + static_cast<double>(i) * std::min(side * p[i], 0.0)) * opened;
+    }
+    if (!(rate + slowed > 0.5 * rate)) return TimeSpans::infinity;
+  }
   if constexpr (Degree == 2) {
     if (!(rate + 2 * opened * std::min(side * p[2], 0.0) > 0.5 * rate)) return TimeSpans::infinity;
   }
@@ -206,6 +293,21 @@ double QuickMotion<Degree>::opened_by(const Along& p, double side, double reach)
 
 template <int Degree>
 double QuickMotion<Degree>::closed_until(const Along& p, double side, double reach, double t) const {
+  if constexpr (Degree >= 3) {
+    // As far as the gap, with the error on it, is certainly below zero.
+    const double from = tau(t);
+    const double length = end_ - from;
+    if (!(from >= 0 && length >= 0)) return t;
+    auto opposite = taylor_shift<double>(Polynomial<Degree>{gap(p, -side, reach - error_)}, from);
+    double factor = 1;
+    for (double& c : opposite.c) {
+      c *= factor;
+      factor *= length;
+    }
+    const double closed = certificates::positive_until(opposite, 0.0, 0.0);
+    if (closed >= 1 && whole_) return TimeSpans::infinity;
+    return std::max(t, time_before(from + closed * length * (1 - 0x1p-40)));
+  }
   const double c0 = side * p[0] - reach + error_;
   TimeSpans closed;
   if constexpr (Degree == 1) {

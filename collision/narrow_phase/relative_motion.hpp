@@ -24,23 +24,45 @@ struct RelativeMotion {
   Eigen::Vector3d position(double tau) const {
     if constexpr (Degree == 1) {
       return coefficients[0] + tau * coefficients[1];
-    } else {
+    } else if constexpr (Degree == 2) {
       return coefficients[0] + tau * (coefficients[1] + tau * coefficients[2]);
+    } else {
+      return derivative(0, tau);
     }
   }
   Eigen::Vector3d velocity(double tau) const {
     if constexpr (Degree == 1) {
       return coefficients[1];
-    } else {
+    } else if constexpr (Degree == 2) {
       return coefficients[1] + (2 * tau) * coefficients[2];
+    } else {
+      return derivative(1, tau);
     }
   }
-  Eigen::Vector3d acceleration() const {
+  Eigen::Vector3d acceleration() const requires(Degree <= 2) {
     if constexpr (Degree == 1) {
       return Eigen::Vector3d::Zero();
     } else {
       return 2 * coefficients[2];
     }
+  }
+
+  /// Coefficient number `order` about tau.
+  Eigen::Vector3d coefficient(int order, double tau) const {
+    double factorial = 1;
+    for (int k = 2; k <= order; ++k) factorial *= k;
+    return derivative(order, tau) / factorial;
+  }
+
+  /// Derivative number `order` at tau, by Horner's rule.
+  Eigen::Vector3d derivative(int order, double tau) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int i = Degree; i >= order; --i) {
+      double factor = 1;
+      for (int k = 0; k < order; ++k) factor *= i - k;
+      sum = sum * tau + factor * coefficients[static_cast<std::size_t>(i)];
+    }
+    return sum;
   }
 };
 

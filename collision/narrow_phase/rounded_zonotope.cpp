@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/rounded_zonotope.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/vectors.hpp"
 
 #include <cmath>
@@ -211,7 +212,8 @@ double RoundedZonotope<Degree>::Piece::opened_by(std::size_t i) const {
   return s.known ? motion.time_after(motion.opened_by(s.along, side(i), s.reach)) : never;
 }
 
-template class RoundedZonotope<1>;
-template class RoundedZonotope<2>;
+#define KDS_INSTANTIATE(degree) template class RoundedZonotope<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

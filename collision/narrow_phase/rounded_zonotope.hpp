@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/zonotope_separation.hpp"
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/gap_conditions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/quick_distance.hpp"
@@ -184,7 +185,8 @@ void RoundedZonotope<Degree>::earliest_pieces(double horizon, const Visit& visit
   }
 }
 
-extern template class RoundedZonotope<1>;
-extern template class RoundedZonotope<2>;
+#define KDS_DECLARE(degree) extern template class RoundedZonotope<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,6 +1,7 @@
 // Separating axes of a triangle with a triangle or a box, one of them moving.
 #pragma once
 
+#include "collision/narrow_phase/curve_spans.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
@@ -227,7 +228,16 @@ bool may_touch(const A& a, const B& b, const RelativeMotion<Degree>& motion,
     const double p0 = dot(axis, motion.coefficients[0]);
     const double p1 = dot(axis, motion.coefficients[1]);
     const double m1 = length * margin[1];
-    if constexpr (Degree == 1) {
+    if constexpr (Degree >= 3) {
+      std::array<double, std::size_t{Degree} + 1> above{p0 - high, p1 - m1};
+      std::array<double, std::size_t{Degree} + 1> below{low - p0, -p1 - m1};
+      for (std::size_t i = 2; i <= Degree; ++i) {
+        const double p = dot(axis, motion.coefficients[i]);
+        above[i] = p - length * margin[i];
+        below[i] = -p - length * margin[i];
+      }
+      return clip_to_negative(above, window) && clip_to_negative(below, window);
+    } else if constexpr (Degree == 1) {
       return clip_to_negative(p0 - high, p1 - m1, window) && clip_to_negative(low - p0, -p1 - m1, window);
     } else {
       const double p2 = dot(axis, motion.coefficients[2]);

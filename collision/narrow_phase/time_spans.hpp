@@ -42,10 +42,11 @@ struct TimeSpans {
 };
 
 /// The first time >= tau inside all of the spans, or infinity.
-inline double first_inside_all(std::span<const TimeSpans> spans, double tau) {
+template <class Spans>
+double first_inside_all(std::span<const Spans> spans, double tau) {
   for (bool moved = true; moved;) {
     moved = false;
-    for (const TimeSpans& each : spans) {
+    for (const Spans& each : spans) {
       const double next = each.first_inside(tau);
       if (!(next > tau)) continue;
       if (next == TimeSpans::infinity) return next;
@@ -58,14 +59,16 @@ inline double first_inside_all(std::span<const TimeSpans> spans, double tau) {
 
 /// Where the stretch of times inside all of the spans that contains tau begins and ends.
 /// Precondition: first_inside_all(spans, tau) == tau.
-inline double enter_all(std::span<const TimeSpans> spans, double tau) {
+template <class Spans>
+double enter_all(std::span<const Spans> spans, double tau) {
   double begin = -TimeSpans::infinity;
-  for (const TimeSpans& each : spans) begin = std::max(begin, each.enter(tau));
+  for (const Spans& each : spans) begin = std::max(begin, each.enter(tau));
   return begin;
 }
-inline double leave_all(std::span<const TimeSpans> spans, double tau) {
+template <class Spans>
+double leave_all(std::span<const Spans> spans, double tau) {
   double end = TimeSpans::infinity;
-  for (const TimeSpans& each : spans) end = std::min(end, each.leave(tau));
+  for (const Spans& each : spans) end = std::min(end, each.leave(tau));
   return end;
 }
 

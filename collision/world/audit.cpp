@@ -1,4 +1,5 @@
 // What the world checks of itself.
+#include "collision/degrees.hpp"
 #include "kds/audit.hpp"
 #include "collision/world.hpp"
 
@@ -27,7 +28,8 @@ void World<Degree>::audit(double t) const {
   }
 }
 
-template class World<1>;
-template class World<2>;
+#define KDS_INSTANTIATE(degree) template class World<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 #include "collision/world/bodies.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/world/bodies_image.hpp"
 
 #include <algorithm>
@@ -125,7 +126,8 @@ typename Bodies<Degree>::Image Bodies<Degree>::image() const {
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
     to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume, to.sensor = b.sensor;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
-    to.force = free_acceleration(id);
+    if constexpr (Degree <= 2) to.force = free_acceleration(id);
+    if constexpr (Degree >= 3) to.given = b.given;
   }
   image.free = free_, image.removed = removed_, image.removed_at = removed_at_;
   image.waiting = waiting_;
@@ -162,11 +164,13 @@ void Bodies<Degree>::become(const Image& image) {
     sensors_ = sensors_ || b.sensor;
     filters_ = filters_ || b.category != default_category || ~b.collides_with != 0;
     b.meetings = from.meetings, b.burst_start = from.burst_start;
-    if constexpr (Degree >= 2) b.force = from.force;
+    if constexpr (Degree == 2) b.force = from.force;
+    if constexpr (Degree >= 3) b.given = from.given;
   }
 }
 
-template class Bodies<1>;
-template class Bodies<2>;
+#define KDS_INSTANTIATE(degree) template class Bodies<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -3,6 +3,7 @@
 
 #include "certificates/balls_together.hpp"
 #include "collision/body_description.hpp"
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
 
@@ -27,10 +28,15 @@ struct Force {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
 };
 struct NoForce {};
+/// From degree 3 on the whole motion that callers gave: its acceleration is not one number.
+template <int Degree>
+struct Course {
+  certificates::PointMotion<Degree> given;
+};
 
 /// A body, but for its motion and its radius, which the tests of balls read and which have a place of their own.
 template <int Degree>
-struct Body : std::conditional_t<Degree >= 2, Force, NoForce> {
+struct Body : std::conditional_t<Degree >= 3, Course<Degree>, std::conditional_t<Degree == 2, Force, NoForce>> {
   Body() {}  // not the implicit one, for which all is set to zero first
 
   double inverse_mass = 1;
@@ -96,15 +102,25 @@ class Bodies {
 
   void move(BodyId id, const Motion& motion) { movers_[id].motion = motion; }
   /// Half the acceleration that the body has by itself: that of the motion that callers gave last.
-  Eigen::Vector3d free_acceleration(BodyId id) const {
-    if constexpr (Degree >= 2) {
+  Eigen::Vector3d free_acceleration(BodyId id) const requires(Degree <= 2) {
+    if constexpr (Degree == 2) {
       return bodies_[id].force;
     } else {
       return Eigen::Vector3d::Zero();
     }
   }
+  /// The same at t, and its derivatives up to factors: coefficient `order` >= 2 about t of the motion that callers
+  /// gave.
+  Eigen::Vector3d free_term(BodyId id, [[maybe_unused]] std::size_t order, [[maybe_unused]] double t) const {
+    if constexpr (Degree >= 3) {
+      return bodies_[id].given.restarted(t).coefficients[order];
+    } else {
+      return free_acceleration(id);
+    }
+  }
   void accelerate_freely(BodyId id, const Motion& motion) {
-    if constexpr (Degree >= 2) bodies_[id].force = motion.coefficients[2];
+    if constexpr (Degree == 2) bodies_[id].force = motion.coefficients[2];
+    if constexpr (Degree >= 3) bodies_[id].given = motion;
   }
   /// Whether a body that takes up another motion at t is then elsewhere, by more than rounding.
   bool is_jump(BodyId id, const Motion& to, double t) const;
@@ -156,7 +172,8 @@ class Bodies {
   bool sensors_ = false;
 };
 
-extern template class Bodies<1>;
-extern template class Bodies<2>;
+#define KDS_DECLARE(degree) extern template class Bodies<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,6 +1,7 @@
 // The image of a world's bodies, written, read and checked.
 #include "collision/world/bodies_image.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape_archive.hpp"
 #include "collision/world/image_tools.hpp"
@@ -62,9 +63,10 @@ void Bodies<Degree>::Image::body(Archive& archive, One& body) const {
   archive(body.alive);
   if (!body.alive) return;
   archive_shape(archive, body.placed, body.mesh, meshes);
-  archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category, body.collides_with,
-          body.volume, body.meetings, body.burst_start);
+  archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category,
+          body.collides_with, body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
+  if constexpr (Degree >= 3) archive(body.given);
 }
 
 template <int Degree>
@@ -98,6 +100,7 @@ void Bodies<Degree>::Image::check(double now) const {
     need(body.volume == BoundingVolume::shape || body.volume == BoundingVolume::sphere, "its volume is unknown");
     need(image::is_past(body.burst_start, now), "its meetings are counted from a time after now");
     need(body.force.allFinite(), "its acceleration is not finite");
+    if constexpr (Degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
   }
   std::vector<char> listed(bodies.size());
   const auto check_free = [&](const std::vector<BodyId>& ids, const char* list) {
@@ -111,11 +114,11 @@ void Bodies<Degree>::Image::check(double now) const {
   if (free.size() + removed.size() != dead) image::fail("free: not all that are free are listed");
 }
 
-template struct Bodies<1>::Image;
-template struct Bodies<2>::Image;
-template void Bodies<1>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&);
-template void Bodies<1>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
-template void Bodies<2>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&);
-template void Bodies<2>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
+#define KDS_INSTANTIATE(degree)                                                                                        \
+  template struct Bodies<degree>::Image;                                                                               \
+  template void Bodies<degree>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&); \
+  template void Bodies<degree>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

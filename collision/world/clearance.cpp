@@ -1,4 +1,5 @@
 // What bounding volumes reach beyond their bodies, in worlds with meshes.
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/world/volumes.hpp"
 
@@ -42,7 +43,8 @@ double Volumes<Degree>::clearance_until(BodyId id) const {
   return until > clock_.now ? until : never;  // it grows already
 }
 
-template class Volumes<1>;
-template class Volumes<2>;
+#define KDS_INSTANTIATE(degree) template class Volumes<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

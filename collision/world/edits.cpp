@@ -1,4 +1,5 @@
 // How bodies come into the world, change and go.
+#include "collision/degrees.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
 #include "collision/world.hpp"
@@ -199,7 +200,8 @@ void World<Degree>::take_out(BodyId id) {
   bodies_.remove(id, clock_.now);
 }
 
-template class World<1>;
-template class World<2>;
+#define KDS_INSTANTIATE(degree) template class World<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,4 +1,5 @@
 // What may be asked of a world at which moment, and what is left of it when something throws.
+#include "collision/degrees.hpp"
 #include "collision/world.hpp"
 
 #include <exception>
@@ -28,7 +29,8 @@ void World<Degree>::refuse(const char* function) const {
   throw std::logic_error(called + "the world can no longer be used, since a change was interrupted half-way: " + why);
 }
 
-template class World<1>;
-template class World<2>;
+#define KDS_INSTANTIATE(degree) template class World<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

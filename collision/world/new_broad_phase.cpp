@@ -5,6 +5,7 @@
 #include "collision/broad_phase/kinetic_grid.hpp"
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "collision/broad_phase/swept_sweep_and_prune.hpp"
+#include "collision/degrees.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -34,7 +35,9 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
   throw std::invalid_argument("WorldOptions.broad_phase: unknown");
 }
 
-template std::unique_ptr<BroadPhase<1>> new_broad_phase(const WorldOptions&, double, Profile*, Kdops<1>);
-template std::unique_ptr<BroadPhase<2>> new_broad_phase(const WorldOptions&, double, Profile*, Kdops<2>);
+#define KDS_INSTANTIATE(degree) \
+  template std::unique_ptr<BroadPhase<degree>> new_broad_phase(const WorldOptions&, double, Profile*, Kdops<degree>);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

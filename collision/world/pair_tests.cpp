@@ -2,6 +2,7 @@
 #include "certificates/ball_separation.hpp"
 #include "certificates/balls_together.hpp"
 #include "certificates/conjunction.hpp"
+#include "collision/degrees.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/pairs.hpp"
@@ -209,7 +210,8 @@ void Pairs<Degree>::process_boxes(Slot slot, double t) {
   test_boxes(slot);
 }
 
-template class Pairs<1>;
-template class Pairs<2>;
+#define KDS_INSTANTIATE(degree) template class Pairs<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 #include "collision/world/pairs.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/audit.hpp"
 
@@ -284,7 +285,8 @@ void Pairs<Degree>::audit(double t) const {
   if (unlisted != unlisted_) throw AuditFailure("World: pairs that are not listed are miscounted");
 }
 
-template class Pairs<1>;
-template class Pairs<2>;
+#define KDS_INSTANTIATE(degree) template class Pairs<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
@@ -216,7 +217,8 @@ class Pairs final : public PairListener {
   Begin begin_ = Begin::moving;
 };
 
-extern template class Pairs<1>;
-extern template class Pairs<2>;
+#define KDS_DECLARE(degree) extern template class Pairs<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

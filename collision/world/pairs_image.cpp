@@ -1,4 +1,5 @@
 // The pairs of a world as plain data: written, read and checked.
+#include "collision/degrees.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/pairs.hpp"
@@ -74,11 +75,11 @@ void Pairs<Degree>::Image::check(const typename Bodies<Degree>::Image& bodies, d
   }
 }
 
-template class Pairs<1>;
-template class Pairs<2>;
-template void Pairs<1>::Image::archive(kds::detail::Writer&);
-template void Pairs<1>::Image::archive(kds::detail::Reader&);
-template void Pairs<2>::Image::archive(kds::detail::Writer&);
-template void Pairs<2>::Image::archive(kds::detail::Reader&);
+#define KDS_INSTANTIATE(degree)                                      \
+  template class Pairs<degree>;                                      \
+  template void Pairs<degree>::Image::archive(kds::detail::Writer&); \
+  template void Pairs<degree>::Image::archive(kds::detail::Reader&);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

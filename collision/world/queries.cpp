@@ -1,4 +1,5 @@
 // What can be asked of a world.
+#include "collision/degrees.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ typename World<Degree>::Motion World<Degree>::free_motion(BodyId id) const {
   bodies_.at(id);
   if (!resting_.rests(id)) return bodies_.motion(id);
   Motion motion = bodies_.motion(id).restarted(now());
-  if constexpr (Degree >= 2) motion.coefficients[2] = bodies_.free_acceleration(id);
+  for (std::size_t i = 2; i <= Degree; ++i) motion.coefficients[i] = bodies_.free_term(id, i, now());
   return motion;
 }
 
@@ -44,7 +45,8 @@ WorldCounters World<Degree>::counters() const {
   return counters;
 }
 
-template class World<1>;
-template class World<2>;
+#define KDS_INSTANTIATE(degree) template class World<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

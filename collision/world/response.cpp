@@ -1,4 +1,5 @@
 // What follows from contacts: what is told, how bodies bounce, and which contacts last.
+#include "collision/degrees.hpp"
 #include "collision/response/impulse.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world.hpp"
@@ -11,12 +12,22 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Rate at which b parts from a along the normal just after the contact; of two that have none, its derivative.
+/// Rate at which b parts from a along the normal just after the contact; of two that have none, its first derivative
+/// that is not zero, up to a factor.
 template <int Degree>
 double parting(const Contact& contact, const certificates::PointMotion<Degree>& a,
                const certificates::PointMotion<Degree>& b) {
   const double t = contact.time;
   const double rate = dot(contact.normal, b.velocity(t) - a.velocity(t));
+  if constexpr (Degree >= 3) {
+    if (rate != 0) return rate;
+    const auto at_a = a.restarted(t), at_b = b.restarted(t);
+    double later = 0;
+    for (std::size_t i = 2; i <= Degree && later == 0; ++i) {
+      later = dot(contact.normal, at_b.coefficients[i] - at_a.coefficients[i]);
+    }
+    return later;
+  }
   return rate != 0 ? rate : dot(contact.normal, b.acceleration(t) - a.acceleration(t));
 }
 
@@ -193,7 +204,8 @@ void World<Degree>::tell_held(BodyId a, BodyId b) {
   reports_.add(Reports::Kind::held, a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
 }
 
-template class World<1>;
-template class World<2>;
+#define KDS_INSTANTIATE(degree) template class World<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,5 +1,6 @@
 // Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
 #include "collision/world/resting_contacts.hpp"
+#include "collision/degrees.hpp"
 #include "collision/vectors.hpp"
 #include "kds/audit.hpp"
 
@@ -126,7 +127,10 @@ double RestingContacts<Degree>::next_contact(BodyId id_a, BodyId id_b) {
 template <int Degree>
 void RestingContacts<Degree>::schedule_release(Slot slot) {
   const Contact& hold = contacts_[slot];
-  if (hold.b == no_body) return;  // Walls have no edge to slide off.
+  if (hold.b == no_body) {  // Walls have no edge to slide off.
+    if constexpr (Degree >= 3) releases_.set(slot, hold.ends);
+    return;
+  }
   const double now = clock_.now;
   const auto a = bodies_.moving(hold.a);
   const auto b = bodies_.moving(hold.b);
@@ -134,24 +138,32 @@ void RestingContacts<Degree>::schedule_release(Slot slot) {
   for (std::size_t i = 1; i <= Degree; ++i) {
     together = together && a.motion.coefficients[i] == b.motion.coefficients[i];
   }
-  if (together && (Degree == 1 || a.motion.start == b.motion.start || a.motion.coefficients[Degree].isZero(0))) {
-    return releases_.clear(slot);
+  bool steady = true;  // about any start the same
+  for (std::size_t i = 2; i <= Degree; ++i) steady = steady && a.motion.coefficients[i].isZero(0);
+  if (together && (steady || a.motion.start == b.motion.start)) {
+    return Degree >= 3 ? releases_.set(slot, hold.ends) : releases_.clear(slot);
   }
   const Motion nearer = shifted(b.motion, -slack_of(a, b, now) * hold.normal);
   const double t = first_separation(a, MovingShape<Degree>{b.shape, nearer}, now, clock_.horizon);
-  releases_.set(slot, t);
+  releases_.set(slot, Degree >= 3 ? std::min(t, hold.ends) : t);
 }
 
 template <int Degree>
 void RestingContacts<Degree>::process() {
-  drop(releases_.top().slot);
+  const Slot slot = releases_.top().slot;
+  if (Degree >= 3 && contacts_[slot].ends <= releases_.top().time) {
+    part(slot);
+  } else {
+    drop(slot);
+  }
   settle();
 }
 
 template <int Degree>
 void RestingContacts<Degree>::extend_horizon() {
   for (Slot slot = 0; slot < contacts_.size(); ++slot) {
-    if (contacts_[slot].alive && !releases_.contains(slot)) schedule_release(slot);
+    const bool known = releases_.contains(slot) && (Degree <= 2 || releases_.time(slot) < contacts_[slot].ends);
+    if (contacts_[slot].alive && !known) schedule_release(slot);
   }
 }
 
@@ -195,8 +207,11 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
     if constexpr (Degree >= 2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
       for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) {
-        largest += 2 * bodies_.free_acceleration(id).cwiseAbs().maxCoeff() * (1 + t - bodies_.motion(id).start);
+        largest += 2 * bodies_.free_term(id, 2, t).cwiseAbs().maxCoeff() * (1 + t - bodies_.motion(id).start);
       }
+    }
+    if constexpr (Degree >= 3) {
+      for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) largest += velocity_terms(bodies_.motion(id), t);
     }
     if (std::abs(dot(hold.normal, b - a)) > 16 * rate_rounding * largest) {
       fail(slot, "the bodies part or press on along its normal");
@@ -223,12 +238,19 @@ void RestingContacts<Degree>::become(const Image& image) {
   of_.clear();
   for (BodyId id = 0; id < image.of.size(); ++id) member(id).contacts = image.of[id];
   for (const BodyId id : disturbed_) member(id).disturbed = true;
+  for (BodyId id = 0; id < of_.size(); ++id) {
+    Member& member = of_[id];
+    const auto at_wall = [this](Slot slot) { return contacts_[slot].wall >= 0; };
+    member.carried = bodies_.fixed(id) ? std::any_of(member.contacts.begin(), member.contacts.end(), at_wall)
+                                       : member.disturbed || !member.contacts.empty();
+  }
   releases_.resize(0);
   releases_.resize(contacts_.size());
   for (Slot slot = 0; slot < contacts_.size(); ++slot) releases_.set(slot, image.releases[slot]);
 }
 
-template class RestingContacts<1>;
-template class RestingContacts<2>;
+#define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,6 +1,7 @@
 // Contacts that last: bodies that lie, lean and slide on each other and on walls.
 #pragma once
 
+#include "collision/degrees.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/response/least_constraint.hpp"
 #include "collision/world/bodies.hpp"
@@ -10,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -33,6 +35,7 @@ struct RestingContact {
   double solved = 0;
   bool alive = false;
   bool fresh = false;           ///< its approach is still to be taken out
+  double ends = never;          ///< s, when nothing presses the two together any more; `never` up to degree 2
   double left_behind = -never;  ///< s, the epoch of a pair of motions: until it is another, rounding feigns a contact
 };
 
@@ -44,6 +47,16 @@ struct RestingRank {
 };
 
 }  // namespace detail
+
+/// The sum of the magnitudes of the terms that a velocity at t is made of.
+template <int Degree>
+double velocity_terms(const certificates::PointMotion<Degree>& motion, double t) {
+  double sum = 0;
+  for (std::size_t i = Degree; i >= 1; --i) {
+    sum = sum * std::abs(t - motion.start) + static_cast<double>(i) * motion.coefficients[i].cwiseAbs().maxCoeff();
+  }
+  return sum;
+}
 
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
 /// docs/resting.md says what the law is.
@@ -139,6 +152,7 @@ class RestingContacts {
     std::uint64_t island = 0;  ///< the last it was seen in
     std::uint32_t place = 0;   ///< in that
     bool disturbed = false;
+    bool carried = false;  ///< degree 3 and above: its motion is what contacts have left of it, or made of it
   };
   /// Bodies that lean on each other, in the arithmetic of least_constraint.
   struct Island {
@@ -162,6 +176,9 @@ class RestingContacts {
   Island find_island(BodyId id);
   bool drop_broken(const Island& island);
   bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
+  bool constrain_curves(Island& island, std::vector<Motion>& motions);
+  bool press(Motion& motion, Contact& hold) const;
+  void part(Slot slot);
   bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
 
   const Bodies<Degree>& bodies_;
@@ -175,7 +192,8 @@ class RestingContacts {
   std::uint64_t islands_ = 0;
 };
 
-extern template class RestingContacts<1>;
-extern template class RestingContacts<2>;
+#define KDS_DECLARE(degree) extern template class RestingContacts<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,4 +1,5 @@
 // The resting contacts of a world as plain data: written, read and checked.
+#include "collision/degrees.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/resting_contacts.hpp"
@@ -18,6 +19,7 @@ void RestingContacts<Degree>::Image::archive(Archive& archive) {
   archive.each(contacts, [&](Contact& c) {
     archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.left_behind, c.solved);
     image::vector(archive, c.normal);
+    if constexpr (Degree >= 3) archive(c.ends);
   });
 }
 
@@ -52,6 +54,7 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
     need(std::abs(contact.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
     need(std::isfinite(contact.push) && std::isfinite(contact.solved), "its push or rate is not finite");
     need(image::is_to_come(releases[slot], now), "is to be let go before now");
+    if constexpr (Degree >= 3) need(image::is_to_come(contact.ends, now), "is pressed together until before now");
   }
   for (std::size_t id = 0; id < of.size(); ++id) {
     const auto& of_body = of[id];
@@ -72,11 +75,11 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
   if (free.size() != dead) image::fail("resting: not all that are free are listed");
 }
 
-template class RestingContacts<1>;
-template class RestingContacts<2>;
-template void RestingContacts<1>::Image::archive(kds::detail::Writer&);
-template void RestingContacts<1>::Image::archive(kds::detail::Reader&);
-template void RestingContacts<2>::Image::archive(kds::detail::Writer&);
-template void RestingContacts<2>::Image::archive(kds::detail::Reader&);
+#define KDS_INSTANTIATE(degree)                                                \
+  template class RestingContacts<degree>;                                      \
+  template void RestingContacts<degree>::Image::archive(kds::detail::Writer&); \
+  template void RestingContacts<degree>::Image::archive(kds::detail::Reader&);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,6 +1,9 @@
 // Bodies that lean on each other: found, and moved as their resting contacts let them.
+#include "collision/degrees.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting_contacts.hpp"
+#include "kds/certificate.hpp"
+#include "kds/roots/failure_time.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +17,9 @@ template <int Degree>
 void RestingContacts<Degree>::note(BodyId id) {
   if (!bodies_.entered(id)) return;
   bool as_given = true;
-  if constexpr (Degree >= 2)
+  if constexpr (Degree == 2)
     as_given = bodies_.fixed(id) || bodies_.motion(id).coefficients[2] == bodies_.free_acceleration(id);
+  if constexpr (Degree >= 3) as_given = id >= of_.size() || !of_[id].carried;
   if (!rests(id) && as_given) return;
   if (std::exchange(member(id).disturbed, true)) return;
   disturbed_.push_back(id);
@@ -43,9 +47,9 @@ void RestingContacts<Degree>::settle_fixed(BodyId id) {
   Motion motion = before;
   const std::vector<Slot> holds = of_[id].contacts;  // some may be dropped
   const bool at_wall = std::any_of(holds.begin(), holds.end(), [&](Slot slot) { return contacts_[slot].wall >= 0; });
-  if constexpr (Degree >= 2) {
-    if (at_wall) motion.coefficients[2] = bodies_.free_acceleration(id);
-  }
+  const bool given_anew = at_wall || (Degree >= 3 && of_[id].carried);  // or a wall has let it go
+  for (std::size_t i = 2; i <= Degree && given_anew; ++i) motion.coefficients[i] = bodies_.free_term(id, i, clock_.now);
+  of_[id].carried = false;
   for (const Slot slot : holds) {
     Contact& hold = contacts_[slot];
     if (hold.wall < 0) {
@@ -55,15 +59,21 @@ void RestingContacts<Degree>::settle_fixed(BodyId id) {
     const Eigen::Index axis = hold.wall / 2;
     if (hold.fresh) motion.coefficients[1][axis] = 0;
     bool parts = motion.coefficients[1][axis] != 0;  // inward, or outward: then it meets the wall anew
-    if constexpr (Degree >= 2) {
+    if constexpr (Degree == 2) {
       double& force = motion.coefficients[2][axis];
       parts = parts || force * hold.normal[axis] < 0;
       if (!parts) force = 0;
     }
+    if constexpr (Degree >= 3) parts = parts || !press(motion, hold);
     hold.fresh = false;
-    if (parts) drop(slot);
+    if (parts) {
+      drop(slot);
+    } else if (Degree >= 3) {
+      of_[id].carried = true;
+      schedule_release(slot);
+    }
   }
-  if (at_wall && !(motion == before)) listener_.take_up(id, motion);
+  if (given_anew && !(motion == before)) listener_.take_up(id, motion);
 }
 
 /// False if a hold had to be dropped: then it is to be called again. Each time there is one hold less.
@@ -82,9 +92,15 @@ bool RestingContacts<Degree>::settle_island(BodyId id) {
   };
   if constexpr (Degree >= 2) {
     const std::vector<Motion> stopped = motions;
-    for (std::size_t i = 0; i < island.free; ++i)
-      motions[i].coefficients[2] = bodies_.free_acceleration(island.bodies[i]);
-    if (!constrain(island, 2, motions)) {  // What is pulled away at once has been stopped all the same.
+    for (std::size_t i = 0; i < island.free; ++i) {
+      for (std::size_t order = 2; order <= Degree; ++order) {
+        motions[i].coefficients[order] = bodies_.free_term(island.bodies[i], order, clock_.now);
+      }
+      if constexpr (Degree >= 3) of_[island.bodies[i]].carried = !island.contacts.empty();
+    }
+    if (!constrain(island, 2, motions) ||
+        (Degree >= 3 &&
+         !constrain_curves(island, motions))) {  // What is pulled away at once has been stopped all the same.
       motions = stopped;
       take_up_all();
       return false;
@@ -153,7 +169,11 @@ bool RestingContacts<Degree>::drop_broken(const Island& island) {
     if (hold.fresh) continue;
     const Vector3d a = bodies_.motion(hold.a).velocity(clock_.now);
     const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.motion(hold.b).velocity(clock_.now);
-    const double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
+    double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
+    if constexpr (Degree >= 3) {
+      largest += velocity_terms(bodies_.motion(hold.a), clock_.now);
+      if (hold.b != no_body) largest += velocity_terms(bodies_.motion(hold.b), clock_.now);
+    }
     if (std::abs(dot(hold.normal, b - a)) <= rate_rounding * largest) continue;
     drop(slot);
     any = true;
@@ -188,6 +208,96 @@ bool RestingContacts<Degree>::constrain(Island& island, std::size_t order, std::
   return true;
 }
 
+/// Degree 3 and above: the terms of higher order, one after the other, and when each contact ceases to be pressed.
+///
+/// What a contact pushes is a polynomial of the time, of which constrain() has found the constant. While it is positive
+/// the two stay together whatever their higher terms are, so that of each order they are made equal along the normal; a
+/// push that vanishes up to some order gives way in the next like any other (no contact approaches). It lasts until the
+/// polynomial turns negative. False if a hold had to be dropped.
+template <int Degree>
+bool RestingContacts<Degree>::constrain_curves(Island& island, std::vector<Motion>& motions) {
+  if constexpr (Degree >= 3) {
+    const std::size_t count = island.contacts.size();
+    std::vector<kds::Motion<Degree - 2>> pushes(count);
+    std::vector<char> pressed(count);
+    double accelerations = 0;
+    for (const Motion& motion : motions) {
+      accelerations = std::max(accelerations, motion.coefficients[2].cwiseAbs().maxCoeff());
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const double push = contacts_[island.contacts[k]].push;
+      pressed[k] = push > rate_rounding * accelerations;
+      pushes[k].start = clock_.now;
+      pushes[k].position.c[0] = pressed[k] ? 2 * push : 0;
+    }
+    for (std::size_t order = 3; order <= Degree; ++order) {
+      std::vector<Vector3d> rates;
+      for (const Motion& motion : motions) rates.push_back(motion.coefficients[order]);
+      rates.push_back(Vector3d::Zero());  // of the walls
+      double largest = 0;
+      for (const Vector3d& rate : rates) largest = std::max(largest, rate.cwiseAbs().maxCoeff());
+      if (largest == 0) continue;
+      std::vector<Touch> touches = island.touches;
+      for (Touch& touch : touches) touch.push = 0;
+      std::vector<std::size_t> backward(count, 0);  // where a contact that is pressed is kept from parting
+      for (std::size_t k = 0; k < count; ++k) {
+        if (!pressed[k]) continue;
+        backward[k] = touches.size();
+        touches.push_back(touches[k]);
+        touches.back().normal = -touches[k].normal;
+      }
+      if (!least_constraint(rates, touches) && let_pass_worst(island, rates)) return false;
+      for (std::size_t k = 0; k < count; ++k) {
+        if (pressed[k] || parting_rate(rates, touches[k]) <= rate_rounding * largest) continue;
+        part(island.contacts[k]);
+        return false;
+      }
+      for (std::size_t k = 0; k < count; ++k) {
+        const double push = touches[k].push - (backward[k] > 0 ? touches[backward[k]].push : 0.0);
+        const bool real = std::abs(push) > rate_rounding * largest;
+        const auto factor = static_cast<double>(order * (order - 1));
+        pushes[k].position.c[order - 2] = real ? factor * push : 0;
+        pressed[k] = pressed[k] || real;
+      }
+      for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[order] = rates[i];
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      contacts_[island.contacts[k]].ends =
+          failure_time(PolynomialCertificate<Degree - 2>{pushes[k]}, clock_.now, never);
+    }
+  }
+  return true;
+}
+
+/// A fixed body at a wall, of degree 3 and above: takes what presses it outward, as long as that does. False if it is
+/// drawn inward at once.
+template <int Degree>
+bool RestingContacts<Degree>::press(Motion& motion, Contact& hold) const {
+  if constexpr (Degree >= 3) {
+    const Eigen::Index axis = hold.wall / 2;
+    kds::Motion<Degree - 2> push;
+    push.start = clock_.now;
+    for (std::size_t order = 2; order <= Degree; ++order) {
+      const auto factor = static_cast<double>(order * (order - 1));
+      push.position.c[order - 2] = factor * motion.coefficients[order][axis] * hold.normal[axis];
+    }
+    const PolynomialCertificate<Degree - 2> pressed{push};
+    hold.ends = failure_time(pressed, push.start, never);
+    if (hold.ends == push.start) return false;
+    for (std::size_t order = 2; order <= Degree; ++order) motion.coefficients[order][axis] = 0;
+  }
+  return true;
+}
+
+/// Ends a contact of bodies that are no longer pressed together: from now on they part, if only by terms of a higher
+/// order. What they overlap by rounding is no new contact.
+template <int Degree>
+void RestingContacts<Degree>::part(Slot slot) {
+  const Contact hold = contacts_[slot];
+  if (hold.b != no_body) listener_.let_pass(hold.a, hold.b);
+  drop(slot);
+}
+
 /// Of bodies that cannot all be held the pair that is pressed together most passes through. Walls do not give way.
 template <int Degree>
 bool RestingContacts<Degree>::let_pass_worst(const Island& island, const std::vector<Vector3d>& rates) {
@@ -207,7 +317,8 @@ bool RestingContacts<Degree>::let_pass_worst(const Island& island, const std::ve
   return true;
 }
 
-template class RestingContacts<1>;
-template class RestingContacts<2>;
+#define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

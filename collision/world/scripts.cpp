@@ -1,5 +1,6 @@
 #include "collision/world/scripts.hpp"
 
+#include "collision/degrees.hpp"
 #include "collision/world/queue_room.hpp"
 
 namespace kds::collision {
@@ -48,7 +49,8 @@ void Scripts<Degree>::become(const Image& image) {
   }
 }
 
-template class Scripts<1>;
-template class Scripts<2>;
+#define KDS_INSTANTIATE(degree) template class Scripts<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

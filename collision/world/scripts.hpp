@@ -3,6 +3,7 @@
 
 #include "certificates/point_motion.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/degrees.hpp"
 #include "kds/events/dary_queue.hpp"
 
 #include <cstddef>
@@ -54,8 +55,9 @@ class Scripts {
   DaryQueue<> starts_;                        ///< slots are bodies
 };
 
-extern template class Scripts<1>;
-extern template class Scripts<2>;
+#define KDS_DECLARE(degree) extern template class Scripts<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision
 

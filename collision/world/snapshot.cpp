@@ -1,5 +1,6 @@
 // Worlds saved, and loaded again: the sum of their parts.
 #include "kds/framework/snapshot.hpp"
+#include "collision/degrees.hpp"
 #include "collision/world.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
@@ -140,11 +141,11 @@ void World<Degree>::archive(Archive& archive) {
   }
 }
 
-template class World<1>;
-template class World<2>;
-template void World<1>::archive(kds::detail::Writer&);
-template void World<1>::archive(kds::detail::Reader&);
-template void World<2>::archive(kds::detail::Writer&);
-template void World<2>::archive(kds::detail::Reader&);
+#define KDS_INSTANTIATE(degree)                               \
+  template class World<degree>;                               \
+  template void World<degree>::archive(kds::detail::Writer&); \
+  template void World<degree>::archive(kds::detail::Reader&);
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

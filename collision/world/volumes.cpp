@@ -1,6 +1,7 @@
 #include "collision/world/volumes.hpp"
 
 #include "collision/broad_phase/swept_box.hpp"
+#include "collision/degrees.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/raised_flag.hpp"
@@ -165,7 +166,8 @@ bool Volumes<Degree>::overlap(BodyId a, BodyId b, double t, bool exact) const {
   return true;
 }
 
-template class Volumes<1>;
-template class Volumes<2>;
+#define KDS_INSTANTIATE(degree) template class Volumes<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

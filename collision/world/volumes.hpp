@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/degrees.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world_options.hpp"
@@ -106,7 +107,8 @@ inline KineticBox<Degree> Volumes<Degree>::bare_box(BodyId id) const {
                             rounding);
 }
 
-extern template class Volumes<1>;
-extern template class Volumes<2>;
+#define KDS_DECLARE(degree) extern template class Volumes<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

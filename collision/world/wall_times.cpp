@@ -2,6 +2,7 @@
 
 #include "certificates/conjunction.hpp"
 #include "certificates/wall_separation.hpp"
+#include "collision/degrees.hpp"
 #include "collision/world/earliest_wall_time.hpp"
 #include "collision/world/queue_room.hpp"
 
@@ -133,7 +134,8 @@ int WallTimes<Degree>::next_wall() const {
   return wall;
 }
 
-template class WallTimes<1>;
-template class WallTimes<2>;
+#define KDS_INSTANTIATE(degree) template class WallTimes<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

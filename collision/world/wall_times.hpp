@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/degrees.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world_options.hpp"
@@ -60,7 +61,8 @@ class WallTimes {
   std::vector<char> is_bound_;  ///< by body: its time is a lower bound
 };
 
-extern template class WallTimes<1>;
-extern template class WallTimes<2>;
+#define KDS_DECLARE(degree) extern template class WallTimes<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -25,8 +25,8 @@ namespace kds {
 ///     |error| <= (3 n + 4) (4 n + 1) u^2 m_0 <= 20 n (n + 1) u^2 m_0,
 /// and the difference (at least 5 u^2 m_0) pays for the powers of 1 + u that were left out.
 /// Underflow may cost 2^-1072 a step, and |h|^n times that in the end: below 2^-745 for |h| <= 2^40 and degrees up to
-/// 8, which is within the bound if m_0 >= 2^-600. Beyond these limits, and where something overflows, nothing is
-/// decided: the result is 0 with an infinite radius, or not a number.
+/// 8, or |h| <= 2^32 and degrees up to 10, which is within the bound if m_0 >= 2^-600. Beyond these limits, and where
+/// something overflows, nothing is decided: the result is 0 with an infinite radius, or not a number.
 template <int Degree, class Coefficient>
 Ball<DoubleDouble> compensated_value(const Polynomial<Degree, Coefficient>& p, const DoubleDouble& x);
 
@@ -43,7 +43,8 @@ inline double low_part(const DoubleDouble& a) { return a.low; }
 
 template <int Degree, class Coefficient>
 Ball<DoubleDouble> compensated_value(const Polynomial<Degree, Coefficient>& p, const DoubleDouble& x) {
-  static_assert(Degree <= 8, "the bound on underflow is derived for degrees up to 8");
+  static_assert(Degree <= 10, "the bound on underflow is derived for degrees up to 10");
+  constexpr double farthest = Degree <= 8 ? 0x1p40 : 0x1p32;
   const double h = x.high;
   double s = detail::high_part(p.c[Degree]);
   double error = detail::low_part(p.c[Degree]);
@@ -57,7 +58,7 @@ Ball<DoubleDouble> compensated_value(const Polynomial<Degree, Coefficient>& p, c
     s = sum.high;
   }
   constexpr double bound = 20.0 * Degree * (Degree + 1) * 0x1p-106;
-  if (!(std::abs(h) <= 0x1p40 && (magnitudes >= 0x1p-600 || Degree == 0))) {
+  if (!(std::abs(h) <= farthest && (magnitudes >= 0x1p-600 || Degree == 0))) {
     return {DoubleDouble(0.0), std::numeric_limits<double>::infinity()};
   }
   return {two_sum(s, error), bound * magnitudes};

@@ -199,7 +199,7 @@ inline double power_of_two(int e) { return std::bit_cast<double>(static_cast<std
 /// have just met) it says nothing of what comes, and the linear one takes its place.
 template <int Degree>
 int scale_exponent(const Polynomial<Degree, Ball<double>>& p, double end) {
-  constexpr int most = 100;  // so that no power up to the eighth overflows
+  constexpr int most = 100;  // so that no power up to the tenth overflows
   int scale = end < 0x1p100 ? exponent_of(end) + 1 : most;
   const int met = Degree > 1 && std::abs(p.c[0].middle) <= p.c[0].radius ? 1 : 0;
   const int constant = exponent_of(p.c[static_cast<std::size_t>(met)].middle);

@@ -36,7 +36,7 @@ oracle::Body body(const PointMotion<PathDegree>& path, double radius) {
 }  // namespace
 
 TEMPLATE_TEST_CASE_SIG("balls are apart while their centres are farther than the radii", "[ball_separation]",
-                       ((int PathDegree), PathDegree), 1, 2) {
+                       ((int PathDegree), PathDegree), 1, 2, 3, 5) {
   const std::uint64_t seed = 100;
   CAPTURE(PathDegree, seed);
   Random random(seed);
@@ -54,7 +54,7 @@ TEMPLATE_TEST_CASE_SIG("balls are apart while their centres are farther than the
 }
 
 TEMPLATE_TEST_CASE_SIG("balls begin to penetrate when the oracle's spheres do", "[ball_separation]",
-                       ((int PathDegree), PathDegree), 1, 2) {
+                       ((int PathDegree), PathDegree), 1, 2, 3, 5) {
   const std::uint64_t seed = 101;
   CAPTURE(PathDegree, seed);
   Random random(seed);
@@ -65,7 +65,9 @@ TEMPLATE_TEST_CASE_SIG("balls begin to penetrate when the oracle's spheres do", 
     b.coefficients[0] *= 4;
     b.coefficients[1] =
         a.coefficients[1] + (a.coefficients[0] - b.coefficients[0]) / 2 + random_vector(random, false) / 4;
-    if constexpr (PathDegree == 2) b.coefficients[2] = a.coefficients[2] + random_vector(random, false) / 8;
+    for (std::size_t i = 2; i <= PathDegree; ++i) {
+      b.coefficients[i] = a.coefficients[i] + random_vector(random, false) / 8;
+    }
     const BallSeparation<PathDegree> balls{a, b, 0.5, 0.75};
     const auto contact = oracle::first_contact(body(a, 0.5), body(b, 0.75), 0, 4);
     const double t = failure_time(balls, 0, 4);

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -67,6 +68,76 @@ TEST_CASE("lines and parabolas by position, velocity and acceleration at a time"
   const auto thrown = PointMotion<2>::parabola({1, 2, 3}, {4, 0, 8}, {0, 0, -10}, 10);
   CHECK(thrown == throw_of_a_ball);
   CHECK(thrown.acceleration(12) == Vector3d(0, 0, -10));
+}
+
+namespace {
+
+/// Off a value, in each coordinate: of a derivative of a path at t, exactly.
+template <int Degree>
+double off(const PointMotion<Degree>& path, int order, double t, const Vector3d& value) {
+  double most = 0;
+  for (int d = 0; d < 3; ++d) {
+    auto p = exact(path)[static_cast<std::size_t>(d)];
+    for (int i = 0; i < order; ++i) p = p.derivative();
+    most = std::max(most, std::abs(oracle::approximate(p(oracle::rational(t)) - oracle::rational(value[d]))));
+  }
+  return most;
+}
+
+double size(const Vector3d& v) { return v.cwiseAbs().maxCoeff(); }
+
+}  // namespace
+
+TEST_CASE("cubic pieces go where they are told, at the velocities that they are told", "[point_motion]") {
+  const std::uint64_t seed = 92;
+  CAPTURE(seed);
+  Random random(seed);
+  const auto vector = [&random](int scale) {
+    const double x = random.scaled(-scale, scale), y = random.scaled(-scale, scale), z = random.scaled(-scale, scale);
+    return Vector3d(x, y, z);
+  };
+  for (int round = 0; round < 300; ++round) {
+    CAPTURE(round);
+    const Vector3d p0 = vector(8), v0 = vector(8), a0 = vector(8), p1 = vector(8), v1 = vector(8), a1 = vector(8);
+    const double t0 = random.scaled(-4, 4);
+    const double t1 = t0 + std::abs(random.scaled(-6, 4));
+    const double T = t1 - t0;
+    const auto cubic = PointMotion<3>::cubic(p0, v0, p1, v1, t0, t1);
+    const double of_cubic = 0x1p-48 * (size(p0) + size(p1) + T * (size(v0) + size(v1)));
+    CHECK(cubic.start == t0);
+    CHECK(cubic.position(t0) == p0);
+    CHECK(cubic.velocity(t0) == v0);
+    CHECK(off(cubic, 0, t1, p1) < of_cubic);
+    CHECK(off(cubic, 1, t1, v1) < 3 * of_cubic / T);
+    CHECK((cubic.position(t1) - p1).cwiseAbs().maxCoeff() < of_cubic);
+    const auto same = PointMotion<5>::cubic(p0, v0, p1, v1, t0, t1);
+    for (std::size_t i = 0; i <= 3; ++i) CHECK(same.coefficients[i] == cubic.coefficients[i]);
+    CHECK(same.coefficients[4].isZero(0));
+    const auto quintic = PointMotion<5>::quintic(p0, v0, a0, p1, v1, a1, t0, t1);
+    const double of_quintic =
+        0x1p-45 * (size(p0) + size(p1) + T * (size(v0) + size(v1)) + T * T * (size(a0) + size(a1)));
+    CHECK(quintic.position(t0) == p0);
+    CHECK(quintic.velocity(t0) == v0);
+    CHECK(quintic.acceleration(t0) == a0);
+    CHECK(off(quintic, 0, t1, p1) < of_quintic);
+    CHECK(off(quintic, 1, t1, v1) < 5 * of_quintic / T);
+    CHECK(off(quintic, 2, t1, a1) < 20 * of_quintic / (T * T));
+  }
+  // What doubles hold is exact: half a second, halves of lengths.
+  const auto swing = PointMotion<3>::cubic({0, 0, 0}, {0, 0, 0}, {2, 0, 1}, {0, 0, 0}, 1, 3);
+  CHECK(swing ==
+        PointMotion<3>{{Vector3d(0, 0, 0), Vector3d(0, 0, 0), Vector3d(1.5, 0, 0.75), Vector3d(-0.5, 0, -0.25)}, 1});
+}
+
+TEST_CASE("a piece of a trajectory lasts some time, and is finite", "[point_motion]") {
+  const Vector3d o = Vector3d::Zero();
+  const Vector3d far = Vector3d::Constant(1e300);
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double end : {1.0, 0.5, infinity, std::nan("")}) {
+    CHECK_THROWS_WITH(PointMotion<3>::cubic(o, o, o, o, 1, end), Catch::StartsWith("PointMotion::cubic: from 1.0"));
+    CHECK_THROWS_WITH(PointMotion<5>::quintic(o, o, o, o, o, o, 1, end), Catch::StartsWith("PointMotion::quintic"));
+  }
+  CHECK_THROWS_WITH(PointMotion<3>::cubic(o, far, o, far, 0, 1e30), "PointMotion::cubic: a coefficient is not finite");
 }
 
 TEST_CASE("an axis of a path is the motion of one coordinate", "[point_motion]") {

@@ -118,9 +118,7 @@ inline const Vector3d zero = Vector3d::Zero();
 template <int Degree>
 certificates::PointMotion<Degree> motion(const Vector3d& c0, const Vector3d& c1 = Vector3d::Zero(),
                                          const Vector3d& c2 = Vector3d::Zero(), double start = 0) {
-  certificates::PointMotion<Degree> result;
-  result.coefficients[0] = c0;
-  result.coefficients[1] = c1;
+  certificates::PointMotion<Degree> result{{c0, c1}};
   if constexpr (Degree >= 2) result.coefficients[2] = c2;
   result.start = start;
   return result;

@@ -119,6 +119,10 @@ RelativeMotion<Degree> encounter(Random& random, double distance, double miss) {
   if constexpr (Degree == 2) motion.coefficients[2] = distance * random.vector(1.5);
   Vector3d rest = miss * random.vector(0.6) - motion.coefficients[0];
   if constexpr (Degree == 2) rest -= arrival * arrival * motion.coefficients[2];
+  for (int i = 2; Degree >= 3 && i <= Degree; ++i) {
+    motion.coefficients[static_cast<std::size_t>(i)] = distance * random.vector(1.5);
+    rest -= std::pow(arrival, i) * motion.coefficients[static_cast<std::size_t>(i)];
+  }
   motion.coefficients[1] = rest / arrival;
   return motion;
 }

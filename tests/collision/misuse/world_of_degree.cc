@@ -1,4 +1,4 @@
-// A world of some degree, of which there are two.
+// A world of some degree, of which there are two, and with splines five.
 #include "collision/world.hpp"
 
 void run() {

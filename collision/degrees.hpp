@@ -1,0 +1,23 @@
+// Which degrees of motion the engine is compiled for.
+//
+// Its classes are templates of the degree that paths have, compiled once: for straight paths and parabolas in the
+// library kds::collision, for cubics, quartics and quintics (splines) in kds::collision_splines, from the same files.
+// Whoever links only the first pays nothing for the others.
+#pragma once
+
+/// KDS_FOR_EACH_DEGREE(instantiate), in a .cpp: instantiate(degree) for the degrees of the library that is compiled.
+#ifdef KDS_SPLINE_DEGREES
+#define KDS_FOR_EACH_DEGREE(instantiate) instantiate(3) instantiate(4) instantiate(5)
+#else
+#define KDS_FOR_EACH_DEGREE(instantiate) instantiate(1) instantiate(2)
+#endif
+
+/// The same for all that a program is linked with, in a header: for `extern template`. (KDS_SPLINES is defined for all
+/// that link kds::collision_splines.)
+#ifdef KDS_SPLINES
+#define KDS_GREATEST_DEGREE 5
+#define KDS_FOR_ALL_DEGREES(declare) declare(1) declare(2) declare(3) declare(4) declare(5)
+#else
+#define KDS_GREATEST_DEGREE 2
+#define KDS_FOR_ALL_DEGREES(declare) declare(1) declare(2)
+#endif

@@ -1,0 +1,157 @@
+// What the tests of balls and of capsules against a triangle have in common.
+#pragma once
+
+#include "collision/narrow_phase/convex_touch.hpp"
+#include "collision/narrow_phase/curve_spans.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
+#include "collision/narrow_phase/near_spans.hpp"
+#include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/narrow_phase/time_spans.hpp"
+#include "collision/vectors.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace kds::collision {
+
+template <int Degree>
+using PathOf = std::array<Eigen::Vector3d, std::size_t{Degree} + 1>;  ///< polynomial of tau
+
+/// When c[0] + c[1] tau + ... < 0, from 0 to the horizon.
+template <int Degree>
+SpansOf<Degree> spans_below_zero(const std::array<double, std::size_t{Degree} + 1>& c, double horizon) {
+  if constexpr (Degree == 1) {
+    return negative_spans(c[0], c[1]);
+  } else if constexpr (Degree == 2) {
+    return negative_spans(c[0], c[1], c[2]);
+  } else {
+    return broken_spans<std::size_t{Degree} + 1>(PolynomialCertificate<Degree>{{Polynomial<Degree>{c}, 0.0}}, horizon);
+  }
+}
+
+/// Whether a path comes as near to the origin as `reach` within a window, judged by its chord: which it leaves by no
+/// more than an eighth of the second derivative's bound times length^2.
+template <int Degree>
+bool may_come_near(const PathOf<Degree>& path, const TimeWindow& window, double reach) {
+  const double length = window.end - window.begin;
+  const Eigen::Vector3d begin = place_on(path, window.begin);
+  const Eigen::Vector3d along = place_on(path, window.end) - begin;
+  const double square = dot(along, along);
+  const double part = square > 0 ? std::clamp(-dot(begin, along) / square, 0.0, 1.0) : 0.0;
+  const Eigen::Vector3d nearest = begin + part * along;
+  if constexpr (Degree == 2) reach += 0.25 * length * length * std::sqrt(dot(path[2], path[2]));
+  if constexpr (Degree >= 3) {
+    double bend = 0;
+    for (std::size_t i = Degree; i >= 2; --i) {
+      bend = bend * window.end + static_cast<double>(i * (i - 1)) * std::sqrt(dot(path[i], path[i]));
+    }
+    reach += 0.125 * length * length * bend;
+  }
+  return !(dot(nearest, nearest) > reach * reach);
+}
+
+/// The part of a polyhedron that is nearest to a point: a corner (dimension 0), an edge (1) or a face (2).
+struct NearestPart {
+  Eigen::Vector3d apart;  ///< the point from there
+  int dimension;
+  Eigen::Vector3d direction;  ///< unit: along an edge, out of a face
+};
+
+/// Whether a point on a path of degree 3 or above comes nearer to a polyhedron just after tau: the sign of the first
+/// derivative of the squared distance from the nearest part that is more than rounding; of the part that the point
+/// comes to, if it is about to pass from an edge, say, to a face.
+///
+/// About tau the point moves on y0 + y1 x + ..., across the edge or along the normal if those are near, and the square
+/// of the distance is a polynomial with the coefficients q_k = sum y_j . y_(k-j), q_k / (2 |y0|) the first of the
+/// distance that is not zero. A y_k is known as well as smallest_speeds() says, and the products to a few roundings.
+///
+/// `nearest_part(place)`: of a place of the point.
+template <int Degree, class Nearest>
+bool curve_approaches(const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, double tau,
+                      const Nearest& nearest_part) {
+  constexpr double rounding = 16 * 0x1p-53;
+  const auto speeds = smallest_speeds(motion);
+  const Eigen::Vector3d place = motion.position(tau);
+  const NearestPart nearest = nearest_part(place);
+  PathOf<Degree> y;
+  std::array<double, std::size_t{Degree} + 1> error;
+  double factorial = 1;
+  for (std::size_t k = 0; k <= Degree; ++k) {
+    const int order = static_cast<int>(k);
+    factorial *= std::max(order, 1);
+    y[k] = motion.coefficient(order, tau);
+    error[k] = derivative_at(speeds, order, tau) / factorial;
+  }
+  y[0] = nearest.apart;
+  NearestPart ahead = nearest;
+  for (std::size_t k = 1; k <= Degree && nearest.dimension != 2; ++k) {
+    const Eigen::Vector3d sideways = y[k] - (dot(y[0], y[k]) / dot(y[0], y[0])) * y[0];
+    if (!(sideways.cwiseAbs().maxCoeff() > error[k])) continue;
+    ahead = nearest_part(place + gap(tau) * normalized(sideways));
+    break;
+  }
+  for (Eigen::Vector3d& c : y) {
+    if (ahead.dimension == 2) c = dot(ahead.direction, c) * ahead.direction;
+    if (ahead.dimension == 1) c -= dot(ahead.direction, c) * ahead.direction;
+  }
+  const double distance = std::sqrt(dot(y[0], y[0]));
+  for (std::size_t k = 1; k <= Degree; ++k) {
+    double q = 0;
+    double size = 0;
+    for (std::size_t j = 0; j <= k; ++j) {
+      const double product = dot(y[j], y[k - j]);
+      q += product;
+      if (j > 0 && j < k) size += std::abs(product);
+    }
+    if (std::abs(q) > 2 * distance * error[k] + rounding * size) return q < 0;
+  }
+  return false;
+}
+
+/// Calls consider(time, distance) for the maxima between tau and end, both excluded, of the distance of a point on a
+/// path from a plane with a unit normal, or from the origin; until it returns true. Straight paths have none.
+template <int Degree, class Consider>
+void distance_maxima(const RelativeMotion<Degree>& motion, const Eigen::Vector3d& normal, const Eigen::Vector3d& at,
+                     double tau, double end, const Consider& consider) {
+  if constexpr (Degree == 2) {
+    const double p1 = dot(normal, motion.coefficients[1]);
+    const double p2 = dot(normal, motion.coefficients[2]);
+    if (p2 == 0) return;
+    const double top = -p1 / (2 * p2);
+    const double height = dot(normal, motion.position(top) - at);
+    if (top > tau && top < end && (height > 0) == (p2 < 0)) consider(top, std::abs(height));
+  }
+  if constexpr (Degree >= 3) {
+    for (const double side : {1.0, -1.0}) {
+      Motion<Degree> height;
+      for (std::size_t i = 0; i <= Degree; ++i) height.position.c[i] = side * dot(normal, motion.coefficients[i]);
+      height.position.c[0] -= side * dot(normal, at);
+      each_maximum(PolynomialCertificate<Degree>{height}, tau, end, [&](double top) {
+        const double above = height(top);
+        return above > 0 && consider(top, above);
+      });
+    }
+  }
+}
+template <int Degree, class Consider>
+void distance_maxima(const PathOf<Degree>& path, double horizon, double tau, double end, const Consider& consider) {
+  if constexpr (Degree == 2) {
+    const DistanceQuartic quartic(path, {0, 0, 0});
+    const auto points = quartic.turning_points(horizon);
+    for (std::size_t i = 0; i < points.size; ++i) {
+      const double top = points.at[i];
+      if (!(top > tau && top < end) || !(quartic.bend(top) < 0)) continue;
+      if (consider(top, norm(place_on(path, top)))) end = top;
+    }
+  }
+  if constexpr (Degree >= 3) {
+    each_maximum(FarCurve<Degree>(path, {}), tau, end,
+                 [&](double top) { return consider(top, norm(place_on(path, top))); });
+  }
+}
+
+}  // namespace kds::collision
