@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/few_boxes.hpp"
 #include "collision/broad_phase/kinetic_grid.hpp"
+#include "collision/broad_phase/tuning.hpp"
 
 #include <memory>
 #include <string_view>
@@ -20,10 +21,11 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  /// `threads`: see KineticGrid. Up to `most_for_few` bodies are compared each with all others; once there have been
-  /// more, up to half as many. Precondition: most_for_few <= FewBoxes::most.
-  explicit AdaptiveBroadPhase(std::size_t threads = 1, std::size_t most_for_few = FewBoxes<Degree>::most)
-      : most_for_few_(most_for_few), threads_(threads) {}
+  /// `threads`: see KineticGrid.
+  explicit AdaptiveBroadPhase(std::size_t threads = 1, const AdaptiveTuning& tuning = {})
+      : tuning_(tuning), few_(tuning.few), threads_(threads) {
+    check(tuning);
+  }
 
   bool exact() const override { return false; }
   std::string_view name() const override { return chosen().name(); }
@@ -46,9 +48,9 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   static void report_changes(std::span<const Entry> bodies, const From& from, const To& to, double now,
                              PairListener& listener);
 
+  AdaptiveTuning tuning_;
   FewBoxes<Degree> few_;                       ///< holds all bodies while there is no grid
   std::unique_ptr<KineticGrid<Degree>> grid_;  ///< else holds them
-  std::size_t most_for_few_;
   std::size_t threads_;
   double horizon_ = never;
   BroadPhaseCounters done_;  ///< by grids that have been given up

@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/box_grid.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/broad_phase/tuning.hpp"
 #include "kds/events/calendar_queue.hpp"
 
 #include <cstdint>
@@ -31,7 +32,10 @@ class KineticGrid final : public BroadPhase<Degree> {
   using Entry = typename BroadPhase<Degree>::Entry;
 
   /// `threads`: how many share the work where many bodies come at once; 0 is as many as the machine has.
-  explicit KineticGrid(std::size_t threads = 1) : threads_(threads) {}
+  explicit KineticGrid(std::size_t threads = 1, const GridTuning& tuning = {})
+      : tuning_(tuning), fat_boxes_(tuning.cells), threads_(threads) {
+    check(tuning);
+  }
 
   bool exact() const override { return false; }
   std::string_view name() const override { return "grid"; }
@@ -58,9 +62,6 @@ class KineticGrid final : public BroadPhase<Degree> {
   }
 
  private:
-  /// A coarser level is begun just for the reach of bodies if they are one in so many.
-  static constexpr std::uint64_t share_for_level = 8;
-
   struct Body {
     Body() {}  // not the implicit one, for which all is set to zero first
 
@@ -107,6 +108,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   void set_expiry(BodyId id, double expiry, double now);
   void report(BodyId id, BoxGrid::Changes& changes, double now, PairListener& listener);
 
+  GridTuning tuning_;
   std::vector<Body> bodies_;  // by id
   BoxGrid fat_boxes_;
   CalendarQueue<> expiry_;  // slots are bodies; none later than the horizon
