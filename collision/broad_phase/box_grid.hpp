@@ -116,6 +116,13 @@ class BoxGrid {
   /// Precondition: contains(id). Appends to `changes`.
   void remove(Id id, Changes& changes);
 
+  /// Appends the boxes that overlap this one, as they are and not rounded, each once, in no particular order. Changes
+  /// nothing. Precondition: all that have been announced have entered.
+  ///
+  /// Cost: on each level in use, a look into the cells where a box that overlaps may have its corner; O(n) in all if
+  /// they are more than there are boxes.
+  void find_overlapping(const StaticBox& box, Ids& found) const;
+
   /// Greatest extent of a box of the level next finer than that of a box of this extent; 0 if there is none.
   double room_below(double extent) const {
     const Exponent level = level_for(extent);
@@ -191,6 +198,7 @@ class BoxGrid {
   void grow();
   void restart(std::size_t room);
   void refine();
+  bool search_in(const Level& level, const StaticBox& box, Ids& found) const;
   void search(const CellTable& table, const Level& level, const Population& population, const Ends& box,
               CellTable::Found& found);
 

@@ -235,6 +235,22 @@ bool FewBoxes<Degree>::advance(double limit, PairListener& listener) {
 }
 
 template <int Degree>
+void FewBoxes<Degree>::visit_overlapping(const StaticBox& box, double, BodyVisitor visit) const {
+  for (Row rest = overlaps(box, bodies_.size()); rest != 0; rest &= rest - 1) {
+    visit(bodies_[static_cast<std::size_t>(std::countr_zero(rest))].id);
+  }
+}
+
+template <int Degree>
+void FewBoxes<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const {
+  const StaticBox swept = bounded_swept_box(box, from, until);
+  if (until <= until_) return visit_overlapping(swept, from, visit);
+  for (const Body& body : bodies_) {
+    if (bounded_swept_box(body.box, from, until).overlaps(swept)) visit(body.id);
+  }
+}
+
+template <int Degree>
 void FewBoxes<Degree>::audit(double now) const {
   if (next_time() <= now) return;  // due
   for (std::size_t i = 0; i < bodies_.size(); ++i) {

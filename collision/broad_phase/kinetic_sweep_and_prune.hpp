@@ -52,6 +52,12 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return simulator_.next_time(); }
   void extend_horizon(double now, double horizon) override;
+  /// O(log n) comparisons find the stretch of the first list that the box covers; then a look at each body that has an
+  /// end in it, and, going left from it, at as many ends as it takes to meet those that are open there (all where all
+  /// directions have lists). O(n) while an event is due now.
+  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override;
+  /// O(n): lists say where ends are, not where they will be.
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override;
 
@@ -130,6 +136,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   using BodyPair = std::pair<BodyId, BodyId>;
   std::vector<BodyPair> pairs_on_lists() const;
   void partners_on_lists(BodyId id, std::vector<BodyId>& partners) const;
+  std::size_t ends_below(double x, double now) const;
 
   std::vector<BodyId> partners_now(BodyId id, double now);
   void update_listed_pairs(BodyId id, double now, PairListener& listener);
