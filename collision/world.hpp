@@ -139,6 +139,23 @@ class World final : private RestingContacts<Degree>::Listener {
   /// All zero unless WorldOptions.profile is set.
   const Profile& work_profile() const { return profile_; }
 
+  // What is near, as far as bounding volumes say. Volumes and boxes are closed, so what touches meets, and volumes are
+  // rounded outward, by less than 2^-48 of the coordinates and of the way since their motions began. Bodies that
+  // collide with nothing are named too, and those that are to enter at now(), but not those that enter later. Answers
+  // do not depend on the broad phase; they cost what BroadPhase says, and O(n) where some body does not collide with
+  // all others or next_time() has looked ahead. Callbacks may ask, and so may several threads while nobody calls
+  // anything else. `visit` is called when all is known, and may change the world.
+  // These throw std::invalid_argument for a box or a time that is out of range, and std::logic_error in box functions
+  // and where the world can no longer be used.
+
+  /// Calls visit(id), in ascending order, for each body whose bounding volume meets the box [min, max] at now(). Ends
+  /// may be infinite.
+  void visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max, BodyVisitor visit) const;
+
+  /// The same for each body whose bounding box may meet a moving box at some time from now() to `until`, if all goes on
+  /// as it does at now(): compared are the boxes that the two sweep.
+  void visit_swept(const KineticBox<Degree>& box, double until, BodyVisitor visit) const;
+
   /// Checks the broad phase against the motions, exactly, and the pairs against brute force, in O(n^2); throws
   /// AuditFailure. Just after bodies were added or moved, while the next step has work left at now(), only the broad
   /// phase is checked.
@@ -250,6 +267,10 @@ class World final : private RestingContacts<Degree>::Listener {
   void changed(BodyId a, BodyId b) override { pairs_.changed(a, b); }
   void let_pass(BodyId a, BodyId b) override { pairs_.let_pass(a, b); }
   void tell_held(BodyId a, BodyId b) override;
+
+  // world/near.cpp: what is near
+  template <class Ask, class Meets>
+  void answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const;
 
   // world/snapshot.cpp
   struct Image;

@@ -95,10 +95,11 @@ int main(int argc, char** argv) {
   for (Id id = 0; id < boxes.size(); ++id) entries.push_back({id, &boxes[id]});
 
   Teller teller(page, boxes);
-  KineticSweepAndPrune<2> sweep(0, ListedAxes::all);
+  KineticSweepAndPrune<2> sweep(0, {.listed = ListedAxes::all});
   sweep.insert(entries, 0, teller);
   teller.start();
-  while (sweep.advance(end, teller)) {}  // returns after each change of a pair
+  while (sweep.advance(end, teller)) {
+  }  // returns after each change of a pair
   sweep.audit(end);
   const auto counters = sweep.counters();
   std::cout << teller.all() << " pairs have overlapped; " << counters.swaps << " swaps, " << counters.certificates

@@ -50,7 +50,7 @@ template <int Degree>
 void AdaptiveBroadPhase<Degree>::change_to_grid(double now, PairListener& listener) {
   std::vector<Entry> entries;
   few_.visit([&](BodyId id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
-  grid_ = std::make_unique<KineticGrid<Degree>>(threads_);
+  grid_ = std::make_unique<KineticGrid<Degree>>(threads_, tuning_.grid);
   grid_->extend_horizon(now, horizon_);
   if (entries.empty()) return;
   NoListener known(listener);
@@ -73,7 +73,7 @@ void AdaptiveBroadPhase<Degree>::change_to_few(double now, PairListener& listene
 
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
-  if (!grid_ && few_.size() + bodies.size() > most_for_few_) change_to_grid(now, listener);
+  if (!grid_ && few_.size() + bodies.size() > tuning_.most_for_few) change_to_grid(now, listener);
   if (grid_) return grid_->insert(bodies, now, listener);
   few_.insert(bodies, now, listener);
 }
@@ -82,7 +82,7 @@ template <int Degree>
 void AdaptiveBroadPhase<Degree>::remove(BodyId id, double now, PairListener& listener) {
   if (!grid_) return few_.remove(id, now, listener);
   grid_->remove(id, now, listener);
-  if (grid_->size() <= most_for_few_ / 2) change_to_few(now, listener);
+  if (grid_->size() <= tuning_.most_for_few / 2) change_to_few(now, listener);
 }
 
 template <int Degree>

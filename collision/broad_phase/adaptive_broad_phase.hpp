@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/few_boxes.hpp"
 #include "collision/broad_phase/kinetic_grid.hpp"
+#include "collision/broad_phase/tuning.hpp"
 #include "collision/degrees.hpp"
 
 #include <memory>
@@ -21,10 +22,11 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  /// `threads`: see KineticGrid. Up to `most_for_few` bodies are compared each with all others; once there have been
-  /// more, up to half as many. Precondition: most_for_few <= FewBoxes::most.
-  explicit AdaptiveBroadPhase(std::size_t threads = 1, std::size_t most_for_few = FewBoxes<Degree>::most)
-      : most_for_few_(most_for_few), threads_(threads) {}
+  /// `threads`: see KineticGrid.
+  explicit AdaptiveBroadPhase(std::size_t threads = 1, const AdaptiveTuning& tuning = {})
+      : tuning_(tuning), few_(tuning.few), threads_(threads) {
+    check(tuning);
+  }
 
   bool exact() const override { return false; }
   std::string_view name() const override { return chosen().name(); }
@@ -36,6 +38,12 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   }
   double next_time() const override { return grid_ ? grid_->next_time() : few_.next_time(); }
   void extend_horizon(double now, double horizon) override;
+  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override {
+    chosen().visit_overlapping(box, now, visit);
+  }
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override {
+    chosen().visit_swept(box, from, until, visit);
+  }
   void audit(double now) const override { chosen().audit(now); }
   BroadPhaseCounters counters() const override;
 
@@ -47,9 +55,9 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   static void report_changes(std::span<const Entry> bodies, const From& from, const To& to, double now,
                              PairListener& listener);
 
+  AdaptiveTuning tuning_;
   FewBoxes<Degree> few_;                       ///< holds all bodies while there is no grid
   std::unique_ptr<KineticGrid<Degree>> grid_;  ///< else holds them
-  std::size_t most_for_few_;
   std::size_t threads_;
   double horizon_ = never;
   BroadPhaseCounters done_;  ///< by grids that have been given up

@@ -38,6 +38,13 @@ class AllPairs final : public BroadPhase<Degree> {
   bool advance(double, PairListener&) override { return false; }
   double next_time() const override { return never; }
   void extend_horizon(double, double) override {}
+  /// It knows no boxes, and names all bodies. O(n).
+  void visit_overlapping(const StaticBox&, double, BodyVisitor visit) const override {
+    for (const BodyId id : bodies_) visit(id);
+  }
+  void visit_swept(const KineticBox<Degree>&, double, double, BodyVisitor visit) const override {
+    for (const BodyId id : bodies_) visit(id);
+  }
   void audit(double) const override {}
   BroadPhaseCounters counters() const override { return {0, 0, box_updates_}; }
 

@@ -4,6 +4,7 @@
 #include "collision/broad_phase/box_bounds.hpp"
 #include "collision/broad_phase/cell_table.hpp"
 #include "collision/broad_phase/swept_box.hpp"
+#include "collision/broad_phase/tuning.hpp"
 #include "kds/simd/two_doubles.hpp"
 
 #include <boost/container/small_vector.hpp>
@@ -56,6 +57,10 @@ class BoxGrid {
       ended.clear();
     }
   };
+
+  explicit BoxGrid(const CellTuning& tuning = {}) : tuning_(tuning), room_per_extent_(tuning.roominess) {
+    check(tuning);
+  }
 
   bool contains(Id id) const { return id < items_.size() && items_[id].level != absent; }
   std::size_t size() const { return size_; }
@@ -111,10 +116,17 @@ class BoxGrid {
   /// Precondition: contains(id). Appends to `changes`.
   void remove(Id id, Changes& changes);
 
+  /// Appends the boxes that overlap this one, as they are and not rounded, each once, in no particular order. Changes
+  /// nothing. Precondition: all that have been announced have entered.
+  ///
+  /// Cost: on each level in use, a look into the cells where a box that overlaps may have its corner; O(n) in all if
+  /// they are more than there are boxes.
+  void find_overlapping(const StaticBox& box, Ids& found) const;
+
   /// Greatest extent of a box of the level next finer than that of a box of this extent; 0 if there is none.
   double room_below(double extent) const {
     const Exponent level = level_for(extent);
-    return level == finest_ ? 0 : cell_side(level - 1) / roominess;
+    return level == finest_ ? 0 : cell_side(level - 1) / tuning_.roominess;
   }
 
   /// Greatest extent of a box for which a level is in use.
@@ -158,14 +170,11 @@ class BoxGrid {
   struct Ends;
   struct Census;
 
-  /// Cells are at least this much larger than a box. Larger ones are fewer to look into, and hold more.
-  static constexpr double roominess = 1.4;
-
   double cell_side(int exponent) const;
   Exponent level_for(double extent) const {
     if (!(extent > 0)) return finest_;
     if (!(extent < 0x1p1023)) return most;
-    const double room = roominess / unit_ * extent;
+    const double room = room_per_extent_ * extent;
     int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(room) >> 52) - 1022;  // of a mantissa below 1
     if (exponent == -1022) std::frexp(room, &exponent);                                // not a normal number
     return static_cast<Exponent>(std::clamp<int>(exponent, finest_, most));
@@ -189,9 +198,11 @@ class BoxGrid {
   void grow();
   void restart(std::size_t room);
   void refine();
+  bool search_in(const Level& level, const StaticBox& box, Ids& found) const;
   void search(const CellTable& table, const Level& level, const Population& population, const Ends& box,
               CellTable::Found& found);
 
+  CellTuning tuning_;
   std::vector<Item> items_;    // by id
   std::vector<Level> levels_;  // finest first
   CellTable natives_;
@@ -200,6 +211,7 @@ class BoxGrid {
   std::uint64_t families_ = 0;
   std::size_t size_ = 0;
   double unit_ = 1;            ///< side of a cell of exponent 0, in [1, 2)
+  double room_per_extent_;     ///< roominess in such cells
   Exponent finest_ = least;    ///< no box is native of a finer level
   std::int64_t crowding_ = 0;  ///< buckets that searches have walked on chains, less some a cell
   bool idle_ = false;          ///< some level has had too much idle work

@@ -19,28 +19,25 @@ double power_of_two(int exponent) {
 
 }  // namespace
 
-/// Side of the smallest cells over the spacing of boxes (found by measuring; the minimum is flat).
-constexpr double cell_per_spacing = 2;
-
-/// Where searches walk more chained buckets a cell than this on average, smaller cells would do.
-constexpr std::int64_t crowded_chain = 4;
-
 double BoxGrid::cell_side(int exponent) const { return unit_ * power_of_two(exponent); }
 
-double BoxGrid::room_for(double extent) const { return cell_side(level_for(extent)) / roominess; }
+double BoxGrid::room_for(double extent) const { return cell_side(level_for(extent)) / tuning_.roominess; }
 
 /// Precondition: empty, or restart() is next.
 void BoxGrid::choose_cells(double spacing) {
   unit_ = 1;
   finest_ = least;
-  const double side = cell_per_spacing * spacing;
+  const double side = tuning_.cell_per_spacing * spacing;
   if (side > 0x1p-900 && side < 0x1p900) {  // of others, boxes alone decide
     finest_ = static_cast<Exponent>(std::ilogb(side));
     unit_ = side / power_of_two(finest_);
   }
+  room_per_extent_ = tuning_.roominess / unit_;
 }
 
-double BoxGrid::coarsest() const { return levels_.empty() ? 0 : cell_side(levels_.back().exponent) / roominess; }
+double BoxGrid::coarsest() const {
+  return levels_.empty() ? 0 : cell_side(levels_.back().exponent) / tuning_.roominess;
+}
 
 std::vector<BoxGrid::Level>::iterator BoxGrid::find_level(Exponent exponent) {
   return std::lower_bound(levels_.begin(), levels_.end(), exponent,
@@ -58,7 +55,7 @@ BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
 /// What has cost more for nothing than to build it anew is built anew.
 void BoxGrid::tidy() {
   if (idle_) drop_idle_level();
-  if (crowding_ > static_cast<std::int64_t>(16 * size_)) refine();
+  if (crowding_ > tuning_.patience * static_cast<std::int64_t>(size_)) refine();
 }
 
 /// Levels come and go with the sizes of boxes; one without natives is given up.
@@ -96,7 +93,7 @@ void BoxGrid::grow() {
 void BoxGrid::refine() {
   crowding_ = 0;
   std::size_t fitting = 0;
-  const double finer = 0.5 * least_cell() / roominess;
+  const double finer = 0.5 * least_cell() / tuning_.roominess;
   for (const Item& item : items_) fitting += item.level == finest_ && item.bounds.extent() < finer;
   if (2 * fitting < size_ || finest_ == least) return;
   --finest_;
@@ -180,7 +177,7 @@ void BoxGrid::search(const CellTable& table, const Level& level, const Populatio
   }
   const auto cells = static_cast<std::int64_t>(block.lengths[0] * block.lengths[1] * block.lengths[2]);
   const auto walked = static_cast<std::int64_t>(table.find(block, found));
-  crowding_ = std::max<std::int64_t>(crowding_ + walked - crowded_chain * cells, 0);
+  crowding_ = std::max<std::int64_t>(crowding_ + walked - tuning_.crowded_chain * cells, 0);
 }
 
 }  // namespace kds::collision

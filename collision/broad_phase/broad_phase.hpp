@@ -1,7 +1,9 @@
 // What every broad phase promises.
 #pragma once
 
+#include "collision/broad_phase/body_visitor.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/broad_phase/swept_box.hpp"
 
 #include <cstdint>
 #include <span>
@@ -46,6 +48,12 @@ struct BroadPhaseCounters {
 /// with pair_began, and removing a body ends its pairs; (4) a broad phase never reports a time before the last it was
 /// given. Pairs that may not collide may be left out, begin and end: those that are cost no more than to be found
 /// again and again. Swapping one broad phase for another changes neither contacts nor their times.
+///
+/// (5) A question (visit_overlapping, visit_swept) names each body whose bounding volume meets the box in question
+/// then: none is missed, and none is named twice. Volumes and boxes are closed, so what touches meets; volumes are
+/// kinetic boxes as they are, not rounded, and k-DOPs. Others that are near may be named too, and which these are
+/// depends on the broad phase. Questions change nothing that is ever read: several threads may ask at a time, while
+/// nobody calls anything else.
 template <int Degree>
 class BroadPhase {
  public:
@@ -80,6 +88,15 @@ class BroadPhase {
 
   /// Events later than this need not be known yet.
   virtual void extend_horizon(double now, double horizon) = 0;
+
+  /// Calls visit(id) for the bodies that may meet a box at rest now, in no particular order. Preconditions of this and
+  /// the next: no end is a NaN; `now` or `from` is not before the last time given, nothing is due before it, and it is
+  /// not beyond the horizon. Nothing is called from within `visit` but questions.
+  virtual void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const = 0;
+
+  /// The same for a box that moves, at some time in [from, until], while bodies go on as they do: with the boxes they
+  /// have, whatever `valid_until` says. Precondition: from <= until, both finite.
+  virtual void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const = 0;
 
   /// Checks the state against the motions; throws AuditFailure.
   virtual void audit(double now) const = 0;

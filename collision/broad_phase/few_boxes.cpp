@@ -17,17 +17,6 @@ namespace {
 
 constexpr double greatest_double = std::numeric_limits<double>::max();
 
-/// How far bodies move in the first span, over their size.
-constexpr double first_reach_per_size = 2;
-
-/// A pair costs as much as so many comparisons of boxes, with its test; and a new box.
-constexpr std::uint64_t comparisons_per_pair = 16;
-constexpr std::uint64_t comparisons_per_box = 12;
-
-/// What pairs may cost in a span, over what new boxes for all do: less makes the next longer, more shorter. Some pairs
-/// are there whatever the span, so it is not 1. Far more ends the span at once: its length was told from other motions.
-constexpr std::uint64_t little_cost = 1, much_cost = 3, far_too_much_cost = 12;
-
 /// The first so many bits.
 constexpr std::uint64_t first_places(std::size_t count) { return count == 64 ? ~0ull : (1ull << count) - 1; }
 
@@ -123,7 +112,7 @@ double FewBoxes<Degree>::first_span(double now) const {
   if constexpr (Degree >= 3) {
     double extent = 0;
     for (const auto& [id, box] : bodies_) extent += (box.max.coefficients[0] - box.min.coefficients[0]).maxCoeff();
-    const double reach = first_reach_per_size * extent / static_cast<double>(bodies_.size());
+    const double reach = tuning_.first_reach * extent / static_cast<double>(bodies_.size());
     double time = greatest_double;
     for (const auto& [id, box] : bodies_) {
       const double moves = time_to_move(box.min, now, reach);
@@ -140,7 +129,7 @@ double FewBoxes<Degree>::first_span(double now) const {
     speed += velocity;
     bend += force;
   }
-  const double reach = first_reach_per_size * size;
+  const double reach = tuning_.first_reach * size;
   double span = speed > 0 ? reach / speed : greatest_double;
   if (bend > 0) span = std::min(span, std::sqrt(reach / bend));
   return span > 0 ? span : greatest_double;
@@ -149,7 +138,7 @@ double FewBoxes<Degree>::first_span(double now) const {
 /// New boxes for all, in comparisons.
 template <int Degree>
 std::uint64_t FewBoxes<Degree>::cost_of_span() const {
-  return (bodies_.size() / 2 + comparisons_per_box) * bodies_.size();
+  return (bodies_.size() / 2 + tuning_.comparisons_per_box) * bodies_.size();
 }
 
 /// `latest`: when it has to end.
@@ -222,7 +211,7 @@ void FewBoxes<Degree>::update(BodyId id, const KineticBox<Degree>& box, double n
   put(place, fat);
   change(place, overlaps(fat, bodies_.size()), bodies_.size(), now, listener);
   spent_ += static_cast<std::uint64_t>(std::popcount(partners_[place]));
-  if (comparisons_per_pair * spent_ <= far_too_much_cost * cost_of_span() || !(until_ > now)) return;
+  if (tuning_.comparisons_per_pair * spent_ <= tuning_.far_too_much * cost_of_span() || !(until_ > now)) return;
   span_ = std::min(span_, first_span(now));
   until_ = now;
 }
@@ -230,10 +219,13 @@ void FewBoxes<Degree>::update(BodyId id, const KineticBox<Degree>& box, double n
 /// Begins the next span; true if it reported a pair.
 template <int Degree>
 bool FewBoxes<Degree>::renew(double now, PairListener& listener) {
-  const std::uint64_t spent = comparisons_per_pair * spent_;
+  const std::uint64_t spent = tuning_.comparisons_per_pair * spent_;
   const std::uint64_t cost = cost_of_span();
-  if (spent > much_cost * cost) span_ *= 0.75;
-  if (spent < little_cost * cost) span_ = std::min(span_ * (8 * spent < cost ? 4 : 1.5), greatest_double);
+  if (spent > tuning_.much * cost) span_ *= tuning_.shrink;
+  if (spent < tuning_.little * cost) {
+    const bool idle = tuning_.idle_part * spent < cost;
+    span_ = std::min(span_ * (idle ? tuning_.grow_where_idle : tuning_.grow), greatest_double);
+  }
   begin_span(now, never);
   for (std::size_t place = 0; place < bodies_.size(); ++place) put(place, swept(bodies_[place].box, now));
   bool any = false;
@@ -252,6 +244,22 @@ bool FewBoxes<Degree>::advance(double limit, PairListener& listener) {
     if (renew(until_, listener)) return true;
   }
   return false;
+}
+
+template <int Degree>
+void FewBoxes<Degree>::visit_overlapping(const StaticBox& box, double, BodyVisitor visit) const {
+  for (Row rest = overlaps(box, bodies_.size()); rest != 0; rest &= rest - 1) {
+    visit(bodies_[static_cast<std::size_t>(std::countr_zero(rest))].id);
+  }
+}
+
+template <int Degree>
+void FewBoxes<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const {
+  const StaticBox swept = bounded_swept_box(box, from, until);
+  if (until <= until_) return visit_overlapping(swept, from, visit);
+  for (const Body& body : bodies_) {
+    if (bounded_swept_box(body.box, from, until).overlaps(swept)) visit(body.id);
+  }
 }
 
 template <int Degree>

@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/swept_box.hpp"
+#include "collision/broad_phase/tuning.hpp"
 #include "collision/degrees.hpp"
 #include "kds/simd/two_doubles.hpp"
 
@@ -29,7 +30,9 @@ class FewBoxes final : public BroadPhase<Degree> {
   using Entry = typename BroadPhase<Degree>::Entry;
 
   /// The most bodies there may be: those that a body is paired with are bits of one number.
-  static constexpr std::size_t most = 64;
+  static constexpr std::size_t most = most_few_boxes;
+
+  explicit FewBoxes(const FewBoxesTuning& tuning = {}) : tuning_(tuning) { check(tuning); }
 
   bool exact() const override { return false; }
   std::string_view name() const override { return "few-boxes"; }
@@ -40,6 +43,10 @@ class FewBoxes final : public BroadPhase<Degree> {
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return !bodies_.empty() && until_ < horizon_ ? until_ : never; }
   void extend_horizon(double, double horizon) override { horizon_ = horizon; }
+  /// O(n): the swept boxes are compared, two at a time.
+  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override;
+  /// The same within the span, else O(n) new ones.
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override { return counters_; }
 
@@ -77,6 +84,7 @@ class FewBoxes final : public BroadPhase<Degree> {
   void change(std::size_t place, Row row, std::size_t count, double now, PairListener& listener);
   bool renew(double now, PairListener& listener);
 
+  FewBoxesTuning tuning_;
   std::vector<Body> bodies_;
   std::array<Row, most> partners_{};                        ///< of each body
   std::array<Row, most> others_{};                          ///< with which each may collide

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/broad_phase/swept_box.hpp"
 #include "kds/arithmetic/ball.hpp"
 #include "kds/arithmetic/double_double.hpp"
 
@@ -59,6 +60,27 @@ double along_above(const KdopDirection& direction, const Vector& c) {
 }
 
 }  // namespace detail
+
+/// What a box covers along a direction, from and to, rounded outward; all there is where sums might overflow.
+inline std::array<double, 2> span_along(const KdopDirection& direction, const StaticBox& box) {
+  constexpr double largest_summed = 0x1p1000;
+  Eigen::Vector3d least, most;
+  for (int d = 0; d < 3; ++d) {
+    const bool forward = direction[static_cast<std::size_t>(d)] > 0;
+    least[d] = forward ? box.min[d] : box.max[d];
+    most[d] = forward ? box.max[d] : box.min[d];
+  }
+  if (!(box.min.abs().max(box.max.abs()) <= largest_summed).all()) return {-never, never};
+  return {detail::along_below(direction, least), detail::along_above(direction, most)};
+}
+
+/// Where a slab is at a time, from and to, rounded outward.
+template <int Degree>
+std::array<double, 2> slab_at(const KineticSlab<Degree>& slab, double t) {
+  const Ball<double> low = about<Ball<double>>(slab.min, t).c[0];
+  const Ball<double> high = about<Ball<double>>(slab.max, t).c[0];
+  return {next_down(low.middle - low.radius), next_up(high.middle + high.radius)};
+}
 
 /// The slab along a direction of what covers [low, high] about a moving centre. Precondition: the motion has started
 /// by now.

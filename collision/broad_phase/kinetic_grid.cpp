@@ -107,6 +107,31 @@ bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
 }
 
 template <int Degree>
+void KineticGrid<Degree>::visit_overlapping(const StaticBox& box, double, BodyVisitor visit) const {
+  BoxGrid::Ids found;
+  fat_boxes_.find_overlapping(box, found);
+  for (const BodyId id : found) visit(id);
+}
+
+/// A fat box that holds until then says where its body may be; of the others, their motions do.
+template <int Degree>
+void KineticGrid<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until,
+                                      BodyVisitor visit) const {
+  const StaticBox swept = bounded_swept_box(box, from, until);
+  BoxGrid::Ids found;
+  fat_boxes_.find_overlapping(swept, found);
+  for (const BodyId id : found) {
+    if (bodies_[id].expiry >= until) visit(id);
+  }
+  const auto look = [&](BodyId id) {
+    const Body& body = bodies_[id];
+    if (body.expiry < until && bounded_swept_box(body.box, from, until).overlaps(swept)) visit(id);
+  };
+  if (until <= horizon_) return expiry_.visit_until(until, look);
+  this->visit([&](BodyId id, const KineticBox<Degree>&) { look(id); });
+}
+
+template <int Degree>
 void KineticGrid<Degree>::audit(double now) const {
   for (BodyId id = 0; id < fat_boxes_.end(); ++id) {
     if (!fat_boxes_.contains(id)) continue;

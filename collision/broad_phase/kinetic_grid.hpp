@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/box_grid.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/broad_phase/tuning.hpp"
 #include "collision/degrees.hpp"
 #include "kds/events/calendar_queue.hpp"
 
@@ -32,7 +33,10 @@ class KineticGrid final : public BroadPhase<Degree> {
   using Entry = typename BroadPhase<Degree>::Entry;
 
   /// `threads`: how many share the work where many bodies come at once; 0 is as many as the machine has.
-  explicit KineticGrid(std::size_t threads = 1) : threads_(threads) {}
+  explicit KineticGrid(std::size_t threads = 1, const GridTuning& tuning = {})
+      : tuning_(tuning), fat_boxes_(tuning.cells), threads_(threads) {
+    check(tuning);
+  }
 
   bool exact() const override { return false; }
   std::string_view name() const override { return "grid"; }
@@ -42,6 +46,11 @@ class KineticGrid final : public BroadPhase<Degree> {
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return expiry_.empty() ? never : expiry_.top().time; }
   void extend_horizon(double now, double horizon) override;
+  /// Looks into the cells that the box meets, level by level (BoxGrid::find_overlapping).
+  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override;
+  /// The same for what the box sweeps, and a look at each body whose fat box expires before `until`; at all bodies if
+  /// that is beyond the horizon.
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override { return counters_; }
 
@@ -59,9 +68,6 @@ class KineticGrid final : public BroadPhase<Degree> {
   }
 
  private:
-  /// A coarser level is begun just for the reach of bodies if they are one in so many.
-  static constexpr std::uint64_t share_for_level = 8;
-
   struct Body {
     Body() {}  // not the implicit one, for which all is set to zero first
 
@@ -108,6 +114,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   void set_expiry(BodyId id, double expiry, double now);
   void report(BodyId id, BoxGrid::Changes& changes, double now, PairListener& listener);
 
+  GridTuning tuning_;
   std::vector<Body> bodies_;  // by id
   BoxGrid fat_boxes_;
   CalendarQueue<> expiry_;  // slots are bodies; none later than the horizon

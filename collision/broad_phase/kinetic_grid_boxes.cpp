@@ -14,33 +14,9 @@ constexpr double largest = std::numeric_limits<double>::max();
 /// At most: such that a box of this reach on both sides still has an extent.
 constexpr double greatest_reach = 0x1p1020;
 
-/// At least, over its size: less would have it renewed ever so often among others that touch it anyway.
-constexpr double least_reach = 0.125;
-
 /// At least, over its coordinates: boxes without extent have a reach too, which then adapts.
 constexpr double least_part_of_coordinates = 0x1p-40;
 constexpr double least_reach_at_all = 0x1p-500;
-
-/// An old fat box is kept if it lasts this share of a new one's lifetime.
-template <int Degree>
-constexpr double kept_share = Degree == 1 ? 0.15 : 0.25;
-
-/// A body is *jostled* if its motion changes in most of its boxes: each in which it does counts 1, up to a bound, each
-/// in which it does not takes back 2. Only bodies on straight paths are: of these it is told when they leave a box.
-constexpr int jostled_at = 3;
-constexpr int jostled_most = 6;
-
-/// For one that is, a pair that begins costs as much as so many tests; and what was spent on both within a box, in
-/// tests, that a longer reach would pay, or a shorter one (found by measuring; the minimum is flat).
-constexpr std::uint32_t tests_per_pair = 8;
-constexpr std::uint32_t little_spent = 40, much_spent = 60;
-
-/// A pair that is found and may not collide costs about this part of one that begins.
-constexpr std::uint32_t found_per_pair = 4;
-
-/// It gets so much of its margin more ahead, and less behind: it goes on as it does until it is struck, and a little
-/// after that. A seventh fewer renewals of dense balls than without (found by measuring; the minimum is flat).
-constexpr double lead = 0.6;
 
 /// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not
 /// told. Which sides it moves to nobody can predict.
@@ -82,15 +58,16 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
   body.fattened = now;
   const double size = present.extent();
   const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
-  body.reach = std::max({body.reach, least_reach * size, least_part_of_coordinates * coordinates, least_reach_at_all});
+  body.reach =
+      std::max({body.reach, tuning_.least_reach * size, least_part_of_coordinates * coordinates, least_reach_at_all});
   double time = lifetime(body, sweep);
   if (time == never) return {present, never};
   // Where a jostled body will go nobody knows; a margin of more than its size would be mostly in vain.
-  double margin = body.jostled >= jostled_at && body.reach <= 0.5 * size ? body.reach : 0;
+  double margin = body.jostled >= tuning_.jostled_at && body.reach <= 0.5 * size ? body.reach : 0;
   Eigen::Array3d ahead = Eigen::Array3d::Zero();  // over the margin
   if (margin > 0) {
-    ahead = lead / sweep.speed() * body.box.min.coefficients[1].array();
-    time *= 1 + lead;
+    ahead = tuning_.lead / sweep.speed() * body.box.min.coefficients[1].array();
+    time *= 1 + tuning_.lead;
   }
   const auto swept = [&](double expiry) {
     const StaticBox box = sweep.until(expiry);
@@ -131,7 +108,7 @@ template <int Degree>
 auto KineticGrid<Degree>::fat_box(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now)
     -> FatBox {
   const FatBox fat = fat_box(bodies_[id], sweep, present, now, fat_boxes_.coarsest(), [&] {
-    if (++wishes_ * share_for_level <= fat_boxes_.size()) return false;
+    if (++wishes_ * tuning_.share_for_level <= fat_boxes_.size()) return false;
     wishes_ = 0;
     return true;
   });
@@ -162,29 +139,29 @@ template <int Degree>
 void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
   Body& body = bodies_[id];
   const bool lasted = body.expiry <= now;
-  body.begun += body.in_vain / found_per_pair;
-  if (body.jostled >= jostled_at) {
-    const std::uint32_t spent = tests_per_pair * body.begun + body.tests;
-    if (spent < little_spent) body.reach = std::min(1.1 * body.reach, greatest_reach);
-    if (spent > much_spent) body.reach *= 0.9;
+  body.begun += body.in_vain / tuning_.found_per_pair;
+  if (body.jostled >= tuning_.jostled_at) {
+    const std::uint32_t spent = tuning_.tests_per_pair * body.begun + body.tests;
+    if (spent < tuning_.little_spent) body.reach = std::min(tuning_.grow_jostled * body.reach, greatest_reach);
+    if (spent > tuning_.much_spent) body.reach *= tuning_.shrink_jostled;
   } else if (lasted) {
     switch (body.begun) {
       case 0:
-        body.reach = std::min(1.4 * body.reach, greatest_reach);
+        body.reach = std::min(tuning_.grow_after_none * body.reach, greatest_reach);
         break;
       case 1:
-        body.reach = std::min(1.15 * body.reach, greatest_reach);
+        body.reach = std::min(tuning_.grow_after_one * body.reach, greatest_reach);
         break;
       case 2:
         break;
       default:
-        body.reach *= body.begun < 8 ? 0.8 : 0.5;
+        body.reach *= body.begun < tuning_.many ? tuning_.shrink_after_some : tuning_.shrink_after_many;
     }
   } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
-    body.reach *= 0.8;
+    body.reach *= tuning_.shrink_after_turn;
   }
   if (Degree == 1 && body.changes > 0) {
-    body.jostled = std::min(body.jostled + 1, jostled_most);
+    body.jostled = std::min(body.jostled + 1, tuning_.jostled_most);
   } else {
     body.jostled = std::max(body.jostled - 2, 0);
   }
@@ -202,7 +179,8 @@ double KineticGrid<Degree>::kept_until(BodyId id, const BoxSweep<Degree>& sweep,
   if (!fat.contains(bounds)) return now;
   const double time = lifetime(body, sweep);
   if (time == never) return never;
-  const double expiry = now + std::max(kept_share<Degree> * time, exit_time(body.box, bounds, fat));
+  const double expiry = now + std::max((Degree == 1 ? tuning_.kept_share_straight : tuning_.kept_share_curved) * time,
+                                       exit_time(body.box, bounds, fat));
   if (!(expiry > now && expiry <= largest && fat.contains(BoxBounds(sweep.until(expiry))))) return now;
   ++counters_.certificates;
   return expiry;

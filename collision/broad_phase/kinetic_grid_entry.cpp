@@ -16,9 +16,6 @@
 namespace kds::collision {
 namespace {
 
-/// A body's reach when it comes, over the spacing of bodies.
-constexpr double reach_per_spacing = 0.25;
-
 /// Fewer bodies fit into the cache in any order.
 constexpr std::size_t few = 4096;
 
@@ -70,7 +67,7 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   fat_boxes_.reserve(end);
   if (fat_boxes_.size() == 0 && !bodies.empty()) {
     const double spacing = typical_spacing(bodies.size(), [&](std::size_t i) { return box_at(*bodies[i].box, now); });
-    first_reach_ = reach_per_spacing * spacing;
+    first_reach_ = tuning_.first_reach * spacing;
     fat_boxes_.choose_cells(spacing);
     return insert_first(bodies, now, listener);
   }
@@ -152,7 +149,7 @@ void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span
   std::vector<double> extents;
   extents.reserve(boxes.size());
   for (const StaticBox& box : boxes) extents.push_back(box.extent());
-  const auto last = extents.end() - 1 - static_cast<std::ptrdiff_t>(boxes.size() / share_for_level);
+  const auto last = extents.end() - 1 - static_cast<std::ptrdiff_t>(boxes.size() / tuning_.share_for_level);
   std::nth_element(extents.begin(), last, extents.end());
   const double coarsest = fat_boxes_.room_for(*last);
   for (std::size_t i = 0; i < boxes.size(); ++i) {

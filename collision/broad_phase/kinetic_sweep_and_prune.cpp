@@ -11,13 +11,14 @@
 namespace kds::collision {
 
 template <int Degree>
-KineticSweepAndPrune<Degree>::KineticSweepAndPrune(double now, ListedAxes listed, Kdops<Degree> kdops)
+KineticSweepAndPrune<Degree>::KineticSweepAndPrune(double now, const SweepTuning& tuning, Kdops<Degree> kdops)
     : kdops_(std::move(kdops)),
-      asked_(listed),
+      tuning_(tuning),
       all_axes_((1u << (3 + kdops_.directions.size())) - 1),
       listed_(all_axes_),
       unlisted_(changes_, 3 + kdops_.directions.size()),
       simulator_(now, lists_, unlisted_) {
+  check(tuning);
   std::vector<std::size_t> directions;
   for (std::size_t d = 0; d < 3 + kdops_.directions.size(); ++d) {
     lists_.all.emplace_back(AxisListener{this, d});

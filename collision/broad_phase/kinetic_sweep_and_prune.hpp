@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
+#include "collision/broad_phase/tuning.hpp"
 #include "collision/broad_phase/unlisted_axes.hpp"
 #include "collision/degrees.hpp"
 #include "kds/simulator.hpp"
@@ -14,9 +15,6 @@
 
 namespace kds::collision {
 
-/// How many of the three axes, or of the directions of k-DOPs, have a sorted list.
-enum class ListedAxes { automatic, one, two, all };
-
 /// Kinetic sorted lists of interval ends, one for each listed axis; a swap of a minimum with a maximum begins or ends
 /// an overlap there, and whether the other lists overlap is read from positions: no table of pairs is kept. The axes
 /// without a list have a certificate for each pair that overlaps on the listed ones and comes near on the others
@@ -25,10 +23,11 @@ enum class ListedAxes { automatic, one, two, all };
 /// Paper: [Paper] sections 4.1-4.3. Differs: by default one list. A body passes the coordinates of all others, near or
 /// far, on each listed axis, so swaps are what it costs, and one list has a third of them; of the pairs that meet on
 /// one axis few come near on the others. The axis is the one with the fewest pairs and swaps to expect from sizes and
-/// speeds; it is chosen again when the horizon is moved or the bodies have doubled. Fewer than 64 boxes, not
-/// k-DOPs, get three lists, which is a matter of microseconds then. Times of pairs are the same, bit for bit, whatever
-/// is listed. Of changes at one time lists come first, in the order of axes, then pairs by (a, b) on the other axes; so
-/// a pair may overlap for no time at all (begin on one axis and end on another at once) on listed axes alone.
+/// speeds; it is chosen again when the horizon is moved or the bodies have doubled. A few boxes, not
+/// k-DOPs, get three lists, which is a matter of microseconds then (SweepTuning). Times of pairs are the same, bit for
+/// bit, whatever is listed. Of changes at one time lists come first, in the order of axes, then pairs by (a, b) on the
+/// other axes; so a pair may overlap for no time at all (begin on one axis and end on another at once) on listed axes
+/// alone.
 ///
 /// Cost: O(log n) or less a swap (the queue's), no cost between events; a motion change the swaps of its jump and a
 /// look at the pairs that overlap on the first listed axis; insertion and removal O(n) moves of memory besides that.
@@ -42,7 +41,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  explicit KineticSweepAndPrune(double now, ListedAxes listed = ListedAxes::automatic, Kdops<Degree> kdops = {});
+  explicit KineticSweepAndPrune(double now, const SweepTuning& tuning = {}, Kdops<Degree> kdops = {});
   KineticSweepAndPrune(const KineticSweepAndPrune&) = delete;
   KineticSweepAndPrune& operator=(const KineticSweepAndPrune&) = delete;
 
@@ -54,6 +53,12 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return simulator_.next_time(); }
   void extend_horizon(double now, double horizon) override;
+  /// O(log n) comparisons find the stretch of the first list that the box covers; then a look at each body that has an
+  /// end in it, and, going left from it, at as many ends as it takes to meet those that are open there (all where all
+  /// directions have lists). O(n) while an event is due now.
+  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override;
+  /// O(n): lists say where ends are, not where they will be.
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override;
 
@@ -132,6 +137,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   using BodyPair = std::pair<BodyId, BodyId>;
   std::vector<BodyPair> pairs_on_lists() const;
   void partners_on_lists(BodyId id, std::vector<BodyId>& partners) const;
+  std::size_t ends_below(double x, double now) const;
 
   std::vector<BodyId> partners_now(BodyId id, double now);
   void update_listed_pairs(BodyId id, double now, PairListener& listener);
@@ -142,10 +148,8 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
     lists_.all[d].update(upper ? max_end(id) : min_end(id), unlisted_.end(id, d, upper), now);
   }
 
-  static constexpr std::size_t few_bodies = 64;  ///< fewer boxes than this have three lists if not asked otherwise
-
   Kdops<Degree> kdops_;
-  ListedAxes asked_;
+  SweepTuning tuning_;
   unsigned all_axes_;  ///< and directions
   unsigned listed_;
   std::size_t sweep_axis_ = 0;  // the first that has a list

@@ -12,12 +12,13 @@ namespace kds::collision {
 
 /// What a list is expected to cost: the pairs that overlap on its axis, which is about (lengths of all intervals) /
 /// (length of the whole), and their changes, (speeds) x (time to come) / (length of the whole). Without a horizon, the
-/// time to come is what bodies take to cross their own sizes. A new axis must promise a third less.
+/// time to come is what bodies take to cross their own sizes. A new axis must promise that much less.
 template <int Degree>
 unsigned KineticSweepAndPrune<Degree>::best_axes(std::span<const Entry> bodies, double now) const {
   const std::size_t directions = lists_.all.size();
-  if (asked_ == ListedAxes::all) return all_axes_;
-  if (asked_ == ListedAxes::automatic && bodies.size() < few_bodies && directions == 3) return all_axes_;
+  if (tuning_.listed == ListedAxes::all) return all_axes_;
+  if (tuning_.listed == ListedAxes::automatic && bodies.size() < tuning_.few_bodies && directions == 3)
+    return all_axes_;
   std::vector<double> lengths(directions), speeds(directions), low(directions, never), high(directions, -never);
   const auto add = [&](std::size_t d, double min, double max, double speed) {
     low[d] = std::min(low[d], min);
@@ -40,12 +41,12 @@ unsigned KineticSweepAndPrune<Degree>::best_axes(std::span<const Entry> bodies, 
   const auto promises = [&](std::size_t d) {
     const double whole = std::max(high[d] - low[d], 0x1p-1000);
     const double cost = (lengths[d] + speeds[d] * std::min(crossing, horizon_ - now)) / whole;
-    return cost * (!all_listed() && is_listed(d) ? 2.0 / 3 : 1.0);
+    return cost * (!all_listed() && is_listed(d) ? tuning_.change_below : 1.0);
   };
   std::vector<std::size_t> order(directions);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return promises(a) < promises(b); });
-  return 1u << order[0] | (asked_ == ListedAxes::two ? 1u << order[1] : 0u);
+  return 1u << order[0] | (tuning_.listed == ListedAxes::two ? 1u << order[1] : 0u);
 }
 
 template <int Degree>
@@ -75,7 +76,7 @@ void KineticSweepAndPrune<Degree>::build_lists(std::span<const Entry> bodies, un
 /// holds where no event is due.
 template <int Degree>
 void KineticSweepAndPrune<Degree>::choose_again(double now) {
-  if (asked_ == ListedAxes::all || next_time() <= now) return;
+  if (tuning_.listed == ListedAxes::all || next_time() <= now) return;
   std::vector<Entry> bodies;
   for (const auto& end : sweep_list().entries()) {
     if (is_min(end.id)) bodies.push_back({end.id / 2, &unlisted_.box(end.id / 2)});

@@ -255,6 +255,14 @@ StaticBox swept_box(const KineticBox<Degree>& box, double from, double to) {
   return BoxSweep<Degree>(box, from).until(to);
 }
 
+/// The same, whole_space() if it has no bounds, or these are not numbers.
+template <int Degree>
+StaticBox bounded_swept_box(const KineticBox<Degree>& box, double from, double to) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  const StaticBox swept = swept_box(box, from, to);
+  return (swept.min >= -largest).all() && (swept.max <= largest).all() ? swept : whole_space();
+}
+
 /// swept_box(box, t, t), bit for bit.
 template <int Degree>
 StaticBox box_at(const KineticBox<Degree>& box, double t) {

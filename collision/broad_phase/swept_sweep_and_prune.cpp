@@ -177,6 +177,23 @@ void SweptSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& box
 }
 
 template <int Degree>
+void SweptSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, double, BodyVisitor visit) const {
+  for (const BodyId id : bodies_) {
+    if (swept_[id].overlaps(box)) visit(id);
+  }
+}
+
+template <int Degree>
+void SweptSweepAndPrune<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until,
+                                             BodyVisitor visit) const {
+  const StaticBox swept = bounded_swept_box(box, from, until);
+  if (until <= frame_end_) return visit_overlapping(swept, from, visit);
+  for (const BodyId id : bodies_) {
+    if (bounded_swept_box(boxes_[id], from, until).overlaps(swept)) visit(id);
+  }
+}
+
+template <int Degree>
 void SweptSweepAndPrune<Degree>::audit(double) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 1; i < ends_[axis].size(); ++i) {

@@ -112,6 +112,13 @@ void UnlistedAxes<Degree>::set_hulls(BodyId id, double now) {
 }
 
 template <int Degree>
+auto UnlistedAxes<Degree>::hull_of(const StaticBox& box) const -> Hull {
+  if (count_ == 0) return Hull::everywhere();
+  return {FourFloats{below(box.min[axes_[0]]), below(box.min[axes_[1]]), -below(-box.max[axes_[0]]),
+                     -below(-box.max[axes_[1]])}};
+}
+
+template <int Degree>
 bool UnlistedAxes<Degree>::near_on_more(BodyId a, BodyId b) const {
   const float* const hulls_a = &more_hulls_[2 * a * more_.size()];
   const float* const hulls_b = &more_hulls_[2 * b * more_.size()];

@@ -79,6 +79,9 @@ class UnlistedAxes {
   /// The greatest id so far, and one.
   std::size_t bodies() const { return boxes_.size(); }
 
+  /// A box as one to compare with those of bodies. It meets them all where all axes have a list.
+  Hull hull_of(const StaticBox& box) const;
+
   /// Whether the pair may overlap here before the horizon: the first filter alone.
   bool near(BodyId a, BodyId b) const { return hulls_meet(a, b) && (more_.empty() || near_on_more(a, b)); }
 

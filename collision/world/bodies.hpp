@@ -147,6 +147,7 @@ class Bodies {
   void wait(BodyId id) { waiting_.push_back(id); }
   bool any_waits() const { return !waiting_.empty(); }
   bool waits(BodyId id) const;
+  const std::vector<BodyId>& waiting() const { return waiting_; }
   std::vector<BodyId> take_waiting() { return std::exchange(waiting_, {}); }
 
   /// All of it, as plain data: what a snapshot holds.

@@ -22,7 +22,7 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
     case BroadPhaseKind::grid:
       return std::make_unique<KineticGrid<Degree>>(options.threads);
     case BroadPhaseKind::kinetic_sap:
-      return std::make_unique<KineticSweepAndPrune<Degree>>(now, ListedAxes::automatic, std::move(kdops));
+      return std::make_unique<KineticSweepAndPrune<Degree>>(now, SweepTuning{}, std::move(kdops));
     case BroadPhaseKind::sap:
       if (!(options.rate > 0) || !std::isfinite(1 / options.rate)) {
         throw std::invalid_argument(

@@ -1,7 +1,7 @@
 // The pending reports of a world as plain data: written, read and checked.
 #pragma once
 
-#include "collision/narrow_phase/feature.hpp"
+#include "collision/shapes/feature.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/reports.hpp"

@@ -166,6 +166,29 @@ bool Volumes<Degree>::overlap(BodyId a, BodyId b, double t, bool exact) const {
   return true;
 }
 
+template <int Degree>
+KineticBox<Degree> Volumes<Degree>::box_or_ball(BodyId id) const {
+  if (asked(id)) return box(id);
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(bodies_[id].bounding_radius);
+  return box_around<Degree>(bodies_.motion(id), -reach, reach);
+}
+
+template <int Degree>
+bool Volumes<Degree>::meets(BodyId id, const StaticBox& box, double t) const {
+  if (!box_at(box_or_ball(id), t).overlaps(box)) return false;
+  for (std::size_t i = 0; i < directions_.size() && asked(id); ++i) {
+    const auto [low, high] = slab_at(slab(id, i, t), t);
+    const auto [from, to] = span_along(directions_[i], box);
+    if (low > to || from > high) return false;
+  }
+  return true;
+}
+
+template <int Degree>
+StaticBox Volumes<Degree>::swept(BodyId id, double from, double until) const {
+  return bounded_swept_box(box_or_ball(id), from, until);
+}
+
 #define KDS_INSTANTIATE(degree) template class Volumes<degree>;
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE

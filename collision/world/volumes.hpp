@@ -3,6 +3,7 @@
 
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/broad_phase/swept_box.hpp"
 #include "collision/degrees.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
@@ -59,6 +60,11 @@ class Volumes {
   /// Whether the volumes that the broad phase sees overlap just after t. `exact`: as for the broad phase.
   bool overlap(BodyId a, BodyId b, double t, bool exact) const;
 
+  /// Whether a body's volume, rounded outward, meets a box at t; and what its box sweeps. Where a caller's function has
+  /// not been asked yet, as the body is still to enter, it is the box around its ball.
+  bool meets(BodyId id, const StaticBox& box, double t) const;
+  StaticBox swept(BodyId id, double from, double until) const;
+
   /// Takes note of until when the body's box holds it.
   void schedule(BodyId id);
   /// When the next box has to be renewed, and whose. Precondition of next_body(): next_time() < never.
@@ -75,6 +81,8 @@ class Volumes {
     Box box;  ///< the last it gave
   };
 
+  bool asked(BodyId id) const { return bodies_[id].entered || !from_caller(id); }
+  Box box_or_ball(BodyId id) const;
   Box bare_box(BodyId id) const;
   void place_extents(BodyId id);
   KineticSlab<Degree> slab(BodyId id, std::size_t i, double now) const;

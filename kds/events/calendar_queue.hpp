@@ -43,6 +43,11 @@ class CalendarQueue {
   void pop() { clear(top().slot); }
   QueuedEvent top() const;
 
+  /// Calls visit(slot) for each event not later than `time`, in no particular order. Unlike top() it rearranges
+  /// nothing. Cost: those events and those of a day, and of the years to come if `time` is in them.
+  template <class Visit>
+  void visit_until(double time, Visit&& visit) const;
+
   bool contains(Slot slot) const { return time(slot) != detail::no_event; }
   double time(Slot slot) const { return nodes_[slot].time; }
   bool empty() const { return size_ == 0; }
@@ -189,6 +194,26 @@ inline QueuedEvent CalendarQueue<Rank>::top() const {
   assert(!empty());
   if (present_.empty()) next_day();
   return {present_[0].time, present_[0].slot};
+}
+
+template <QueueRank Rank>
+template <class Visit>
+void CalendarQueue<Rank>::visit_until(double time, Visit&& visit) const {
+  for (const Key& key : present_) {
+    if (key.time <= time) visit(key.slot);
+  }
+  // Events up to then are not on later days, as the division into days is monotone.
+  const double last = (time - begin_) * days_per_second_;
+  for (std::size_t word = today_ / 64; word < busy_.size(); ++word) {
+    for (std::uint64_t days = busy_[word]; days != 0; days &= days - 1) {
+      const auto day = static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(days)));
+      if (day == year_ ? last < year_end_ : last < day) return;
+      for (std::uint32_t slot = days_[day]; slot != none; slot = nodes_[slot].next) {
+        if (nodes_[slot].time <= time) visit(slot);
+      }
+      if (day == year_) return;
+    }
+  }
 }
 
 // --- where an event stands

@@ -25,8 +25,8 @@ namespace {
 
 using namespace kds;
 using namespace kds::collision;
-using kds::tests::Random;
 using Eigen::Vector3d;
+using kds::tests::Random;
 
 constexpr std::array kinds{6, 14, 18, 26};
 constexpr double end_time = 2;
@@ -120,10 +120,11 @@ Ran run_broad_phase(const std::vector<PlacedShape>& shapes, const std::vector<Bo
   for (std::size_t i = 0; i < bodies.size(); ++i) entries.push_back({static_cast<BodyId>(i), &boxes[i]});
   Count count;
   const double begin = benchmarks::thread_seconds();
-  KineticSweepAndPrune<1> broad_phase(0, listed, {more, [&](BodyId id, std::size_t i, double) {
-                                                    const auto& [low, high] = extents[id * more.size() + i];
-                                                    return slab_around(bodies[id].motion[0], low, high, more[i]);
-                                                  }});
+  KineticSweepAndPrune<1> broad_phase(0, {.listed = listed}, {more, [&](BodyId id, std::size_t i, double) {
+                                                                const auto& [low, high] = extents[id * more.size() + i];
+                                                                return slab_around(bodies[id].motion[0], low, high,
+                                                                                   more[i]);
+                                                              }});
   broad_phase.extend_horizon(0, end_time);
   broad_phase.insert(entries, 0, count);
   const double start = benchmarks::thread_seconds();

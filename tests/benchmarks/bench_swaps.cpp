@@ -109,7 +109,7 @@ struct Result {
 Result run(const std::vector<KineticBox<1>>& boxes, ListedAxes listed, const Instructions& instructions) {
   Result result;
   const double begin = benchmarks::thread_seconds();
-  KineticSweepAndPrune<1> broad_phase(0, listed);
+  KineticSweepAndPrune<1> broad_phase(0, {.listed = listed});
   broad_phase.extend_horizon(0, 1);
   std::vector<KineticSweepAndPrune<1>::Entry> entries;
   for (std::size_t i = 0; i < boxes.size(); ++i) entries.push_back({static_cast<BodyId>(i), &boxes[i]});

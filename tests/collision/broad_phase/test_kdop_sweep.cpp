@@ -32,7 +32,8 @@ struct Dops {
       : random(seed),
         coarse(coarse_numbers),
         more(directions(k)),
-        broad_phase(0, listed, {more, [this](BodyId id, std::size_t i, double) { return bodies.at(id).slabs[i]; }}) {
+        broad_phase(0, {.listed = listed},
+                    {more, [this](BodyId id, std::size_t i, double) { return bodies.at(id).slabs[i]; }}) {
     broad_phase.extend_horizon(0, never);
   }
 
@@ -152,8 +153,7 @@ TEST_CASE("The list may be in any direction", "[kdop][broad_phase]") {
   }
   std::vector<KineticSweepAndPrune<1>::Entry> entries;
   for (BodyId id = 0; id < 100; ++id) entries.push_back({id, &boxes[id]});
-  KineticSweepAndPrune<1> broad_phase(0, ListedAxes::automatic,
-                                      {more, [&](BodyId id, std::size_t i, double) { return slabs[id][i]; }});
+  KineticSweepAndPrune<1> broad_phase(0, {}, {more, [&](BodyId id, std::size_t i, double) { return slabs[id][i]; }});
   Pairs pairs;
   broad_phase.insert(entries, 0, pairs);
   CHECK(broad_phase.listed_axes() == 1u << 4);
@@ -164,9 +164,9 @@ TEST_CASE("A k-DOP that is not finite is refused by name", "[kdop]") {
   certificates::PointMotion<1> path;
   path.coefficients = {Vector3d::Constant(1e308), Vector3d::Zero()};
   const KineticBox<1> box = box_around(path, Vector3d::Constant(-1), Vector3d::Constant(1));
-  KineticSweepAndPrune<1> broad_phase(0, ListedAxes::automatic, {directions(14), [&](BodyId, std::size_t i, double) {
-                                                                   return slab_around(path, -2, 2, directions(14)[i]);
-                                                                 }});
+  KineticSweepAndPrune<1> broad_phase(0, {}, {directions(14), [&](BodyId, std::size_t i, double) {
+                                                return slab_around(path, -2, 2, directions(14)[i]);
+                                              }});
   const KineticSweepAndPrune<1>::Entry entry{7, &box};
   Pairs pairs;
   CHECK_THROWS_WITH(broad_phase.insert({&entry, 1}, 0, pairs), Catch::Matchers::Contains("body 7"));

@@ -20,7 +20,7 @@ using namespace tests;
 
 template <int Degree>
 std::unique_ptr<BroadPhase<Degree>> make(bool chooses) {
-  if (chooses) return std::make_unique<AdaptiveBroadPhase<Degree>>(1, 8);
+  if (chooses) return std::make_unique<AdaptiveBroadPhase<Degree>>(1, AdaptiveTuning{.most_for_few = 8});
   return std::make_unique<KineticGrid<Degree>>();
 }
 

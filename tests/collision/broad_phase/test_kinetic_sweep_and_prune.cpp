@@ -17,7 +17,7 @@ using namespace tests;
 
 template <int Degree>
 auto lists(ListedAxes listed) {
-  return std::make_unique<KineticSweepAndPrune<Degree>>(0, listed);
+  return std::make_unique<KineticSweepAndPrune<Degree>>(0, SweepTuning{.listed = listed});
 }
 
 struct Report {
@@ -70,8 +70,8 @@ TEMPLATE_TEST_CASE_SIG("Kinetic sweep and prune under stress", "[broad_phase]", 
   CHECK(reports > 400);
 }
 
-TEMPLATE_TEST_CASE_SIG("Pairs begin and end at the times of exact arithmetic, also of boxes that grow",
-                       "[broad_phase]", ((int Degree), Degree), 1, 2) {
+TEMPLATE_TEST_CASE_SIG("Pairs begin and end at the times of exact arithmetic, also of boxes that grow", "[broad_phase]",
+                       ((int Degree), Degree), 1, 2) {
   const ListedAxes listed = GENERATE(ListedAxes::one, ListedAxes::two, ListedAxes::all);
   constexpr double end = 2;
   std::size_t stretches = 0;
@@ -85,7 +85,8 @@ TEMPLATE_TEST_CASE_SIG("Pairs begin and end at the times of exact arithmetic, al
     for (const auto& [a, b] : stress.pairs.now) expected.push_back({0, a, b, true});
     for (const auto& report : expected) log.reports.push_back(report);
     expected.clear();
-    while (stress.broad_phase.advance(end, log)) {}
+    while (stress.broad_phase.advance(end, log)) {
+    }
     for (auto a = stress.boxes.begin(); a != stress.boxes.end(); ++a) {
       for (auto b = std::next(a); b != stress.boxes.end(); ++b) {
         for (const auto& s : oracle::overlaps(exact(a->second), exact(b->second), 0, end)) {
@@ -110,13 +111,14 @@ std::vector<Report> reports_in_windows(std::uint64_t seed, ListedAxes listed, do
   for (int i = 0; i < 30; ++i) boxes.push_back(random_box<Degree>(random, false, 0, 9));
   std::vector<typename KineticSweepAndPrune<Degree>::Entry> entries;
   for (BodyId id = 0; id < 30; ++id) entries.push_back({id, &boxes[id]});
-  KineticSweepAndPrune<Degree> broad_phase(0, listed);
+  KineticSweepAndPrune<Degree> broad_phase(0, {.listed = listed});
   Log log;
   broad_phase.extend_horizon(0, std::min(window, 2.0));
   broad_phase.insert(entries, 0, log);
   for (double now = 0; now < 2; now = std::min(now + window, 2.0)) {
     broad_phase.extend_horizon(now, std::min(now + window, 2.0));
-    while (broad_phase.advance(std::min(now + window, 2.0), log)) {}
+    while (broad_phase.advance(std::min(now + window, 2.0), log)) {
+    }
     broad_phase.audit(std::min(now + window, 2.0));
   }
   return log.reports;

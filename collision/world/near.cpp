@@ -1,0 +1,72 @@
+// What a world says of what is near.
+#include "collision/broad_phase/swept_box.hpp"
+#include "collision/degrees.hpp"
+#include "collision/world.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kds::collision {
+
+/// `ask(look)` asks the broad phase. What it names depends on which it is; meets(id), of all that are named, does not.
+template <int Degree>
+template <class Ask, class Meets>
+void World<Degree>::answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const {
+  require_whole(function);
+  if (volumes_.calling()) {
+    throw std::logic_error(std::string(function) + ": must not be called from within a box function");
+  }
+  std::vector<BodyId> named;
+  const auto look = [&](BodyId id) {
+    if (meets(id)) named.push_back(id);
+  };
+  const bool broad_phase_is_ahead = now() < clock_.now;
+  if (!broad_phase_is_ahead) ask(look);
+  if (broad_phase_is_ahead || bodies_.filters()) {
+    for (BodyId id = 0; id < bodies_.slots(); ++id) {
+      if (bodies_.entered(id) && (broad_phase_is_ahead || !bodies_.collides(id))) look(id);
+    }
+  }
+  for (const BodyId id : bodies_.waiting()) {
+    if (bodies_.contains(id) && !bodies_.entered(id)) look(id);
+  }
+  std::sort(named.begin(), named.end());
+  named.erase(std::unique(named.begin(), named.end()), named.end());
+  for (const BodyId id : named) visit(id);
+}
+
+template <int Degree>
+void World<Degree>::visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max, BodyVisitor visit) const {
+  if (!(min.array() <= max.array()).all()) {
+    throw std::invalid_argument("World::visit_overlapping: min must not be above max, and both must be numbers");
+  }
+  const StaticBox box{min.array(), max.array()};
+  const double t = now();
+  const auto ask = [&](const auto& look) { broad_phase_->visit_overlapping(box, t, look); };
+  answer(
+      "World::visit_overlapping", ask, [&](BodyId id) { return volumes_.meets(id, box, t); }, visit);
+}
+
+template <int Degree>
+void World<Degree>::visit_swept(const KineticBox<Degree>& box, double until, BodyVisitor visit) const {
+  const double from = now();
+  if (!box.min.finite() || !box.max.finite()) {
+    throw std::invalid_argument("World::visit_swept: the box is not finite");
+  }
+  if (!(until >= from && until < never)) {
+    throw std::invalid_argument("World::visit_swept: " + std::to_string(until) + " is not a finite time from now on (" +
+                                std::to_string(from) + ")");
+  }
+  const StaticBox swept = bounded_swept_box(box, from, until);
+  const auto ask = [&](const auto& look) { broad_phase_->visit_swept(box, from, until, look); };
+  answer(
+      "World::visit_swept", ask, [&](BodyId id) { return volumes_.swept(id, from, until).overlaps(swept); }, visit);
+}
+
+#define KDS_INSTANTIATE(degree) template class World<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision
