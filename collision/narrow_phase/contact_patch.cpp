@@ -57,9 +57,7 @@ std::vector<Vector3d> clip(const std::vector<Vector3d>& polygon, const Vector3d&
     const double d_here = dot(inward, here - from);
     const double d_next = dot(inward, next - from);
     if (d_here >= 0) kept.push_back(here);
-    const bool there_and_back = polygon.size() == 2 && i == 1;  // a segment has one edge
-    if (!there_and_back && (d_here < 0) != (d_next < 0))
-      kept.push_back(here + (next - here) * (d_here / (d_here - d_next)));
+    if ((d_here < 0) != (d_next < 0)) kept.push_back(here + (next - here) * (d_here / (d_here - d_next)));
   }
   return kept;
 }

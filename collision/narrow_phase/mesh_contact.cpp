@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -30,10 +31,11 @@ template <class Question>
 auto MeshPair<Degree>::ask(const Question& question) const {
   const auto with_motion = [&](const auto& motion, const auto& gap) {
     constexpr int degree = static_cast<int>(std::tuple_size_v<std::decay_t<decltype(gap.c)>>) - 1;
-    if (std::holds_alternative<Sphere>(b_.shape)) return question(Query<degree, BallPartner>(a_, b_, motion, gap));
-    if (std::holds_alternative<Box>(b_.shape)) return question(Query<degree, BoxPartner>(a_, b_, motion, gap));
-    if (std::holds_alternative<Capsule>(b_.shape)) return question(Query<degree, CapsulePartner>(a_, b_, motion, gap));
-    return question(Query<degree, PlacedMesh>(a_, b_, motion, gap));
+    return std::visit(
+        [&](const auto& shape) {
+          return question(Query<degree, PartnerOf<std::decay_t<decltype(shape)>>>(a_, b_, motion, gap));
+        },
+        b_.shape);
   };
   if constexpr (Degree == 2) {
     if (motion_.coefficients[2].isZero(0) && gap_.c[2] == 0) {

@@ -14,6 +14,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -119,6 +120,20 @@ struct BallPartner {
 
   PlacedBall part;
 };
+
+/// What stands for each kind of shape.
+template <class Alternative>
+struct PartnerOfKind;
+template <>
+struct PartnerOfKind<Sphere> : std::type_identity<BallPartner> {};
+template <>
+struct PartnerOfKind<Box> : std::type_identity<BoxPartner> {};
+template <>
+struct PartnerOfKind<Capsule> : std::type_identity<CapsulePartner> {};
+template <>
+struct PartnerOfKind<MeshShape> : std::type_identity<PlacedMesh> {};
+template <class Alternative>
+using PartnerOf = typename PartnerOfKind<Alternative>::type;
 
 // ---- Supporting features -------------------------------------------------------------------------------------------
 

@@ -252,8 +252,8 @@ TEST_CASE("After an impulse bodies that part are not in contact, and meet again 
   SECTION("a ball that touches an edge or a vertex, moves sideways and is pressed down") {
     const PlacedShape ball = place(Sphere{0.5}, Eigen::Quaterniond::Identity());
     const auto first = [&](const Vector3d& start, const Vector3d& velocity) {
-      const auto touch = MeshPair<2>(cube, ball, {{start, velocity, Vector3d{0, 0, -5}}})
-                             .first_contact(0, 1, ContactMode::resolved);
+      const auto touch =
+          MeshPair<2>(cube, ball, {{start, velocity, Vector3d{0, 0, -5}}}).first_contact(0, 1, ContactMode::resolved);
       return touch ? touch->tau : infinity;
     };
     // Onto the face it is pressed at once, however fast; off the face it leaves if fast enough.
@@ -326,7 +326,9 @@ void on_the_clock(std::uint64_t seed, double epoch) {
     PointMotion<Degree> after_b = path_b.restarted(t);
     const double approach = contact.normal.dot(after_b.coefficients[1] - after_a.coefficients[1]);
     after_b.coefficients[1] -= 2 * approach * contact.normal;
-    const double next = first_contact({shape_a, after_a}, {shape_b, after_b}, t, infinity, ContactMode::resolved);
+    const MovingShape<Degree> next_a{shape_a, after_a};
+    const MovingShape<Degree> next_b{shape_b, after_b};
+    const double next = first_contact(next_a, next_b, t, infinity, ContactMode::resolved);
     REQUIRE((next == infinity || next > t));
   }
   CHECK(met > 10);

@@ -138,6 +138,18 @@ TEST_CASE("damaged: meshes", "[world][snapshot][damaged]") {
   damage(world, options);
 }
 
+TEST_CASE("damaged: capsules", "[world][snapshot][damaged]") {
+  const WorldOptions options = with_response(Response::elastic);
+  World<1> world(options);
+  for (int i = 0; i < 3; ++i) {
+    auto one = body<1>(Capsule{0.5, 0.25 * (i + 1)}, motion<1>({1.5 * i, 0.1 * i, 0}, {1.0 - i, 0, 0}));
+    if (i > 0) one.orientation = Eigen::Quaterniond(1, 0.5, 0.25, i).normalized();
+    world.add_body(one);
+  }
+  world.advance_to(0.25);
+  damage(world, options);
+}
+
 TEST_CASE("damaged: a heap at rest", "[world][snapshot][damaged]") {
   WorldOptions options = with_response(Response::elastic);
   options.walls = Walls{Vector3d(-1, -1, 0), Vector3d(1, 1, 9)};
