@@ -21,11 +21,16 @@ void bend(certificates::PointMotion<Degree>& path, Random& random, Numbers numbe
   }
 }
 
-/// A scene as SceneMaker makes it, most of its bodies on curves. Pieces that went on where the last one ended still do.
+/// A scene as SceneMaker makes it, with capsules in the mixture, most of its bodies on curves. Pieces that went on
+/// where the last one ended still do.
 template <int Degree>
 Scene<Degree> curved_scene(Random& random, const SceneOptions& options) {
   auto scene = SceneMaker(random, options).template scene<Degree>();
   for (auto& description : scene.bodies) {
+    if (options.shapes == Shapes::mixture && random.one_in(4)) {
+      const bool fine = options.numbers == Numbers::fine;
+      description.shape = fine ? Capsule{random.between(0.2, 0.7), random.between(0.2, 1)} : Capsule{0.5, 0.5};
+    }
     if (description.fixed) continue;
     for (std::size_t i = 0; i < description.motion.size(); ++i) {
       auto& piece = description.motion[i];
