@@ -57,12 +57,13 @@ double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b,
 template <int Degree>
 ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
                                         double horizon, ContactMode mode, PairMemory& memory, FoundTouch* found) {
-  const double time = in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
-    return pair_tests<D>(x.shape, y.shape).apart_until(x, y, t0, horizon, memory);
+  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) -> ContactEstimate {
+    const PairTests<D>& tests = pair_tests<D>(x.shape, y.shape);
+    const double time = tests.apart_until(x, y, t0, horizon, memory);
+    if (time == never || time > horizon) return {never, true};
+    if (time > t0) return {time, false};
+    return {tests.first_contact(x, y, t0, horizon, mode, found), true};
   });
-  if (time == never || time > horizon) return {never, true};
-  if (time > t0) return {time, false};
-  return {first_contact(a, b, t0, horizon, mode, found), true};
 }
 
 template <int Degree>

@@ -5,6 +5,8 @@
 #include "collision/narrow_phase/gap_conditions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/vectors.hpp"
+#include "kds/certificate.hpp"
+#include "kds/roots/failure_time.hpp"
 
 #include <algorithm>
 
