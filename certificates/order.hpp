@@ -74,16 +74,18 @@ struct Order {
 
   /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows pairs that differ by a line
   /// (straight motions, and those that share their accelerations) or a parabola.
-  double quick_failure_time(double now, double horizon) const requires(Degree >= 1);
+  double quick_failure_time(double now, double horizon) const;
 
   /// Of two pairs together: see order_together.hpp.
-  static TwoTimes quick_failure_times(const Order& first, const Order& second, double now,
-                                      double horizon) requires(Degree == 1) {
-    return certificates::quick_failure_times(first.lower, first.upper, second.lower, second.upper, now, horizon);
+  static TwoTimes quick_failure_times(const Order& first, const Order& second, double now, double horizon) {
+    if constexpr (Degree == 1) {
+      return certificates::quick_failure_times(first.lower, first.upper, second.lower, second.upper, now, horizon);
+    }
+    return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   }
 
   /// The same for failure_time_after_turn().
-  double quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 1);
+  double quick_failure_time_after_turn(double now, double horizon) const;
 
  private:
   /// The same for straight motions.
@@ -108,8 +110,10 @@ struct Order {
 };
 
 template <int Degree>
-double Order<Degree>::quick_failure_time(double now, double horizon) const requires(Degree >= 1) {
-  if constexpr (Degree == 1) {
+double Order<Degree>::quick_failure_time(double now, double horizon) const {
+  if constexpr (Degree == 0) {
+    return std::numeric_limits<double>::quiet_NaN();
+  } else if constexpr (Degree == 1) {
     return quick_straight_failure_time(now, horizon);
   } else {
     if (!at_most_quadratic()) return std::numeric_limits<double>::quiet_NaN();
@@ -127,15 +131,17 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const requi
 /// Error bound of the rate with starts of their own, in units of 2^-53 of the sum of the magnitudes: the time between
 /// the starts, the run, which is that times 2 a, and the two sums are rounded once each. 8 are charged for these 4.
 template <int Degree>
-double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 1) {
+double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) const {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
-  const double low_rate = lower.position.c[1];
-  const double high_rate = upper.position.c[1];
-  if constexpr (Degree == 1) {
-    return high_rate >= low_rate ? never : undecided;
+  if constexpr (Degree == 0) {
+    return undecided;
+  } else if constexpr (Degree == 1) {
+    return upper.position.c[1] >= lower.position.c[1] ? never : undecided;
   } else {
     if (!at_most_quadratic()) return undecided;
     if (lower.position.c[2] != upper.position.c[2]) return quick_parabola_failure_time<true>(now, horizon);
+    const double low_rate = lower.position.c[1];
+    const double high_rate = upper.position.c[1];
     if (lower.start == upper.start) return high_rate >= low_rate ? never : undecided;
     const double run = 2 * lower.position.c[2] * (lower.start - upper.start);
     const double size = (std::abs(low_rate) + std::abs(high_rate)) + std::abs(run);

@@ -3,17 +3,13 @@
 
 #include "kds/arithmetic/lattice.hpp"
 #include "kds/arithmetic/two_double_doubles.hpp"
+#include "kds/certificate_hooks.hpp"
 #include "kds/motion.hpp"
 
 #include <cstdint>
 #include <limits>
 
 namespace kds::certificates {
-
-/// Failure times in seconds, of the first and of the second pair.
-struct TwoTimes {
-  double first, second;
-};
 
 /// What failure_time() gives for two pairs in order, bit for bit, or a NaN where it takes more care: for both, unless
 /// the motions of each pair have a common start. Precondition: now <= horizon.

@@ -94,7 +94,10 @@ class Schedule {
   /// since their order, of which it is the negative, has failed. See failure_time_after_turn().
   template <Certificate C>
   void certify_turned(Slot slot, const C& certificate, double now) {
-    if constexpr (requires(const Solver& solver) { solver.after_turn(certificate, now, now); }) {
+    static_assert(AnswersAfterTurn<Solver, C> || !detail::NamesAfterTurn<Solver>,
+                  "solver: `after_turn` must be `double after_turn(const C& certificate, double now, double horizon) "
+                  "const` for each certificate C");
+    if constexpr (AnswersAfterTurn<Solver, C>) {
       ++counters_.certificates;
       set(slot, solver_.after_turn(certificate, now, horizon_));
     } else {
@@ -186,7 +189,8 @@ class Schedule {
   std::pair<double, double> solve_two(const C& a, const C& b, double now) const {
     double first = std::numeric_limits<double>::quiet_NaN();
     double second = first;
-    if constexpr (requires { C::quick_failure_times(a, b, now, horizon_); }) {
+    static_assert(detail::RightHooks<C>::checked);
+    if constexpr (AnswersQuicklyForTwo<C>) {
       if (now <= horizon_) {
         const auto quick = C::quick_failure_times(a, b, now, horizon_);
         first = quick.first;

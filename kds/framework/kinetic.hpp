@@ -58,8 +58,16 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   static_assert(detail::Repairs<Rule>, "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing");
   static_assert(detail::InsertsAndRemoves<Rule>,
                 "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing");
-  static_assert(detail::ChangesWhatItKeeps<Rule>,
+  static_assert(TakesUpMotions<Rule> || !detail::NamesChange<Rule>,
+                "kinetic rule: `change` must be `void change(Id, Repair<Element>&)`");
+  static_assert(TakesUpMotions<Rule> || !detail::NamesKeeps<Rule>,
                 "kinetic rule: `change(Id, Repair<Element>&)` is missing, which a rule with `keeps` must have");
+  static_assert(ChoosesMotions<Rule> || !detail::NamesKeeps<Rule>,
+                "kinetic rule: `keeps` must be `bool keeps(Id, const Element& next, Repair<Element>&)`");
+  static_assert(BuildsAtOnce<Rule> || !detail::NamesBuild<Rule>,
+                "kinetic rule: `build` must be `void build(Repair<Element>&)`");
+  static_assert(AuditsItself<Rule> || !detail::NamesAudit<Rule>,
+                "kinetic rule: `audit` must be `void audit(const MovingSet<Element>&, double now) const`");
   static_assert(FailureTimeSolver<Solver>, "Kinetic: the solver is no FailureTimeSolver");
 
  public:
@@ -68,10 +76,13 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   /// Takes up what is in the set at the time `now`, which is the clock: finite, and not before the last edit (neither
   /// is checked). The set must outlive the structure.
   explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
-      : elements_(elements), rule_(std::move(rule)), listener_(std::move(listener)), repair_(elements),
+      : elements_(elements),
+        rule_(std::move(rule)),
+        listener_(std::move(listener)),
+        repair_(elements),
         backwards_(elements.backwards()) {
     begin(now);
-    if constexpr (requires { rule_.build(repair_); }) {
+    if constexpr (BuildsAtOnce<Rule>) {
       rule_.build(repair_);
     } else {
       for (const Id id : elements.ids()) rule_.insert(id, repair_);
@@ -135,12 +146,12 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   }
   void changing(Id id, const Element& next, double now) override {
     begin(now);
-    keeps_ = requires { rule_.change(id, repair_); };
-    if constexpr (requires { rule_.keeps(id, next, repair_); }) keeps_ = rule_.keeps(id, next, repair_);
+    keeps_ = TakesUpMotions<Rule>;
+    if constexpr (ChoosesMotions<Rule>) keeps_ = rule_.keeps(id, next, repair_);
     if (!keeps_) rule_.remove(id, repair_);
   }
   void changed(Id id, double /*now*/) override {
-    if constexpr (requires { rule_.change(id, repair_); }) {
+    if constexpr (TakesUpMotions<Rule>) {
       if (keeps_) rule_.change(id, repair_);
     }
     if (!keeps_) rule_.insert(id, repair_);
@@ -164,7 +175,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   /// Whether it is the negative of the certificate that has just failed: that is known to be positive at t+.
   template <class C>
   bool has_turned(const C& certificate) const {
-    if constexpr (detail::Antisymmetric<C>) return detail::Ordered::by(certificate) == crossed_.turned();
+    if constexpr (Antisymmetric<C>) return detail::Ordered::by(certificate) == crossed_.turned();
     return false;
   }
   void sample_again(Slot slot, double time);

@@ -44,7 +44,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
     });
     if (!certified) fail(slot, "is held, but there is no certificate");
   }
-  if constexpr (requires { rule_.audit(elements_, now); }) rule_.audit(elements_, now);
+  if constexpr (AuditsItself<Rule>) rule_.audit(elements_, now);
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
@@ -63,12 +63,9 @@ template <class Rule, class Listener, EventQueue Queue, class Solver>
 template <class Archive>
 void Kinetic<Rule, Listener, Queue, Solver>::archive(Archive& archive) {
   archive.tag(Rule::name);
-  if constexpr (requires { rule_.archive(archive); }) {
-    rule_.archive(archive);
-  } else {
-    static_assert(!sizeof(Archive),
-                  "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
-  }
+  static_assert(ArchivedBy<Rule, Archive>,
+                "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
+  rule_.archive(archive);
   archive(held_, schedule_, measures_, last_, backwards_);
   if constexpr (Archive::loading) {
     if (schedule_.queue().slots() != held_.size()) throw std::runtime_error("snapshot: it is damaged");

@@ -22,7 +22,7 @@ bool Kinetic<Rule, Listener, Queue, Solver>::failed(Slot slot, double time, bool
       failed = sign_after(of_samples, time) < 0 && (!counts || schedule_.failed(slot, of_samples, time));
     } else if constexpr (!Sampled<Element>) {
       failed = schedule_.failed(slot, certificate, time);
-      if constexpr (detail::Antisymmetric<std::remove_cvref_t<decltype(certificate)>>) {
+      if constexpr (Antisymmetric<std::remove_cvref_t<decltype(certificate)>>) {
         if (failed) crossed_ = detail::Ordered::by(certificate);
       }
     }

@@ -112,7 +112,8 @@ double failure_time_while_positive(const C& certificate, const Polynomial<Degree
 template <Certificate C>
 double failure_time(const C& certificate, double now, double horizon) {
   if (!(now <= horizon)) return never;
-  if constexpr (requires { certificate.quick_failure_time(now, horizon); }) {
+  static_assert(detail::RightHooks<C>::checked);
+  if constexpr (AnswersQuickly<C>) {
     const double t = certificate.quick_failure_time(now, horizon);
     if (!std::isnan(t)) return t;
   }
@@ -127,7 +128,8 @@ double failure_time(const C& certificate, double now, double horizon) {
 template <Certificate C>
 double failure_time_after_turn(const C& certificate, double now, double horizon) {
   if (!(now <= horizon)) return never;
-  if constexpr (requires { certificate.quick_failure_time_after_turn(now, horizon); }) {
+  static_assert(detail::RightHooks<C>::checked);
+  if constexpr (AnswersQuicklyAfterTurn<C>) {
     const double t = certificate.quick_failure_time_after_turn(now, horizon);
     if (__builtin_expect(!std::isnan(t), 1)) return t;
   }
