@@ -4,6 +4,7 @@
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
 #include "kds/events/event_queue.hpp"
+#include "kds/framework/archived_by.hpp"
 #include "kds/framework/measures.hpp"
 #include "kds/framework/moving_set.hpp"
 #include "kds/member_named.hpp"
@@ -169,8 +170,9 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
 ///     repair(slot, repair) -> Effect              put right what failed, and mark the slots whose certificates are new
 ///     insert(id, repair), remove(id, repair)      take up an element; let one go, which is still there
 ///
-/// and, if it likes, what the concepts below describe: change, keeps, build, audit, archive. A member of one of these
-/// names that is something else does not compile: it would never be called.
+/// and, if it likes, what the concepts below describe: change, keeps, build, audit; and archive, so that it can be
+/// saved (ArchivedBy). A member of one of these names that is something else does not compile: it would never be
+/// called.
 ///
 /// Semantic laws: (1) certificates that hold, all of them, prove the state; (2) what a slot's certificate is depends on
 /// the rule's state and the motions only; (3) repair() decides by exact signs at now+ (Repair::sign), and is called
@@ -209,13 +211,6 @@ concept BuildsAtOnce = requires(R& rule, Repair<typename R::Element>& repair) {
 template <class R>
 concept AuditsItself = requires(const R& rule, const MovingSet<typename R::Element>& elements, double now) {
   { rule.audit(elements, now) } -> std::same_as<void>;
-};
-
-/// `template <class Archive> void archive(Archive& archive)`: name the members, archive(a_, b_). Without it the
-/// structure cannot be saved.
-template <class R, class Archive>
-concept ArchivedBy = requires(R& rule, Archive& archive) {
-  { rule.archive(archive) } -> std::same_as<void>;
 };
 
 namespace detail {
