@@ -7,7 +7,7 @@
 #include "kds/certificate_hooks.hpp"
 #include "kds/motion.hpp"
 #include "kds/polynomial.hpp"
-#include "kds/roots/failure_time_falling_line.hpp"
+#include "kds/roots/failure_time_known_line.hpp"
 
 #include <concepts>
 #include <cstdint>

@@ -1,7 +1,7 @@
-// Failure times by the sign changes of all derivatives: the net under the quicker methods.
+// Rung 3: failure times by the exact signs of all derivatives, the net under the quicker methods.
 #pragma once
 
-#include "kds/roots/failure_time_lattice.hpp"
+#include "kds/roots/lattice_crossing.hpp"
 
 #include <algorithm>
 #include <array>
