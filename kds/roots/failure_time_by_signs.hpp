@@ -173,4 +173,11 @@ class DerivativeIntervals {
   std::size_t count_ = 0;
 };
 
+/// The last rung. Not inlined, so that it takes no registers from the ones before.
+template <class C>
+[[gnu::noinline, gnu::cold]] double failure_time_by_signs(const C& certificate, double now, double horizon) {
+  ++sign_counters.searches;
+  return DerivativeIntervals<C>(certificate, now, horizon).first_negative();
+}
+
 }  // namespace kds::detail

@@ -44,8 +44,7 @@ double isolated_failure_time(const C& certificate, const Polynomial<Degree, Ball
     if (t <= horizon) return t;
     if (t > horizon) return never;
   }
-  ++sign_counters.searches;
-  return DerivativeIntervals<C>(certificate, now, horizon).first_negative();
+  return failure_time_by_signs(certificate, now, horizon);
 }
 
 }  // namespace kds::detail

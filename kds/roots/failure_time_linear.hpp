@@ -40,8 +40,7 @@ double linear_failure_time(const C& certificate, const Polynomial<1, Ball<double
       if (t > horizon) return never;
     }
   }
-  ++sign_counters.searches;
-  return DerivativeIntervals<C>(certificate, now, horizon).first_negative();
+  return failure_time_by_signs(certificate, now, horizon);
 }
 
 }  // namespace kds::detail

@@ -74,8 +74,7 @@ double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<dou
       if (t > horizon) return never;
     }
   }
-  ++sign_counters.searches;
-  return DerivativeIntervals<C>(certificate, now, horizon).first_negative();
+  return failure_time_by_signs(certificate, now, horizon);
 }
 
 }  // namespace kds::detail
