@@ -5,6 +5,7 @@
 #include "kds/arithmetic/compensated.hpp"
 #include "kds/arithmetic/exact.hpp"
 #include "kds/certificate_hooks.hpp"
+#include "kds/hook_checks.hpp"
 #include "kds/motion.hpp"
 #include "kds/polynomial.hpp"
 #include "kds/roots/failure_time_known_line.hpp"
@@ -123,7 +124,9 @@ template <class C>
 bool known_to_vanish(const C& certificate) {
   static_assert(RightHooks<C>::checked);
   if constexpr (TellsIfItVanishes<C>) {
-    return certificate.vanishes();
+    if (!certificate.vanishes()) return false;
+    check_vanishes(certificate);
+    return true;
   } else {
     return false;
   }
@@ -135,7 +138,10 @@ Ball<DoubleDouble> extended_value(const C& certificate, double t) {
   static_assert(RightHooks<C>::checked);
   if constexpr (GivesExtendedValue<C>) {
     const Ball<DoubleDouble> value = certificate.extended_value(t);
-    if (value.radius < std::numeric_limits<double>::infinity()) return value;  // else out of its range
+    if (value.radius < std::numeric_limits<double>::infinity()) {  // else out of its range
+      check_extended_value(certificate, t, value);
+      return value;
+    }
   }
   return certificate.template polynomial<Ball<DoubleDouble>>(t).c[0];
 }

@@ -9,16 +9,13 @@
 // The error bounds of kds are those of single operations in the order in which they are written. Options that let a
 // compiler assume or do otherwise make it remove the very terms that measure an error.
 #if defined(__FAST_MATH__)
-#error \
-    "kds: compile without -ffast-math and -Ofast: signs are exact only if every operation is rounded as it is written"
+#error "kds: compile without -ffast-math and -Ofast: signs are exact only if every operation is rounded as it is written"
 #elif defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
 #error "kds: compile without -ffinite-math-only: times that never come are infinite, and what is undecided is a NaN"
 #elif defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
-#error \
-    "kds: compile without -funsafe-math-optimizations, -fassociative-math and -freciprocal-math: signs are exact only if every operation is rounded as it is written"
+#error "kds: compile without -funsafe-math-optimizations, -fassociative-math and -freciprocal-math: signs are exact only if every operation is rounded as it is written"
 #elif FLT_EVAL_METHOD != 0
-#error \
-    "kds: compile for arithmetic in double precision (SSE2, not x87; FLT_EVAL_METHOD == 0): signs are exact only if every operation is rounded to a double"
+#error "kds: compile for arithmetic in double precision (SSE2, not x87; FLT_EVAL_METHOD == 0): signs are exact only if every operation is rounded to a double"
 #endif
 
 namespace kds {
@@ -32,9 +29,8 @@ namespace detail {
 
 /// Throws std::runtime_error, in the name of `who`, if the thread that calls it, or the file that it is compiled with,
 /// does not calculate as the exact signs need it: rounding to nearest, with subnormal numbers, each operation by itself
-/// and in its place. Graphics and audio libraries, and any shared library linked with -ffast-math, are known to change
-/// the mode of the processor and to leave it so; and not every compiler says of all options, as above, that they are
-/// on.
+/// and in its place. Graphics and audio libraries, and any shared library linked with -ffast-math, are known to change the
+/// mode of the processor and to leave it so; and not every compiler says of all options, as above, that they are on.
 ///
 /// Cost: about ten operations. It is called where worlds, simulators and sorted lists are made; whoever changes the
 /// mode later, or runs them in another thread, may call it there.

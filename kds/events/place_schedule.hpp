@@ -52,9 +52,18 @@ class PlaceSchedule : public Schedule<PlaceQueue> {
     if constexpr (AnswersQuicklyForTwo<C>) {
       if (now <= horizon()) times = C::quick_failure_times(a, b, now, horizon());
     }
-    if (__builtin_expect(std::isnan(times.first), 0)) times.first = failure_time(a, now, horizon());
-    if (__builtin_expect(std::isnan(times.second), 0)) times.second = failure_time(b, now, horizon());
+    times.first = completed(times.first, a, now);
+    times.second = completed(times.second, b, now);
     return times;
+  }
+
+  /// A quick answer, or where there is none the usual one.
+  template <Certificate C>
+  double completed(double quick, const C& certificate, double now) const {
+    if (__builtin_expect(std::isnan(quick), 0)) return failure_time(certificate, now, horizon());
+    detail::check_failure_time<detail::Hook::quick_failure_times>("quick_failure_times", certificate, quick, now,
+                                                                  horizon());
+    return quick;
   }
 };
 

@@ -129,6 +129,40 @@ double failure_time_while_positive(const C& certificate, const Polynomial<Degree
   }
 }
 
+/// From the second rung on. Precondition: now <= horizon.
+template <class C>
+double failure_time_of_formula(const C& certificate, double now, double horizon) {
+  const auto p = certificate.template polynomial<Ball<double>>(now);
+  int value = certain_sign(p.c[0]);
+  if (value == 0) value = extended_sign_after(certificate, now, 0);
+  if (value < 0) return now;
+  if (value == 0) return never;  // f vanishes identically
+  return failure_time_while_positive(certificate, p, now, horizon);
+}
+
+/// A certificate without its hooks.
+template <class C>
+struct FormulaOnly {
+  static constexpr int degree = C::degree;
+  const C& certificate;
+
+  template <class Number>
+  Polynomial<degree, Number> polynomial(double epoch) const {
+    return certificate.template polynomial<Number>(epoch);
+  }
+};
+
+/// See hook_checks.hpp. Of a certificate after a turn, too: if it is positive just after now, as it must be, then
+/// failure_time() gives the same.
+template <Hook hook, class C>
+void check_failure_time(const char* name, const C& certificate, double quick, double now, double horizon) {
+  if (!is_to_be_checked<C, hook>()) return;
+  const SignCounters counted = sign_counters;
+  const double general = failure_time_of_formula(FormulaOnly<C>{certificate}, now, horizon);
+  sign_counters = counted;
+  require_same_time<C>(name, quick, general, now, horizon);
+}
+
 }  // namespace detail
 
 template <Certificate C>
@@ -137,14 +171,12 @@ double failure_time(const C& certificate, double now, double horizon) {
   static_assert(detail::RightHooks<C>::checked);
   if constexpr (AnswersQuickly<C>) {
     const double t = certificate.quick_failure_time(now, horizon);
-    if (!std::isnan(t)) return t;
+    if (!std::isnan(t)) {
+      detail::check_failure_time<detail::Hook::quick_failure_time>("quick_failure_time", certificate, t, now, horizon);
+      return t;
+    }
   }
-  const auto p = certificate.template polynomial<Ball<double>>(now);
-  int value = certain_sign(p.c[0]);
-  if (value == 0) value = detail::extended_sign_after(certificate, now, 0);
-  if (value < 0) return now;
-  if (value == 0) return never;  // f vanishes identically
-  return detail::failure_time_while_positive(certificate, p, now, horizon);
+  return detail::failure_time_of_formula(certificate, now, horizon);
 }
 
 template <Certificate C>
@@ -153,7 +185,11 @@ double failure_time_after_turn(const C& certificate, double now, double horizon)
   static_assert(detail::RightHooks<C>::checked);
   if constexpr (AnswersQuicklyAfterTurn<C>) {
     const double t = certificate.quick_failure_time_after_turn(now, horizon);
-    if (__builtin_expect(!std::isnan(t), 1)) return t;
+    if (__builtin_expect(!std::isnan(t), 1)) {
+      detail::check_failure_time<detail::Hook::quick_failure_time_after_turn>("quick_failure_time_after_turn",
+                                                                              certificate, t, now, horizon);
+      return t;
+    }
   }
   return detail::failure_time_while_positive(certificate, certificate.template polynomial<Ball<double>>(now), now,
                                              horizon);
