@@ -2,9 +2,9 @@
 #pragma once
 
 #include "kds/bounded.hpp"
-#include "kds/certificate.hpp"
 #include "kds/events/event_queue.hpp"
 #include "kds/framework/archived_by.hpp"
+#include "kds/framework/certificate_choice.hpp"
 #include "kds/framework/measures.hpp"
 #include "kds/framework/moving_set.hpp"
 #include "kds/member_named.hpp"
@@ -12,10 +12,8 @@
 #include <concepts>
 #include <cstdint>
 #include <iterator>
-#include <optional>
 #include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace kds {
@@ -79,55 +77,6 @@ class Repair {
 };
 
 namespace detail {
-
-template <class T>
-struct IsOptional : std::false_type {};
-template <class T>
-struct IsOptional<std::optional<T>> : std::true_type {};
-template <class T>
-struct IsVariant : std::false_type {};
-template <class... T>
-struct IsVariant<std::variant<T...>> : std::true_type {};
-
-/// Whether failure times can be asked of it, directly or as of a certificate of sampled elements.
-template <class C>
-concept AnyCertificate = Certificate<C> || UncertainCertificate<C>;
-
-template <class T>
-struct IsCertificateChoice : std::bool_constant<AnyCertificate<T> || std::same_as<T, std::monostate>> {};
-template <class T>
-struct IsCertificateChoice<std::optional<T>> : IsCertificateChoice<T> {};
-template <class... T>
-struct IsCertificateChoice<std::variant<T...>> : std::bool_constant<(IsCertificateChoice<T>::value && ...)> {};
-
-/// Calls f with the certificate, if there is one.
-template <class T, class F>
-void with_certificate(const T& choice, F&& f) {
-  if constexpr (std::same_as<T, std::monostate>) {
-  } else if constexpr (IsOptional<T>::value) {
-    if (choice) with_certificate(*choice, f);
-  } else if constexpr (IsVariant<T>::value) {
-    std::visit([&](const auto& alternative) { with_certificate(alternative, f); }, choice);
-  } else {
-    f(choice);
-  }
-}
-
-/// What an antisymmetric certificate is about, and which kind it is: none of the two if default-made.
-struct Ordered {
-  const void* lower = nullptr;
-  const void* upper = nullptr;
-  const void* kind = nullptr;
-
-  template <Antisymmetric C>
-  static Ordered by(const C& certificate) {
-    static constexpr char kind = 0;
-    return {&certificate.lower, &certificate.upper, &kind};
-  }
-  Ordered turned() const { return {upper, lower, kind}; }
-
-  friend bool operator==(const Ordered&, const Ordered&) = default;
-};
 
 // One concept a part of a rule, so that Kinetic can name the part that is missing.
 template <class R>
