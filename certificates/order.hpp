@@ -74,16 +74,18 @@ struct Order {
 
   /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows pairs that differ by a line
   /// (straight motions, and those that share their accelerations) or a parabola.
-  double quick_failure_time(double now, double horizon) const requires(Degree >= 1);
+  double quick_failure_time(double now, double horizon) const;
 
   /// Of two pairs together: see order_together.hpp.
-  static TwoTimes quick_failure_times(const Order& first, const Order& second, double now,
-                                      double horizon) requires(Degree == 1) {
-    return certificates::quick_failure_times(first.lower, first.upper, second.lower, second.upper, now, horizon);
+  static TwoTimes quick_failure_times(const Order& first, const Order& second, double now, double horizon) {
+    if constexpr (Degree == 1) {
+      return certificates::quick_failure_times(first.lower, first.upper, second.lower, second.upper, now, horizon);
+    }
+    return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   }
 
   /// The same for failure_time_after_turn().
-  double quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 1);
+  double quick_failure_time_after_turn(double now, double horizon) const;
 
  private:
   /// The same for straight motions.
@@ -108,8 +110,10 @@ struct Order {
 };
 
 template <int Degree>
-double Order<Degree>::quick_failure_time(double now, double horizon) const requires(Degree >= 1) {
-  if constexpr (Degree == 1) {
+double Order<Degree>::quick_failure_time(double now, double horizon) const {
+  if constexpr (Degree == 0) {
+    return std::numeric_limits<double>::quiet_NaN();
+  } else if constexpr (Degree == 1) {
     return quick_straight_failure_time(now, horizon);
   } else {
     if (!at_most_quadratic()) return std::numeric_limits<double>::quiet_NaN();
@@ -127,15 +131,17 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const requi
 /// Error bound of the rate with starts of their own, in units of 2^-53 of the sum of the magnitudes: the time between
 /// the starts, the run, which is that times 2 a, and the two sums are rounded once each. 8 are charged for these 4.
 template <int Degree>
-double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) const requires(Degree >= 1) {
+double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) const {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
-  const double low_rate = lower.position.c[1];
-  const double high_rate = upper.position.c[1];
-  if constexpr (Degree == 1) {
-    return high_rate >= low_rate ? never : undecided;
+  if constexpr (Degree == 0) {
+    return undecided;
+  } else if constexpr (Degree == 1) {
+    return upper.position.c[1] >= lower.position.c[1] ? never : undecided;
   } else {
     if (!at_most_quadratic()) return undecided;
     if (lower.position.c[2] != upper.position.c[2]) return quick_parabola_failure_time<true>(now, horizon);
+    const double low_rate = lower.position.c[1];
+    const double high_rate = upper.position.c[1];
     if (lower.start == upper.start) return high_rate >= low_rate ? never : undecided;
     const double run = 2 * lower.position.c[2] * (lower.start - upper.start);
     const double size = (std::abs(low_rate) + std::abs(high_rate)) + std::abs(run);
@@ -143,40 +149,31 @@ double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) 
   }
 }
 
-/// In doubles: on which side of zero now, and at the horizon? Where that is certain it needs no better.
+/// In doubles: on which side of zero now, and at the horizon? Where that is certain no line needs to be moved to the
+/// start of the other. What is left falls within the horizon, nearly always: first_double_after_line() says when.
 ///
-/// Error bound, with u = 2^-53. From a common start: gap, fall and the time since then are rounded by u each, so their
-/// run is known to 3 u, and the sum to 4 u (|gap| + |run|). From starts of their own: a run c1 (now - start) goes
-/// through two roundings, then the sum and the difference of the two positions through one each: 4.1 u of all
-/// magnitudes. Charged are 8 u, which leaves room for the rounding of `surely` and of the sum of the magnitudes.
-/// Underflow is nothing to a gap of 2^-1000; an overflow leaves an infinity or a NaN, which fails the tests. `fall` is
-/// a difference of doubles, so its sign is exact; it, its product and the time left are rounded by u each, for which
-/// the last factor is more than enough.
+/// Error bound, with u = 2^-53. A run c1 (now - start) goes through two roundings, then the sum and the difference of
+/// the two positions through one each: 4.1 u of all magnitudes. Charged are 8 u, which leaves room for the rounding of
+/// `surely` and of the sum of the magnitudes. Underflow is nothing to a gap of 2^-1000; an overflow leaves an infinity
+/// or a NaN, which fails the tests. `fall` is a difference of doubles, so its sign is exact; it, its product and the
+/// time left are rounded by u each, for which the last factor is more than enough.
 template <int Degree>
 double Order<Degree>::quick_straight_failure_time(double now, double horizon) const requires(Degree == 1) {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
   const auto& [low, low_rate] = lower.position.c;
   const auto& [high, high_rate] = upper.position.c;
-  const bool together = lower.start == upper.start;
   const double fall = low_rate - high_rate;
-  double gap = high - low;
-  double size = std::abs(gap);
-  if (together) {
-    const double run = fall * (now - lower.start);
-    gap -= run;
-    size += std::abs(run);
-  } else {
-    const double low_run = low_rate * (now - lower.start);
-    const double high_run = high_rate * (now - upper.start);
-    gap = (high + high_run) - (low + low_run);
-    size = (std::abs(low) + std::abs(low_run)) + (std::abs(high) + std::abs(high_run));
-  }
+  const double low_run = low_rate * (now - lower.start);
+  const double high_run = high_rate * (now - upper.start);
+  const double gap = (high + high_run) - (low + low_run);
+  const double size = (std::abs(low) + std::abs(low_run)) + (std::abs(high) + std::abs(high_run));
   const double margin = 0x1p-50 * size + 0x1p-1000;
   const double surely = gap - margin;
   if (!(surely > 0)) return -gap > margin ? now : undecided;
   if (fall <= 0 || surely > fall * (horizon - now) * (1 + 0x1p-50)) return never;
-  const double t = together ? kds::detail::first_double_after_line(detail::line_between(lower, upper))
-                            : kds::detail::first_double_after_line(detail::shifted_line_between(lower, upper));
+  const double t = lower.start == upper.start
+                       ? kds::detail::first_double_after_line(detail::line_between(lower, upper))
+                       : kds::detail::first_double_after_line(detail::shifted_line_between(lower, upper));
   return t > horizon ? never : t;
 }
 

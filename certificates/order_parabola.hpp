@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kds/motion.hpp"
-#include "kds/roots/failure_time_parabola.hpp"
+#include "kds/roots/failure_time_known_parabola.hpp"
 
 #include <cmath>
 #include <limits>

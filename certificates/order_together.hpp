@@ -3,6 +3,7 @@
 
 #include "kds/arithmetic/lattice.hpp"
 #include "kds/arithmetic/two_double_doubles.hpp"
+#include "kds/certificate_hooks.hpp"
 #include "kds/motion.hpp"
 
 #include <cstdint>
@@ -10,16 +11,13 @@
 
 namespace kds::certificates {
 
-/// Failure times in seconds, of the first and of the second pair.
-struct TwoTimes {
-  double first, second;
-};
-
 /// What failure_time() gives for two pairs in order, bit for bit, or a NaN where it takes more care: for both, unless
 /// the motions of each pair have a common start. Precondition: now <= horizon.
 ///
 /// Two lanes do what Order::quick_failure_time() does for one pair, but always to the end: whether values will meet is
-/// what processors cannot foresee. Bounds on errors are derived there and in failure_time_falling_line.hpp.
+/// what processors cannot foresee. Bounds on errors are derived in failure_time_known_line.hpp, but for that of the
+/// gap, with u = 2^-53: gap, fall and the time since the start are rounded by u each, so their run is known to 3 u, and
+/// the sum to 4 u (|gap| + |run|). Charged are 8 u, as in Order.
 TwoTimes quick_failure_times(const Motion<1>& lower_1, const Motion<1>& upper_1, const Motion<1>& lower_2,
                              const Motion<1>& upper_2, double now, double horizon);
 

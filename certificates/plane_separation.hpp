@@ -12,14 +12,6 @@
 
 namespace kds::certificates {
 
-/// |x| in any of the library's number types.
-inline Exact absolute(const Exact& x) { return x.sign() < 0 ? -x : x; }
-template <class T>
-Ball<T> absolute(const Ball<T>& x) {
-  // | |x| - |middle| | <= radius, so the radius stays whether or not the sign is certain.
-  return static_cast<double>(x.middle) < 0 ? -x : x;
-}
-
 /// a . b for vectors of doubles.
 template <class Number>
 Number dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

@@ -4,9 +4,11 @@
 #include "kds/arithmetic/ball.hpp"
 #include "kds/arithmetic/compensated.hpp"
 #include "kds/arithmetic/exact.hpp"
+#include "kds/certificate_hooks.hpp"
+#include "kds/hook_checks.hpp"
 #include "kds/motion.hpp"
 #include "kds/polynomial.hpp"
-#include "kds/roots/failure_time_falling_line.hpp"
+#include "kds/roots/failure_time_known_line.hpp"
 
 #include <concepts>
 #include <cstdint>
@@ -31,16 +33,7 @@ namespace kds {
 /// and polynomial(e') are the same function of t, for all finite e. Certificates that hold references, as most of
 /// certificates/ do, must not outlive the motions.
 ///
-/// A certificate may offer `bool vanishes() const`, a cheap and sufficient
-/// test that f is zero throughout, which spares such pairs (things that move together) the exact rung; and a
-/// `double quick_failure_time(double now, double horizon) const` that gives what failure_time() would, bit for bit,
-/// or a NaN where it does not decide, and likewise `quick_failure_time_after_turn`; and a
-/// `Ball<DoubleDouble> extended_value(double t) const` that gives f(t) alone for less than polynomial() costs, with an
-/// error bound of its own (see compensated_value()), for it is f(t) that places a root among the doubles.
-///
-/// If f is given by the members `lower` and `upper`, references, alone, and is -f for the two the other way round, it
-/// may say `static constexpr bool antisymmetric = true`: when it has failed, that of the two exchanged is known to be
-/// positive, and its next failure is found for less (failure_time_after_turn()).
+/// What a certificate may know of itself beyond that, to spare work, is in certificate_hooks.hpp.
 template <class C>
 concept Certificate = requires(const C& certificate, double epoch) {
   { C::degree } -> std::convertible_to<int>;
@@ -48,7 +41,7 @@ concept Certificate = requires(const C& certificate, double epoch) {
   { certificate.template polynomial<Ball<double>>(epoch) } -> std::same_as<Polynomial<C::degree, Ball<double>>>;
   {
     certificate.template polynomial<Ball<DoubleDouble>>(epoch)
-  } -> std::same_as<Polynomial<C::degree, Ball<DoubleDouble>>>;
+    } -> std::same_as<Polynomial<C::degree, Ball<DoubleDouble>>>;
 };
 
 /// A constant as a polynomial of degree 0, for use in certificate formulas.
@@ -90,17 +83,19 @@ struct PolynomialCertificate {
   }
   bool vanishes() const { return value.position == Polynomial<Degree>{}; }
 
-  double quick_failure_time(double now, double horizon) const
-    requires(Degree == 1 || Degree == 2)
-  {
-    const Parabola<false> p = parabola();
-    if (Degree == 1 || p.a.high == 0) return quick_line_failure_time(p, now, horizon);
-    return quick_parabola_failure_time<false>(p, now, horizon);
+  /// Knows lines and parabolas.
+  double quick_failure_time(double now, double horizon) const {
+    if constexpr (Degree == 1 || Degree == 2) {
+      const Parabola<false> p = parabola();
+      if (Degree == 1 || p.a.high == 0) return quick_line_failure_time(p, now, horizon);
+      return quick_parabola_failure_time<false>(p, now, horizon);
+    }
+    return std::numeric_limits<double>::quiet_NaN();
   }
-  double quick_failure_time_after_turn(double now, double horizon) const
-    requires(Degree == 2)
-  {
-    return quick_parabola_failure_time<true>(parabola(), now, horizon);
+  /// Knows parabolas.
+  double quick_failure_time_after_turn(double now, double horizon) const {
+    if constexpr (Degree == 2) return quick_parabola_failure_time<true>(parabola(), now, horizon);
+    return std::numeric_limits<double>::quiet_NaN();
   }
 
  private:
@@ -112,8 +107,7 @@ struct PolynomialCertificate {
 
 /// f' as a certificate: holds while f does not decrease.
 template <Certificate C>
-  requires(C::degree >= 1)
-struct DerivativeCertificate {
+requires(C::degree >= 1) struct DerivativeCertificate {
   static constexpr int degree = C::degree - 1;
   C certificate;
 
@@ -128,8 +122,11 @@ namespace detail {
 /// Whether the certificate knows at once that f is zero throughout.
 template <class C>
 bool known_to_vanish(const C& certificate) {
-  if constexpr (requires { certificate.vanishes(); }) {
-    return certificate.vanishes();
+  static_assert(RightHooks<C>::checked);
+  if constexpr (TellsIfItVanishes<C>) {
+    if (!certificate.vanishes()) return false;
+    check_vanishes(certificate);
+    return true;
   } else {
     return false;
   }
@@ -138,9 +135,13 @@ bool known_to_vanish(const C& certificate) {
 /// f(t) in double-doubles, with its error bound.
 template <class C>
 Ball<DoubleDouble> extended_value(const C& certificate, double t) {
-  if constexpr (requires { certificate.extended_value(t); }) {
+  static_assert(RightHooks<C>::checked);
+  if constexpr (GivesExtendedValue<C>) {
     const Ball<DoubleDouble> value = certificate.extended_value(t);
-    if (value.radius < std::numeric_limits<double>::infinity()) return value;  // else out of its range
+    if (value.radius < std::numeric_limits<double>::infinity()) {  // else out of its range
+      check_extended_value(certificate, t, value);
+      return value;
+    }
   }
   return certificate.template polynomial<Ball<DoubleDouble>>(t).c[0];
 }

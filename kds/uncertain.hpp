@@ -33,12 +33,6 @@ struct Uncertain {
 namespace detail {
 constexpr int greater_of(int a, int b) { return a < b ? b : a; }
 
-inline Exact absolute(const Exact& a) { return a.sign() < 0 ? -a : a; }
-template <class T>
-Ball<T> absolute(const Ball<T>& a) {
-  return static_cast<double>(a.middle) < 0 ? -a : a;
-}
-
 /// A polynomial about the same epoch that is not less than |middle| from `since` on.
 template <int M, int R, class Number>
 Polynomial<M, Number> majorant(const Uncertain<M, R, Number>& a) {

@@ -1,11 +1,12 @@
-// Kinetic sorted list: moving values kept in order.
+// Kinetic sorted list: moving values kept in order. What it is, and its events; sorted_list_edits.hpp has its edits,
+// sorted_list_audit.hpp how it checks itself, is measured and saved.
 #pragma once
 
 #include "certificates/order.hpp"
 #include "kds/arithmetic/strict.hpp"
 #include "kds/audit.hpp"
-#include "kds/events/place_queue.hpp"
-#include "kds/events/schedule.hpp"
+#include "kds/events/place_schedule.hpp"
+#include "kds/framework/archived_by.hpp"
 #include "kds/framework/measures.hpp"
 #include "kds/motion.hpp"
 
@@ -29,27 +30,33 @@ struct NoSwapListener {
   static std::uint32_t rank(std::uint32_t /*id*/) { return 0; }
 };
 
+/// Who hears of swaps. Law: rank(id) is always the same. With archive(archive) it is saved with the list.
+template <class L>
+concept SwapListener = requires(L& listener, const L& observed, std::uint32_t id) {
+  listener.swapped(id, id, 0.0);
+  { observed.rank(id) } -> std::convertible_to<std::uint32_t>;
+};
+
 /// Keeps moving values sorted, swap by swap.
 ///
 /// One certificate for each adjacent pair; when it fails, the two swap and up to three pairs are certified again.
 /// Paper: [Paper] sections 4.1-4.3 and Figures 3-5; [Basch99] section 2.
 ///
 /// Elements are known by ids chosen by the caller, small integers used once each. They are stored in list order (motion
-/// and id side by side), so a swap touches one or two cache lines. The event of a pair is in the slot of its left
-/// element's place, where the queue is one of places (the default), so that a swap changes three neighbouring slots;
-/// else in the slot of that element's id. Swaps of one time come in the order of the left elements' ids either way.
+/// and id side by side), so a swap touches one or two cache lines; and the event of a pair has the place of its left
+/// element for a slot, so that a swap changes three neighbouring slots of a queue made for that (PlaceQueue). Swaps of
+/// one time come in the order of the left elements' ids. It is made for the inner loop of kinetic sweep and prune; for
+/// another queue or solver, or values that are not a Motion, take a list made of a rule:
+/// examples/list_in_forty_lines.hpp.
 ///
-/// Cost: a swap O(1) and one pop and up to two pushes of the queue; a motion change the same plus the swaps that a
-/// jump needs; insertion and removal O(n) moves of memory and O(log n) comparisons; `assign` O(n log n). At most one
+/// Cost: a swap O(1) and three changes of the queue, O(log n) together; a motion change the same plus the swaps that
+/// a jump needs; insertion and removal O(n) moves of memory and O(log n) comparisons; `assign` O(n log n). At most one
 /// event for each adjacent pair is scheduled: the structure is compact and, with two events an element, local.
 ///
 /// `now` is always the clock, in seconds: finite, and not before the last change or event. That is not checked.
 ///
-/// All orders are decided by exact signs at t+, so the state between events is exactly that of the motions (with an
-/// uncertified solver: as far as Schedule promises).
-template <int Degree, class Listener = NoSwapListener, class Queue = PlaceQueue,
-          FailureTimeSolver Solver = CertifiedSolver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
+/// All orders are decided by exact signs at t+, so the state between events is exactly that of the motions.
+template <int Degree, SwapListener Listener = NoSwapListener>
 class SortedList {
  public:
   using Id = std::uint32_t;
@@ -100,10 +107,6 @@ class SortedList {
   /// Time of the next swap, `never` if there is none within the horizon.
   double next_time() const { return schedule_.next_time(); }
 
-  /// When an element is to swap with the one on its right, `never` if not within the horizon. Precondition:
-  /// contains(id).
-  double swap_time(Id id) const { return schedule_.time(slot(position_[id])); }
-
   /// Makes the swap due at next_time(). Precondition: there is one.
   void process();
 
@@ -122,10 +125,9 @@ class SortedList {
   /// Every event is external: it changes the order. Three certificates an event at most, two an element.
   Measures measures() const;
 
-  const Queue& queue() const { return schedule_.queue(); }
+  const PlaceQueue& queue() const { return schedule_.queue(); }
 
-  /// Saves or loads all that the list knows, and its listener if that has archive(). See save() in snapshot.hpp. Lists
-  /// on a queue of places and lists on others are two kinds.
+  /// Saves or loads all that the list knows, and its listener if that has archive(). See save() in snapshot.hpp.
   template <class Archive>
   void archive(Archive& archive);
 
@@ -143,44 +145,31 @@ class SortedList {
     return rank_a != rank_b ? rank_a < rank_b : a.id < b.id;
   }
 
-  static constexpr bool by_place = std::same_as<Queue, PlaceQueue>;
-
-  /// Of the pair whose left element stands there.
-  Slot slot(std::size_t left) const { return by_place ? static_cast<Slot>(left) : order_[left].id; }
-  std::size_t left_of(Slot slot) const { return by_place ? slot : position_[slot]; }
-
   certificates::Order<Degree> pair(std::size_t left) const { return {order_[left].motion, order_[left + 1].motion}; }
 
-  /// Certifies the pair whose left element stands at `left`.
+  /// Certifies the pair whose left element stands at `left`, if there is one.
   void certify(std::size_t left, double now) {
-    if (left + 1 == order_.size()) return schedule_.clear(slot(left));
-    schedule_.certify(slot(left), pair(left), now);
-    if (now == disturbed_) settle_tie(left, now);
-  }
-
-  /// The same while an event at `now` is processed.
-  void certify_in_event(std::size_t left, double now) {
-    if (left + 1 < order_.size()) schedule_.look_for_late_events(pair(left), now);
-    certify(left, now);
+    const auto slot = static_cast<Slot>(left);
+    if (left + 1 == order_.size()) return schedule_.clear(slot);
+    schedule_.certify(slot, pair(left), now);
+    if (now == disturbed_) settle_tie(slot, now);
   }
 
   /// Equal for good and in the wrong order: that is no failure of a certificate, and comes only from changes made
   /// before all events of their time were processed.
-  void settle_tie(std::size_t left, double now) {
-    if (schedule_.contains(slot(left)) || in_order(order_[left], order_[left + 1], now)) return;
-    schedule_.set(slot(left), now);
+  void settle_tie(Slot left, double now) {
+    if (schedule_.contains(left) || in_order(order_[left], order_[left + 1], now)) return;
+    schedule_.set(left, now);
   }
 
   /// To be called at the end of each change of the schedule.
   void settle() {
-    if constexpr (by_place) {
-      schedule_.settle([this](Slot place) { return order_[place].id; });
-      // The two pairs around it will be needed too. In large lists they are not in the nearest cache.
-      const std::size_t place = schedule_.queue().candidate();
-      if (place + 2 >= order_.size() || place == 0) return;
-      __builtin_prefetch(&order_[place - 1]);
-      __builtin_prefetch(&order_[place + 2]);
-    }
+    schedule_.settle([this](Slot place) { return order_[place].id; });
+    // The two pairs around it will be needed too. In large lists they are not in the nearest cache.
+    const std::size_t place = schedule_.queue().candidate();
+    if (place + 2 >= order_.size() || place == 0) return;
+    __builtin_prefetch(&order_[place - 1]);
+    __builtin_prefetch(&order_[place + 2]);
   }
 
   /// To be called when elements have come.
@@ -210,7 +199,6 @@ class SortedList {
   void make_room(Id id) {
     if (id < position_.size()) return;
     position_.resize(std::max<std::size_t>(id + 1, 2 * position_.size()), absent);
-    if constexpr (!by_place) schedule_.resize(position_.size());
   }
 
   static void require_legal(Id id, const Motion<Degree>& motion) {
@@ -233,8 +221,8 @@ class SortedList {
   }
 
   std::vector<Entry> order_;
-  std::vector<std::uint32_t> position_;
-  Schedule<Queue, Solver> schedule_;
+  std::vector<std::uint32_t> position_;  // of an id in order_, or `absent`
+  PlaceSchedule schedule_;               // slot i: the pair of places i and i + 1
   Listener listener_;
   Measures measures_;          // what pairs and counters do not tell: touched, most_touched, most_held
   double disturbed_ = -never;  // the last time at which the list was changed amidst its events
@@ -242,43 +230,36 @@ class SortedList {
 
 // ---------------------------------------------------------------------------------------------------------------
 
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::process() {
-  const auto [time, top] = schedule_.next();
-  const std::size_t left = left_of(top);
-  if (!schedule_.failed(top, pair(left), time)) return settle();
+template <int Degree, SwapListener Listener>
+void SortedList<Degree, Listener>::process() {
+  const auto [time, slot] = schedule_.next();
+  const std::size_t left = slot;
+  schedule_.failed(slot, pair(left), time);
   exchange(left);
   listener_.swapped(order_[left].id, order_[left + 1].id, time);
   // Certified anew: the pair itself, whose sign has just turned, and the two pairs around it.
-  if constexpr (by_place && Solver::certified) {
-    if (left > 0 && left + 2 < order_.size() && time != disturbed_) {
-      schedule_.certify_three(slot(left), pair(left - 1), pair(left), pair(left + 1), time);
-      settle();
-      measures_.touched += 3;
-      measures_.most_touched = 3;
-      return;
-    }
-  }
-  if (time == disturbed_) {  // It may have been a tie.
-    certify(left, time);
-  } else {
-    schedule_.certify_turned(slot(left), pair(left), time);
-  }
-  if (left > 0) certify_in_event(left - 1, time);
-  certify_in_event(left + 1, time);
-  settle();
   const std::uint64_t touched = 1u + (left > 0) + (left + 2 < order_.size());
+  if (touched == 3 && time != disturbed_) {
+    schedule_.certify_three(slot, pair(left - 1), pair(left), pair(left + 1), time);
+  } else {
+    if (time == disturbed_) {  // It may have been a tie.
+      certify(left, time);
+    } else {
+      schedule_.certify_turned(slot, pair(left), time);
+    }
+    if (left > 0) certify(left - 1, time);
+    certify(left + 1, time);
+  }
+  settle();
   measures_.touched += touched;
   measures_.most_touched = std::max(measures_.most_touched, touched);
 }
 
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::extend_horizon(double now, double horizon) {
+template <int Degree, SwapListener Listener>
+void SortedList<Degree, Listener>::extend_horizon(double now, double horizon) {
   schedule_.set_horizon(horizon);
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    if (schedule_.concerned(slot(i))) certify(i, now);
+    if (schedule_.concerned(static_cast<Slot>(i))) certify(i, now);
   }
   settle();
 }

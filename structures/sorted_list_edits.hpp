@@ -14,9 +14,17 @@
 
 namespace kds::structures {
 
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> entries, double now) {
+// What an edit finds and must leave: order_ holds the elements in order at t+, position_ the place of each id, and slot
+// i of schedule_ the failure time of the pair of places i and i + 1, none for the last place. An edit certifies the
+// pairs whose elements it has changed or brought together, which are three at most, and then settles the queue.
+//
+// It may come when swaps of this very instant are still due (from the callback of another structure, say). The order is
+// then that of a moment before, but for what the edit moves, and pairs that are equal for good may come to stand in the
+// wrong order, of which no certificate tells: expect_disorder() notes the time, and certify() then looks for such
+// pairs.
+
+template <int Degree, SwapListener Listener>
+void SortedList<Degree, Listener>::assign(std::span<const Entry> entries, double now) {
   Id greatest = 0;
   for (const Entry& entry : entries) {
     require_legal(entry.id, entry.motion);
@@ -28,11 +36,11 @@ void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> 
     used[entry.id] = true;
   }
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    schedule_.clear(slot(i));
+    schedule_.clear(static_cast<Slot>(i));
     position_[order_[i].id] = absent;
   }
   if (!entries.empty()) make_room(greatest);
-  if constexpr (by_place) schedule_.resize(entries.size());
+  schedule_.resize(entries.size());
   sort(entries, now);
   renumber(0);
   certify_all(now);
@@ -42,9 +50,8 @@ void SortedList<Degree, Listener, Queue, Solver>::assign(std::span<const Entry> 
 
 /// Fills order_. Values in doubles, computed once each, decide where neighbours differ by more than their margins; what
 /// they leave to be told are runs, of one each as a rule.
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::sort(std::span<const Entry> entries, double now) {
+template <int Degree, SwapListener Listener>
+void SortedList<Degree, Listener>::sort(std::span<const Entry> entries, double now) {
   std::vector<RoughPlace> places(entries.size());
   double margin = 0;
   double size = 0;
@@ -74,23 +81,20 @@ void SortedList<Degree, Listener, Queue, Solver>::sort(std::span<const Entry> en
   for (const RoughPlace& place : places) order_.push_back(entries[place.entry]);
 }
 
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::certify_all(double now) {
+template <int Degree, SwapListener Listener>
+void SortedList<Degree, Listener>::certify_all(double now) {
   std::size_t i = 0;
-  if constexpr (Solver::certified) {
-    if (now != disturbed_) {
-      for (; i + 2 < order_.size(); i += 2) {
-        schedule_.certify_two(slot(i), pair(i), slot(i + 1), pair(i + 1), now);
-      }
+  if (now != disturbed_) {
+    for (; i + 2 < order_.size(); i += 2) {
+      const auto slot = static_cast<Slot>(i);
+      schedule_.certify_two(slot, pair(i), slot + 1, pair(i + 1), now);
     }
   }
   for (; i < order_.size(); ++i) certify(i, now);
 }
 
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Degree>& motion, double now) {
+template <int Degree, SwapListener Listener>
+void SortedList<Degree, Listener>::insert(Id id, const Motion<Degree>& motion, double now) {
   require_legal(id, motion);
   if (contains(id)) refuse_twice(id);
   make_room(id);
@@ -100,7 +104,7 @@ void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Deg
                                           [&](const Entry& other) { return in_order(other, entry, now); });
   const auto index = static_cast<std::size_t>(place - order_.begin());
   order_.insert(place, entry);
-  if constexpr (by_place) schedule_.insert_slot(static_cast<Slot>(index));
+  schedule_.insert_slot(static_cast<Slot>(index));
   renumber(index);
   if (index > 0) certify(index - 1, now);
   certify(index, now);
@@ -108,17 +112,12 @@ void SortedList<Degree, Listener, Queue, Solver>::insert(Id id, const Motion<Deg
   count_held();
 }
 
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::remove(Id id, double now) {
+template <int Degree, SwapListener Listener>
+void SortedList<Degree, Listener>::remove(Id id, double now) {
   require(id);
   expect_disorder(now);
   const std::size_t index = position_[id];
-  if constexpr (by_place) {
-    schedule_.erase_slot(static_cast<Slot>(index));
-  } else {
-    schedule_.clear(id);
-  }
+  schedule_.erase_slot(static_cast<Slot>(index));
   order_.erase(order_.begin() + static_cast<std::ptrdiff_t>(index));
   position_[id] = absent;
   renumber(index);
@@ -126,9 +125,8 @@ void SortedList<Degree, Listener, Queue, Solver>::remove(Id id, double now) {
   settle();
 }
 
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Degree>& motion, double now) {
+template <int Degree, SwapListener Listener>
+void SortedList<Degree, Listener>::update(Id id, const Motion<Degree>& motion, double now) {
   require(id);
   require_finite(id, motion);
   expect_disorder(now);
@@ -145,7 +143,7 @@ void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Deg
   }
   // The pairs on both sides of the element, and the pair that closed up where it left. Elements it has passed keep
   // their neighbours, and a slot is the left element's, so nothing else changes.
-  if constexpr (by_place) schedule_.move_slot(static_cast<Slot>(before), static_cast<Slot>(index));
+  schedule_.move_slot(static_cast<Slot>(before), static_cast<Slot>(index));
   if (index > 0) certify(index - 1, now);
   certify(index, now);
   if (index < before) {
@@ -156,9 +154,8 @@ void SortedList<Degree, Listener, Queue, Solver>::update(Id id, const Motion<Deg
   settle();
 }
 
-template <int Degree, class Listener, class Queue, FailureTimeSolver Solver>
-requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
-void SortedList<Degree, Listener, Queue, Solver>::turn_round(double now, double horizon) {
+template <int Degree, SwapListener Listener>
+void SortedList<Degree, Listener>::turn_round(double now, double horizon) {
   for (Entry& entry : order_) entry.motion = reversed(entry.motion);
   schedule_.set_horizon(horizon);
   disturbed_ = now;  // It may have been amidst the events of a time.

@@ -21,12 +21,6 @@ class NoListener final : public PairListener {
   const PairListener& told_;
 };
 
-void add(BroadPhaseCounters& sum, const BroadPhaseCounters& work) {
-  sum.swaps += work.swaps;
-  sum.certificates += work.certificates;
-  sum.box_updates += work.box_updates;
-}
-
 }  // namespace
 
 /// The pairs that one has and the other has not.
@@ -67,7 +61,7 @@ void AdaptiveBroadPhase<Degree>::change_to_few(double now, PairListener& listene
   few_.extend_horizon(now, horizon_);
   few_.insert(entries, now, known);
   report_changes(entries, *grid_, few_, now, listener);
-  add(done_, grid_->counters());
+  done_ = done_ + grid_->counters();
   grid_.reset();
 }
 
@@ -100,10 +94,8 @@ void AdaptiveBroadPhase<Degree>::extend_horizon(double now, double horizon) {
 
 template <int Degree>
 BroadPhaseCounters AdaptiveBroadPhase<Degree>::counters() const {
-  BroadPhaseCounters sum = done_;
-  add(sum, few_.counters());
-  if (grid_) add(sum, grid_->counters());
-  return sum;
+  const BroadPhaseCounters sum = done_ + few_.counters();
+  return grid_ ? sum + grid_->counters() : sum;
 }
 
 #define KDS_INSTANTIATE(degree) template class AdaptiveBroadPhase<degree>;

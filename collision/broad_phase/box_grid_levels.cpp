@@ -1,23 +1,13 @@
 // The levels of a box grid: what is in their cells, and the search in them.
 #include "collision/broad_phase/box_grid_ends.hpp"
 #include "collision/broad_phase/typical_spacing.hpp"
+#include "kds/arithmetic/power_of_two.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
-#include <cmath>
 #include <vector>
 
 namespace kds::collision {
-namespace {
-
-/// 2^exponent, without a call where it is a normal number.
-double power_of_two(int exponent) {
-  return exponent > -1023 && exponent <= 1023 ? std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52)
-                                              : std::ldexp(1.0, exponent);
-}
-
-}  // namespace
 
 double BoxGrid::cell_side(int exponent) const { return unit_ * power_of_two(exponent); }
 

@@ -107,8 +107,7 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   }
   kds::collision::WorldOptions world_options;
   world_options.start_time = scene.begin_time;
-  world_options.response =
-      scene.response == Response::elastic ? kds::collision::Response::elastic : kds::collision::Response::none;
+  world_options.response = scene.response;
   world_options.broad_phase = broad_phase;
   world_options.kdop = options.kdop;
   world_options.rate = options.rate;

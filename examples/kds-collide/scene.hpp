@@ -4,6 +4,7 @@
 #include "certificates/point_motion.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/world_options.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -36,7 +37,7 @@ struct SceneMesh {
   std::shared_ptr<const kds::collision::Mesh> mesh;
 };
 
-enum class Response { none, elastic };
+using kds::collision::Response;  ///< a scene has `none` or `elastic`
 enum class Walls { open, reflect };
 
 struct Domain {

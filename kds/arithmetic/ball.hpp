@@ -72,6 +72,12 @@ struct Ball {
   bool is_zero() const { return magnitude(middle) == 0 && radius == 0; }
 };
 
+/// | |x| - |middle| | <= radius, so the radius stays whether or not the sign is certain.
+template <class T>
+Ball<T> absolute(const Ball<T>& a) {
+  return static_cast<double>(a.middle) < 0 ? -a : a;
+}
+
 /// -1 or +1 where the ball excludes zero, 0 where it does not (the value is zero, or undecided).
 template <class T>
 int certain_sign(const Ball<T>& a) {

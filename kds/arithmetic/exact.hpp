@@ -50,5 +50,6 @@ class Exact {
 };
 
 inline int sign(const Exact& a) { return a.sign(); }
+inline Exact absolute(const Exact& a) { return a.sign() < 0 ? -a : a; }
 
 }  // namespace kds

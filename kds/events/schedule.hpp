@@ -12,7 +12,6 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
-#include <utility>
 #include <vector>
 
 namespace kds {
@@ -32,22 +31,13 @@ namespace kds {
 ///     appear then, and have failed before, fail at once. They are counted.
 /// A failure the solver misses altogether is not found. Counters: `rescheduled` (2), `repaired` (3); both stay zero
 /// with the certified solver.
-/// A queue of places (PlaceQueue) will do as well; then settle() is to be called after changes.
+/// For neighbours in a row there is PlaceSchedule.
 template <class Queue = DefaultEventQueue, FailureTimeSolver Solver = CertifiedSolver>
 requires EventQueue<Queue> || std::same_as<Queue, PlaceQueue>
 class Schedule {
  public:
   void resize(std::size_t slots) { queue_.resize(slots); }
   void clear(Slot slot) { queue_.clear(slot); }
-
-  // See PlaceQueue.
-  void insert_slot(Slot place) { queue_.insert_slot(place); }
-  void erase_slot(Slot place) { queue_.erase_slot(place); }
-  void move_slot(Slot from, Slot to) { queue_.move_slot(from, to); }
-  template <class Rank>
-  void settle(Rank&& rank) {
-    queue_.settle(rank);
-  }
 
   bool empty() const { return queue_.empty(); }
   bool contains(Slot slot) const { return queue_.contains(slot); }
@@ -94,31 +84,15 @@ class Schedule {
   /// since their order, of which it is the negative, has failed. See failure_time_after_turn().
   template <Certificate C>
   void certify_turned(Slot slot, const C& certificate, double now) {
-    if constexpr (requires(const Solver& solver) { solver.after_turn(certificate, now, now); }) {
+    static_assert(AnswersAfterTurn<Solver, C> || !detail::NamesAfterTurn<Solver>,
+                  "solver: `after_turn` must be `double after_turn(const C& certificate, double now, double horizon) "
+                  "const` for each certificate C");
+    if constexpr (AnswersAfterTurn<Solver, C>) {
       ++counters_.certificates;
       set(slot, solver_.after_turn(certificate, now, horizon_));
     } else {
       certify(slot, certificate, now);
     }
-  }
-
-  /// After a swap, of places in a row: the certificate at `middle` is positive just after now, those on its left and
-  /// right are new. As certify() and certify_turned() would do, for less.
-  template <Certificate C>
-  void certify_three(Slot middle, const C& left, const C& turned, const C& right,
-                     double now) requires std::same_as<Queue, PlaceQueue> && Solver::certified {
-    counters_.certificates += 3;
-    const auto [before, after] = solve_two(left, right, now);
-    queue_.set_three(middle, before, solver_.after_turn(turned, now, horizon_), after);
-  }
-
-  /// Of two slots: what certify() would do for each.
-  template <Certificate C>
-  void certify_two(Slot first, const C& a, Slot second, const C& b, double now) requires Solver::certified {
-    counters_.certificates += 2;
-    const auto [at_first, at_second] = solve_two(a, b, now);
-    set(first, at_first);
-    set(second, at_second);
   }
 
   /// Schedules a slot by hand; `never` clears it.
@@ -182,27 +156,13 @@ class Schedule {
     }
   }
 
-  template <Certificate C>
-  std::pair<double, double> solve_two(const C& a, const C& b, double now) const {
-    double first = std::numeric_limits<double>::quiet_NaN();
-    double second = first;
-    if constexpr (requires { C::quick_failure_times(a, b, now, horizon_); }) {
-      if (now <= horizon_) {
-        const auto quick = C::quick_failure_times(a, b, now, horizon_);
-        first = quick.first;
-        second = quick.second;
-      }
-    }
-    if (__builtin_expect(std::isnan(first), 0)) first = solver_(a, now, horizon_);
-    if (__builtin_expect(std::isnan(second), 0)) second = solver_(b, now, horizon_);
-    return {first, second};
-  }
-
-  Queue queue_;
   Solver solver_;
-  Counters counters_;
   double horizon_ = never;
   bool extended_ = false;
+
+ protected:
+  Queue queue_;
+  Counters counters_;
 };
 
 }  // namespace kds

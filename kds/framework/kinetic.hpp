@@ -1,8 +1,11 @@
-// A kinetic structure made of a rule: everything but how to certify and how to repair.
+// A kinetic structure made of a rule: everything but how to certify and how to repair. What it is, and its events;
+// kinetic_edits.hpp has how edits come in, kinetic_samples.hpp what is different with sampled elements,
+// kinetic_audit.hpp how it checks itself, is measured and saved.
 #pragma once
 
 #include "kds/audit.hpp"
 #include "kds/events/schedule.hpp"
+#include "kds/framework/failed_order.hpp"
 #include "kds/framework/kinetic_rule.hpp"
 
 #include <algorithm>
@@ -58,8 +61,16 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   static_assert(detail::Repairs<Rule>, "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing");
   static_assert(detail::InsertsAndRemoves<Rule>,
                 "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing");
-  static_assert(detail::ChangesWhatItKeeps<Rule>,
+  static_assert(TakesUpMotions<Rule> || !detail::NamesChange<Rule>,
+                "kinetic rule: `change` must be `void change(Id, Repair<Element>&)`");
+  static_assert(TakesUpMotions<Rule> || !detail::NamesKeeps<Rule>,
                 "kinetic rule: `change(Id, Repair<Element>&)` is missing, which a rule with `keeps` must have");
+  static_assert(ChoosesMotions<Rule> || !detail::NamesKeeps<Rule>,
+                "kinetic rule: `keeps` must be `bool keeps(Id, const Element& next, Repair<Element>&)`");
+  static_assert(BuildsAtOnce<Rule> || !detail::NamesBuild<Rule>,
+                "kinetic rule: `build` must be `void build(Repair<Element>&)`");
+  static_assert(AuditsItself<Rule> || !detail::NamesAudit<Rule>,
+                "kinetic rule: `audit` must be `void audit(const MovingSet<Element>&, double now) const`");
   static_assert(FailureTimeSolver<Solver>, "Kinetic: the solver is no FailureTimeSolver");
 
  public:
@@ -68,10 +79,13 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   /// Takes up what is in the set at the time `now`, which is the clock: finite, and not before the last edit (neither
   /// is checked). The set must outlive the structure.
   explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
-      : elements_(elements), rule_(std::move(rule)), listener_(std::move(listener)), repair_(elements),
+      : elements_(elements),
+        rule_(std::move(rule)),
+        listener_(std::move(listener)),
+        repair_(elements),
         backwards_(elements.backwards()) {
     begin(now);
-    if constexpr (requires { rule_.build(repair_); }) {
+    if constexpr (BuildsAtOnce<Rule>) {
       rule_.build(repair_);
     } else {
       for (const Id id : elements.ids()) rule_.insert(id, repair_);
@@ -122,55 +136,41 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   void archive(Archive& archive);
 
  private:
+  // How edits come in: kinetic_edits.hpp.
   void settle(double now) override;
-  void inserted(Id id, double now) override {
-    begin(now);
-    rule_.insert(id, repair_);
-    finish(false);
-  }
-  void removing(Id id, double now) override {
-    begin(now);
-    rule_.remove(id, repair_);
-    finish(false);
-  }
-  void changing(Id id, const Element& next, double now) override {
-    begin(now);
-    keeps_ = requires { rule_.change(id, repair_); };
-    if constexpr (requires { rule_.keeps(id, next, repair_); }) keeps_ = rule_.keeps(id, next, repair_);
-    if (!keeps_) rule_.remove(id, repair_);
-  }
-  void changed(Id id, double /*now*/) override {
-    if constexpr (requires { rule_.change(id, repair_); }) {
-      if (keeps_) rule_.change(id, repair_);
-    }
-    if (!keeps_) rule_.insert(id, repair_);
-    finish(false);
-  }
-
+  void inserted(Id id, double now) override;
+  void removing(Id id, double now) override;
+  void changing(Id id, const Element& next, double now) override;
+  void changed(Id id, double now) override;
   /// Throws unless events and edits may be taken up.
-  void require_ready() const {
-    if (busy_) fail_use("the elements may not be edited from within the rule");
-    if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
-  }
+  void require_ready() const;
+
+  // Each call of a function of the rule stands between these two: marked slots are certified when it is over.
   void begin(double now) {
     require_ready();
     busy_ = true;
     repair_.now_ = last_ = now;
   }
   void finish(bool in_event);
-
   void certify(Slot slot, bool in_event);
+  void hold(Slot slot, bool held);
+
+  /// Whether it is for a failure that a slot is due, not for a sample, nor too early.
   bool failed(Slot slot, double time, bool counts = true);
   /// Whether it is the negative of the certificate that has just failed: that is known to be positive at t+.
   template <class C>
   bool has_turned(const C& certificate) const {
-    if constexpr (detail::Antisymmetric<C>) return detail::Ordered::by(certificate) == crossed_.turned();
+    if constexpr (Antisymmetric<C>) return detail::Ordered::by(certificate) == crossed_.turned();
     return false;
   }
-  void sample_again(Slot slot, double time);
-  /// A tick after the oldest sample of the slot's members.
+
+  // What is different with sampled elements: kinetic_samples.hpp.
+  template <class C>
+  void certify_samples(Slot slot, const C& certificate);
+  template <class C>
+  double latest_sample(Slot slot, const C& certificate, double now) const;
   double soonest_sample(Slot slot) const;
-  void hold(Slot slot, bool held);
+  void sample_again(Slot slot, double time);
 
   [[noreturn]] static void fail_use(const std::string& what) { throw std::logic_error(Rule::name + (": " + what)); }
 
@@ -237,16 +237,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
   detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
     certified = true;
     if constexpr (Sampled<Element>) {
-      const Conservative<std::remove_cvref_t<decltype(certificate)>> conservative{certificate};
-      schedule_.certify(slot, conservative, last_);
-      double next = soonest_sample(slot);
-      if (schedule_.contains(slot) && schedule_.time(slot) < next) {
-        if constexpr (MovingSample<Element>) {  // The samples may cross before they may be taken anew.
-          const OfSamples<std::remove_cvref_t<decltype(certificate)>> of_samples{certificate};
-          next = std::min(next, failure_time(of_samples, last_, schedule_.horizon()));
-        }
-        schedule_.set(slot, next <= schedule_.horizon() ? next : never);
-      }
+      certify_samples(slot, certificate);
     } else {
       if (in_event) schedule_.look_for_late_events(certificate, last_);
       if (in_event && has_turned(certificate)) {
@@ -269,6 +260,24 @@ void Kinetic<Rule, Listener, Queue, Solver>::hold(Slot slot, bool held) {
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
+bool Kinetic<Rule, Listener, Queue, Solver>::failed(Slot slot, double time, bool counts) {
+  if constexpr (Sampled<Element> && !MovingSample<Element>) return false;  // Samples at rest never fail.
+  bool failed = false;
+  detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
+    if constexpr (MovingSample<Element>) {
+      const OfSamples<std::remove_cvref_t<decltype(certificate)>> of_samples{certificate};
+      failed = sign_after(of_samples, time) < 0 && (!counts || schedule_.failed(slot, of_samples, time));
+    } else if constexpr (!Sampled<Element>) {
+      failed = schedule_.failed(slot, certificate, time);
+      if constexpr (Antisymmetric<std::remove_cvref_t<decltype(certificate)>>) {
+        if (failed) crossed_ = detail::Ordered::by(certificate);
+      }
+    }
+  });
+  return failed;
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::extend_horizon(double now, double horizon) {
   begin(now);
   schedule_.set_horizon(horizon);
@@ -281,4 +290,5 @@ void Kinetic<Rule, Listener, Queue, Solver>::extend_horizon(double now, double h
 }  // namespace kds
 
 #include "kds/framework/kinetic_audit.hpp"
+#include "kds/framework/kinetic_edits.hpp"
 #include "kds/framework/kinetic_samples.hpp"

@@ -12,6 +12,9 @@
 
 namespace kds {
 
+/// The proof of the state, checked slot by slot: a slot that is held has a certificate, which holds just after now,
+/// unless its event is due; its event is at its failure time (of sampled elements: when these are to be sampled, at the
+/// latest); no other slot has an event. Then what the rule has to check of its own state.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
   const auto fail = [](Slot slot, const char* what) {
@@ -30,13 +33,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
         fail(slot, "has failed");
       }
       if constexpr (Sampled<Element>) {
-        const Conservative<std::remove_cvref_t<decltype(certificate)>> conservative{certificate};
-        const double t = failure_time(conservative, now, schedule_.horizon());
-        double latest = std::max(t, soonest_sample(slot));
-        if constexpr (MovingSample<Element>) {
-          const OfSamples<std::remove_cvref_t<decltype(certificate)>> of_samples{certificate};
-          latest = std::min(latest, failure_time(of_samples, now, schedule_.horizon()));
-        }
+        const double latest = latest_sample(slot, certificate, now);
         if (time > latest && latest <= schedule_.horizon()) fail(slot, "is to be sampled too late");
       } else if constexpr (Solver::certified) {
         if (failure_time(certificate, now, schedule_.horizon()) != time) fail(slot, "the event has the wrong time");
@@ -44,7 +41,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
     });
     if (!certified) fail(slot, "is held, but there is no certificate");
   }
-  if constexpr (requires { rule_.audit(elements_, now); }) rule_.audit(elements_, now);
+  if constexpr (AuditsItself<Rule>) rule_.audit(elements_, now);
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
@@ -59,16 +56,14 @@ Measures Kinetic<Rule, Listener, Queue, Solver>::measures() const {
   return result;
 }
 
+/// Failure times are saved, not certificates: these are functions of the rule's state and of the motions.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 template <class Archive>
 void Kinetic<Rule, Listener, Queue, Solver>::archive(Archive& archive) {
   archive.tag(Rule::name);
-  if constexpr (requires { rule_.archive(archive); }) {
-    rule_.archive(archive);
-  } else {
-    static_assert(!sizeof(Archive),
-                  "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
-  }
+  static_assert(ArchivedBy<Rule, Archive>,
+                "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
+  rule_.archive(archive);
   archive(held_, schedule_, measures_, last_, backwards_);
   if constexpr (Archive::loading) {
     if (schedule_.queue().slots() != held_.size()) throw std::runtime_error("snapshot: it is damaged");

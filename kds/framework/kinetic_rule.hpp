@@ -2,18 +2,18 @@
 #pragma once
 
 #include "kds/bounded.hpp"
-#include "kds/certificate.hpp"
 #include "kds/events/event_queue.hpp"
+#include "kds/framework/archived_by.hpp"
+#include "kds/framework/certificate_choice.hpp"
 #include "kds/framework/measures.hpp"
 #include "kds/framework/moving_set.hpp"
+#include "kds/member_named.hpp"
 
 #include <concepts>
 #include <cstdint>
 #include <iterator>
-#include <optional>
 #include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace kds {
@@ -78,63 +78,6 @@ class Repair {
 
 namespace detail {
 
-template <class T>
-struct IsOptional : std::false_type {};
-template <class T>
-struct IsOptional<std::optional<T>> : std::true_type {};
-template <class T>
-struct IsVariant : std::false_type {};
-template <class... T>
-struct IsVariant<std::variant<T...>> : std::true_type {};
-
-/// Whether failure times can be asked of it, directly or as of a certificate of sampled elements.
-template <class C>
-concept AnyCertificate = Certificate<C> || UncertainCertificate<C>;
-
-template <class T>
-struct IsCertificateChoice : std::bool_constant<AnyCertificate<T> || std::same_as<T, std::monostate>> {};
-template <class T>
-struct IsCertificateChoice<std::optional<T>> : IsCertificateChoice<T> {};
-template <class... T>
-struct IsCertificateChoice<std::variant<T...>> : std::bool_constant<(IsCertificateChoice<T>::value && ...)> {};
-
-/// Calls f with the certificate, if there is one.
-template <class T, class F>
-void with_certificate(const T& choice, F&& f) {
-  if constexpr (std::same_as<T, std::monostate>) {
-  } else if constexpr (IsOptional<T>::value) {
-    if (choice) with_certificate(*choice, f);
-  } else if constexpr (IsVariant<T>::value) {
-    std::visit([&](const auto& alternative) { with_certificate(alternative, f); }, choice);
-  } else {
-    f(choice);
-  }
-}
-
-/// See Certificate.
-template <class C>
-concept Antisymmetric = requires(const C& certificate) {
-  requires C::antisymmetric;
-  certificate.lower;
-  certificate.upper;
-};
-
-/// What an antisymmetric certificate is about, and which kind it is: none of the two if default-made.
-struct Ordered {
-  const void* lower = nullptr;
-  const void* upper = nullptr;
-  const void* kind = nullptr;
-
-  template <Antisymmetric C>
-  static Ordered by(const C& certificate) {
-    static constexpr char kind = 0;
-    return {&certificate.lower, &certificate.upper, &kind};
-  }
-  Ordered turned() const { return {upper, lower, kind}; }
-
-  friend bool operator==(const Ordered&, const Ordered&) = default;
-};
-
 // One concept a part of a rule, so that Kinetic can name the part that is missing.
 template <class R>
 concept NamesElement = requires {
@@ -163,12 +106,6 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
   rule.insert(id, repair);
   rule.remove(id, repair);
 };
-template <class R>
-concept ChangesWhatItKeeps =
-    !requires(R & rule, Id id, const typename R::Element& next, Repair<typename R::Element>& repair) {
-  rule.keeps(id, next, repair);
-}
-|| requires(R& rule, Id id, Repair<typename R::Element>& repair) { rule.change(id, repair); };
 
 }  // namespace detail
 
@@ -182,15 +119,9 @@ concept ChangesWhatItKeeps =
 ///     repair(slot, repair) -> Effect              put right what failed, and mark the slots whose certificates are new
 ///     insert(id, repair), remove(id, repair)      take up an element; let one go, which is still there
 ///
-/// and, if it likes,
-///
-///     change(id, repair)                          take up a new motion; without it: remove and insert
-///     keeps(id, next, repair) -> bool             whether change() can take up this motion: asked before it, with the
-///                                                 old motion still in place; if not: remove and insert. A rule
-///                                                 that has it must have change()
-///     build(repair)                               take up all of repair.elements() at once; without it: insert each
-///     audit(elements, now) const                  throw AuditFailure if its own state is incoherent
-///     archive(archive)                            name its members, archive(a_, b_), so that it can be saved
+/// and, if it likes, what the concepts below describe: change, keeps, build, audit; and archive, so that it can be
+/// saved (ArchivedBy). A member of one of these names that is something else does not compile: it would never be
+/// called.
 ///
 /// Semantic laws: (1) certificates that hold, all of them, prove the state; (2) what a slot's certificate is depends on
 /// the rule's state and the motions only; (3) repair() decides by exact signs at now+ (Repair::sign), and is called
@@ -200,6 +131,44 @@ concept ChangesWhatItKeeps =
 /// (6) none of these functions edits the elements or throws (but for audit(), and for want of memory).
 template <class R>
 concept KineticRule = detail::NamesElement<R> && detail::HasName<R> && detail::Certifies<R> &&
-    detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R> && detail::ChangesWhatItKeeps<R>;
+    detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R>;
+
+/// `void change(Id id, Repair<Element>& repair)`: take up a new motion of an element. Without it: remove and insert.
+template <class R>
+concept TakesUpMotions = requires(R& rule, Id id, Repair<typename R::Element>& repair) {
+  { rule.change(id, repair) } -> std::same_as<void>;
+};
+
+/// `bool keeps(Id id, const Element& next, Repair<Element>& repair)`: whether change() can take up this motion; if not,
+/// the element is removed and inserted. Asked before either, with the old motion still in place. Of a rule with
+/// change() only. Without it: always.
+template <class R>
+concept ChoosesMotions = TakesUpMotions<R> &&
+    requires(R& rule, Id id, const typename R::Element& next, Repair<typename R::Element>& repair) {
+  { rule.keeps(id, next, repair) } -> std::same_as<bool>;
+};
+
+/// `void build(Repair<Element>& repair)`: take up all of repair.elements() at once. Without it: insert one after
+/// another.
+template <class R>
+concept BuildsAtOnce = requires(R& rule, Repair<typename R::Element>& repair) {
+  { rule.build(repair) } -> std::same_as<void>;
+};
+
+/// `void audit(const MovingSet<Element>& elements, double now) const`: throw AuditFailure if the rule's own state is
+/// incoherent. Certificates and their times are checked without it.
+template <class R>
+concept AuditsItself = requires(const R& rule, const MovingSet<typename R::Element>& elements, double now) {
+  { rule.audit(elements, now) } -> std::same_as<void>;
+};
+
+namespace detail {
+
+KDS_MEMBER_NAMED(NamesChange, change);
+KDS_MEMBER_NAMED(NamesKeeps, keeps);
+KDS_MEMBER_NAMED(NamesBuild, build);
+KDS_MEMBER_NAMED(NamesAudit, audit);
+
+}  // namespace detail
 
 }  // namespace kds

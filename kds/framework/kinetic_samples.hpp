@@ -1,35 +1,49 @@
-// What is due in a structure made of a rule: a repair, or a sample; and what comes before an edit.
+// What is different in a structure made of a rule where only samples of its elements are known.
 #pragma once
 
 #include "kds/framework/kinetic.hpp"
 
 #include <algorithm>
 #include <iterator>
-#include <string>
 #include <type_traits>
 #include <vector>
 
 namespace kds {
 
-/// Whether it is for a failure that a slot is due, not for a sample, nor too early.
+// A certificate of samples is guaranteed while its middle exceeds its radius (Conservative), whatever the elements have
+// done since they were sampled. When that ends, the slot is due, and its members are sampled anew; but no sample is
+// replaced before it is a tick old, so that a fact that is close to failing does not ask for samples without end.
+// Samples that move on at their velocities (MovingSample) may cross each other in that time: this is a failure
+// (OfSamples) like that of polynomials, at which the rule repairs, since the state is that of the samples. Samples at
+// rest never fail.
+
+/// Schedules a new certificate for when it is no longer guaranteed, but not before its members may be sampled anew;
+/// earlier if the samples cross by then.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
-bool Kinetic<Rule, Listener, Queue, Solver>::failed(Slot slot, double time, bool counts) {
-  if constexpr (Sampled<Element> && !MovingSample<Element>) return false;  // Samples at rest never fail.
-  bool failed = false;
-  detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
-    if constexpr (MovingSample<Element>) {
-      const OfSamples<std::remove_cvref_t<decltype(certificate)>> of_samples{certificate};
-      failed = sign_after(of_samples, time) < 0 && (!counts || schedule_.failed(slot, of_samples, time));
-    } else if constexpr (!Sampled<Element>) {
-      failed = schedule_.failed(slot, certificate, time);
-      if constexpr (detail::Antisymmetric<std::remove_cvref_t<decltype(certificate)>>) {
-        if (failed) crossed_ = detail::Ordered::by(certificate);
-      }
-    }
-  });
-  return failed;
+template <class C>
+void Kinetic<Rule, Listener, Queue, Solver>::certify_samples(Slot slot, const C& certificate) {
+  schedule_.certify(slot, Conservative<C>{certificate}, last_);
+  double next = soonest_sample(slot);
+  if (!schedule_.contains(slot) || schedule_.time(slot) >= next) return;
+  if constexpr (MovingSample<Element>) {
+    next = std::min(next, failure_time(OfSamples<C>{certificate}, last_, schedule_.horizon()));
+  }
+  schedule_.set(slot, next <= schedule_.horizon() ? next : never);
 }
 
+/// For the audit: the slot must be due by then.
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+template <class C>
+double Kinetic<Rule, Listener, Queue, Solver>::latest_sample(Slot slot, const C& certificate, double now) const {
+  const double unsure = failure_time(Conservative<C>{certificate}, now, schedule_.horizon());
+  const double latest = std::max(unsure, soonest_sample(slot));
+  if constexpr (MovingSample<Element>) {
+    return std::min(latest, failure_time(OfSamples<C>{certificate}, now, schedule_.horizon()));
+  }
+  return latest;
+}
+
+/// A listener that hears of one sample may remove another element.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::sample_again(Slot slot, double time) {
   if constexpr (Sampled<Element>) {
@@ -42,45 +56,12 @@ void Kinetic<Rule, Listener, Queue, Solver>::sample_again(Slot slot, double time
   }
 }
 
+/// A tick after the oldest sample of the slot's members.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 double Kinetic<Rule, Listener, Queue, Solver>::soonest_sample(Slot slot) const {
   double oldest = never;
   for (const Id id : rule_.members(slot)) oldest = std::min(oldest, elements_[id].start);
   return oldest + elements_.tick();
-}
-
-template <class Rule, class Listener, EventQueue Queue, class Solver>
-void Kinetic<Rule, Listener, Queue, Solver>::settle(double now) {
-  require_ready();
-  if (now < last_) {
-    fail_use("an edit at " + std::to_string(now) + " comes after a change at " + std::to_string(last_));
-  }
-  if (next_time() < now) {
-    fail_use("an edit at " + std::to_string(now) + " would pass over an event at " + std::to_string(next_time()));
-  }
-  if constexpr (Sampled<Element> && !MovingSample<Element>) return;  // In order at all times.
-  // What is due for a sample can wait. It is put back also if a listener throws.
-  struct Waiting {
-    Kinetic& structure;
-    double now;
-    std::vector<Slot> slots{};
-    ~Waiting() {
-      for (const Slot slot : slots) {
-        if (structure.held_[slot] && !structure.schedule_.contains(slot)) structure.schedule_.set(slot, now);
-      }
-    }
-  } waiting{*this, now};
-  while (next_time() <= now) {
-    const Slot slot = schedule_.next().slot;
-    if constexpr (MovingSample<Element>) {
-      if (!failed(slot, now, false)) {
-        waiting.slots.push_back(slot);
-        schedule_.set(slot, never);
-        continue;
-      }
-    }
-    process();
-  }
 }
 
 }  // namespace kds

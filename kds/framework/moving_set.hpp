@@ -1,6 +1,7 @@
 // The moving elements that several structures share, and who is told when they are changed.
 #pragma once
 
+#include "kds/member_named.hpp"
 #include "kds/motion.hpp"
 
 #include <algorithm>
@@ -42,6 +43,7 @@ concept MovingElement = std::default_initializable<E> && std::copyable<E> && req
 /// An element of which only samples are known, the last one at time `start`: Bounded, and what is made of it.
 template <class E>
 concept Sampled = MovingElement<E> && requires(const E& element) {
+  requires std::same_as<decltype(E::sampled), const bool>;
   requires E::sampled;
   { element.start } -> std::convertible_to<double>;
 };
@@ -49,7 +51,15 @@ concept Sampled = MovingElement<E> && requires(const E& element) {
 /// A sample that goes on moving, at the velocity that it had: BoundedAcceleration. The state is that of the samples as
 /// they move, so certificates of samples fail, and are repaired, as those of polynomials are.
 template <class E>
-concept MovingSample = Sampled<E> && requires { requires E::moves; };
+concept MovingSample = Sampled<E> && requires {
+  requires std::same_as<decltype(E::moves), const bool>;
+  requires E::moves;
+};
+
+namespace detail {
+KDS_MEMBER_NAMED(NamesSampled, sampled);
+KDS_MEMBER_NAMED(NamesMoves, moves);
+}  // namespace detail
 
 /// An element whose motion can be written in time that runs backwards, exactly: reversed(e)(-t) = e(t).
 template <class E>
@@ -70,6 +80,12 @@ concept Reversible = MovingElement<E> && requires(const E& element) {
 /// the greatest id.
 template <MovingElement E>
 class MovingSet {
+  static_assert(
+      Sampled<E> || !detail::NamesSampled<E>,
+      "moving element: `sampled` must be `static constexpr bool sampled = true`, and the element have a `start`");
+  static_assert(MovingSample<E> || !detail::NamesMoves<E>,
+                "moving element: `moves` must be `static constexpr bool moves = true`, of a sampled element");
+
  public:
   using Element = E;
 

@@ -89,7 +89,8 @@ FailureTime enclosed_failure_time(const C& certificate, double now, double horiz
   constexpr double enough = 0x1p-47;
   if (!(now <= horizon)) return {};
   if constexpr (C::degree > 2) return certified_failure_time(certificate, now, horizon);
-  if constexpr (requires { certificate.quick_failure_time(now, horizon); }) {
+  static_assert(detail::RightHooks<C>::checked);
+  if constexpr (AnswersQuickly<C>) {
     const double t = certificate.quick_failure_time(now, horizon);
     if (!std::isnan(t)) return detail::certified(t, now);
   }

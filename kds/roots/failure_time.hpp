@@ -4,7 +4,6 @@
 #include "kds/arithmetic/unrolled.hpp"
 #include "kds/certificate.hpp"
 #include "kds/roots/failure_time_isolated.hpp"
-#include "kds/roots/failure_time_lattice.hpp"
 #include "kds/roots/failure_time_linear.hpp"
 #include "kds/roots/failure_time_quadratic.hpp"
 
@@ -19,20 +18,42 @@ namespace kds {
 /// alone: each solver, queue, broad phase and compiler gives the same bits. And when the clock stands at t the
 /// certificate *has* failed, exactly, so an event never proves early.
 ///
-/// Method, in three steps; where a step does not decide, the next one that can does.
-/// (1) Which root: signs of the coefficients about `now` alone; for a parabola that of the discriminant; above that the
-///     rule of Descartes in Bernstein form (first_crossing()). In doubles, with error bounds.
-/// (2) Which double: a closed form or a few steps of Halley's method in doubles, and there one value of f in
-///     double-double, which places the root among the doubles (RootRounding). A root that is a double itself, or as
-///     near to one as makes no difference to that value, asks for one exact sign.
-/// (3) For certificates that touch zero, or nearly: exact signs of f and its derivatives (DerivativeIntervals).
-///     Nothing is assumed about the roots: double and clustered ones cost more, never an error. sign_counters.searches
-///     counts these.
+/// `horizon` may be infinite; one before now makes the interval empty.
 ///
-/// Cost: from 7 ns (a line of known coefficients) through 15 (a parabola of such), 30 (degree 2) and 120 to 300
-/// (degree 4 to 8) for an ordinary root; 2 to 70 us for the third step, most for clustered roots of a high degree.
-/// `horizon` may be infinite; one before now makes the interval empty. enclosed_failure_time.hpp has results with
-/// enclosure and status.
+/// The ladder. Each rung answers what it is sure of, in its bounds on errors, and leaves the rest to the next one; so
+/// all of them give the same bits, and what they differ in is what they cost.
+///
+/// 1. The certificate knows (AnswersQuickly, certificate_hooks.hpp): its coefficients are doubles, or sums of two,
+/// known
+///    without rounding, or nearly. Signs in doubles say whether it fails within the horizon; a quotient or the
+///    quadratic formula says where, and one value there, whose large parts are exact, which double. 7 to 15 ns.
+///      line       quick_line_failure_time(), failure_time_known_line.hpp
+///      parabola   quick_parabola_failure_time(), failure_time_known_parabola.hpp
+///    Both also for the difference of two motions with starts of their own (certificates/order_parabola.hpp), and for
+///    two lines side by side (certificates/order_together.hpp).
+/// 2. The formula in doubles with error bounds (Ball<double>) about now says whether there is a root and roughly where;
+///    one value of it in double-doubles which double (root_rounding.hpp), with one exact sign where a double is as good
+///    as the root itself. Any certificate. By the degree that the difference really has:
+///      1          a quotient, failure_time_linear.hpp
+///      2          the quadratic formula, failure_time_quadratic.hpp. 30 ns
+///      3 to 8     the rule of Descartes and Halley's method, first_crossing.hpp and failure_time_isolated.hpp. 120 to
+///                 300 ns
+/// 3. Exact signs of f and its derivatives on the lattice of doubles (DerivativeIntervals, failure_time_by_signs.hpp):
+///    certificates that touch zero, or nearly, and clustered roots. Nothing is assumed. 2 to 70 us, the most for
+///    clustered roots of a high degree; counted by sign_counters.searches.
+///
+/// What each special form gains, in instructions of all that a sorted list does, or a loop over random polynomials,
+/// without it (callgrind; a form that gained less than 3 % is not here):
+///      known line                                 +71 % where parabolas share their acceleration
+///      root of a known line that is a double      +118 % for lines on a grid
+///      known parabola                             +35 % for random parabolas
+///      known line and parabola, starts apart      +22 % lines, +30 % parabolas, +85 % where they share it
+///      two lines side by side                     +6.6 % where all starts are one; -2.5 % where all differ
+///      signs of lines before a start is moved     +7.9 % where starts differ (Order<1>)
+///      quick answers after a turn                 +7 to +19 %
+///      line, of computed coefficients             +15 % for random lines
+///
+/// enclosed_failure_time.hpp gives enclosures and a status, solver.hpp makes the solver of a structure exchangeable.
 template <Certificate C>
 double failure_time(const C& certificate, double now, double horizon = never);
 
@@ -69,7 +90,8 @@ double recovery_time(const C& certificate, double now, double horizon = never) {
 
 namespace detail {
 
-/// Whether all coefficients but the first are certainly not negative: f never falls.
+/// Whether all coefficients but the first are certainly not negative: f never falls. This spares what touches zero now
+/// and rises, or stays, the third rung.
 template <int Degree>
 bool never_falls(const Polynomial<Degree, Ball<double>>& p) {
   bool rises = true;
@@ -107,29 +129,67 @@ double failure_time_while_positive(const C& certificate, const Polynomial<Degree
   }
 }
 
+/// From the second rung on. Precondition: now <= horizon.
+template <class C>
+double failure_time_of_formula(const C& certificate, double now, double horizon) {
+  const auto p = certificate.template polynomial<Ball<double>>(now);
+  int value = certain_sign(p.c[0]);
+  if (value == 0) value = extended_sign_after(certificate, now, 0);
+  if (value < 0) return now;
+  if (value == 0) return never;  // f vanishes identically
+  return failure_time_while_positive(certificate, p, now, horizon);
+}
+
+/// A certificate without its hooks.
+template <class C>
+struct FormulaOnly {
+  static constexpr int degree = C::degree;
+  const C& certificate;
+
+  template <class Number>
+  Polynomial<degree, Number> polynomial(double epoch) const {
+    return certificate.template polynomial<Number>(epoch);
+  }
+};
+
+/// See hook_checks.hpp. Of a certificate after a turn, too: if it is positive just after now, as it must be, then
+/// failure_time() gives the same.
+template <Hook hook, class C>
+void check_failure_time(const char* name, const C& certificate, double quick, double now, double horizon) {
+  if (!is_to_be_checked<C, hook>()) return;
+  const SignCounters counted = sign_counters;
+  const double general = failure_time_of_formula(FormulaOnly<C>{certificate}, now, horizon);
+  sign_counters = counted;
+  require_same_time<C>(name, quick, general, now, horizon);
+}
+
 }  // namespace detail
 
 template <Certificate C>
 double failure_time(const C& certificate, double now, double horizon) {
   if (!(now <= horizon)) return never;
-  if constexpr (requires { certificate.quick_failure_time(now, horizon); }) {
+  static_assert(detail::RightHooks<C>::checked);
+  if constexpr (AnswersQuickly<C>) {
     const double t = certificate.quick_failure_time(now, horizon);
-    if (!std::isnan(t)) return t;
+    if (!std::isnan(t)) {
+      detail::check_failure_time<detail::Hook::quick_failure_time>("quick_failure_time", certificate, t, now, horizon);
+      return t;
+    }
   }
-  const auto p = certificate.template polynomial<Ball<double>>(now);
-  int value = certain_sign(p.c[0]);
-  if (value == 0) value = detail::extended_sign_after(certificate, now, 0);
-  if (value < 0) return now;
-  if (value == 0) return never;  // f vanishes identically
-  return detail::failure_time_while_positive(certificate, p, now, horizon);
+  return detail::failure_time_of_formula(certificate, now, horizon);
 }
 
 template <Certificate C>
 double failure_time_after_turn(const C& certificate, double now, double horizon) {
   if (!(now <= horizon)) return never;
-  if constexpr (requires { certificate.quick_failure_time_after_turn(now, horizon); }) {
+  static_assert(detail::RightHooks<C>::checked);
+  if constexpr (AnswersQuicklyAfterTurn<C>) {
     const double t = certificate.quick_failure_time_after_turn(now, horizon);
-    if (__builtin_expect(!std::isnan(t), 1)) return t;
+    if (__builtin_expect(!std::isnan(t), 1)) {
+      detail::check_failure_time<detail::Hook::quick_failure_time_after_turn>("quick_failure_time_after_turn",
+                                                                              certificate, t, now, horizon);
+      return t;
+    }
   }
   return detail::failure_time_while_positive(certificate, certificate.template polynomial<Ball<double>>(now), now,
                                              horizon);

@@ -1,9 +1,9 @@
-// Failure times of degree 3 and above: isolated and found in doubles, placed by one value in double-double.
+// Rung 2: failure times of degree 3 and above, isolated and found in doubles, placed by one value in double-double.
 #pragma once
 
-#include "kds/roots/failure_time_derivatives.hpp"
-#include "kds/roots/failure_time_rounding.hpp"
+#include "kds/roots/failure_time_by_signs.hpp"
 #include "kds/roots/first_crossing.hpp"
+#include "kds/roots/root_rounding.hpp"
 
 #include <cmath>
 
@@ -44,8 +44,7 @@ double isolated_failure_time(const C& certificate, const Polynomial<Degree, Ball
     if (t <= horizon) return t;
     if (t > horizon) return never;
   }
-  ++sign_counters.searches;
-  return DerivativeIntervals<C>(certificate, now, horizon).first_negative();
+  return failure_time_by_signs(certificate, now, horizon);
 }
 
 }  // namespace kds::detail

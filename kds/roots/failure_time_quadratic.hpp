@@ -1,58 +1,12 @@
-// The failure time of a parabola.
+// Rung 2: the failure time of a parabola.
 #pragma once
 
-#include "kds/roots/failure_time_derivatives.hpp"
-#include "kds/roots/failure_time_rounding.hpp"
+#include "kds/roots/failure_time_by_signs.hpp"
+#include "kds/roots/root_rounding.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace kds::detail {
-
-/// By exact signs. Precondition: f > 0 just after now.
-template <class C>
-double quadratic_failure_time_by_signs(const C& certificate, const Polynomial<2, Ball<double>>& p, double now,
-                                       double horizon) {
-  const auto by_derivatives = [&] { return DerivativeIntervals<C>(certificate, now, horizon).first_negative(); };
-  const int bend = certain_sign(p.c[2]);
-  const int rate = certain_sign(p.c[1]);
-  if (bend > 0 && rate > 0) return never;
-  const Ball<double> discriminant = p.c[1] * p.c[1] - p.c[0] * p.c[2] * 4.0;
-  const int real = certain_sign(discriminant);
-  if (bend > 0 && real < 0) return never;
-  if (bend == 0 || (bend > 0 && (rate == 0 || real == 0)) || !(discriminant.middle < never)) {
-    return by_derivatives();
-  }
-  const double c0 = p.c[0].middle;
-  const double c1 = p.c[1].middle;
-  const double c2 = p.c[2].middle;
-  const double root = std::sqrt(discriminant.middle > 0 ? discriminant.middle : 0.0);
-  if (bend > 0) {  // Falls, then rises: the smaller root, which lies before the vertex.
-    const double guess = now + 2 * c0 / (root - c1);
-    double above = now - c1 / (2 * c2);
-    if (above > horizon) {
-      if (guess * (1 - 0x1p-30) > horizon && now + (guess - now) * (1 - 0x1p-30) > horizon &&
-          sign_after(certificate, horizon) > 0) {
-        return never;
-      }
-      above = horizon;
-    }
-    if (above < never && sign_after(certificate, above) < 0) {
-      return LatticeCrossing<C>(certificate, 0)(now, above, -1, guess);
-    }
-    if (above == horizon && horizon < never) {
-      // Positive at the horizon, which is before the vertex: falling all the way, so positive throughout.
-      if (sign_after(certificate, horizon, 1) < 0) return never;
-    }
-    return by_derivatives();
-  }
-  // Concave and positive now: one crossing ahead.
-  const double tau = c1 >= 0 ? (c1 + root) / (-2 * c2) : 2 * c0 / (root - c1);
-  if (horizon < never && sign_after(certificate, horizon) > 0) return never;
-  const double above = horizon < never ? horizon : std::numeric_limits<double>::max();
-  if (horizon == never && !(now + tau < 0x1p900) && sign_after(certificate, above) >= 0) return never;
-  return LatticeCrossing<C>(certificate, 0)(now, above, -1, now + tau);
-}
 
 /// c1^2 - 4 c0 c2. Error bound, with u = 2^-53: the two products and the difference are known to u of themselves,
 /// together at most 2 u (|c1^2| + |4 c0 c2|), and to what the radii make of them; underflow takes less than 2^-1020.
@@ -120,8 +74,7 @@ double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<dou
       if (t > horizon) return never;
     }
   }
-  ++sign_counters.searches;
-  return quadratic_failure_time_by_signs(certificate, p, now, horizon);
+  return failure_time_by_signs(certificate, now, horizon);
 }
 
 }  // namespace kds::detail

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/arithmetic/ball.hpp"
+#include "kds/arithmetic/power_of_two.hpp"
 #include "kds/arithmetic/unrolled.hpp"
 #include "kds/polynomial.hpp"
 #include "kds/simd/two_doubles.hpp"
@@ -191,8 +192,6 @@ struct BernsteinPiece {
 
 /// Exponent of a double: floor(log2 |x|) for normal numbers, less for others.
 inline int exponent_of(double x) { return static_cast<int>((std::bit_cast<std::uint64_t>(x) >> 52) & 0x7ff) - 1023; }
-/// 2^e for -1022 <= e <= 1023.
-inline double power_of_two(int e) { return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52); }
 
 /// A power of two near the least x at which a negative term comes up to the constant one, or near the end if that is
 /// earlier. A guess of where things happen; nothing rests on it. Where the constant term may be zero (two things that

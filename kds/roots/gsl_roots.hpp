@@ -48,7 +48,7 @@ FailureTime gsl_estimated_failure_time(const C& certificate, double now, double 
   return {gsl_failure_time(certificate, now, horizon), now, horizon, FailureStatus::estimated};
 }
 
-/// The same as a FailureTimeSolver, for structures: SortedList<1, Listener, DefaultEventQueue, GslSolver>.
+/// The same as a FailureTimeSolver, for structures: Kinetic<Rule, Listener, DefaultEventQueue, GslSolver>.
 struct GslSolver {
   static constexpr bool certified = false;
 

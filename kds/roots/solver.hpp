@@ -14,11 +14,23 @@ namespace kds {
 /// not, it may say anything: too early, too late, `never` for a root that is there, even a NaN; the schedule checks it
 /// with exact signs (see Schedule for what is then promised, and what is not).
 template <class S>
-concept FailureTimeSolver =
-    std::default_initializable<S> && requires(const S& solver, const PolynomialCertificate<2>& f, double t) {
-      { S::certified } -> std::convertible_to<bool>;
-      { solver(f, t, t) } -> std::same_as<double>;
-    };
+concept FailureTimeSolver = std::default_initializable<S> &&
+    requires(const S& solver, const PolynomialCertificate<2>& f, double t) {
+  { S::certified } -> std::convertible_to<bool>;
+  { solver(f, t, t) } -> std::same_as<double>;
+};
+
+/// `double after_turn(const C& certificate, double now, double horizon) const`: a solver may know this too, which means
+/// what failure_time_after_turn() means, of a certificate that is positive just after now. Without it the solver is
+/// asked as of any other. One that is there and cannot be called so does not compile.
+template <class S, class C>
+concept AnswersAfterTurn = requires(const S& solver, const C& certificate, double t) {
+  { solver.after_turn(certificate, t, t) } -> std::same_as<double>;
+};
+
+namespace detail {
+KDS_MEMBER_NAMED(NamesAfterTurn, after_turn);
+}
 
 /// failure_time() as a function object: the default.
 struct CertifiedSolver {
@@ -29,7 +41,6 @@ struct CertifiedSolver {
     return failure_time(certificate, now, horizon);
   }
 
-  /// Where f is known to be positive just after now, as failure_time_after_turn() says. A solver may do without.
   template <Certificate C>
   double after_turn(const C& certificate, double now, double horizon) const {
     return failure_time_after_turn(certificate, now, horizon);

@@ -113,18 +113,3 @@ TEST_CASE("boxes face to face part and meet at their faces", "[plane_separation]
   CHECK(failure_time(other_side, 0) == 0);
   CHECK(recovery_time(other_side, 0) == 7);
 }
-
-TEST_CASE("the absolute value of a ball contains that of the number", "[plane_separation]") {
-  using certificates::absolute;
-  for (const double middle : {3.0, -3.0, 1e-20, -1e-20, 0.0}) {
-    for (const double radius : {0.0, 1.0}) {
-      const auto ball = absolute(Ball<double>(middle, radius));
-      for (const double x : {middle - radius, middle, middle + radius}) {
-        CHECK(std::abs(std::abs(x) - ball.middle) <= ball.radius);
-      }
-    }
-  }
-  CHECK(absolute(Exact(-2.0)).approximate() == 2);
-  CHECK(absolute(Exact(2.0)).approximate() == 2);
-  CHECK(absolute(Ball<DoubleDouble>(DoubleDouble(-1, 1e-20), 0)).middle.low == -1e-20);
-}

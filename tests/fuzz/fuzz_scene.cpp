@@ -30,7 +30,7 @@ void check_sound(const Scene& scene) {
 void check_accepted(const Scene& scene) {
   collision::WorldOptions options;
   options.start_time = scene.begin_time;
-  if (scene.response == kds_collide::Response::elastic) options.response = collision::Response::elastic;
+  options.response = scene.response;
   if (scene.domain && scene.domain->walls == kds_collide::Walls::reflect) {
     options.walls = collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }

@@ -7,6 +7,7 @@
 #include "tests/fuzz/bytes.hpp"
 #include "tests/fuzz/check.hpp"
 #include "tests/structures/random_values.hpp"
+#include "tests/structures/rule_list.hpp"
 
 #include <cstdint>
 #include <limits>
@@ -31,11 +32,14 @@ struct Listener {
   static std::uint32_t rank(std::uint32_t id) { return rank_of(id); }
 };
 
-template <int Degree, class Queue>
+template <int Degree, class List>
 class Scenario {
  public:
   explicit Scenario(Bytes& bytes)
-      : bytes_(bytes), start_(bytes.one_in(4) ? 1e9 : 0), wide_(bytes.one_in(4)), list_(Listener{&swaps_}),
+      : bytes_(bytes),
+        start_(bytes.one_in(4) ? 1e9 : 0),
+        wide_(bytes.one_in(4)),
+        list_(Listener{&swaps_}),
         simulator_(start_, list_) {}
 
   void run() {
@@ -154,20 +158,23 @@ class Scenario {
   double start_;
   bool wide_;
   std::uint64_t swaps_ = 0;
-  structures::SortedList<Degree, Listener, Queue> list_;
-  Simulator<structures::SortedList<Degree, Listener, Queue>> simulator_;
+  List list_;
+  Simulator<List> simulator_;
   tests::Model<Degree> model_;
 };
 
+/// The tuned list, or one made of a rule with some queue.
 template <int Degree>
-void run_with_a_queue(Bytes& bytes) {
-  switch (bytes.below(3)) {
+void run_a_list(Bytes& bytes) {
+  switch (bytes.below(4)) {
     case 0:
-      return Scenario<Degree, CalendarQueue<>>(bytes).run();
+      return Scenario<Degree, tests::RuleList<Degree, Listener, CalendarQueue<>>>(bytes).run();
     case 1:
-      return Scenario<Degree, DaryQueue<>>(bytes).run();
+      return Scenario<Degree, tests::RuleList<Degree, Listener, DaryQueue<>>>(bytes).run();
+    case 2:
+      return Scenario<Degree, tests::RuleList<Degree, Listener, PairingQueue<>>>(bytes).run();
     default:
-      return Scenario<Degree, PairingQueue<>>(bytes).run();
+      return Scenario<Degree, structures::SortedList<Degree, Listener>>(bytes).run();
   }
 }
 
@@ -177,11 +184,11 @@ void run(std::span<const std::uint8_t> input) {
   Bytes bytes(input);
   switch (bytes.below(3)) {
     case 0:
-      return run_with_a_queue<1>(bytes);
+      return run_a_list<1>(bytes);
     case 1:
-      return run_with_a_queue<2>(bytes);
+      return run_a_list<2>(bytes);
     default:
-      return run_with_a_queue<3>(bytes);
+      return run_a_list<3>(bytes);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "tests/replay/event_hash.hpp"
 #include "tests/replay/scenes.hpp"
 #include "tests/structures/random_values.hpp"
+#include "tests/structures/rule_list.hpp"
 
 #include <algorithm>
 #include <array>
@@ -56,11 +57,11 @@ struct Recorder {
 };
 
 /// Random motions, insertions, removals and jumps.
-template <int Degree, class Queue>
+template <int Degree, class List>
 void run_list(kds::tests::Kind kind, EventHash& hash) {
   kds::tests::Random random(17);
   kds::tests::Model<Degree> model;
-  structures::SortedList<Degree, Recorder, Queue> list(Recorder{&hash});
+  List list(Recorder{&hash});
   double now = kds::tests::beginning(kind);
   Simulator simulator(now, list);
   for (int step = 0; step < 150; ++step) {
@@ -72,14 +73,19 @@ void run_list(kds::tests::Kind kind, EventHash& hash) {
 
 template <int Degree>
 void add_lists(std::vector<Replay>& replays) {
+  using Tuned = structures::SortedList<Degree, Recorder>;
+  using OnCalendar = kds::tests::RuleList<Degree, Recorder, CalendarQueue<>>;
+  using OnDary = kds::tests::RuleList<Degree, Recorder, DaryQueue<>>;
+  using OnPairing = kds::tests::RuleList<Degree, Recorder, PairingQueue<>>;
   constexpr std::array kinds{"generic", "lattice", "mixed", "resting", "scales", "late"};
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     const kds::tests::Kind kind = kds::tests::all_kinds[i];
     const std::string name = "list/" + std::to_string(Degree) + '/' + kinds[i];
     replays.push_back({name,
-                       {{"calendar", [=](EventHash& hash) { run_list<Degree, CalendarQueue<>>(kind, hash); }},
-                        {"dary", [=](EventHash& hash) { run_list<Degree, DaryQueue<>>(kind, hash); }},
-                        {"pairing", [=](EventHash& hash) { run_list<Degree, PairingQueue<>>(kind, hash); }}}});
+                       {{"tuned", [=](EventHash& hash) { run_list<Degree, Tuned>(kind, hash); }},
+                        {"calendar", [=](EventHash& hash) { run_list<Degree, OnCalendar>(kind, hash); }},
+                        {"dary", [=](EventHash& hash) { run_list<Degree, OnDary>(kind, hash); }},
+                        {"pairing", [=](EventHash& hash) { run_list<Degree, OnPairing>(kind, hash); }}}});
   }
 }
 

@@ -37,8 +37,8 @@ struct Recorder : PlainRecorder {
   static std::uint32_t rank(std::uint32_t id) { return rank_of(id); }
 };
 
-template <int Degree, class Queue = PlaceQueue>
-using List = structures::SortedList<Degree, Recorder, Queue>;
+template <int Degree>
+using List = structures::SortedList<Degree, Recorder>;
 
 template <class L>
 std::vector<std::uint32_t> ids(const L& list) {

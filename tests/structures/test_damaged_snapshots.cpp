@@ -88,7 +88,6 @@ void check_alone() {
 TEST_CASE("damaged snapshots of lists are refused, or give lists that run", "[snapshot][damaged]") {
   check_alone<structures::SortedList<1>, 1>();
   check_alone<structures::SortedList<2>, 2>();
-  check_alone<structures::SortedList<2, structures::NoSwapListener, DaryQueue<>>, 2>();
 }
 
 TEST_CASE("damaged snapshots of tournaments are refused, or give tournaments that run", "[snapshot][damaged]") {

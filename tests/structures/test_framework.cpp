@@ -86,7 +86,7 @@ TEST_CASE("what is known after a failure is of the same kind of certificate, of 
   CHECK_FALSE(detail::Ordered::by(Order<1>{b, c}) == failed.turned());
   CHECK_FALSE(detail::Ordered::by(Above{{b, a}}) == failed.turned());
   CHECK_FALSE(detail::Ordered::by(Order<1>{b, a}) == detail::Ordered{});
-  CHECK_FALSE(detail::Antisymmetric<PolynomialCertificate<1>>);
+  CHECK_FALSE(Antisymmetric<PolynomialCertificate<1>>);
 }
 
 TEST_CASE("the list of the framework swaps when the tuned one does, and keeps to its measures", "[framework]") {

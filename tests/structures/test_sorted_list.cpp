@@ -6,6 +6,7 @@
 #include "kds/simulator.hpp"
 #include "tests/structures/random_values.hpp"
 #include "tests/structures/recorded_list.hpp"
+#include "tests/structures/rule_list.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -22,19 +23,19 @@ namespace {
 using namespace kds;
 using namespace kds::tests;
 
-/// Runs random changes and advances; returns the swaps. What is checked does not depend on the queue or the window,
-/// and neither may the swaps.
-template <int Degree, class Queue>
+/// Runs random changes and advances; returns the swaps. What is checked does not depend on the window, nor on the queue
+/// of a list made of a rule, and neither may the swaps.
+template <int Degree, class L>
 Log run(std::uint64_t seed, Kind kind, std::size_t most, int steps, double window) {
   Random random(seed);
   Log log;
-  List<Degree, Queue> list(Recorder{&log});
+  L list(Recorder{&log});
   Model<Degree> model;
   double now = beginning(kind);
   for (std::size_t i = 0; i < most / 2; ++i) {
     model.motions[static_cast<std::uint32_t>(2 * i)] = random_motion<Degree>(random, kind, now);
   }
-  std::vector<typename List<Degree, Queue>::Entry> entries;
+  std::vector<typename L::Entry> entries;
   for (const auto& [id, motion] : model.motions) entries.push_back({motion, id});
   list.assign(entries, now);
   Simulator simulator(now, list);
@@ -70,20 +71,20 @@ constexpr double no_window = never;
 
 }  // namespace
 
-TEMPLATE_TEST_CASE_SIG("a kinetic sorted list is in the exact order of its motions, whatever its queue and horizon",
+TEMPLATE_TEST_CASE_SIG("a kinetic sorted list is in the exact order of its motions, whatever the horizon or the queue",
                        "[sorted_list]", ((int Degree), Degree), 1, 2, 3) {
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 200; seed < 204; ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
       const std::size_t most = 3 + 5 * (seed % 4);
       const int steps = 40;
-      const Log log = run<Degree, CalendarQueue<>>(seed, kind, most, steps, no_window);
-      CHECK(run<Degree, PlaceQueue>(seed, kind, most, steps, no_window) == log);
-      CHECK(run<Degree, PlaceQueue>(seed, kind, most, steps, 0.2) == log);
-      CHECK(run<Degree, DaryQueue<>>(seed, kind, most, steps, no_window) == log);
-      CHECK(run<Degree, PairingQueue<>>(seed, kind, most, steps, no_window) == log);
-      CHECK(run<Degree, CalendarQueue<>>(seed, kind, most, steps, 0.1) == log);
-      CHECK(run<Degree, DaryQueue<>>(seed, kind, most, steps, 1.5) == log);
+      const Log log = run<Degree, List<Degree>>(seed, kind, most, steps, no_window);
+      CHECK(run<Degree, List<Degree>>(seed, kind, most, steps, 0.2) == log);
+      CHECK(run<Degree, RuleList<Degree, Recorder, CalendarQueue<>>>(seed, kind, most, steps, no_window) == log);
+      CHECK(run<Degree, RuleList<Degree, Recorder, DaryQueue<>>>(seed, kind, most, steps, no_window) == log);
+      CHECK(run<Degree, RuleList<Degree, Recorder, PairingQueue<>>>(seed, kind, most, steps, no_window) == log);
+      CHECK(run<Degree, RuleList<Degree, Recorder, CalendarQueue<>>>(seed, kind, most, steps, 0.1) == log);
+      CHECK(run<Degree, RuleList<Degree, Recorder, DaryQueue<>>>(seed, kind, most, steps, 1.5) == log);
     }
   }
 }

@@ -42,13 +42,14 @@ std::string wrong_around(const PlainList<Degree>& list, const Swap& swap) {
     const auto at = " at place " + std::to_string(i);
     if (list.position(entries[i].id) != i) return "position" + at;
     const certificates::Order<Degree> order{entries[i].motion, entries[i + 1].motion};
-    const bool due = list.swap_time(entries[i].id) <= swap.time;
+    const double scheduled = list.queue().time(static_cast<Slot>(i));
+    const bool due = scheduled <= swap.time;
     const int sign = sign_after(order, swap.time);
     if (due) continue;  // at this very time
     if (sign < 0 || (sign == 0 && entries[i].id > entries[i + 1].id)) return "order" + at;
     const double t = failure_time(order, swap.time);
-    if ((list.swap_time(entries[i].id) != never) != (t != never)) return "missing or needless event" + at;
-    if (t != never && list.swap_time(entries[i].id) != t) return "time" + at;
+    if ((scheduled != never) != (t != never)) return "missing or needless event" + at;
+    if (scheduled != t) return "time" + at;
   }
   if (list.position(swap.left) + 1 != list.position(swap.right)) return "the swap itself";
   return {};

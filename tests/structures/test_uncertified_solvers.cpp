@@ -3,6 +3,7 @@
 #include "structures/tournament.hpp"
 #include "tests/structures/random_values.hpp"
 #include "tests/structures/recorded_list.hpp"
+#include "tests/structures/rule_list.hpp"
 
 #ifdef KDS_WITH_GSL
 #include "kds/roots/gsl_roots.hpp"
@@ -18,7 +19,6 @@
 namespace kds::tests {
 namespace {
 
-using structures::SortedList;
 using structures::Tournament;
 
 /// Says half way to the root: early by much.
@@ -81,11 +81,11 @@ struct Outcome {
   Counters counters;
 };
 
-/// Runs a list of the motions to `end`; checks nothing on the way but that it ends.
+/// Runs a list made of a rule to `end`; checks nothing on the way but that it ends.
 template <int Degree, class Solver>
 Outcome run(const std::vector<Motion<Degree>>& motions, double end) {
   Outcome outcome;
-  SortedList<Degree, PlainRecorder, PlaceQueue, Solver> list(PlainRecorder{&outcome.log});
+  RuleList<Degree, PlainRecorder, DefaultEventQueue, Solver> list(PlainRecorder{&outcome.log});
   for (std::uint32_t id = 0; id < motions.size(); ++id) list.insert(id, motions[id], 0);
   Simulator simulator(0, list);
   std::size_t steps = 0;

@@ -173,3 +173,15 @@ TEST_CASE("a ball is small: its radius is a few roundings of what went in", "[ba
   for (int i = 1; i <= 10; ++i) extended = extended + Ball<DoubleDouble>(1.0 / i) * 3.0;
   CHECK(extended.radius < 200 * 0x1p-101);
 }
+
+TEST_CASE("the absolute value of a ball contains that of the number", "[ball]") {
+  for (const double middle : {3.0, -3.0, 1e-20, -1e-20, 0.0}) {
+    for (const double radius : {0.0, 1.0}) {
+      const auto ball = absolute(Ball<double>(middle, radius));
+      for (const double x : {middle - radius, middle, middle + radius}) {
+        CHECK(std::abs(std::abs(x) - ball.middle) <= ball.radius);
+      }
+    }
+  }
+  CHECK(absolute(Ball<DoubleDouble>(DoubleDouble(-1, 1e-20), 0)).middle.low == -1e-20);
+}

@@ -119,3 +119,10 @@ TEST_CASE("approximations are the nearest double or its neighbour", "[exact]") {
   CHECK((Exact(-largest) * Exact(2.0)).approximate() == -std::numeric_limits<double>::infinity());
   CHECK((Exact(least) * Exact(0.25)).approximate() == 0);
 }
+
+TEST_CASE("the absolute value of an exact number has no sign", "[exact]") {
+  CHECK(absolute(Exact(-2.0)).approximate() == 2);
+  CHECK(absolute(Exact(2.0)).approximate() == 2);
+  CHECK(absolute(Exact(-least) + Exact(largest)).sign() == 1);
+  CHECK(absolute(Exact(0.0)).sign() == 0);
+}

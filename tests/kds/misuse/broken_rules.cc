@@ -46,17 +46,59 @@ struct KeepsOnly : Base {
 struct KeepsAndChanges : KeepsOnly {
   void change(Id, Repair<Value>&) {}
 };
-static_assert(KineticRule<KeepsAndChanges>);
+struct Archived : Base {
+  void archive(int) {}
+};
+static_assert(KineticRule<KeepsAndChanges> && ChoosesMotions<KeepsAndChanges>);
 static_assert(!KineticRule<WithoutElement> && !KineticRule<WithoutName> && !KineticRule<WithoutCertificate> &&
-              !KineticRule<WithoutMembers> && !KineticRule<WithoutRepair> && !KineticRule<WithoutRemove> &&
-              !KineticRule<KeepsOnly>);
+              !KineticRule<WithoutMembers> && !KineticRule<WithoutRepair> && !KineticRule<WithoutRemove>);
+
+// Optional parts that are there, but would never be called.
+struct ChangesLate : Base {
+  void change(Id, Repair<Value>&, double) {}
+};
+struct KeepsUnknown : KeepsAndChanges {
+  int keeps(Id, const Value&, Repair<Value>&) { return 2; }
+};
+struct BuildsForItself : Base {
+ private:
+  void build(Repair<Value>&) {}
+};
+struct AuditsByChanging : Base {
+  void audit(const MovingSet<Value>&, double) {}
+};
 
 template <class Rule>
 using With = Kinetic<Rule>;
-constexpr std::size_t sizes[] = {sizeof(With<WithoutElement>),     sizeof(With<WithoutName>),   sizeof(With<WithoutCertificate>),
-                                 sizeof(With<WithoutMembers>),     sizeof(With<WithoutRepair>), sizeof(With<WithoutRemove>),
-                                 sizeof(With<KeepsOnly>),
+constexpr std::size_t sizes[] = {sizeof(With<WithoutElement>),   sizeof(With<WithoutName>),
+                                 sizeof(With<WithoutCertificate>), sizeof(With<WithoutMembers>),
+                                 sizeof(With<WithoutRepair>),    sizeof(With<WithoutRemove>),
+                                 sizeof(With<KeepsOnly>),        sizeof(With<ChangesLate>),
+                                 sizeof(With<KeepsUnknown>),     sizeof(With<BuildsForItself>),
+                                 sizeof(With<AuditsByChanging>), sizeof(With<KeepsAndChanges>),
                                  sizeof(Kinetic<Base, NoListener, DefaultEventQueue, int>)};
+
+struct LateSolver : CertifiedSolver {
+  template <class C>
+  double after_turn(const C&, double) const {
+    return never;
+  }
+};
+struct SometimesSampled : Value {
+  bool sampled = true;
+};
+bool is_finite(const SometimesSampled&) { return true; }
+struct MovesByNumber : Bounded {
+  static constexpr int moves = 1;
+};
+
+void parts(Schedule<DefaultEventQueue, LateSolver>& schedule, Kinetic<Archived>& structure) {
+  schedule.certify_turned(0, PolynomialCertificate<1>{}, 0);
+  detail::Writer writer;
+  structure.archive(writer);
+  MovingSet<SometimesSampled> sometimes;
+  MovingSet<MovesByNumber> moving;
+}
 
 struct Unsaved {
   std::string* text;

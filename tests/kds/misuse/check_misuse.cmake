@@ -1,18 +1,40 @@
 list(TRANSFORM INCLUDES PREPEND -I)
-execute_process(COMMAND "${COMPILER}" -std=c++20 -fsyntax-only -w "-I${ROOT}" ${INCLUDES} "${ROOT}/tests/kds/misuse/broken_rules.cc"
-                RESULT_VARIABLE failed ERROR_VARIABLE said OUTPUT_VARIABLE said)
-if(NOT failed)
-  message(FATAL_ERROR "Rules from which a part is missing have compiled.")
-endif()
-foreach(expected IN ITEMS "must name what moves" "name = ...;` is missing" "must give a certificate"
-        "must give a range of ids" "repair(Slot, Repair<Element>&)` is missing" "remove(Id, Repair<Element>&)` are missing"
-        "is missing, which a rule with `keeps` must have" "the solver is no FailureTimeSolver" "a type without archive()")
-  string(FIND "${said}" "${expected}" found)
-  if(found EQUAL -1)
-    message(FATAL_ERROR "The compiler does not say \"${expected}\", but:\n${said}")
+
+# said_of(FILE message...): the file must not compile, and the compiler must give these messages. Sets `said`.
+function(said_of file)
+  execute_process(
+    COMMAND "${COMPILER}" -std=c++20 -fsyntax-only -w "-I${ROOT}" ${INCLUDES} "${ROOT}/tests/kds/misuse/${file}"
+    RESULT_VARIABLE failed ERROR_VARIABLE said OUTPUT_VARIABLE said)
+  if(NOT failed)
+    message(FATAL_ERROR "${file}, in which each part is wrong, has compiled.")
   endif()
-endforeach()
+  foreach(expected IN LISTS ARGN)
+    string(FIND "${said}" "${expected}" found)
+    if(found EQUAL -1)
+      message(FATAL_ERROR "${file}: the compiler does not say \"${expected}\", but:\n${said}")
+    endif()
+  endforeach()
+  set(said "${said}" PARENT_SCOPE)
+endfunction()
+
+said_of(broken_rules.cc
+  "must name what moves" "name = ...;` is missing" "must give a certificate" "must give a range of ids"
+  "repair(Slot, Repair<Element>&)` is missing" "remove(Id, Repair<Element>&)` are missing"
+  "is missing, which a rule with `keeps` must have" "the solver is no FailureTimeSolver" "a type without archive()"
+  "`change` must be" "`keeps` must be" "`build` must be" "`audit` must be" "to be saved it needs"
+  "`after_turn` must be" "`sampled` must be" "`moves` must be")
 string(REGEX MATCH "[^\n]*static assertion failed: KineticRule<(Base|KeepsAndChanges)>[^\n]*" whole_is_broken "${said}")
 if(whole_is_broken)
   message(FATAL_ERROR "A rule from which nothing is missing is refused:\n${said}")
+endif()
+
+set(hooks vanishes extended_value quick_failure_time quick_failure_time_after_turn quick_failure_times antisymmetric)
+list(TRANSFORM hooks REPLACE "(.+)" "certificate: `\\1` must be" OUTPUT_VARIABLE messages)
+said_of(broken_hooks.cc ${messages})
+# Each is named once, of the certificate in which it is wrong.
+string(REGEX MATCHALL "static[_ ]assert[^\n]*failed[^\n]*certificate: `[a-z_]+` must be" named "${said}")
+list(LENGTH named times)
+list(LENGTH hooks expected_times)
+if(NOT times EQUAL expected_times)
+  message(FATAL_ERROR "${times} hooks are named, where ${expected_times} are wrong:\n${said}")
 endif()

@@ -1,4 +1,4 @@
-// From a root known to a few digits to the double that is its failure time, or to a close enclosure of it.
+// From a root known to a few digits to the double that is its failure time.
 #pragma once
 
 #include "kds/arithmetic/lattice.hpp"
@@ -43,6 +43,19 @@ Slope slope_at(const Polynomial<Degree, Ball<double>>& p, double x) {
   return {slope, error, 1.25 * (Degree - 1) * (magnitudes + radii) / x};
 }
 
+/// Between one and two units in the last place.
+inline double spacing(double t) { return std::abs(t) * 0x1p-52 + std::numeric_limits<double>::denorm_min(); }
+
+/// The first double not before a root that is known up to `error`, where f falls from + to - and which is the only one
+/// near: `root` rounded up, unless a double is within the error; there one exact sign tells, if no other double is
+/// near. A NaN where the error is too large for that.
+template <class C>
+double first_double_not_before(const C& certificate, const DoubleDouble& root, double error) {
+  if (std::abs(root.low) > error) return root.low > 0 ? next_up(root.high) : root.high;
+  if (!(error <= 0x1p-5 * spacing(root.high) && std::abs(root.high) < never)) return undecided;
+  return exact_sign_after(certificate, root.high, 0) < 0 ? root.high : next_up(root.high);
+}
+
 /// The first double not before the one root of f near now + x, where f falls; p is f about now. A NaN where the numbers
 /// do not decide.
 ///
@@ -59,8 +72,7 @@ Slope slope_at(const Polynomial<Degree, Ball<double>>& p, double x) {
 ///     root; but t0 is earlier, so that would be in J.
 /// (3) With v = -f'(y) d* for some y in J and v known to +-r, |d - d*| <= |d| (e / (1 - e) + 4 u) + r / ((1 - e) |s|)
 ///     <= 2 (|d| (e + 2^-51) + r / |s|).
-/// The failure time is then t0 + d rounded up unless that is within the error of a double; there one exact sign tells,
-/// since by (1) f > 0 before and f < 0 after the root in J, and no other double is near.
+/// The failure time is then that of first_double_not_before(): by (1) f > 0 before and f < 0 after the root in J.
 template <class C>
 class RootRounding {
  public:
@@ -85,19 +97,14 @@ class RootRounding {
       if (!(margin <= 0.25 && reach * (16 * Degree) <= elapsed && radius <= 0.25 * spacing(t))) return undecided;
       const double error = 2 * (std::abs(step) * (margin + 0x1p-51) + radius);
       const DoubleDouble root = two_sum(t, step);
-      if (std::abs(root.low) > error) return root.low > 0 ? next_up(root.high) : root.high;
-      if (error <= 0x1p-5 * spacing(root.high)) {
-        return exact_sign_after(certificate_, root.high, 0) < 0 ? root.high : next_up(root.high);
-      }
+      const double first = first_double_not_before(certificate_, root, error);
+      if (first == first) return first;
       t = root.high;
     }
     return undecided;
   }
 
  private:
-  /// Between one and two units in the last place.
-  static double spacing(double t) { return std::abs(t) * 0x1p-52 + std::numeric_limits<double>::denorm_min(); }
-
   const C& certificate_;
   double now_;
 };

@@ -1,4 +1,4 @@
-// Failure times by exact signs alone: slow, and never at a loss.
+// Where a sign changes, among the doubles: by signs alone.
 #pragma once
 
 #include "kds/arithmetic/lattice.hpp"
@@ -8,9 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace kds {
-
-namespace detail {
+namespace kds::detail {
 
 /// Finds where derivative number `order` of f changes sign, on a stretch with exactly one change.
 template <class C>
@@ -67,24 +65,4 @@ class LatticeCrossing {
   std::size_t order_;
 };
 
-/// f > 0 just after now, linear and falling. The first double in (now, horizon] not before the root, from a guess that
-/// is usually it or the one before.
-template <class C>
-double first_past_linear_root(const C& certificate, double now, double guess, double horizon) {
-  if (!(guess <= horizon) || guess == never) guess = horizon < never ? horizon : std::numeric_limits<double>::max();
-  if (extended_sign_after(certificate, guess, 0) < 0) {
-    const double before = next_down(guess);
-    if (!(before > now) || extended_sign_after(certificate, before, 0) >= 0) return guess;
-    return LatticeCrossing<C>(certificate, 0)(now, before, -1, before);
-  }
-  const double after = next_up(guess);
-  if (!(after <= horizon) || after == never) return never;
-  if (extended_sign_after(certificate, after, 0) < 0) return after;
-  const double end = horizon < never ? horizon : std::numeric_limits<double>::max();
-  if (extended_sign_after(certificate, end, 0) >= 0) return never;
-  return LatticeCrossing<C>(certificate, 0)(after, end, -1, after);
-}
-
-}  // namespace detail
-
-}  // namespace kds
+}  // namespace kds::detail

@@ -1,4 +1,4 @@
-// The failure time of a parabola whose coefficients are known: the quick answer.
+// Rung 1: the failure time of a parabola whose coefficients are known.
 #pragma once
 
 #include "kds/arithmetic/double_double.hpp"

@@ -1,7 +1,7 @@
-// The failure time of a line whose coefficients are known: the quick answer.
+// Rung 1: the failure time of a line whose coefficients are known.
 #pragma once
 
-#include "kds/roots/failure_time_parabola.hpp"
+#include "kds/roots/failure_time_known_parabola.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,110 @@
+// What a certificate may know of itself beyond its formula: the optional parts, each a concept with its laws.
+#pragma once
+
+#include "kds/arithmetic/ball.hpp"
+#include "kds/arithmetic/double_double.hpp"
+#include "kds/member_named.hpp"
+
+#include <concepts>
+#include <type_traits>
+
+namespace kds {
+
+// A certificate is complete without any of these: they spare work, and change no result. A hook says that it does not
+// know with a NaN, with an infinite radius or with `false`; so one that is for some template arguments only says that
+// for the others, and is not switched off by a requires-clause. A member of one of these names that is not exactly
+// what the concept asks for (other parameters, not const, another result, private) does not compile: it would never be
+// called, and nothing but the time that is lost would tell. What hooks answer is compared with the formula on a sample
+// of calls where KDS_CHECK_QUICK_ANSWERS is defined (hook_checks.hpp).
+
+/// `bool vanishes() const`: cheap, and true only if f is zero throughout. Things that move together are spared the
+/// exact rung.
+template <class C>
+concept TellsIfItVanishes = requires {
+  static_cast<bool (C::*)() const>(&C::vanishes);
+};
+
+/// `Ball<DoubleDouble> extended_value(double t) const`: a ball that holds f(t), got for less than polynomial(t) takes.
+/// It is f(t) that places a root among the doubles. With an infinite radius it is not used.
+template <class C>
+concept GivesExtendedValue = requires {
+  static_cast<Ball<DoubleDouble> (C::*)(double) const>(&C::extended_value);
+};
+
+/// `double quick_failure_time(double now, double horizon) const`: what failure_time() gives, bit for bit, or a NaN
+/// where it takes more care. It is asked first, with now <= horizon.
+template <class C>
+concept AnswersQuickly = requires {
+  static_cast<double (C::*)(double, double) const>(&C::quick_failure_time);
+};
+
+/// `double quick_failure_time_after_turn(double now, double horizon) const`: the same where f is known to be positive
+/// just after now, as failure_time_after_turn() says.
+template <class C>
+concept AnswersQuicklyAfterTurn = requires {
+  static_cast<double (C::*)(double, double) const>(&C::quick_failure_time_after_turn);
+};
+
+/// Failure times in seconds, of the first and of the second of two certificates.
+struct TwoTimes {
+  double first, second;
+};
+
+/// `static TwoTimes quick_failure_times(const C& first, const C& second, double now, double horizon)`: of two
+/// certificates together, for less than one after the other takes; each as quick_failure_time() says.
+template <class C>
+concept AnswersQuicklyForTwo = requires(const C& certificate, double t) {
+  { C::quick_failure_times(certificate, certificate, t, t) } -> std::same_as<TwoTimes>;
+};
+
+/// `static constexpr bool antisymmetric = true`: f is given by the members `lower` and `upper`, references, alone, and
+/// is -f for the two the other way round. So when it has failed, that of the two exchanged is known to be positive, and
+/// its next failure is found for less (failure_time_after_turn()).
+template <class C>
+concept Antisymmetric = requires {
+  requires std::same_as<decltype(C::antisymmetric), const bool>;
+  requires C::antisymmetric;
+  requires std::is_lvalue_reference_v<decltype(C::lower)>;
+  requires std::same_as<decltype(C::lower), decltype(C::upper)>;
+};
+
+namespace detail {
+
+KDS_MEMBER_NAMED(NamesVanishes, vanishes);
+KDS_MEMBER_NAMED(NamesExtendedValue, extended_value);
+KDS_MEMBER_NAMED(NamesQuickFailureTime, quick_failure_time);
+KDS_MEMBER_NAMED(NamesQuickFailureTimeAfterTurn, quick_failure_time_after_turn);
+KDS_MEMBER_NAMED(NamesQuickFailureTimes, quick_failure_times);
+KDS_MEMBER_NAMED(NamesAntisymmetric, antisymmetric);
+
+/// A certificate may say `antisymmetric = false` and mean it.
+template <class C>
+concept SaysNotAntisymmetric = requires {
+  requires std::same_as<decltype(C::antisymmetric), const bool>;
+  requires !C::antisymmetric;
+};
+
+/// To be named wherever a hook is asked for: compiles if all that the certificate has are as they must be.
+template <class C>
+struct RightHooks {
+  static_assert(TellsIfItVanishes<C> || !NamesVanishes<C>, "certificate: `vanishes` must be `bool vanishes() const`");
+  static_assert(GivesExtendedValue<C> || !NamesExtendedValue<C>,
+                "certificate: `extended_value` must be `Ball<DoubleDouble> extended_value(double t) const`");
+  static_assert(AnswersQuickly<C> || !NamesQuickFailureTime<C>,
+                "certificate: `quick_failure_time` must be "
+                "`double quick_failure_time(double now, double horizon) const`");
+  static_assert(AnswersQuicklyAfterTurn<C> || !NamesQuickFailureTimeAfterTurn<C>,
+                "certificate: `quick_failure_time_after_turn` must be "
+                "`double quick_failure_time_after_turn(double now, double horizon) const`");
+  static_assert(AnswersQuicklyForTwo<C> || !NamesQuickFailureTimes<C>,
+                "certificate: `quick_failure_times` must be "
+                "`static TwoTimes quick_failure_times(const C& first, const C& second, double now, double horizon)`");
+  static_assert(Antisymmetric<C> || SaysNotAntisymmetric<C> || !NamesAntisymmetric<C>,
+                "certificate: `antisymmetric` must be `static constexpr bool`, and the certificate be given by the "
+                "references `lower` and `upper`, of one type");
+  static constexpr bool checked = true;
+};
+
+}  // namespace detail
+
+}  // namespace kds

@@ -1,0 +1,91 @@
+// How the edits of a set of elements come into a structure made of a rule.
+#pragma once
+
+#include "kds/framework/kinetic.hpp"
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kds {
+
+// The set calls settle(), with the elements as they were; makes the edit; and tells of it: inserted(), removing() while
+// the element is still there, or changing() before and changed() after it has its new motion. Law: an edit comes after
+// the events of its time. So the rule is called with a state that is right, and marks what the edit changes. A new
+// motion that the rule does not keep (ChoosesMotions), or any if it cannot (TakesUpMotions), is a removal before the
+// change and an insertion after it.
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::inserted(Id id, double now) {
+  begin(now);
+  rule_.insert(id, repair_);
+  finish(false);
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::removing(Id id, double now) {
+  begin(now);
+  rule_.remove(id, repair_);
+  finish(false);
+}
+
+/// The change is one call of the rule in two parts: it is finished in changed().
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::changing(Id id, const Element& next, double now) {
+  begin(now);
+  keeps_ = TakesUpMotions<Rule>;
+  if constexpr (ChoosesMotions<Rule>) keeps_ = rule_.keeps(id, next, repair_);
+  if (!keeps_) rule_.remove(id, repair_);
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::changed(Id id, double /*now*/) {
+  if constexpr (TakesUpMotions<Rule>) {
+    if (keeps_) rule_.change(id, repair_);
+  }
+  if (!keeps_) rule_.insert(id, repair_);
+  finish(false);
+}
+
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::require_ready() const {
+  if (busy_) fail_use("the elements may not be edited from within the rule");
+  if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
+}
+
+/// Makes what is due up to now. What is due for a sample, not for a failure, can wait until after the edit.
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::settle(double now) {
+  require_ready();
+  if (now < last_) {
+    fail_use("an edit at " + std::to_string(now) + " comes after a change at " + std::to_string(last_));
+  }
+  if (next_time() < now) {
+    fail_use("an edit at " + std::to_string(now) + " would pass over an event at " + std::to_string(next_time()));
+  }
+  if constexpr (Sampled<Element> && !MovingSample<Element>) return;  // In order at all times.
+  // What is due for a sample can wait. It is put back also if a listener throws.
+  struct Waiting {
+    Kinetic& structure;
+    double now;
+    std::vector<Slot> slots{};
+    ~Waiting() {
+      for (const Slot slot : slots) {
+        if (structure.held_[slot] && !structure.schedule_.contains(slot)) structure.schedule_.set(slot, now);
+      }
+    }
+  } waiting{*this, now};
+  while (next_time() <= now) {
+    const Slot slot = schedule_.next().slot;
+    if constexpr (MovingSample<Element>) {
+      if (!failed(slot, now, false)) {
+        waiting.slots.push_back(slot);
+        schedule_.set(slot, never);
+        continue;
+      }
+    }
+    process();
+  }
+}
+
+}  // namespace kds

@@ -1,0 +1,84 @@
+// A sample of what certificates answer quickly, compared with what their formula gives: for the builds of tests.
+#pragma once
+
+#include "kds/arithmetic/ball.hpp"
+#include "kds/arithmetic/double_double.hpp"
+#include "kds/arithmetic/exact.hpp"
+
+#include <cstdint>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+// With KDS_CHECK_QUICK_ANSWERS defined, which the preset `dev` does, in all files of a program: of the answers of each
+// hook of each kind of certificate (certificate_hooks.hpp) the first and then every 1024th is computed by the general
+// way too, in each thread. Where they differ std::logic_error names the certificate. Neither events nor sign_counters
+// change. Without it nothing of this is compiled.
+namespace kds::detail {
+
+#ifdef KDS_CHECK_QUICK_ANSWERS
+inline constexpr bool checks_quick_answers = true;
+#else
+inline constexpr bool checks_quick_answers = false;
+#endif
+
+enum class Hook { vanishes, extended_value, quick_failure_time, quick_failure_time_after_turn, quick_failure_times };
+
+/// How many answers there are for one that is checked. The general way costs a hundred times as much, at most.
+inline constexpr std::uint32_t answers_per_check = 1024;
+
+/// Whether this answer is one of those that are checked.
+template <class C, Hook>
+bool is_to_be_checked() {
+  if constexpr (checks_quick_answers) {
+    static thread_local std::uint32_t answers = 0;
+    return answers++ % answers_per_check == 0;
+  }
+  return false;
+}
+
+/// As compilers write it.
+template <class C>
+std::string name_of_type() {
+  const std::string_view function = __PRETTY_FUNCTION__;  // ... [with C = name; ...] or ... [C = name]
+  const std::size_t begin = function.find("C = ") + 4;
+  return std::string(function.substr(begin, function.find_first_of(";]", begin) - begin));
+}
+
+template <class C>
+[[noreturn, gnu::cold]] void refuse_answer(const char* hook, const std::string& what) {
+  throw std::logic_error("certificate " + name_of_type<C>() + ": " + hook + ' ' + what);
+}
+
+template <class C>
+void require_same_time(const char* hook, double quick, double general, double now, double horizon) {
+  if (quick == general) return;
+  char text[256];
+  std::snprintf(text, sizeof(text), "gives %a, its formula %a, for now = %a and horizon = %a", quick, general, now,
+                horizon);
+  refuse_answer<C>(hook, text);
+}
+
+template <class C>
+void check_vanishes(const C& certificate) {
+  if (!is_to_be_checked<C, Hook::vanishes>()) return;
+  for (const Exact& c : certificate.template polynomial<Exact>(0).c) {
+    if (c.sign() != 0) refuse_answer<C>("vanishes", "is true, but its formula is not zero");
+  }
+}
+
+template <class C>
+void check_extended_value(const C& certificate, double t, const Ball<DoubleDouble>& value) {
+  if (!is_to_be_checked<C, Hook::extended_value>()) return;
+  const Exact middle = Exact(value.middle.high) + Exact(value.middle.low);
+  const Exact error = absolute(certificate.template polynomial<Exact>(t).c[0] - middle);
+  if ((error - Exact(value.radius * Ball<DoubleDouble>::slack)).sign() > 0) {
+    char text[128];
+    std::snprintf(text, sizeof(text), "is off by %g at t = %a, where it claims %g", error.approximate(), t,
+                  value.radius);
+    refuse_answer<C>("extended_value", text);
+  }
+}
+
+}  // namespace kds::detail
