@@ -25,7 +25,7 @@ BroadPhaseCounters run(std::unique_ptr<BroadPhase<Degree>> broad_phase, std::siz
   Stress<Degree> stress(17, false, std::move(broad_phase));
   stress.side = 8;
   stress.insert(bodies);
-  for (int round = 0; round < 16; ++round) {
+  for (int round = 0; round < 20; ++round) {
     stress.advance(stress.now + stress.random.between(0, 0.5));
     stress.compare_with_brute_force();
     for (int i = 0; i < 4; ++i) stress.update();
@@ -76,31 +76,31 @@ const std::vector<Change<FewBoxesTuning>> other_few_boxes{
 TEMPLATE_TEST_CASE_SIG("The tuning of broad phases changes what they cost and not what they find", "[broad_phase]",
                        ((int Degree), Degree), 1, 2) {
   std::size_t differ = 0;
-  const auto grid = run<Degree>(std::make_unique<KineticGrid<Degree>>(), 18);
+  const auto grid = run<Degree>(std::make_unique<KineticGrid<Degree>>(), 12);
   for (const GridTuning& tuning : all_of(other_grids)) {
     INFO("grid " << differ);
-    differ += run<Degree>(std::make_unique<KineticGrid<Degree>>(1, tuning), 18) != grid;
+    differ += run<Degree>(std::make_unique<KineticGrid<Degree>>(1, tuning), 12) != grid;
   }
   CHECK(differ > other_grids.size() / 2);
 
   differ = 0;
-  const auto few = run<Degree>(std::make_unique<FewBoxes<Degree>>(), 18);
+  const auto few = run<Degree>(std::make_unique<FewBoxes<Degree>>(), 12);
   for (const FewBoxesTuning& tuning : all_of(other_few_boxes)) {
     INFO("few boxes " << differ);
-    differ += run<Degree>(std::make_unique<FewBoxes<Degree>>(tuning), 18) != few;
+    differ += run<Degree>(std::make_unique<FewBoxes<Degree>>(tuning), 12) != few;
   }
   CHECK(differ > other_few_boxes.size() / 2);
 
-  const auto chosen = run<Degree>(std::make_unique<AdaptiveBroadPhase<Degree>>(), 18);
+  const auto chosen = run<Degree>(std::make_unique<AdaptiveBroadPhase<Degree>>(), 12);
   AdaptiveTuning adaptive;
-  adaptive.most_for_few = 18;
+  adaptive.most_for_few = 8;
   adaptive.grid.first_reach = 4;
-  CHECK(run<Degree>(std::make_unique<AdaptiveBroadPhase<Degree>>(1, adaptive), 18) != chosen);
+  CHECK(run<Degree>(std::make_unique<AdaptiveBroadPhase<Degree>>(1, adaptive), 12) != chosen);
 
-  const auto lists = run<Degree>(std::make_unique<KineticSweepAndPrune<Degree>>(0), 18);
+  const auto lists = run<Degree>(std::make_unique<KineticSweepAndPrune<Degree>>(0), 12);
   for (const SweepTuning& tuning : {SweepTuning{.few_bodies = 10}, SweepTuning{.listed = ListedAxes::two},
                                     SweepTuning{.listed = ListedAxes::one, .change_below = 1}}) {
-    CHECK(run<Degree>(std::make_unique<KineticSweepAndPrune<Degree>>(0, tuning), 18) != lists);
+    CHECK(run<Degree>(std::make_unique<KineticSweepAndPrune<Degree>>(0, tuning), 12) != lists);
   }
 }
 
