@@ -42,16 +42,16 @@ namespace kds {
 ///    certificates that touch zero, or nearly, and clustered roots. Nothing is assumed. 2 to 70 us, the most for
 ///    clustered roots of a high degree; counted by sign_counters.searches.
 ///
-/// What each special form gains, in instructions of all that a sorted list does, or a loop over random polynomials,
-/// without it (callgrind; a form that gained less than 3 % is not here):
-///      known line                                 +71 % where parabolas share their acceleration
-///      root of a known line that is a double      +118 % for lines on a grid
-///      known parabola                             +35 % for random parabolas
-///      known line and parabola, starts apart      +22 % lines, +30 % parabolas, +85 % where they share it
-///      two lines side by side                     +6.6 % where all starts are one; -2.5 % where all differ
-///      signs of lines before a start is moved     +7.9 % where starts differ (Order<1>)
-///      quick answers after a turn                 +7 to +19 %
-///      line, of computed coefficients             +15 % for random lines
+/// What each special form gains: how many instructions more all takes without it that a sorted list does for a second,
+/// or a loop over random polynomials (callgrind; a form that gained less than 3 % is not here).
+///      known line                               +118 % lists of parabolas that share their acceleration
+///      its root, if that is a double            +133 % lines on a grid
+///      known parabola                           +71 % lists, +46 % random parabolas
+///      either, of two motions' own starts       +42 % lists of lines, +37 % of parabolas, +94 % that share it
+///      signs before a start is moved (Order<1>) +16 % lists of lines with starts of their own
+///      two lines side by side                   +14 % lists of lines with one start; 4 % less with starts of their own
+///      quick answers after a turn               +10 to 22 % lists, but for parabolas with starts of their own
+///      line, of computed coefficients           +7 to 18 % random lines
 ///
 /// enclosed_failure_time.hpp gives enclosures and a status, solver.hpp makes the solver of a structure exchangeable.
 template <Certificate C>
