@@ -8,7 +8,7 @@
 
 namespace kds::collision {
 
-/// Kinds of work ([Paper] Figure 8).
+/// Kinds of work ([Coming06] Figure 8).
 enum class Work : std::size_t {
   update,  ///< recomputing bounding volumes, telling the structures of new motions
   sort,    ///< swaps and sorting

@@ -29,7 +29,7 @@ namespace kds::collision {
 
 /// Runs bodies through time and reports their contacts at exact times.
 ///
-/// [Paper] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
+/// [Coming06] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
 /// broad phase, bounding volumes that have to be renewed, walls, resting contacts that end, contacts and separations by
 /// (a, b). Which broad phase finds them makes no difference: WorldListener says in what order they are reported.
 ///
@@ -79,8 +79,8 @@ class World final : private RestingContacts<Degree>::Listener {
 
   /// Replaces the motion from now() on, and discards the pieces still to come. A body that was to enter later enters
   /// now. In the modes that resolve contacts a body that jumps enters anew: what it meets there is an overlap. In mode
-  /// `none`, and of sensors, a jump begins and ends contacts. Throws std::invalid_argument for a motion that is not finite or starts
-  /// after now().
+  /// `none`, and of sensors, a jump begins and ends contacts. Throws std::invalid_argument for a motion that is not
+  /// finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
 
   /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,

@@ -14,7 +14,7 @@
 
 namespace kds {
 
-/// x(t) = c0 + c1 (t - start) + c2 (t - start)^2 + ...: [Paper] Equation 1, written about its own start.
+/// x(t) = c0 + c1 (t - start) + c2 (t - start)^2 + ...: [Coming06] Equation 1, written about its own start.
 ///
 /// Law (epochs): a motion is never evaluated with a large absolute t, so a clock at 1e9 is as good as one at 0. The
 /// coefficients and the start are taken as exact; c2 is half the acceleration. Degrees above 10 are refused at compile

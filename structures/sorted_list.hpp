@@ -40,7 +40,7 @@ concept SwapListener = requires(L& listener, const L& observed, std::uint32_t id
 /// Keeps moving values sorted, swap by swap.
 ///
 /// One certificate for each adjacent pair; when it fails, the two swap and up to three pairs are certified again.
-/// Paper: [Paper] sections 4.1-4.3 and Figures 3-5; [Basch99] section 2.
+/// Paper: [Coming06] sections 4.1-4.3 and Figures 3-5; [Basch99] section 2.
 ///
 /// Elements are known by ids chosen by the caller, small integers used once each. They are stored in list order (motion
 /// and id side by side), so a swap touches one or two cache lines; and the event of a pair has the place of its left

@@ -8,7 +8,7 @@
 
 namespace kds::collision {
 
-/// Cached dynamic collision detection ([Paper] section 5): every pair is active from the time both bodies are there
+/// Cached dynamic collision detection ([Coming06] section 5): every pair is active from the time both bodies are there
 /// until one is removed.
 /// Cost: O(n) pairs to test for each motion change; memory O(n^2), in the world, for the pairs.
 template <int Degree>

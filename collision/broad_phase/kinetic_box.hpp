@@ -14,7 +14,7 @@ namespace kds::collision {
 
 using BodyId = std::uint32_t;
 
-/// An axis-aligned box with a motion for each corner: it may grow and shrink ([Paper] section 5.2).
+/// An axis-aligned box with a motion for each corner: it may grow and shrink ([Coming06] section 5.2).
 ///
 /// It must contain its body until `valid_until`; then the owner of the body makes a new one.
 template <int Degree>

@@ -20,8 +20,8 @@ namespace kds::collision {
 /// without a list have a certificate for each pair that overlaps on the listed ones and comes near on the others
 /// (UnlistedAxes).
 ///
-/// Paper: [Paper] sections 4.1-4.3. Differs: by default one list. A body passes the coordinates of all others, near or
-/// far, on each listed axis, so swaps are what it costs, and one list has a third of them; of the pairs that meet on
+/// Paper: [Coming06] sections 4.1-4.3. Differs: by default one list. A body passes the coordinates of all others, near
+/// or far, on each listed axis, so swaps are what it costs, and one list has a third of them; of the pairs that meet on
 /// one axis few come near on the others. The axis is the one with the fewest pairs and swaps to expect from sizes and
 /// speeds; it is chosen again when the horizon is moved or the bodies have doubled. A few boxes, not
 /// k-DOPs, get three lists, which is a matter of microseconds then (SweepTuning). Times of pairs are the same, bit for

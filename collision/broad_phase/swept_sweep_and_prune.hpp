@@ -16,8 +16,8 @@ namespace kds::collision {
 /// At each frame every body gets the box it sweeps until the next, the sorted arrays of interval ends are put in order
 /// again by insertion sort, and exchanges of a minimum with a maximum add or drop pairs.
 ///
-/// Paper: [Cohen95] for sweep and prune, [Paper] section 5 for its use with swept volumes. Pairs are those whose swept
-/// boxes overlap: a superset of those whose kinetic boxes do. A motion change in mid-frame sweeps the body anew.
+/// Paper: [Cohen95] for sweep and prune, [Coming06] section 5 for its use with swept volumes. Pairs are those whose
+/// swept boxes overlap: a superset of those whose kinetic boxes do. A motion change in mid-frame sweeps the body anew.
 /// Cost: O(n + swaps) a frame.
 template <int Degree>
 class SweptSweepAndPrune final : public BroadPhase<Degree> {

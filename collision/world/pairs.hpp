@@ -59,8 +59,8 @@ struct PairRank {
 /// separation is. With WorldOptions.report_pairs and a broad phase that is not exact, also when its boxes meet and
 /// part.
 ///
-/// [Paper] Figure 2: the result of a dynamic test is kept until the motion of one of the bodies changes. Then the pair
-/// is dirty, until test(). Most tests give no more than a lower bound, which costs less; only what comes first is
+/// [Coming06] Figure 2: the result of a dynamic test is kept until the motion of one of the bodies changes. Then the
+/// pair is dirty, until test(). Most tests give no more than a lower bound, which costs less; only what comes first is
 /// certified.
 ///
 /// Cost: O(1) a pair that begins, ends or becomes dirty; one dynamic test a dirty pair; O(log n) an event.

@@ -28,11 +28,11 @@ struct GeneratedScene {
   std::vector<File> meshes;
 };
 
-/// rings: [Paper] section 5, tori of 64 triangles. models: [Paper] Figure 6, closed models of over 6 000 triangles.
-/// spheres; boxes.
+/// rings: [Coming06] section 5, tori of 64 triangles. models: [Coming06] Figure 6, closed models of over 6 000
+/// triangles. spheres; boxes.
 std::vector<std::string_view> generator_kinds();
 
-/// The scene of [Paper] section 5 with any shape: bounding radii uniform in 0.5-1.5, speeds uniform in 0.5-1.5 times
+/// The scene of [Coming06] section 5 with any shape: bounding radii uniform in 0.5-1.5, speeds uniform in 0.5-1.5 times
 /// their mean in random directions, random orientations, positions uniform where bounding balls do not overlap, in a
 /// cube with reflecting walls. One seed gives one text, on every compiler and machine.
 /// Throws std::invalid_argument for options out of range, and where no room is left for a body.

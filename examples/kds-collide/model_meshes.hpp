@@ -5,10 +5,10 @@
 
 namespace kds_collide {
 
-/// [Paper] section 5: a torus of 64 triangles.
+/// [Coming06] section 5: a torus of 64 triangles.
 MeshData ring_mesh();
 
-/// [Paper] Figure 6, models of over 6 000 triangles. A tube about the (2, 3) torus knot; a torus with waves in both
+/// [Coming06] Figure 6, models of over 6 000 triangles. A tube about the (2, 3) torus knot; a torus with waves in both
 /// directions.
 MeshData knot_mesh();
 MeshData bumpy_torus_mesh();

@@ -19,7 +19,7 @@ namespace kds {
 
 /// What save() gives and restore() takes: a copy of everything that decides the events to come. Loaded into parts of
 /// the same types, it gives the same events, bit for bit. A roll-back is a restore() of an earlier snapshot, which is
-/// what optimistic concurrency asks for ([Paper] section 4.2; [Jefferson85]).
+/// what optimistic concurrency asks for ([Coming06] section 4.2; [Jefferson85]).
 ///
 /// The bytes are those of the machine: a file is for the same program on the same kind of processor.
 class Snapshot {

@@ -39,7 +39,7 @@ struct SceneKind {
 };
 
 std::vector<SceneKind> scenes() {
-  const auto ring = samples::torus(8, 4);  // 64 triangles, as the tori of [Paper] section 5
+  const auto ring = samples::torus(8, 4);  // 64 triangles, as the tori of [Coming06] section 5
   const auto fine_ring = samples::torus(64, 32);
   return {{"rods", Box{{1, 0.03, 0.03}}, 1.2, false},
           {"rods along (1 1 1)", Box{{1, 0.03, 0.03}}, 1.2, true},

@@ -17,8 +17,8 @@ namespace accuracy {
 
 inline std::uint64_t pair_key(BodyId a, BodyId b) { return std::uint64_t{a} << 32 | b; }
 
-/// [Paper] section 5, "pseudo-dynamic": kinetic sweep and prune knows at all times which boxes overlap; at each sample
-/// these pairs are tested where they stand.
+/// [Coming06] section 5, "pseudo-dynamic": kinetic sweep and prune knows at all times which boxes overlap; at each
+/// sample these pairs are tested where they stand.
 template <int Degree>
 class PollingSampler final : private kds::collision::PairListener {
  public:

@@ -1,4 +1,4 @@
-// Scenes of meshes, as the tool runs them: the rings of [Paper] section 5, and models of over 6 000 triangles.
+// Scenes of meshes, as the tool runs them: the rings of [Coming06] section 5, and models of over 6 000 triangles.
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/generated_scene.hpp"
 #include "tests/benchmarks/speed/race.hpp"

@@ -1,4 +1,4 @@
-// Our methods by number of bodies and by rate ([Paper] Figures 7 and 8), and what swept volumes cost in tests at 1 Hz:
+// Our methods by number of bodies and by rate ([Coming06] Figures 7 and 8), and what swept volumes cost in tests at 1 Hz:
 // rings of 64 triangles, elastic, as the tool runs them. Each figure is the mean over some scenes of different seeds.
 #include "collision/profile.hpp"
 #include "examples/kds-collide/run.hpp"
@@ -125,7 +125,7 @@ std::vector<Target> measure_frequency(const Settings& settings) {
   return {};
 }
 
-/// [Paper] section 4.3: swept volumes at 1 Hz made for over 30 % more dynamic tests than kinetic ones. Ten simulated
+/// [Coming06] section 4.3: swept volumes at 1 Hz made for over 30 % more dynamic tests than kinetic ones. Ten simulated
 /// seconds; what all frames together tested.
 std::vector<Target> measure_one_hertz(const Settings& settings) {
   auto file = open_csv(settings.folder, "one-hertz.csv");

@@ -21,7 +21,7 @@ set ytics nomirror
 plot for [i = 1:words(names)] of("bodies", word(names, i)) using 1:3 title word(names, i) lw 2 pt i + 3, \
      of("bodies", word(names, 1)) using 1:6 axes x1y2 title "contacts (right)" with lines dt 3 lc rgb "black"
 
-# [Paper] Figure 8: a panel for each method.
+# [Coming06] Figure 8: a panel for each method.
 columns = 2
 rows = (words(names) + columns - 1) / columns
 set terminal svg size 900,300 * rows font "sans,12" background "white"

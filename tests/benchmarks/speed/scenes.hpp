@@ -19,7 +19,7 @@ const char* name(Flatness flatness);
 
 /// How radii and speeds are drawn: between 1 and `spread`, scaled to a mean of 1.
 enum class Draw {
-  uniform,      ///< [Paper] section 5 with a spread of 3: 0.5 ... 1.5
+  uniform,      ///< [Coming06] section 5 with a spread of 3: 0.5 ... 1.5
   logarithmic,  ///< every power of ten alike
 };
 
