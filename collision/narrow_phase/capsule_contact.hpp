@@ -16,7 +16,17 @@ Contact rounded_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
 
 /// The tests (see pair_tests.hpp) of a capsule with a ball, a capsule or a box.
 template <int Degree>
-using CapsuleContact = PiecewiseContact<Degree, RoundedZonotope<Degree>, rounded_contact<Degree>>;
+struct CapsuleContact : PiecewiseContact<Degree, RoundedZonotope<Degree>, rounded_contact<Degree>> {
+  using Piecewise = PiecewiseContact<Degree, RoundedZonotope<Degree>, rounded_contact<Degree>>;
+  using Body = MovingShape<Degree>;
+
+  /// What one direction tells will do: the pieces, a dozen times as much work, are for those that are near already.
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory) {
+    if (!(t0 <= horizon)) return never;
+    const double until = RoundedZonotope<Degree>(a, b, t0, horizon).apart_until();
+    return until > t0 ? until : Piecewise::apart_until(a, b, t0, horizon, memory);
+  }
+};
 
 #define KDS_DECLARE(degree) \
   extern template Contact rounded_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);

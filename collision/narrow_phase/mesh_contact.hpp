@@ -1,4 +1,4 @@
-// Dynamic intersection tests of triangle meshes with meshes, boxes and balls.
+// Dynamic intersection tests of triangle meshes with meshes, boxes, balls and capsules.
 #pragma once
 
 #include "collision/degrees.hpp"
@@ -33,7 +33,7 @@ struct MeshTouchPlace {
 
 /// A mesh (a) and any other shape (b), and the motion of b seen from a. Times are tau >= 0, from the motion's epoch.
 ///
-/// A mesh is its surface: a body wholly inside another touches nothing. Boxes and balls are solid.
+/// A mesh is its surface: a body wholly inside another touches nothing. Other shapes are solid.
 ///
 /// Laws. (1) Never late, never missed: contact is reported while surfaces are nearer than the contact gap (see
 /// ContactGap for its size and derivation), and so no vertex or edge slips between two triangles that share an edge.

@@ -34,10 +34,11 @@ struct FoundTouch {
 
 /// The first time t in [t0, horizon] at which a and b come into contact, or `never`.
 ///
-/// Spheres and boxes: the first double just after which they penetrate, by exact signs, of boxes as their rounded axes
-/// describe them. (Two boxes with edges that are parallel but for an angle below 2^-40 may be found early, by at most
-/// that part of their size: box_and_box.hpp.) Meshes: never late, early by at most the margin of mesh_contact.hpp. The
-/// answer depends on the two shapes and motions alone, and on t0 only in that earlier contacts are passed over.
+/// Spheres, boxes and capsules: the first double just after which they penetrate, by exact signs, of shapes as their
+/// rounded axes describe them. (Two boxes with edges that are parallel but for an angle below 2^-40 may be found early,
+/// by at most that part of their size: box_and_box.hpp.) Meshes: never late, early by at most the margin of
+/// mesh_contact.hpp. The answer depends on the two shapes and motions alone, and on t0 only in that earlier contacts
+/// are passed over.
 ///
 /// Mode `resolved`: shapes that overlap at t0 by rounding (an impulse has just been applied) are in contact only if
 /// they approach. Mode `transparent`: t0 itself where they overlap there.

@@ -37,7 +37,8 @@ namespace kds::collision {
 /// A filter in doubles leaves few pieces, and decides most of them: its directions across faces are known to some
 /// roundings, or not used (`unknown_normal`).
 /// Paper: [Ericson05] section 5.5.7 for the moving point; zonotopes in the place of boxes are ours.
-/// Cost: see docs/benchmarks.md.
+/// Cost: 0.2 us (a capsule and a ball), 0.5 us (two capsules) or 2 us (a capsule and a box) to tell until when they do
+/// not meet, as a rule; 1, 2.5 and 10 us for the first contact.
 template <int Degree>
 class RoundedZonotope {
  public:
@@ -50,6 +51,9 @@ class RoundedZonotope {
   RoundedZonotope(const Body& a, const Body& b, double now, double horizon);
   RoundedZonotope(const RoundedZonotope&) = delete;  // refers to itself
   RoundedZonotope& operator=(const RoundedZonotope&) = delete;
+
+  /// A time before which they do not penetrate, as far as directions across the shapes tell; `never` if they never do.
+  double apart_until() const { return apart_ ? never : motion_.time_before(hull_.begin); }
 
   /// Calls visit(piece) for the pieces in which b's place may be between `now` and the horizon, in no order, until it
   /// returns false.

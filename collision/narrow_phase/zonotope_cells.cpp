@@ -35,6 +35,7 @@ Vector3d accurate_cross(const Vector3d& u, const Vector3d& v) {
 ZonotopeCells::ZonotopeCells(certificates::Generators generators) : generators_(generators) {
   const std::size_t n = size();
   for (std::size_t i = 0; i < n; ++i) {
+    half_[i] = generators[i].length * generators[i].direction;
     for (std::size_t j = i + 1; j < n; ++j) {
       const Vector3d& u = generators[i].direction;
       const Vector3d& v = generators[j].direction;
@@ -53,7 +54,8 @@ ZonotopeCells::ZonotopeCells(certificates::Generators generators) : generators_(
 Vector3d ZonotopeCells::centre(const Cell& cell) const {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t k = 0; k < size(); ++k) {
-    if (cell.end[k] != 0) sum += (cell.end[k] * generators_[k].length) * generators_[k].direction;
+    if (cell.end[k] > 0) sum += half_[k];
+    if (cell.end[k] < 0) sum -= half_[k];
   }
   return sum;
 }

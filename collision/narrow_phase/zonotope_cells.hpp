@@ -42,6 +42,8 @@ class ZonotopeCells {
   template <class Visit>
   bool every_cell(const Visit& visit) const;
 
+  /// Of generator k, length times direction, rounded.
+  const Eigen::Vector3d& half(std::size_t k) const { return half_[k]; }
   /// The centre of a cell, rounded.
   Eigen::Vector3d centre(const Cell& cell) const;
 
@@ -53,8 +55,9 @@ class ZonotopeCells {
   template <class Visit>
   bool every_end(Cell cell, const Visit& visit) const;
 
-  certificates::Generators generators_;
   static constexpr std::size_t most = certificates::most_generators;
+  certificates::Generators generators_;
+  std::array<Eigen::Vector3d, most> half_;  ///< length times direction, rounded
   std::array<std::array<bool, most>, most> parallel_{};
   /// Of the product of three directions, where doubles tell it, else 0.
   std::array<std::array<std::array<Sign, most>, most>, most> turns_{};

@@ -202,7 +202,7 @@ TEST_CASE("capsule and mesh: tip, side and end on a cube of triangles", "[capsul
   meet(upright, {0.25, 0.125, 4}, {0, 0, -1}, 2.75, {0.25, 0.125, 0.5}, "v0");
   meet(lying, {0.125, 0.25, 4}, {0, 0, -1}, 3.25, {0.125, 0.25, 0.5}, "e0-1");
   const double corner = 0.25 * std::sqrt(0.5);  // along an edge of the cube, from outside
-  meet(beam, {0.25, 4, 4}, {0, -1, -1}, 3.5 - corner, {0.5, 0.5, 0.5},
+  meet(beam, {0.25, 4, 4}, {0, -1, -1}, 3.5 - corner, {-0.5, 0.5, 0.5},
        "e0-1");  // the lowest triangle has a corner there
   // Beside the cube, and along it: nothing.
   const auto passes = [&](const PlacedShape& capsule, const Vector3d& from, const Vector3d& velocity) {
