@@ -97,7 +97,8 @@ class QuickMotion {
   double rate_error_;  ///< of the derivative of a gap now
   double bend_error_;  ///< of half its second derivative
   bool whole_;
-  std::array<bool, std::size_t{Degree} + 1> still_{};  ///< degree 3 and above: coefficients known to be zero
+  /// Degree 3 and above: which coefficients are known to be zero.
+  std::array<bool, Degree >= 3 ? std::size_t{Degree} + 1 : 0> still_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -188,6 +189,7 @@ void QuickMotion<Degree>::begin_curve(const Path& a, const Path& b, double horiz
     }
   }
   // What the two share from a common start on, or have as their highest terms, is exactly nothing.
+  still_[0] = false;
   bool same = true, nothing_above = true;
   for (std::size_t i = Degree; i > 0; --i) {
     same = same && a.coefficients[i] == b.coefficients[i] && (a.start == b.start || nothing_above);
