@@ -43,7 +43,8 @@ struct RankedListRule {
   void insert(Id id, Repair<Element>& repair) {
     const auto at =
         std::partition_point(order.begin(), order.end(), [&](Id other) { return in_order(other, id, repair); });
-    const auto i = static_cast<std::size_t>(order.insert(at, id) - order.begin());
+    const auto i = static_cast<std::size_t>(at - order.begin());
+    order.insert(at, id);
     renumber(i, repair);
     certify(i, i, repair);
   }
