@@ -1,8 +1,8 @@
 #include "collision/narrow_phase/capsule_touch.hpp"
 
-#include "collision/narrow_phase/ball_touch.hpp"
 #include "collision/narrow_phase/near_spans.hpp"
 #include "collision/narrow_phase/round_touch.hpp"
+#include "collision/narrow_phase/segment_ways.hpp"
 #include "collision/narrow_phase/zonotope_cells.hpp"
 #include "collision/vectors.hpp"
 
@@ -43,68 +43,7 @@ Frame frame_of(const Vector3d& edge, const Vector3d& segment) {
   return {along, cross(normal, along), normal};
 }
 
-/// A way from a triangle to a segment, and what it is across: nothing (from corner to end), a line, or a plane.
-struct Way {
-  Vector3d apart = Vector3d::Zero();
-  int dimension = 0;
-  Vector3d along = Vector3d::Zero();  ///< of a line; not unit
-  double part = 0;                    ///< where on the segment it ends: from -1 to 1
-};
-
-/// Calls visit(way) for ways of which one is the shortest, if the segment does not go through the triangle.
-template <class Visit>
-void every_way(const PlacedTriangle& triangle, const Vector3d& centre, const Vector3d& half, const Visit& visit) {
-  for (const double end : {-1.0, 1.0}) {
-    const Vector3d at = centre + end * half;
-    const NearestPoint nearest = nearest_point(triangle, at);
-    visit(Way{at - nearest.point, nearest.dimension, triangle.edge(nearest.index), end});
-  }
-  const double square = dot(half, half);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3d from = centre - triangle.vertices[i];
-    const double part = -dot(from, half) / square;
-    if (std::abs(part) < 1) visit(Way{from + part * half, 1, half, part});
-    // Where both an edge and the segment are nearest within: the common perpendicular.
-    const Vector3d edge = triangle.edge(i);
-    const Vector3d normal = accurate_cross(edge, half);
-    const double sine_square = dot(normal, normal);
-    if (!(sine_square > 0)) continue;
-    const double on_edge = dot(cross(from, half), normal) / sine_square;
-    const double on_half = dot(cross(from, edge), normal) / sine_square;
-    if (!(on_edge > 0 && on_edge < 1 && std::abs(on_half) < 1)) continue;
-    const Vector3d out = unit_or_zero(normal);
-    visit(Way{dot(out, from) * out, 2, {}, on_half});
-  }
-}
-
-Way shortest_way(const PlacedTriangle& triangle, const Vector3d& centre, const Vector3d& half) {
-  double least = TimeSpans::infinity;
-  Way best;
-  every_way(triangle, centre, half, [&](const Way& way) {
-    const double square = dot(way.apart, way.apart);
-    if (square < least) {
-      least = square;
-      best = way;
-    }
-  });
-  return best;
-}
-
 }  // namespace
-
-NearestStretch nearest_stretch(const PlacedTriangle& triangle, const Vector3d& centre, const Vector3d& half,
-                               double tolerance) {
-  const Way best = shortest_way(triangle, centre, half);
-  const double enough = norm(best.apart) + tolerance;
-  Way low = best, high = best;
-  every_way(triangle, centre, half, [&](const Way& way) {
-    if (norm(way.apart) > enough) return;
-    if (way.part < low.part) low = way;
-    if (way.part > high.part) high = way;
-  });
-  const Vector3d core = centre + (0.5 * (low.part + high.part)) * half;
-  return {core, core - 0.5 * (low.apart + high.apart), low.part, high.part};
-}
 
 template <int Degree>
 CapsuleTouch<Degree>::CapsuleTouch(const PlacedTriangle& triangle, const PlacedCapsule& capsule,
@@ -303,7 +242,7 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
     const Vector3d normal = frame_of(triangle_.edge(i), half_).normal;
     look(normal), look(-normal);
   }
-  const Way way = shortest_way(triangle_, centre, half_);
+  const SegmentWay way = shortest_way(triangle_, centre, half_);
   const bool through = deepest.separation < 0;
   if (through || !(way.apart.cwiseAbs().maxCoeff() > 0)) {
     return {deepest.normal, deepest.separation - radius_, through && deepest.approaching};
@@ -314,7 +253,7 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
   bool approaching = rate < 0;
   if constexpr (Degree >= 3) {
     approaching = curve_approaches(motion_, gap_, tau, [&](const Vector3d& place) -> NearestPart {
-      const Way to = shortest_way(triangle_, place, half_);
+      const SegmentWay to = shortest_way(triangle_, place, half_);
       const Vector3d direction = to.dimension == 2   ? unit_or_zero(to.apart)
                                  : to.dimension == 1 ? unit_or_zero(to.along)
                                                      : Vector3d(Vector3d::Zero());
@@ -324,7 +263,7 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
     // Second derivative of the distance: bending towards the surface beats leaving its round. What is round is the part
     // that the capsule comes to.
     Vector3d sideways = across(velocity, normal);
-    Way ahead = way;
+    SegmentWay ahead = way;
     if (way.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {
       ahead = shortest_way(triangle_, centre + gap_(tau) * unit_or_zero(sideways), half_);
     }

@@ -17,15 +17,6 @@
 
 namespace kds::collision {
 
-/// Where a segment about `centre` is nearest to a triangle.
-struct NearestStretch {
-  Eigen::Vector3d core;   ///< on the segment: the middle of all that is nearest, up to the tolerance
-  Eigen::Vector3d point;  ///< on the triangle
-  double low, high;       ///< from where to where that is, -1 and 1 being the ends of the segment
-};
-NearestStretch nearest_stretch(const PlacedTriangle& triangle, const Eigen::Vector3d& centre,
-                               const Eigen::Vector3d& half, double tolerance);
-
 /// When a capsule touches a triangle: their distance is below radius + contact gap. Bodies do not rotate, so that is
 /// when the centre of the capsule is so near to a prism, the sum of the triangle and the capsule's segment. The set of
 /// such places is the union of 21 convex pieces: slabs over two triangles and three parallelograms, cylinders about

@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/capsule_touch.hpp"
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/obb_descent.hpp"
+#include "collision/narrow_phase/segment_ways.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/shapes/feature.hpp"
 #include "collision/shapes/mesh.hpp"

@@ -1,0 +1,30 @@
+// The ways from a triangle to a segment.
+#pragma once
+
+#include "collision/narrow_phase/separating_axes.hpp"
+
+#include <Eigen/Core>
+
+namespace kds::collision {
+
+/// A way from a triangle to a segment, and what it is across: nothing (from corner to end), a line, or a plane.
+struct SegmentWay {
+  Eigen::Vector3d apart = Eigen::Vector3d::Zero();
+  int dimension = 0;
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< of a line; not unit
+  double part = 0;                                  ///< where on the segment it ends: from -1 to 1
+};
+
+/// The shortest one from a triangle to the segment centre +- half, unless that goes through it.
+SegmentWay shortest_way(const PlacedTriangle& triangle, const Eigen::Vector3d& centre, const Eigen::Vector3d& half);
+
+/// Where a segment about `centre` is nearest to a triangle.
+struct NearestStretch {
+  Eigen::Vector3d core;   ///< on the segment: the middle of all that is nearest, up to the tolerance
+  Eigen::Vector3d point;  ///< on the triangle
+  double low, high;       ///< from where to where that is, -1 and 1 being the ends of the segment
+};
+NearestStretch nearest_stretch(const PlacedTriangle& triangle, const Eigen::Vector3d& centre,
+                               const Eigen::Vector3d& half, double tolerance);
+
+}  // namespace kds::collision
