@@ -60,7 +60,7 @@ TEMPLATE_TEST_CASE_SIG("Curves: contacts of capsules are where the distances are
   CAPTURE(Degree, seed);
   Random random(seed);
   int met = 0;
-  for (int trial = 0; trial < 90; ++trial) {
+  for (int trial = 0; trial < 600; ++trial) {
     SceneMaker maker(random, {.shapes = Shapes::turned_boxes, .side = 3});
     const PlacedShape a = place(Capsule{random.between(0.2, 0.8), random.between(0.3, 1.2)}, maker.orientation());
     const Shape others[]{Sphere{random.between(0.3, 1)}, Capsule{random.between(0.2, 0.8), random.between(0.3, 1.2)},
