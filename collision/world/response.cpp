@@ -35,9 +35,11 @@ double parting(const Contact& contact, const certificates::PointMotion<Degree>& 
 
 template <int Degree>
 void World<Degree>::process_meeting() {
-  const auto [a, b, separates, found] = pairs_.take_next();
-  const auto contact = [&] { return pairs_.contact(a, b, clock_.now, found); };
-  if (!separates) return process_contact(a, b, contact());
+  const auto meeting = pairs_.take_next();
+  const BodyId a = meeting.a;
+  const BodyId b = meeting.b;
+  const auto contact = [&] { return pairs_.contact(a, b, clock_.now, meeting.found); };
+  if (!meeting.separates) return process_contact(a, b, contact());
   // What was let pass may meet again from now on.
   if (pairs_.mode(a, b) == ContactMode::resolved) return;
   ++counters_.separations;

@@ -1,8 +1,9 @@
 # Options under which signs are not exact are refused by every header that calculates, with a reason.
 function(expect_refusal options)
-  foreach(header IN ITEMS double_double exact lattice unrolled two)
+  foreach(header IN ITEMS arithmetic/double_double arithmetic/exact arithmetic/lattice arithmetic/unrolled
+          simd/two_doubles simd/four_doubles simd/four_floats)
     separate_arguments(list UNIX_COMMAND "${options}")
-    file(WRITE "${FOLDER}/uses_header.cpp" "#include \"kds/arithmetic/${header}.hpp\"\n")
+    file(WRITE "${FOLDER}/uses_header.cpp" "#include \"kds/${header}.hpp\"\n")
     execute_process(COMMAND "${COMPILER}" -std=c++20 -O2 ${list} -fsyntax-only "-I${ROOT}" "${FOLDER}/uses_header.cpp"
                     RESULT_VARIABLE failed ERROR_VARIABLE said OUTPUT_VARIABLE said)
     string(FIND "${said}" "kds: compile" found)
