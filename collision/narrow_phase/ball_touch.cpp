@@ -70,34 +70,34 @@ void BallTouch<Degree>::add_face(bool sharp) {
   Piece piece;
   for (const double side : {1.0, -1.0}) {
     const Vector3d out = side * normal;
-    piece.conditions[piece.size++] = below(out, triangle_.project(out).high + radius_);
+    piece.conditions.push_back(below(out, triangle_.project(out).high + radius_));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector3d out = unit(cross(triangle_.edge(i), normal));
-    piece.conditions[piece.size++] =
-        below(out, std::max(dot(out, triangle_.vertices[i]), dot(out, triangle_.vertices[(i + 1) % 3])));
+    piece.conditions.push_back(
+        below(out, std::max(dot(out, triangle_.vertices[i]), dot(out, triangle_.vertices[(i + 1) % 3]))));
   }
   // Across each corner: away from the middle between the directions of its edges.
   const auto along = [this](std::size_t i) { return unit(triangle_.edge(i)); };
   for (std::size_t i = 0; sharp && i < 3; ++i) {
     const Vector3d out = unit(along((i + 2) % 3) - along(i));
-    piece.conditions[piece.size++] = below(out, triangle_.project(out).high);
+    piece.conditions.push_back(below(out, triangle_.project(out).high));
   }
-  pieces_[size_++] = piece;
+  pieces_.add(piece);
 }
 
 template <int Degree>
 void BallTouch<Degree>::add_edge(std::size_t i) {
   const Vector3d along = unit(triangle_.edge(i));
   Piece piece;
-  piece.conditions[piece.size++] = below(along, dot(along, triangle_.vertices[(i + 1) % 3]));
-  piece.conditions[piece.size++] = below(-along, -dot(along, triangle_.vertices[i]));
+  piece.conditions.push_back(below(along, dot(along, triangle_.vertices[(i + 1) % 3])));
+  piece.conditions.push_back(below(-along, -dot(along, triangle_.vertices[i])));
   // The costly condition last, and only if it counts.
   if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
   const Path path = across_edge(i);
   if (!matters(path)) return;
-  piece.conditions[piece.size++] = within(path);
-  pieces_[size_++] = piece;
+  piece.conditions.push_back(within(path));
+  pieces_.add(piece);
 }
 
 template <int Degree>
@@ -105,39 +105,8 @@ void BallTouch<Degree>::add_vertex(std::size_t i) {
   const Path path = from(i);
   if (!matters(path)) return;
   Piece piece;
-  piece.conditions[piece.size++] = within(path);
-  pieces_[size_++] = piece;
-}
-
-template <int Degree>
-double BallTouch<Degree>::first_inside(double tau) const {
-  double first = TimeSpans::infinity;
-  for (std::size_t i = 0; i < size_; ++i) first = std::min(first, first_inside_all(pieces_[i].spans(), tau));
-  return first;
-}
-
-template <int Degree>
-double BallTouch<Degree>::enter(double tau) const {
-  // Downwards through the pieces that contain the time, as far as they reach.
-  double begin = TimeSpans::infinity;
-  for (std::size_t i = 0; i < size_; ++i) {
-    if (pieces_[i].contains(tau)) begin = std::min(begin, enter_all(pieces_[i].spans(), tau));
-  }
-  return begin;
-}
-
-template <int Degree>
-double BallTouch<Degree>::leave(double tau) const {
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (std::size_t i = 0; i < size_; ++i) {
-      if (tau == TimeSpans::infinity) return tau;
-      if (!pieces_[i].contains(tau)) continue;
-      tau = leave_all(pieces_[i].spans(), tau);
-      moved = true;
-    }
-  }
-  return tau;
+  piece.conditions.push_back(within(path));
+  pieces_.add(piece);
 }
 
 template <int Degree>

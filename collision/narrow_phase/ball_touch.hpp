@@ -9,6 +9,7 @@
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
+#include "collision/narrow_phase/touch_pieces.hpp"
 
 #include <Eigen/Core>
 
@@ -40,22 +41,17 @@ class BallTouch {
   BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball, const RelativeMotion<Degree>& motion,
             const ContactGap<Degree>& gap, bool sharp, double horizon, const TimeWindow& interest);
 
-  double first_inside(double tau) const;
-  double enter(double tau) const;
-  double leave(double tau) const;
+  double first_inside(double tau) const { return pieces_.first_inside(tau); }
+  double enter(double tau) const { return pieces_.enter(tau); }
+  double leave(double tau) const { return pieces_.leave(tau); }
   bool approaching(double tau) const { return direction(tau).approaching; }
   TouchDirection direction(double tau) const;
   double turning(double tau, double end) const;
 
  private:
-  /// Slab or cylinder and its ends; eight conditions at most.
-  struct Piece {
-    std::array<SpansOf<Degree>, 8> conditions;
-    std::size_t size = 0;
-
-    std::span<const SpansOf<Degree>> spans() const { return {conditions.data(), size}; }
-    bool contains(double tau) const { return first_inside_all(spans(), tau) == tau; }
-  };
+  /// A slab or cylinder and its ends has eight conditions at most.
+  using Pieces = TouchPieces<Degree, 7, 8>;
+  using Piece = typename Pieces::Piece;
 
   void add_face(bool sharp);
   void add_edge(std::size_t i);
@@ -72,8 +68,7 @@ class BallTouch {
   ContactGap<Degree> gap_;
   double horizon_;
   TimeWindow interest_;
-  std::array<Piece, 7> pieces_;
-  std::size_t size_ = 0;
+  Pieces pieces_;
 };
 
 #define KDS_DECLARE(degree) extern template class BallTouch<degree>;

@@ -110,7 +110,7 @@ SpansOf<Degree> CapsuleTouch<Degree>::within(const Path& path) const {
 /// Pieces that hold at no time of interest are left out.
 template <int Degree>
 void CapsuleTouch<Degree>::add(const Piece& piece) {
-  if (first_inside_all(piece.spans(), interest_.begin) <= interest_.end) pieces_.push_back(piece);
+  if (first_inside_all(piece.spans(), interest_.begin) <= interest_.end) pieces_.add(piece);
 }
 
 template <int Degree>
@@ -192,36 +192,6 @@ void CapsuleTouch<Degree>::add_point(const Vector3d& at) {
   Piece piece;
   piece.conditions.push_back(within(path));
   add(piece);
-}
-
-template <int Degree>
-double CapsuleTouch<Degree>::first_inside(double tau) const {
-  double first = TimeSpans::infinity;
-  for (const Piece& piece : pieces_) first = std::min(first, first_inside_all(piece.spans(), tau));
-  return first;
-}
-
-template <int Degree>
-double CapsuleTouch<Degree>::enter(double tau) const {
-  double begin = TimeSpans::infinity;
-  for (const Piece& piece : pieces_) {
-    if (piece.contains(tau)) begin = std::min(begin, enter_all(piece.spans(), tau));
-  }
-  return begin;
-}
-
-template <int Degree>
-double CapsuleTouch<Degree>::leave(double tau) const {
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const Piece& piece : pieces_) {
-      if (tau == TimeSpans::infinity) return tau;
-      if (!piece.contains(tau)) continue;
-      tau = leave_all(piece.spans(), tau);
-      moved = true;
-    }
-  }
-  return tau;
 }
 
 template <int Degree>

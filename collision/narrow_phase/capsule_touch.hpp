@@ -7,9 +7,9 @@
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
+#include "collision/narrow_phase/touch_pieces.hpp"
 
 #include <Eigen/Core>
-#include <boost/container/static_vector.hpp>
 
 #include <array>
 #include <cstddef>
@@ -44,24 +44,19 @@ class CapsuleTouch {
   CapsuleTouch(const PlacedTriangle& triangle, const PlacedCapsule& capsule, const RelativeMotion<Degree>& motion,
                const ContactGap<Degree>& gap, bool sharp, double horizon, const TimeWindow& interest);
 
-  double first_inside(double tau) const;
-  double enter(double tau) const;
-  double leave(double tau) const;
+  double first_inside(double tau) const { return pieces_.first_inside(tau); }
+  double enter(double tau) const { return pieces_.enter(tau); }
+  double leave(double tau) const { return pieces_.leave(tau); }
   bool approaching(double tau) const { return direction(tau).approaching; }
   TouchDirection direction(double tau) const;
   double turning(double tau, double end) const;
 
  private:
-  static constexpr std::size_t most_pieces = 21;
   using Corners = std::span<const Eigen::Vector3d>;
 
-  /// The sides of a parallelogram's slab: both of five directions.
-  struct Piece {
-    boost::container::static_vector<SpansOf<Degree>, 10> conditions;
-
-    std::span<const SpansOf<Degree>> spans() const { return {conditions.data(), conditions.size()}; }
-    bool contains(double tau) const { return first_inside_all(spans(), tau) == tau; }
-  };
+  /// A parallelogram's slab has both sides of five directions.
+  using Pieces = TouchPieces<Degree, 21, 10>;
+  using Piece = typename Pieces::Piece;
 
   Eigen::Vector3d corner(std::size_t i, double end) const { return triangle_.vertices[i] + end * half_; }
 
@@ -84,7 +79,7 @@ class CapsuleTouch {
   ContactGap<Degree> gap_;
   double horizon_;
   TimeWindow interest_;
-  boost::container::static_vector<Piece, most_pieces> pieces_;
+  Pieces pieces_;
 };
 
 #define KDS_DECLARE(degree) extern template class CapsuleTouch<degree>;

@@ -139,10 +139,10 @@ bool every_axis(const PlacedTriangle& a, const PlacedBox& b, Test&& test) {
   return true;
 }
 
-/// A triangle and a ball: not all directions that can separate them (their number has no end), but the normals of the
-/// triangle and its edges, and of the box around it.
-template <class Test>
-bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
+/// A triangle and something round: not all directions that can separate them (their number has no end), but the normals
+/// of the triangle and its edges, and of the box around it.
+template <class Round, class Test>
+bool every_axis_of_triangle(const PlacedTriangle& a, const Round& b, Test&& test) {
   const auto try_axis = [&](const Eigen::Vector3d& axis) { return test(axis, a.project(axis), b.project(axis)); };
   const std::array<Eigen::Vector3d, 3> u{a.edge(0), a.edge(1), a.edge(2)};
   const Eigen::Vector3d normal = cross(u[0], u[1]);
@@ -156,18 +156,18 @@ bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
   return true;
 }
 
-/// A triangle and a capsule: as for a ball, and what is across the capsule and the edges.
+template <class Test>
+bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
+  return every_axis_of_triangle(a, b, test);
+}
+
+/// As for a ball, and what is across the capsule and the edges.
 template <class Test>
 bool every_axis(const PlacedTriangle& a, const PlacedCapsule& b, Test&& test) {
-  const auto try_axis = [&](const Eigen::Vector3d& axis) { return test(axis, a.project(axis), b.project(axis)); };
-  const std::array<Eigen::Vector3d, 3> u{a.edge(0), a.edge(1), a.edge(2)};
-  const Eigen::Vector3d normal = cross(u[0], u[1]);
-  if (!try_axis(normal)) return false;
-  for (int d = 0; d < 3; ++d) {
-    if (!try_axis(Eigen::Vector3d::Unit(d))) return false;
-  }
-  for (const auto& e : u) {
-    if (!try_axis(cross(e, normal)) || !try_axis(cross(e, b.half))) return false;
+  if (!every_axis_of_triangle(a, b, test)) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = cross(a.edge(i), b.half);
+    if (!test(axis, a.project(axis), b.project(axis))) return false;
   }
   return true;
 }

@@ -4,6 +4,7 @@
 #include "certificates/point_motion.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/degrees.hpp"
+#include "collision/world/image_tools.hpp"
 #include "kds/events/dary_queue.hpp"
 
 #include <cstddef>
@@ -58,12 +59,6 @@ class Scripts {
 #define KDS_DECLARE(degree) extern template class Scripts<degree>;
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 #undef KDS_DECLARE
-
-}  // namespace kds::collision
-
-#include "collision/world/image_tools.hpp"
-
-namespace kds::collision {
 
 template <int Degree>
 template <class Alive>
