@@ -13,9 +13,9 @@ class NoListener final : public PairListener {
  public:
   explicit NoListener(const PairListener& told) : told_(told) {}
   bool filters() const override { return told_.filters(); }
-  bool may_collide(BodyId a, BodyId b) const override { return told_.may_collide(a, b); }
-  void pair_began(BodyId, BodyId, double) override {}
-  void pair_ended(BodyId, BodyId, double) override {}
+  bool may_collide(BodySlot a, BodySlot b) const override { return told_.may_collide(a, b); }
+  void pair_began(BodySlot, BodySlot, double) override {}
+  void pair_ended(BodySlot, BodySlot, double) override {}
 
  private:
   const PairListener& told_;
@@ -43,7 +43,7 @@ void AdaptiveBroadPhase<Degree>::report_changes(std::span<const Entry> bodies, c
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::change_to_grid(double now, PairListener& listener) {
   std::vector<Entry> entries;
-  few_.visit([&](BodyId id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
+  few_.visit([&](BodySlot id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
   grid_ = std::make_unique<KineticGrid<Degree>>(threads_, tuning_.grid);
   grid_->extend_horizon(now, horizon_);
   if (entries.empty()) return;
@@ -56,7 +56,7 @@ void AdaptiveBroadPhase<Degree>::change_to_grid(double now, PairListener& listen
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::change_to_few(double now, PairListener& listener) {
   std::vector<Entry> entries;
-  grid_->visit([&](BodyId id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
+  grid_->visit([&](BodySlot id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
   NoListener known(listener);
   few_.extend_horizon(now, horizon_);
   few_.insert(entries, now, known);
@@ -73,14 +73,15 @@ void AdaptiveBroadPhase<Degree>::insert(std::span<const Entry> bodies, double no
 }
 
 template <int Degree>
-void AdaptiveBroadPhase<Degree>::remove(BodyId id, double now, PairListener& listener) {
+void AdaptiveBroadPhase<Degree>::remove(BodySlot id, double now, PairListener& listener) {
   if (!grid_) return few_.remove(id, now, listener);
   grid_->remove(id, now, listener);
   if (grid_->size() <= tuning_.most_for_few / 2) change_to_few(now, listener);
 }
 
 template <int Degree>
-void AdaptiveBroadPhase<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
+void AdaptiveBroadPhase<Degree>::update(BodySlot id, const KineticBox<Degree>& box, double now,
+                                        PairListener& listener) {
   if (grid_) return grid_->update(id, box, now, listener);
   few_.update(id, box, now, listener);
 }

@@ -31,8 +31,8 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   bool exact() const override { return false; }
   std::string_view name() const override { return chosen().name(); }
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
-  void remove(BodyId id, double now, PairListener& listener) override;
-  void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
+  void remove(BodySlot id, double now, PairListener& listener) override;
+  void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
   bool advance(double limit, PairListener& listener) override {
     return grid_ ? grid_->advance(limit, listener) : few_.advance(limit, listener);
   }

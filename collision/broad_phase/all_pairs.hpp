@@ -29,27 +29,27 @@ class AllPairs final : public BroadPhase<Degree> {
     }
   }
 
-  void remove(BodyId id, double now, PairListener& listener) override {
+  void remove(BodySlot id, double now, PairListener& listener) override {
     bodies_.erase(std::find(bodies_.begin(), bodies_.end(), id));
-    for (const BodyId other : bodies_) listener.pair_ended(std::min(id, other), std::max(id, other), now);
+    for (const BodySlot other : bodies_) listener.pair_ended(std::min(id, other), std::max(id, other), now);
   }
 
-  void update(BodyId, const KineticBox<Degree>&, double, PairListener&) override { ++box_updates_; }
+  void update(BodySlot, const KineticBox<Degree>&, double, PairListener&) override { ++box_updates_; }
   bool advance(double, PairListener&) override { return false; }
   double next_time() const override { return never; }
   void extend_horizon(double, double) override {}
   /// It knows no boxes, and names all bodies. O(n).
   void visit_overlapping(const StaticBox&, double, BodyVisitor visit) const override {
-    for (const BodyId id : bodies_) visit(id);
+    for (const BodySlot id : bodies_) visit(id);
   }
   void visit_swept(const KineticBox<Degree>&, double, double, BodyVisitor visit) const override {
-    for (const BodyId id : bodies_) visit(id);
+    for (const BodySlot id : bodies_) visit(id);
   }
   void audit(double) const override {}
   BroadPhaseCounters counters() const override { return {0, 0, box_updates_}; }
 
  private:
-  std::vector<BodyId> bodies_;
+  std::vector<BodySlot> bodies_;
   std::uint64_t box_updates_ = 0;
 };
 

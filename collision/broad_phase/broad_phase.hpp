@@ -20,9 +20,9 @@ class PairListener {
   /// Whether there are pairs that need not be reported; and which may be. The answer for two bodies stays the same for
   /// as long as both are there.
   virtual bool filters() const { return false; }
-  virtual bool may_collide(BodyId, BodyId) const { return true; }
-  virtual void pair_began(BodyId a, BodyId b, double t) = 0;
-  virtual void pair_ended(BodyId a, BodyId b, double t) = 0;
+  virtual bool may_collide(BodySlot, BodySlot) const { return true; }
+  virtual void pair_began(BodySlot a, BodySlot b, double t) = 0;
+  virtual void pair_ended(BodySlot a, BodySlot b, double t) = 0;
 };
 
 /// Work done by a broad phase.
@@ -58,7 +58,7 @@ template <int Degree>
 class BroadPhase {
  public:
   struct Entry {
-    BodyId id;
+    BodySlot id;
     const KineticBox<Degree>* box;
   };
 
@@ -74,10 +74,10 @@ class BroadPhase {
   /// `now` is not before the last time given, what is added is not there yet, and what is removed or updated is.
   virtual void insert(std::span<const Entry> bodies, double now, PairListener& listener) = 0;
   /// Takes a body out. Its pairs end, and are reported.
-  virtual void remove(BodyId id, double now, PairListener& listener) = 0;
+  virtual void remove(BodySlot id, double now, PairListener& listener) = 0;
 
   /// Gives a body another box, which may be elsewhere (a jump). Pairs that begin and end are reported.
-  virtual void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) = 0;
+  virtual void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) = 0;
 
   /// Processes events not later than `limit` and returns true right after the first that reported a pair; false when
   /// all are done. Precondition: limit is finite.

@@ -23,7 +23,7 @@ constexpr std::uint64_t first_places(std::size_t count) { return count == 64 ? ~
 }  // namespace
 
 template <int Degree>
-std::size_t FewBoxes<Degree>::place_of(BodyId id) const {
+std::size_t FewBoxes<Degree>::place_of(BodySlot id) const {
   std::size_t place = 0;
   while (bodies_[place].id != id) ++place;
   return place;
@@ -90,10 +90,10 @@ void FewBoxes<Degree>::change(std::size_t place, Row row, std::size_t count, dou
   const Row considered = first_places(count) & ~(Row{1} << place);
   const Row changed = (partners_[place] ^ row) & considered;
   partners_[place] ^= changed;
-  const BodyId id = bodies_[place].id;
+  const BodySlot id = bodies_[place].id;
   for (Row rest = changed; rest != 0; rest &= rest - 1) {
     const auto other_place = static_cast<std::size_t>(std::countr_zero(rest));
-    const BodyId other = bodies_[other_place].id;
+    const BodySlot other = bodies_[other_place].id;
     partners_[other_place] ^= Row{1} << place;
     const auto [a, b] = std::minmax(id, other);
     if ((row >> other_place & 1) != 0) {
@@ -180,7 +180,7 @@ void FewBoxes<Degree>::insert(std::span<const Entry> bodies, double now, PairLis
 }
 
 template <int Degree>
-void FewBoxes<Degree>::remove(BodyId id, double now, PairListener& listener) {
+void FewBoxes<Degree>::remove(BodySlot id, double now, PairListener& listener) {
   const std::size_t place = place_of(id);
   change(place, 0, bodies_.size(), now, listener);
   const std::size_t last = bodies_.size() - 1;
@@ -204,7 +204,7 @@ void FewBoxes<Degree>::remove(BodyId id, double now, PairListener& listener) {
 }
 
 template <int Degree>
-void FewBoxes<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
+void FewBoxes<Degree>::update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) {
   const std::size_t place = place_of(id);
   bodies_[place].box = box;
   const StaticBox fat = swept(box, now);

@@ -38,8 +38,8 @@ class FewBoxes final : public BroadPhase<Degree> {
   std::string_view name() const override { return "few-boxes"; }
   /// Throws std::length_error, and changes nothing, if there would be more than `most`.
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
-  void remove(BodyId id, double now, PairListener& listener) override;
-  void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
+  void remove(BodySlot id, double now, PairListener& listener) override;
+  void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return !bodies_.empty() && until_ < horizon_ ? until_ : never; }
   void extend_horizon(double, double horizon) override { horizon_ = horizon; }
@@ -53,7 +53,7 @@ class FewBoxes final : public BroadPhase<Degree> {
   std::size_t size() const { return bodies_.size(); }
 
   /// Whether two bodies are a pair. Precondition: both are here.
-  bool paired(BodyId a, BodyId b) const { return (partners_[place_of(a)] >> place_of(b) & 1) != 0; }
+  bool paired(BodySlot a, BodySlot b) const { return (partners_[place_of(a)] >> place_of(b) & 1) != 0; }
 
   /// Calls visit(id, box) for each body.
   template <class Visit>
@@ -68,11 +68,11 @@ class FewBoxes final : public BroadPhase<Degree> {
   using Row = std::uint64_t;  ///< of places, the lowest bit first
 
   struct Body {
-    BodyId id;
+    BodySlot id;
     KineticBox<Degree> box;
   };
 
-  std::size_t place_of(BodyId id) const;
+  std::size_t place_of(BodySlot id) const;
   std::uint64_t cost_of_span() const;
   void begin_span(double now, double latest);
   double first_span(double now) const;

@@ -33,7 +33,7 @@ template <int Degree>
 struct Kdops {
   std::vector<KdopDirection> directions;
   /// The slab of a body along directions[i]: must hold it from now on, until the body's box is changed.
-  std::function<KineticSlab<Degree>(BodyId id, std::size_t i, double now)> slab;
+  std::function<KineticSlab<Degree>(BodySlot id, std::size_t i, double now)> slab;
 };
 
 namespace detail {
@@ -122,7 +122,7 @@ KineticSlab<Degree> slab_around(const KineticBox<Degree>& box, const KdopDirecti
 
 /// Throws std::invalid_argument for a slab that is not finite: coordinates whose sums overflow.
 template <int Degree>
-void require_finite(const KineticSlab<Degree>& slab, BodyId id) {
+void require_finite(const KineticSlab<Degree>& slab, BodySlot id) {
   if (is_finite(slab.min) && is_finite(slab.max)) return;
   throw std::invalid_argument("k-DOP of body " + std::to_string(id) + ": the sum of its coordinates is not finite");
 }

@@ -12,7 +12,8 @@
 
 namespace kds::collision {
 
-using BodyId = std::uint32_t;
+using BodySlot = std::uint32_t;
+using BodyId = BodySlot;
 
 /// An axis-aligned box with a motion for each corner: it may grow and shrink ([Coming06] section 5.2).
 ///

@@ -9,17 +9,17 @@
 namespace kds::collision {
 /// In the order of bodies, whatever cells they were found in.
 template <int Degree>
-void KineticGrid<Degree>::report(BodyId id, BoxGrid::Changes& changes, double now, PairListener& listener) {
+void KineticGrid<Degree>::report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener) {
   if (changes.ended.size() > 1) std::sort(changes.ended.begin(), changes.ended.end());
   if (changes.began.size() > 1) std::sort(changes.began.begin(), changes.began.end());
   const bool filters = listener.filters();
-  for (const BodyId other : changes.ended) {
+  for (const BodySlot other : changes.ended) {
     if (filters && !listener.may_collide(id, other)) continue;
     --bodies_[id].partners;
     --bodies_[other].partners;
     listener.pair_ended(std::min(id, other), std::max(id, other), now);
   }
-  for (const BodyId other : changes.began) {
+  for (const BodySlot other : changes.began) {
     if (filters && !listener.may_collide(id, other)) {
       ++bodies_[id].in_vain;
     } else {
@@ -29,8 +29,8 @@ void KineticGrid<Degree>::report(BodyId id, BoxGrid::Changes& changes, double no
 }
 
 template <int Degree>
-void KineticGrid<Degree>::report_pair(BodyId a, BodyId b, double now, PairListener& listener) {
-  for (const BodyId id : {a, b}) {
+void KineticGrid<Degree>::report_pair(BodySlot a, BodySlot b, double now, PairListener& listener) {
+  for (const BodySlot id : {a, b}) {
     ++bodies_[id].begun;
     ++bodies_[id].partners;
   }
@@ -39,7 +39,7 @@ void KineticGrid<Degree>::report_pair(BodyId a, BodyId b, double now, PairListen
 
 /// An earlier entry stays: most are replaced again before they are due.
 template <int Degree>
-void KineticGrid<Degree>::set_expiry(BodyId id, double expiry, double now) {
+void KineticGrid<Degree>::set_expiry(BodySlot id, double expiry, double now) {
   bodies_[id].expiry = expiry;
   if (expiry_.contains(id) && expiry_.time(id) > now && expiry_.time(id) <= expiry) return;
   expiry_.set(id, expiry <= horizon_ ? expiry : never);
@@ -48,12 +48,12 @@ void KineticGrid<Degree>::set_expiry(BodyId id, double expiry, double now) {
 template <int Degree>
 void KineticGrid<Degree>::extend_horizon(double now, double horizon) {
   horizon_ = horizon;
-  visit([&](BodyId id, const KineticBox<Degree>&) { set_expiry(id, bodies_[id].expiry, now); });
+  visit([&](BodySlot id, const KineticBox<Degree>&) { set_expiry(id, bodies_[id].expiry, now); });
 }
 
 /// True if its fat box has begun or ceased to overlap others.
 template <int Degree>
-bool KineticGrid<Degree>::renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
+bool KineticGrid<Degree>::renew(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
                                 PairListener& listener) {
   ++counters_.box_updates;
   const FatBox fat = fat_box(id, sweep, present, now);
@@ -65,7 +65,7 @@ bool KineticGrid<Degree>::renew(BodyId id, const BoxSweep<Degree>& sweep, const 
 }
 
 template <int Degree>
-void KineticGrid<Degree>::remove(BodyId id, double now, PairListener& listener) {
+void KineticGrid<Degree>::remove(BodySlot id, double now, PairListener& listener) {
   BoxGrid::Changes changes;
   fat_boxes_.remove(id, changes);
   expiry_.clear(id);
@@ -73,7 +73,7 @@ void KineticGrid<Degree>::remove(BodyId id, double now, PairListener& listener) 
 }
 
 template <int Degree>
-void KineticGrid<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
+void KineticGrid<Degree>::update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) {
   Body& body = bodies_[id];
   const bool less_rounded = box.rounding < body.box.rounding;  // than the old fat box
   body.box = box;
@@ -110,7 +110,7 @@ template <int Degree>
 void KineticGrid<Degree>::visit_overlapping(const StaticBox& box, double, BodyVisitor visit) const {
   BoxGrid::Ids found;
   fat_boxes_.find_overlapping(box, found);
-  for (const BodyId id : found) visit(id);
+  for (const BodySlot id : found) visit(id);
 }
 
 /// A fat box that holds until then says where its body may be; of the others, their motions do.
@@ -120,20 +120,20 @@ void KineticGrid<Degree>::visit_swept(const KineticBox<Degree>& box, double from
   const StaticBox swept = bounded_swept_box(box, from, until);
   BoxGrid::Ids found;
   fat_boxes_.find_overlapping(swept, found);
-  for (const BodyId id : found) {
+  for (const BodySlot id : found) {
     if (bodies_[id].expiry >= until) visit(id);
   }
-  const auto look = [&](BodyId id) {
+  const auto look = [&](BodySlot id) {
     const Body& body = bodies_[id];
     if (body.expiry < until && bounded_swept_box(body.box, from, until).overlaps(swept)) visit(id);
   };
   if (until <= horizon_) return expiry_.visit_until(until, look);
-  this->visit([&](BodyId id, const KineticBox<Degree>&) { look(id); });
+  this->visit([&](BodySlot id, const KineticBox<Degree>&) { look(id); });
 }
 
 template <int Degree>
 void KineticGrid<Degree>::audit(double now) const {
-  for (BodyId id = 0; id < fat_boxes_.end(); ++id) {
+  for (BodySlot id = 0; id < fat_boxes_.end(); ++id) {
     if (!fat_boxes_.contains(id)) continue;
     if (bodies_[id].expiry <= now) continue;  // due
     const StaticBox present = box_at(bodies_[id].box, now);

@@ -41,8 +41,8 @@ class KineticGrid final : public BroadPhase<Degree> {
   bool exact() const override { return false; }
   std::string_view name() const override { return "grid"; }
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
-  void remove(BodyId id, double now, PairListener& listener) override;
-  void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
+  void remove(BodySlot id, double now, PairListener& listener) override;
+  void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return expiry_.empty() ? never : expiry_.top().time; }
   void extend_horizon(double now, double horizon) override;
@@ -57,12 +57,12 @@ class KineticGrid final : public BroadPhase<Degree> {
   std::size_t size() const { return fat_boxes_.size(); }
 
   /// Whether two bodies are a pair. Precondition: both are here.
-  bool paired(BodyId a, BodyId b) const { return fat_boxes_.overlap(a, b); }
+  bool paired(BodySlot a, BodySlot b) const { return fat_boxes_.overlap(a, b); }
 
   /// Calls visit(id, box) for each body.
   template <class Visit>
   void visit(Visit&& visit) const {
-    for (BodyId id = 0; id < fat_boxes_.end(); ++id) {
+    for (BodySlot id = 0; id < fat_boxes_.end(); ++id) {
       if (fat_boxes_.contains(id)) visit(id, bodies_[id].box);
     }
   }
@@ -100,19 +100,19 @@ class KineticGrid final : public BroadPhase<Degree> {
   template <class Sweep, class MayBegin>
   FatBox fat_box(Body& body, const Sweep& sweep, const StaticBox& present, double now, double coarsest,
                  MayBegin&& may_begin) const;
-  FatBox fat_box(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
+  FatBox fat_box(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
   std::uint32_t fit(Body& body, StaticBox& box, double now, double coarsest) const;
   void insert_first(std::span<const Entry> bodies, double now, PairListener& listener);
   void make_boxes(std::span<const Entry> bodies, std::span<StaticBox> boxes, std::size_t threads, double now);
   void cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now);
-  void report_pair(BodyId a, BodyId b, double now, PairListener& listener);
+  void report_pair(BodySlot a, BodySlot b, double now, PairListener& listener);
   template <class Sweep>
   static double lifetime(const Body& body, const Sweep& sweep);
-  double kept_until(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
-  void adapt_reach(BodyId id, double now);
-  bool renew(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
-  void set_expiry(BodyId id, double expiry, double now);
-  void report(BodyId id, BoxGrid::Changes& changes, double now, PairListener& listener);
+  double kept_until(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
+  void adapt_reach(BodySlot id, double now);
+  bool renew(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
+  void set_expiry(BodySlot id, double expiry, double now);
+  void report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener);
 
   GridTuning tuning_;
   std::vector<Body> bodies_;  // by id

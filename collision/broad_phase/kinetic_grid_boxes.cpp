@@ -105,7 +105,7 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
 }
 
 template <int Degree>
-auto KineticGrid<Degree>::fat_box(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now)
+auto KineticGrid<Degree>::fat_box(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now)
     -> FatBox {
   const FatBox fat = fat_box(bodies_[id], sweep, present, now, fat_boxes_.coarsest(), [&] {
     if (++wishes_ * tuning_.share_for_level <= fat_boxes_.size()) return false;
@@ -136,7 +136,7 @@ std::uint32_t KineticGrid<Degree>::fit(Body& body, StaticBox& box, double now, d
 /// others' renewals included, a longer reach and a shorter one would both cost more (found by measuring, for packings
 /// from 0.01 to 0.25). One that the body leaves early, since its motion has changed, was too long.
 template <int Degree>
-void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
+void KineticGrid<Degree>::adapt_reach(BodySlot id, double now) {
   Body& body = bodies_[id];
   const bool lasted = body.expiry <= now;
   body.begun += body.in_vain / tuning_.found_per_pair;
@@ -172,7 +172,8 @@ void KineticGrid<Degree>::adapt_reach(BodyId id, double now) {
 
 /// Until when the fat box that a body has holds a new motion, if that is long enough for it to be kept; else `now`.
 template <int Degree>
-double KineticGrid<Degree>::kept_until(BodyId id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now) {
+double KineticGrid<Degree>::kept_until(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present,
+                                       double now) {
   const Body& body = bodies_[id];
   const BoxBounds& fat = fat_boxes_.bounds(id);
   const BoxBounds bounds(present);

@@ -22,7 +22,7 @@ constexpr std::size_t few = 4096;
 /// The order in which to put in many bodies that come at once: by blocks of space, along [Morton66]'s curve, so that
 /// what a body meets, and the cells it is in, have just been used and are in the cache.
 template <int Degree>
-std::vector<BodyId> spatial_order(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
+std::vector<BodySlot> spatial_order(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
   constexpr std::size_t bodies_per_block = 8;
   const auto place = [&](std::size_t i) { return box_at(*bodies[i].box, now).min; };
   Eigen::Array3d low = place(0);
@@ -48,7 +48,7 @@ std::vector<BodyId> spatial_order(std::span<const typename BroadPhase<Degree>::E
   std::vector<std::uint32_t> places((std::size_t{1} << 3 * levels) + 1, 0);
   for (std::size_t i = 0; i < bodies.size(); ++i) ++places[(blocks[i] = block_of(i)) + 1];
   std::partial_sum(places.begin(), places.end(), places.begin());
-  std::vector<BodyId> order(bodies.size());
+  std::vector<BodySlot> order(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) order[places[blocks[i]]++] = bodies[i].id;
   return order;
 }
@@ -57,7 +57,7 @@ std::vector<BodyId> spatial_order(std::span<const typename BroadPhase<Degree>::E
 
 template <int Degree>
 void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
-  BodyId end = 0;
+  BodySlot end = 0;
   for (const Entry& entry : bodies) end = std::max(end, entry.id + 1);
   if (end > bodies_.size()) {
     const std::size_t room = bodies_.empty() ? end : std::max<std::size_t>(end, 2 * bodies_.size());
@@ -88,26 +88,26 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   make_boxes(bodies, boxes, threads, now);
   cut_to_levels(bodies, boxes, now);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const BodyId id = bodies[i].id;
+    const BodySlot id = bodies[i].id;
     if (bodies_[id].expiry <= horizon_) expiry_.set(id, bodies_[id].expiry);
     fat_boxes_.announce(id, boxes[i], bodies[i].box->rounding);
   }
   BoxPairs pairs;
   if (pairs.find(boxes, threads)) {
-    std::vector<BodyId> order(bodies.size());
+    std::vector<BodySlot> order(bodies.size());
     std::transform(pairs.order().begin(), pairs.order().end(), order.begin(),
                    [&](BoxPairs::Index i) { return bodies[i].id; });
     fat_boxes_.settle(order);
     listener.pairs_to_come(pairs.pairs().size());
     const bool filters = listener.filters();
     for (const auto& [i, j] : pairs.pairs()) {
-      const BodyId a = bodies[i].id, b = bodies[j].id;
+      const BodySlot a = bodies[i].id, b = bodies[j].id;
       if (filters && !listener.may_collide(a, b)) continue;
       if (paired(a, b)) report_pair(a, b, now, listener);
     }
     return;
   }
-  const auto enter = [&](BodyId id) {
+  const auto enter = [&](BodySlot id) {
     BoxGrid::Changes changes;
     fat_boxes_.enter(id, changes);
     report(id, changes, now, listener);
@@ -115,7 +115,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   if (bodies.size() < few) {
     for (const Entry& entry : bodies) enter(entry.id);
   } else {
-    for (const BodyId id : spatial_order<Degree>(bodies, now)) enter(id);
+    for (const BodySlot id : spatial_order<Degree>(bodies, now)) enter(id);
   }
 }
 

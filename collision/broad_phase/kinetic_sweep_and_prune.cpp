@@ -28,7 +28,7 @@ KineticSweepAndPrune<Degree>::KineticSweepAndPrune(double now, const SweepTuning
 }
 
 template <int Degree>
-void KineticSweepAndPrune<Degree>::set_volume(BodyId id, const KineticBox<Degree>& box, double now) {
+void KineticSweepAndPrune<Degree>::set_volume(BodySlot id, const KineticBox<Degree>& box, double now) {
   if (kdops_.directions.empty()) return unlisted_.set_box(id, box, {}, now);
   std::vector<KineticSlab<Degree>> slabs(kdops_.directions.size());
   for (std::size_t i = 0; i < slabs.size(); ++i) slabs[i] = kdops_.slab(id, i, now);
@@ -37,7 +37,7 @@ void KineticSweepAndPrune<Degree>::set_volume(BodyId id, const KineticBox<Degree
 }
 
 template <int Degree>
-bool KineticSweepAndPrune<Degree>::overlap_where_listed(BodyId a, BodyId b) const {
+bool KineticSweepAndPrune<Degree>::overlap_where_listed(BodySlot a, BodySlot b) const {
   for (const std::size_t d : lists_.used) {
     if (!overlap_on(lists_.all[d], a, b)) return false;
   }
@@ -49,16 +49,16 @@ template <int Degree>
 void KineticSweepAndPrune<Degree>::intervals_changed(std::size_t axis, std::uint32_t left, std::uint32_t right,
                                                      double t) {
   looked_ = true;
-  const BodyId left_body = left / 2;
-  const BodyId right_body = right / 2;
+  const BodySlot left_body = left / 2;
+  const BodySlot right_body = right / 2;
   // After the swap a minimum on the left means that the two intervals have met, a maximum that they have parted.
   const bool met = is_min(left);
   if (left_body == right_body) {
     if (!all_listed() && axis == sweep_axis_) inverted_ += met ? std::size_t(-1) : 1;
     return;
   }
-  const BodyId a = std::min(left_body, right_body);
-  const BodyId b = std::max(left_body, right_body);
+  const BodySlot a = std::min(left_body, right_body);
+  const BodySlot b = std::max(left_body, right_body);
   if (updating_) {
     ++update_swaps_;
     if (all_listed()) changes_.push_back({a, b, false});
@@ -75,12 +75,12 @@ void KineticSweepAndPrune<Degree>::intervals_changed(std::size_t axis, std::uint
 
 /// The bodies that overlap with one which has just come, sorted. Where there is no list its pairs are made known.
 template <int Degree>
-std::vector<BodyId> KineticSweepAndPrune<Degree>::partners_now(BodyId id, double now) {
-  std::vector<BodyId> partners;
+std::vector<BodySlot> KineticSweepAndPrune<Degree>::partners_now(BodySlot id, double now) {
+  std::vector<BodySlot> partners;
   partners_on_lists(id, partners);
   if (!all_listed()) {
     std::erase_if(partners,
-                  [&](BodyId other) { return !unlisted_.met(std::min(id, other), std::max(id, other), now); });
+                  [&](BodySlot other) { return !unlisted_.met(std::min(id, other), std::max(id, other), now); });
   }
   std::sort(partners.begin(), partners.end());
   return partners;
@@ -108,7 +108,7 @@ void KineticSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double 
       lists_.all[d].insert(max_end(body.id), unlisted_.end(body.id, d, true), now);
     }
     count_open();
-    for (const BodyId other : partners_now(body.id, now)) {
+    for (const BodySlot other : partners_now(body.id, now)) {
       listener.pair_began(std::min(body.id, other), std::max(body.id, other), now);
     }
   }
@@ -116,9 +116,9 @@ void KineticSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double 
 }
 
 template <int Degree>
-void KineticSweepAndPrune<Degree>::remove(BodyId id, double now, PairListener& listener) {
+void KineticSweepAndPrune<Degree>::remove(BodySlot id, double now, PairListener& listener) {
   simulator_.set_clock(now);
-  std::vector<BodyId> partners;
+  std::vector<BodySlot> partners;
   if (all_listed()) {
     partners_on_lists(id, partners);
   } else {
@@ -130,11 +130,11 @@ void KineticSweepAndPrune<Degree>::remove(BodyId id, double now, PairListener& l
   }
   count_open();
   std::sort(partners.begin(), partners.end());
-  for (const BodyId other : partners) listener.pair_ended(std::min(id, other), std::max(id, other), now);
+  for (const BodySlot other : partners) listener.pair_ended(std::min(id, other), std::max(id, other), now);
 }
 
 template <int Degree>
-void KineticSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now,
+void KineticSweepAndPrune<Degree>::update(BodySlot id, const KineticBox<Degree>& box, double now,
                                           PairListener& listener) {
   simulator_.set_clock(now);
   ++box_updates_;
@@ -142,7 +142,7 @@ void KineticSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& b
     set_volume(id, box, now);
     return update_listed_pairs(id, now, listener);
   }
-  std::vector<BodyId> before;
+  std::vector<BodySlot> before;
   unlisted_.forget_pairs(id, before);
   std::sort(before.begin(), before.end());
   set_volume(id, box, now);
@@ -152,9 +152,9 @@ void KineticSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& b
     update_end(d, id, true, now);
   }
   updating_ = false;
-  const std::vector<BodyId> after = partners_now(id, now);
+  const std::vector<BodySlot> after = partners_now(id, now);
   auto old = before.begin();
-  for (const BodyId other : after) {
+  for (const BodySlot other : after) {
     for (; old != before.end() && *old < other; ++old) listener.pair_ended(std::min(id, *old), std::max(id, *old), now);
     if (old != before.end() && *old == other) {
       ++old;
@@ -167,13 +167,13 @@ void KineticSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& b
 
 /// Where all directions have lists.
 template <int Degree>
-void KineticSweepAndPrune<Degree>::update_listed_pairs(BodyId id, double now, PairListener& listener) {
+void KineticSweepAndPrune<Degree>::update_listed_pairs(BodySlot id, double now, PairListener& listener) {
   changes_.clear();
   updating_ = true;
   // The state before each partner's first change is read off at the end: a pair has changed if it was met by an odd
   // number of swaps on some axis, so partners are collected with the old answer taken when first seen.
   struct Seen {
-    BodyId a, b;
+    BodySlot a, b;
     unsigned apart_changes;  // bit d for direction d
   };
   std::vector<Seen> seen;
@@ -253,7 +253,7 @@ void KineticSweepAndPrune<Degree>::audit(double now) const {
   if (all_listed()) return;
   unlisted_.audit(now);
   std::int32_t open = 0;
-  std::vector<BodyId> partners;
+  std::vector<BodySlot> partners;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     const std::uint32_t end = sweep_list().entries()[i].id;
     open += is_min(end) ? 1 : -1;
@@ -261,7 +261,7 @@ void KineticSweepAndPrune<Degree>::audit(double now) const {
     if (!is_min(end)) continue;
     partners.clear();
     partners_on_lists(end / 2, partners);
-    for (const BodyId other : partners) {
+    for (const BodySlot other : partners) {
       if (other < end / 2) unlisted_.audit_pair(other, end / 2, now);
     }
   }

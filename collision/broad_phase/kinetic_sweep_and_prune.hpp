@@ -48,8 +48,8 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   bool exact() const override { return true; }
   std::string_view name() const override { return "kinetic-sap"; }
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
-  void remove(BodyId id, double now, PairListener& listener) override;
-  void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
+  void remove(BodySlot id, double now, PairListener& listener) override;
+  void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return simulator_.next_time(); }
   void extend_horizon(double now, double horizon) override;
@@ -108,8 +108,8 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
     }
   };
 
-  static std::uint32_t min_end(BodyId id) { return 2 * id; }
-  static std::uint32_t max_end(BodyId id) { return 2 * id + 1; }
+  static std::uint32_t min_end(BodySlot id) { return 2 * id; }
+  static std::uint32_t max_end(BodySlot id) { return 2 * id + 1; }
   static bool is_min(std::uint32_t end) { return (end & 1) == 0; }
 
   bool is_listed(std::size_t axis) const { return (listed_ >> axis & 1) != 0; }
@@ -117,11 +117,11 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   bool all_listed() const { return listed_ == all_axes_; }
   std::size_t size() const { return sweep_list().size() / 2; }
 
-  bool overlap(BodyId a, BodyId b) const {
+  bool overlap(BodySlot a, BodySlot b) const {
     return overlap_where_listed(a, b) && (all_listed() || unlisted_.overlap(a, b));
   }
-  bool overlap_where_listed(BodyId a, BodyId b) const;
-  bool overlap_on(const List& list, BodyId a, BodyId b) const {
+  bool overlap_where_listed(BodySlot a, BodySlot b) const;
+  bool overlap_on(const List& list, BodySlot a, BodySlot b) const {
     const unsigned a_begins = list.position(min_end(a)) < list.position(max_end(b));
     const unsigned b_begins = list.position(min_end(b)) < list.position(max_end(a));
     return (a_begins & b_begins) != 0;  // without a branch
@@ -134,17 +134,17 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   void build_lists(std::span<const Entry> bodies, unsigned listed, double now);
   void choose_again(double now);
   void count_open();
-  using BodyPair = std::pair<BodyId, BodyId>;
+  using BodyPair = std::pair<BodySlot, BodySlot>;
   std::vector<BodyPair> pairs_on_lists() const;
-  void partners_on_lists(BodyId id, std::vector<BodyId>& partners) const;
+  void partners_on_lists(BodySlot id, std::vector<BodySlot>& partners) const;
   std::size_t ends_below(double x, double now) const;
 
-  std::vector<BodyId> partners_now(BodyId id, double now);
-  void update_listed_pairs(BodyId id, double now, PairListener& listener);
+  std::vector<BodySlot> partners_now(BodySlot id, double now);
+  void update_listed_pairs(BodySlot id, double now, PairListener& listener);
 
-  void set_volume(BodyId id, const KineticBox<Degree>& box, double now);
+  void set_volume(BodySlot id, const KineticBox<Degree>& box, double now);
   /// Moves an end in a direction to where set_volume() has put it.
-  void update_end(std::size_t d, BodyId id, bool upper, double now) {
+  void update_end(std::size_t d, BodySlot id, bool upper, double now) {
     lists_.all[d].update(upper ? max_end(id) : min_end(id), unlisted_.end(id, d, upper), now);
   }
 

@@ -109,17 +109,17 @@ void KineticSweepAndPrune<Degree>::count_open() {
 template <int Degree>
 auto KineticSweepAndPrune<Degree>::pairs_on_lists() const -> std::vector<BodyPair> {
   std::vector<BodyPair> pairs;
-  const auto add = [&](BodyId a, BodyId b) {
+  const auto add = [&](BodySlot a, BodySlot b) {
     if (!all_listed() && !unlisted_.near(a, b)) return;
     if (overlap_where_listed(a, b)) pairs.emplace_back(std::min(a, b), std::max(a, b));
   };
   if (inverted_ > 0) {
-    std::vector<BodyId> open;
+    std::vector<BodySlot> open;
     for (const auto& end : sweep_list().entries()) {
       if (!is_min(end.id)) continue;
       open.clear();
       partners_on_lists(end.id / 2, open);
-      for (const BodyId other : open) {
+      for (const BodySlot other : open) {
         if (other < end.id / 2) add(other, end.id / 2);
       }
     }
@@ -127,12 +127,12 @@ auto KineticSweepAndPrune<Degree>::pairs_on_lists() const -> std::vector<BodyPai
     using Hull = typename UnlistedAxes<Degree>::Hull;
     struct Open {
       Hull hull;
-      BodyId id;
+      BodySlot id;
     };
     std::vector<Open> open;
     std::vector<std::uint32_t> place(unlisted_.bodies());
     for (const auto& end : sweep_list().entries()) {
-      const BodyId id = end.id / 2;
+      const BodySlot id = end.id / 2;
       if (is_min(end.id)) {
         const Hull hull = all_listed() ? Hull::everywhere() : unlisted_.hull(id);
         for (const Open& other : open) {
@@ -154,11 +154,11 @@ auto KineticSweepAndPrune<Degree>::pairs_on_lists() const -> std::vector<BodyPai
 /// Appends the bodies that overlap with this one where there are lists. They have an end between its ends, or are open
 /// where it begins; those are found going left, until as many have been seen as are open.
 template <int Degree>
-void KineticSweepAndPrune<Degree>::partners_on_lists(BodyId id, std::vector<BodyId>& partners) const {
+void KineticSweepAndPrune<Degree>::partners_on_lists(BodySlot id, std::vector<BodySlot>& partners) const {
   const List& list = sweep_list();
   const auto ends = list.entries();
   const auto [first, last] = std::minmax({list.position(min_end(id)), list.position(max_end(id))});
-  const auto add = [&](BodyId other) {
+  const auto add = [&](BodySlot other) {
     if (overlap_where_listed(id, other)) partners.push_back(other);
   };
   for (std::size_t i = first + 1; i < last; ++i) {

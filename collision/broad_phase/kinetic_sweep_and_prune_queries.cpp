@@ -28,7 +28,7 @@ std::size_t KineticSweepAndPrune<Degree>::ends_below(double x, double now) const
 
 template <int Degree>
 void KineticSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const {
-  const auto look = [&](BodyId id) {
+  const auto look = [&](BodySlot id) {
     if (box_at(unlisted_.box(id), now).overlaps(box)) visit(id);
   };
   const List& list = sweep_list();
@@ -71,7 +71,7 @@ void KineticSweepAndPrune<Degree>::visit_swept(const KineticBox<Degree>& box, do
   const bool hulls = !all_listed() && until <= horizon_;  // those of bodies reach to the horizon
   const Hull hull = hulls ? unlisted_.hull_of(swept) : Hull::everywhere();
   for (const auto& end : sweep_list().entries()) {
-    const BodyId id = end.id / 2;
+    const BodySlot id = end.id / 2;
     if (!is_min(end.id) || (hulls && !hull.meets(unlisted_.hull(id)))) continue;
     if (bounded_swept_box(unlisted_.box(id), from, until).overlaps(swept)) visit(id);
   }

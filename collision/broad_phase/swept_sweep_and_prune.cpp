@@ -16,7 +16,7 @@ SweptSweepAndPrune<Degree>::SweptSweepAndPrune(double start, double rate, Profil
     : start_(start), rate_(rate), profile_(profile), frame_end_(start) {}
 
 template <int Degree>
-bool SweptSweepAndPrune<Degree>::overlap(BodyId a, BodyId b) const {
+bool SweptSweepAndPrune<Degree>::overlap(BodySlot a, BodySlot b) const {
   const StaticBox& x = swept_[a];
   const StaticBox& y = swept_[b];
   return x.min[0] < y.max[0] && y.min[0] < x.max[0] && x.min[1] < y.max[1] && y.min[1] < x.max[1] &&
@@ -24,20 +24,20 @@ bool SweptSweepAndPrune<Degree>::overlap(BodyId a, BodyId b) const {
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::sweep(BodyId id, double from) {
+void SweptSweepAndPrune<Degree>::sweep(BodySlot id, double from) {
   ++counters_.box_updates;
   swept_[id] = swept_box(boxes_[id], from, frame_end_);
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::add_pair(BodyId a, BodyId b, Reports& reports) {
+void SweptSweepAndPrune<Degree>::add_pair(BodySlot a, BodySlot b, Reports& reports) {
   if (!pairs_.insert(key(a, b)).second) return;
   reports.any = true;
   reports.listener.pair_began(a, b, reports.now);
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::drop_pair(BodyId a, BodyId b, Reports& reports) {
+void SweptSweepAndPrune<Degree>::drop_pair(BodySlot a, BodySlot b, Reports& reports) {
   if (pairs_.erase(key(a, b)) == 0) return;
   reports.any = true;
   reports.listener.pair_ended(a, b, reports.now);
@@ -53,8 +53,8 @@ void SweptSweepAndPrune<Degree>::exchange(std::size_t axis, std::size_t left, Re
   places_[axis][now_left] = static_cast<std::uint32_t>(left);
   places_[axis][now_right] = static_cast<std::uint32_t>(left + 1);
   if (((now_left ^ now_right) & 1) == 0 || now_left / 2 == now_right / 2) return;
-  const BodyId a = std::min(now_left, now_right) / 2;
-  const BodyId b = std::max(now_left, now_right) / 2;
+  const BodySlot a = std::min(now_left, now_right) / 2;
+  const BodySlot b = std::max(now_left, now_right) / 2;
   if ((now_left & 1) != 0) {
     drop_pair(a, b, reports);  // a maximum has moved left of a minimum
   } else if (overlap(a, b)) {
@@ -76,7 +76,7 @@ void SweptSweepAndPrune<Degree>::frame(double now, Reports& reports) {
   frame_end_ = start_ + static_cast<double>(frames_) / rate_;
   {
     const Stopwatch watch(profile_, Work::update);
-    for (const BodyId id : bodies_) sweep(id, now);
+    for (const BodySlot id : bodies_) sweep(id, now);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (End& end : ends_[axis]) end.value = value(end.id, axis);
     }
@@ -101,7 +101,7 @@ void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double no
     frames_ = static_cast<std::uint64_t>(std::floor((now - start_) * rate_));
     frame(now, reports);
   }
-  std::vector<BodyId> added;
+  std::vector<BodySlot> added;
   for (const Entry& body : bodies) {
     if (body.id >= boxes_.size()) {
       boxes_.resize(body.id + 1);
@@ -124,12 +124,12 @@ void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double no
     }
   }
   // One sweep along x finds all overlaps; those known already are passed over.
-  std::vector<BodyId> open;
-  std::vector<std::pair<BodyId, BodyId>> found;
+  std::vector<BodySlot> open;
+  std::vector<std::pair<BodySlot, BodySlot>> found;
   for (const End& end : ends_[0]) {
-    const BodyId id = end.id / 2;
+    const BodySlot id = end.id / 2;
     if ((end.id & 1) == 0) {
-      for (const BodyId other : open) {
+      for (const BodySlot other : open) {
         if (overlap(id, other)) found.emplace_back(std::min(id, other), std::max(id, other));
       }
       open.push_back(id);
@@ -143,7 +143,7 @@ void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double no
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::remove(BodyId id, double now, PairListener& listener) {
+void SweptSweepAndPrune<Degree>::remove(BodySlot id, double now, PairListener& listener) {
   bodies_.erase(std::find(bodies_.begin(), bodies_.end(), id));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::erase_if(ends_[axis], [id](const End& end) { return end.id / 2 == id; });
@@ -152,7 +152,7 @@ void SweptSweepAndPrune<Degree>::remove(BodyId id, double now, PairListener& lis
     }
   }
   Reports reports{listener, now};
-  for (const BodyId other : bodies_) drop_pair(std::min(id, other), std::max(id, other), reports);
+  for (const BodySlot other : bodies_) drop_pair(std::min(id, other), std::max(id, other), reports);
 }
 
 template <int Degree>
@@ -165,7 +165,8 @@ void SweptSweepAndPrune<Degree>::move_end(std::size_t axis, std::uint32_t id, Re
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) {
+void SweptSweepAndPrune<Degree>::update(BodySlot id, const KineticBox<Degree>& box, double now,
+                                        PairListener& listener) {
   boxes_[id] = box;
   sweep(id, now);
   Reports reports{listener, now};
@@ -178,7 +179,7 @@ void SweptSweepAndPrune<Degree>::update(BodyId id, const KineticBox<Degree>& box
 
 template <int Degree>
 void SweptSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, double, BodyVisitor visit) const {
-  for (const BodyId id : bodies_) {
+  for (const BodySlot id : bodies_) {
     if (swept_[id].overlaps(box)) visit(id);
   }
 }
@@ -188,7 +189,7 @@ void SweptSweepAndPrune<Degree>::visit_swept(const KineticBox<Degree>& box, doub
                                              BodyVisitor visit) const {
   const StaticBox swept = bounded_swept_box(box, from, until);
   if (until <= frame_end_) return visit_overlapping(swept, from, visit);
-  for (const BodyId id : bodies_) {
+  for (const BodySlot id : bodies_) {
     if (bounded_swept_box(boxes_[id], from, until).overlaps(swept)) visit(id);
   }
 }

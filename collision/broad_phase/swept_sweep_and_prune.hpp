@@ -30,8 +30,8 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   bool exact() const override { return false; }
   std::string_view name() const override { return "sap"; }
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
-  void remove(BodyId id, double now, PairListener& listener) override;
-  void update(BodyId id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
+  void remove(BodySlot id, double now, PairListener& listener) override;
+  void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return frame_end_; }
   void extend_horizon(double, double) override {}
@@ -58,21 +58,21 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   static bool before(const End& a, const End& b) {
     return a.value < b.value || (a.value == b.value && (a.id & 1) > (b.id & 1));
   }
-  static std::uint64_t key(BodyId a, BodyId b) { return std::uint64_t{a} << 32 | b; }
+  static std::uint64_t key(BodySlot a, BodySlot b) { return std::uint64_t{a} << 32 | b; }
 
   double value(std::uint32_t id, std::size_t axis) const {
     const StaticBox& box = swept_[id / 2];
     const auto d = static_cast<Eigen::Index>(axis);
     return (id & 1) != 0 ? box.max[d] : box.min[d];
   }
-  bool overlap(BodyId a, BodyId b) const;
-  void sweep(BodyId id, double from);
+  bool overlap(BodySlot a, BodySlot b) const;
+  void sweep(BodySlot id, double from);
   void sort_axis(std::size_t axis, Reports& reports);
   void move_end(std::size_t axis, std::uint32_t id, Reports& reports);
   void exchange(std::size_t axis, std::size_t left, Reports& reports);
   void frame(double now, Reports& reports);
-  void add_pair(BodyId a, BodyId b, Reports& reports);
-  void drop_pair(BodyId a, BodyId b, Reports& reports);
+  void add_pair(BodySlot a, BodySlot b, Reports& reports);
+  void drop_pair(BodySlot a, BodySlot b, Reports& reports);
 
   double start_;
   double rate_;
@@ -81,7 +81,7 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   double frame_end_;
   std::vector<KineticBox<Degree>> boxes_;  // by body
   std::vector<StaticBox> swept_;           // by body
-  std::vector<BodyId> bodies_;
+  std::vector<BodySlot> bodies_;
   std::array<std::vector<End>, 3> ends_;
   std::array<std::vector<std::uint32_t>, 3> places_;  // of ends, by end id; right between frames
   std::unordered_set<std::uint64_t> pairs_;

@@ -87,11 +87,11 @@ void UnlistedAxes<Degree>::choose(unsigned directions, double now) {
   free_.clear();
   for (auto& pairs : pairs_of_) pairs.clear();
   more_hulls_.resize(boxes_.size() * 2 * more_.size());
-  for (BodyId id = 0; id < boxes_.size(); ++id) set_hulls(id, now);
+  for (BodySlot id = 0; id < boxes_.size(); ++id) set_hulls(id, now);
 }
 
 template <int Degree>
-void UnlistedAxes<Degree>::set_hulls(BodyId id, double now) {
+void UnlistedAxes<Degree>::set_hulls(BodySlot id, double now) {
   const auto span = [&](const Motion<Degree>& min, const Motion<Degree>& max) {
     double low = never;
     double high = -never;
@@ -119,7 +119,7 @@ auto UnlistedAxes<Degree>::hull_of(const StaticBox& box) const -> Hull {
 }
 
 template <int Degree>
-bool UnlistedAxes<Degree>::near_on_more(BodyId a, BodyId b) const {
+bool UnlistedAxes<Degree>::near_on_more(BodySlot a, BodySlot b) const {
   const float* const hulls_a = &more_hulls_[2 * a * more_.size()];
   const float* const hulls_b = &more_hulls_[2 * b * more_.size()];
   for (std::size_t i = 0; i < 2 * more_.size(); i += 2) {
@@ -129,8 +129,8 @@ bool UnlistedAxes<Degree>::near_on_more(BodyId a, BodyId b) const {
 }
 
 template <int Degree>
-void UnlistedAxes<Degree>::set_box(BodyId id, const KineticBox<Degree>& box, std::span<const KineticSlab<Degree>> slabs,
-                                   double now) {
+void UnlistedAxes<Degree>::set_box(BodySlot id, const KineticBox<Degree>& box,
+                                   std::span<const KineticSlab<Degree>> slabs, double now) {
   if (id >= boxes_.size()) {
     boxes_.resize(id + 1);
     hulls_.resize(id + 1);
@@ -150,7 +150,7 @@ void UnlistedAxes<Degree>::set_box(BodyId id, const KineticBox<Degree>& box, std
 }
 
 template <int Degree>
-typename UnlistedAxes<Degree>::PairSlot UnlistedAxes<Degree>::find(BodyId a, BodyId b) const {
+typename UnlistedAxes<Degree>::PairSlot UnlistedAxes<Degree>::find(BodySlot a, BodySlot b) const {
   const auto& fewer = pairs_of_[a].size() <= pairs_of_[b].size() ? pairs_of_[a] : pairs_of_[b];
   for (const PairSlot slot : fewer) {
     if (pairs_[slot].a == a && pairs_[slot].b == b) return slot;
@@ -167,7 +167,7 @@ double UnlistedAxes<Degree>::next_change(const Pair& pair, double now) const {
 }
 
 template <int Degree>
-bool UnlistedAxes<Degree>::add(BodyId a, BodyId b, double now) {
+bool UnlistedAxes<Degree>::add(BodySlot a, BodySlot b, double now) {
   const Sides sides(*this, a, b);
   if (sides.stay_apart(now, horizon_)) return false;
   ++counters_.certificates;
@@ -195,7 +195,7 @@ template <int Degree>
 void UnlistedAxes<Degree>::remove(PairSlot slot) {
   queue_.clear(slot);
   pairs_[slot].alive = false;
-  for (const BodyId id : {pairs_[slot].a, pairs_[slot].b}) {
+  for (const BodySlot id : {pairs_[slot].a, pairs_[slot].b}) {
     auto& pairs = pairs_of_[id];
     const auto it = std::find(pairs.begin(), pairs.end(), slot);
     if (it == pairs.end()) continue;
@@ -206,7 +206,7 @@ void UnlistedAxes<Degree>::remove(PairSlot slot) {
 }
 
 template <int Degree>
-bool UnlistedAxes<Degree>::drop(BodyId a, BodyId b) {
+bool UnlistedAxes<Degree>::drop(BodySlot a, BodySlot b) {
   const PairSlot slot = find(a, b);
   if (slot == no_pair) return false;
   const bool overlap = pairs_[slot].overlap;
@@ -215,7 +215,7 @@ bool UnlistedAxes<Degree>::drop(BodyId a, BodyId b) {
 }
 
 template <int Degree>
-void UnlistedAxes<Degree>::look_farther(BodyId a, BodyId b, double now) {
+void UnlistedAxes<Degree>::look_farther(BodySlot a, BodySlot b, double now) {
   if (!near(a, b)) return;
   const PairSlot slot = find(a, b);
   if (slot == no_pair) {
@@ -227,7 +227,7 @@ void UnlistedAxes<Degree>::look_farther(BodyId a, BodyId b, double now) {
 }
 
 template <int Degree>
-void UnlistedAxes<Degree>::forget_pairs(BodyId id, std::vector<BodyId>& partners) {
+void UnlistedAxes<Degree>::forget_pairs(BodySlot id, std::vector<BodySlot>& partners) {
   while (!pairs_of_[id].empty()) {
     const PairSlot slot = pairs_of_[id].back();
     const Pair& pair = pairs_[slot];
@@ -237,7 +237,7 @@ void UnlistedAxes<Degree>::forget_pairs(BodyId id, std::vector<BodyId>& partners
 }
 
 template <int Degree>
-bool UnlistedAxes<Degree>::overlap(BodyId a, BodyId b) const {
+bool UnlistedAxes<Degree>::overlap(BodySlot a, BodySlot b) const {
   const PairSlot slot = find(std::min(a, b), std::max(a, b));
   return slot != no_pair && pairs_[slot].overlap;
 }
@@ -263,7 +263,7 @@ void UnlistedAxes<Degree>::extend_horizon(double now, double horizon) {
   const bool extended = horizon > horizon_;
   horizon_ = horizon;
   if (count_ == 0) return;
-  for (BodyId id = 0; id < boxes_.size(); ++id) set_hulls(id, now);
+  for (BodySlot id = 0; id < boxes_.size(); ++id) set_hulls(id, now);
   if (extended) return;
   for (PairSlot slot = 0; slot < pairs_.size(); ++slot) {
     if (!pairs_[slot].alive || queue_.time(slot) <= horizon_) continue;
@@ -288,7 +288,7 @@ void UnlistedAxes<Degree>::audit(double now) const {
 }
 
 template <int Degree>
-void UnlistedAxes<Degree>::audit_pair(BodyId a, BodyId b, double now) const {
+void UnlistedAxes<Degree>::audit_pair(BodySlot a, BodySlot b, double now) const {
   const PairSlot slot = find(a, b);
   const bool known = slot != no_pair;
   if (known && queue_.time(slot) <= now) return;

@@ -20,7 +20,7 @@ namespace kds::collision {
 
 /// A pair of bodies, a < b, whose boxes begin or cease to overlap.
 struct PairChange {
-  BodyId a, b;
+  BodySlot a, b;
   bool began;
 };
 
@@ -68,10 +68,10 @@ class UnlistedAxes {
   void choose(unsigned directions, double now);
 
   /// Gives a body its box, and its slabs in the directions beyond the axes. Precondition: none of its pairs is known.
-  void set_box(BodyId id, const KineticBox<Degree>& box, std::span<const KineticSlab<Degree>> slabs, double now);
-  const KineticBox<Degree>& box(BodyId id) const { return boxes_[id]; }
+  void set_box(BodySlot id, const KineticBox<Degree>& box, std::span<const KineticSlab<Degree>> slabs, double now);
+  const KineticBox<Degree>& box(BodySlot id) const { return boxes_[id]; }
   /// An end of a body's interval in a direction.
-  Motion<Degree> end(BodyId id, std::size_t direction, bool upper) const {
+  Motion<Degree> end(BodySlot id, std::size_t direction, bool upper) const {
     if (direction < 3) return (upper ? boxes_[id].max : boxes_[id].min).axis(static_cast<int>(direction));
     return upper ? slab(id, direction).max : slab(id, direction).min;
   }
@@ -83,27 +83,27 @@ class UnlistedAxes {
   Hull hull_of(const StaticBox& box) const;
 
   /// Whether the pair may overlap here before the horizon: the first filter alone.
-  bool near(BodyId a, BodyId b) const { return hulls_meet(a, b) && (more_.empty() || near_on_more(a, b)); }
+  bool near(BodySlot a, BodySlot b) const { return hulls_meet(a, b) && (more_.empty() || near_on_more(a, b)); }
 
-  const Hull& hull(BodyId id) const { return hulls_[id]; }
+  const Hull& hull(BodySlot id) const { return hulls_[id]; }
   /// Near on the first two directions, without a branch.
-  bool hulls_meet(BodyId a, BodyId b) const { return hulls_[a].meets(hulls_[b]); }
+  bool hulls_meet(BodySlot a, BodySlot b) const { return hulls_[a].meets(hulls_[b]); }
 
   /// The boxes of a pair have met on all axes with a list; a < b. Returns whether they overlap on these axes too.
-  bool met(BodyId a, BodyId b, double now) { return near(a, b) && add(a, b, now); }
+  bool met(BodySlot a, BodySlot b, double now) { return near(a, b) && add(a, b, now); }
 
   /// They have parted on an axis with a list. Returns whether they have overlapped on these until now. (Pairs that are
   /// known are near.)
-  bool parted(BodyId a, BodyId b) { return near(a, b) && drop(a, b); }
+  bool parted(BodySlot a, BodySlot b) { return near(a, b) && drop(a, b); }
 
   /// Looks again at a pair that overlaps on the listed axes, as the horizon is later.
-  void look_farther(BodyId a, BodyId b, double now);
+  void look_farther(BodySlot a, BodySlot b, double now);
 
   /// Forgets all pairs of a body; those it has overlapped with are appended to `partners`.
-  void forget_pairs(BodyId id, std::vector<BodyId>& partners);
+  void forget_pairs(BodySlot id, std::vector<BodySlot>& partners);
 
   /// Whether a pair overlaps on these axes. Precondition: it does on the others.
-  bool overlap(BodyId a, BodyId b) const;
+  bool overlap(BodySlot a, BodySlot b) const;
 
   double next_time() const { return queue_.empty() ? never : queue_.top().time; }
   void process();
@@ -113,7 +113,7 @@ class UnlistedAxes {
 
   /// Checks what is known; the owner calls audit_pair() for all pairs that overlap on the listed axes.
   void audit(double now) const;
-  void audit_pair(BodyId a, BodyId b, double now) const;
+  void audit_pair(BodySlot a, BodySlot b, double now) const;
 
   const Counters& counters() const { return counters_; }
 
@@ -122,7 +122,7 @@ class UnlistedAxes {
   static constexpr PairSlot no_pair = ~PairSlot{0};
 
   struct Pair {
-    BodyId a, b;
+    BodySlot a, b;
     bool overlap = false;
     bool alive = false;
   };
@@ -138,14 +138,14 @@ class UnlistedAxes {
   using Apart = certificates::Order<Degree>;
 
   /// Of k-DOPs: the slab of a body in any direction, the axes too.
-  const KineticSlab<Degree>& slab(BodyId id, std::size_t direction) const {
+  const KineticSlab<Degree>& slab(BodySlot id, std::size_t direction) const {
     return slabs_[id * directions_ + direction];
   }
-  void set_hulls(BodyId id, double now);
-  bool near_on_more(BodyId a, BodyId b) const;
-  bool add(BodyId a, BodyId b, double now);
-  bool drop(BodyId a, BodyId b);
-  PairSlot find(BodyId a, BodyId b) const;
+  void set_hulls(BodySlot id, double now);
+  bool near_on_more(BodySlot a, BodySlot b) const;
+  bool add(BodySlot a, BodySlot b, double now);
+  bool drop(BodySlot a, BodySlot b);
+  PairSlot find(BodySlot a, BodySlot b) const;
   void remove(PairSlot slot);
   double next_change(const Pair& pair, double now) const;
 

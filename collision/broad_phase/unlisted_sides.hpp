@@ -17,7 +17,7 @@ namespace kds::collision {
 template <int Degree>
 class UnlistedAxes<Degree>::Sides {
  public:
-  Sides(const UnlistedAxes& axes, BodyId a, BodyId b)
+  Sides(const UnlistedAxes& axes, BodySlot a, BodySlot b)
       : ends_{ends(axes, 0, a, b), ends(axes, 1, a, b)},
         apart_{Apart{ends_[0].a_max, ends_[0].b_min}, Apart{ends_[0].b_max, ends_[0].a_min},
                Apart{ends_[1].a_max, ends_[1].b_min}, Apart{ends_[1].b_max, ends_[1].a_min}},
@@ -77,7 +77,7 @@ class UnlistedAxes<Degree>::Sides {
     Motion<Degree> a_min, a_max, b_min, b_max;
   };
 
-  static Ends ends(const UnlistedAxes& axes, std::size_t i, BodyId a, BodyId b) {
+  static Ends ends(const UnlistedAxes& axes, std::size_t i, BodySlot a, BodySlot b) {
     const int d = axes.axes_[i];
     const auto& box_a = axes.boxes_[a];
     const auto& box_b = axes.boxes_[b];

@@ -1,6 +1,6 @@
 // What the world checks of itself.
-#include "collision/degrees.hpp"
 #include "kds/audit.hpp"
+#include "collision/degrees.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -18,8 +18,8 @@ void World<Degree>::audit(double t) const {
   if (resting_.settled()) resting_.audit(t, options_.walls.has_value());
   pairs_.audit(t);
   if (broad_phase_->next_time() <= t) return;
-  for (BodyId a = 0; a < bodies_.slots(); ++a) {
-    for (BodyId b = a + 1; b < bodies_.slots(); ++b) {
+  for (BodySlot a = 0; a < bodies_.slots(); ++a) {
+    for (BodySlot b = a + 1; b < bodies_.slots(); ++b) {
       if (!bodies_[a].entered || !bodies_[b].entered || !bodies_.may_collide(a, b) || pairs_.listed(a, b)) continue;
       if (!volumes_.overlap(a, b, t, broad_phase_->exact())) continue;
       throw AuditFailure("World: bodies " + std::to_string(a) + " and " + std::to_string(b) +

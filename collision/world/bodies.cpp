@@ -18,13 +18,13 @@ constexpr double jump_tolerance = 0x1p-40;
 }  // namespace
 
 template <int Degree>
-const typename Bodies<Degree>::Body& Bodies<Degree>::at(BodyId id) const {
+const typename Bodies<Degree>::Body& Bodies<Degree>::at(BodySlot id) const {
   if (!contains(id)) throw std::out_of_range("World: there is no body " + std::to_string(id));
   return bodies_[id];
 }
 
 template <int Degree>
-bool Bodies<Degree>::is_jump(BodyId id, const Motion& to, double t) const {
+bool Bodies<Degree>::is_jump(BodySlot id, const Motion& to, double t) const {
   const Eigen::Vector3d before = movers_[id].motion.position(t);
   const Eigen::Vector3d after = to.position(t);
   const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + bodies_[id].bounding_radius;
@@ -34,27 +34,27 @@ bool Bodies<Degree>::is_jump(BodyId id, const Motion& to, double t) const {
 /// One of those that were removed at an earlier time, of which all has been told that has happened to them, or a new
 /// one.
 template <int Degree>
-inline BodyId Bodies<Degree>::new_id(double now) {
+inline BodySlot Bodies<Degree>::new_id(double now) {
   if (!removed_.empty() && removed_at_ < now) {
     free_.insert(free_.end(), removed_.begin(), removed_.end());
     removed_.clear();
   }
   if (!free_.empty()) {
-    const BodyId id = free_.back();
+    const BodySlot id = free_.back();
     free_.pop_back();
     return id;
   }
-  const auto id = static_cast<BodyId>(bodies_.size());
+  const auto id = static_cast<BodySlot>(bodies_.size());
   bodies_.emplace_back();
   movers_.emplace_back();
   return id;
 }
 
 template <int Degree>
-BodyId Bodies<Degree>::add(const Description& description, std::shared_ptr<const PlacedShape> shape,
-                           const Motion& motion, double now) {
+BodySlot Bodies<Degree>::add(const Description& description, std::shared_ptr<const PlacedShape> shape,
+                             const Motion& motion, double now) {
   const double ball = ball_radius(shape ? shape->shape : description.shape);
-  const BodyId id = new_id(now);
+  const BodySlot id = new_id(now);
   Body& added = bodies_[id];
   added.bounding_radius = shape ? shape->bounding_radius : ball;
   added.shape = std::move(shape);
@@ -76,7 +76,7 @@ BodyId Bodies<Degree>::add(const Description& description, std::shared_ptr<const
 }
 
 template <int Degree>
-void Bodies<Degree>::remove(BodyId id, double now) {
+void Bodies<Degree>::remove(BodySlot id, double now) {
   std::erase(waiting_, id);  // or the next of this id would enter in its stead
   bodies_[id] = Body{};
   if (removed_at_ < now) free_.insert(free_.end(), removed_.begin(), removed_.end()), removed_.clear();
@@ -93,14 +93,14 @@ void Bodies<Degree>::reserve(std::size_t bodies) {
 }
 
 template <int Degree>
-bool Bodies<Degree>::waits(BodyId id) const {
+bool Bodies<Degree>::waits(BodySlot id) const {
   return std::find(waiting_.begin(), waiting_.end(), id) != waiting_.end();
 }
 
 template <int Degree>
 std::vector<std::shared_ptr<const Mesh>> Bodies<Degree>::meshes() const {
   std::vector<std::shared_ptr<const Mesh>> result;
-  for (BodyId id = 0; id < bodies_.size(); ++id) {
+  for (BodySlot id = 0; id < bodies_.size(); ++id) {
     if (!bodies_[id].alive) continue;
     const auto mesh = mesh_of(shape(id).shape);
     if (mesh && std::find(result.begin(), result.end(), mesh) == result.end()) result.push_back(mesh);
@@ -112,7 +112,7 @@ template <int Degree>
 typename Bodies<Degree>::Image Bodies<Degree>::image() const {
   Image image;
   image.meshes = meshes();
-  for (BodyId id = 0; id < bodies_.size(); ++id) {
+  for (BodySlot id = 0; id < bodies_.size(); ++id) {
     const Body& b = bodies_[id];
     auto& to = image.bodies.emplace_back();
     if (!b.alive) continue;
@@ -135,7 +135,7 @@ typename Bodies<Degree>::Image Bodies<Degree>::image() const {
 }
 
 template <int Degree>
-void Bodies<Degree>::set_shape(BodyId id, PlacedShape placed) {
+void Bodies<Degree>::set_shape(BodySlot id, PlacedShape placed) {
   Body& b = bodies_[id];
   const double ball = ball_radius(placed.shape);
   b.bounding_radius = placed.bounding_radius;
@@ -151,7 +151,7 @@ void Bodies<Degree>::become(const Image& image) {
   bodies_.clear(), movers_.clear();
   bodies_.resize(count), movers_.resize(count);
   alive_ = 0;
-  for (BodyId id = 0; id < count; ++id) {
+  for (BodySlot id = 0; id < count; ++id) {
     const auto& from = image.bodies[id];
     if (!from.alive) continue;
     ++alive_;

@@ -19,7 +19,7 @@
 
 namespace kds::collision {
 
-inline constexpr BodyId no_body = ~BodyId{0};
+inline constexpr BodySlot no_body = ~BodySlot{0};
 
 namespace detail {
 
@@ -85,24 +85,24 @@ class Bodies {
   std::size_t size() const { return alive_; }
   /// All ids are below this.
   std::size_t slots() const { return bodies_.size(); }
-  bool contains(BodyId id) const { return id < bodies_.size() && bodies_[id].alive; }
-  bool entered(BodyId id) const { return contains(id) && bodies_[id].entered; }
+  bool contains(BodySlot id) const { return id < bodies_.size() && bodies_[id].alive; }
+  bool entered(BodySlot id) const { return contains(id) && bodies_[id].entered; }
 
   /// Throws std::out_of_range, naming the id, if there is none.
-  const Body& at(BodyId id) const;
+  const Body& at(BodySlot id) const;
   /// Precondition, here and below: id < slots().
-  const Body& operator[](BodyId id) const { return bodies_[id]; }
-  Body& operator[](BodyId id) { return bodies_[id]; }
-  const Mover& mover(BodyId id) const { return movers_[id]; }
-  const Motion& motion(BodyId id) const { return movers_[id].motion; }
-  Moving moving(BodyId id) const { return Moving(bodies_[id], movers_[id].motion); }
-  PlacedShape shape(BodyId id) const { return moving(id).shape; }
+  const Body& operator[](BodySlot id) const { return bodies_[id]; }
+  Body& operator[](BodySlot id) { return bodies_[id]; }
+  const Mover& mover(BodySlot id) const { return movers_[id]; }
+  const Motion& motion(BodySlot id) const { return movers_[id].motion; }
+  Moving moving(BodySlot id) const { return Moving(bodies_[id], movers_[id].motion); }
+  PlacedShape shape(BodySlot id) const { return moving(id).shape; }
   /// Whether no other body changes its motion.
-  bool fixed(BodyId id) const { return bodies_[id].inverse_mass == 0; }
+  bool fixed(BodySlot id) const { return bodies_[id].inverse_mass == 0; }
 
-  void move(BodyId id, const Motion& motion) { movers_[id].motion = motion; }
+  void move(BodySlot id, const Motion& motion) { movers_[id].motion = motion; }
   /// Half the acceleration that the body has by itself: that of the motion that callers gave last.
-  Eigen::Vector3d free_acceleration(BodyId id) const requires(Degree <= 2) {
+  Eigen::Vector3d free_acceleration(BodySlot id) const requires(Degree <= 2) {
     if constexpr (Degree == 2) {
       return bodies_[id].force;
     } else {
@@ -111,19 +111,19 @@ class Bodies {
   }
   /// The same at t, and its derivatives up to factors: coefficient `order` >= 2 about t of the motion that callers
   /// gave.
-  Eigen::Vector3d free_term(BodyId id, [[maybe_unused]] std::size_t order, [[maybe_unused]] double t) const {
+  Eigen::Vector3d free_term(BodySlot id, [[maybe_unused]] std::size_t order, [[maybe_unused]] double t) const {
     if constexpr (Degree >= 3) {
       return bodies_[id].given.restarted(t).coefficients[order];
     } else {
       return free_acceleration(id);
     }
   }
-  void accelerate_freely(BodyId id, const Motion& motion) {
+  void accelerate_freely(BodySlot id, const Motion& motion) {
     if constexpr (Degree == 2) bodies_[id].force = motion.coefficients[2];
     if constexpr (Degree >= 3) bodies_[id].given = motion;
   }
   /// Whether a body that takes up another motion at t is then elsewhere, by more than rounding.
-  bool is_jump(BodyId id, const Motion& to, double t) const;
+  bool is_jump(BodySlot id, const Motion& to, double t) const;
 
   /// Whether some body is a sensor, or was.
   bool any_sensor() const { return sensors_; }
@@ -131,24 +131,24 @@ class Bodies {
   /// Whether some body does not collide with all others, or did not.
   bool filters() const { return filters_; }
   /// Whether there is something that it may collide with. What collides with nothing no broad phase knows.
-  bool collides(BodyId id) const { return bodies_[id].category != 0 && bodies_[id].collides_with != 0; }
-  bool may_collide(BodyId a, BodyId b) const {
+  bool collides(BodySlot id) const { return bodies_[id].category != 0 && bodies_[id].collides_with != 0; }
+  bool may_collide(BodySlot a, BodySlot b) const {
     return (bodies_[a].category & bodies_[b].collides_with) != 0 &&
            (bodies_[b].category & bodies_[a].collides_with) != 0;
   }
 
   /// Adds one with a motion to begin with. No `shape` is that of a ball that is not turned. Precondition: valid.
-  BodyId add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion,
-             double now);
-  void remove(BodyId id, double now);
+  BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion,
+               double now);
+  void remove(BodySlot id, double now);
   void reserve(std::size_t bodies);
 
   /// A body's motion begins now: it waits to enter.
-  void wait(BodyId id) { waiting_.push_back(id); }
+  void wait(BodySlot id) { waiting_.push_back(id); }
   bool any_waits() const { return !waiting_.empty(); }
-  bool waits(BodyId id) const;
-  const std::vector<BodyId>& waiting() const { return waiting_; }
-  std::vector<BodyId> take_waiting() { return std::exchange(waiting_, {}); }
+  bool waits(BodySlot id) const;
+  const std::vector<BodySlot>& waiting() const { return waiting_; }
+  std::vector<BodySlot> take_waiting() { return std::exchange(waiting_, {}); }
 
   /// All of it, as plain data: what a snapshot holds.
   struct Image;
@@ -159,15 +159,15 @@ class Bodies {
   std::vector<std::shared_ptr<const Mesh>> meshes() const;
 
  private:
-  BodyId new_id(double now);
-  void set_shape(BodyId id, PlacedShape placed);
+  BodySlot new_id(double now);
+  void set_shape(BodySlot id, PlacedShape placed);
 
   std::vector<Mover> movers_;
   std::vector<Body> bodies_;
-  std::vector<BodyId> free_;
-  std::vector<BodyId> removed_;  ///< at removed_at_: their ids are not given again at that time
+  std::vector<BodySlot> free_;
+  std::vector<BodySlot> removed_;  ///< at removed_at_: their ids are not given again at that time
   double removed_at_ = -never;
-  std::vector<BodyId> waiting_;
+  std::vector<BodySlot> waiting_;
   std::size_t alive_ = 0;
   bool filters_ = false;
   bool sensors_ = false;

@@ -103,7 +103,7 @@ void Bodies<Degree>::Image::check(double now) const {
     if constexpr (Degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
   }
   std::vector<char> listed(bodies.size());
-  const auto check_free = [&](const std::vector<BodyId>& ids, const char* list) {
+  const auto check_free = [&](const std::vector<BodySlot>& ids, const char* list) {
     for (std::size_t i = 0; i < ids.size(); ++i) {
       image::require(ids[i] < bodies.size() && !bodies[ids[i]].alive && !std::exchange(listed[ids[i]], 1), list, i,
                      "is no free id, or listed twice");

@@ -31,11 +31,11 @@ struct Bodies<Degree>::Image {
 
   std::vector<std::shared_ptr<const Mesh>> meshes;
   std::vector<One> bodies;  // by id
-  std::vector<BodyId> free, removed, waiting;
+  std::vector<BodySlot> free, removed, waiting;
   double removed_at = 0;
 
-  bool alive(BodyId id) const { return id < bodies.size() && bodies[id].alive; }
-  bool entered(BodyId id) const { return alive(id) && bodies[id].entered; }
+  bool alive(BodySlot id) const { return id < bodies.size() && bodies[id].alive; }
+  bool entered(BodySlot id) const { return alive(id) && bodies[id].entered; }
 
   /// Loading, meshes that are among `known` are not built again.
   template <class Archive>

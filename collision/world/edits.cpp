@@ -50,7 +50,7 @@ void World<Degree>::reserve(std::size_t bodies) {
 }
 
 template <int Degree>
-BodyId World<Degree>::add_body(const Description& description) {
+BodySlot World<Degree>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
   count_edit();
@@ -66,12 +66,12 @@ BodyId World<Degree>::add_body(const Description& description) {
 
 /// No shape is that of a ball that is not turned.
 template <int Degree>
-inline BodyId World<Degree>::put(const Description& description, std::shared_ptr<const PlacedShape> shape) {
+inline BodySlot World<Degree>::put(const Description& description, std::shared_ptr<const PlacedShape> shape) {
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= clock_.now) ++piece;
   if (has_mesh(description.shape)) make_room_for_meshes();
-  const BodyId id = bodies_.add(description, std::move(shape), *piece, clock_.now);
+  const BodySlot id = bodies_.add(description, std::move(shape), *piece, clock_.now);
   if (piece->start <= clock_.now) {
     bodies_.wait(id);
     ++piece;
@@ -85,14 +85,14 @@ inline BodyId World<Degree>::put(const Description& description, std::shared_ptr
 template <int Degree>
 void World<Degree>::make_room_for_meshes() {
   if (!volumes_.make_room_for_meshes()) return;
-  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
     if (bodies_[id].entered) update_volume(id, volumes_.box(id));
   }
 }
 
 /// Makes known a volume that is another though nothing has moved.
 template <int Degree>
-void World<Degree>::update_volume(BodyId id, const KineticBox<Degree>& box) {
+void World<Degree>::update_volume(BodySlot id, const KineticBox<Degree>& box) {
   if (bodies_.collides(id)) broad_phase_->update(id, box, clock_.now, pairs_);
   pairs_.box_changed(id);
   volumes_.schedule(id);
@@ -100,13 +100,13 @@ void World<Degree>::update_volume(BodyId id, const KineticBox<Degree>& box) {
 
 template <int Degree>
 void World<Degree>::enter_new_bodies() {
-  const std::vector<BodyId> entering = bodies_.take_waiting();
+  const std::vector<BodySlot> entering = bodies_.take_waiting();
   // What is due now among the others comes first, lest it count as what the new ones bring.
   while (broad_phase_->advance(clock_.now, pairs_)) {
   }
   std::vector<Entry> entries;
   entries.reserve(entering.size());
-  for (const BodyId id : entering) {
+  for (const BodySlot id : entering) {
     Body& b = bodies_[id];
     if (!b.alive || b.entered) continue;
     b.entered = true;
@@ -139,7 +139,7 @@ void World<Degree>::enter_new_bodies() {
 }
 
 template <int Degree>
-void World<Degree>::update_motion(BodyId id, const Motion& motion) {
+void World<Degree>::update_motion(BodySlot id, const Motion& motion) {
   require_editable("World::update_motion");
   bodies_.at(id);
   if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
@@ -152,7 +152,7 @@ void World<Degree>::update_motion(BodyId id, const Motion& motion) {
 }
 
 template <int Degree>
-void World<Degree>::give(BodyId id, const Motion& motion) {
+void World<Degree>::give(BodySlot id, const Motion& motion) {
   scripts_.clear(id);
   ++counters_.motion_updates;
   bodies_.accelerate_freely(id, motion);
@@ -168,7 +168,7 @@ void World<Degree>::give(BodyId id, const Motion& motion) {
 }
 
 template <int Degree>
-void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
+void World<Degree>::set_motion(BodySlot id, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   bodies_.move(id, motion);
   pairs_.prefetch(id);  // while the broad phase is at work
@@ -181,7 +181,7 @@ void World<Degree>::set_motion(BodyId id, const Motion& motion, bool jumped) {
 }
 
 template <int Degree>
-void World<Degree>::remove_body(BodyId id) {
+void World<Degree>::remove_body(BodySlot id) {
   require_editable("World::remove_body");
   bodies_.at(id);
   count_edit();
@@ -189,7 +189,7 @@ void World<Degree>::remove_body(BodyId id) {
 }
 
 template <int Degree>
-void World<Degree>::take_out(BodyId id) {
+void World<Degree>::take_out(BodySlot id) {
   resting_.forget(id);
   scripts_.clear(id);
   walls_.remove(id);

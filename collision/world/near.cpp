@@ -18,23 +18,23 @@ void World<Degree>::answer(const char* function, const Ask& ask, const Meets& me
   if (volumes_.calling()) {
     throw std::logic_error(std::string(function) + ": must not be called from within a box function");
   }
-  std::vector<BodyId> named;
-  const auto look = [&](BodyId id) {
+  std::vector<BodySlot> named;
+  const auto look = [&](BodySlot id) {
     if (meets(id)) named.push_back(id);
   };
   const bool broad_phase_is_ahead = now() < clock_.now;
   if (!broad_phase_is_ahead) ask(look);
   if (broad_phase_is_ahead || bodies_.filters()) {
-    for (BodyId id = 0; id < bodies_.slots(); ++id) {
+    for (BodySlot id = 0; id < bodies_.slots(); ++id) {
       if (bodies_.entered(id) && (broad_phase_is_ahead || !bodies_.collides(id))) look(id);
     }
   }
-  for (const BodyId id : bodies_.waiting()) {
+  for (const BodySlot id : bodies_.waiting()) {
     if (bodies_.contains(id) && !bodies_.entered(id)) look(id);
   }
   std::sort(named.begin(), named.end());
   named.erase(std::unique(named.begin(), named.end()), named.end());
-  for (const BodyId id : named) visit(id);
+  for (const BodySlot id : named) visit(id);
 }
 
 template <int Degree>
@@ -46,7 +46,7 @@ void World<Degree>::visit_overlapping(const Eigen::Vector3d& min, const Eigen::V
   const double t = now();
   const auto ask = [&](const auto& look) { broad_phase_->visit_overlapping(box, t, look); };
   answer(
-      "World::visit_overlapping", ask, [&](BodyId id) { return volumes_.meets(id, box, t); }, visit);
+      "World::visit_overlapping", ask, [&](BodySlot id) { return volumes_.meets(id, box, t); }, visit);
 }
 
 template <int Degree>
@@ -62,7 +62,7 @@ void World<Degree>::visit_swept(const KineticBox<Degree>& box, double until, Bod
   const StaticBox swept = bounded_swept_box(box, from, until);
   const auto ask = [&](const auto& look) { broad_phase_->visit_swept(box, from, until, look); };
   answer(
-      "World::visit_swept", ask, [&](BodyId id) { return volumes_.swept(id, from, until).overlaps(swept); }, visit);
+      "World::visit_swept", ask, [&](BodySlot id) { return volumes_.swept(id, from, until).overlaps(swept); }, visit);
 }
 
 #define KDS_INSTANTIATE(degree) template class World<degree>;

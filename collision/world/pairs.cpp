@@ -35,7 +35,7 @@ void Pairs<Degree>::pairs_to_come(std::size_t pairs) {
 }
 
 template <int Degree>
-void Pairs<Degree>::pair_began(BodyId a, BodyId b, double t) {
+void Pairs<Degree>::pair_began(BodySlot a, BodySlot b, double t) {
   const Stopwatch watch(profile_, Work::prune);
   clock_.now = t;
   if (!bodies_.may_collide(a, b)) return;
@@ -44,8 +44,7 @@ void Pairs<Degree>::pair_began(BodyId a, BodyId b, double t) {
   const Slot slot = overlapping != none ? overlapping : add(a, b);
   Pair& pair = pairs_[slot];
   pair.listed = true;
-  const bool fresh = begin_ == Begin::entering ||
-                     (begin_ == Begin::jumping && mode(a, b) == ContactMode::resolved);
+  const bool fresh = begin_ == Begin::entering || (begin_ == Begin::jumping && mode(a, b) == ContactMode::resolved);
   pair.fresh = pair.fresh || fresh;
   ++counters_.pairs_begun;
   mark_dirty(slot);
@@ -53,7 +52,7 @@ void Pairs<Degree>::pair_began(BodyId a, BodyId b, double t) {
 }
 
 template <int Degree>
-inline typename Pairs<Degree>::Slot Pairs<Degree>::add(BodyId a, BodyId b) {
+inline typename Pairs<Degree>::Slot Pairs<Degree>::add(BodySlot a, BodySlot b) {
   Slot slot;
   if (free_.empty()) {
     slot = static_cast<Slot>(pairs_.size());
@@ -86,7 +85,7 @@ inline void Pairs<Degree>::link(Slot slot, std::uint32_t first_room) {
 }
 
 template <int Degree>
-void Pairs<Degree>::pair_ended(BodyId a, BodyId b, double t) {
+void Pairs<Degree>::pair_ended(BodySlot a, BodySlot b, double t) {
   const Stopwatch watch(profile_, Work::prune);
   clock_.now = t;
   const Slot slot = find(a, b);
@@ -100,7 +99,7 @@ void Pairs<Degree>::pair_ended(BodyId a, BodyId b, double t) {
 }
 
 template <int Degree>
-void Pairs<Degree>::list_anew(std::span<const std::pair<BodyId, BodyId>> listed) {
+void Pairs<Degree>::list_anew(std::span<const std::pair<BodySlot, BodySlot>> listed) {
   for (Slot slot = 0; slot < pairs_.size(); ++slot) {
     const Pair& pair = pairs_[slot];
     if (!pair.alive || !pair.listed) continue;
@@ -125,11 +124,11 @@ void Pairs<Degree>::unlist(Slot slot) {
 }
 
 template <int Degree>
-typename Pairs<Degree>::Slot Pairs<Degree>::find(BodyId a, BodyId b) const {
+typename Pairs<Degree>::Slot Pairs<Degree>::find(BodySlot a, BodySlot b) const {
   const auto of_a = links(a);
   const auto of_b = links(b);
   const bool from_a = of_a.size() <= of_b.size();
-  const BodyId other = from_a ? b : a;
+  const BodySlot other = from_a ? b : a;
   for (const Link& link : from_a ? of_a : of_b) {
     if (link.other == other) return link.slot;
   }
@@ -141,7 +140,7 @@ template <int Degree>
 void Pairs<Degree>::release(Slot slot) {
   Pair& pair = pairs_[slot];
   // Each body's list closes up with its last entry.
-  for (const BodyId id : {pair.a, pair.b}) {
+  for (const BodySlot id : {pair.a, pair.b}) {
     const auto of_body = links_.items(of_[id]);
     const std::uint32_t place = id == pair.a ? pair.place_in_a : pair.place_in_b;
     const Link moved = of_body.back();
@@ -163,7 +162,7 @@ inline void Pairs<Degree>::mark_dirty(Slot slot) {
 }
 
 template <int Degree>
-void Pairs<Degree>::prefetch(BodyId id) const {
+void Pairs<Degree>::prefetch(BodySlot id) const {
   for (const Link& link : links(id)) {
     __builtin_prefetch(&pairs_[link.slot], 1);
     __builtin_prefetch(&bodies_.mover(link.other));
@@ -171,7 +170,7 @@ void Pairs<Degree>::prefetch(BodyId id) const {
 }
 
 template <int Degree>
-void Pairs<Degree>::motion_changed(BodyId id, bool jumped) {
+void Pairs<Degree>::motion_changed(BodySlot id, bool jumped) {
   for (const Link& link : links(id)) mark_dirty(link.slot);
   if (!jumped) return;
   for (const Link& link : links(id)) {
@@ -180,19 +179,19 @@ void Pairs<Degree>::motion_changed(BodyId id, bool jumped) {
 }
 
 template <int Degree>
-void Pairs<Degree>::box_changed(BodyId id) {
+void Pairs<Degree>::box_changed(BodySlot id) {
   if (!follows_boxes_) return;  // when it meets others is the broad phase's to find anew
   for (const Link& link : links(id)) mark_dirty(link.slot);
 }
 
 template <int Degree>
-void Pairs<Degree>::changed(BodyId a, BodyId b) {
+void Pairs<Degree>::changed(BodySlot a, BodySlot b) {
   const Slot slot = find(a, b);
   if (slot != none) mark_dirty(slot);
 }
 
 template <int Degree>
-void Pairs<Degree>::let_pass(BodyId a, BodyId b) {
+void Pairs<Degree>::let_pass(BodySlot a, BodySlot b) {
   Slot slot = find(a, b);
   if (slot == none) {
     slot = add(a, b);
@@ -206,7 +205,7 @@ void Pairs<Degree>::let_pass(BodyId a, BodyId b) {
 }
 
 template <int Degree>
-void Pairs<Degree>::remove(BodyId id) {
+void Pairs<Degree>::remove(BodySlot id) {
   while (!links(id).empty()) {  // those that overlap, or have just separated
     const Slot slot = links(id).back().slot;
     const Pair& pair = pairs_[slot];
@@ -244,20 +243,20 @@ typename Pairs<Degree>::Event Pairs<Degree>::take_next() {
 }
 
 template <int Degree>
-bool Pairs<Degree>::overlapping(BodyId a, BodyId b) const {
+bool Pairs<Degree>::overlapping(BodySlot a, BodySlot b) const {
   const Slot slot = find(a, b);
   return slot != none && pairs_[slot].overlapping;
 }
 
 template <int Degree>
-bool Pairs<Degree>::listed(BodyId a, BodyId b) const {
+bool Pairs<Degree>::listed(BodySlot a, BodySlot b) const {
   const Slot slot = find(a, b);
   return slot != none && pairs_[slot].listed;
 }
 
 /// Balls need not be made into shapes for it.
 template <int Degree>
-Contact Pairs<Degree>::contact(BodyId a, BodyId b, double t, const FoundTouch& found) const {
+Contact Pairs<Degree>::contact(BodySlot a, BodySlot b, double t, const FoundTouch& found) const {
   const auto& of_a = bodies_.mover(a);
   const auto& of_b = bodies_.mover(b);
   if (of_a.radius > 0 && of_b.radius > 0) {

@@ -32,7 +32,7 @@ using PairSlot = std::uint32_t;
 /// Two bodies that may meet. It is there while the broad phase lists it, and while they overlap: so what it knows is a
 /// function of what has happened to the two, whatever the broad phase.
 struct Pair {
-  BodyId a = 0, b = 0;
+  BodySlot a = 0, b = 0;
   std::uint32_t place_in_a = 0, place_in_b = 0;  ///< in the lists of the two bodies
   bool alive = false;
   bool listed = false;  ///< by the broad phase
@@ -77,7 +77,7 @@ class Pairs final : public PairListener {
   Pairs& operator=(const Pairs&) = delete;
 
   /// Whether contacts of two bodies are resolved, or they pass through each other.
-  ContactMode mode(BodyId a, BodyId b) const {
+  ContactMode mode(BodySlot a, BodySlot b) const {
     const bool sensor = bodies_.any_sensor() && (bodies_[a].sensor || bodies_[b].sensor);
     return sensor || options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
   }
@@ -87,11 +87,11 @@ class Pairs final : public PairListener {
   // What the broad phase tells. It runs ahead to t, and the clock with it.
   void pairs_to_come(std::size_t pairs) override;
   bool filters() const override { return bodies_.filters(); }
-  bool may_collide(BodyId a, BodyId b) const override { return bodies_.may_collide(a, b); }
-  void pair_began(BodyId a, BodyId b, double t) override;
-  void pair_ended(BodyId a, BodyId b, double t) override;
+  bool may_collide(BodySlot a, BodySlot b) const override { return bodies_.may_collide(a, b); }
+  void pair_began(BodySlot a, BodySlot b, double t) override;
+  void pair_ended(BodySlot a, BodySlot b, double t) override;
   /// A broad phase has been made anew, and this is all it lists, in order.
-  void list_anew(std::span<const std::pair<BodyId, BodyId>> listed);
+  void list_anew(std::span<const std::pair<BodySlot, BodySlot>> listed);
 
   /// What bodies do while pairs begin. What enters may overlap others from the start; so may what jumps, but where they
   /// pass through each other that is a contact.
@@ -99,17 +99,17 @@ class Pairs final : public PairListener {
   void set_begin(Begin begin) { begin_ = begin; }
 
   /// A body has another motion, or has jumped. prefetch() may be called before.
-  void motion_changed(BodyId id, bool jumped);
-  void prefetch(BodyId id) const;
+  void motion_changed(BodySlot id, bool jumped);
+  void prefetch(BodySlot id) const;
   /// A body has another box, and moves as before.
-  void box_changed(BodyId id);
+  void box_changed(BodySlot id);
   /// What the two may meet next has to be found anew.
-  void changed(BodyId a, BodyId b);
+  void changed(BodySlot a, BodySlot b);
   /// Lets a pair pass until it has separated, and at this time whatever else happens, even if its boxes do not overlap
   /// just now.
-  void let_pass(BodyId a, BodyId b);
+  void let_pass(BodySlot a, BodySlot b);
   /// A body goes; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.
-  void remove(BodyId id);
+  void remove(BodySlot id);
 
   /// Tests all dirty pairs.
   void test();
@@ -121,7 +121,7 @@ class Pairs final : public PairListener {
   bool certify();
   /// A contact or separation that is due. What the pair does next has to be found anew.
   struct Event {
-    BodyId a, b;
+    BodySlot a, b;
     bool separates;
     FoundTouch found;  ///< of a contact, as far as known
   };
@@ -135,10 +135,10 @@ class Pairs final : public PairListener {
 
   void extend_horizon();
 
-  bool overlapping(BodyId a, BodyId b) const;
-  bool listed(BodyId a, BodyId b) const;
+  bool overlapping(BodySlot a, BodySlot b) const;
+  bool listed(BodySlot a, BodySlot b) const;
   /// Where and how two bodies touch at t.
-  Contact contact(BodyId a, BodyId b, double t, const FoundTouch& found = {}) const;
+  Contact contact(BodySlot a, BodySlot b, double t, const FoundTouch& found = {}) const;
 
   /// Throws AuditFailure unless pairs that the broad phase does not list are those that overlap, and what overlaps
   /// penetrates or is about to separate at this instant.
@@ -169,15 +169,15 @@ class Pairs final : public PairListener {
 
   /// A pair as one of its bodies sees it.
   struct Link {
-    BodyId other;
+    BodySlot other;
     Slot slot;
   };
 
-  std::span<const Link> links(BodyId id) const {
+  std::span<const Link> links(BodySlot id) const {
     return id < of_.size() ? links_.items(of_[id]) : std::span<const Link>();
   }
-  Slot find(BodyId a, BodyId b) const;
-  Slot add(BodyId a, BodyId b);
+  Slot find(BodySlot a, BodySlot b) const;
+  Slot add(BodySlot a, BodySlot b);
   void link(Slot slot, std::uint32_t first_room = first_pairs);
   void unlist(Slot slot);
   void release(Slot slot);

@@ -9,19 +9,19 @@
 namespace kds::collision {
 
 template <int Degree>
-bool World<Degree>::touching(BodyId a, BodyId b) const {
+bool World<Degree>::touching(BodySlot a, BodySlot b) const {
   bodies_.at(a), bodies_.at(b);
   return pairs_.mode(a, b) == ContactMode::transparent && pairs_.overlapping(a, b);
 }
 
 template <int Degree>
-bool World<Degree>::held(BodyId a, BodyId b) const {
+bool World<Degree>::held(BodySlot a, BodySlot b) const {
   bodies_.at(a), bodies_.at(b);
   return resting_.find(std::min(a, b), std::max(a, b)) != Resting::none;
 }
 
 template <int Degree>
-bool World<Degree>::held_at_wall(BodyId a, int wall) const {
+bool World<Degree>::held_at_wall(BodySlot a, int wall) const {
   bodies_.at(a);
   if (wall < 0 || wall > 5) {
     throw std::out_of_range("World::held_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
@@ -30,7 +30,7 @@ bool World<Degree>::held_at_wall(BodyId a, int wall) const {
 }
 
 template <int Degree>
-typename World<Degree>::Motion World<Degree>::free_motion(BodyId id) const {
+typename World<Degree>::Motion World<Degree>::free_motion(BodySlot id) const {
   bodies_.at(id);
   if (!resting_.rests(id)) return bodies_.motion(id);
   Motion motion = bodies_.motion(id).restarted(now());

@@ -30,12 +30,12 @@ bool detail::Pending::operator<(const Pending& other) const {
   return key(*this) < key(other);
 }
 
-void Reports::add_volumes(bool meet, BodyId a, BodyId b, double now) {
+void Reports::add_volumes(bool meet, BodySlot a, BodySlot b, double now) {
   if (take_back(meet ? Kind::pair_ended : Kind::pair_began, a, b)) return;
   add(meet ? Kind::pair_began : Kind::pair_ended, a, b, {.time = now});
 }
 
-bool Reports::take_back(Kind kind, BodyId a, BodyId b) {
+bool Reports::take_back(Kind kind, BodySlot a, BodySlot b) {
   if (reports_.empty()) return false;
   const auto it = reports_.find({kind, a, b, {}});
   if (it == reports_.end() || it->removed) return false;
@@ -43,7 +43,7 @@ bool Reports::take_back(Kind kind, BodyId a, BodyId b) {
   return true;
 }
 
-void Reports::keep_of(BodyId removed) {
+void Reports::keep_of(BodySlot removed) {
   std::vector<Report> kept;
   std::erase_if(reports_, [&](const Report& report) {
     if (report.a != removed && report.b != removed) return false;

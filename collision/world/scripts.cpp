@@ -6,7 +6,7 @@
 namespace kds::collision {
 
 template <int Degree>
-void Scripts<Degree>::add(BodyId id, std::span<const Motion> pieces) {
+void Scripts<Degree>::add(BodySlot id, std::span<const Motion> pieces) {
   if (pieces.empty()) return;
   make_room(starts_, id + std::size_t{1});
   if (scripts_.size() <= id) scripts_.resize(id + std::size_t{1});
@@ -15,7 +15,7 @@ void Scripts<Degree>::add(BodyId id, std::span<const Motion> pieces) {
 }
 
 template <int Degree>
-void Scripts<Degree>::clear(BodyId id) {
+void Scripts<Degree>::clear(BodySlot id) {
   if (id >= scripts_.size() || scripts_[id].empty()) return;
   scripts_[id] = {};
   starts_.clear(id);
@@ -26,7 +26,7 @@ std::vector<typename Scripts<Degree>::Piece> Scripts<Degree>::take_next() {
   std::vector<Piece> pieces;
   const double t = next_time();
   while (!starts_.empty() && starts_.top().time == t) {
-    const BodyId id = starts_.top().slot;
+    const BodySlot id = starts_.top().slot;
     auto& script = scripts_[id];
     pieces.push_back({id, script.back()});
     script.pop_back();
@@ -44,7 +44,7 @@ void Scripts<Degree>::become(const Image& image) {
   scripts_ = image.of;
   starts_.resize(0);
   starts_.resize(scripts_.size());
-  for (BodyId id = 0; id < scripts_.size(); ++id) {
+  for (BodySlot id = 0; id < scripts_.size(); ++id) {
     if (!scripts_[id].empty()) starts_.set(id, scripts_[id].back().start);
   }
 }

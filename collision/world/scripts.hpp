@@ -22,15 +22,15 @@ class Scripts {
   using Motion = certificates::PointMotion<Degree>;
 
   /// Gives a body pieces to come, in order of their starts. Precondition: it has none.
-  void add(BodyId id, std::span<const Motion> pieces);
+  void add(BodySlot id, std::span<const Motion> pieces);
   /// Forgets what was to come.
-  void clear(BodyId id);
+  void clear(BodySlot id);
 
   /// When the next piece begins.
   double next_time() const { return starts_.empty() ? never : starts_.top().time; }
 
   struct Piece {
-    BodyId id;
+    BodySlot id;
     Motion motion;
   };
   /// Takes all that begin at next_time(), by id.
@@ -65,7 +65,7 @@ template <class Alive>
 void Scripts<Degree>::Image::check(double now, const Alive& alive) const {
   for (std::size_t id = 0; id < of.size(); ++id) {
     const auto need = [id](bool right, const char* what) { image::require(right, "scripts", id, what); };
-    need(of[id].empty() || alive(static_cast<BodyId>(id)), "is of no body");
+    need(of[id].empty() || alive(static_cast<BodySlot>(id)), "is of no body");
     double next = never;  // pieces are listed last first
     for (const Motion& piece : of[id]) {
       need(piece.finite(), "a piece of motion to come is not finite");

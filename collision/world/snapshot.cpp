@@ -72,10 +72,10 @@ struct World<Degree>::Image {
     if (!std::isfinite(callers_now) || callers_now > now) image::fail("clock: is after now, or not finite");
     if (!edits.began_by(now)) image::fail("edits: are counted from a time after now");
     bodies.check(now);
-    scripts.check(now, [&](BodyId id) { return bodies.alive(id); });
+    scripts.check(now, [&](BodySlot id) { return bodies.alive(id); });
     std::vector<char> enters(bodies.bodies.size());
-    for (const BodyId id : bodies.waiting) enters[id] = 1;
-    for (BodyId id = 0; id < bodies.bodies.size(); ++id) {
+    for (const BodySlot id : bodies.waiting) enters[id] = 1;
+    for (BodySlot id = 0; id < bodies.bodies.size(); ++id) {
       const bool later = id < scripts.of.size() && !scripts.of[id].empty();
       image::require(!bodies.alive(id) || bodies.entered(id) || enters[id] || later, "bodies", id, "it never enters");
     }
@@ -87,7 +87,7 @@ struct World<Degree>::Image {
 
 template <int Degree>
 typename World<Degree>::Image World<Degree>::image() const {
-  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
     if (!volumes_.from_caller(id)) continue;
     throw std::invalid_argument("World: body " + std::to_string(id) + " cannot be saved: it has a box function");
   }

@@ -45,11 +45,11 @@ Volumes<Degree>::Volumes(const Bodies<Degree>& bodies, const WorldOptions& optio
 template <int Degree>
 Kdops<Degree> Volumes<Degree>::kdops() const {
   if (directions_.empty()) return {};
-  return {directions_, [this](BodyId id, std::size_t i, double now) { return slab(id, i, now); }};
+  return {directions_, [this](BodySlot id, std::size_t i, double now) { return slab(id, i, now); }};
 }
 
 template <int Degree>
-void Volumes<Degree>::add(BodyId id, const BoxFunction& function) {
+void Volumes<Degree>::add(BodySlot id, const BoxFunction& function) {
   if (!directions_.empty()) place_extents(id);
   if (!function) return;
   make_room(ends_, bodies_.slots());
@@ -58,13 +58,13 @@ void Volumes<Degree>::add(BodyId id, const BoxFunction& function) {
 }
 
 template <int Degree>
-void Volumes<Degree>::remove(BodyId id) {
+void Volumes<Degree>::remove(BodySlot id) {
   clear(ends_, id);
   if (from_caller(id)) given_[id] = nullptr;
 }
 
 template <int Degree>
-KineticBox<Degree> Volumes<Degree>::renew(BodyId id) {
+KineticBox<Degree> Volumes<Degree>::renew(BodySlot id) {
   if (!from_caller(id)) [[likely]]
     return box(id);
   const Box made = [&] {
@@ -82,7 +82,7 @@ KineticBox<Degree> Volumes<Degree>::renew(BodyId id) {
 }
 
 template <int Degree>
-void Volumes<Degree>::schedule(BodyId id) {
+void Volumes<Degree>::schedule(BodySlot id) {
   if (!from_caller(id) && !meshes_) return;
   const double until = from_caller(id) ? given_[id]->box.valid_until : clearance_until(id);
   if (until <= clock_.horizon && until < never) {
@@ -96,7 +96,7 @@ void Volumes<Degree>::schedule(BodyId id) {
 template <int Degree>
 void Volumes<Degree>::extend_horizon() {
   if (given_.empty() && !meshes_) return;
-  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
     if (bodies_[id].entered) schedule(id);
   }
 }
@@ -106,14 +106,14 @@ void Volumes<Degree>::become(bool room_for_meshes) {
   meshes_ = room_for_meshes;
   given_.clear();
   ends_.resize(0);
-  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
     if (bodies_.contains(id) && !directions_.empty()) place_extents(id);
   }
 }
 
 /// How far a body that comes in reaches in the directions beyond the axes: that stays so, as it does not turn.
 template <int Degree>
-void Volumes<Degree>::place_extents(BodyId id) {
+void Volumes<Degree>::place_extents(BodySlot id) {
   const detail::Body<Degree>& b = bodies_[id];
   extents_.resize(std::max(extents_.size(), (id + std::size_t{1}) * directions_.size()));
   for (std::size_t i = 0; i < directions_.size(); ++i) {
@@ -130,7 +130,7 @@ void Volumes<Degree>::place_extents(BodyId id) {
 
 /// What a body covers along a direction from now on.
 template <int Degree>
-KineticSlab<Degree> Volumes<Degree>::slab(BodyId id, std::size_t i, double now) const {
+KineticSlab<Degree> Volumes<Degree>::slab(BodySlot id, std::size_t i, double now) const {
   const auto& [low, high] = extents_[id * directions_.size() + i];
   if (!from_caller(id) && bodies_.motion(id).start <= now) {
     KineticSlab<Degree> slab = slab_around(bodies_.motion(id), low, high, directions_[i]);
@@ -147,7 +147,7 @@ KineticSlab<Degree> Volumes<Degree>::slab(BodyId id, std::size_t i, double now) 
 }
 
 template <int Degree>
-bool Volumes<Degree>::overlap(BodyId a, BodyId b, double t, bool exact) const {
+bool Volumes<Degree>::overlap(BodySlot a, BodySlot b, double t, bool exact) const {
   const auto broken = [t](const kds::Motion<Degree>& left, const kds::Motion<Degree>& right) {
     return sign_after(certificates::Order<Degree>{left, right}, t) < 0;
   };
@@ -167,14 +167,14 @@ bool Volumes<Degree>::overlap(BodyId a, BodyId b, double t, bool exact) const {
 }
 
 template <int Degree>
-KineticBox<Degree> Volumes<Degree>::box_or_ball(BodyId id) const {
+KineticBox<Degree> Volumes<Degree>::box_or_ball(BodySlot id) const {
   if (asked(id)) return box(id);
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(bodies_[id].bounding_radius);
   return box_around<Degree>(bodies_.motion(id), -reach, reach);
 }
 
 template <int Degree>
-bool Volumes<Degree>::meets(BodyId id, const StaticBox& box, double t) const {
+bool Volumes<Degree>::meets(BodySlot id, const StaticBox& box, double t) const {
   if (!box_at(box_or_ball(id), t).overlaps(box)) return false;
   for (std::size_t i = 0; i < directions_.size() && asked(id); ++i) {
     const auto [low, high] = slab_at(slab(id, i, t), t);
@@ -185,7 +185,7 @@ bool Volumes<Degree>::meets(BodyId id, const StaticBox& box, double t) const {
 }
 
 template <int Degree>
-StaticBox Volumes<Degree>::swept(BodyId id, double from, double until) const {
+StaticBox Volumes<Degree>::swept(BodySlot id, double from, double until) const {
   return bounded_swept_box(box_or_ball(id), from, until);
 }
 

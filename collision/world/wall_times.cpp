@@ -19,7 +19,7 @@ inline void WallTimes<Degree>::make_room(std::size_t slots) {
 
 /// Takes note that a body is at no wall before some time. Precondition: there is room for it.
 template <int Degree>
-inline void WallTimes<Degree>::note(BodyId id, double earliest) {
+inline void WallTimes<Degree>::note(BodySlot id, double earliest) {
   if (bodies_[id].sensor) return;
   is_bound_[id] = true;
   // An earlier one is a lower bound as well: most are replaced again before they are due.
@@ -32,7 +32,7 @@ inline void WallTimes<Degree>::note(BodyId id, double earliest) {
 }
 
 template <int Degree>
-void WallTimes<Degree>::schedule(BodyId id) {
+void WallTimes<Degree>::schedule(BodySlot id) {
   if (!walls_) return;
   make_room(bodies_.slots());
   double earliest = clock_.now;
@@ -47,8 +47,8 @@ void WallTimes<Degree>::schedule(std::span<const Entry> entries) {
   if (!walls_) return;
   make_room(bodies_.slots());
   for (std::size_t i = 0; i < entries.size(); i += 2) {
-    const BodyId a = entries[i].id;
-    const BodyId b = entries[std::min(i + 1, entries.size() - 1)].id;
+    const BodySlot a = entries[i].id;
+    const BodySlot b = entries[std::min(i + 1, entries.size() - 1)].id;
     std::array earliest{clock_.now, clock_.now};
     if constexpr (Degree == 1) {
       const Two radii{bodies_[a].bounding_radius, bodies_[b].bounding_radius};
@@ -60,7 +60,7 @@ void WallTimes<Degree>::schedule(std::span<const Entry> entries) {
 }
 
 template <int Degree>
-void WallTimes<Degree>::remove(BodyId id) {
+void WallTimes<Degree>::remove(BodySlot id) {
   clear(times_, id);
 }
 
@@ -74,7 +74,7 @@ void WallTimes<Degree>::reserve(std::size_t bodies) {
 template <int Degree>
 void WallTimes<Degree>::extend_horizon() {
   if (!walls_) return;
-  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
     if (bodies_[id].entered) schedule(id);
   }
 }
@@ -88,7 +88,7 @@ void WallTimes<Degree>::become() {
 
 template <int Degree>
 bool WallTimes<Degree>::certify() {
-  const BodyId id = times_.top().slot;
+  const BodySlot id = times_.top().slot;
   if (!is_bound_[id]) return false;
   is_bound_[id] = false;
   double first = never;
@@ -105,7 +105,7 @@ bool WallTimes<Degree>::certify() {
 
 /// When the ball around a body is outside a wall and still going outward.
 template <int Degree>
-double WallTimes<Degree>::exact_time(BodyId id, int wall, double horizon) const {
+double WallTimes<Degree>::exact_time(BodySlot id, int wall, double horizon) const {
   const int axis = wall / 2;
   const double out = wall % 2 != 0 ? 1 : -1;
   const Motion& motion = bodies_.motion(id);

@@ -32,14 +32,14 @@ class WallTimes {
 
   /// Bodies have entered, or one has another motion.
   void schedule(std::span<const Entry> entries);
-  void schedule(BodyId id);
-  void remove(BodyId id);
+  void schedule(BodySlot id);
+  void remove(BodySlot id);
   void reserve(std::size_t bodies);
 
   /// A time up to which no body reaches a wall.
   double next_time() const { return times_.empty() ? never : times_.top().time; }
   /// The body that this is the time of. Precondition: next_time() < never.
-  BodyId next_body() const { return times_.top().slot; }
+  BodySlot next_body() const { return times_.top().slot; }
   /// Where next_time() is no more than a bound, puts the exact time in its place, which may be later: true if so.
   bool certify();
   /// Which wall the body that comes next reaches then. Precondition: certify() has returned false.
@@ -51,8 +51,8 @@ class WallTimes {
 
  private:
   void make_room(std::size_t slots);
-  void note(BodyId id, double earliest);
-  double exact_time(BodyId id, int wall, double horizon) const;
+  void note(BodySlot id, double earliest);
+  double exact_time(BodySlot id, int wall, double horizon) const;
 
   const Bodies<Degree>& bodies_;
   const std::optional<Walls>& walls_;
