@@ -36,8 +36,8 @@ double parting(const Contact& contact, const certificates::PointMotion<Degree>& 
 template <int Degree>
 void World<Degree>::process_meeting() {
   const auto meeting = pairs_.take_next();
-  const BodyId a = meeting.a;
-  const BodyId b = meeting.b;
+  const BodySlot a = meeting.a;
+  const BodySlot b = meeting.b;
   const auto contact = [&] { return pairs_.contact(a, b, clock_.now, meeting.found); };
   if (!meeting.separates) return process_contact(a, b, contact());
   // What was let pass may meet again from now on.
@@ -48,7 +48,7 @@ void World<Degree>::process_meeting() {
 }
 
 template <int Degree>
-void World<Degree>::process_contact(BodyId a, BodyId b, const Contact& contact) {
+void World<Degree>::process_contact(BodySlot a, BodySlot b, const Contact& contact) {
   const PairEvent event{a, b, contact};
   ++counters_.contacts;
   if (pairs_.mode(a, b) == ContactMode::transparent) {
@@ -83,7 +83,7 @@ void World<Degree>::process_contact(BodyId a, BodyId b, const Contact& contact) 
 
 template <int Degree>
 void World<Degree>::process_wall() {
-  const BodyId id = walls_.next_body();
+  const BodySlot id = walls_.next_body();
   const Body& body = bodies_[id];
   const int wall = walls_.next_wall();
   const int axis = wall / 2;
@@ -119,7 +119,7 @@ void World<Degree>::process_wall() {
 
 /// Both have met others so often; a fixed body's meetings count only with another fixed one.
 template <int Degree>
-std::uint64_t World<Degree>::count_meeting(BodyId a, BodyId b) {
+std::uint64_t World<Degree>::count_meeting(BodySlot a, BodySlot b) {
   const bool a_fixed = bodies_.fixed(a);
   const bool b_fixed = bodies_.fixed(b);
   if (a_fixed != b_fixed) return count_meeting(a_fixed ? b : a);
@@ -128,7 +128,7 @@ std::uint64_t World<Degree>::count_meeting(BodyId a, BodyId b) {
 }
 
 template <int Degree>
-std::uint64_t World<Degree>::count_meeting(BodyId id) {
+std::uint64_t World<Degree>::count_meeting(BodySlot id) {
   Body& body = bodies_[id];
   if (clock_.now - body.burst_start > options_.zeno.interval) {
     body.meetings = 0;
@@ -152,7 +152,7 @@ bool World<Degree>::stays(double rebound, double pressed, double size, std::uint
 }
 
 template <int Degree>
-bool World<Degree>::respond(BodyId a, BodyId b, const Contact& contact) {
+bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   const double inverse_a = bodies_[a].inverse_mass;
   const double inverse_b = bodies_[b].inverse_mass;
   if (inverse_a + inverse_b == 0) return false;
@@ -182,7 +182,7 @@ bool World<Degree>::respond(BodyId a, BodyId b, const Contact& contact) {
   } else {
     change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,
                              inverse_a, inverse_b);
-    for (const auto& [id, motion] : {std::pair<BodyId, const Motion&>{a, motion_a}, {b, motion_b}}) {
+    for (const auto& [id, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
       if (bodies_.fixed(id)) continue;
       ++counters_.motion_updates;
       set_motion(id, motion, false);
@@ -194,14 +194,14 @@ bool World<Degree>::respond(BodyId a, BodyId b, const Contact& contact) {
 }
 
 template <int Degree>
-void World<Degree>::take_up(BodyId id, const Motion& motion) {
+void World<Degree>::take_up(BodySlot id, const Motion& motion) {
   ++counters_.motion_updates;
   set_motion(id, motion, false);
   reports_.add(Reports::Kind::moved, id, no_body, {.time = clock_.now});
 }
 
 template <int Degree>
-void World<Degree>::tell_held(BodyId a, BodyId b) {
+void World<Degree>::tell_held(BodySlot a, BodySlot b) {
   ++counters_.held;
   reports_.add(Reports::Kind::held, a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
 }

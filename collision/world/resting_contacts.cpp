@@ -39,7 +39,7 @@ double slack_of(const MovingShape<Degree>& a, const MovingShape<Degree>& b, doub
 }  // namespace
 
 template <int Degree>
-typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find(BodyId a, BodyId b, int wall) const {
+typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find(BodySlot a, BodySlot b, int wall) const {
   if (a >= of_.size()) return none;
   for (const Slot slot : of_[a].contacts) {
     const Contact& hold = contacts_[slot];
@@ -79,7 +79,7 @@ void RestingContacts<Degree>::drop(Slot slot) {
   hold.alive = false;
   releases_.clear(slot);
   free_.push_back(slot);
-  for (const BodyId id : {hold.a, hold.b}) {
+  for (const BodySlot id : {hold.a, hold.b}) {
     if (id == no_body) continue;
     auto& list = of_[id].contacts;
     list.erase(std::find(list.begin(), list.end(), slot));
@@ -89,7 +89,7 @@ void RestingContacts<Degree>::drop(Slot slot) {
 }
 
 template <int Degree>
-void RestingContacts<Degree>::drop_all(BodyId id) {
+void RestingContacts<Degree>::drop_all(BodySlot id) {
   while (rests(id)) drop(of_[id].contacts.back());
 }
 
@@ -98,7 +98,7 @@ void RestingContacts<Degree>::drop_all(BodyId id) {
 /// is found, that is left behind by some roundings, for as long as the two move as they do: so the answer does not
 /// depend on how often it is asked for.
 template <int Degree>
-double RestingContacts<Degree>::next_contact(BodyId id_a, BodyId id_b) {
+double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
   const auto a = bodies_.moving(id_a);
   const auto b = bodies_.moving(id_b);
   if (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape)) return never;
@@ -177,7 +177,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
   };
   std::size_t listed = 0;
   std::size_t expected = 0;
-  for (BodyId id = 0; id < of_.size(); ++id) {
+  for (BodySlot id = 0; id < of_.size(); ++id) {
     for (const Slot slot : of_[id].contacts) {
       ++listed;
       if (slot >= contacts_.size() || !contacts_[slot].alive) fail(slot, "a body is held by what is none");
@@ -192,7 +192,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     }
     const bool at_wall = hold.b == no_body;
     expected += at_wall ? 1 : 2;
-    for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) {
+    for (const BodySlot id : {hold.a, at_wall ? hold.a : hold.b}) {
       if (!bodies_.entered(id)) fail(slot, "a body is not there");
       const auto& known = of_[id].contacts;
       if (std::count(known.begin(), known.end(), slot) != 1) fail(slot, "a body does not know it");
@@ -206,12 +206,12 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     if (!at_wall) b = bodies_.motion(hold.b).velocity(t);
     double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
     if constexpr (Degree >= 2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
-      for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) {
+      for (const BodySlot id : {hold.a, at_wall ? hold.a : hold.b}) {
         largest += 2 * bodies_.free_term(id, 2, t).cwiseAbs().maxCoeff() * (1 + t - bodies_.motion(id).start);
       }
     }
     if constexpr (Degree >= 3) {
-      for (const BodyId id : {hold.a, at_wall ? hold.a : hold.b}) largest += velocity_terms(bodies_.motion(id), t);
+      for (const BodySlot id : {hold.a, at_wall ? hold.a : hold.b}) largest += velocity_terms(bodies_.motion(id), t);
     }
     if (std::abs(dot(hold.normal, b - a)) > 16 * rate_rounding * largest) {
       fail(slot, "the bodies part or press on along its normal");
@@ -225,7 +225,7 @@ typename RestingContacts<Degree>::Image RestingContacts<Degree>::image() const {
   Image image{contacts_, free_, {}, {}, {}};
   // Of bodies that were disturbed and are gone, or have been settled since, the list may still speak.
   std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
-               [&](BodyId id) { return of_[id].disturbed && bodies_.entered(id); });
+               [&](BodySlot id) { return of_[id].disturbed && bodies_.entered(id); });
   for (const Member& member : of_) image.of.push_back(member.contacts);
   for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(releases_.time(slot));
   return image;
@@ -236,9 +236,9 @@ void RestingContacts<Degree>::become(const Image& image) {
   contacts_ = image.contacts, free_ = image.free, disturbed_ = image.disturbed;
   islands_ = 0;
   of_.clear();
-  for (BodyId id = 0; id < image.of.size(); ++id) member(id).contacts = image.of[id];
-  for (const BodyId id : disturbed_) member(id).disturbed = true;
-  for (BodyId id = 0; id < of_.size(); ++id) {
+  for (BodySlot id = 0; id < image.of.size(); ++id) member(id).contacts = image.of[id];
+  for (const BodySlot id : disturbed_) member(id).disturbed = true;
+  for (BodySlot id = 0; id < of_.size(); ++id) {
     Member& member = of_[id];
     const auto at_wall = [this](Slot slot) { return contacts_[slot].wall >= 0; };
     member.carried = bodies_.fixed(id) ? std::any_of(member.contacts.begin(), member.contacts.end(), at_wall)

@@ -25,8 +25,8 @@ using RestingSlot = std::uint32_t;
 
 /// Two bodies, or a body (a) and a wall, that stay in touch.
 struct RestingContact {
-  BodyId a = 0;
-  BodyId b = no_body;  ///< of a wall
+  BodySlot a = 0;
+  BodySlot b = no_body;  ///< of a wall
   int wall = -1;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
   double push = 0;                                   ///< half the relative acceleration that it gives
@@ -76,10 +76,10 @@ class RestingContacts {
   /// What resting contacts tell a world.
   class Listener {
    public:
-    virtual void take_up(BodyId id, const Motion& motion) = 0;  ///< a new motion
-    virtual void changed(BodyId a, BodyId b) = 0;               ///< what the two may meet next has to be found anew
-    virtual void let_pass(BodyId a, BodyId b) = 0;
-    virtual void tell_held(BodyId a, BodyId b) = 0;  ///< that the policy has acted on the two
+    virtual void take_up(BodySlot id, const Motion& motion) = 0;  ///< a new motion
+    virtual void changed(BodySlot a, BodySlot b) = 0;             ///< what the two may meet next has to be found anew
+    virtual void let_pass(BodySlot a, BodySlot b) = 0;
+    virtual void tell_held(BodySlot a, BodySlot b) = 0;  ///< that the policy has acted on the two
 
    protected:
     ~Listener() = default;
@@ -93,21 +93,21 @@ class RestingContacts {
   /// Whether there are any.
   bool empty() const { return contacts_.size() == free_.size(); }
   /// One of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
-  Slot find(BodyId a, BodyId b, int wall = -1) const;
-  bool rests(BodyId id) const { return id < of_.size() && !of_[id].contacts.empty(); }
+  Slot find(BodySlot a, BodySlot b, int wall = -1) const;
+  bool rests(BodySlot id) const { return id < of_.size() && !of_[id].contacts.empty(); }
 
   /// A contact begins to last. Between meshes several may last at once, in a groove, say; one for each normal.
   void add(const Contact& contact);
   /// All of a body end, since it jumps.
-  void drop_all(BodyId id);
+  void drop_all(BodySlot id);
   /// All of a body end, since it goes.
-  void forget(BodyId id) {
+  void forget(BodySlot id) {
     drop_all(id);
     if (id < of_.size()) of_[id] = {};
   }
 
   /// The motion of a body has changed: those that it rests with are to be looked at by settle().
-  void disturb(BodyId id) {
+  void disturb(BodySlot id) {
     if (!contacts_.empty()) note(id);
   }
   bool settled() const { return disturbed_.empty(); }
@@ -115,7 +115,7 @@ class RestingContacts {
   void settle();
 
   /// When two bodies that rest on each other may meet elsewhere.
-  double next_contact(BodyId a, BodyId b);
+  double next_contact(BodySlot a, BodySlot b);
 
   /// When the next contact ends, by sliding off or parting; process() ends it.
   double next_time() const { return releases_.empty() ? never : releases_.top().time; }
@@ -129,7 +129,7 @@ class RestingContacts {
   struct Image {
     std::vector<Contact> contacts;
     std::vector<Slot> free;
-    std::vector<BodyId> disturbed;
+    std::vector<BodySlot> disturbed;
     std::vector<std::vector<Slot>> of;  ///< by body
     std::vector<double> releases;       ///< by contact
 
@@ -156,24 +156,24 @@ class RestingContacts {
   };
   /// Bodies that lean on each other, in the arithmetic of least_constraint.
   struct Island {
-    std::vector<BodyId> bodies;  ///< fixed ones last
-    std::size_t free = 0;        ///< how many are not fixed
+    std::vector<BodySlot> bodies;  ///< fixed ones last
+    std::size_t free = 0;          ///< how many are not fixed
     std::vector<Slot> contacts;
     std::vector<Touch> touches;  ///< of the contacts
   };
 
-  Member& member(BodyId id) {
+  Member& member(BodySlot id) {
     if (of_.size() <= id) of_.resize(id + std::size_t{1});
     return of_[id];
   }
-  void note(BodyId id);
+  void note(BodySlot id);
   void drop(Slot slot);
   void schedule_release(Slot slot);
 
   // resting_islands.cpp
-  void settle_fixed(BodyId id);
-  bool settle_island(BodyId id);
-  Island find_island(BodyId id);
+  void settle_fixed(BodySlot id);
+  bool settle_island(BodySlot id);
+  Island find_island(BodySlot id);
   bool drop_broken(const Island& island);
   bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
   bool constrain_curves(Island& island, std::vector<Motion>& motions);
@@ -187,7 +187,7 @@ class RestingContacts {
   std::vector<Contact> contacts_;
   std::vector<Slot> free_;
   std::vector<Member> of_;  ///< by body, up to the last that has rested
-  std::vector<BodyId> disturbed_;
+  std::vector<BodySlot> disturbed_;
   DaryQueue<detail::RestingRank> releases_;  ///< when contacts end; slots are contacts
   std::uint64_t islands_ = 0;
 };

@@ -14,7 +14,7 @@ namespace kds::collision {
 using Eigen::Vector3d;
 
 template <int Degree>
-void RestingContacts<Degree>::note(BodyId id) {
+void RestingContacts<Degree>::note(BodySlot id) {
   if (!bodies_.entered(id)) return;
   bool as_given = true;
   if constexpr (Degree == 2)
@@ -28,7 +28,7 @@ void RestingContacts<Degree>::note(BodyId id) {
 template <int Degree>
 void RestingContacts<Degree>::settle() {
   while (!disturbed_.empty()) {
-    const BodyId id = disturbed_.back();
+    const BodySlot id = disturbed_.back();
     disturbed_.pop_back();
     if (!std::exchange(member(id).disturbed, false) || !bodies_.entered(id)) continue;
     if (bodies_.fixed(id)) {
@@ -42,7 +42,7 @@ void RestingContacts<Degree>::settle() {
 
 /// Nothing but walls holds a fixed body: they take the speed and the acceleration that lead out of the domain.
 template <int Degree>
-void RestingContacts<Degree>::settle_fixed(BodyId id) {
+void RestingContacts<Degree>::settle_fixed(BodySlot id) {
   const Motion before = bodies_.motion(id).restarted(clock_.now);
   Motion motion = before;
   const std::vector<Slot> holds = of_[id].contacts;  // some may be dropped
@@ -78,11 +78,11 @@ void RestingContacts<Degree>::settle_fixed(BodyId id) {
 
 /// False if a hold had to be dropped: then it is to be called again. Each time there is one hold less.
 template <int Degree>
-bool RestingContacts<Degree>::settle_island(BodyId id) {
+bool RestingContacts<Degree>::settle_island(BodySlot id) {
   Island island = find_island(id);
   if (drop_broken(island)) return false;
   std::vector<Motion> motions;
-  for (const BodyId each : island.bodies) motions.push_back(bodies_.motion(each).restarted(clock_.now));
+  for (const BodySlot each : island.bodies) motions.push_back(bodies_.motion(each).restarted(clock_.now));
   const std::vector<Motion> before = motions;
   if (!constrain(island, 1, motions)) return false;
   const auto take_up_all = [&] {
@@ -117,20 +117,20 @@ bool RestingContacts<Degree>::settle_island(BodyId id) {
 /// The bodies that lean on each other, directly or not, but not through fixed ones; in the order of their ids, so that
 /// the arithmetic does not depend on how they were found.
 template <int Degree>
-typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(BodyId id) {
+typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(BodySlot id) {
   ++islands_;
   Island island;
-  std::vector<BodyId> anchored;
-  const auto visit = [&](BodyId next) {
+  std::vector<BodySlot> anchored;
+  const auto visit = [&](BodySlot next) {
     if (std::exchange(member(next).island, islands_) == islands_) return;
     (bodies_.fixed(next) ? anchored : island.bodies).push_back(next);
   };
   visit(id);
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
-    const BodyId at = island.bodies[i];
+    const BodySlot at = island.bodies[i];
     for (const Slot slot : std::vector<Slot>(of_[at].contacts)) {  // members may be made
       const Contact& hold = contacts_[slot];
-      const BodyId other = hold.a == at ? hold.b : hold.a;
+      const BodySlot other = hold.a == at ? hold.b : hold.a;
       const bool met_first = hold.a == at || bodies_.fixed(other);
       if (met_first) island.contacts.push_back(slot);
       if (other != no_body) visit(other);
