@@ -27,9 +27,9 @@ const WorldOptions& validated(const WorldOptions& options) {
 }
 
 struct PairCollector final : PairListener {
-  std::vector<std::pair<BodyId, BodyId>> pairs;
-  void pair_began(BodyId a, BodyId b, double) override { pairs.emplace_back(a, b); }
-  void pair_ended(BodyId a, BodyId b, double) override { std::erase(pairs, std::pair(a, b)); }
+  std::vector<std::pair<BodySlot, BodySlot>> pairs;
+  void pair_began(BodySlot a, BodySlot b, double) override { pairs.emplace_back(a, b); }
+  void pair_ended(BodySlot a, BodySlot b, double) override { std::erase(pairs, std::pair(a, b)); }
 };
 
 void require_ahead(const char* function, double t, double now) {
@@ -70,7 +70,7 @@ void World<Degree>::rebuild_broad_phase() {
   PairCollector found;
   std::vector<Entry> entries;
   std::vector<KineticBox<Degree>> boxes;
-  for (BodyId id = 0; id < bodies_.slots(); ++id) {
+  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
     if (!bodies_[id].entered || !bodies_.collides(id)) continue;
     entries.push_back({id, nullptr});
     boxes.push_back(volumes_.renew(id));
@@ -176,7 +176,7 @@ bool World<Degree>::process(Task task) {
       pairs_.process_boxes();
       return false;
     case Task::renew_volume: {
-      const BodyId id = volumes_.next_body();
+      const BodySlot id = volumes_.next_body();
       update_volume(id, volumes_.renew(id));
       return volumes_.from_caller(id);
     }
@@ -306,7 +306,7 @@ void World<Degree>::start_pieces() {
     bodies_.accelerate_freely(id, motion);
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const BodyId id = pieces[i].id;
+    const BodySlot id = pieces[i].id;
     if (bodies_[id].entered) {
       ++counters_.motion_updates;
       set_motion(id, pieces[i].motion, jumps[i]);

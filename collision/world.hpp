@@ -44,7 +44,8 @@ namespace kds::collision {
 ///
 /// Degree 1 (straight paths) never pays for degree 2, nor either for degrees 3 to 5 (splines), which are in a library
 /// of their own, kds::collision_splines (docs/splines.md). Lengths and masses are in units of the caller's own, times
-/// in seconds. An id that names no body throws std::out_of_range (of held() and touching(), either id).
+/// in seconds. An id that names no body, or one
+/// that has been removed, throws std::out_of_range and says which (of held() and touching(), either id).
 template <int Degree>
 class World final : private RestingContacts<Degree>::Listener {
   static_assert(Degree >= 1 && Degree <= KDS_GREATEST_DEGREE,
@@ -64,14 +65,13 @@ class World final : private RestingContacts<Degree>::Listener {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Adds a body and returns its id: the next number, from 0 on, or the id of a body that was removed at an earlier
-  /// time, so that what is told of an instant never names two bodies by one id. Throws
-  /// std::invalid_argument, naming the member that is wrong; then nothing is added. Adding many between two steps costs
-  /// least.
+  /// Adds a body and returns its id, which no other body of this world ever gets: 0, 1, 2, ... as long as none has been
+  /// removed (body_id.hpp). Throws std::invalid_argument, naming the member that is wrong; then nothing is added.
+  /// Adding many between two steps costs least.
   BodyId add_body(const Description& description);
 
   /// Makes room for this many bodies in all. Never needed, but saves time and memory where many are added. Throws
-  /// std::length_error for more than there are ids.
+  /// std::length_error for more than there are slots.
   void reserve(std::size_t bodies);
 
   /// Removes a body. Its pairs end, and in mode `none` its contacts separate, with reports.
@@ -117,13 +117,13 @@ class World final : private RestingContacts<Degree>::Listener {
 
   /// Includes what held contacts do to the acceleration; to change a motion, begin with free_motion(). The reference is
   /// valid until bodies are added, removed or moved, or the clock advances.
-  const Motion& motion(BodyId id) const { return bodies_.at(id), bodies_.motion(id); }
+  const Motion& motion(BodyId id) const { return bodies_.motion(bodies_.slot_of(id)); }
   /// The motion as it would go on without the contacts that hold it: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
-  PlacedShape shape(BodyId id) const { return bodies_.at(id), bodies_.shape(id); }
-  double mass(BodyId id) const { return bodies_.at(id).mass; }
-  bool sensor(BodyId id) const { return bodies_.at(id).sensor; }
-  bool fixed(BodyId id) const { return bodies_.at(id), bodies_.fixed(id); }
+  PlacedShape shape(BodyId id) const { return bodies_.shape(bodies_.slot_of(id)); }
+  double mass(BodyId id) const { return bodies_[bodies_.slot_of(id)].mass; }
+  bool sensor(BodyId id) const { return bodies_[bodies_.slot_of(id)].sensor; }
+  bool fixed(BodyId id) const { return bodies_.fixed(bodies_.slot_of(id)); }
 
   /// Whether a and b are in contact; of two that pass through each other (mode `none`, sensors), else false.
   bool touching(BodyId a, BodyId b) const;
@@ -148,8 +148,8 @@ class World final : private RestingContacts<Degree>::Listener {
   // These throw std::invalid_argument for a box or a time that is out of range, and std::logic_error in box functions
   // and where the world can no longer be used.
 
-  /// Calls visit(id), in ascending order, for each body whose bounding volume meets the box [min, max] at now(). Ends
-  /// may be infinite.
+  /// Calls visit(id), in order of the slots, for each body whose bounding volume meets the box [min, max] at now().
+  /// Ends may be infinite.
   void visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max, BodyVisitor visit) const;
 
   /// The same for each body whose bounding box may meet a moving box at some time from now() to `until`, if all goes on
@@ -244,29 +244,32 @@ class World final : private RestingContacts<Degree>::Listener {
   }
 
   // world/edits.cpp: bodies that come, move otherwise, and go
-  BodyId put(const Description& description, std::shared_ptr<const PlacedShape> shape);
+  BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape);
   void make_room_for_meshes();
   void enter_new_bodies();
-  void take_out(BodyId id);
-  void give(BodyId id, const Motion& motion);
-  void set_motion(BodyId id, const Motion& motion, bool jumped);
-  void update_volume(BodyId id, const KineticBox<Degree>& box);
+  void take_out(BodySlot id);
+  void give(BodySlot id, const Motion& motion);
+  void set_motion(BodySlot id, const Motion& motion, bool jumped);
+  void update_volume(BodySlot id, const KineticBox<Degree>& box);
 
   // world/response.cpp: what follows from contacts
   void process_meeting();
-  void process_contact(BodyId a, BodyId b, const Contact& contact);
+  PairEvent event_of(BodySlot a, BodySlot b, const Contact& contact) const {
+    return {bodies_.id_of(a), bodies_.id_of(b), contact};
+  }
+  void process_contact(BodySlot a, BodySlot b, const Contact& contact);
   void process_wall();
-  bool respond(BodyId a, BodyId b, const Contact& contact);
+  bool respond(BodySlot a, BodySlot b, const Contact& contact);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
-  std::uint64_t count_meeting(BodyId a, BodyId b);
-  std::uint64_t count_meeting(BodyId id);
+  std::uint64_t count_meeting(BodySlot a, BodySlot b);
+  std::uint64_t count_meeting(BodySlot id);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
   // What resting contacts tell (RestingContacts::Listener).
-  void take_up(BodyId id, const Motion& motion) override;
-  void changed(BodyId a, BodyId b) override { pairs_.changed(a, b); }
-  void let_pass(BodyId a, BodyId b) override { pairs_.let_pass(a, b); }
-  void tell_held(BodyId a, BodyId b) override;
+  void take_up(BodySlot id, const Motion& motion) override;
+  void changed(BodySlot a, BodySlot b) override { pairs_.changed(a, b); }
+  void let_pass(BodySlot a, BodySlot b) override { pairs_.let_pass(a, b); }
+  void tell_held(BodySlot a, BodySlot b) override;
 
   // world/near.cpp: what is near
   template <class Ask, class Meets>

@@ -1,12 +1,12 @@
 // What a world tells.
 #pragma once
 
-#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/body_id.hpp"
 #include "collision/narrow_phase/contact.hpp"
 
 namespace kds::collision {
 
-/// Something of two bodies a < b: contact, overlap, separation, or being held.
+/// Something of two bodies, a in the lower slot: contact, overlap, separation, or being held.
 struct PairEvent {
   BodyId a;
   BodyId b;
@@ -23,8 +23,9 @@ struct WallEvent {
 template <int Degree>
 class World;
 
-/// Told of events in order of time, and of those at one time in an order that does not depend on the broad phase. What
-/// follows from an event, or from what callers do, comes before the next event, in this order:
+/// Told of events in order of time, and of those at one time in an order that does not depend on the broad phase:
+/// bodies come by their slots, and those that were in one slot by their generations (BodyId::rank()). What follows from
+/// an event, or from what callers do, comes before the next event, in this order:
 /// 1. `held`, by (a, b), then `moved`, by body;
 /// 2. `pair_began` and `pair_ended`, by (a, b); volumes that part and meet again at one instant have done neither;
 /// 3. separations of bodies that have been removed, by (a, b);
@@ -49,7 +50,8 @@ class WorldListener {
   /// sensors, a jump into contact is a contact.)
   virtual void overlap(World<Degree>&, const PairEvent&) {}
   virtual void wall(World<Degree>&, const WallEvent&) {}  ///< motions are as after response
-  /// With WorldOptions.report_pairs: the bounding volumes of a < b begin and cease to overlap at a time in s.
+  /// With WorldOptions.report_pairs: the bounding volumes of two bodies, the first in the lower slot, begin and cease
+  /// to overlap at a time in s.
   virtual void pair_began(World<Degree>&, BodyId, BodyId, double) {}
   virtual void pair_ended(World<Degree>&, BodyId, BodyId, double) {}
   virtual void held(World<Degree>&, const PairEvent&) {}          ///< the Zeno policy has acted on a pair

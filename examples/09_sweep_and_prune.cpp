@@ -21,12 +21,12 @@ class Teller final : public PairListener {
  public:
   Teller(course::Page& page, const std::vector<KineticBox<2>>& boxes) : page_(page), boxes_(boxes) {}
 
-  void pair_began(BodyId a, BodyId b, double t) override {
+  void pair_began(BodySlot a, BodySlot b, double t) override {
     pairs_.insert({a, b});
     all_.insert({a, b});
     tell(a, b, t, " begin to overlap");
   }
-  void pair_ended(BodyId a, BodyId b, double t) override {
+  void pair_ended(BodySlot a, BodySlot b, double t) override {
     pairs_.erase({a, b});
     tell(a, b, t, " cease to overlap");
   }
@@ -56,7 +56,7 @@ class Teller final : public PairListener {
     }
     return all;
   }
-  void tell(BodyId a, BodyId b, double t, const char* what) {
+  void tell(BodySlot a, BodySlot b, double t, const char* what) {
     if (!started_) return;
     std::cout << "t = " << t << ": " << page_.name(a) << " and " << page_.name(b) << what << '\n';
     page_.event(t, page_.name(a) + " and " + page_.name(b) + what, {a, b}, known(t));

@@ -38,10 +38,10 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   }
   double next_time() const override { return grid_ ? grid_->next_time() : few_.next_time(); }
   void extend_horizon(double now, double horizon) override;
-  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override {
+  void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const override {
     chosen().visit_overlapping(box, now, visit);
   }
-  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override {
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const override {
     chosen().visit_swept(box, from, until, visit);
   }
   void audit(double now) const override { chosen().audit(now); }

@@ -39,10 +39,10 @@ class AllPairs final : public BroadPhase<Degree> {
   double next_time() const override { return never; }
   void extend_horizon(double, double) override {}
   /// It knows no boxes, and names all bodies. O(n).
-  void visit_overlapping(const StaticBox&, double, BodyVisitor visit) const override {
+  void visit_overlapping(const StaticBox&, double, SlotVisitor visit) const override {
     for (const BodySlot id : bodies_) visit(id);
   }
-  void visit_swept(const KineticBox<Degree>&, double, double, BodyVisitor visit) const override {
+  void visit_swept(const KineticBox<Degree>&, double, double, SlotVisitor visit) const override {
     for (const BodySlot id : bodies_) visit(id);
   }
   void audit(double) const override {}

@@ -1,7 +1,7 @@
 // Who is told of the bodies that a question names.
 #pragma once
 
-#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/body_id.hpp"
 
 #include <concepts>
 #include <memory>
@@ -9,20 +9,24 @@
 
 namespace kds::collision {
 
-/// Any function object that takes a BodySlot. It is referred to, not copied: for arguments of functions alone.
-class BodyVisitor {
+/// Any function object that takes the name of a body. It is referred to, not copied: for arguments of functions alone.
+template <class Name>
+class Visitor {
  public:
   template <class Visit>
-  requires(std::invocable<Visit&, BodySlot>&& std::is_object_v<std::remove_reference_t<Visit>> &&
-           !std::same_as<std::remove_cvref_t<Visit>, BodyVisitor>) BodyVisitor(Visit&& visit)
+  requires(std::invocable<Visit&, Name>&& std::is_object_v<std::remove_reference_t<Visit>> &&
+           !std::same_as<std::remove_cvref_t<Visit>, Visitor>) Visitor(Visit&& visit)
       : visit_(const_cast<void*>(static_cast<const void*>(std::addressof(visit)))),
-        call_([](void* object, BodySlot id) { (*static_cast<std::remove_reference_t<Visit>*>(object))(id); }) {}
+        call_([](void* object, Name body) { (*static_cast<std::remove_reference_t<Visit>*>(object))(body); }) {}
 
-  void operator()(BodySlot id) const { call_(visit_, id); }
+  void operator()(Name body) const { call_(visit_, body); }
 
  private:
   void* visit_;
-  void (*call_)(void* object, BodySlot id);
+  void (*call_)(void* object, Name body);
 };
+
+using BodyVisitor = Visitor<BodyId>;    ///< what a world calls
+using SlotVisitor = Visitor<BodySlot>;  ///< what a broad phase calls
 
 }  // namespace kds::collision

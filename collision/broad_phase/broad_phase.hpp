@@ -92,11 +92,11 @@ class BroadPhase {
   /// Calls visit(id) for the bodies that may meet a box at rest now, in no particular order. Preconditions of this and
   /// the next: no end is a NaN; `now` or `from` is not before the last time given, nothing is due before it, and it is
   /// not beyond the horizon. Nothing is called from within `visit` but questions.
-  virtual void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const = 0;
+  virtual void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const = 0;
 
   /// The same for a box that moves, at some time in [from, until], while bodies go on as they do: with the boxes they
   /// have, whatever `valid_until` says. Precondition: from <= until, both finite.
-  virtual void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const = 0;
+  virtual void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const = 0;
 
   /// Checks the state against the motions; throws AuditFailure.
   virtual void audit(double now) const = 0;

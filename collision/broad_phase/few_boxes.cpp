@@ -247,14 +247,14 @@ bool FewBoxes<Degree>::advance(double limit, PairListener& listener) {
 }
 
 template <int Degree>
-void FewBoxes<Degree>::visit_overlapping(const StaticBox& box, double, BodyVisitor visit) const {
+void FewBoxes<Degree>::visit_overlapping(const StaticBox& box, double, SlotVisitor visit) const {
   for (Row rest = overlaps(box, bodies_.size()); rest != 0; rest &= rest - 1) {
     visit(bodies_[static_cast<std::size_t>(std::countr_zero(rest))].id);
   }
 }
 
 template <int Degree>
-void FewBoxes<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const {
+void FewBoxes<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const {
   const StaticBox swept = bounded_swept_box(box, from, until);
   if (until <= until_) return visit_overlapping(swept, from, visit);
   for (const Body& body : bodies_) {

@@ -44,9 +44,9 @@ class FewBoxes final : public BroadPhase<Degree> {
   double next_time() const override { return !bodies_.empty() && until_ < horizon_ ? until_ : never; }
   void extend_horizon(double, double horizon) override { horizon_ = horizon; }
   /// O(n): the swept boxes are compared, two at a time.
-  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override;
+  void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const override;
   /// The same within the span, else O(n) new ones.
-  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override;
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override { return counters_; }
 

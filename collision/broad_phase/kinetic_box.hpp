@@ -3,6 +3,7 @@
 
 #include "certificates/order.hpp"
 #include "certificates/point_motion.hpp"
+#include "collision/body_id.hpp"
 #include "kds/roots/failure_time.hpp"
 #include "kds/simd/two_doubles.hpp"
 
@@ -11,9 +12,6 @@
 #include <cstdint>
 
 namespace kds::collision {
-
-using BodySlot = std::uint32_t;
-using BodyId = BodySlot;
 
 /// An axis-aligned box with a motion for each corner: it may grow and shrink ([Coming06] section 5.2).
 ///

@@ -107,7 +107,7 @@ bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
 }
 
 template <int Degree>
-void KineticGrid<Degree>::visit_overlapping(const StaticBox& box, double, BodyVisitor visit) const {
+void KineticGrid<Degree>::visit_overlapping(const StaticBox& box, double, SlotVisitor visit) const {
   BoxGrid::Ids found;
   fat_boxes_.find_overlapping(box, found);
   for (const BodySlot id : found) visit(id);
@@ -116,7 +116,7 @@ void KineticGrid<Degree>::visit_overlapping(const StaticBox& box, double, BodyVi
 /// A fat box that holds until then says where its body may be; of the others, their motions do.
 template <int Degree>
 void KineticGrid<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until,
-                                      BodyVisitor visit) const {
+                                      SlotVisitor visit) const {
   const StaticBox swept = bounded_swept_box(box, from, until);
   BoxGrid::Ids found;
   fat_boxes_.find_overlapping(swept, found);

@@ -47,10 +47,10 @@ class KineticGrid final : public BroadPhase<Degree> {
   double next_time() const override { return expiry_.empty() ? never : expiry_.top().time; }
   void extend_horizon(double now, double horizon) override;
   /// Looks into the cells that the box meets, level by level (BoxGrid::find_overlapping).
-  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override;
+  void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const override;
   /// The same for what the box sweeps, and a look at each body whose fat box expires before `until`; at all bodies if
   /// that is beyond the horizon.
-  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override;
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override { return counters_; }
 

@@ -56,9 +56,9 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   /// O(log n) comparisons find the stretch of the first list that the box covers; then a look at each body that has an
   /// end in it, and, going left from it, at as many ends as it takes to meet those that are open there (all where all
   /// directions have lists). O(n) while an event is due now.
-  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override;
+  void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const override;
   /// O(n): lists say where ends are, not where they will be.
-  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override;
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override;
 

@@ -27,7 +27,7 @@ std::size_t KineticSweepAndPrune<Degree>::ends_below(double x, double now) const
 }
 
 template <int Degree>
-void KineticSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const {
+void KineticSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const {
   const auto look = [&](BodySlot id) {
     if (box_at(unlisted_.box(id), now).overlaps(box)) visit(id);
   };
@@ -65,7 +65,7 @@ void KineticSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, doubl
 
 template <int Degree>
 void KineticSweepAndPrune<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until,
-                                               BodyVisitor visit) const {
+                                               SlotVisitor visit) const {
   const StaticBox swept = bounded_swept_box(box, from, until);
   using Hull = typename UnlistedAxes<Degree>::Hull;
   const bool hulls = !all_listed() && until <= horizon_;  // those of bodies reach to the horizon

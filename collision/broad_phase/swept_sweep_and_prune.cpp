@@ -178,7 +178,7 @@ void SweptSweepAndPrune<Degree>::update(BodySlot id, const KineticBox<Degree>& b
 }
 
 template <int Degree>
-void SweptSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, double, BodyVisitor visit) const {
+void SweptSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, double, SlotVisitor visit) const {
   for (const BodySlot id : bodies_) {
     if (swept_[id].overlaps(box)) visit(id);
   }
@@ -186,7 +186,7 @@ void SweptSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, double,
 
 template <int Degree>
 void SweptSweepAndPrune<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until,
-                                             BodyVisitor visit) const {
+                                             SlotVisitor visit) const {
   const StaticBox swept = bounded_swept_box(box, from, until);
   if (until <= frame_end_) return visit_overlapping(swept, from, visit);
   for (const BodySlot id : bodies_) {

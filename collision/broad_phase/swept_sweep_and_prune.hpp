@@ -36,9 +36,9 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   double next_time() const override { return frame_end_; }
   void extend_horizon(double, double) override {}
   /// O(n): a sorted array says which intervals begin or end near a place, not which are open there.
-  void visit_overlapping(const StaticBox& box, double now, BodyVisitor visit) const override;
+  void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const override;
   /// O(n), with new swept boxes beyond the frame.
-  void visit_swept(const KineticBox<Degree>& box, double from, double until, BodyVisitor visit) const override;
+  void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override { return counters_; }
 

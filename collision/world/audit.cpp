@@ -22,7 +22,8 @@ void World<Degree>::audit(double t) const {
     for (BodySlot b = a + 1; b < bodies_.slots(); ++b) {
       if (!bodies_[a].entered || !bodies_[b].entered || !bodies_.may_collide(a, b) || pairs_.listed(a, b)) continue;
       if (!volumes_.overlap(a, b, t, broad_phase_->exact())) continue;
-      throw AuditFailure("World: bodies " + std::to_string(a) + " and " + std::to_string(b) +
+      throw AuditFailure("World: bodies " + std::to_string(bodies_.id_of(a)) + " and " +
+                         std::to_string(bodies_.id_of(b)) +
                          ": the bounding volumes overlap and the pair is not active");
     }
   }

@@ -18,9 +18,14 @@ constexpr double jump_tolerance = 0x1p-40;
 }  // namespace
 
 template <int Degree>
-const typename Bodies<Degree>::Body& Bodies<Degree>::at(BodySlot id) const {
-  if (!contains(id)) throw std::out_of_range("World: there is no body " + std::to_string(id));
-  return bodies_[id];
+void Bodies<Degree>::refuse(BodyId id) const {
+  const BodySlot slot = id.slot();
+  const bool free = std::find(free_.begin(), free_.end(), slot) != free_.end();
+  const bool retired = slot < bodies_.size() && !bodies_[slot].alive && !free;
+  const bool removed = id.generation() < generation(slot) || (retired && id.generation() == generation(slot));
+  throw std::out_of_range("World: there is no body " + std::to_string(id) + " (generation " +
+                          std::to_string(id.generation()) + " of slot " + std::to_string(slot) + "): it " +
+                          (removed ? "was removed" : "has never been there"));
 }
 
 template <int Degree>
@@ -31,30 +36,24 @@ bool Bodies<Degree>::is_jump(BodySlot id, const Motion& to, double t) const {
   return (after - before).cwiseAbs().maxCoeff() > jump_tolerance * scale;
 }
 
-/// One of those that were removed at an earlier time, of which all has been told that has happened to them, or a new
-/// one.
 template <int Degree>
-inline BodySlot Bodies<Degree>::new_id(double now) {
-  if (!removed_.empty() && removed_at_ < now) {
-    free_.insert(free_.end(), removed_.begin(), removed_.end());
-    removed_.clear();
-  }
+inline BodySlot Bodies<Degree>::new_slot() {
   if (!free_.empty()) {
-    const BodySlot id = free_.back();
+    const BodySlot slot = free_.back();
     free_.pop_back();
-    return id;
+    return slot;
   }
-  const auto id = static_cast<BodySlot>(bodies_.size());
+  const auto slot = static_cast<BodySlot>(bodies_.size());
   bodies_.emplace_back();
   movers_.emplace_back();
-  return id;
+  return slot;
 }
 
 template <int Degree>
 BodySlot Bodies<Degree>::add(const Description& description, std::shared_ptr<const PlacedShape> shape,
-                             const Motion& motion, double now) {
+                             const Motion& motion) {
   const double ball = ball_radius(shape ? shape->shape : description.shape);
-  const BodySlot id = new_id(now);
+  const BodySlot id = new_slot();
   Body& added = bodies_[id];
   added.bounding_radius = shape ? shape->bounding_radius : ball;
   added.shape = std::move(shape);
@@ -76,13 +75,14 @@ BodySlot Bodies<Degree>::add(const Description& description, std::shared_ptr<con
 }
 
 template <int Degree>
-void Bodies<Degree>::remove(BodySlot id, double now) {
-  std::erase(waiting_, id);  // or the next of this id would enter in its stead
+void Bodies<Degree>::remove(BodySlot id) {
+  std::erase(waiting_, id);  // or the next in this slot would enter in its stead
   bodies_[id] = Body{};
-  if (removed_at_ < now) free_.insert(free_.end(), removed_.begin(), removed_.end()), removed_.clear();
-  removed_.push_back(id);
-  removed_at_ = now;
   --alive_;
+  if (generations_.size() <= id) generations_.resize(bodies_.size());
+  if (generations_[id] == last_generation) return;
+  ++generations_[id];
+  free_.push_back(id);
 }
 
 template <int Degree>
@@ -129,8 +129,7 @@ typename Bodies<Degree>::Image Bodies<Degree>::image() const {
     if constexpr (Degree <= 2) to.force = free_acceleration(id);
     if constexpr (Degree >= 3) to.given = b.given;
   }
-  image.free = free_, image.removed = removed_, image.removed_at = removed_at_;
-  image.waiting = waiting_;
+  image.generations = generations_, image.free = free_, image.waiting = waiting_;
   return image;
 }
 
@@ -145,8 +144,7 @@ void Bodies<Degree>::set_shape(BodySlot id, PlacedShape placed) {
 
 template <int Degree>
 void Bodies<Degree>::become(const Image& image) {
-  free_ = image.free, removed_ = image.removed, removed_at_ = image.removed_at;
-  waiting_ = image.waiting;
+  generations_ = image.generations, free_ = image.free, waiting_ = image.waiting;
   const std::size_t count = image.bodies.size();
   bodies_.clear(), movers_.clear();
   bodies_.resize(count), movers_.resize(count);

@@ -3,6 +3,7 @@
 
 #include "certificates/balls_together.hpp"
 #include "collision/body_description.hpp"
+#include "collision/body_id.hpp"
 #include "collision/degrees.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
@@ -19,7 +20,8 @@
 
 namespace kds::collision {
 
-inline constexpr BodySlot no_body = ~BodySlot{0};
+/// The generation of the last body that a slot can have.
+inline constexpr std::uint32_t last_generation = ~std::uint32_t{0};
 
 namespace detail {
 
@@ -67,12 +69,14 @@ class Moving : private std::optional<PlacedShape>, public MovingShape<Degree> {
 
 }  // namespace detail
 
-/// The bodies of a world, by id, and which of them are about to enter.
+/// The bodies of a world, by slot, which of them are about to enter, and their ids.
 ///
-/// The id of a body that has been removed is given again, but not at the instant of its removal, so that what is told
-/// of an instant never names two bodies by one id.
+/// The slot of a body that has been removed is given again, with the next generation, the slot that became free last
+/// first: so which slots bodies get is a function of what callers do. A slot whose generations are used up, after 2^32
+/// bodies, is retired: it stays empty.
 ///
-/// Cost: O(1) each; memory for the largest number of bodies that there have been at once.
+/// Cost: O(1) each; memory for the largest number of bodies that there have been at once. Worlds from which nothing is
+/// removed keep no generations.
 template <int Degree>
 class Bodies {
  public:
@@ -83,13 +87,22 @@ class Bodies {
   using Mover = certificates::MovingBall<Degree>;  ///< what the tests of balls read of a body
 
   std::size_t size() const { return alive_; }
-  /// All ids are below this.
-  std::size_t slots() const { return bodies_.size(); }
-  bool contains(BodySlot id) const { return id < bodies_.size() && bodies_[id].alive; }
-  bool entered(BodySlot id) const { return contains(id) && bodies_[id].entered; }
+  bool contains(BodyId id) const { return alive(id.slot()) && generation(id.slot()) == id.generation(); }
+  /// Where a body is. Throws std::out_of_range, naming the id and saying whether the body was removed, if there is none
+  /// (any more).
+  BodySlot slot_of(BodyId id) const {
+    if (!contains(id)) [[unlikely]]
+      refuse(id);
+    return id.slot();
+  }
+  /// The id of the body in a slot. Precondition: there is one.
+  BodyId id_of(BodySlot slot) const { return BodyId(generation(slot), slot); }
 
-  /// Throws std::out_of_range, naming the id, if there is none.
-  const Body& at(BodySlot id) const;
+  /// All slots are below this.
+  std::size_t slots() const { return bodies_.size(); }
+  bool alive(BodySlot id) const { return id < bodies_.size() && bodies_[id].alive; }
+  bool entered(BodySlot id) const { return alive(id) && bodies_[id].entered; }
+
   /// Precondition, here and below: id < slots().
   const Body& operator[](BodySlot id) const { return bodies_[id]; }
   Body& operator[](BodySlot id) { return bodies_[id]; }
@@ -138,9 +151,8 @@ class Bodies {
   }
 
   /// Adds one with a motion to begin with. No `shape` is that of a ball that is not turned. Precondition: valid.
-  BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion,
-               double now);
-  void remove(BodySlot id, double now);
+  BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion);
+  void remove(BodySlot id);
   void reserve(std::size_t bodies);
 
   /// A body's motion begins now: it waits to enter.
@@ -159,14 +171,16 @@ class Bodies {
   std::vector<std::shared_ptr<const Mesh>> meshes() const;
 
  private:
-  BodySlot new_id(double now);
+  [[noreturn]] void refuse(BodyId id) const;
+  std::uint32_t generation(BodySlot slot) const { return slot < generations_.size() ? generations_[slot] : 0; }
+  BodySlot new_slot();
   void set_shape(BodySlot id, PlacedShape placed);
 
   std::vector<Mover> movers_;
   std::vector<Body> bodies_;
+  std::vector<std::uint32_t>
+      generations_;  ///< by slot, up to the last whose first body is gone: of this body or the next
   std::vector<BodySlot> free_;
-  std::vector<BodySlot> removed_;  ///< at removed_at_: their ids are not given again at that time
-  double removed_at_ = -never;
   std::vector<BodySlot> waiting_;
   std::size_t alive_ = 0;
   bool filters_ = false;

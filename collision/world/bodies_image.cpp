@@ -74,22 +74,20 @@ template <class Archive>
 void Bodies<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
   archive.each(meshes, [&](auto& one) { mesh(archive, one, known); });
   archive.each(bodies, [&](One& one) { body(archive, one); });
-  archive(free, removed, removed_at, waiting);
+  archive(generations, free, waiting);
 }
 
 template <int Degree>
 void Bodies<Degree>::Image::check(double now) const {
-  if (!image::is_past(removed_at, now)) image::fail("removed_at: is after now");
-  if (bodies.size() > no_body) image::fail("bodies: there are more than there are ids");
+  if (bodies.size() > no_body) image::fail("bodies: there are more than there are slots");
+  if (generations.size() > bodies.size()) image::fail("generations: there are more than there are slots");
   for (std::size_t i = 0; i < waiting.size(); ++i) {
     image::require(alive(waiting[i]) && !bodies[waiting[i]].entered, "waiting", i, "is no body that waits to enter");
     image::require(bodies[waiting[i]].motion.start <= now, "waiting", i, "its motion begins after now");
   }
-  std::size_t dead = 0;
   for (std::size_t id = 0; id < bodies.size(); ++id) {
     const One& body = bodies[id];
     const auto need = [id](bool right, const char* what) { image::require(right, "bodies", id, what); };
-    dead += !body.alive;
     if (!body.alive) continue;
     check_shape(body.placed, id);
     need(body.motion.finite(), "its motion is not finite");
@@ -103,15 +101,16 @@ void Bodies<Degree>::Image::check(double now) const {
     if constexpr (Degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
   }
   std::vector<char> listed(bodies.size());
-  const auto check_free = [&](const std::vector<BodySlot>& ids, const char* list) {
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      image::require(ids[i] < bodies.size() && !bodies[ids[i]].alive && !std::exchange(listed[ids[i]], 1), list, i,
-                     "is no free id, or listed twice");
-    }
-  };
-  check_free(free, "free");
-  check_free(removed, "removed");
-  if (free.size() + removed.size() != dead) image::fail("free: not all that are free are listed");
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const BodySlot slot = free[i];
+    image::require(slot < bodies.size() && !bodies[slot].alive && !std::exchange(listed[slot], 1), "free", i,
+                   "is no free slot, or listed twice");
+    image::require(generation(slot) > 0, "free", i, "is of a slot from which no body was removed");
+  }
+  for (BodySlot slot = 0; slot < bodies.size(); ++slot) {
+    const bool retired = generation(slot) == last_generation;
+    image::require(bodies[slot].alive || listed[slot] || retired, "bodies", slot, "its slot is free, and not listed");
+  }
 }
 
 #define KDS_INSTANTIATE(degree)                                                                                        \

@@ -30,12 +30,19 @@ struct Bodies<Degree>::Image {
   };
 
   std::vector<std::shared_ptr<const Mesh>> meshes;
-  std::vector<One> bodies;  // by id
-  std::vector<BodySlot> free, removed, waiting;
-  double removed_at = 0;
+  std::vector<One> bodies;  // by slot
+  std::vector<std::uint32_t> generations;
+  std::vector<BodySlot> free, waiting;
 
   bool alive(BodySlot id) const { return id < bodies.size() && bodies[id].alive; }
   bool entered(BodySlot id) const { return alive(id) && bodies[id].entered; }
+  std::uint32_t generation(BodySlot slot) const { return slot < generations.size() ? generations[slot] : 0; }
+  /// Whether a body has entered, or was removed.
+  bool entered(BodyId id) const { return entered(id.slot()) && id.generation() == generation(id.slot()); }
+  bool removed(BodyId id) const {
+    const bool last = !alive(id.slot()) && id.generation() == last_generation;
+    return id.slot() < bodies.size() && (id.generation() < generation(id.slot()) || last);
+  }
 
   /// Loading, meshes that are among `known` are not built again.
   template <class Archive>

@@ -43,14 +43,14 @@ template <int Degree>
 void World<Degree>::reserve(std::size_t bodies) {
   require_editable("World::reserve");
   if (bodies > no_body) {
-    throw std::length_error("World::reserve: " + std::to_string(bodies) + " bodies are more than there are ids");
+    throw std::length_error("World::reserve: " + std::to_string(bodies) + " bodies are more than there are slots");
   }
   bodies_.reserve(bodies);
   walls_.reserve(bodies);
 }
 
 template <int Degree>
-BodySlot World<Degree>::add_body(const Description& description) {
+BodyId World<Degree>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
   count_edit();
@@ -61,7 +61,7 @@ BodySlot World<Degree>::add_body(const Description& description) {
   } else {
     shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
   }
-  return change_or_fail([&] { return put(description, std::move(shape)); });
+  return bodies_.id_of(change_or_fail([&] { return put(description, std::move(shape)); }));
 }
 
 /// No shape is that of a ball that is not turned.
@@ -71,7 +71,7 @@ inline BodySlot World<Degree>::put(const Description& description, std::shared_p
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= clock_.now) ++piece;
   if (has_mesh(description.shape)) make_room_for_meshes();
-  const BodySlot id = bodies_.add(description, std::move(shape), *piece, clock_.now);
+  const BodySlot id = bodies_.add(description, std::move(shape), *piece);
   if (piece->start <= clock_.now) {
     bodies_.wait(id);
     ++piece;
@@ -139,16 +139,16 @@ void World<Degree>::enter_new_bodies() {
 }
 
 template <int Degree>
-void World<Degree>::update_motion(BodySlot id, const Motion& motion) {
+void World<Degree>::update_motion(BodyId id, const Motion& motion) {
   require_editable("World::update_motion");
-  bodies_.at(id);
+  const BodySlot slot = bodies_.slot_of(id);
   if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
   if (motion.start > clock_.now) {
     throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(motion.start) +
                                 ", after the clock at " + std::to_string(clock_.now));
   }
   count_edit();
-  change_or_fail([&] { give(id, motion); });
+  change_or_fail([&] { give(slot, motion); });
 }
 
 template <int Degree>
@@ -181,11 +181,11 @@ void World<Degree>::set_motion(BodySlot id, const Motion& motion, bool jumped) {
 }
 
 template <int Degree>
-void World<Degree>::remove_body(BodySlot id) {
+void World<Degree>::remove_body(BodyId id) {
   require_editable("World::remove_body");
-  bodies_.at(id);
+  const BodySlot slot = bodies_.slot_of(id);
   count_edit();
-  change_or_fail([&] { take_out(id); });
+  change_or_fail([&] { take_out(slot); });
 }
 
 template <int Degree>
@@ -196,8 +196,8 @@ void World<Degree>::take_out(BodySlot id) {
   if (bodies_[id].entered && bodies_.collides(id)) broad_phase_->remove(id, clock_.now, pairs_);
   volumes_.remove(id);
   pairs_.remove(id);
-  if (!reports_.empty()) reports_.keep_of(id);
-  bodies_.remove(id, clock_.now);
+  if (!reports_.empty()) reports_.forget(bodies_.id_of(id));
+  bodies_.remove(id);
 }
 
 #define KDS_INSTANTIATE(degree) template class World<degree>;

@@ -18,9 +18,9 @@ void World<Degree>::answer(const char* function, const Ask& ask, const Meets& me
   if (volumes_.calling()) {
     throw std::logic_error(std::string(function) + ": must not be called from within a box function");
   }
-  std::vector<BodySlot> named;
+  std::vector<BodySlot> found;
   const auto look = [&](BodySlot id) {
-    if (meets(id)) named.push_back(id);
+    if (meets(id)) found.push_back(id);
   };
   const bool broad_phase_is_ahead = now() < clock_.now;
   if (!broad_phase_is_ahead) ask(look);
@@ -30,11 +30,14 @@ void World<Degree>::answer(const char* function, const Ask& ask, const Meets& me
     }
   }
   for (const BodySlot id : bodies_.waiting()) {
-    if (bodies_.contains(id) && !bodies_.entered(id)) look(id);
+    if (bodies_.alive(id) && !bodies_.entered(id)) look(id);
   }
-  std::sort(named.begin(), named.end());
-  named.erase(std::unique(named.begin(), named.end()), named.end());
-  for (const BodySlot id : named) visit(id);
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  std::vector<BodyId> named;  // all of them now, since what is called may change the world
+  named.reserve(found.size());
+  for (const BodySlot slot : found) named.push_back(bodies_.id_of(slot));
+  for (const BodyId id : named) visit(id);
 }
 
 template <int Degree>

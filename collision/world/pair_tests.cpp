@@ -114,7 +114,7 @@ void Pairs<Degree>::test(Slot slot) {
   const auto b = bodies_.moving(pair.b);
   FoundTouch found;
   const auto report_overlap = [&] {
-    reports_.add(Reports::Kind::overlap, pair.a, pair.b, contact_at(a, b, clock_.now));
+    reports_.add(Reports::Kind::overlap, bodies_.id_of(pair.a), bodies_.id_of(pair.b), contact_at(a, b, clock_.now));
   };
   ContactEstimate next{never, true};
   const ContactMode mode = this->mode(pair.a, pair.b);
@@ -180,8 +180,8 @@ bool Pairs<Degree>::certify() {
     return true;
   }
   FoundTouch found;
-  set_contact(
-      slot, first_contact(bodies_.moving(pair.a), bodies_.moving(pair.b), clock_.now, clock_.horizon, mode(pair.a, pair.b), &found));
+  set_contact(slot, first_contact(bodies_.moving(pair.a), bodies_.moving(pair.b), clock_.now, clock_.horizon,
+                                  mode(pair.a, pair.b), &found));
   remember(slot, found);
   return true;
 }
@@ -206,7 +206,7 @@ void Pairs<Degree>::process_boxes(Slot slot, double t) {
   Pair& pair = pairs_[slot];
   pair.boxes_overlap = !pair.boxes_overlap;
   clock_.now = t;
-  reports_.add_volumes(pair.boxes_overlap, pair.a, pair.b, clock_.now);
+  report_boxes(pair.boxes_overlap, pair.a, pair.b);
   test_boxes(slot);
 }
 

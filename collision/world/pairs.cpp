@@ -48,7 +48,7 @@ void Pairs<Degree>::pair_began(BodySlot a, BodySlot b, double t) {
   pair.fresh = pair.fresh || fresh;
   ++counters_.pairs_begun;
   mark_dirty(slot);
-  if (options_.report_pairs && exact_) reports_.add_volumes(true, a, b, clock_.now);
+  if (options_.report_pairs && exact_) report_boxes(true, a, b);
 }
 
 template <int Degree>
@@ -116,7 +116,7 @@ void Pairs<Degree>::list_anew(std::span<const std::pair<BodySlot, BodySlot>> lis
 template <int Degree>
 void Pairs<Degree>::unlist(Slot slot) {
   Pair& pair = pairs_[slot];
-  if (options_.report_pairs && (exact_ || pair.boxes_overlap)) reports_.add_volumes(false, pair.a, pair.b, clock_.now);
+  if (options_.report_pairs && (exact_ || pair.boxes_overlap)) report_boxes(false, pair.a, pair.b);
   pair.boxes_overlap = false;
   pair.listed = false;
   ++unlisted_;
@@ -211,8 +211,9 @@ void Pairs<Degree>::remove(BodySlot id) {
     const Pair& pair = pairs_[slot];
     // They separate, unless it has not been told yet that they overlap.
     if (mode(pair.a, pair.b) == ContactMode::transparent && pair.overlapping &&
-        !reports_.take_back(Reports::Kind::overlap, pair.a, pair.b)) {
-      reports_.add(Reports::Kind::separation, pair.a, pair.b, contact(pair.a, pair.b, clock_.now));
+        !reports_.take_back(Reports::Kind::overlap, bodies_.id_of(pair.a), bodies_.id_of(pair.b))) {
+      reports_.add(Reports::Kind::separation, bodies_.id_of(pair.a), bodies_.id_of(pair.b),
+                   contact(pair.a, pair.b, clock_.now));
     }
     release(slot);
   }
@@ -272,7 +273,8 @@ void Pairs<Degree>::audit(double t) const {
     const Pair& pair = pairs_[slot];
     if (!pair.alive) continue;
     const auto fail = [&](const char* what) {
-      throw AuditFailure("World: bodies " + std::to_string(pair.a) + " and " + std::to_string(pair.b) + ": " + what);
+      throw AuditFailure("World: bodies " + std::to_string(bodies_.id_of(pair.a)) + " and " +
+                         std::to_string(bodies_.id_of(pair.b)) + ": " + what);
     };
     unlisted += pair.listed ? 0 : 1;
     if (!pair.overlapping && !pair.listed) fail("a pair that neither overlaps nor is listed");

@@ -182,6 +182,9 @@ class Pairs final : public PairListener {
   void unlist(Slot slot);
   void release(Slot slot);
   void mark_dirty(Slot slot);
+  void report_boxes(bool meet, BodySlot a, BodySlot b) {
+    reports_.add_volumes(meet, bodies_.id_of(a), bodies_.id_of(b), clock_.now);
+  }
 
   // pair_tests.cpp
   bool balls_are_quick() const;

@@ -9,32 +9,33 @@
 namespace kds::collision {
 
 template <int Degree>
-bool World<Degree>::touching(BodySlot a, BodySlot b) const {
-  bodies_.at(a), bodies_.at(b);
-  return pairs_.mode(a, b) == ContactMode::transparent && pairs_.overlapping(a, b);
+bool World<Degree>::touching(BodyId a, BodyId b) const {
+  const BodySlot of_a = bodies_.slot_of(a);
+  const BodySlot of_b = bodies_.slot_of(b);
+  return pairs_.mode(of_a, of_b) == ContactMode::transparent && pairs_.overlapping(of_a, of_b);
 }
 
 template <int Degree>
-bool World<Degree>::held(BodySlot a, BodySlot b) const {
-  bodies_.at(a), bodies_.at(b);
-  return resting_.find(std::min(a, b), std::max(a, b)) != Resting::none;
+bool World<Degree>::held(BodyId a, BodyId b) const {
+  const auto [first, second] = std::minmax({bodies_.slot_of(a), bodies_.slot_of(b)});
+  return resting_.find(first, second) != Resting::none;
 }
 
 template <int Degree>
-bool World<Degree>::held_at_wall(BodySlot a, int wall) const {
-  bodies_.at(a);
+bool World<Degree>::held_at_wall(BodyId a, int wall) const {
+  const BodySlot slot = bodies_.slot_of(a);
   if (wall < 0 || wall > 5) {
     throw std::out_of_range("World::held_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
   }
-  return resting_.find(a, no_body, wall) != Resting::none;
+  return resting_.find(slot, no_body, wall) != Resting::none;
 }
 
 template <int Degree>
-typename World<Degree>::Motion World<Degree>::free_motion(BodySlot id) const {
-  bodies_.at(id);
-  if (!resting_.rests(id)) return bodies_.motion(id);
-  Motion motion = bodies_.motion(id).restarted(now());
-  for (std::size_t i = 2; i <= Degree; ++i) motion.coefficients[i] = bodies_.free_term(id, i, now());
+typename World<Degree>::Motion World<Degree>::free_motion(BodyId id) const {
+  const BodySlot slot = bodies_.slot_of(id);
+  if (!resting_.rests(slot)) return bodies_.motion(slot);
+  Motion motion = bodies_.motion(slot).restarted(now());
+  for (std::size_t i = 2; i <= Degree; ++i) motion.coefficients[i] = bodies_.free_term(slot, i, now());
   return motion;
 }
 

@@ -5,8 +5,7 @@
 
 namespace kds::collision {
 
-/// As WorldListener says. Where a pair ended with a body that was removed, and began again with the next of its id, the
-/// end comes first.
+/// As WorldListener says.
 bool detail::Pending::operator<(const Pending& other) const {
   const auto key = [](const Pending& event) {
     const auto stage = [&] {
@@ -25,35 +24,29 @@ bool detail::Pending::operator<(const Pending& other) const {
       }
       return 5;
     };
-    return std::tuple(stage(), event.a, event.b, event.kind);
+    return std::tuple(stage(), event.a.rank(), event.b.rank(), event.kind);
   };
   return key(*this) < key(other);
 }
 
-void Reports::add_volumes(bool meet, BodySlot a, BodySlot b, double now) {
+void Reports::add_volumes(bool meet, BodyId a, BodyId b, double now) {
   if (take_back(meet ? Kind::pair_ended : Kind::pair_began, a, b)) return;
   add(meet ? Kind::pair_began : Kind::pair_ended, a, b, {.time = now});
 }
 
-bool Reports::take_back(Kind kind, BodySlot a, BodySlot b) {
+bool Reports::take_back(Kind kind, BodyId a, BodyId b) {
   if (reports_.empty()) return false;
   const auto it = reports_.find({kind, a, b, {}});
-  if (it == reports_.end() || it->removed) return false;
+  if (it == reports_.end()) return false;
   reports_.erase(it);
   return true;
 }
 
-void Reports::keep_of(BodySlot removed) {
-  std::vector<Report> kept;
+void Reports::forget(BodyId removed) {
   std::erase_if(reports_, [&](const Report& report) {
-    if (report.a != removed && report.b != removed) return false;
-    if (report.kind != Kind::overlap && report.kind != Kind::moved) kept.push_back(report);
-    return true;
+    const bool of_present = report.kind == Kind::overlap || report.kind == Kind::moved;
+    return of_present && (report.a == removed || report.b == removed);
   });
-  for (Report report : kept) {
-    report.removed = true;
-    reports_.insert(report);
-  }
 }
 
 Reports::Report Reports::take_first() {

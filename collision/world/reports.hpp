@@ -1,7 +1,7 @@
 // What a world has to tell of one instant.
 #pragma once
 
-#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/body_id.hpp"
 #include "collision/narrow_phase/contact.hpp"
 
 #include <set>
@@ -15,9 +15,8 @@ namespace detail {
 /// A report to be made at this instant. They are in the order in which WorldListener is told of them.
 struct Pending {
   enum class Kind { held, moved, pair_ended, pair_began, separation, overlap } kind;
-  BodySlot a, b;
+  BodyId a, b;  ///< in order of their ranks; b is a where one body has moved
   Contact contact;
-  bool removed = false;  ///< one of the bodies has been removed since: nothing undoes it
 
   bool operator<(const Pending& other) const;
 };
@@ -32,18 +31,18 @@ class Reports {
   using Kind = Report::Kind;
 
   bool empty() const { return reports_.empty(); }
-  void add(Kind kind, BodySlot a, BodySlot b, const Contact& contact) { reports_.insert({kind, a, b, contact}); }
+  void add(Kind kind, BodyId a, BodyId b, const Contact& contact) { reports_.insert({kind, a, b, contact}); }
 
   /// Bounding volumes meet, or part. Those that meet and part at one instant, or part and meet (bodies that are moved
   /// in turn, lists of ends that are brought into order one after the other), have done neither.
-  void add_volumes(bool meet, BodySlot a, BodySlot b, double now);
+  void add_volumes(bool meet, BodyId a, BodyId b, double now);
 
   /// Forgets a report that has been undone before it was made; false if there is none.
-  bool take_back(Kind kind, BodySlot a, BodySlot b);
+  bool take_back(Kind kind, BodyId a, BodyId b);
 
   /// A body has been removed, and has no pairs any more: its separations are told as they were, and what would be told
   /// of a body that is there is not.
-  void keep_of(BodySlot removed);
+  void forget(BodyId removed);
 
   /// The next to be told. Precondition: not empty.
   Report take_first();

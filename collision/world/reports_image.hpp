@@ -16,7 +16,7 @@ namespace detail {
 
 template <class Archive>
 void archive_members(Archive& archive, detail::Pending& report) {
-  archive(report.kind, report.a, report.b, report.removed, report.contact.time);
+  archive(report.kind, report.a, report.b, report.contact.time);
   for (Feature* f : {&report.contact.feature_a, &report.contact.feature_b}) archive(f->kind, f->first, f->second);
   image::vector(archive, report.contact.point), image::vector(archive, report.contact.normal);
 }
@@ -33,11 +33,13 @@ void check_reports(const std::vector<Reports::Report>& pending, const BodiesImag
     const auto need = [i](bool right, const char* what) { image::require(right, "pending", i, what); };
     need(event.kind >= Kind::held && event.kind <= Kind::overlap, "is of an unknown kind");
     if (event.kind == Kind::moved) {
-      need(bodies.entered(event.a) && event.b == no_body && !event.removed, "is not of a body in the world");
+      need(bodies.entered(event.a) && event.b == event.a, "is not of a body in the world");
     } else {
-      need(event.a < event.b && event.b < bodies.bodies.size(), "is of no pair");
-      need(event.removed || (bodies.entered(event.a) && bodies.entered(event.b)), "is not of two bodies in the world");
-      need(!event.removed || event.kind != Kind::overlap, "is an overlap of a body that has been removed");
+      need(event.a.slot() < event.b.slot(), "is of no pair");
+      const bool of_present = bodies.entered(event.a) && bodies.entered(event.b);
+      const auto known = [&](BodyId id) { return bodies.entered(id) || bodies.removed(id); };
+      need(of_present || (known(event.a) && known(event.b)), "is not of two bodies that are or were in the world");
+      need(of_present || event.kind != Kind::overlap, "is an overlap of a body that was removed");
     }
     const Contact& contact = event.contact;
     need(std::isfinite(contact.time) && contact.time <= now, "is of no time up to now");

@@ -43,13 +43,13 @@ void World<Degree>::process_meeting() {
   // What was let pass may meet again from now on.
   if (pairs_.mode(a, b) == ContactMode::resolved) return;
   ++counters_.separations;
-  const PairEvent event{a, b, contact()};
+  const PairEvent event = event_of(a, b, contact());
   tell([&](Listener& listener) { listener.separation(*this, event); });
 }
 
 template <int Degree>
 void World<Degree>::process_contact(BodySlot a, BodySlot b, const Contact& contact) {
-  const PairEvent event{a, b, contact};
+  const PairEvent event = event_of(a, b, contact);
   ++counters_.contacts;
   if (pairs_.mode(a, b) == ContactMode::transparent) {
     return tell([&](Listener& listener) { listener.contact(*this, event); });
@@ -64,7 +64,7 @@ void World<Degree>::process_contact(BodySlot a, BodySlot b, const Contact& conta
   }
   // A pair that is still pressed together (nobody can or will move it) passes through.
   const auto after = [&] {
-    if (!contains(a) || !contains(b) || resting_.find(a, b) != Resting::none) return;
+    if (!contains(event.a) || !contains(event.b) || resting_.find(a, b) != Resting::none) return;
     // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a
     // rounding.
     if (passes || parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) pairs_.let_pass(a, b);
@@ -93,7 +93,7 @@ void World<Degree>::process_wall() {
   double pressed = 0;
   if constexpr (Degree >= 2) pressed = 2 * motion.coefficients[2][axis] * out;
   const double rebound = std::min(body.restitution, options_.walls->restitution) * approach;
-  WallEvent event{id, wall, {.time = clock_.now}};
+  WallEvent event{bodies_.id_of(id), wall, {.time = clock_.now}};
   event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
   event.contact.normal[axis] = out;
   event.contact.point = motion.coefficients[0];
@@ -197,13 +197,14 @@ template <int Degree>
 void World<Degree>::take_up(BodySlot id, const Motion& motion) {
   ++counters_.motion_updates;
   set_motion(id, motion, false);
-  reports_.add(Reports::Kind::moved, id, no_body, {.time = clock_.now});
+  reports_.add(Reports::Kind::moved, bodies_.id_of(id), bodies_.id_of(id), {.time = clock_.now});
 }
 
 template <int Degree>
 void World<Degree>::tell_held(BodySlot a, BodySlot b) {
   ++counters_.held;
-  reports_.add(Reports::Kind::held, a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
+  const PairEvent event = event_of(a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
+  reports_.add(Reports::Kind::held, event.a, event.b, event.contact);
 }
 
 #define KDS_INSTANTIATE(degree) template class World<degree>;

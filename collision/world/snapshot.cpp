@@ -15,6 +15,10 @@
 namespace kds::collision {
 namespace {
 
+/// Which members the image of a world has; another number for others, so that bytes of another form are refused as
+/// such.
+constexpr int snapshot_form = 2;
+
 /// Options that decide events. Broad phase, window, threads and profile may be others.
 template <class Archive>
 void archive_options(Archive& archive, const WorldOptions& options, bool exact) {
@@ -89,7 +93,8 @@ template <int Degree>
 typename World<Degree>::Image World<Degree>::image() const {
   for (BodySlot id = 0; id < bodies_.slots(); ++id) {
     if (!volumes_.from_caller(id)) continue;
-    throw std::invalid_argument("World: body " + std::to_string(id) + " cannot be saved: it has a box function");
+    throw std::invalid_argument("World: body " + std::to_string(bodies_.id_of(id)) +
+                                " cannot be saved: it has a box function");
   }
   return {.now = clock_.now,
           .callers_now = callers_now_,
@@ -127,7 +132,7 @@ template <class Archive>
 void World<Degree>::archive(Archive& archive) {
   // What has been interrupted may be loaded: then it is whole again.
   if (!Archive::loading || stepping_ || volumes_.calling()) require_idle("World::archive");
-  archive.tag("World of degree " + std::to_string(Degree));
+  archive.tag("World of degree " + std::to_string(Degree) + ", form " + std::to_string(snapshot_form));
   archive_options(archive, options_, broad_phase_->exact());
   if constexpr (Archive::loading) {
     Image loaded;

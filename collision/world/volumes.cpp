@@ -107,7 +107,7 @@ void Volumes<Degree>::become(bool room_for_meshes) {
   given_.clear();
   ends_.resize(0);
   for (BodySlot id = 0; id < bodies_.slots(); ++id) {
-    if (bodies_.contains(id) && !directions_.empty()) place_extents(id);
+    if (bodies_.alive(id) && !directions_.empty()) place_extents(id);
   }
 }
 

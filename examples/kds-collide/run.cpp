@@ -45,7 +45,8 @@ kds::certificates::PointMotion<Degree> to_degree(const MotionPiece& piece) {
   return motion;
 }
 
-/// Hands on what the world tells.
+/// Hands on what the world tells. Bodies are added in the order of the scene and none is removed: their slots are
+/// their places in it.
 template <int Degree>
 class Teller final : public kds::collision::WorldListener<Degree> {
  public:
@@ -65,8 +66,14 @@ class Teller final : public kds::collision::WorldListener<Degree> {
 
   void wall(World& world, const kds::collision::WallEvent& event) override {
     const Contact& c = event.contact;
-    sink_.on_event(
-        {c.time, EventKind::wall, event.body, static_cast<std::uint32_t>(event.wall), c.point, c.normal, {}, {}});
+    sink_.on_event({c.time,
+                    EventKind::wall,
+                    event.body.slot(),
+                    static_cast<std::uint32_t>(event.wall),
+                    c.point,
+                    c.normal,
+                    {},
+                    {}});
     tell_motion(world, event.body);
   }
   void pair_began(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_begin, a, b, t); }
@@ -75,10 +82,10 @@ class Teller final : public kds::collision::WorldListener<Degree> {
  private:
   void tell(EventKind kind, const PairEvent& event) {
     const Contact& c = event.contact;
-    sink_.on_event({c.time, kind, event.a, event.b, c.point, c.normal, c.feature_a, c.feature_b});
+    sink_.on_event({c.time, kind, event.a.slot(), event.b.slot(), c.point, c.normal, c.feature_a, c.feature_b});
   }
   void tell_volumes(EventKind kind, BodyId a, BodyId b, double t) {
-    sink_.on_event({t, kind, a, b, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}});
+    sink_.on_event({t, kind, a.slot(), b.slot(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}});
   }
   void tell_motions(const World& world, const PairEvent& event) {
     if (response_ == Response::none) return;
@@ -92,7 +99,7 @@ class Teller final : public kds::collision::WorldListener<Degree> {
     piece.coefficients.fill(Eigen::Vector3d::Zero());
     std::copy(motion.coefficients.begin(), motion.coefficients.end(), piece.coefficients.begin());
     piece.start = motion.start;
-    sink_.on_motion(id, piece);
+    sink_.on_motion(id.slot(), piece);
   }
 
   EventSink& sink_;

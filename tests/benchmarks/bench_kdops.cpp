@@ -102,8 +102,8 @@ Ran run_world(const std::vector<BodyDescription<1>>& bodies, int k, Response res
 
 struct Count final : PairListener {
   std::size_t began = 0;
-  void pair_began(BodyId, BodyId, double) override { ++began; }
-  void pair_ended(BodyId, BodyId, double) override {}
+  void pair_began(BodySlot, BodySlot, double) override { ++began; }
+  void pair_ended(BodySlot, BodySlot, double) override {}
 };
 
 Ran run_broad_phase(const std::vector<PlacedShape>& shapes, const std::vector<BodyDescription<1>>& bodies, int k,
@@ -117,10 +117,10 @@ Ran run_broad_phase(const std::vector<PlacedShape>& shapes, const std::vector<Bo
     boxes.push_back(box_around(bodies[i].motion[0], shapes[i].low, shapes[i].high));
     for (const auto& d : more) extents.push_back(extent(shapes[i], Vector3d(d.data())));
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) entries.push_back({static_cast<BodyId>(i), &boxes[i]});
+  for (std::size_t i = 0; i < bodies.size(); ++i) entries.push_back({static_cast<BodySlot>(i), &boxes[i]});
   Count count;
   const double begin = benchmarks::thread_seconds();
-  KineticSweepAndPrune<1> broad_phase(0, {.listed = listed}, {more, [&](BodyId id, std::size_t i, double) {
+  KineticSweepAndPrune<1> broad_phase(0, {.listed = listed}, {more, [&](BodySlot id, std::size_t i, double) {
                                                                 const auto& [low, high] = extents[id * more.size() + i];
                                                                 return slab_around(bodies[id].motion[0], low, high,
                                                                                    more[i]);

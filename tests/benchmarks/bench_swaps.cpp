@@ -89,15 +89,15 @@ std::vector<KineticBox<1>> make_scene(std::size_t bodies) {
 
 struct Report {
   double time;
-  BodyId a, b;
+  BodySlot a, b;
   bool began;
   friend bool operator==(const Report&, const Report&) = default;
 };
 
 struct Log final : PairListener {
   std::vector<Report> reports;
-  void pair_began(BodyId a, BodyId b, double t) override { reports.push_back({t, a, b, true}); }
-  void pair_ended(BodyId a, BodyId b, double t) override { reports.push_back({t, a, b, false}); }
+  void pair_began(BodySlot a, BodySlot b, double t) override { reports.push_back({t, a, b, true}); }
+  void pair_ended(BodySlot a, BodySlot b, double t) override { reports.push_back({t, a, b, false}); }
 };
 
 struct Result {
@@ -112,7 +112,7 @@ Result run(const std::vector<KineticBox<1>>& boxes, ListedAxes listed, const Ins
   KineticSweepAndPrune<1> broad_phase(0, {.listed = listed});
   broad_phase.extend_horizon(0, 1);
   std::vector<KineticSweepAndPrune<1>::Entry> entries;
-  for (std::size_t i = 0; i < boxes.size(); ++i) entries.push_back({static_cast<BodyId>(i), &boxes[i]});
+  for (std::size_t i = 0; i < boxes.size(); ++i) entries.push_back({static_cast<BodySlot>(i), &boxes[i]});
   broad_phase.insert(entries, 0, result.log);
   const double start = benchmarks::thread_seconds();
   const double before = instructions.now();

@@ -79,7 +79,7 @@ TEST_CASE("A body that is removed separates where it was", "[instants]") {
     world.add_body(ball<1>(1, {1.5, 0, 0}));
     world.advance_to(0.25);
     world.remove_body(0);
-    world.add_body(ball<1>(1, {50, 0, 0}));  // takes over the id
+    world.add_body(ball<1>(1, {50, 0, 0}));  // takes over the slot
     world.advance_to(1);
   });
   REQUIRE(log.size() == 2);
@@ -88,14 +88,14 @@ TEST_CASE("A body that is removed separates where it was", "[instants]") {
   CHECK(log[1].contact.normal == Vector3d(1, 0, 0));
 }
 
-TEST_CASE("A body does not enter for one of its id that was removed before it did", "[instants]") {
+TEST_CASE("A body does not enter for one of its slot that was removed before it did", "[instants]") {
   const auto log = with_each_broad_phase(false, [](World<1>& world) {
     world.add_body(ball<1>(1, {5, 0, 0}));
     world.add_body(ball<1>(1, {0, 0, 0}));
     world.remove_body(0);
     auto later = ball<1>(1, {1, 0, 0});
     later.motion[0].start = 0.25;
-    REQUIRE(world.add_body(later) == 2);  // the id is given again at a later time
+    REQUIRE(world.add_body(later) == BodyId(1, 0));  // the slot is given again at once
     world.advance_to(1);
   });
   REQUIRE(log.size() == 1);

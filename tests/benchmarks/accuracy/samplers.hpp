@@ -15,7 +15,9 @@
 
 namespace accuracy {
 
-inline std::uint64_t pair_key(BodyId a, BodyId b) { return std::uint64_t{a} << 32 | b; }
+using kds::collision::BodySlot;
+
+inline std::uint64_t pair_key(BodySlot a, BodySlot b) { return std::uint64_t{a} << 32 | b; }
 
 /// [Coming06] section 5, "pseudo-dynamic": kinetic sweep and prune knows at all times which boxes overlap; at each
 /// sample these pairs are tested where they stand.
@@ -32,31 +34,32 @@ class PollingSampler final : private kds::collision::PairListener {
       boxes.push_back(kds::collision::box_around(motions[i], shapes[i].low, shapes[i].high));
     }
     std::vector<typename kds::collision::BroadPhase<Degree>::Entry> entries;
-    for (BodyId id = 0; id < boxes.size(); ++id) entries.push_back({id, &boxes[id]});
+    for (BodySlot id = 0; id < boxes.size(); ++id) entries.push_back({id, &boxes[id]});
     broad_phase_.insert(entries, 0, *this);
   }
 
   void sample(double t, std::vector<Report>& reports) {
-    while (broad_phase_.advance(t, *this)) {}
+    while (broad_phase_.advance(t, *this)) {
+    }
     for (Pair& pair : pairs_) {
-      const bool now = overlap(shapes_[pair.a], shapes_[pair.b],
-                               motions_[pair.b].position(t) - motions_[pair.a].position(t));
-      if (now && !pair.overlaps) reports.push_back({pair.a, pair.b, t});
+      const bool now =
+          overlap(shapes_[pair.a], shapes_[pair.b], motions_[pair.b].position(t) - motions_[pair.a].position(t));
+      if (now && !pair.overlaps) reports.push_back({BodyId(pair.a), BodyId(pair.b), t});
       pair.overlaps = now;
     }
   }
 
  private:
   struct Pair {
-    BodyId a, b;
+    BodySlot a, b;
     bool overlaps;
   };
 
-  void pair_began(BodyId a, BodyId b, double) override {
+  void pair_began(BodySlot a, BodySlot b, double) override {
     places_[pair_key(a, b)] = pairs_.size();
     pairs_.push_back({a, b, false});
   }
-  void pair_ended(BodyId a, BodyId b, double) override {
+  void pair_ended(BodySlot a, BodySlot b, double) override {
     const auto it = places_.find(pair_key(a, b));
     const Pair& last = pairs_.back();
     places_[pair_key(last.a, last.b)] = it->second;
@@ -84,7 +87,7 @@ class DiscreteSampler {
     for (std::size_t i = 0; i < motions.size(); ++i) places_[i] = motions[i].position(0);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto d = static_cast<Eigen::Index>(axis);
-      for (BodyId id = 0; id < shapes.size(); ++id) {
+      for (BodySlot id = 0; id < shapes.size(); ++id) {
         reach_[axis].push_back(shapes[id].low[d]);
         reach_[axis].push_back(shapes[id].high[d]);
         ends_[axis].push_back({places_[id][d] + shapes[id].low[d], 2 * id});
@@ -92,14 +95,14 @@ class DiscreteSampler {
       }
       std::sort(ends_[axis].begin(), ends_[axis].end(), before);
     }
-    std::vector<BodyId> open;
+    std::vector<BodySlot> open;
     for (const End& end : ends_[0]) {
-      const BodyId id = end.id / 2;
+      const BodySlot id = end.id / 2;
       if ((end.id & 1) != 0) {
         open.erase(std::find(open.begin(), open.end(), id));
         continue;
       }
-      for (const BodyId other : open) add_if_overlap(id, other);
+      for (const BodySlot other : open) add_if_overlap(id, other);
       open.push_back(id);
     }
   }
@@ -109,7 +112,7 @@ class DiscreteSampler {
     for (std::size_t axis = 0; axis < 3; ++axis) sort(axis);
     for (Pair& pair : pairs_) {
       const bool now = overlap(shapes_[pair.a], shapes_[pair.b], places_[pair.b] - places_[pair.a]);
-      if (now && !pair.overlaps) reports.push_back({pair.a, pair.b, t});
+      if (now && !pair.overlaps) reports.push_back({BodyId(pair.a), BodyId(pair.b), t});
       pair.overlaps = now;
     }
   }
@@ -121,7 +124,7 @@ class DiscreteSampler {
     std::uint32_t id;
   };
   struct Pair {
-    BodyId a, b;
+    BodySlot a, b;
     bool overlaps;
   };
 
@@ -154,7 +157,7 @@ class DiscreteSampler {
     }
   }
 
-  void add_if_overlap(BodyId x, BodyId y) {
+  void add_if_overlap(BodySlot x, BodySlot y) {
     // The very sums that are sorted.
     for (int d = 0; d < 3; ++d) {
       if (!(places_[x][d] + shapes_[x].low[d] < places_[y][d] + shapes_[y].high[d])) return;
@@ -163,7 +166,7 @@ class DiscreteSampler {
     const auto [a, b] = std::minmax(x, y);
     if (places_of_pairs_.emplace(pair_key(a, b), pairs_.size()).second) pairs_.push_back({a, b, false});
   }
-  void drop(BodyId x, BodyId y) {
+  void drop(BodySlot x, BodySlot y) {
     const auto it = places_of_pairs_.find(pair_key(std::min(x, y), std::max(x, y)));
     if (it == places_of_pairs_.end()) return;
     const Pair last = pairs_.back();

@@ -18,8 +18,8 @@
 
 namespace kds::collision::tests {
 
-using kds::tests::Random;
 using Eigen::Vector3d;
+using kds::tests::Random;
 
 template <int Degree>
 certificates::PointMotion<Degree> path(Random& random, bool coarse, double now, double side) {
@@ -70,21 +70,21 @@ oracle::MovingBox exact(const KineticBox<Degree>& box) {
 
 /// Keeps what is reported and holds it against the contract.
 struct Pairs final : PairListener {
-  std::set<std::pair<BodyId, BodyId>> now;
-  std::map<std::pair<BodyId, BodyId>, double> since;
+  std::set<std::pair<BodySlot, BodySlot>> now;
+  std::map<std::pair<BodySlot, BodySlot>, double> since;
   double clock = 0;
   std::size_t reports = 0;
 
-  void pair_began(BodyId a, BodyId b, double t) override {
+  void pair_began(BodySlot a, BodySlot b, double t) override {
     note(a, b, t);
     REQUIRE(now.insert({a, b}).second);
     since[{a, b}] = t;
   }
-  void pair_ended(BodyId a, BodyId b, double t) override {
+  void pair_ended(BodySlot a, BodySlot b, double t) override {
     note(a, b, t);
     REQUIRE(now.erase({a, b}) == 1);
   }
-  void note(BodyId a, BodyId b, double t) {
+  void note(BodySlot a, BodySlot b, double t) {
     REQUIRE(a < b);
     REQUIRE(t >= clock);
     clock = t;
@@ -100,29 +100,29 @@ struct Stress {
   }
 
   void insert(std::size_t count) {
-    std::vector<BodyId> ids;
-    for (BodyId id = 0; ids.size() < count; ++id) {
+    std::vector<BodySlot> ids;
+    for (BodySlot id = 0; ids.size() < count; ++id) {
       if (!boxes.contains(id)) ids.push_back(id);
     }
     std::vector<typename BroadPhase<Degree>::Entry> entries;
-    for (const BodyId id : ids) {
+    for (const BodySlot id : ids) {
       boxes[id] = random_box<Degree>(random, coarse, now, side);
       entries.push_back({id, &boxes[id]});
     }
     broad_phase.insert(entries, now, pairs);
   }
 
-  BodyId any() { return std::next(boxes.begin(), static_cast<std::ptrdiff_t>(random.below(boxes.size())))->first; }
+  BodySlot any() { return std::next(boxes.begin(), static_cast<std::ptrdiff_t>(random.below(boxes.size())))->first; }
 
   void remove() {
-    const BodyId id = any();
+    const BodySlot id = any();
     broad_phase.remove(id, now, pairs);
     boxes.erase(id);
     for (const auto& [a, b] : pairs.now) REQUIRE((a != id && b != id));
   }
 
   void update() {
-    const BodyId id = any();
+    const BodySlot id = any();
     KineticBox<Degree> box = random_box<Degree>(random, coarse, now, side);
     if (!random.one_in(3)) {  // goes on from where it is
       for (auto [end, old] : {std::pair(&box.min, &boxes[id].min), std::pair(&box.max, &boxes[id].max)}) {
@@ -171,7 +171,7 @@ struct Stress {
   bool coarse;
   std::unique_ptr<BroadPhase<Degree>> owner;
   BroadPhase<Degree>& broad_phase;
-  std::map<BodyId, KineticBox<Degree>> boxes;
+  std::map<BodySlot, KineticBox<Degree>> boxes;
   Pairs pairs;
   double now = 0;
   double side = 12;

@@ -130,14 +130,14 @@ TEST_CASE("A box grid tells of just the overlaps of rounded boxes that change", 
 }
 
 struct Balls final : PairListener {
-  void pair_began(BodyId a, BodyId b, double) override { wrong += !pairs.insert({a, b}).second; }
-  void pair_ended(BodyId a, BodyId b, double) override { wrong += pairs.erase({a, b}) != 1; }
+  void pair_began(BodySlot a, BodySlot b, double) override { wrong += !pairs.insert({a, b}).second; }
+  void pair_ended(BodySlot a, BodySlot b, double) override { wrong += pairs.erase({a, b}) != 1; }
 
   /// How many balls touch at a time that are no pair, or the boxes of how many overlap.
   template <class Count>
   void compare(const KineticGrid<1>& grid, double now, const Count& count) {
-    std::vector<std::pair<BodyId, const KineticBox<1>*>> all;
-    grid.visit([&](BodyId id, const KineticBox<1>& box) { all.emplace_back(id, &box); });
+    std::vector<std::pair<BodySlot, const KineticBox<1>*>> all;
+    grid.visit([&](BodySlot id, const KineticBox<1>& box) { all.emplace_back(id, &box); });
     for (const auto& [a, box_a] : all) {
       for (const auto& [b, box_b] : all) {
         if (!(a < b)) continue;
@@ -150,7 +150,7 @@ struct Balls final : PairListener {
     }
   }
 
-  std::set<std::pair<BodyId, BodyId>> pairs;
+  std::set<std::pair<BodySlot, BodySlot>> pairs;
   std::size_t wrong = 0;
 };
 
@@ -175,7 +175,7 @@ TEST_CASE("The kinetic grid has all pairs of balls that touch, and fewer than of
     Balls balls;
     grid.extend_horizon(0, never);
     std::vector<BroadPhase<1>::Entry> entries;
-    for (BodyId id = 0; id < boxes.size(); ++id) entries.push_back({id, &boxes[id]});
+    for (BodySlot id = 0; id < boxes.size(); ++id) entries.push_back({id, &boxes[id]});
     const std::size_t first = seed % 2 == 0 ? boxes.size() : 1;  // all at once, or most into those that are there
     grid.insert(std::span(entries).first(first), 0, balls);
     grid.insert(std::span(entries).subspan(first), 0, balls);
@@ -185,7 +185,7 @@ TEST_CASE("The kinetic grid has all pairs of balls that touch, and fewer than of
       while (grid.advance(now, balls)) {
       }
       // Struck where it is, or of another radius from now on: it may be another body.
-      const auto id = static_cast<BodyId>(random.below(boxes.size()));
+      const auto id = static_cast<BodySlot>(random.below(boxes.size()));
       const StaticBox at = box_at(boxes[id], now);
       const double radius = random.one_in(4) ? random.between(0.2, 0.6) : boxes[id].rounding;
       Vector3d centre = (0.5 * (at.min + at.max)).matrix();

@@ -25,7 +25,7 @@ KineticBox<1> cube(const Vector3d& at, const Vector3d& velocity, double now = 0)
 /// All ids from 0 on.
 std::vector<FewBoxes<1>::Entry> entries_of(const std::vector<KineticBox<1>>& boxes) {
   std::vector<FewBoxes<1>::Entry> entries;
-  for (const auto& box : boxes) entries.push_back({static_cast<BodyId>(entries.size()), &box});
+  for (const auto& box : boxes) entries.push_back({static_cast<BodySlot>(entries.size()), &box});
   return entries;
 }
 
@@ -85,8 +85,8 @@ TEST_CASE("As many boxes as fit are compared with each other, and one more is re
   few.insert(entries, 0, pairs);
   few.audit(0);
   std::size_t wrong = 0;
-  for (BodyId a = 0; a < count; ++a) {
-    for (BodyId b = a + 1; b < count; ++b) wrong += few.paired(a, b) != (b == a + 1);
+  for (BodySlot a = 0; a < count; ++a) {
+    for (BodySlot b = a + 1; b < count; ++b) wrong += few.paired(a, b) != (b == a + 1);
   }
   CHECK(wrong == 0);
   CHECK(pairs.now.size() == count - 1);

@@ -33,7 +33,7 @@ struct Dops {
         coarse(coarse_numbers),
         more(directions(k)),
         broad_phase(0, {.listed = listed},
-                    {more, [this](BodyId id, std::size_t i, double) { return bodies.at(id).slabs[i]; }}) {
+                    {more, [this](BodySlot id, std::size_t i, double) { return bodies.at(id).slabs[i]; }}) {
     broad_phase.extend_horizon(0, never);
   }
 
@@ -50,7 +50,7 @@ struct Dops {
   }
   void insert(std::size_t count) {
     std::vector<typename BroadPhase<Degree>::Entry> entries;
-    for (BodyId id = 0; entries.size() < count; ++id) {
+    for (BodySlot id = 0; entries.size() < count; ++id) {
       if (bodies.contains(id)) continue;
       bodies[id] = make();
       entries.push_back({id, &bodies[id].box});
@@ -58,7 +58,7 @@ struct Dops {
     broad_phase.insert(entries, now, pairs);
   }
   void change() {
-    const BodyId id = std::next(bodies.begin(), static_cast<std::ptrdiff_t>(random.below(bodies.size())))->first;
+    const BodySlot id = std::next(bodies.begin(), static_cast<std::ptrdiff_t>(random.below(bodies.size())))->first;
     if (random.one_in(5)) {
       broad_phase.remove(id, now, pairs);
       bodies.erase(id);
@@ -100,7 +100,7 @@ struct Dops {
   Random random;
   bool coarse;
   std::vector<KdopDirection> more;
-  std::map<BodyId, Body> bodies;
+  std::map<BodySlot, Body> bodies;
   KineticSweepAndPrune<Degree> broad_phase;
   Pairs pairs;
   double now = 0;
@@ -152,8 +152,8 @@ TEST_CASE("The list may be in any direction", "[kdop][broad_phase]") {
     for (const auto& d : more) slabs.back().push_back(slab_around(path, -0.1, 0.1, d));
   }
   std::vector<KineticSweepAndPrune<1>::Entry> entries;
-  for (BodyId id = 0; id < 100; ++id) entries.push_back({id, &boxes[id]});
-  KineticSweepAndPrune<1> broad_phase(0, {}, {more, [&](BodyId id, std::size_t i, double) { return slabs[id][i]; }});
+  for (BodySlot id = 0; id < 100; ++id) entries.push_back({id, &boxes[id]});
+  KineticSweepAndPrune<1> broad_phase(0, {}, {more, [&](BodySlot id, std::size_t i, double) { return slabs[id][i]; }});
   Pairs pairs;
   broad_phase.insert(entries, 0, pairs);
   CHECK(broad_phase.listed_axes() == 1u << 4);
@@ -164,7 +164,7 @@ TEST_CASE("A k-DOP that is not finite is refused by name", "[kdop]") {
   certificates::PointMotion<1> path;
   path.coefficients = {Vector3d::Constant(1e308), Vector3d::Zero()};
   const KineticBox<1> box = box_around(path, Vector3d::Constant(-1), Vector3d::Constant(1));
-  KineticSweepAndPrune<1> broad_phase(0, {}, {directions(14), [&](BodyId, std::size_t i, double) {
+  KineticSweepAndPrune<1> broad_phase(0, {}, {directions(14), [&](BodySlot, std::size_t i, double) {
                                                 return slab_around(path, -2, 2, directions(14)[i]);
                                               }});
   const KineticSweepAndPrune<1>::Entry entry{7, &box};

@@ -94,7 +94,7 @@ TEST_CASE("Bodies that fly apart are soon left alone", "[broad_phase]") {
   std::vector<KineticBox<1>> boxes;
   for (int i = 0; i < 20; ++i) boxes.push_back(cube({2.0 * i, 0, 0}, {0.1 * i, 0, 0}));
   std::vector<KineticGrid<1>::Entry> entries;
-  for (BodyId id = 0; id < 20; ++id) entries.push_back({id, &boxes[id]});
+  for (BodySlot id = 0; id < 20; ++id) entries.push_back({id, &boxes[id]});
   grid.insert(entries, 0, pairs);
   while (grid.advance(1e6, pairs)) {
   }
@@ -147,10 +147,10 @@ TEST_CASE("An audit of the kinetic grid sees a body outside its fat box", "[broa
 
 class PairSet final : public PairListener {
  public:
-  void pair_began(BodyId a, BodyId b, double) override { twice += !pairs.insert({a, b}).second; }
-  void pair_ended(BodyId a, BodyId b, double) override { pairs.erase({a, b}); }
+  void pair_began(BodySlot a, BodySlot b, double) override { twice += !pairs.insert({a, b}).second; }
+  void pair_ended(BodySlot a, BodySlot b, double) override { pairs.erase({a, b}); }
 
-  std::set<std::pair<BodyId, BodyId>> pairs;
+  std::set<std::pair<BodySlot, BodySlot>> pairs;
   int twice = 0;
 };
 
@@ -168,7 +168,7 @@ TEST_CASE("Thousands that come at once have the pairs of their fat boxes", "[bro
     boxes.push_back(box_around(motion, -reach, reach));
   }
   std::vector<BroadPhase<1>::Entry> entries;
-  for (std::size_t i = 0; i < count; ++i) entries.push_back({static_cast<BodyId>(3 * (count - i)), &boxes[i]});
+  for (std::size_t i = 0; i < count; ++i) entries.push_back({static_cast<BodySlot>(3 * (count - i)), &boxes[i]});
   KineticGrid<1> grid;
   PairSet found;
   grid.extend_horizon(0, never);

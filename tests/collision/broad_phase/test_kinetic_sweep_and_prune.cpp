@@ -22,7 +22,7 @@ auto lists(ListedAxes listed) {
 
 struct Report {
   double time;
-  BodyId a, b;
+  BodySlot a, b;
   bool began;
   auto operator<=>(const Report&) const = default;
 };
@@ -30,8 +30,8 @@ struct Report {
 /// Keeps what is reported.
 struct Log final : PairListener {
   std::vector<Report> reports;
-  void pair_began(BodyId a, BodyId b, double t) override { reports.push_back({t, a, b, true}); }
-  void pair_ended(BodyId a, BodyId b, double t) override { reports.push_back({t, a, b, false}); }
+  void pair_began(BodySlot a, BodySlot b, double t) override { reports.push_back({t, a, b, true}); }
+  void pair_ended(BodySlot a, BodySlot b, double t) override { reports.push_back({t, a, b, false}); }
 };
 
 TEMPLATE_TEST_CASE_SIG("Kinetic sweep and prune under stress", "[broad_phase]", ((int Degree), Degree), 1, 2) {
@@ -110,7 +110,7 @@ std::vector<Report> reports_in_windows(std::uint64_t seed, ListedAxes listed, do
   std::vector<KineticBox<Degree>> boxes;
   for (int i = 0; i < 30; ++i) boxes.push_back(random_box<Degree>(random, false, 0, 9));
   std::vector<typename KineticSweepAndPrune<Degree>::Entry> entries;
-  for (BodyId id = 0; id < 30; ++id) entries.push_back({id, &boxes[id]});
+  for (BodySlot id = 0; id < 30; ++id) entries.push_back({id, &boxes[id]});
   KineticSweepAndPrune<Degree> broad_phase(0, {.listed = listed});
   Log log;
   broad_phase.extend_horizon(0, std::min(window, 2.0));
@@ -152,7 +152,7 @@ TEST_CASE("The axis with the fewest pairs is listed, and all three for a few bod
       boxes.push_back(box);
     }
     std::vector<KineticSweepAndPrune<1>::Entry> entries;
-    for (BodyId id = 0; id < 64; ++id) entries.push_back({id, &boxes[id]});
+    for (BodySlot id = 0; id < 64; ++id) entries.push_back({id, &boxes[id]});
     Log log;
     KineticSweepAndPrune<1> automatic(0);
     automatic.insert(entries, 0, log);
@@ -208,7 +208,7 @@ TEST_CASE("An audit sees a box that is not where it was said to be", "[broad_pha
   std::vector<KineticBox<1>> boxes;
   for (int i = 0; i < 5; ++i) boxes.push_back(random_box<1>(random, false, 0, 5));
   std::vector<KineticSweepAndPrune<1>::Entry> entries;
-  for (BodyId id = 0; id < 5; ++id) entries.push_back({id, &boxes[id]});
+  for (BodySlot id = 0; id < 5; ++id) entries.push_back({id, &boxes[id]});
   broad_phase.insert(entries, 0, pairs);
   broad_phase.audit(0);
   REQUIRE(broad_phase.next_time() < 100);

@@ -69,26 +69,26 @@ bool meet(const KineticBox<Degree>& a, const KineticBox<Degree>& b, double t) {
 }
 
 template <int Degree>
-std::vector<BodyId> overlapping(const BroadPhase<Degree>& broad_phase, const StaticBox& box, double now) {
-  std::vector<BodyId> named;
-  broad_phase.visit_overlapping(box, now, [&](BodyId id) { named.push_back(id); });
+std::vector<BodySlot> overlapping(const BroadPhase<Degree>& broad_phase, const StaticBox& box, double now) {
+  std::vector<BodySlot> named;
+  broad_phase.visit_overlapping(box, now, [&](BodySlot id) { named.push_back(id); });
   std::sort(named.begin(), named.end());
   return named;
 }
 template <int Degree>
-std::vector<BodyId> swept(const BroadPhase<Degree>& broad_phase, const KineticBox<Degree>& box, double from,
-                          double until) {
-  std::vector<BodyId> named;
-  broad_phase.visit_swept(box, from, until, [&](BodyId id) { named.push_back(id); });
+std::vector<BodySlot> swept(const BroadPhase<Degree>& broad_phase, const KineticBox<Degree>& box, double from,
+                            double until) {
+  std::vector<BodySlot> named;
+  broad_phase.visit_swept(box, from, until, [&](BodySlot id) { named.push_back(id); });
   std::sort(named.begin(), named.end());
   return named;
 }
 
 /// What is named must be there, once.
 template <class Boxes>
-void require_named_once(const std::vector<BodyId>& named, const Boxes& boxes) {
+void require_named_once(const std::vector<BodySlot>& named, const Boxes& boxes) {
   REQUIRE(std::adjacent_find(named.begin(), named.end()) == named.end());
-  for (const BodyId id : named) REQUIRE(boxes.contains(id));
+  for (const BodySlot id : named) REQUIRE(boxes.contains(id));
 }
 
 struct Asked {
@@ -97,9 +97,9 @@ struct Asked {
 
 /// Bodies that meet the box, none of which may be missed.
 template <int Degree>
-void ask(const BroadPhase<Degree>& broad_phase, const std::map<BodyId, KineticBox<Degree>>& boxes, const StaticBox& box,
-         double now, Asked& asked) {
-  const std::vector<BodyId> named = overlapping(broad_phase, box, now);
+void ask(const BroadPhase<Degree>& broad_phase, const std::map<BodySlot, KineticBox<Degree>>& boxes,
+         const StaticBox& box, double now, Asked& asked) {
+  const std::vector<BodySlot> named = overlapping(broad_phase, box, now);
   require_named_once(named, boxes);
   StaticBox inside = box;
   for (int d = 0; d < 3; ++d) inside.min[d] = next_up(box.min[d]), inside.max[d] = next_down(box.max[d]);
@@ -115,9 +115,9 @@ void ask(const BroadPhase<Degree>& broad_phase, const std::map<BodyId, KineticBo
 }
 
 template <int Degree>
-void ask(const BroadPhase<Degree>& broad_phase, const std::map<BodyId, KineticBox<Degree>>& boxes,
+void ask(const BroadPhase<Degree>& broad_phase, const std::map<BodySlot, KineticBox<Degree>>& boxes,
          const KineticBox<Degree>& box, double from, double until, Asked& asked) {
-  const std::vector<BodyId> named = swept(broad_phase, box, from, until);
+  const std::vector<BodySlot> named = swept(broad_phase, box, from, until);
   require_named_once(named, boxes);
   ++asked.questions;
   asked.named += named.size();
@@ -201,9 +201,9 @@ TEMPLATE_TEST_CASE_SIG("Questions name all bodies that a box meets, each once", 
 
 /// Balls' boxes of many sizes, some of which stand still.
 template <int Degree>
-std::map<BodyId, KineticBox<Degree>> crowd(Random& random, std::size_t count, double side) {
-  std::map<BodyId, KineticBox<Degree>> boxes;
-  for (BodyId id = 0; boxes.size() < count; id += 1 + static_cast<BodyId>(random.below(2))) {
+std::map<BodySlot, KineticBox<Degree>> crowd(Random& random, std::size_t count, double side) {
+  std::map<BodySlot, KineticBox<Degree>> boxes;
+  for (BodySlot id = 0; boxes.size() < count; id += 1 + static_cast<BodySlot>(random.below(2))) {
     auto centre = path<Degree>(random, false, 0, side);
     if (random.one_in(3)) centre.coefficients[1].setZero();
     const double radius = std::ldexp(1.0, random.integer(-6, 0));
@@ -213,7 +213,7 @@ std::map<BodyId, KineticBox<Degree>> crowd(Random& random, std::size_t count, do
 }
 
 template <int Degree>
-void insert(BroadPhase<Degree>& broad_phase, const std::map<BodyId, KineticBox<Degree>>& boxes, Pairs& pairs) {
+void insert(BroadPhase<Degree>& broad_phase, const std::map<BodySlot, KineticBox<Degree>>& boxes, Pairs& pairs) {
   std::vector<typename BroadPhase<Degree>::Entry> entries;
   for (const auto& [id, box] : boxes) entries.push_back({id, &box});
   broad_phase.insert(entries, 0, pairs);
@@ -271,8 +271,8 @@ TEST_CASE("Boxes that touch meet, and huge, infinite and empty ones are answered
       INFO(way << ", at " << at);
       // Sizes at which sums of these coordinates are exact.
       const double unit = std::max(1.0, std::ldexp(std::abs(at), -20));
-      std::map<BodyId, KineticBox<1>> boxes;
-      for (BodyId id = 0; id < 5; ++id) {
+      std::map<BodySlot, KineticBox<1>> boxes;
+      for (BodySlot id = 0; id < 5; ++id) {
         KineticBox<1>& box = boxes[id];
         box.min.coefficients[0] = Vector3d::Constant(at) + Vector3d(2.0 * id, 0, 0) * unit;
         box.max.coefficients[0] = box.min.coefficients[0] + Vector3d::Constant(unit);
@@ -296,7 +296,7 @@ TEST_CASE("Boxes that touch meet, and huge, infinite and empty ones are answered
           ask(*broad_phase, boxes, cube(0.25 * i, 0), now, asked);
           ask(*broad_phase, boxes, cube(0.25 * i, 1), now, asked);
         }
-        const std::vector<BodyId> all{0, 1, 2, 3, 4};
+        const std::vector<BodySlot> all{0, 1, 2, 3, 4};
         CHECK(overlapping(*broad_phase, whole_space(), now) == all);
         CHECK(overlapping(*broad_phase, {Eigen::Array3d::Constant(-infinity), Eigen::Array3d::Constant(infinity)},
                           now) == all);
@@ -315,8 +315,8 @@ TEST_CASE("A body that leaves its fat box in time is named, wherever it goes", "
   for (const std::string& way : ways) {
     for (const double window : {1.0, never}) {
       INFO(way << ", window " << window);
-      std::map<BodyId, KineticBox<1>> boxes;
-      for (BodyId id = 0; id < 12; ++id) {
+      std::map<BodySlot, KineticBox<1>> boxes;
+      for (BodySlot id = 0; id < 12; ++id) {
         certificates::PointMotion<1> centre;
         centre.coefficients = {Vector3d(3.0 * id, 0, 0), Vector3d(0, id == 7 ? 1000 : 0.01, 0)};
         boxes[id] = box_around<1>(centre, Vector3d::Constant(-0.5), Vector3d::Constant(0.5), 0.5);
@@ -331,7 +331,7 @@ TEST_CASE("A body that leaves its fat box in time is named, wherever it goes", "
       Asked asked;
       for (const double until : {0.5, 8.9, 9.5, 50.0}) {
         const auto named = swept(*broad_phase, box, 0, until);
-        CHECK((std::count(named.begin(), named.end(), BodyId{7}) == 1) >= (until > 9));
+        CHECK((std::count(named.begin(), named.end(), BodySlot{7}) == 1) >= (until > 9));
         if (way != "all pairs" && until < 1) CHECK(named.empty());
         ask(*broad_phase, boxes, box, 0, until, asked);
       }
@@ -350,7 +350,7 @@ TEST_CASE("Several threads may ask at a time", "[broad_phase]") {
     insert(*broad_phase, boxes, pairs);
     const auto answers = [&] {
       Random places(7);
-      std::vector<std::vector<BodyId>> all;
+      std::vector<std::vector<BodySlot>> all;
       for (int i = 0; i < 200; ++i) {
         all.push_back(overlapping(*broad_phase, random_static_box(places, false, 12), 0));
         all.push_back(swept(*broad_phase, random_box<1>(places, false, 0, 12), 0, places.between(0, 2)));
@@ -358,7 +358,7 @@ TEST_CASE("Several threads may ask at a time", "[broad_phase]") {
       return all;
     };
     const auto expected = answers();
-    std::vector<std::vector<std::vector<BodyId>>> found(3);
+    std::vector<std::vector<std::vector<BodySlot>>> found(3);
     std::vector<std::thread> threads;
     for (auto& one : found) threads.emplace_back([&] { one = answers(); });
     for (std::thread& thread : threads) thread.join();

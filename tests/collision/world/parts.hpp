@@ -30,26 +30,26 @@ struct Parts final : RestingContacts<Degree>::Listener {
         pairs(bodies, volumes, resting, reports, options, clock, counters, nullptr) {}
 
   /// Adds a body that has entered.
-  BodyId add(const BodyDescription<Degree>& description) {
+  BodySlot add(const BodyDescription<Degree>& description) {
     auto shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
-    const BodyId id = bodies.add(description, std::move(shape), description.motion.front(), clock.now);
+    const BodySlot id = bodies.add(description, std::move(shape), description.motion.front());
     bodies[id].entered = true;
     volumes.add(id, description.box);
     return id;
   }
-  void move(BodyId id, const Motion& motion) {
+  void move(BodySlot id, const Motion& motion) {
     bodies.move(id, motion);
     bodies.accelerate_freely(id, motion);
     pairs.motion_changed(id, false);
   }
 
-  void take_up(BodyId id, const Motion& motion) override {
+  void take_up(BodySlot id, const Motion& motion) override {
     bodies.move(id, motion);
     taken_up.push_back(id);
   }
-  void changed(BodyId a, BodyId b) override { pairs.changed(a, b); }
-  void let_pass(BodyId a, BodyId b) override { pairs.let_pass(a, b); }
-  void tell_held(BodyId a, BodyId b) override { told.emplace_back(a, b); }
+  void changed(BodySlot a, BodySlot b) override { pairs.changed(a, b); }
+  void let_pass(BodySlot a, BodySlot b) override { pairs.let_pass(a, b); }
+  void tell_held(BodySlot a, BodySlot b) override { told.emplace_back(a, b); }
 
   WorldOptions options;
   Clock clock;
@@ -59,8 +59,8 @@ struct Parts final : RestingContacts<Degree>::Listener {
   Reports reports;
   RestingContacts<Degree> resting;
   Pairs<Degree> pairs;
-  std::vector<BodyId> taken_up;
-  std::vector<std::pair<BodyId, BodyId>> told;
+  std::vector<BodySlot> taken_up;
+  std::vector<std::pair<BodySlot, BodySlot>> told;
 };
 
 }  // namespace kds::collision::tests

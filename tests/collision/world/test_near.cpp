@@ -19,6 +19,9 @@ using Ids = std::vector<BodyId>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// In order of slots.
+bool by_rank(BodyId a, BodyId b) { return a.rank() < b.rank(); }
+
 template <int Degree>
 Ids near(const World<Degree>& world, const Vector3d& min, const Vector3d& max) {
   Ids named;
@@ -46,18 +49,19 @@ BodyDescription<Degree> ball(double radius, const Vector3d& at, const Vector3d& 
 
 /// Brute force: balls whose boxes meet this one by more than rounding, or that touch it as far as rounding tells.
 template <int Degree>
-void require_right(const World<Degree>& world, BodyId end, const Vector3d& min, const Vector3d& max, std::size_t& met) {
+void require_right(const World<Degree>& world, const Ids& added, const Vector3d& min, const Vector3d& max,
+                   std::size_t& met) {
   const Ids named = near(world, min, max);
-  REQUIRE(std::is_sorted(named.begin(), named.end()));
+  REQUIRE(std::is_sorted(named.begin(), named.end(), by_rank));
   REQUIRE(std::adjacent_find(named.begin(), named.end()) == named.end());
   constexpr double rounding = 1e-12;
-  for (BodyId id = 0; id < end; ++id) {
+  for (const BodyId id : added) {
     if (!world.contains(id)) continue;
     const Vector3d at = world.motion(id).position(world.now());
     const double radius = world.shape(id).bounding_radius;
     const double gap =
         (min.array() - (at.array() + radius)).max(at.array() - radius - max.array()).maxCoeff();  // on some axis
-    const bool is_named = std::binary_search(named.begin(), named.end(), id);
+    const bool is_named = std::binary_search(named.begin(), named.end(), id, by_rank);
     INFO("body " << id << " at " << world.now() << ", gap " << gap);
     if (gap <= -rounding) REQUIRE(is_named);
     if (gap > rounding) REQUIRE(!is_named);
@@ -88,11 +92,11 @@ std::vector<Ids> answers(const WorldOptions& options, std::uint64_t seed, std::s
   const auto place = [&] { return Vector3d(random.between(1, 9), random.between(1, 9), random.between(1, 9)); };
   const auto speed = [&] { return Vector3d(random.between(-2, 2), random.between(-2, 2), random.between(-2, 2)); };
   std::vector<Ids> all;
-  BodyId end = 0;
+  Ids added;
   const auto ask = [&] {
     const Vector3d corner = place() - Vector3d::Constant(1);
     const Vector3d size = random.one_in(4) ? Vector3d::Constant(infinity) : Vector3d(place() / 3);
-    require_right(world, end, corner, corner + size, met);
+    require_right(world, added, corner, corner + size, met);
     all.push_back(near(world, corner, corner + size));
     KineticBox<Degree> box =
         box_around<Degree>(path<Degree>(place(), speed(), world.now()), -size.cwiseMin(1), Vector3d::Ones());
@@ -106,11 +110,12 @@ std::vector<Ids> answers(const WorldOptions& options, std::uint64_t seed, std::s
     if (dice < 3 || world.size() < 4) {
       auto body = ball<Degree>(random.between(0.1, 0.5), place(), speed(), world.now());
       if (random.one_in(4)) body.collides_with = 0;  // then it is in no broad phase
-      end = std::max(end, world.add_body(body) + 1);
+      added.push_back(world.add_body(body));
       ask();  // before it has entered
     } else {
-      BodyId id = static_cast<BodyId>(random.below(end));
-      while (!world.contains(id)) id = (id + 1) % end;
+      std::size_t which = random.below(added.size());
+      while (!world.contains(added[which])) which = (which + 1) % added.size();
+      const BodyId id = added[which];
       if (dice == 3) {
         world.remove_body(id);
       } else {

@@ -24,38 +24,115 @@ WorldOptions resolved() {
   return options;
 }
 
-TEST_CASE("Bodies: an id is given again, but not at the instant of its removal") {
+TEST_CASE("Bodies: the slot of one that is removed is given again, its id is not") {
+  Parts<1> parts;
+  Bodies<1>& bodies = parts.bodies;
+  const auto one = ball<1>(1, {0, 0, 0});
+  CHECK(bodies.id_of(parts.add(one)) == 0);
+  CHECK(bodies.id_of(parts.add(one)) == 1);
+  bodies.remove(0);
+  CHECK_FALSE(bodies.contains(0));
+  CHECK(bodies.contains(1));
+  CHECK(bodies.id_of(parts.add(one)) == BodyId(1, 0));
+  CHECK_FALSE(bodies.contains(0));
+  CHECK(bodies.slot_of(BodyId(1, 0)) == 0);
+  CHECK(bodies.size() == 2);
+  CHECK(bodies.slots() == 2);
+  bodies.remove(1);
+  bodies.remove(0);  // the slot that became free last comes first
+  CHECK(bodies.id_of(parts.add(one)) == BodyId(2, 0));
+  CHECK(bodies.id_of(parts.add(one)) == BodyId(1, 1));
+  CHECK(bodies.id_of(parts.add(one)) == 2);
+}
+
+TEST_CASE("Bodies: what is thrown says which body it was and whether it was removed") {
+  Parts<1> parts;
+  parts.add(ball<1>(1, {0, 0, 0}));
+  parts.bodies.remove(parts.add(ball<1>(1, {0, 0, 0})));
+  CHECK_THROWS_WITH(parts.bodies.slot_of(1), "World: there is no body 1 (generation 0 of slot 1): it was removed");
+  CHECK_THROWS_WITH(parts.bodies.slot_of(BodyId(1, 1)),
+                    "World: there is no body 4294967297 (generation 1 of slot 1): it has never been there");
+  CHECK_THROWS_WITH(parts.bodies.slot_of(2),
+                    "World: there is no body 2 (generation 0 of slot 2): it has never been there");
+  CHECK_THROWS_WITH(parts.bodies.slot_of(BodyId(7, 0)),
+                    "World: there is no body 30064771072 (generation 7 of slot 0): it has never been there");
+}
+
+TEST_CASE("Bodies: a slot whose generations are used up is retired") {
   Parts<1> parts;
   const auto one = ball<1>(1, {0, 0, 0});
-  CHECK(parts.add(one) == 0);
-  CHECK(parts.add(one) == 1);
-  parts.bodies.remove(0, parts.clock.now);
-  CHECK_FALSE(parts.bodies.contains(0));
-  CHECK_THROWS_AS(parts.bodies.at(0), std::out_of_range);
-  CHECK(parts.add(one) == 2);
-  parts.clock.now = 1;
-  CHECK(parts.add(one) == 0);
-  CHECK(parts.bodies.size() == 3);
-  CHECK(parts.bodies.slots() == 3);
-  parts.bodies.remove(1, 2.0);
-  parts.bodies.remove(2, 3.0);  // then 1 was removed at an earlier time
-  parts.clock.now = 3;
-  CHECK(parts.add(one) == 1);
-  CHECK(parts.add(one) == 3);
+  parts.bodies.remove(parts.add(one));
+  auto image = parts.bodies.image();
+  REQUIRE(image.generations == std::vector<std::uint32_t>{1});
+  image.generations = {last_generation};
+  image.check(0);
+  parts.bodies.become(image);
+  const BodyId last(last_generation, 0);
+  CHECK_THROWS_WITH(parts.bodies.slot_of(last), Catch::Contains("never been there"));
+  REQUIRE(parts.bodies.id_of(parts.add(one)) == last);
+  parts.bodies.remove(0);
+  CHECK_FALSE(parts.bodies.contains(last));
+  CHECK_THROWS_WITH(parts.bodies.slot_of(last), Catch::Contains("was removed"));
+  CHECK(parts.bodies.id_of(parts.add(one)) == 1);
+  image = parts.bodies.image();
+  image.check(0);
+  CHECK(image.removed(last));
+  parts.bodies.become(image);
+  CHECK(parts.bodies.id_of(parts.add(one)) == 2);
+}
+
+TEST_CASE("Bodies: an image whose generations or free slots cannot be is refused") {
+  Parts<1> parts;
+  parts.add(ball<1>(1, {0, 0, 0}));
+  parts.bodies.remove(parts.add(ball<1>(1, {0, 0, 0})));
+  const auto right = parts.bodies.image();
+  right.check(0);
+  auto image = right;
+  image.generations.push_back(0);
+  CHECK_THROWS_WITH(image.check(0), Catch::Contains("generations: there are more than there are slots"));
+  image = right;
+  image.generations[1] = 0;
+  CHECK_THROWS_WITH(image.check(0), Catch::Contains("free[0]: is of a slot from which no body was removed"));
+  image = right;
+  image.free.clear();
+  CHECK_THROWS_WITH(image.check(0), Catch::Contains("bodies[1]: its slot is free, and not listed"));
+  image = right;
+  image.free.push_back(1);
+  CHECK_THROWS_WITH(image.check(0), Catch::Contains("free[1]: is no free slot, or listed twice"));
+  image = right;
+  image.free.push_back(0);
+  CHECK_THROWS_WITH(image.check(0), Catch::Contains("free[1]: is no free slot, or listed twice"));
+}
+
+TEST_CASE("Reports: what is told of a body that is gone, and of the next in its slot, are two things") {
+  Reports reports;
+  const BodyId gone(0, 1), next(1, 1);
+  reports.add_volumes(false, 0, gone, 1);
+  reports.add(Reports::Kind::overlap, 0, gone, {});
+  reports.add(Reports::Kind::moved, gone, gone, {});
+  reports.forget(gone);
+  reports.add_volumes(true, 0, next, 1);  // it does not take back the end of the other pair
+  const auto end = reports.take_first();
+  CHECK(end.kind == Reports::Kind::pair_ended);
+  CHECK(end.b == gone);
+  const auto begin = reports.take_first();
+  CHECK(begin.kind == Reports::Kind::pair_began);
+  CHECK(begin.b == next);
+  CHECK(reports.empty());
 }
 
 TEST_CASE("Bodies: one that is removed does not enter any more") {
   Parts<1> parts;
-  const BodyId id = parts.bodies.add(ball<1>(1, {0, 0, 0}), nullptr, motion<1>({0, 0, 0}), 0);
+  const BodySlot id = parts.bodies.add(ball<1>(1, {0, 0, 0}), nullptr, motion<1>({0, 0, 0}));
   parts.bodies.wait(id);
   CHECK(parts.bodies.waits(id));
-  parts.bodies.remove(id, 0);
+  parts.bodies.remove(id);
   CHECK_FALSE(parts.bodies.any_waits());
 }
 
 TEST_CASE("Bodies: a jump is what rounding is not") {
   Parts<1> parts;
-  const BodyId id = parts.add(ball<1>(1, {100, 0, 0}, {1, 0, 0}));
+  const BodySlot id = parts.add(ball<1>(1, {100, 0, 0}, {1, 0, 0}));
   const auto there = [](double x) { return motion<1>({x, 0, 0}, zero, zero, 2); };
   CHECK_FALSE(parts.bodies.is_jump(id, there(102), 2));
   CHECK_FALSE(parts.bodies.is_jump(id, there(102 + 1e-11), 2));
@@ -66,13 +143,13 @@ TEST_CASE("Bodies: two may collide if each one's category is in the other's mask
   Parts<1> parts;
   CHECK_FALSE(parts.bodies.filters());
   auto description = ball<1>(1, {0, 0, 0});
-  const BodyId plain = parts.add(description);
+  const BodySlot plain = parts.add(description);
   description.category = 2;
-  const BodyId second = parts.add(description);
+  const BodySlot second = parts.add(description);
   description.collides_with = 1;
-  const BodyId choosy = parts.add(description);
+  const BodySlot choosy = parts.add(description);
   description.collides_with = 0;
-  const BodyId alone = parts.add(description);
+  const BodySlot alone = parts.add(description);
   CHECK(parts.bodies.filters());
   CHECK(parts.bodies.may_collide(plain, second));
   CHECK(parts.bodies.may_collide(plain, choosy));
@@ -118,9 +195,9 @@ TEST_CASE("Wall times: the body that comes next, its exact time and its wall") {
   const std::optional<Walls> walls(Walls{{0, 0, 0}, {10, 10, 10}, 1});
   Parts<2> parts;
   WallTimes<2> times(parts.bodies, walls, parts.clock);
-  const BodyId to_right = parts.add(ball<2>(1, {5, 5, 5}, {1, 0, 0}));            // at 4
-  const BodyId falls = parts.add(ball<2>(1, {5, 5, 3}, {0, 0, 0}, {0, 0, -0.5}));  // at 2, on wall -z
-  const BodyId rests = parts.add(ball<2>(1, {5, 5, 1}));
+  const BodySlot to_right = parts.add(ball<2>(1, {5, 5, 5}, {1, 0, 0}));             // at 4
+  const BodySlot falls = parts.add(ball<2>(1, {5, 5, 3}, {0, 0, 0}, {0, 0, -0.5}));  // at 2, on wall -z
+  const BodySlot rests = parts.add(ball<2>(1, {5, 5, 1}));
   const std::array<BroadPhase<2>::Entry, 3> all{{{to_right, nullptr}, {falls, nullptr}, {rests, nullptr}}};
   times.schedule(all);
   const auto certified = [&] {
@@ -148,7 +225,7 @@ TEST_CASE("Wall times: nothing beyond the horizon, until it is extended") {
   Parts<1> parts;
   parts.clock.horizon = 3;
   WallTimes<1> times(parts.bodies, walls, parts.clock);
-  const BodyId id = parts.add(ball<1>(1, {5, 5, 5}, {1, 0, 0}));
+  const BodySlot id = parts.add(ball<1>(1, {5, 5, 5}, {1, 0, 0}));
   times.schedule(id);
   CHECK(times.next_time() == never);
   parts.clock.horizon = 5;
@@ -164,12 +241,13 @@ TEST_CASE("Volumes: a caller's box is asked for when it is renewed, and ends whe
   described.box = [&](double t, const certificates::PointMotion<1>& path) {
     ++calls;
     const Vector3d at = path.position(t);
-    KineticBox<1> box{motion<1>(at - Vector3d(2, 2, 2), zero, zero, t), motion<1>(at + Vector3d(2, 2, 2), zero, zero, t)};
+    KineticBox<1> box{motion<1>(at - Vector3d(2, 2, 2), zero, zero, t),
+                      motion<1>(at + Vector3d(2, 2, 2), zero, zero, t)};
     box.valid_until = t + 1;
     return box;
   };
-  const BodyId plain = parts.add(ball<1>(1, {9, 9, 9}));
-  const BodyId id = parts.add(described);
+  const BodySlot plain = parts.add(ball<1>(1, {9, 9, 9}));
+  const BodySlot id = parts.add(described);
   CHECK(parts.volumes.from_caller(id));
   CHECK_FALSE(parts.volumes.from_caller(plain));
   parts.volumes.renew(id);
@@ -195,11 +273,11 @@ TEST_CASE("Pairs: contacts of the pairs that are listed, the earliest first, eac
     parts.add(body<2>(shape, motion<2>(c0, -0.5 * c0 + 0.02 * place(), 0.01 * place())));
   }
   std::vector<double> expected;
-  for (BodyId a = 0; a < 8; ++a) {
-    for (BodyId b = a + 1; b < 8; ++b) {
+  for (BodySlot a = 0; a < 8; ++a) {
+    for (BodySlot b = a + 1; b < 8; ++b) {
       parts.pairs.pair_began(a, b, 0);
-      const double t = first_contact<2>(parts.bodies.moving(a), parts.bodies.moving(b), 0, no_limit,
-                                        ContactMode::resolved);
+      const double t =
+          first_contact<2>(parts.bodies.moving(a), parts.bodies.moving(b), 0, no_limit, ContactMode::resolved);
       if (t < never) expected.push_back(t);
     }
   }
@@ -297,8 +375,8 @@ TEST_CASE("Pairs: a copy made of the image goes on alike") {
 
 TEST_CASE("Resting contacts: a ball that is pressed on a fixed box stays, and slides off its edge") {
   Parts<2> parts(resolved());
-  const BodyId floor = parts.add(fixed_body<2>(Box{{4, 4, 1}}, motion<2>({0, 0, -1})));
-  const BodyId resting = parts.add(ball<2>(1, {0, 0, 1}, {1, 0, 0}, {0, 0, -5}));
+  const BodySlot floor = parts.add(fixed_body<2>(Box{{4, 4, 1}}, motion<2>({0, 0, -1})));
+  const BodySlot resting = parts.add(ball<2>(1, {0, 0, 1}, {1, 0, 0}, {0, 0, -5}));
   CHECK(parts.resting.empty());
   parts.resting.add({.a = floor, .b = resting, .normal = Vector3d(0, 0, 1)});
   CHECK_FALSE(parts.resting.empty());
@@ -323,8 +401,8 @@ TEST_CASE("Resting contacts: a ball that is pressed on a fixed box stays, and sl
 
 TEST_CASE("Resting contacts: a body that jumps has none any more") {
   Parts<2> parts(resolved());
-  const BodyId floor = parts.add(fixed_body<2>(Box{{4, 4, 1}}, motion<2>({0, 0, -1})));
-  const BodyId resting = parts.add(ball<2>(1, {0, 0, 1}, zero, {0, 0, -5}));
+  const BodySlot floor = parts.add(fixed_body<2>(Box{{4, 4, 1}}, motion<2>({0, 0, -1})));
+  const BodySlot resting = parts.add(ball<2>(1, {0, 0, 1}, zero, {0, 0, -5}));
   parts.resting.add({.a = floor, .b = resting, .normal = Vector3d(0, 0, 1)});
   parts.resting.disturb(resting);
   parts.resting.settle();

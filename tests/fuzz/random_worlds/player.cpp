@@ -3,9 +3,11 @@
 #include "kds/framework/snapshot.hpp"
 #include "tests/fuzz/random_worlds/meshes.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <exception>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -38,7 +40,7 @@ template <int Degree>
 void Player<Degree>::note(Line::Kind kind, BodyId a, BodyId b, const Contact& contact) {
   log_.push_back({kind, a, b, contact, {}});
   const bool of_a_wall = kind == Line::Kind::wall || kind == Line::Kind::held_at_wall;
-  const EventKey event{static_cast<std::uint8_t>(kind), number_of(a), of_a_wall ? b : number_of(b), 0};
+  const EventKey event{static_cast<std::uint8_t>(kind), number_of(a), of_a_wall ? std::size_t{b} : number_of(b), 0};
   const Line line = log_.back();  // the log may move
   for (const Call& each : reactor_.react(line, event, bodies_)) call(each, &line.contact);
 }
@@ -60,15 +62,18 @@ void Player<Degree>::note_state() {
   std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, word by word
   const auto mix = [&](double x) { hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x100000001b3u; };
   std::string text;
-  constexpr BodyId most_compared = 40;  // each with all others
-  for (BodyId a = 0; a < numbers_.size(); ++a) {
-    if (!world_->contains(a)) continue;
+  constexpr std::size_t most_compared = 40;  // each with all others
+  std::vector<BodyId> there;
+  std::copy_if(ids_.begin(), ids_.end(), std::back_inserter(there), [](BodyId id) { return id != gone; });
+  std::sort(there.begin(), there.end(), [](BodyId a, BodyId b) { return a.rank() < b.rank(); });
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    const BodyId a = there[i];
     const Motion& motion = world_->motion(a);
     mix(motion.start);
     for (const Vector3d& c : motion.coefficients) mix(c[0]), mix(c[1]), mix(c[2]);
-    if (numbers_.size() > most_compared) continue;
-    for (BodyId b = a + 1; b < numbers_.size(); ++b) {
-      if (!world_->contains(b)) continue;
+    if (there.size() > most_compared) continue;
+    for (std::size_t j = i + 1; j < there.size(); ++j) {
+      const BodyId b = there[j];
       const char* const how = world_->touching(a, b) ? " touch " : world_->held(a, b) ? " held " : nullptr;
       if (how) text += how + std::to_string(a) + '-' + std::to_string(b);
     }

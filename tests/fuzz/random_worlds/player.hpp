@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace kds::fuzz {
@@ -38,7 +39,7 @@ class Player final : public collision::WorldListener<Degree> {
   void moved(World& world, BodyId a) override { note(Line::Kind::moved, a, 0, {.time = world.now()}); }
 
   void note(Line::Kind kind, BodyId a, BodyId b, const Contact& contact);
-  void note_wall(Line::Kind kind, const WallEvent& e) { note(kind, e.body, static_cast<BodyId>(e.wall), e.contact); }
+  void note_wall(Line::Kind kind, const WallEvent& e) { note(kind, e.body, e.wall, e.contact); }
   void note_thrown(const char* what);
   void note_accepted();
   void note_state();
@@ -58,21 +59,24 @@ class Player final : public collision::WorldListener<Degree> {
   void save_and_load();
   void run_ahead();
 
-  static constexpr BodyId gone = ~BodyId{0};
+  static constexpr BodyId gone = BodyId(-1);
   BodyId id_of(std::size_t body) const { return body < ids_.size() ? ids_[body] : gone; }
   /// Whether it is there, and calls may change its motion.
   bool moves(std::size_t body) const {
     return id_of(body) != gone && (scenario_.fixed_bodies_move || !world_->fixed(id_of(body)));
   }
-  std::size_t number_of(BodyId id) const { return id < numbers_.size() ? numbers_[id] : 0; }
+  std::size_t number_of(BodyId id) const {
+    const auto found = numbers_.find(id);
+    return found != numbers_.end() ? found->second : 0;
+  }
   bool given_up() const { return stopped_ || log_.size() > scenario_.most_events; }
 
   const Scenario& scenario_;
   Way way_;
   Reactor& reactor_;
   std::vector<BodyPlan> bodies_;
-  std::vector<BodyId> ids_;           // by number of the body
-  std::vector<std::size_t> numbers_;  // by id: the body that has, or had, it last
+  std::vector<BodyId> ids_;  // by number of the body
+  std::unordered_map<BodyId, std::size_t> numbers_;
   std::vector<Line> log_;
   std::unique_ptr<World> world_;
   std::size_t steps_ = 0;

@@ -80,7 +80,6 @@ void Player<Degree>::add(std::size_t body) {
   if (world_->size() >= scenario_.most_alive) return;
   const BodyId id = world_->add_body(description(bodies_[body]));
   if (ids_.size() <= body) ids_.resize(body + 1, gone);
-  if (numbers_.size() <= id) numbers_.resize(id + 1);
   ids_[body] = id;
   numbers_[id] = body;
 }

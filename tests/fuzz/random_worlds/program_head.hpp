@@ -35,23 +35,24 @@ struct Player : WorldListener<Degree> {
   std::map<std::tuple<std::string, int, int>, int> counts;
   std::function<void(const std::string&, int, int, int, const Contact&)> react = [](auto&&...) {};
 
-  void note(const char* kind, BodyId a, int b, int number_b, const Contact& c) {
+  static unsigned long long shown(BodyId body) { return std::uint64_t{body}; }
+  void note(const char* kind, BodyId a, BodyId b, int number_b, const Contact& c) {
     char line[400];
-    std::snprintf(line, sizeof line, "%-12s %u %d at %.17g (%a) point %.17g %.17g %.17g normal %.17g %.17g %.17g %s %s",
-                  kind, a, b, c.time, c.time, c.point[0], c.point[1], c.point[2], c.normal[0], c.normal[1], c.normal[2],
+    std::snprintf(line, sizeof line, "%-12s %llu %llu at %.17g (%a) point %.17g %.17g %.17g normal %.17g %.17g %.17g %s %s",
+                  kind, shown(a), shown(b), c.time, c.time, c.point[0], c.point[1], c.point[2], c.normal[0], c.normal[1], c.normal[2],
                   to_string(c.feature_a).c_str(), to_string(c.feature_b).c_str());
     log.push_back(line);
     react(kind, number[a], number_b, counts[{kind, number[a], number_b}]++, c);
   }
-  void pair(const char* kind, const PairEvent& e) { note(kind, e.a, int(e.b), number[e.b], e.contact); }
+  void pair(const char* kind, const PairEvent& e) { note(kind, e.a, e.b, number[e.b], e.contact); }
   void contact(W&, const PairEvent& e) override { pair("contact", e); }
   void separation(W&, const PairEvent& e) override { pair("separation", e); }
   void overlap(W&, const PairEvent& e) override { pair("overlap", e); }
   void held(W&, const PairEvent& e) override { pair("held", e); }
   void wall(W&, const WallEvent& e) override { note("wall", e.body, e.wall, e.wall, e.contact); }
   void held_at_wall(W&, const WallEvent& e) override { note("held_at_wall", e.body, e.wall, e.wall, e.contact); }
-  void pair_began(W&, BodyId a, BodyId b, double t) override { note("pair_began", a, int(b), number[b], {.time = t}); }
-  void pair_ended(W&, BodyId a, BodyId b, double t) override { note("pair_ended", a, int(b), number[b], {.time = t}); }
+  void pair_began(W&, BodyId a, BodyId b, double t) override { note("pair_began", a, b, number[b], {.time = t}); }
+  void pair_ended(W&, BodyId a, BodyId b, double t) override { note("pair_ended", a, b, number[b], {.time = t}); }
   void moved(W& w, BodyId a) override { note("moved", a, 0, number[0], {.time = w.now()}); }
 
   Motion path(double start, Vector3d place, Vector3d velocity, [[maybe_unused]] Vector3d half_acceleration) {
@@ -125,7 +126,7 @@ struct Player : WorldListener<Degree> {
     for (const auto& [n, body] : id) {
       char line[200];
       const Vector3d x = world->motion(body).position(world->now()), v = world->motion(body).velocity(world->now());
-      std::snprintf(line, sizeof line, "  body %d (id %u) at %a %a %a velocity %a %a %a", n, body, x[0], x[1], x[2],
+      std::snprintf(line, sizeof line, "  body %d (id %llu) at %a %a %a velocity %a %a %a", n, shown(body), x[0], x[1], x[2],
                     v[0], v[1], v[2]);
       log.push_back(line);
     }

@@ -39,7 +39,7 @@ std::vector<Call> RandomReactor::react(const Line& line, const EventKey& event, 
   using enum Call::Kind;
   if (scenario_.reaction_rate == 0) return {};
   std::uint64_t hash = mixed(scenario_.seed, std::bit_cast<std::uint64_t>(line.contact.time));
-  hash = mixed(hash, std::uint64_t{line.a} << 32 | line.b);
+  hash = mixed(hash, std::uint64_t{line.a.slot()} << 32 | line.b.slot());
   hash = mixed(hash, static_cast<std::uint64_t>(line.kind));
   std::vector<Call> calls;
   const bool responds = scenario_.response == Response::callback && line.kind == Line::Kind::contact;
