@@ -44,8 +44,8 @@ namespace kds::collision {
 ///
 /// Degree 1 (straight paths) never pays for degree 2, nor either for degrees 3 to 5 (splines), which are in a library
 /// of their own, kds::collision_splines (docs/splines.md). Lengths and masses are in units of the caller's own, times
-/// in seconds. An id that names no body, or one
-/// that has been removed, throws std::out_of_range and says which (of held() and touching(), either id).
+/// in seconds. An id of no body, or of one that was removed, throws std::out_of_range, naming it and saying which (of
+/// held() and touching(), either id).
 template <int Degree>
 class World final : private RestingContacts<Degree>::Listener {
   static_assert(Degree >= 1 && Degree <= KDS_GREATEST_DEGREE,

@@ -11,7 +11,7 @@
 
 namespace kds::collision {
 
-/// Told of pairs whose kinetic bounding volumes begin and cease to overlap. a < b always.
+/// Told of pairs whose kinetic bounding volumes begin and cease to overlap, by the slots of their bodies. a < b always.
 class PairListener {
  public:
   virtual ~PairListener() = default;
@@ -41,6 +41,9 @@ struct BroadPhaseCounters {
 };
 
 /// Reports, at the right times and in order, which pairs of bodies have to be tested.
+///
+/// It knows a body by its slot, a small number that the owner of the bodies chooses, and may choose again for another
+/// when the body has been removed, also at once.
 ///
 /// Semantic laws: (1) a pair is reported as begun no later than the instant its bounding volumes overlap (kinetic
 /// boxes, rounded as they say where `exact()` is false, or k-DOPs, see WorldOptions.kdop), and as ended not before they
@@ -74,10 +77,10 @@ class BroadPhase {
   /// `now` is not before the last time given, what is added is not there yet, and what is removed or updated is.
   virtual void insert(std::span<const Entry> bodies, double now, PairListener& listener) = 0;
   /// Takes a body out. Its pairs end, and are reported.
-  virtual void remove(BodySlot id, double now, PairListener& listener) = 0;
+  virtual void remove(BodySlot body, double now, PairListener& listener) = 0;
 
   /// Gives a body another box, which may be elsewhere (a jump). Pairs that begin and end are reported.
-  virtual void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) = 0;
+  virtual void update(BodySlot body, const KineticBox<Degree>& box, double now, PairListener& listener) = 0;
 
   /// Processes events not later than `limit` and returns true right after the first that reported a pair; false when
   /// all are done. Precondition: limit is finite.
@@ -89,9 +92,9 @@ class BroadPhase {
   /// Events later than this need not be known yet.
   virtual void extend_horizon(double now, double horizon) = 0;
 
-  /// Calls visit(id) for the bodies that may meet a box at rest now, in no particular order. Preconditions of this and
-  /// the next: no end is a NaN; `now` or `from` is not before the last time given, nothing is due before it, and it is
-  /// not beyond the horizon. Nothing is called from within `visit` but questions.
+  /// Calls visit(slot) for the bodies that may meet a box at rest now, in no particular order. Preconditions of this
+  /// and the next: no end is a NaN; `now` or `from` is not before the last time given, nothing is due before it, and it
+  /// is not beyond the horizon. Nothing is called from within `visit` but questions.
   virtual void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const = 0;
 
   /// The same for a box that moves, at some time in [from, until], while bodies go on as they do: with the boxes they

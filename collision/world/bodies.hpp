@@ -178,8 +178,8 @@ class Bodies {
 
   std::vector<Mover> movers_;
   std::vector<Body> bodies_;
-  std::vector<std::uint32_t>
-      generations_;  ///< by slot, up to the last whose first body is gone: of this body or the next
+  /// By slot, up to the last from which a body was removed: of the body that is there, or of the next.
+  std::vector<std::uint32_t> generations_;
   std::vector<BodySlot> free_;
   std::vector<BodySlot> waiting_;
   std::size_t alive_ = 0;

@@ -33,7 +33,7 @@ class Scripts {
     BodySlot id;
     Motion motion;
   };
-  /// Takes all that begin at next_time(), by id.
+  /// Takes all that begin at next_time(), by slot.
   std::vector<Piece> take_next();
 
   /// All of it, as plain data: the pieces of each body, last first.
@@ -44,7 +44,7 @@ class Scripts {
     void archive(Archive& archive) {
       archive(of);
     }
-    /// Throws std::runtime_error, naming what is wrong. `alive(id)`: whether there is such a body.
+    /// Throws std::runtime_error, naming what is wrong. `alive(slot)`: whether there is a body.
     template <class Alive>
     void check(double now, const Alive& alive) const;
   };

@@ -198,8 +198,8 @@ TEST_CASE("Removing a body ends its pairs and contacts, with reports", "[world]"
     CHECK(log.of(Kind::separation)[0].contact.point == Vector3d(1, 0, 0));
     REQUIRE(log.count(Kind::pair_ended) == 1);
     CHECK(log.of(Kind::pair_ended)[0].time() == 2);
-    // The number is given again.
-    CHECK(world.add_body(ball<1>(1, {50, 0, 0})) == 0);
+    // The slot is given again, the id is not.
+    CHECK(world.add_body(ball<1>(1, {50, 0, 0})) == BodyId(1, 0));
     world.advance_to(6);
     world.audit();
   }

@@ -142,7 +142,7 @@ TEST_CASE("Curves: a world that is loaded goes on as the one that was saved", "[
   loaded.advance_to(3);
   loaded.audit();
   CHECK(log.events == saved.log.events);
-  for (const BodyId id : {0u, 1u}) CHECK(loaded.motion(id) == saved.world.motion(id));
+  for (const BodyId id : {0, 1}) CHECK(loaded.motion(id) == saved.world.motion(id));
 }
 
 }  // namespace

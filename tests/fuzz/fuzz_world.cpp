@@ -26,7 +26,7 @@ constexpr std::size_t most_events = 300;
 /// Numbers for a callback, from the input's own seed and what has happened.
 Random numbers_for(const Event& e, std::uint64_t seed) {
   std::uint64_t mix = seed ^ std::bit_cast<std::uint64_t>(e.time());
-  mix = mix * 0x9e3779b97f4a7c15 ^ (std::uint64_t{e.a} << 40 | std::uint64_t{e.b} << 8);
+  mix = mix * 0x9e3779b97f4a7c15 ^ (e.a.rank() << 8 ^ std::rotl(e.b.rank(), 40));
   return Random(mix * 0x9e3779b97f4a7c15 ^ static_cast<std::uint64_t>(e.kind));
 }
 
@@ -54,7 +54,7 @@ class Scenario {
   }
 
   std::vector<Event> run() {
-    for (std::size_t n = 2 + bytes_.below(most_bodies - 1); n > 0; --n) world_.add_body(description());
+    for (std::size_t n = 2 + bytes_.below(most_bodies - 1); n > 0; --n) add(description());
     for (int i = 0; i < most_operations && !bytes_.empty() && !too_long(); ++i) operation();
     return log_.events;
   }
@@ -122,14 +122,19 @@ class Scenario {
     return result;
   }
 
-  BodyId any_body() { return static_cast<BodyId>(bytes_.below(most_bodies)); }
+  void add(const BodyDescription<Degree>& description) {
+    const BodyId id = world_.add_body(description);
+    last_in_[id.slot()] = id;
+  }
+  /// Perhaps of one that was removed, or has never been there.
+  BodyId any_body() { return last_in_[bytes_.below(most_bodies)]; }
 
   void operation() {
     switch (bytes_.below(8)) {
       case 0:
       case 1:
       case 2:
-        if (world_.size() < most_bodies) world_.add_body(description());
+        if (world_.size() < most_bodies) add(description());
         break;
       case 3: {
         const BodyId id = any_body();
@@ -156,9 +161,10 @@ class Scenario {
   /// Mode none: bodies are in contact if and only if the world says so.
   void check_contacts() const {
     if (options_.response != Response::none || options_.edits) return;
-    for (BodyId a = 0; a < most_bodies; ++a) {
-      for (BodyId b = a + 1; b < most_bodies; ++b) {
-        if (!world_.contains(a) || !world_.contains(b) || !both_round(a, b) || !both_in(a, b)) continue;
+    for (const BodyId a : last_in_) {
+      for (const BodyId b : last_in_) {
+        if (a.slot() >= b.slot() || !world_.contains(a) || !world_.contains(b) || !both_round(a, b) || !both_in(a, b))
+          continue;
         const PlacedShape shape_a = world_.shape(a);
         const PlacedShape shape_b = world_.shape(b);
         const bool touch = in_contact(MovingShape<Degree>{shape_a, world_.motion(a)},
@@ -194,8 +200,14 @@ class Scenario {
         if (!world.fixed(e.a)) world.update_motion(e.a, path);
         return;
       default:
-        if (world.size() < most_bodies) world.add_body(body<Degree>(Sphere{0.5}, path));
+        if (world.size() < most_bodies) add(body<Degree>(Sphere{0.5}, path));
     }
+  }
+
+  static std::array<BodyId, most_bodies> first_ids() {
+    std::array<BodyId, most_bodies> ids;
+    for (std::size_t i = 0; i < most_bodies; ++i) ids[i] = i;
+    return ids;
   }
 
   /// The first turns round.
@@ -209,6 +221,7 @@ class Scenario {
   Options options_;
   EventLog<Degree> log_;
   World<Degree> world_;
+  std::array<BodyId, most_bodies> last_in_ = first_ids();  ///< by slot
 };
 
 std::string shown(const std::vector<Event>& events, std::size_t at) {

@@ -32,7 +32,7 @@ Run run_crowd(BroadPhaseKind kind, double window) {
   World<1> world(options, &log);
   Random random(5);
   Run result;
-  std::vector<BodySlot> there;
+  std::vector<BodyId> there;
   constexpr int most = static_cast<int>(FewBoxes<1>::most);
   int put = 0;
   for (const int count : {most - 4, most + 20, most - 10, most / 2 - 8, most + 6, 5}) {

@@ -64,7 +64,7 @@ TEST_CASE("capsules come to lie, on a floor, on each other and on a mesh", "[wor
     world.advance_to(20);
   };
   with_all_methods(elastic(), scene, [](World<2>& world, EventLog<2>&) {
-    for (const BodyId id : {2u, 3u, 4u, 5u}) {
+    for (const BodyId id : {2, 3, 4, 5}) {
       INFO("body " << id);
       CHECK(at_rest(world, id));
     }

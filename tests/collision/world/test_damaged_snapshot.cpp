@@ -40,8 +40,10 @@ void use(World<Degree>& world) {
     }
   } catch (const std::exception&) {
   }
-  for (BodyId id = 0; id < 100; ++id) {
-    if (world.contains(id)) world.free_motion(id);
+  for (BodySlot slot = 0; slot < 100; ++slot) {
+    for (const BodyId id : {BodyId(slot), BodyId(1, slot)}) {
+      if (world.contains(id)) world.free_motion(id);
+    }
   }
 }
 

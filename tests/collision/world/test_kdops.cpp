@@ -111,20 +111,21 @@ TEST_CASE("k-DOPs of bodies that are removed, moved and added in the midst of a 
     SceneMaker maker(random, {.shapes = Shapes::rings, .side = 5});
     EventLog<1> log;
     World<1> world(with(k), &log);
+    std::vector<BodyId> ids;
     const auto add = [&](double start) {
       auto description = body<1>(maker.shape(), maker.path<1>(start));
       description.orientation = maker.orientation();
-      world.add_body(description);
+      ids.push_back(world.add_body(description));
     };
     for (int i = 0; i < 20; ++i) add(0);
     for (int i = 0; i < 60; ++i) {
       world.advance_to(i * 0.03125);
       world.audit();
-      BodyId id = 0;
-      do id = static_cast<BodyId>(random.below(21));  // one is not in use
-      while (!world.contains(id));
+      const std::size_t which = random.below(ids.size());
+      const BodyId id = ids[which];
       if (i % 4 == 0) {
         world.remove_body(id);
+        ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(which));
         add(world.now());
       } else {
         world.update_motion(id, maker.path<1>(world.now() - (i % 4 == 1 ? 0 : 0.25)));

@@ -1,6 +1,7 @@
 // The parts of a world, each by itself.
 #include "tests/collision/world/parts.hpp"
 
+#include "collision/world/bodies_image.hpp"
 #include "collision/world/scripts.hpp"
 #include "collision/world/wall_times.hpp"
 #include "kds/audit.hpp"

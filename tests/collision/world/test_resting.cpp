@@ -176,7 +176,7 @@ TEST_CASE("Resting: the lowest of a pile is taken away and the rest lands on the
   with_all_methods(elastic(), scene, [](World<2>& world, EventLog<2>&) {
     for (BodyId id = 2; id <= 4; ++id) {
       CHECK(at_rest(world, id));
-      CHECK(std::abs(world.motion(id).position(30)[2] - (2.0 * id - 3)) < 1e-9);
+      CHECK(std::abs(world.motion(id).position(30)[2] - (2.0 * id.slot() - 3)) < 1e-9);
     }
   });
 }
@@ -231,7 +231,8 @@ TEST_CASE("Resting: meshes rest on meshes and slide into what stands in the way"
   }
 }
 
-TEST_CASE("What is left along a normal is a rounding of the speeds there were, not of those that are left", "[resting]") {
+TEST_CASE("What is left along a normal is a rounding of the speeds there were, not of those that are left",
+          "[resting]") {
   // Ball 2 comes to rest against ball 0, which is left with next to no speed.
   EventLog<2> log;
   World<2> world(with_response(Response::elastic), &log);

@@ -38,8 +38,9 @@ struct Player : WorldListener<Degree> {
   static unsigned long long shown(BodyId body) { return std::uint64_t{body}; }
   void note(const char* kind, BodyId a, BodyId b, int number_b, const Contact& c) {
     char line[400];
-    std::snprintf(line, sizeof line, "%-12s %llu %llu at %.17g (%a) point %.17g %.17g %.17g normal %.17g %.17g %.17g %s %s",
-                  kind, shown(a), shown(b), c.time, c.time, c.point[0], c.point[1], c.point[2], c.normal[0], c.normal[1], c.normal[2],
+    std::snprintf(line, sizeof line,
+                  "%-12s %llu %llu at %.17g (%a) point %.17g %.17g %.17g normal %.17g %.17g %.17g %s %s", kind, shown(a),
+                  shown(b), c.time, c.time, c.point[0], c.point[1], c.point[2], c.normal[0], c.normal[1], c.normal[2],
                   to_string(c.feature_a).c_str(), to_string(c.feature_b).c_str());
     log.push_back(line);
     react(kind, number[a], number_b, counts[{kind, number[a], number_b}]++, c);
@@ -126,8 +127,8 @@ struct Player : WorldListener<Degree> {
     for (const auto& [n, body] : id) {
       char line[200];
       const Vector3d x = world->motion(body).position(world->now()), v = world->motion(body).velocity(world->now());
-      std::snprintf(line, sizeof line, "  body %d (id %llu) at %a %a %a velocity %a %a %a", n, shown(body), x[0], x[1], x[2],
-                    v[0], v[1], v[2]);
+      std::snprintf(line, sizeof line, "  body %d (id %llu) at %a %a %a velocity %a %a %a", n, shown(body), x[0], x[1],
+                    x[2], v[0], v[1], v[2]);
       log.push_back(line);
     }
   }
