@@ -70,11 +70,11 @@ void World<Degree>::rebuild_broad_phase() {
   PairCollector found;
   std::vector<Entry> entries;
   std::vector<KineticBox<Degree>> boxes;
-  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
-    if (!bodies_[id].entered || !bodies_.collides(id)) continue;
-    entries.push_back({id, nullptr});
-    boxes.push_back(volumes_.renew(id));
-    volumes_.schedule(id);
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (!bodies_[slot].entered || !bodies_.collides(slot)) continue;
+    entries.push_back({slot, nullptr});
+    boxes.push_back(volumes_.renew(slot));
+    volumes_.schedule(slot);
   }
   for (std::size_t i = 0; i < entries.size(); ++i) entries[i].box = &boxes[i];
   broad_phase_->insert(entries, clock_.now, found);
@@ -176,9 +176,9 @@ bool World<Degree>::process(Task task) {
       pairs_.process_boxes();
       return false;
     case Task::renew_volume: {
-      const BodySlot id = volumes_.next_body();
-      update_volume(id, volumes_.renew(id));
-      return volumes_.from_caller(id);
+      const BodySlot slot = volumes_.next_body();
+      update_volume(slot, volumes_.renew(slot));
+      return volumes_.from_caller(slot);
     }
     case Task::meet_wall:
       process_wall();
@@ -299,20 +299,20 @@ template <int Degree>
 void World<Degree>::start_pieces() {
   const auto pieces = scripts_.take_next();
   std::vector<char> jumps;
-  for (const auto& [id, motion] : pieces) {
-    jumps.push_back(bodies_[id].entered && bodies_.is_jump(id, motion, clock_.now));
-    if (jumps.back()) resting_.drop_all(id);
-    bodies_.move(id, motion);
-    bodies_.accelerate_freely(id, motion);
+  for (const auto& [slot, motion] : pieces) {
+    jumps.push_back(bodies_[slot].entered && bodies_.is_jump(slot, motion, clock_.now));
+    if (jumps.back()) resting_.drop_all(slot);
+    bodies_.move(slot, motion);
+    bodies_.accelerate_freely(slot, motion);
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const BodySlot id = pieces[i].id;
-    if (bodies_[id].entered) {
+    const BodySlot slot = pieces[i].slot;
+    if (bodies_[slot].entered) {
       ++counters_.motion_updates;
-      set_motion(id, pieces[i].motion, jumps[i]);
-      resting_.disturb(id);
+      set_motion(slot, pieces[i].motion, jumps[i]);
+      resting_.disturb(slot);
     } else {
-      bodies_.wait(id);
+      bodies_.wait(slot);
     }
   }
 }

@@ -247,10 +247,10 @@ class World final : private RestingContacts<Degree>::Listener {
   BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape);
   void make_room_for_meshes();
   void enter_new_bodies();
-  void take_out(BodySlot id);
-  void give(BodySlot id, const Motion& motion);
-  void set_motion(BodySlot id, const Motion& motion, bool jumped);
-  void update_volume(BodySlot id, const KineticBox<Degree>& box);
+  void take_out(BodySlot slot);
+  void give(BodySlot slot, const Motion& motion);
+  void set_motion(BodySlot slot, const Motion& motion, bool jumped);
+  void update_volume(BodySlot slot, const KineticBox<Degree>& box);
 
   // world/response.cpp: what follows from contacts
   void process_meeting();
@@ -262,11 +262,11 @@ class World final : private RestingContacts<Degree>::Listener {
   bool respond(BodySlot a, BodySlot b, const Contact& contact);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   std::uint64_t count_meeting(BodySlot a, BodySlot b);
-  std::uint64_t count_meeting(BodySlot id);
+  std::uint64_t count_meeting(BodySlot slot);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
   // What resting contacts tell (RestingContacts::Listener).
-  void take_up(BodySlot id, const Motion& motion) override;
+  void take_up(BodySlot slot, const Motion& motion) override;
   void changed(BodySlot a, BodySlot b) override { pairs_.changed(a, b); }
   void let_pass(BodySlot a, BodySlot b) override { pairs_.let_pass(a, b); }
   void tell_held(BodySlot a, BodySlot b) override;

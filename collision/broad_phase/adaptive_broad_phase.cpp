@@ -30,7 +30,7 @@ void AdaptiveBroadPhase<Degree>::report_changes(std::span<const Entry> bodies, c
                                                 double now, PairListener& listener) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const auto [a, b] = std::minmax(bodies[i].id, bodies[j].id);
+      const auto [a, b] = std::minmax(bodies[i].slot, bodies[j].slot);
       if (listener.filters() && !listener.may_collide(a, b)) continue;
       const bool was = from.paired(a, b);
       const bool is = to.paired(a, b);

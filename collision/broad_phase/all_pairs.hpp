@@ -21,7 +21,7 @@ class AllPairs final : public BroadPhase<Degree> {
 
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override {
     const std::size_t before = bodies_.size();
-    for (const Entry& body : bodies) bodies_.push_back(body.id);
+    for (const Entry& body : bodies) bodies_.push_back(body.slot);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {  // in order, where the bodies are
       for (std::size_t j = std::max(i + 1, before); j < bodies_.size(); ++j) {
         listener.pair_began(std::min(bodies_[i], bodies_[j]), std::max(bodies_[i], bodies_[j]), now);

@@ -61,7 +61,7 @@ template <int Degree>
 class BroadPhase {
  public:
   struct Entry {
-    BodySlot id;
+    BodySlot slot;
     const KineticBox<Degree>* box;
   };
 

@@ -166,7 +166,7 @@ void FewBoxes<Degree>::insert(std::span<const Entry> bodies, double now, PairLis
   const std::size_t before = bodies_.size();
   if (before + bodies.size() > most) throw std::length_error("FewBoxes: more than 64 bodies");
   bodies_.reserve(before + bodies.size());
-  for (const Entry& body : bodies) bodies_.push_back({body.id, *body.box});
+  for (const Entry& body : bodies) bodies_.push_back({body.slot, *body.box});
   // Many a run is not longer than the first horizon. What holds for longer than the span holds for the span.
   span_ = before == 0 ? first_span(now) : std::min(span_, first_span(now));
   begin_span(now, before == 0 ? horizon_ : until_);

@@ -49,7 +49,7 @@ std::vector<BodySlot> spatial_order(std::span<const typename BroadPhase<Degree>:
   for (std::size_t i = 0; i < bodies.size(); ++i) ++places[(blocks[i] = block_of(i)) + 1];
   std::partial_sum(places.begin(), places.end(), places.begin());
   std::vector<BodySlot> order(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) order[places[blocks[i]]++] = bodies[i].id;
+  for (std::size_t i = 0; i < bodies.size(); ++i) order[places[blocks[i]]++] = bodies[i].slot;
   return order;
 }
 
@@ -58,7 +58,7 @@ std::vector<BodySlot> spatial_order(std::span<const typename BroadPhase<Degree>:
 template <int Degree>
 void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
   BodySlot end = 0;
-  for (const Entry& entry : bodies) end = std::max(end, entry.id + 1);
+  for (const Entry& entry : bodies) end = std::max(end, entry.slot + 1);
   if (end > bodies_.size()) {
     const std::size_t room = bodies_.empty() ? end : std::max<std::size_t>(end, 2 * bodies_.size());
     bodies_.resize(room);
@@ -72,9 +72,9 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
     return insert_first(bodies, now, listener);
   }
   for (const Entry& entry : bodies) {
-    bodies_[entry.id].begin(*entry.box, first_reach_);
-    const BoxSweep<Degree> sweep(bodies_[entry.id].box, now);
-    renew(entry.id, sweep, sweep.begin(), now, listener);
+    bodies_[entry.slot].begin(*entry.box, first_reach_);
+    const BoxSweep<Degree> sweep(bodies_[entry.slot].box, now);
+    renew(entry.slot, sweep, sweep.begin(), now, listener);
   }
 }
 
@@ -88,7 +88,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   make_boxes(bodies, boxes, threads, now);
   cut_to_levels(bodies, boxes, now);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const BodySlot id = bodies[i].id;
+    const BodySlot id = bodies[i].slot;
     if (bodies_[id].expiry <= horizon_) expiry_.set(id, bodies_[id].expiry);
     fat_boxes_.announce(id, boxes[i], bodies[i].box->rounding);
   }
@@ -96,12 +96,12 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   if (pairs.find(boxes, threads)) {
     std::vector<BodySlot> order(bodies.size());
     std::transform(pairs.order().begin(), pairs.order().end(), order.begin(),
-                   [&](BoxPairs::Index i) { return bodies[i].id; });
+                   [&](BoxPairs::Index i) { return bodies[i].slot; });
     fat_boxes_.settle(order);
     listener.pairs_to_come(pairs.pairs().size());
     const bool filters = listener.filters();
     for (const auto& [i, j] : pairs.pairs()) {
-      const BodySlot a = bodies[i].id, b = bodies[j].id;
+      const BodySlot a = bodies[i].slot, b = bodies[j].slot;
       if (filters && !listener.may_collide(a, b)) continue;
       if (paired(a, b)) report_pair(a, b, now, listener);
     }
@@ -113,7 +113,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
     report(id, changes, now, listener);
   };
   if (bodies.size() < few) {
-    for (const Entry& entry : bodies) enter(entry.id);
+    for (const Entry& entry : bodies) enter(entry.slot);
   } else {
     for (const BodySlot id : spatial_order<Degree>(bodies, now)) enter(id);
   }
@@ -127,7 +127,7 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
   in_parts(bodies.size(), threads, [&](std::size_t part, std::size_t first, std::size_t last) {
     std::uint64_t tries = 0;
     for (std::size_t i = first; i < last; ++i) {
-      Body& body = bodies_[bodies[i].id];
+      Body& body = bodies_[bodies[i].slot];
       body.begin(*bodies[i].box, first_reach_);
       tries += fit(body, boxes[i], now, std::numeric_limits<double>::max());
     }
@@ -153,7 +153,7 @@ void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span
   std::nth_element(extents.begin(), last, extents.end());
   const double coarsest = fat_boxes_.room_for(*last);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    Body& body = bodies_[bodies[i].id];
+    Body& body = bodies_[bodies[i].slot];
     if (!(boxes[i].extent() > coarsest) || body.expiry == never) continue;
     counters_.certificates += fit(body, boxes[i], now, coarsest);
   }

@@ -92,7 +92,7 @@ void KineticSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double 
   box_updates_ += bodies.size();
   if (size() == 0) {
     unlisted_.choose(0, now);  // it has nothing to do before it is known what is listed
-    for (const Entry& body : bodies) set_volume(body.id, *body.box, now);
+    for (const Entry& body : bodies) set_volume(body.slot, *body.box, now);
     const unsigned listed = best_axes(bodies, now);
     unlisted_.choose(all_axes_ & ~listed, now);
     build_lists(bodies, listed, now);
@@ -102,14 +102,14 @@ void KineticSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double 
     return;
   }
   for (const Entry& body : bodies) {
-    set_volume(body.id, *body.box, now);
+    set_volume(body.slot, *body.box, now);
     for (const std::size_t d : lists_.used) {
-      lists_.all[d].insert(min_end(body.id), unlisted_.end(body.id, d, false), now);
-      lists_.all[d].insert(max_end(body.id), unlisted_.end(body.id, d, true), now);
+      lists_.all[d].insert(min_end(body.slot), unlisted_.end(body.slot, d, false), now);
+      lists_.all[d].insert(max_end(body.slot), unlisted_.end(body.slot, d, true), now);
     }
     count_open();
-    for (const BodySlot other : partners_now(body.id, now)) {
-      listener.pair_began(std::min(body.id, other), std::max(body.id, other), now);
+    for (const BodySlot other : partners_now(body.slot, now)) {
+      listener.pair_began(std::min(body.slot, other), std::max(body.slot, other), now);
     }
   }
   if (size() >= 2 * chosen_at_) choose_again(now);

@@ -32,8 +32,8 @@ unsigned KineticSweepAndPrune<Degree>::best_axes(std::span<const Entry> bodies, 
     const Eigen::Vector3d speed = body.box->min.velocity(now);
     for (int d = 0; d < 3; ++d) add(static_cast<std::size_t>(d), min[d], max[d], speed[d]);
     for (std::size_t d = 3; d < directions; ++d) {
-      const Motion<Degree> end = unlisted_.end(body.id, d, false);
-      add(d, end(now), unlisted_.end(body.id, d, true)(now), derivative(end.position)(now - end.start));
+      const Motion<Degree> end = unlisted_.end(body.slot, d, false);
+      add(d, end(now), unlisted_.end(body.slot, d, true)(now), derivative(end.position)(now - end.start));
     }
   }
   const double speed = speeds[0] + speeds[1] + speeds[2];
@@ -62,8 +62,8 @@ void KineticSweepAndPrune<Degree>::build_lists(std::span<const Entry> bodies, un
     if (is_listed(d)) {
       used.push_back(d);
       for (const Entry& body : bodies) {
-        ends.push_back({unlisted_.end(body.id, d, false), min_end(body.id)});
-        ends.push_back({unlisted_.end(body.id, d, true), max_end(body.id)});
+        ends.push_back({unlisted_.end(body.slot, d, false), min_end(body.slot)});
+        ends.push_back({unlisted_.end(body.slot, d, true), max_end(body.slot)});
       }
     }
     lists_.all[d].assign(ends, now);

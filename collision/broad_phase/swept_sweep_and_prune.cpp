@@ -103,18 +103,18 @@ void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double no
   }
   std::vector<BodySlot> added;
   for (const Entry& body : bodies) {
-    if (body.id >= boxes_.size()) {
-      boxes_.resize(body.id + 1);
-      swept_.resize(body.id + 1);
-      for (auto& places : places_) places.resize(2 * (body.id + 1));
+    if (body.slot >= boxes_.size()) {
+      boxes_.resize(body.slot + 1);
+      swept_.resize(body.slot + 1);
+      for (auto& places : places_) places.resize(2 * (body.slot + 1));
     }
-    boxes_[body.id] = *body.box;
-    sweep(body.id, now);
-    added.push_back(body.id);
-    bodies_.push_back(body.id);
+    boxes_[body.slot] = *body.box;
+    sweep(body.slot, now);
+    added.push_back(body.slot);
+    bodies_.push_back(body.slot);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ends_[axis].push_back({swept_[body.id].min[axis], 2 * body.id});
-      ends_[axis].push_back({swept_[body.id].max[axis], 2 * body.id + 1});
+      ends_[axis].push_back({swept_[body.slot].min[axis], 2 * body.slot});
+      ends_[axis].push_back({swept_[body.slot].max[axis], 2 * body.slot + 1});
     }
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -29,10 +29,10 @@ void Bodies<Degree>::refuse(BodyId id) const {
 }
 
 template <int Degree>
-bool Bodies<Degree>::is_jump(BodySlot id, const Motion& to, double t) const {
-  const Eigen::Vector3d before = movers_[id].motion.position(t);
+bool Bodies<Degree>::is_jump(BodySlot slot, const Motion& to, double t) const {
+  const Eigen::Vector3d before = movers_[slot].motion.position(t);
   const Eigen::Vector3d after = to.position(t);
-  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + bodies_[id].bounding_radius;
+  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + bodies_[slot].bounding_radius;
   return (after - before).cwiseAbs().maxCoeff() > jump_tolerance * scale;
 }
 
@@ -53,8 +53,8 @@ template <int Degree>
 BodySlot Bodies<Degree>::add(const Description& description, std::shared_ptr<const PlacedShape> shape,
                              const Motion& motion) {
   const double ball = ball_radius(shape ? shape->shape : description.shape);
-  const BodySlot id = new_slot();
-  Body& added = bodies_[id];
+  const BodySlot slot = new_slot();
+  Body& added = bodies_[slot];
   added.bounding_radius = shape ? shape->bounding_radius : ball;
   added.shape = std::move(shape);
   added.mass = description.mass;
@@ -67,22 +67,22 @@ BodySlot Bodies<Degree>::add(const Description& description, std::shared_ptr<con
   added.sensor = description.sensor;
   sensors_ = sensors_ || description.sensor;
   added.alive = true;
-  movers_[id].motion = motion;
-  movers_[id].radius = ball > 0 ? ball : Mover::no_radius;
-  accelerate_freely(id, motion);
+  movers_[slot].motion = motion;
+  movers_[slot].radius = ball > 0 ? ball : Mover::no_radius;
+  accelerate_freely(slot, motion);
   ++alive_;
-  return id;
+  return slot;
 }
 
 template <int Degree>
-void Bodies<Degree>::remove(BodySlot id) {
-  std::erase(waiting_, id);  // or the next in this slot would enter in its stead
-  bodies_[id] = Body{};
+void Bodies<Degree>::remove(BodySlot slot) {
+  std::erase(waiting_, slot);  // or the next in this slot would enter in its stead
+  bodies_[slot] = Body{};
   --alive_;
-  if (generations_.size() <= id) generations_.resize(bodies_.size());
-  if (generations_[id] == last_generation) return;
-  ++generations_[id];
-  free_.push_back(id);
+  if (generations_.size() <= slot) generations_.resize(bodies_.size());
+  if (generations_[slot] == last_generation) return;
+  ++generations_[slot];
+  free_.push_back(slot);
 }
 
 template <int Degree>
@@ -93,16 +93,16 @@ void Bodies<Degree>::reserve(std::size_t bodies) {
 }
 
 template <int Degree>
-bool Bodies<Degree>::waits(BodySlot id) const {
-  return std::find(waiting_.begin(), waiting_.end(), id) != waiting_.end();
+bool Bodies<Degree>::waits(BodySlot slot) const {
+  return std::find(waiting_.begin(), waiting_.end(), slot) != waiting_.end();
 }
 
 template <int Degree>
 std::vector<std::shared_ptr<const Mesh>> Bodies<Degree>::meshes() const {
   std::vector<std::shared_ptr<const Mesh>> result;
-  for (BodySlot id = 0; id < bodies_.size(); ++id) {
-    if (!bodies_[id].alive) continue;
-    const auto mesh = mesh_of(shape(id).shape);
+  for (BodySlot slot = 0; slot < bodies_.size(); ++slot) {
+    if (!bodies_[slot].alive) continue;
+    const auto mesh = mesh_of(shape(slot).shape);
     if (mesh && std::find(result.begin(), result.end(), mesh) == result.end()) result.push_back(mesh);
   }
   return result;
@@ -112,21 +112,21 @@ template <int Degree>
 typename Bodies<Degree>::Image Bodies<Degree>::image() const {
   Image image;
   image.meshes = meshes();
-  for (BodySlot id = 0; id < bodies_.size(); ++id) {
-    const Body& b = bodies_[id];
+  for (BodySlot slot = 0; slot < bodies_.size(); ++slot) {
+    const Body& b = bodies_[slot];
     auto& to = image.bodies.emplace_back();
     if (!b.alive) continue;
     to.alive = true, to.entered = b.entered;
-    to.placed = shape(id);
+    to.placed = shape(slot);
     if (const auto mesh = mesh_of(to.placed.shape)) {
       to.mesh =
           static_cast<std::uint32_t>(std::find(image.meshes.begin(), image.meshes.end(), mesh) - image.meshes.begin());
     }
-    to.motion = movers_[id].motion;
+    to.motion = movers_[slot].motion;
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
     to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume, to.sensor = b.sensor;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
-    if constexpr (Degree <= 2) to.force = free_acceleration(id);
+    if constexpr (Degree <= 2) to.force = free_acceleration(slot);
     if constexpr (Degree >= 3) to.given = b.given;
   }
   image.generations = generations_, image.free = free_, image.waiting = waiting_;
@@ -134,11 +134,11 @@ typename Bodies<Degree>::Image Bodies<Degree>::image() const {
 }
 
 template <int Degree>
-void Bodies<Degree>::set_shape(BodySlot id, PlacedShape placed) {
-  Body& b = bodies_[id];
+void Bodies<Degree>::set_shape(BodySlot slot, PlacedShape placed) {
+  Body& b = bodies_[slot];
   const double ball = ball_radius(placed.shape);
   b.bounding_radius = placed.bounding_radius;
-  movers_[id].radius = ball > 0 ? ball : Mover::no_radius;
+  movers_[slot].radius = ball > 0 ? ball : Mover::no_radius;
   if (!(ball > 0) || !placed.rotation.isIdentity(0)) b.shape = std::make_shared<const PlacedShape>(std::move(placed));
 }
 
@@ -149,14 +149,14 @@ void Bodies<Degree>::become(const Image& image) {
   bodies_.clear(), movers_.clear();
   bodies_.resize(count), movers_.resize(count);
   alive_ = 0;
-  for (BodySlot id = 0; id < count; ++id) {
-    const auto& from = image.bodies[id];
+  for (BodySlot slot = 0; slot < count; ++slot) {
+    const auto& from = image.bodies[slot];
     if (!from.alive) continue;
     ++alive_;
-    Body& b = bodies_[id];
+    Body& b = bodies_[slot];
     b.alive = true, b.entered = from.entered;
-    set_shape(id, from.placed);
-    movers_[id].motion = from.motion;
+    set_shape(slot, from.placed);
+    movers_[slot].motion = from.motion;
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
     b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume, b.sensor = from.sensor;
     sensors_ = sensors_ || b.sensor;

@@ -100,43 +100,43 @@ class Bodies {
 
   /// All slots are below this.
   std::size_t slots() const { return bodies_.size(); }
-  bool alive(BodySlot id) const { return id < bodies_.size() && bodies_[id].alive; }
-  bool entered(BodySlot id) const { return alive(id) && bodies_[id].entered; }
+  bool alive(BodySlot slot) const { return slot < bodies_.size() && bodies_[slot].alive; }
+  bool entered(BodySlot slot) const { return alive(slot) && bodies_[slot].entered; }
 
-  /// Precondition, here and below: id < slots().
-  const Body& operator[](BodySlot id) const { return bodies_[id]; }
-  Body& operator[](BodySlot id) { return bodies_[id]; }
-  const Mover& mover(BodySlot id) const { return movers_[id]; }
-  const Motion& motion(BodySlot id) const { return movers_[id].motion; }
-  Moving moving(BodySlot id) const { return Moving(bodies_[id], movers_[id].motion); }
-  PlacedShape shape(BodySlot id) const { return moving(id).shape; }
+  /// Precondition, here and below: slot < slots().
+  const Body& operator[](BodySlot slot) const { return bodies_[slot]; }
+  Body& operator[](BodySlot slot) { return bodies_[slot]; }
+  const Mover& mover(BodySlot slot) const { return movers_[slot]; }
+  const Motion& motion(BodySlot slot) const { return movers_[slot].motion; }
+  Moving moving(BodySlot slot) const { return Moving(bodies_[slot], movers_[slot].motion); }
+  PlacedShape shape(BodySlot slot) const { return moving(slot).shape; }
   /// Whether no other body changes its motion.
-  bool fixed(BodySlot id) const { return bodies_[id].inverse_mass == 0; }
+  bool fixed(BodySlot slot) const { return bodies_[slot].inverse_mass == 0; }
 
-  void move(BodySlot id, const Motion& motion) { movers_[id].motion = motion; }
+  void move(BodySlot slot, const Motion& motion) { movers_[slot].motion = motion; }
   /// Half the acceleration that the body has by itself: that of the motion that callers gave last.
-  Eigen::Vector3d free_acceleration(BodySlot id) const requires(Degree <= 2) {
+  Eigen::Vector3d free_acceleration(BodySlot slot) const requires(Degree <= 2) {
     if constexpr (Degree == 2) {
-      return bodies_[id].force;
+      return bodies_[slot].force;
     } else {
       return Eigen::Vector3d::Zero();
     }
   }
   /// The same at t, and its derivatives up to factors: coefficient `order` >= 2 about t of the motion that callers
   /// gave.
-  Eigen::Vector3d free_term(BodySlot id, [[maybe_unused]] std::size_t order, [[maybe_unused]] double t) const {
+  Eigen::Vector3d free_term(BodySlot slot, [[maybe_unused]] std::size_t order, [[maybe_unused]] double t) const {
     if constexpr (Degree >= 3) {
-      return bodies_[id].given.restarted(t).coefficients[order];
+      return bodies_[slot].given.restarted(t).coefficients[order];
     } else {
-      return free_acceleration(id);
+      return free_acceleration(slot);
     }
   }
-  void accelerate_freely(BodySlot id, const Motion& motion) {
-    if constexpr (Degree == 2) bodies_[id].force = motion.coefficients[2];
-    if constexpr (Degree >= 3) bodies_[id].given = motion;
+  void accelerate_freely(BodySlot slot, const Motion& motion) {
+    if constexpr (Degree == 2) bodies_[slot].force = motion.coefficients[2];
+    if constexpr (Degree >= 3) bodies_[slot].given = motion;
   }
   /// Whether a body that takes up another motion at t is then elsewhere, by more than rounding.
-  bool is_jump(BodySlot id, const Motion& to, double t) const;
+  bool is_jump(BodySlot slot, const Motion& to, double t) const;
 
   /// Whether some body is a sensor, or was.
   bool any_sensor() const { return sensors_; }
@@ -144,7 +144,7 @@ class Bodies {
   /// Whether some body does not collide with all others, or did not.
   bool filters() const { return filters_; }
   /// Whether there is something that it may collide with. What collides with nothing no broad phase knows.
-  bool collides(BodySlot id) const { return bodies_[id].category != 0 && bodies_[id].collides_with != 0; }
+  bool collides(BodySlot slot) const { return bodies_[slot].category != 0 && bodies_[slot].collides_with != 0; }
   bool may_collide(BodySlot a, BodySlot b) const {
     return (bodies_[a].category & bodies_[b].collides_with) != 0 &&
            (bodies_[b].category & bodies_[a].collides_with) != 0;
@@ -152,13 +152,13 @@ class Bodies {
 
   /// Adds one with a motion to begin with. No `shape` is that of a ball that is not turned. Precondition: valid.
   BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion);
-  void remove(BodySlot id);
+  void remove(BodySlot slot);
   void reserve(std::size_t bodies);
 
   /// A body's motion begins now: it waits to enter.
-  void wait(BodySlot id) { waiting_.push_back(id); }
+  void wait(BodySlot slot) { waiting_.push_back(slot); }
   bool any_waits() const { return !waiting_.empty(); }
-  bool waits(BodySlot id) const;
+  bool waits(BodySlot slot) const;
   const std::vector<BodySlot>& waiting() const { return waiting_; }
   std::vector<BodySlot> take_waiting() { return std::exchange(waiting_, {}); }
 
@@ -174,7 +174,7 @@ class Bodies {
   [[noreturn]] void refuse(BodyId id) const;
   std::uint32_t generation(BodySlot slot) const { return slot < generations_.size() ? generations_[slot] : 0; }
   BodySlot new_slot();
-  void set_shape(BodySlot id, PlacedShape placed);
+  void set_shape(BodySlot slot, PlacedShape placed);
 
   std::vector<Mover> movers_;
   std::vector<Body> bodies_;

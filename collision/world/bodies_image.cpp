@@ -22,11 +22,11 @@ bool equal(std::span<const Eigen::Vector3d> a, const std::vector<Eigen::Vector3d
 }
 
 /// A shape as place() makes it of some orientation.
-void check_shape(const PlacedShape& placed, std::size_t id) {
+void check_shape(const PlacedShape& placed, std::size_t slot) {
   try {
-    image::require(is_placed(placed), "bodies", id, "its bounds are not those of its shape");
+    image::require(is_placed(placed), "bodies", slot, "its bounds are not those of its shape");
   } catch (const std::invalid_argument& error) {
-    image::require(false, "bodies", id, error.what());
+    image::require(false, "bodies", slot, error.what());
   }
 }
 
@@ -85,11 +85,11 @@ void Bodies<Degree>::Image::check(double now) const {
     image::require(alive(waiting[i]) && !bodies[waiting[i]].entered, "waiting", i, "is no body that waits to enter");
     image::require(bodies[waiting[i]].motion.start <= now, "waiting", i, "its motion begins after now");
   }
-  for (std::size_t id = 0; id < bodies.size(); ++id) {
-    const One& body = bodies[id];
-    const auto need = [id](bool right, const char* what) { image::require(right, "bodies", id, what); };
+  for (std::size_t slot = 0; slot < bodies.size(); ++slot) {
+    const One& body = bodies[slot];
+    const auto need = [slot](bool right, const char* what) { image::require(right, "bodies", slot, what); };
     if (!body.alive) continue;
-    check_shape(body.placed, id);
+    check_shape(body.placed, slot);
     need(body.motion.finite(), "its motion is not finite");
     need(!body.entered || body.motion.start <= now, "its motion begins after now");
     const bool has_mass = std::isfinite(body.mass) && body.mass > 0 && body.inverse_mass == 1 / body.mass;

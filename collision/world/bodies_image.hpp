@@ -34,8 +34,8 @@ struct Bodies<Degree>::Image {
   std::vector<std::uint32_t> generations;
   std::vector<BodySlot> free, waiting;
 
-  bool alive(BodySlot id) const { return id < bodies.size() && bodies[id].alive; }
-  bool entered(BodySlot id) const { return alive(id) && bodies[id].entered; }
+  bool alive(BodySlot slot) const { return slot < bodies.size() && bodies[slot].alive; }
+  bool entered(BodySlot slot) const { return alive(slot) && bodies[slot].entered; }
   std::uint32_t generation(BodySlot slot) const { return slot < generations.size() ? generations[slot] : 0; }
   /// Whether a body has entered, or was removed.
   bool entered(BodyId id) const { return entered(id.slot()) && id.generation() == generation(id.slot()); }

@@ -71,31 +71,31 @@ inline BodySlot World<Degree>::put(const Description& description, std::shared_p
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && std::next(piece)->start <= clock_.now) ++piece;
   if (has_mesh(description.shape)) make_room_for_meshes();
-  const BodySlot id = bodies_.add(description, std::move(shape), *piece);
+  const BodySlot slot = bodies_.add(description, std::move(shape), *piece);
   if (piece->start <= clock_.now) {
-    bodies_.wait(id);
+    bodies_.wait(slot);
     ++piece;
   }
-  volumes_.add(id, description.box);
-  if (piece != description.motion.end()) scripts_.add(id, {piece, description.motion.end()});
-  return id;
+  volumes_.add(slot, description.box);
+  if (piece != description.motion.end()) scripts_.add(slot, {piece, description.motion.end()});
+  return slot;
 }
 
 /// From the first mesh on all volumes have room for contact gaps: those of bodies that are there already get it now.
 template <int Degree>
 void World<Degree>::make_room_for_meshes() {
   if (!volumes_.make_room_for_meshes()) return;
-  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
-    if (bodies_[id].entered) update_volume(id, volumes_.box(id));
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (bodies_[slot].entered) update_volume(slot, volumes_.box(slot));
   }
 }
 
 /// Makes known a volume that is another though nothing has moved.
 template <int Degree>
-void World<Degree>::update_volume(BodySlot id, const KineticBox<Degree>& box) {
-  if (bodies_.collides(id)) broad_phase_->update(id, box, clock_.now, pairs_);
-  pairs_.box_changed(id);
-  volumes_.schedule(id);
+void World<Degree>::update_volume(BodySlot slot, const KineticBox<Degree>& box) {
+  if (bodies_.collides(slot)) broad_phase_->update(slot, box, clock_.now, pairs_);
+  pairs_.box_changed(slot);
+  volumes_.schedule(slot);
 }
 
 template <int Degree>
@@ -106,25 +106,25 @@ void World<Degree>::enter_new_bodies() {
   }
   std::vector<Entry> entries;
   entries.reserve(entering.size());
-  for (const BodySlot id : entering) {
-    Body& b = bodies_[id];
+  for (const BodySlot slot : entering) {
+    Body& b = bodies_[slot];
     if (!b.alive || b.entered) continue;
     b.entered = true;
-    entries.push_back({id, nullptr});
+    entries.push_back({slot, nullptr});
   }
   const auto boxes = std::make_unique_for_overwrite<KineticBox<Degree>[]>(entries.size());
   // The functions of callers are called by their own thread, and in order.
   const std::size_t threads = volumes_.any_from_callers() ? 1 : threads_for(entries.size(), options_.threads);
   in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      entries[i].box = new (&boxes[i]) KineticBox<Degree>(volumes_.renew(entries[i].id));  // not copied there
+      entries[i].box = new (&boxes[i]) KineticBox<Degree>(volumes_.renew(entries[i].slot));  // not copied there
     }
   });
   const std::span<const Entry> all(entries);
   std::size_t colliding = entries.size();
   if (bodies_.filters()) {
     const auto rest = std::stable_partition(entries.begin(), entries.end(),
-                                            [&](const Entry& entry) { return bodies_.collides(entry.id); });
+                                            [&](const Entry& entry) { return bodies_.collides(entry.slot); });
     colliding = static_cast<std::size_t>(rest - entries.begin());
   }
   pairs_.set_begin(Begin::entering);
@@ -135,7 +135,7 @@ void World<Degree>::enter_new_bodies() {
   pairs_.set_begin(Begin::moving);
   walls_.schedule(entries);
   if (!volumes_.any_from_callers() && !volumes_.has_room_for_meshes()) return;
-  for (const Entry& entry : entries) volumes_.schedule(entry.id);
+  for (const Entry& entry : entries) volumes_.schedule(entry.slot);
 }
 
 template <int Degree>
@@ -152,32 +152,32 @@ void World<Degree>::update_motion(BodyId id, const Motion& motion) {
 }
 
 template <int Degree>
-void World<Degree>::give(BodySlot id, const Motion& motion) {
-  scripts_.clear(id);
+void World<Degree>::give(BodySlot slot, const Motion& motion) {
+  scripts_.clear(slot);
   ++counters_.motion_updates;
-  bodies_.accelerate_freely(id, motion);
-  if (!bodies_[id].entered) {
-    bodies_.move(id, motion);
-    if (!bodies_.waits(id)) bodies_.wait(id);
+  bodies_.accelerate_freely(slot, motion);
+  if (!bodies_[slot].entered) {
+    bodies_.move(slot, motion);
+    if (!bodies_.waits(slot)) bodies_.wait(slot);
     return;
   }
-  const bool jumped = bodies_.is_jump(id, motion, clock_.now);
-  if (jumped) resting_.drop_all(id);
-  set_motion(id, motion, jumped);
-  resting_.disturb(id);
+  const bool jumped = bodies_.is_jump(slot, motion, clock_.now);
+  if (jumped) resting_.drop_all(slot);
+  set_motion(slot, motion, jumped);
+  resting_.disturb(slot);
 }
 
 template <int Degree>
-void World<Degree>::set_motion(BodySlot id, const Motion& motion, bool jumped) {
+void World<Degree>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
-  bodies_.move(id, motion);
-  pairs_.prefetch(id);  // while the broad phase is at work
+  bodies_.move(slot, motion);
+  pairs_.prefetch(slot);  // while the broad phase is at work
   if (jumped) pairs_.set_begin(Begin::jumping);
-  if (bodies_.collides(id)) broad_phase_->update(id, volumes_.renew(id), clock_.now, pairs_);
+  if (bodies_.collides(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
   pairs_.set_begin(Begin::moving);
-  pairs_.motion_changed(id, jumped);
-  walls_.schedule(id);
-  volumes_.schedule(id);
+  pairs_.motion_changed(slot, jumped);
+  walls_.schedule(slot);
+  volumes_.schedule(slot);
 }
 
 template <int Degree>
@@ -189,15 +189,15 @@ void World<Degree>::remove_body(BodyId id) {
 }
 
 template <int Degree>
-void World<Degree>::take_out(BodySlot id) {
-  resting_.forget(id);
-  scripts_.clear(id);
-  walls_.remove(id);
-  if (bodies_[id].entered && bodies_.collides(id)) broad_phase_->remove(id, clock_.now, pairs_);
-  volumes_.remove(id);
-  pairs_.remove(id);
-  if (!reports_.empty()) reports_.forget(bodies_.id_of(id));
-  bodies_.remove(id);
+void World<Degree>::take_out(BodySlot slot) {
+  resting_.forget(slot);
+  scripts_.clear(slot);
+  walls_.remove(slot);
+  if (bodies_[slot].entered && bodies_.collides(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
+  volumes_.remove(slot);
+  pairs_.remove(slot);
+  if (!reports_.empty()) reports_.forget(bodies_.id_of(slot));
+  bodies_.remove(slot);
 }
 
 #define KDS_INSTANTIATE(degree) template class World<degree>;

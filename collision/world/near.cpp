@@ -10,7 +10,8 @@
 
 namespace kds::collision {
 
-/// `ask(look)` asks the broad phase. What it names depends on which it is; meets(id), of all that are named, does not.
+/// `ask(look)` asks the broad phase. What it names depends on which it is; meets(slot), of all that are named, does
+/// not.
 template <int Degree>
 template <class Ask, class Meets>
 void World<Degree>::answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const {
@@ -19,18 +20,18 @@ void World<Degree>::answer(const char* function, const Ask& ask, const Meets& me
     throw std::logic_error(std::string(function) + ": must not be called from within a box function");
   }
   std::vector<BodySlot> found;
-  const auto look = [&](BodySlot id) {
-    if (meets(id)) found.push_back(id);
+  const auto look = [&](BodySlot slot) {
+    if (meets(slot)) found.push_back(slot);
   };
   const bool broad_phase_is_ahead = now() < clock_.now;
   if (!broad_phase_is_ahead) ask(look);
   if (broad_phase_is_ahead || bodies_.filters()) {
-    for (BodySlot id = 0; id < bodies_.slots(); ++id) {
-      if (bodies_.entered(id) && (broad_phase_is_ahead || !bodies_.collides(id))) look(id);
+    for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+      if (bodies_.entered(slot) && (broad_phase_is_ahead || !bodies_.collides(slot))) look(slot);
     }
   }
-  for (const BodySlot id : bodies_.waiting()) {
-    if (bodies_.alive(id) && !bodies_.entered(id)) look(id);
+  for (const BodySlot slot : bodies_.waiting()) {
+    if (bodies_.alive(slot) && !bodies_.entered(slot)) look(slot);
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -49,7 +50,7 @@ void World<Degree>::visit_overlapping(const Eigen::Vector3d& min, const Eigen::V
   const double t = now();
   const auto ask = [&](const auto& look) { broad_phase_->visit_overlapping(box, t, look); };
   answer(
-      "World::visit_overlapping", ask, [&](BodySlot id) { return volumes_.meets(id, box, t); }, visit);
+      "World::visit_overlapping", ask, [&](BodySlot slot) { return volumes_.meets(slot, box, t); }, visit);
 }
 
 template <int Degree>
@@ -65,7 +66,8 @@ void World<Degree>::visit_swept(const KineticBox<Degree>& box, double until, Bod
   const StaticBox swept = bounded_swept_box(box, from, until);
   const auto ask = [&](const auto& look) { broad_phase_->visit_swept(box, from, until, look); };
   answer(
-      "World::visit_swept", ask, [&](BodySlot id) { return volumes_.swept(id, from, until).overlaps(swept); }, visit);
+      "World::visit_swept", ask, [&](BodySlot slot) { return volumes_.swept(slot, from, until).overlaps(swept); },
+      visit);
 }
 
 #define KDS_INSTANTIATE(degree) template class World<degree>;

@@ -6,19 +6,19 @@
 namespace kds::collision {
 
 template <int Degree>
-void Scripts<Degree>::add(BodySlot id, std::span<const Motion> pieces) {
+void Scripts<Degree>::add(BodySlot slot, std::span<const Motion> pieces) {
   if (pieces.empty()) return;
-  make_room(starts_, id + std::size_t{1});
-  if (scripts_.size() <= id) scripts_.resize(id + std::size_t{1});
-  scripts_[id].assign(pieces.rbegin(), pieces.rend());
-  starts_.set(id, pieces.front().start);
+  make_room(starts_, slot + std::size_t{1});
+  if (scripts_.size() <= slot) scripts_.resize(slot + std::size_t{1});
+  scripts_[slot].assign(pieces.rbegin(), pieces.rend());
+  starts_.set(slot, pieces.front().start);
 }
 
 template <int Degree>
-void Scripts<Degree>::clear(BodySlot id) {
-  if (id >= scripts_.size() || scripts_[id].empty()) return;
-  scripts_[id] = {};
-  starts_.clear(id);
+void Scripts<Degree>::clear(BodySlot slot) {
+  if (slot >= scripts_.size() || scripts_[slot].empty()) return;
+  scripts_[slot] = {};
+  starts_.clear(slot);
 }
 
 template <int Degree>
@@ -26,14 +26,14 @@ std::vector<typename Scripts<Degree>::Piece> Scripts<Degree>::take_next() {
   std::vector<Piece> pieces;
   const double t = next_time();
   while (!starts_.empty() && starts_.top().time == t) {
-    const BodySlot id = starts_.top().slot;
-    auto& script = scripts_[id];
-    pieces.push_back({id, script.back()});
+    const BodySlot slot = starts_.top().slot;
+    auto& script = scripts_[slot];
+    pieces.push_back({slot, script.back()});
     script.pop_back();
     if (script.empty()) {
-      starts_.clear(id);
+      starts_.clear(slot);
     } else {
-      starts_.set(id, script.back().start);
+      starts_.set(slot, script.back().start);
     }
   }
   return pieces;
@@ -44,8 +44,8 @@ void Scripts<Degree>::become(const Image& image) {
   scripts_ = image.of;
   starts_.resize(0);
   starts_.resize(scripts_.size());
-  for (BodySlot id = 0; id < scripts_.size(); ++id) {
-    if (!scripts_[id].empty()) starts_.set(id, scripts_[id].back().start);
+  for (BodySlot slot = 0; slot < scripts_.size(); ++slot) {
+    if (!scripts_[slot].empty()) starts_.set(slot, scripts_[slot].back().start);
   }
 }
 

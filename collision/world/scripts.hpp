@@ -22,15 +22,15 @@ class Scripts {
   using Motion = certificates::PointMotion<Degree>;
 
   /// Gives a body pieces to come, in order of their starts. Precondition: it has none.
-  void add(BodySlot id, std::span<const Motion> pieces);
+  void add(BodySlot slot, std::span<const Motion> pieces);
   /// Forgets what was to come.
-  void clear(BodySlot id);
+  void clear(BodySlot slot);
 
   /// When the next piece begins.
   double next_time() const { return starts_.empty() ? never : starts_.top().time; }
 
   struct Piece {
-    BodySlot id;
+    BodySlot slot;
     Motion motion;
   };
   /// Takes all that begin at next_time(), by slot.
@@ -63,11 +63,11 @@ KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 template <int Degree>
 template <class Alive>
 void Scripts<Degree>::Image::check(double now, const Alive& alive) const {
-  for (std::size_t id = 0; id < of.size(); ++id) {
-    const auto need = [id](bool right, const char* what) { image::require(right, "scripts", id, what); };
-    need(of[id].empty() || alive(static_cast<BodySlot>(id)), "is of no body");
+  for (std::size_t slot = 0; slot < of.size(); ++slot) {
+    const auto need = [slot](bool right, const char* what) { image::require(right, "scripts", slot, what); };
+    need(of[slot].empty() || alive(static_cast<BodySlot>(slot)), "is of no body");
     double next = never;  // pieces are listed last first
-    for (const Motion& piece : of[id]) {
+    for (const Motion& piece : of[slot]) {
       need(piece.finite(), "a piece of motion to come is not finite");
       need(image::is_to_come(piece.start, now) && piece.start < next, "pieces of motion to come are out of order");
       next = piece.start;

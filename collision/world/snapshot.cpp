@@ -76,12 +76,13 @@ struct World<Degree>::Image {
     if (!std::isfinite(callers_now) || callers_now > now) image::fail("clock: is after now, or not finite");
     if (!edits.began_by(now)) image::fail("edits: are counted from a time after now");
     bodies.check(now);
-    scripts.check(now, [&](BodySlot id) { return bodies.alive(id); });
+    scripts.check(now, [&](BodySlot slot) { return bodies.alive(slot); });
     std::vector<char> enters(bodies.bodies.size());
-    for (const BodySlot id : bodies.waiting) enters[id] = 1;
-    for (BodySlot id = 0; id < bodies.bodies.size(); ++id) {
-      const bool later = id < scripts.of.size() && !scripts.of[id].empty();
-      image::require(!bodies.alive(id) || bodies.entered(id) || enters[id] || later, "bodies", id, "it never enters");
+    for (const BodySlot slot : bodies.waiting) enters[slot] = 1;
+    for (BodySlot slot = 0; slot < bodies.bodies.size(); ++slot) {
+      const bool later = slot < scripts.of.size() && !scripts.of[slot].empty();
+      image::require(!bodies.alive(slot) || bodies.entered(slot) || enters[slot] || later, "bodies", slot,
+                     "it never enters");
     }
     pairs.check(bodies, now, options);
     resting.check(bodies, now, options);
@@ -91,9 +92,9 @@ struct World<Degree>::Image {
 
 template <int Degree>
 typename World<Degree>::Image World<Degree>::image() const {
-  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
-    if (!volumes_.from_caller(id)) continue;
-    throw std::invalid_argument("World: body " + std::to_string(bodies_.id_of(id)) +
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (!volumes_.from_caller(slot)) continue;
+    throw std::invalid_argument("World: body " + std::to_string(bodies_.id_of(slot)) +
                                 " cannot be saved: it has a box function");
   }
   return {.now = clock_.now,

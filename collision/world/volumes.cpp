@@ -45,31 +45,31 @@ Volumes<Degree>::Volumes(const Bodies<Degree>& bodies, const WorldOptions& optio
 template <int Degree>
 Kdops<Degree> Volumes<Degree>::kdops() const {
   if (directions_.empty()) return {};
-  return {directions_, [this](BodySlot id, std::size_t i, double now) { return slab(id, i, now); }};
+  return {directions_, [this](BodySlot slot, std::size_t i, double now) { return slab(slot, i, now); }};
 }
 
 template <int Degree>
-void Volumes<Degree>::add(BodySlot id, const BoxFunction& function) {
-  if (!directions_.empty()) place_extents(id);
+void Volumes<Degree>::add(BodySlot slot, const BoxFunction& function) {
+  if (!directions_.empty()) place_extents(slot);
   if (!function) return;
   make_room(ends_, bodies_.slots());
-  if (given_.size() <= id) given_.resize(id + std::size_t{1});
-  given_[id] = std::make_unique<Given>(Given{function, {}});
+  if (given_.size() <= slot) given_.resize(slot + std::size_t{1});
+  given_[slot] = std::make_unique<Given>(Given{function, {}});
 }
 
 template <int Degree>
-void Volumes<Degree>::remove(BodySlot id) {
-  clear(ends_, id);
-  if (from_caller(id)) given_[id] = nullptr;
+void Volumes<Degree>::remove(BodySlot slot) {
+  clear(ends_, slot);
+  if (from_caller(slot)) given_[slot] = nullptr;
 }
 
 template <int Degree>
-KineticBox<Degree> Volumes<Degree>::renew(BodySlot id) {
-  if (!from_caller(id)) [[likely]]
-    return box(id);
+KineticBox<Degree> Volumes<Degree>::renew(BodySlot slot) {
+  if (!from_caller(slot)) [[likely]]
+    return box(slot);
   const Box made = [&] {
     const kds::detail::RaisedFlag calling(calling_);
-    return given_[id]->function(clock_.now, bodies_.motion(id));
+    return given_[slot]->function(clock_.now, bodies_.motion(slot));
   }();
   if (!made.min.finite() || !made.max.finite()) {
     throw std::invalid_argument("BodyDescription.box: returned a box that is not finite");
@@ -77,27 +77,27 @@ KineticBox<Degree> Volumes<Degree>::renew(BodySlot id) {
   if (!(made.valid_until > clock_.now)) {
     throw std::invalid_argument("BodyDescription.box: returned a box whose validity has ended");
   }
-  given_[id]->box = made;
-  return box(id);
+  given_[slot]->box = made;
+  return box(slot);
 }
 
 template <int Degree>
-void Volumes<Degree>::schedule(BodySlot id) {
-  if (!from_caller(id) && !meshes_) return;
-  const double until = from_caller(id) ? given_[id]->box.valid_until : clearance_until(id);
+void Volumes<Degree>::schedule(BodySlot slot) {
+  if (!from_caller(slot) && !meshes_) return;
+  const double until = from_caller(slot) ? given_[slot]->box.valid_until : clearance_until(slot);
   if (until <= clock_.horizon && until < never) {
     make_room(ends_, bodies_.slots());
-    ends_.set(id, until);
+    ends_.set(slot, until);
   } else {
-    clear(ends_, id);
+    clear(ends_, slot);
   }
 }
 
 template <int Degree>
 void Volumes<Degree>::extend_horizon() {
   if (given_.empty() && !meshes_) return;
-  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
-    if (bodies_[id].entered) schedule(id);
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (bodies_[slot].entered) schedule(slot);
   }
 }
 
@@ -106,19 +106,19 @@ void Volumes<Degree>::become(bool room_for_meshes) {
   meshes_ = room_for_meshes;
   given_.clear();
   ends_.resize(0);
-  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
-    if (bodies_.alive(id) && !directions_.empty()) place_extents(id);
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (bodies_.alive(slot) && !directions_.empty()) place_extents(slot);
   }
 }
 
 /// How far a body that comes in reaches in the directions beyond the axes: that stays so, as it does not turn.
 template <int Degree>
-void Volumes<Degree>::place_extents(BodySlot id) {
-  const detail::Body<Degree>& b = bodies_[id];
-  extents_.resize(std::max(extents_.size(), (id + std::size_t{1}) * directions_.size()));
+void Volumes<Degree>::place_extents(BodySlot slot) {
+  const detail::Body<Degree>& b = bodies_[slot];
+  extents_.resize(std::max(extents_.size(), (slot + std::size_t{1}) * directions_.size()));
   for (std::size_t i = 0; i < directions_.size(); ++i) {
     const Eigen::Vector3d direction(directions_[i].data());
-    auto& reach = extents_[id * directions_.size() + i];
+    auto& reach = extents_[slot * directions_.size() + i];
     if (!b.shape || b.volume == BoundingVolume::sphere) {
       const double radius = b.bounding_radius * norm(direction) * (1 + 0x1p-48);
       reach = {-radius, radius};
@@ -130,12 +130,12 @@ void Volumes<Degree>::place_extents(BodySlot id) {
 
 /// What a body covers along a direction from now on.
 template <int Degree>
-KineticSlab<Degree> Volumes<Degree>::slab(BodySlot id, std::size_t i, double now) const {
-  const auto& [low, high] = extents_[id * directions_.size() + i];
-  if (!from_caller(id) && bodies_.motion(id).start <= now) {
-    KineticSlab<Degree> slab = slab_around(bodies_.motion(id), low, high, directions_[i]);
+KineticSlab<Degree> Volumes<Degree>::slab(BodySlot slot, std::size_t i, double now) const {
+  const auto& [low, high] = extents_[slot * directions_.size() + i];
+  if (!from_caller(slot) && bodies_.motion(slot).start <= now) {
+    KineticSlab<Degree> slab = slab_around(bodies_.motion(slot), low, high, directions_[i]);
     if (!meshes_) return slab;
-    const auto by = growth(id);
+    const auto by = growth(slot);
     const double length = norm(Eigen::Vector3d(directions_[i].data())) * (1 + 0x1p-48);
     for (std::size_t k = 0; k <= Degree; ++k) {
       slab.min.position.c[k] -= by[k] * length;
@@ -143,7 +143,7 @@ KineticSlab<Degree> Volumes<Degree>::slab(BodySlot id, std::size_t i, double now
     }
     return slab;
   }
-  return slab_around(box(id), directions_[i], now);
+  return slab_around(box(slot), directions_[i], now);
 }
 
 template <int Degree>
@@ -167,17 +167,17 @@ bool Volumes<Degree>::overlap(BodySlot a, BodySlot b, double t, bool exact) cons
 }
 
 template <int Degree>
-KineticBox<Degree> Volumes<Degree>::box_or_ball(BodySlot id) const {
-  if (asked(id)) return box(id);
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(bodies_[id].bounding_radius);
-  return box_around<Degree>(bodies_.motion(id), -reach, reach);
+KineticBox<Degree> Volumes<Degree>::box_or_ball(BodySlot slot) const {
+  if (asked(slot)) return box(slot);
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(bodies_[slot].bounding_radius);
+  return box_around<Degree>(bodies_.motion(slot), -reach, reach);
 }
 
 template <int Degree>
-bool Volumes<Degree>::meets(BodySlot id, const StaticBox& box, double t) const {
-  if (!box_at(box_or_ball(id), t).overlaps(box)) return false;
-  for (std::size_t i = 0; i < directions_.size() && asked(id); ++i) {
-    const auto [low, high] = slab_at(slab(id, i, t), t);
+bool Volumes<Degree>::meets(BodySlot slot, const StaticBox& box, double t) const {
+  if (!box_at(box_or_ball(slot), t).overlaps(box)) return false;
+  for (std::size_t i = 0; i < directions_.size() && asked(slot); ++i) {
+    const auto [low, high] = slab_at(slab(slot, i, t), t);
     const auto [from, to] = span_along(directions_[i], box);
     if (low > to || from > high) return false;
   }
@@ -185,8 +185,8 @@ bool Volumes<Degree>::meets(BodySlot id, const StaticBox& box, double t) const {
 }
 
 template <int Degree>
-StaticBox Volumes<Degree>::swept(BodySlot id, double from, double until) const {
-  return bounded_swept_box(box_or_ball(id), from, until);
+StaticBox Volumes<Degree>::swept(BodySlot slot, double from, double until) const {
+  return bounded_swept_box(box_or_ball(slot), from, until);
 }
 
 #define KDS_INSTANTIATE(degree) template class Volumes<degree>;

@@ -39,8 +39,8 @@ class Volumes {
 
   /// A body comes. `function`: the caller's, or an empty one. Throws std::length_error, before anything is changed, if
   /// there is no room.
-  void add(BodySlot id, const BoxFunction& function);
-  void remove(BodySlot id);
+  void add(BodySlot slot, const BoxFunction& function);
+  void remove(BodySlot slot);
 
   /// The first mesh comes: true if it is. Then the volumes of all bodies are others.
   bool make_room_for_meshes() { return !std::exchange(meshes_, true); }
@@ -48,25 +48,25 @@ class Volumes {
 
   /// Whether some body has or had a function of the caller's; and this one.
   bool any_from_callers() const { return !given_.empty(); }
-  bool from_caller(BodySlot id) const { return id < given_.size() && given_[id]; }
+  bool from_caller(BodySlot slot) const { return slot < given_.size() && given_[slot]; }
   /// A function of the caller's is making a box just now.
   bool calling() const { return calling_; }
 
   /// The box as it is: what the caller's function gave last, or what the motion gives.
-  Box box(BodySlot id) const { return meshes_ ? grown(id, bare_box(id)) : bare_box(id); }
+  Box box(BodySlot slot) const { return meshes_ ? grown(slot, bare_box(slot)) : bare_box(slot); }
   /// A box for the present motion. Throws what the caller's function throws, and std::invalid_argument for a box of its
   /// that cannot be. Where there are no such functions, threads may call it at once.
-  Box renew(BodySlot id);
+  Box renew(BodySlot slot);
   /// Whether the volumes that the broad phase sees overlap just after t. `exact`: as for the broad phase.
   bool overlap(BodySlot a, BodySlot b, double t, bool exact) const;
 
   /// Whether a body's volume, rounded outward, meets a box at t; and what its box sweeps. Where a caller's function has
   /// not been asked yet, as the body is still to enter, it is the box around its ball.
-  bool meets(BodySlot id, const StaticBox& box, double t) const;
-  StaticBox swept(BodySlot id, double from, double until) const;
+  bool meets(BodySlot slot, const StaticBox& box, double t) const;
+  StaticBox swept(BodySlot slot, double from, double until) const;
 
   /// Takes note of until when the body's box holds it.
-  void schedule(BodySlot id);
+  void schedule(BodySlot slot);
   /// When the next box has to be renewed, and whose. Precondition of next_body(): next_time() < never.
   double next_time() const { return ends_.empty() ? never : ends_.top().time; }
   BodySlot next_body() const { return ends_.top().slot; }
@@ -81,16 +81,16 @@ class Volumes {
     Box box;  ///< the last it gave
   };
 
-  bool asked(BodySlot id) const { return bodies_[id].entered || !from_caller(id); }
-  Box box_or_ball(BodySlot id) const;
-  Box bare_box(BodySlot id) const;
-  void place_extents(BodySlot id);
-  KineticSlab<Degree> slab(BodySlot id, std::size_t i, double now) const;
+  bool asked(BodySlot slot) const { return bodies_[slot].entered || !from_caller(slot); }
+  Box box_or_ball(BodySlot slot) const;
+  Box bare_box(BodySlot slot) const;
+  void place_extents(BodySlot slot);
+  KineticSlab<Degree> slab(BodySlot slot, std::size_t i, double now) const;
 
   // clearance.cpp: what boxes reach beyond bodies, for the contact gap of meshes
-  std::array<double, std::size_t{Degree} + 1> growth(BodySlot id) const;
-  Box grown(BodySlot id, Box box) const;
-  double clearance_until(BodySlot id) const;
+  std::array<double, std::size_t{Degree} + 1> growth(BodySlot slot) const;
+  Box grown(BodySlot slot, Box box) const;
+  double clearance_until(BodySlot slot) const;
 
   const Bodies<Degree>& bodies_;
   const WorldOptions& options_;
@@ -105,13 +105,13 @@ class Volumes {
 
 /// The same without room for the contact gap of meshes.
 template <int Degree>
-inline KineticBox<Degree> Volumes<Degree>::bare_box(BodySlot id) const {
-  if (from_caller(id)) return given_[id]->box;
-  const detail::Body<Degree>& b = bodies_[id];
+inline KineticBox<Degree> Volumes<Degree>::bare_box(BodySlot slot) const {
+  if (from_caller(slot)) return given_[slot]->box;
+  const detail::Body<Degree>& b = bodies_[slot];
   const bool sphere = !b.shape || b.volume == BoundingVolume::sphere;
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
   const double rounding = sphere && !options_.report_pairs ? b.bounding_radius : 0;  // of boxes those are told
-  return box_around<Degree>(bodies_.motion(id), sphere ? -reach : b.shape->low, sphere ? reach : b.shape->high,
+  return box_around<Degree>(bodies_.motion(slot), sphere ? -reach : b.shape->low, sphere ? reach : b.shape->high,
                             rounding);
 }
 

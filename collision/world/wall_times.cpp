@@ -19,27 +19,27 @@ inline void WallTimes<Degree>::make_room(std::size_t slots) {
 
 /// Takes note that a body is at no wall before some time. Precondition: there is room for it.
 template <int Degree>
-inline void WallTimes<Degree>::note(BodySlot id, double earliest) {
-  if (bodies_[id].sensor) return;
-  is_bound_[id] = true;
+inline void WallTimes<Degree>::note(BodySlot slot, double earliest) {
+  if (bodies_[slot].sensor) return;
+  is_bound_[slot] = true;
   // An earlier one is a lower bound as well: most are replaced again before they are due.
-  if (times_.contains(id) && times_.time(id) > clock_.now && times_.time(id) <= earliest) return;
+  if (times_.contains(slot) && times_.time(slot) > clock_.now && times_.time(slot) <= earliest) return;
   if (earliest <= clock_.horizon) {
-    times_.set(id, std::max(earliest, clock_.now));
+    times_.set(slot, std::max(earliest, clock_.now));
   } else {
-    times_.clear(id);
+    times_.clear(slot);
   }
 }
 
 template <int Degree>
-void WallTimes<Degree>::schedule(BodySlot id) {
+void WallTimes<Degree>::schedule(BodySlot slot) {
   if (!walls_) return;
   make_room(bodies_.slots());
   double earliest = clock_.now;
   if constexpr (Degree == 1) {
-    earliest = earliest_wall_time_of_all(bodies_.motion(id), bodies_[id].bounding_radius, *walls_, clock_.now);
+    earliest = earliest_wall_time_of_all(bodies_.motion(slot), bodies_[slot].bounding_radius, *walls_, clock_.now);
   }
-  note(id, earliest);
+  note(slot, earliest);
 }
 
 template <int Degree>
@@ -47,8 +47,8 @@ void WallTimes<Degree>::schedule(std::span<const Entry> entries) {
   if (!walls_) return;
   make_room(bodies_.slots());
   for (std::size_t i = 0; i < entries.size(); i += 2) {
-    const BodySlot a = entries[i].id;
-    const BodySlot b = entries[std::min(i + 1, entries.size() - 1)].id;
+    const BodySlot a = entries[i].slot;
+    const BodySlot b = entries[std::min(i + 1, entries.size() - 1)].slot;
     std::array earliest{clock_.now, clock_.now};
     if constexpr (Degree == 1) {
       const Two radii{bodies_[a].bounding_radius, bodies_[b].bounding_radius};
@@ -60,8 +60,8 @@ void WallTimes<Degree>::schedule(std::span<const Entry> entries) {
 }
 
 template <int Degree>
-void WallTimes<Degree>::remove(BodySlot id) {
-  clear(times_, id);
+void WallTimes<Degree>::remove(BodySlot slot) {
+  clear(times_, slot);
 }
 
 template <int Degree>
@@ -74,8 +74,8 @@ void WallTimes<Degree>::reserve(std::size_t bodies) {
 template <int Degree>
 void WallTimes<Degree>::extend_horizon() {
   if (!walls_) return;
-  for (BodySlot id = 0; id < bodies_.slots(); ++id) {
-    if (bodies_[id].entered) schedule(id);
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (bodies_[slot].entered) schedule(slot);
   }
 }
 
@@ -88,30 +88,30 @@ void WallTimes<Degree>::become() {
 
 template <int Degree>
 bool WallTimes<Degree>::certify() {
-  const BodySlot id = times_.top().slot;
-  if (!is_bound_[id]) return false;
-  is_bound_[id] = false;
+  const BodySlot slot = times_.top().slot;
+  if (!is_bound_[slot]) return false;
+  is_bound_[slot] = false;
   double first = never;
   for (int wall = 0; wall < 6; ++wall) {
     const double horizon = std::min(first, clock_.horizon);
-    if (earliest_wall_time(bodies_.motion(id), bodies_[id].bounding_radius, *walls_, wall, clock_.now) > horizon) {
+    if (earliest_wall_time(bodies_.motion(slot), bodies_[slot].bounding_radius, *walls_, wall, clock_.now) > horizon) {
       continue;
     }
-    first = std::min(first, exact_time(id, wall, horizon));
+    first = std::min(first, exact_time(slot, wall, horizon));
   }
-  times_.set(id, first);
+  times_.set(slot, first);
   return true;
 }
 
 /// When the ball around a body is outside a wall and still going outward.
 template <int Degree>
-double WallTimes<Degree>::exact_time(BodySlot id, int wall, double horizon) const {
+double WallTimes<Degree>::exact_time(BodySlot slot, int wall, double horizon) const {
   const int axis = wall / 2;
   const double out = wall % 2 != 0 ? 1 : -1;
-  const Motion& motion = bodies_.motion(id);
+  const Motion& motion = bodies_.motion(slot);
   using Wall = certificates::WallSeparation<Degree>;
   const auto inside = [&] {
-    return Wall{motion.axis(axis), out > 0 ? walls_->max[axis] : walls_->min[axis], bodies_[id].bounding_radius, out};
+    return Wall{motion.axis(axis), out > 0 ? walls_->max[axis] : walls_->min[axis], bodies_[slot].bounding_radius, out};
   };
   if constexpr (Degree == 1) {
     return motion.coefficients[1][axis] * out > 0 ? failure_time(inside(), clock_.now, horizon) : never;

@@ -32,8 +32,8 @@ class WallTimes {
 
   /// Bodies have entered, or one has another motion.
   void schedule(std::span<const Entry> entries);
-  void schedule(BodySlot id);
-  void remove(BodySlot id);
+  void schedule(BodySlot slot);
+  void remove(BodySlot slot);
   void reserve(std::size_t bodies);
 
   /// A time up to which no body reaches a wall.
@@ -51,8 +51,8 @@ class WallTimes {
 
  private:
   void make_room(std::size_t slots);
-  void note(BodySlot id, double earliest);
-  double exact_time(BodySlot id, int wall, double horizon) const;
+  void note(BodySlot slot, double earliest);
+  double exact_time(BodySlot slot, int wall, double horizon) const;
 
   const Bodies<Degree>& bodies_;
   const std::optional<Walls>& walls_;

@@ -173,7 +173,7 @@ TEST_CASE("Scripts: pieces begin in order of time, all of one time at once, by i
   REQUIRE(scripts.next_time() == 1);
   auto next = scripts.take_next();
   REQUIRE(next.size() == 1);
-  CHECK(next[0].id == 5);
+  CHECK(next[0].slot == 5);
   CHECK(next[0].motion.start == 1);
   REQUIRE(scripts.next_time() == 2);
 
@@ -182,8 +182,8 @@ TEST_CASE("Scripts: pieces begin in order of time, all of one time at once, by i
   for (Scripts<1>* each : {&scripts, &copy}) {
     next = each->take_next();
     REQUIRE(next.size() == 2);
-    CHECK(next[0].id == 2);
-    CHECK(next[1].id == 5);
+    CHECK(next[0].slot == 2);
+    CHECK(next[1].slot == 5);
     each->clear(9);
     CHECK(each->next_time() == 4);
     each->clear(2);
