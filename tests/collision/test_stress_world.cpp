@@ -92,17 +92,17 @@ TEST_CASE("stress: two lattices fly into each other, thousands of contacts at on
 }
 
 TEST_CASE("stress: Newton's cradle, touching or spaced, linear or thrown: momentum goes through", "[world][stress]") {
-  constexpr BodyId n = 60;
+  constexpr std::size_t n = 60;
   for (const double gap : {0.0, 0x1p-10, 0x1p-40, 0.1}) {
     for (const double mass : {1.0, 3.0}) {
       std::vector<BodyDescription<2>> bodies;
-      for (BodyId i = 0; i < n; ++i) {
+      for (std::size_t i = 0; i < n; ++i) {
         const double place = i * (2 + gap) - (i == 0 ? 2 : 0);
         bodies.push_back(ball<2>(1, {place, 0, 0}, {i == 0 ? 2.0 : 0.0, 1, 0}, {0, 0, -5}));
         bodies.back().mass = mass;
       }
       const auto events = run_all<2>(bodies, with(Response::elastic), 8, [&](World<2>& world) {
-        for (BodyId i = 0; i < n; ++i) {
+        for (std::size_t i = 0; i < n; ++i) {
           const double speed = world.motion(i).velocity(8)[0];
           if (std::abs(speed - (i == n - 1 ? 2 : 0)) > 1e-12) FAIL("ball " << i << " at " << speed << ", gap " << gap);
           CHECK(world.counters().held == 0);
@@ -116,17 +116,17 @@ TEST_CASE("stress: Newton's cradle, touching or spaced, linear or thrown: moment
 
 TEST_CASE("stress: Newton's cradle without full restitution passes on what it should", "[world][stress]") {
   // Each of n contacts leaves (1 + e) / 2 of the speed to the next ball.
-  constexpr BodyId n = 12;
+  constexpr std::size_t n = 12;
   const double e = 0.75;
   std::vector<BodyDescription<1>> bodies;
-  for (BodyId i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < n; ++i) {
     bodies.push_back(ball<1>(1, {2.5 * i, 0, 0}, {i == 0 ? 1.0 : 0.0, 0, 0}));
     bodies.back().restitution = e;
   }
   const auto scene_end = 200.0;
   run_all<1>(bodies, with(Response::elastic), scene_end, [&](World<1>& world) {
     double momentum = 0;
-    for (BodyId i = 0; i < n; ++i) momentum += world.motion(i).velocity(scene_end)[0];
+    for (std::size_t i = 0; i < n; ++i) momentum += world.motion(i).velocity(scene_end)[0];
     CHECK(momentum == Approx(1));
     CHECK(world.motion(n - 1).velocity(scene_end)[0] == Approx(std::pow((1 + e) / 2, n - 1)).epsilon(0.05));
   });
