@@ -39,9 +39,9 @@ struct Player : WorldListener<Degree> {
   void note(const char* kind, BodyId a, BodyId b, int number_b, const Contact& c) {
     char line[400];
     std::snprintf(line, sizeof line,
-                  "%-12s %llu %llu at %.17g (%a) point %.17g %.17g %.17g normal %.17g %.17g %.17g %s %s", kind, shown(a),
-                  shown(b), c.time, c.time, c.point[0], c.point[1], c.point[2], c.normal[0], c.normal[1], c.normal[2],
-                  to_string(c.feature_a).c_str(), to_string(c.feature_b).c_str());
+                  "%-12s %llu %llu at %.17g (%a) point %.17g %.17g %.17g normal %.17g %.17g %.17g %s %s", kind,
+                  shown(a), shown(b), c.time, c.time, c.point[0], c.point[1], c.point[2], c.normal[0], c.normal[1],
+                  c.normal[2], to_string(c.feature_a).c_str(), to_string(c.feature_b).c_str());
     log.push_back(line);
     react(kind, number[a], number_b, counts[{kind, number[a], number_b}]++, c);
   }
