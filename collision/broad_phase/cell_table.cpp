@@ -59,7 +59,8 @@ class CellTable::Gathering {
   void look(const Bucket& bucket, Ends limits) {
     bits_ = bits_ >> most | bucket.within(limits) << (64 - most);
     buckets_[count_++] = &bucket;
-    if (count_ == buckets_.size()) take();
+    if (count_ == buckets_.size()) [[unlikely]]
+      take();
   }
 
   void take() {
