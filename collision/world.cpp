@@ -139,7 +139,7 @@ bool World<Degree>::guarded_event(double limit, Search search) {
 }
 
 template <int Degree>
-typename World<Degree>::Due World<Degree>::next_due() const {
+inline typename World<Degree>::Due World<Degree>::next_due() const {
   Due first{never, Task::start_pieces};
   const auto consider = [&first](double time, Task task) {
     if (time < first.time) first = {time, task};

@@ -10,6 +10,7 @@ namespace kds::collision {
 /// In the order of bodies, whatever cells they were found in.
 template <int Degree>
 void KineticGrid<Degree>::report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener) {
+  if (changes.empty()) return;
   if (changes.ended.size() > 1) std::sort(changes.ended.begin(), changes.ended.end());
   if (changes.began.size() > 1) std::sort(changes.began.begin(), changes.began.end());
   const bool filters = listener.filters();

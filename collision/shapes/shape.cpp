@@ -35,6 +35,8 @@ auto of_kind(const Shape& shape, const Ask& ask) {
 }  // namespace
 
 void require_size(double value, const char* what) {
+  if (value >= smallest_size && value <= largest_magnitude) [[likely]]
+    return;
   const std::string name(what);
   if (!std::isfinite(value)) throw std::invalid_argument(name + ": must be finite");
   if (!(value > 0)) throw std::invalid_argument(name + ": must be > 0");

@@ -85,7 +85,9 @@ template <int Degree>
 void Pairs<Degree>::test() {
   const Stopwatch watch(profile_, Work::test);
   estimate_dirty();
-  for (std::size_t i = 0; i < dirty_.size(); ++i) {
+  const bool sensors = bodies_.any_sensor();
+  const bool follows_boxes = follows_boxes_;
+  for (std::size_t i = 0, dirty = dirty_.size(); i < dirty; ++i) {
     const Slot slot = dirty_[i];
     Pair& pair = pairs_[slot];
     pair.dirty = false;
@@ -93,7 +95,7 @@ void Pairs<Degree>::test() {
     ++counters_.pair_tests;
     const double estimate = estimates_[i];
     const bool may_be_together = std::isnan(estimate) || (estimate == -never && pair.fresh);
-    const bool passes = bodies_.any_sensor() && mode(pair.a, pair.b) == ContactMode::transparent;
+    const bool passes = sensors && mode(pair.a, pair.b) == ContactMode::transparent;
     if (may_be_together || pair.overlapping || passes) [[unlikely]] {
       test(slot);
     } else {
@@ -101,8 +103,11 @@ void Pairs<Degree>::test() {
       if (pair.estimated || contacts_.contains(slot)) contacts_.set(slot, pair.estimated ? estimate : never);
     }
     pair.fresh = false;
-    if (follows_boxes_ && pair.listed) test_boxes(slot);
-    if (unlisted_ > 0 && !pair.listed && !pair.overlapping) release(slot);
+    if (pair.listed) {
+      if (follows_boxes) test_boxes(slot);
+    } else if (!pair.overlapping) {
+      release(slot);
+    }
   }
   dirty_.clear();
 }

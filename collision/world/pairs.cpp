@@ -155,30 +155,6 @@ void Pairs<Degree>::release(Slot slot) {
 }
 
 template <int Degree>
-inline void Pairs<Degree>::mark_dirty(Slot slot) {
-  if (pairs_[slot].dirty) return;
-  pairs_[slot].dirty = true;
-  dirty_.push_back(slot);
-}
-
-template <int Degree>
-void Pairs<Degree>::prefetch(BodySlot id) const {
-  for (const Link& link : links(id)) {
-    __builtin_prefetch(&pairs_[link.slot], 1);
-    __builtin_prefetch(&bodies_.mover(link.other));
-  }
-}
-
-template <int Degree>
-void Pairs<Degree>::motion_changed(BodySlot id, bool jumped) {
-  for (const Link& link : links(id)) mark_dirty(link.slot);
-  if (!jumped) return;
-  for (const Link& link : links(id)) {
-    if (mode(id, link.other) == ContactMode::resolved) pairs_[link.slot].fresh = true;
-  }
-}
-
-template <int Degree>
 void Pairs<Degree>::box_changed(BodySlot id) {
   if (!follows_boxes_) return;  // when it meets others is the broad phase's to find anew
   for (const Link& link : links(id)) mark_dirty(link.slot);
@@ -226,21 +202,6 @@ void Pairs<Degree>::extend_horizon() {
     const bool boxes_known = slot >= boxes_.slots() || boxes_.contains(slot);
     if (pairs_[slot].alive && !(contacts_.contains(slot) && boxes_known)) mark_dirty(slot);
   }
-}
-
-template <int Degree>
-typename Pairs<Degree>::Event Pairs<Degree>::take_next() {
-  const Slot slot = contacts_.top().slot;
-  Pair& pair = pairs_[slot];
-  const Event event{pair.a, pair.b, pair.overlapping, slot < found_.size() ? found_[slot] : FoundTouch{}};
-  contacts_.clear(slot);
-  if (pair.overlapping) {
-    pair.overlapping = false;
-  } else if (mode(pair.a, pair.b) == ContactMode::transparent) {
-    pair.overlapping = true;
-  }
-  mark_dirty(slot);
-  return event;
 }
 
 template <int Degree>

@@ -220,6 +220,48 @@ class Pairs final : public PairListener {
   Begin begin_ = Begin::moving;
 };
 
+// What a change of motion or a contact needs, in the header: each is a few instructions for a pair, in the innermost
+// loops of World.
+
+template <int Degree>
+inline void Pairs<Degree>::mark_dirty(Slot slot) {
+  if (pairs_[slot].dirty) return;
+  pairs_[slot].dirty = true;
+  dirty_.push_back(slot);
+}
+
+template <int Degree>
+inline void Pairs<Degree>::prefetch(BodySlot id) const {
+  for (const Link& link : links(id)) {
+    __builtin_prefetch(&pairs_[link.slot], 1);
+    __builtin_prefetch(&bodies_.mover(link.other));
+  }
+}
+
+template <int Degree>
+inline void Pairs<Degree>::motion_changed(BodySlot id, bool jumped) {
+  for (const Link& link : links(id)) mark_dirty(link.slot);
+  if (!jumped) return;
+  for (const Link& link : links(id)) {
+    if (mode(id, link.other) == ContactMode::resolved) pairs_[link.slot].fresh = true;
+  }
+}
+
+template <int Degree>
+inline typename Pairs<Degree>::Event Pairs<Degree>::take_next() {
+  const Slot slot = contacts_.top().slot;
+  Pair& pair = pairs_[slot];
+  const Event event{pair.a, pair.b, pair.overlapping, slot < found_.size() ? found_[slot] : FoundTouch{}};
+  contacts_.clear(slot);
+  if (pair.overlapping) {
+    pair.overlapping = false;
+  } else if (mode(pair.a, pair.b) == ContactMode::transparent) {
+    pair.overlapping = true;
+  }
+  mark_dirty(slot);
+  return event;
+}
+
 #define KDS_DECLARE(degree) extern template class Pairs<degree>;
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 #undef KDS_DECLARE

@@ -39,8 +39,7 @@ double slack_of(const MovingShape<Degree>& a, const MovingShape<Degree>& b, doub
 }  // namespace
 
 template <int Degree>
-typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find(BodySlot a, BodySlot b, int wall) const {
-  if (a >= of_.size()) return none;
+typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_among(BodySlot a, BodySlot b, int wall) const {
   for (const Slot slot : of_[a].contacts) {
     const Contact& hold = contacts_[slot];
     if (hold.a == a && hold.b == b && hold.wall == wall) return slot;

@@ -93,7 +93,7 @@ class RestingContacts {
   /// Whether there are any.
   bool empty() const { return contacts_.size() == free_.size(); }
   /// One of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
-  Slot find(BodySlot a, BodySlot b, int wall = -1) const;
+  Slot find(BodySlot a, BodySlot b, int wall = -1) const { return rests(a) ? find_among(a, b, wall) : none; }
   bool rests(BodySlot id) const { return id < of_.size() && !of_[id].contacts.empty(); }
 
   /// A contact begins to last. Between meshes several may last at once, in a groove, say; one for each normal.
@@ -112,7 +112,9 @@ class RestingContacts {
   }
   bool settled() const { return disturbed_.empty(); }
   /// Gives all that have been disturbed the motions that their contacts leave them.
-  void settle();
+  void settle() {
+    if (!settled()) settle_all();
+  }
 
   /// When two bodies that rest on each other may meet elsewhere.
   double next_contact(BodySlot a, BodySlot b);
@@ -166,11 +168,13 @@ class RestingContacts {
     if (of_.size() <= id) of_.resize(id + std::size_t{1});
     return of_[id];
   }
+  Slot find_among(BodySlot a, BodySlot b, int wall) const;
   void note(BodySlot id);
   void drop(Slot slot);
   void schedule_release(Slot slot);
 
   // resting_islands.cpp
+  void settle_all();
   void settle_fixed(BodySlot id);
   bool settle_island(BodySlot id);
   Island find_island(BodySlot id);

@@ -26,7 +26,7 @@ void RestingContacts<Degree>::note(BodySlot id) {
 }
 
 template <int Degree>
-void RestingContacts<Degree>::settle() {
+void RestingContacts<Degree>::settle_all() {
   while (!disturbed_.empty()) {
     const BodySlot id = disturbed_.back();
     disturbed_.pop_back();

@@ -82,8 +82,7 @@ KineticBox<Degree> Volumes<Degree>::renew(BodySlot slot) {
 }
 
 template <int Degree>
-void Volumes<Degree>::schedule(BodySlot slot) {
-  if (!from_caller(slot) && !meshes_) return;
+void Volumes<Degree>::set_end(BodySlot slot) {
   const double until = from_caller(slot) ? given_[slot]->box.valid_until : clearance_until(slot);
   if (until <= clock_.horizon && until < never) {
     make_room(ends_, bodies_.slots());

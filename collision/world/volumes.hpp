@@ -66,7 +66,9 @@ class Volumes {
   StaticBox swept(BodySlot slot, double from, double until) const;
 
   /// Takes note of until when the body's box holds it.
-  void schedule(BodySlot slot);
+  void schedule(BodySlot slot) {
+    if (meshes_ || from_caller(slot)) set_end(slot);
+  }
   /// When the next box has to be renewed, and whose. Precondition of next_body(): next_time() < never.
   double next_time() const { return ends_.empty() ? never : ends_.top().time; }
   BodySlot next_body() const { return ends_.top().slot; }
@@ -84,6 +86,7 @@ class Volumes {
   bool asked(BodySlot slot) const { return bodies_[slot].entered || !from_caller(slot); }
   Box box_or_ball(BodySlot slot) const;
   Box bare_box(BodySlot slot) const;
+  void set_end(BodySlot slot);
   void place_extents(BodySlot slot);
   KineticSlab<Degree> slab(BodySlot slot, std::size_t i, double now) const;
 
