@@ -66,10 +66,10 @@ std::vector<Vector3d> clip(const std::vector<Vector3d>& polygon, const Vector3d&
 
 Vector3d patch_centre(std::span<const Vector3d> a, std::span<const Vector3d> b, const Vector3d& offset,
                       const Vector3d& normal) {
+  if (a.size() == 1) return a[0];
+  if (b.size() == 1) return b[0] + offset;
   std::vector<Vector3d> moved(b.begin(), b.end());
   for (Vector3d& p : moved) p += offset;
-  if (a.size() == 1) return a[0];
-  if (moved.size() == 1) return moved[0];
   if (a.size() == 2 && moved.size() == 2) return between_segments(a[0], a[1], moved[0], moved[1]);
   std::vector<Vector3d> cut(a.begin(), a.end());
   std::vector<Vector3d> window = std::move(moved);

@@ -1,6 +1,6 @@
 #include "collision/shapes/box.hpp"
 
-#include <utility>
+#include <cstddef>
 
 namespace kds::collision {
 
@@ -43,18 +43,21 @@ SupportingFeature ShapeKind<Box>::support(const Box&, const PlacedShape& placed,
     const double along = dot(direction, u);
     side[d] = std::abs(along) <= parallel_sine * norm(u) ? 0 : (along > 0 ? 1 : -1);
   }
-  SupportingFeature support{box_feature(side), {Vector3d::Zero()}};
+  SupportingFeature support{box_feature(side), {}};
+  auto& vertices = support.vertices;
+  vertices.reserve(4);  // a face has four
+  vertices.push_back(Vector3d::Zero());
   for (int d = 0; d < 3; ++d) {
     const Vector3d& u = placed.half_axes[static_cast<std::size_t>(d)];
     if (side[d] != 0) {
-      for (Vector3d& v : support.vertices) v += side[d] * u;
+      for (Vector3d& v : vertices) v += side[d] * u;
       continue;
     }
     // Out along -u, back along +u: the four corners of a face come in cyclic order.
-    std::vector<Vector3d> doubled;
-    for (const Vector3d& v : support.vertices) doubled.push_back(v - u);
-    for (auto v = support.vertices.rbegin(); v != support.vertices.rend(); ++v) doubled.push_back(*v + u);
-    support.vertices = std::move(doubled);
+    for (std::size_t i = vertices.size(); i-- > 0;) {
+      vertices.push_back(vertices[i] + u);
+      vertices[i] -= u;
+    }
   }
   return support;
 }
