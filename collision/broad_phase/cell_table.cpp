@@ -59,6 +59,7 @@ class CellTable::Gathering {
   void look(const Bucket& bucket, Ends limits) {
     bits_ = bits_ >> most | bucket.within(limits) << (64 - most);
     buckets_[count_++] = &bucket;
+    // Once in sixteen times. Where the compiler knows, it keeps what the search needs in registers (a seventh less).
     if (count_ == buckets_.size()) [[unlikely]]
       take();
   }
