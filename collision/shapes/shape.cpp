@@ -32,18 +32,19 @@ auto of_kind(const Shape& shape, const Ask& ask) {
   throw std::logic_error(std::string(function) + ": asked of a " + kind);
 }
 
-}  // namespace
-
-void require_size(double value, const char* what) {
-  if (value >= smallest_size && value <= largest_magnitude) [[likely]]
-    return;
-  const std::string name(what);
+[[noreturn]] void refuse_size(double value, const std::string& name) {
   if (!std::isfinite(value)) throw std::invalid_argument(name + ": must be finite");
   if (!(value > 0)) throw std::invalid_argument(name + ": must be > 0");
   if (value < smallest_size)
     throw std::invalid_argument(name + ": " + number_text(value) + " is below 2^-205 (1.9e-62)");
-  if (value > largest_magnitude)
-    throw std::invalid_argument(name + ": " + number_text(value) + " is above 2^205 (5.1e61)");
+  throw std::invalid_argument(name + ": " + number_text(value) + " is above 2^205 (5.1e61)");
+}
+
+}  // namespace
+
+/// Asked of each ball that the narrow phase makes into a shape: nothing is made for what is in range.
+void require_size(double value, const char* what) {
+  if (!(value >= smallest_size && value <= largest_magnitude)) refuse_size(value, what);
 }
 
 void require_radius(double radius) { require_size(radius, "radius"); }
