@@ -20,6 +20,9 @@ function(kds_add_layer name)
     add_library(${target} STATIC ${sources})
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:kds_warnings>)
+    # Numbers of 64 bits, ids of bodies say, that are taken for ones of 32.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wconversion>
+                                             $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wshorten-64-to-32>)
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)

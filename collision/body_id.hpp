@@ -2,12 +2,7 @@
 #pragma once
 
 #include <bit>
-#include <compare>
-#include <concepts>
-#include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <type_traits>
 
 namespace kds::collision {
 
@@ -18,68 +13,21 @@ using BodySlot = std::uint32_t;
 /// The slot of no body.
 inline constexpr BodySlot no_body = ~BodySlot{0};
 
-/// The name of a body, which no other body of its world ever gets: its slot, and its generation, which is how many
-/// bodies were removed from that slot before it.
+/// The name of a body, which no other body of its world ever gets: the number generation * 2^32 + slot, where the
+/// generation is how many bodies were removed from that slot before it. So bodies are 0, 1, 2, ... as long as none has
+/// been removed.
 ///
-/// It is the number generation * 2^32 + slot, so that bodies are 0, 1, 2, ... as long as none has been removed, and may
-/// be used as that number. But it is told apart from slots: the one becomes the other only where that is written down.
-class BodyId {
- public:
-  constexpr BodyId() = default;
-  template <std::integral Number>
-  constexpr explicit(std::same_as<Number, BodySlot>) BodyId(Number number)
-      : number_(static_cast<std::uint64_t>(number)) {}
-  constexpr BodyId(std::uint32_t generation, BodySlot slot) : number_(std::uint64_t{generation} << 32 | slot) {}
+/// It is a plain number, for callers to store and count as they like. Where slots become ids and ids slots is therefore
+/// not for the compiler to see: a world does so at its border only, by `Bodies::id_of` and `Bodies::slot_of`.
+using BodyId = std::uint64_t;
 
-  constexpr BodySlot slot() const { return static_cast<BodySlot>(number_); }
-  constexpr std::uint32_t generation() const { return static_cast<std::uint32_t>(number_ >> 32); }
-  /// Ids in the order in which events of one time are told: by slot, and of one slot by generation.
-  constexpr std::uint64_t rank() const { return std::rotl(number_, 32); }
+inline constexpr int slot_bits = 32;
 
-  template <std::same_as<std::uint64_t> Number>
-  constexpr operator Number() const {
-    return number_;
-  }
-  /// As another number, which may not hold all of it: where that is written down.
-  template <class Number>
-  requires(std::is_arithmetic_v<Number> && !std::same_as<Number, std::uint64_t> &&
-           !std::same_as<Number, bool>) constexpr explicit
-  operator Number() const {
-    return static_cast<Number>(number_);
-  }
+constexpr BodyId body_id(std::uint32_t generation, BodySlot slot) { return BodyId{generation} << slot_bits | slot; }
+constexpr BodySlot body_slot(BodyId id) { return static_cast<BodySlot>(id); }
+constexpr std::uint32_t body_generation(BodyId id) { return static_cast<std::uint32_t>(id >> slot_bits); }
 
-  constexpr BodyId& operator++() {
-    ++number_;
-    return *this;
-  }
-
-  template <std::integral Number>
-  friend constexpr BodyId operator+(BodyId a, Number b) {
-    return a.number_ + static_cast<std::uint64_t>(b);
-  }
-  template <std::integral Number>
-  friend constexpr BodyId operator-(BodyId a, Number b) {
-    return a.number_ - static_cast<std::uint64_t>(b);
-  }
-
-  friend constexpr bool operator==(BodyId a, BodyId b) { return a.number_ == b.number_; }
-  friend constexpr std::strong_ordering operator<=>(BodyId a, BodyId b) { return a.number_ <=> b.number_; }
-  template <std::integral Number>
-  friend constexpr bool operator==(BodyId a, Number b) {
-    return a.number_ == static_cast<std::uint64_t>(b);
-  }
-  template <std::integral Number>
-  friend constexpr std::strong_ordering operator<=>(BodyId a, Number b) {
-    return a.number_ <=> static_cast<std::uint64_t>(b);
-  }
-
- private:
-  std::uint64_t number_ = 0;
-};
+/// Ids in the order in which events of one time are told: by slot, and of one slot by generation.
+constexpr std::uint64_t body_rank(BodyId id) { return std::rotl(id, slot_bits); }
 
 }  // namespace kds::collision
-
-template <>
-struct std::hash<kds::collision::BodyId> {
-  std::size_t operator()(kds::collision::BodyId id) const noexcept { return std::hash<std::uint64_t>()(id); }
-};

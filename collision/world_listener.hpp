@@ -24,8 +24,8 @@ template <int Degree>
 class World;
 
 /// Told of events in order of time, and of those at one time in an order that does not depend on the broad phase:
-/// bodies come by their slots, and those that were in one slot by their generations (BodyId::rank()). What follows from
-/// an event, or from what callers do, comes before the next event, in this order:
+/// bodies come by their slots, and those that were in one slot by their generations (body_rank). What follows from an
+/// event, or from what callers do, comes before the next event, in this order:
 /// 1. `held`, by (a, b), then `moved`, by body;
 /// 2. `pair_began` and `pair_ended`, by (a, b); volumes that part and meet again at one instant have done neither;
 /// 3. separations of bodies that have been removed, by (a, b);

@@ -25,29 +25,30 @@ class Teller final : public WorldListener<2> {
 
   void contact(World<2>& world, const PairEvent& event) override {
     ++contacts;
-    tell(world, event.contact.time, name(event.a) + " hits " + name(event.b), {event.a, event.b});
+    const Id a = body_slot(event.a), b = body_slot(event.b);
+    tell(world, event.contact.time, page_.name(a) + " hits " + page_.name(b), {a, b});
   }
   void wall(World<2>& world, const WallEvent& event) override {
     const char* const walls[] = {"left", "right", "lower", "upper", "back", "front"};
-    const std::string text = name(event.body) + " hits the " + walls[event.wall] + " wall";
-    tell(world, event.contact.time, text, {event.body});
+    const Id id = body_slot(event.body);
+    tell(world, event.contact.time, page_.name(id) + " hits the " + walls[event.wall] + " wall", {id});
   }
 
   /// What the page shows beside: until when each pair is apart and each ball inside, if nothing happens before.
   course::State known(const World<2>& world, double now) const {
     course::State state{.text = std::to_string(contacts) + " contacts so far"};
-    for (BodyId a = 0; a < world.size(); ++a) {
-      for (BodyId b = a + 1; b < world.size(); ++b) {
+    for (Id a = 0; a < world.size(); ++a) {
+      for (Id b = a + 1; b < world.size(); ++b) {
         const certificates::BallSeparation<2> apart{world.motion(a), world.motion(b), radius(a), radius(b)};
-        const std::string fact = name(a) + " and " + name(b) + " are apart";
-        state.certificates.push_back({fact, {a.slot(), b.slot()}, apart.first_approach(now, never)});
+        const std::string fact = page_.name(a) + " and " + page_.name(b) + " are apart";
+        state.certificates.push_back({fact, {a, b}, apart.first_approach(now, never)});
       }
-      state.certificates.push_back({name(a) + " is inside the walls", {a.slot()}, leaves(world, a, now)});
+      state.certificates.push_back({page_.name(a) + " is inside the walls", {a}, leaves(world, a, now)});
     }
     return state;
   }
   /// The first failure of the four certificates that keep a ball inside.
-  double leaves(const World<2>& world, BodyId id, double now) const {
+  double leaves(const World<2>& world, Id id, double now) const {
     double first = never;
     for (int i = 0; i < 4; ++i) {
       const auto wall = static_cast<std::size_t>(i);  // of x, y, x, y
@@ -59,20 +60,15 @@ class Teller final : public WorldListener<2> {
     }
     return first;
   }
-  static double radius(BodyId id) { return 0.35 + 0.1 * id.slot(); }
+  static double radius(Id id) { return 0.35 + 0.1 * id; }
   int contacts = 0;
 
  private:
-  void tell(World<2>& world, double time, const std::string& text, const std::vector<BodyId>& members) {
+  void tell(World<2>& world, double time, const std::string& text, const std::vector<Id>& members) {
     std::cout << "t = " << time << ": " << text << '\n';
-    std::vector<Id> places;
-    for (const BodyId id : members) {
-      page_.moves(id.slot(), world.motion(id), time);
-      places.push_back(id.slot());
-    }
-    page_.event(time, text, places, known(world, time));
+    for (const Id id : members) page_.moves(id, world.motion(id), time);
+    page_.event(time, text, members, known(world, time));
   }
-  std::string name(BodyId id) const { return page_.name(id.slot()); }
 
   course::Page& page_;
 };
@@ -102,7 +98,7 @@ int main(int argc, char** argv) {
   const Vector3d speeds[] = {{1.1, 1.6, 0}, {0.7, 0, 0}, {-0.8, 1.2, 0}, {-1.2, -0.4, 0}};
   for (Id id = 0; id < 4; ++id) {
     const Path path = Path::parabola(places[id], speeds[id], gravity);
-    const double radius = Teller::radius(BodyId(id));
+    const double radius = Teller::radius(id);
     page.element(id, std::string(1, static_cast<char>('a' + id)), radius);
     page.moves(id, path, 0);
     world.add_body({.shape = Sphere{radius}, .motion = {path}, .mass = radius * radius * radius});

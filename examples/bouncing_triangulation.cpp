@@ -32,10 +32,10 @@ struct Follower final : collision::WorldListener<1> {
 
   void contact(World& world, const PairEvent& e) override {
     contacts.push_back(e.contact.time);
-    for (const BodyId id : {e.a, e.b}) centres.update(id.slot(), centre(world, id), e.contact.time);
+    for (const BodyId id : {e.a, e.b}) centres.update(id, centre(world, id), e.contact.time);
   }
   void wall(World& world, const WallEvent& e) override {
-    centres.update(e.body.slot(), centre(world, e.body), e.contact.time);
+    centres.update(e.body, centre(world, e.body), e.contact.time);
   }
 };
 
@@ -49,7 +49,7 @@ int main() {
     const Eigen::Vector3d place(1 + 2 * (i % 4), 1 + 2.5 * (i / 4) + 0.25 * (i % 3), 0);
     const Eigen::Vector3d velocity(1.5 - i % 5, 0.25 * (i % 7) - 1, 0);
     const BodyId id = world.add_body({.shape = collision::Sphere{0.5}, .motion = {{{place, velocity}, 0}}});
-    follower.centres.insert(id.slot(), centre(world, id), 0);
+    follower.centres.insert(id, centre(world, id), 0);
   }
   Kinetic<structures::DelaunayRule<Path>> triangulation(follower.centres, 0);
 

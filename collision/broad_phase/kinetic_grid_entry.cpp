@@ -32,7 +32,7 @@ std::vector<BodySlot> spatial_order(std::span<const typename BroadPhase<Degree>:
     low = low.min(at);
     high = high.max(at);
   }
-  const int levels = (std::bit_width(bodies.size() / bodies_per_block) - 1) / 3;
+  const int levels = (static_cast<int>(std::bit_width(bodies.size() / bodies_per_block)) - 1) / 3;
   const Eigen::Array3d scale = std::ldexp(1.0, levels) / (high - low);
   const double last = std::ldexp(1.0, levels) - 1;
   const auto block_of = [&](std::size_t i) {

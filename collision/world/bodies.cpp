@@ -19,12 +19,12 @@ constexpr double jump_tolerance = 0x1p-40;
 
 template <int Degree>
 void Bodies<Degree>::refuse(BodyId id) const {
-  const BodySlot slot = id.slot();
+  const BodySlot slot = body_slot(id);
   const bool free = std::find(free_.begin(), free_.end(), slot) != free_.end();
   const bool retired = slot < bodies_.size() && !bodies_[slot].alive && !free;
-  const bool removed = id.generation() < generation(slot) || (retired && id.generation() == generation(slot));
+  const bool removed = body_generation(id) < generation(slot) || (retired && body_generation(id) == generation(slot));
   throw std::out_of_range("World: there is no body " + std::to_string(id) + " (generation " +
-                          std::to_string(id.generation()) + " of slot " + std::to_string(slot) + "): it " +
+                          std::to_string(body_generation(id)) + " of slot " + std::to_string(slot) + "): it " +
                           (removed ? "was removed" : "has never been there"));
 }
 

@@ -87,16 +87,16 @@ class Bodies {
   using Mover = certificates::MovingBall<Degree>;  ///< what the tests of balls read of a body
 
   std::size_t size() const { return alive_; }
-  bool contains(BodyId id) const { return alive(id.slot()) && generation(id.slot()) == id.generation(); }
+  bool contains(BodyId id) const { return alive(body_slot(id)) && generation(body_slot(id)) == body_generation(id); }
   /// Where a body is. Throws std::out_of_range, naming the id and saying whether the body was removed, if there is none
   /// (any more).
   BodySlot slot_of(BodyId id) const {
     if (!contains(id)) [[unlikely]]
       refuse(id);
-    return id.slot();
+    return body_slot(id);
   }
   /// The id of the body in a slot. Precondition: there is one.
-  BodyId id_of(BodySlot slot) const { return BodyId(generation(slot), slot); }
+  BodyId id_of(BodySlot slot) const { return body_id(generation(slot), slot); }
 
   /// All slots are below this.
   std::size_t slots() const { return bodies_.size(); }

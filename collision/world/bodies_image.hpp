@@ -37,11 +37,12 @@ struct Bodies<Degree>::Image {
   bool alive(BodySlot slot) const { return slot < bodies.size() && bodies[slot].alive; }
   bool entered(BodySlot slot) const { return alive(slot) && bodies[slot].entered; }
   std::uint32_t generation(BodySlot slot) const { return slot < generations.size() ? generations[slot] : 0; }
-  /// Whether a body has entered, or was removed.
-  bool entered(BodyId id) const { return entered(id.slot()) && id.generation() == generation(id.slot()); }
+  /// Whether a body is there and has entered, or was removed.
+  bool present(BodyId id) const { return entered(body_slot(id)) && body_generation(id) == generation(body_slot(id)); }
   bool removed(BodyId id) const {
-    const bool last = !alive(id.slot()) && id.generation() == last_generation;
-    return id.slot() < bodies.size() && (id.generation() < generation(id.slot()) || last);
+    const BodySlot slot = body_slot(id);
+    const bool last = !alive(slot) && body_generation(id) == last_generation;
+    return slot < bodies.size() && (body_generation(id) < generation(slot) || last);
   }
 
   /// Loading, meshes that are among `known` are not built again.

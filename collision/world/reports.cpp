@@ -24,7 +24,7 @@ bool detail::Pending::operator<(const Pending& other) const {
       }
       return 5;
     };
-    return std::tuple(stage(), event.a.rank(), event.b.rank(), event.kind);
+    return std::tuple(stage(), body_rank(event.a), body_rank(event.b), event.kind);
   };
   return key(*this) < key(other);
 }

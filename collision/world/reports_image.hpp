@@ -33,11 +33,11 @@ void check_reports(const std::vector<Reports::Report>& pending, const BodiesImag
     const auto need = [i](bool right, const char* what) { image::require(right, "pending", i, what); };
     need(event.kind >= Kind::held && event.kind <= Kind::overlap, "is of an unknown kind");
     if (event.kind == Kind::moved) {
-      need(bodies.entered(event.a) && event.b == event.a, "is not of a body in the world");
+      need(bodies.present(event.a) && event.b == event.a, "is not of a body in the world");
     } else {
-      need(event.a.slot() < event.b.slot(), "is of no pair");
-      const bool of_present = bodies.entered(event.a) && bodies.entered(event.b);
-      const auto known = [&](BodyId id) { return bodies.entered(id) || bodies.removed(id); };
+      need(body_slot(event.a) < body_slot(event.b), "is of no pair");
+      const bool of_present = bodies.present(event.a) && bodies.present(event.b);
+      const auto known = [&](BodyId id) { return bodies.present(id) || bodies.removed(id); };
       need(of_present || (known(event.a) && known(event.b)), "is not of two bodies that are or were in the world");
       need(of_present || event.kind != Kind::overlap, "is an overlap of a body that was removed");
     }

@@ -14,6 +14,7 @@
 namespace kds_collide {
 namespace {
 
+using kds::collision::body_slot;
 using kds::collision::BodyId;
 using kds::collision::BroadPhaseKind;
 using kds::collision::Contact;
@@ -66,14 +67,8 @@ class Teller final : public kds::collision::WorldListener<Degree> {
 
   void wall(World& world, const kds::collision::WallEvent& event) override {
     const Contact& c = event.contact;
-    sink_.on_event({c.time,
-                    EventKind::wall,
-                    event.body.slot(),
-                    static_cast<std::uint32_t>(event.wall),
-                    c.point,
-                    c.normal,
-                    {},
-                    {}});
+    const auto wall = static_cast<std::uint32_t>(event.wall);
+    sink_.on_event({c.time, EventKind::wall, body_slot(event.body), wall, c.point, c.normal, {}, {}});
     tell_motion(world, event.body);
   }
   void pair_began(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_begin, a, b, t); }
@@ -82,10 +77,10 @@ class Teller final : public kds::collision::WorldListener<Degree> {
  private:
   void tell(EventKind kind, const PairEvent& event) {
     const Contact& c = event.contact;
-    sink_.on_event({c.time, kind, event.a.slot(), event.b.slot(), c.point, c.normal, c.feature_a, c.feature_b});
+    sink_.on_event({c.time, kind, body_slot(event.a), body_slot(event.b), c.point, c.normal, c.feature_a, c.feature_b});
   }
   void tell_volumes(EventKind kind, BodyId a, BodyId b, double t) {
-    sink_.on_event({t, kind, a.slot(), b.slot(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}});
+    sink_.on_event({t, kind, body_slot(a), body_slot(b), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}});
   }
   void tell_motions(const World& world, const PairEvent& event) {
     if (response_ == Response::none) return;
@@ -99,7 +94,7 @@ class Teller final : public kds::collision::WorldListener<Degree> {
     piece.coefficients.fill(Eigen::Vector3d::Zero());
     std::copy(motion.coefficients.begin(), motion.coefficients.end(), piece.coefficients.begin());
     piece.start = motion.start;
-    sink_.on_motion(id.slot(), piece);
+    sink_.on_motion(body_slot(id), piece);
   }
 
   EventSink& sink_;

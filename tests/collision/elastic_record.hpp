@@ -51,8 +51,8 @@ oracle::ElasticRun record(const Scene<Degree>& scene, const WorldOptions& option
     const Event& e = log.events[i];
     if (e.kind == Kind::held) break;
     oracle::ElasticEvent event{oracle::ElasticEvent::Kind::contact,
-                               e.a.slot(),
-                               e.b.slot(),
+                               body_slot(e.a),
+                               body_slot(e.b),
                                e.time(),
                                {e.contact.normal[0], e.contact.normal[1], e.contact.normal[2]},
                                std::move(motions[i])};

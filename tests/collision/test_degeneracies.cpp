@@ -231,7 +231,7 @@ TEST_CASE("Newton's cradle: the last ball leaves with the first one's speed", "[
       world.audit();
       INFO(in << " in");
       for (BodyId i = 0; i < n; ++i) {
-        CHECK(world.motion(i).velocity(4)[0] == (i >= n - in ? 2 : 0));
+        CHECK(world.motion(i).velocity(4)[0] == (i >= n - static_cast<BodyId>(in) ? 2 : 0));
       }
       for (const Event& e : log.of(Kind::contact)) CHECK(e.time() == 2);
       CHECK(log.count(Kind::contact) == static_cast<std::size_t>(in * (n - in)));

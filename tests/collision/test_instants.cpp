@@ -37,7 +37,7 @@ std::vector<Event> with_each_broad_phase(bool pairs, const Act& act, const React
 }
 
 /// Its slot, with a stroke for each body that was removed from there before it.
-std::string shown(BodyId id) { return std::to_string(id.slot()) + std::string(id.generation(), '\''); }
+std::string shown(BodyId id) { return std::to_string(body_slot(id)) + std::string(body_generation(id), '\''); }
 
 /// Kind and bodies of each, for short.
 std::vector<std::string> told(const std::vector<Event>& events) {
@@ -97,7 +97,7 @@ TEST_CASE("A body does not enter for one of its slot that was removed before it 
     world.remove_body(0);
     auto later = ball<1>(1, {1, 0, 0});
     later.motion[0].start = 0.25;
-    REQUIRE(world.add_body(later) == BodyId(1, 0));  // the slot is given again at once
+    REQUIRE(world.add_body(later) == body_id(1, 0));  // the slot is given again at once
     world.advance_to(1);
   });
   REQUIRE(log.size() == 1);
@@ -150,7 +150,7 @@ TEST_CASE("A callback takes a body away before all of its overlaps are told, and
       [](World<1>& world, const Event& e) {
         if (e.kind != Kind::overlap || e.b != 1) return;
         world.remove_body(1);
-        CHECK(world.add_body(ball<1>(0.5, {1, 0, 0})) == BodyId(1, 1));
+        CHECK(world.add_body(ball<1>(0.5, {1, 0, 0})) == body_id(1, 1));
       });
   CHECK(told(log) == Told{"pair_began 0 1", "pair_began 0 2", "pair_began 1 2", "overlap 0 1",  // then it goes
                           "pair_ended 0 1", "pair_began 0 1'", "pair_ended 1 2", "pair_began 1' 2", "separation 0 1",

@@ -85,7 +85,7 @@ TEST_CASE("callbacks: a listener that turns other bodies round at each contact",
       EventLog<1> log;
       log.then = [](World<1>& world, const Event& e) {
         if (e.kind != Kind::contact) return;
-        const BodyId third = 3 - std::uint64_t{e.a} - std::uint64_t{e.b};
+        const BodyId third = 3 - e.a - e.b;
         set_speed(world, 1, third == 0 ? 1 : -1);
         set_speed(world, 0, 2);
         set_speed(world, 2, -2);

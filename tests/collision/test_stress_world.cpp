@@ -239,7 +239,7 @@ TEST_CASE("stress: motions that callbacks change exactly at event times", "[worl
         if (e.kind != Kind::contact) return;
         const auto bits = static_cast<std::uint64_t>(lattice_index(e.time())) * 0x9e3779b97f4a7c15ull;
         if (bits >> 63 != 0) return;
-        const BodyId other = static_cast<BodyId>((std::uint64_t{e.a} + 1 + std::uint64_t{e.b}) % world.size());
+        const BodyId other = (e.a + 1 + e.b) % world.size();
         auto changed = world.free_motion(other).restarted(e.time());
         changed.coefficients[1] = Vector3d(changed.coefficients[1][1], -changed.coefficients[1][0], 0.5);
         world.update_motion(other, changed);

@@ -199,7 +199,7 @@ TEST_CASE("Removing a body ends its pairs and contacts, with reports", "[world]"
     REQUIRE(log.count(Kind::pair_ended) == 1);
     CHECK(log.of(Kind::pair_ended)[0].time() == 2);
     // The slot is given again, the id is not.
-    CHECK(world.add_body(ball<1>(1, {50, 0, 0})) == BodyId(1, 0));
+    CHECK(world.add_body(ball<1>(1, {50, 0, 0})) == body_id(1, 0));
     world.advance_to(6);
     world.audit();
   }
@@ -221,7 +221,7 @@ TEST_CASE("Bodies may be removed and added inside their own contact", "[world]")
         if (which == 4) {  // another one comes in its place, in contact at once
           world.remove_body(e.a);
           const BodyId added = world.add_body(ball<1>(1, {1.5, 0, 0}));
-          CHECK(added == BodyId(1, e.a.slot()));
+          CHECK(added == body_id(1, body_slot(e.a)));
           CHECK_FALSE(world.contains(e.a));
         }
       };

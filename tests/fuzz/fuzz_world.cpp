@@ -26,7 +26,7 @@ constexpr std::size_t most_events = 300;
 /// Numbers for a callback, from the input's own seed and what has happened.
 Random numbers_for(const Event& e, std::uint64_t seed) {
   std::uint64_t mix = seed ^ std::bit_cast<std::uint64_t>(e.time());
-  mix = mix * 0x9e3779b97f4a7c15 ^ (e.a.rank() << 8 ^ std::rotl(e.b.rank(), 40));
+  mix = mix * 0x9e3779b97f4a7c15 ^ (body_rank(e.a) << 8 ^ std::rotl(body_rank(e.b), 40));
   return Random(mix * 0x9e3779b97f4a7c15 ^ static_cast<std::uint64_t>(e.kind));
 }
 
@@ -124,7 +124,7 @@ class Scenario {
 
   void add(const BodyDescription<Degree>& description) {
     const BodyId id = world_.add_body(description);
-    last_in_[id.slot()] = id;
+    last_in_[body_slot(id)] = id;
   }
   /// Perhaps of one that was removed, or has never been there.
   BodyId any_body() { return last_in_[bytes_.below(most_bodies)]; }
@@ -163,7 +163,7 @@ class Scenario {
     if (options_.response != Response::none || options_.edits) return;
     for (const BodyId a : last_in_) {
       for (const BodyId b : last_in_) {
-        if (a.slot() >= b.slot() || !world_.contains(a) || !world_.contains(b) || !both_round(a, b) || !both_in(a, b))
+        if (body_slot(a) >= body_slot(b) || !world_.contains(a) || !world_.contains(b) || !both_round(a, b) || !both_in(a, b))
           continue;
         const PlacedShape shape_a = world_.shape(a);
         const PlacedShape shape_b = world_.shape(b);

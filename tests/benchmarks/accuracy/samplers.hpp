@@ -44,7 +44,7 @@ class PollingSampler final : private kds::collision::PairListener {
     for (Pair& pair : pairs_) {
       const bool now =
           overlap(shapes_[pair.a], shapes_[pair.b], motions_[pair.b].position(t) - motions_[pair.a].position(t));
-      if (now && !pair.overlaps) reports.push_back({BodyId(pair.a), BodyId(pair.b), t});
+      if (now && !pair.overlaps) reports.push_back({pair.a, pair.b, t});
       pair.overlaps = now;
     }
   }
@@ -112,7 +112,7 @@ class DiscreteSampler {
     for (std::size_t axis = 0; axis < 3; ++axis) sort(axis);
     for (Pair& pair : pairs_) {
       const bool now = overlap(shapes_[pair.a], shapes_[pair.b], places_[pair.b] - places_[pair.a]);
-      if (now && !pair.overlaps) reports.push_back({BodyId(pair.a), BodyId(pair.b), t});
+      if (now && !pair.overlaps) reports.push_back({pair.a, pair.b, t});
       pair.overlaps = now;
     }
   }

@@ -30,7 +30,7 @@ class Hasher final : public kds::collision::WorldListener<1> {
 
   void contact(World&, const kds::collision::PairEvent& e) override {
     note(1, e.a, e.b, e.contact);
-    if (meetings_) meetings_->push_back({e.contact.time, e.a.slot(), e.b.slot()});
+    if (meetings_) meetings_->push_back({e.contact.time, e.a, e.b});
   }
   void separation(World&, const kds::collision::PairEvent& e) override { note(2, e.a, e.b, e.contact); }
   void overlap(World&, const kds::collision::PairEvent& e) override { note(3, e.a, e.b, e.contact); }
@@ -45,7 +45,7 @@ class Hasher final : public kds::collision::WorldListener<1> {
     return h ^ (h >> 29);
   }
   void note(std::uint64_t kind, BodyId a, BodyId b, const kds::collision::Contact& c) {
-    std::uint64_t h = mix(kind, a.rank() | b.slot());
+    std::uint64_t h = mix(kind, std::uint64_t{a} << 32 | b);
     h = mix(h, std::bit_cast<std::uint64_t>(c.time));
     for (int d = 0; d < 3; ++d) {
       h = mix(h, std::bit_cast<std::uint64_t>(c.point[d]));

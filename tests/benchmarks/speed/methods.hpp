@@ -34,7 +34,7 @@ struct Drive {
 /// A contact, to compare with others'.
 struct Meeting {
   double time;
-  kds::collision::BodySlot a, b;  ///< nothing is removed, so these are the numbers of the balls
+  kds::collision::BodyId a, b;
 };
 
 struct Outcome {

@@ -41,7 +41,7 @@ void use(World<Degree>& world) {
   } catch (const std::exception&) {
   }
   for (BodySlot slot = 0; slot < 100; ++slot) {
-    for (const BodyId id : {BodyId(slot), BodyId(1, slot)}) {
+    for (const BodyId id : {body_id(0, slot), body_id(1, slot)}) {
       if (world.contains(id)) world.free_motion(id);
     }
   }

@@ -57,7 +57,7 @@ class BouncingPoints {
   /// The triangulation is that of the places at the clock, made from nothing.
   void check() {
     simulator_->audit();
-    for (BodyId id = 0; id < world_.size(); ++id) CHECK(points_[id.slot()] == in_plane(world_.motion(id)));
+    for (BodyId id = 0; id < world_.size(); ++id) CHECK(points_[id] == in_plane(world_.motion(id)));
   }
 
  private:
@@ -69,8 +69,7 @@ class BouncingPoints {
     return options;
   }
   void follow(World<1>& world, BodyId id) {
-    const Path path = in_plane(world.motion(id));
-    if (!(points_[id.slot()] == path)) points_.update(id.slot(), path, world.now());
+    if (!(points_[id] == in_plane(world.motion(id)))) points_.update(id, in_plane(world.motion(id)), world.now());
   }
 
   EventLog<1> log_;

@@ -67,7 +67,7 @@ TEST_CASE("The next body of an id is not let pass for what the one before did", 
       world.advance_to(1);
       // Put down touching, moving up; then turned.
       const BodyId id = world.add_body(body<1>(Box{{1, 1, 1}}, motion<1>({0, 0, 1}, {0, 0, 1}, zero, 1)));
-      CHECK(id == BodyId(1, 1));
+      CHECK(id == body_id(1, 1));
       world.advance_to(1);
       world.update_motion(id, motion<1>({0, 0, 1}, {0, 0, -1}, zero, 1));
       world.advance_to(3);
@@ -162,7 +162,7 @@ TEST_CASE("What is told of an instant names each body by an id of its own", "[wo
     log.then = [](World<1>& w, const Event& e) {
       if (e.kind == Kind::contact) {
         w.remove_body(e.b);
-        CHECK(w.add_body(body<1>(Sphere{0.1}, motion<1>({500, 0, 0}, zero, zero, w.now()))) == BodyId(1, 1));
+        CHECK(w.add_body(body<1>(Sphere{0.1}, motion<1>({500, 0, 0}, zero, zero, w.now()))) == body_id(1, 1));
       } else {
         CHECK_FALSE(w.contains(e.b));
       }

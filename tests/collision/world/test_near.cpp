@@ -20,7 +20,7 @@ using Ids = std::vector<BodyId>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// In order of slots.
-bool by_rank(BodyId a, BodyId b) { return a.rank() < b.rank(); }
+bool by_rank(BodyId a, BodyId b) { return body_rank(a) < body_rank(b); }
 
 template <int Degree>
 Ids near(const World<Degree>& world, const Vector3d& min, const Vector3d& max) {

@@ -34,15 +34,15 @@ TEST_CASE("Bodies: the slot of one that is removed is given again, its id is not
   bodies.remove(0);
   CHECK_FALSE(bodies.contains(0));
   CHECK(bodies.contains(1));
-  CHECK(bodies.id_of(parts.add(one)) == BodyId(1, 0));
+  CHECK(bodies.id_of(parts.add(one)) == body_id(1, 0));
   CHECK_FALSE(bodies.contains(0));
-  CHECK(bodies.slot_of(BodyId(1, 0)) == 0);
+  CHECK(bodies.slot_of(body_id(1, 0)) == 0);
   CHECK(bodies.size() == 2);
   CHECK(bodies.slots() == 2);
   bodies.remove(1);
   bodies.remove(0);  // the slot that became free last comes first
-  CHECK(bodies.id_of(parts.add(one)) == BodyId(2, 0));
-  CHECK(bodies.id_of(parts.add(one)) == BodyId(1, 1));
+  CHECK(bodies.id_of(parts.add(one)) == body_id(2, 0));
+  CHECK(bodies.id_of(parts.add(one)) == body_id(1, 1));
   CHECK(bodies.id_of(parts.add(one)) == 2);
 }
 
@@ -51,11 +51,11 @@ TEST_CASE("Bodies: what is thrown says which body it was and whether it was remo
   parts.add(ball<1>(1, {0, 0, 0}));
   parts.bodies.remove(parts.add(ball<1>(1, {0, 0, 0})));
   CHECK_THROWS_WITH(parts.bodies.slot_of(1), "World: there is no body 1 (generation 0 of slot 1): it was removed");
-  CHECK_THROWS_WITH(parts.bodies.slot_of(BodyId(1, 1)),
+  CHECK_THROWS_WITH(parts.bodies.slot_of(body_id(1, 1)),
                     "World: there is no body 4294967297 (generation 1 of slot 1): it has never been there");
   CHECK_THROWS_WITH(parts.bodies.slot_of(2),
                     "World: there is no body 2 (generation 0 of slot 2): it has never been there");
-  CHECK_THROWS_WITH(parts.bodies.slot_of(BodyId(7, 0)),
+  CHECK_THROWS_WITH(parts.bodies.slot_of(body_id(7, 0)),
                     "World: there is no body 30064771072 (generation 7 of slot 0): it has never been there");
 }
 
@@ -68,7 +68,7 @@ TEST_CASE("Bodies: a slot whose generations are used up is retired") {
   image.generations = {last_generation};
   image.check(0);
   parts.bodies.become(image);
-  const BodyId last(last_generation, 0);
+  const BodyId last = body_id(last_generation, 0);
   CHECK_THROWS_WITH(parts.bodies.slot_of(last), Catch::Contains("never been there"));
   REQUIRE(parts.bodies.id_of(parts.add(one)) == last);
   parts.bodies.remove(0);
@@ -107,7 +107,7 @@ TEST_CASE("Bodies: an image whose generations or free slots cannot be is refused
 
 TEST_CASE("Reports: what is told of a body that is gone, and of the next in its slot, are two things") {
   Reports reports;
-  const BodyId gone(0, 1), next(1, 1);
+  const BodyId gone = body_id(0, 1), next = body_id(1, 1);
   reports.add_volumes(false, 0, gone, 1);
   reports.add(Reports::Kind::overlap, 0, gone, {});
   reports.add(Reports::Kind::moved, gone, gone, {});

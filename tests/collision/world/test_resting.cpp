@@ -155,7 +155,7 @@ TEST_CASE("Resting: two balls, one upon the other, and a pile of three boxes", "
         for (BodyId id = 1; id < world.size(); ++id) {
           CHECK(world.held(id - 1, id));
           CHECK(at_rest(world, id));
-          CHECK(std::abs(world.motion(id).position(1000)[2] - (2.0 * id.slot() - 1)) < 1e-9);
+          CHECK(std::abs(world.motion(id).position(1000)[2] - (2.0 * id - 1)) < 1e-9);
         }
       });
     }
@@ -176,7 +176,7 @@ TEST_CASE("Resting: the lowest of a pile is taken away and the rest lands on the
   with_all_methods(elastic(), scene, [](World<2>& world, EventLog<2>&) {
     for (BodyId id = 2; id <= 4; ++id) {
       CHECK(at_rest(world, id));
-      CHECK(std::abs(world.motion(id).position(30)[2] - (2.0 * id.slot() - 3)) < 1e-9);
+      CHECK(std::abs(world.motion(id).position(30)[2] - (2.0 * id - 3)) < 1e-9);
     }
   });
 }

@@ -37,12 +37,12 @@ template <int Degree>
 void meddle(World<Degree>& world, const Event& e) {
   if (e.kind != Kind::contact || !world.contains(e.a) || world.fixed(e.a)) return;
   const double now = world.now();
-  if ((e.a.slot() + e.b.slot()) % 3 == 0) {
+  if ((e.a + e.b) % 3 == 0) {
     auto motion = world.free_motion(e.a).restarted(now);
     if (motion.coefficients[1].norm() < 0.2) return;  // or it would go on for ever
     motion.coefficients[1] = -0.5 * motion.coefficients[1];
     world.update_motion(e.a, motion);
-  } else if ((e.a.slot() + e.b.slot()) % 5 == 0) {
+  } else if ((e.a + e.b) % 5 == 0) {
     auto motion = world.free_motion(e.a).restarted(now);
     motion.coefficients[0] = Vector3d(3, 3, 3) + motion.coefficients[1];
     world.remove_body(e.a);

@@ -12,6 +12,9 @@
 
 namespace kds::fuzz {
 
+using collision::body_generation;
+using collision::body_rank;
+using collision::body_slot;
 using collision::BodyId;
 using collision::Contact;
 

@@ -40,7 +40,7 @@ template <int Degree>
 void Player<Degree>::note(Line::Kind kind, BodyId a, BodyId b, const Contact& contact) {
   log_.push_back({kind, a, b, contact, {}});
   const bool of_a_wall = kind == Line::Kind::wall || kind == Line::Kind::held_at_wall;
-  const EventKey event{static_cast<std::uint8_t>(kind), number_of(a), of_a_wall ? std::size_t{b} : number_of(b), 0};
+  const EventKey event{static_cast<std::uint8_t>(kind), number_of(a), of_a_wall ? b : number_of(b), 0};
   const Line line = log_.back();  // the log may move
   for (const Call& each : reactor_.react(line, event, bodies_)) call(each, &line.contact);
 }
@@ -65,7 +65,7 @@ void Player<Degree>::note_state() {
   constexpr std::size_t most_compared = 40;  // each with all others
   std::vector<BodyId> there;
   std::copy_if(ids_.begin(), ids_.end(), std::back_inserter(there), [](BodyId id) { return id != gone; });
-  std::sort(there.begin(), there.end(), [](BodyId a, BodyId b) { return a.rank() < b.rank(); });
+  std::sort(there.begin(), there.end(), [](BodyId a, BodyId b) { return body_rank(a) < body_rank(b); });
   for (std::size_t i = 0; i < there.size(); ++i) {
     const BodyId a = there[i];
     const Motion& motion = world_->motion(a);

@@ -59,7 +59,7 @@ class Player final : public collision::WorldListener<Degree> {
   void save_and_load();
   void run_ahead();
 
-  static constexpr BodyId gone = BodyId(-1);
+  static constexpr BodyId gone = ~BodyId{0};
   BodyId id_of(std::size_t body) const { return body < ids_.size() ? ids_[body] : gone; }
   /// Whether it is there, and calls may change its motion.
   bool moves(std::size_t body) const {

@@ -35,7 +35,7 @@ struct Player : WorldListener<Degree> {
   std::map<std::tuple<std::string, int, int>, int> counts;
   std::function<void(const std::string&, int, int, int, const Contact&)> react = [](auto&&...) {};
 
-  static unsigned long long shown(BodyId body) { return std::uint64_t{body}; }
+  static unsigned long long shown(BodyId body) { return body; }
   void note(const char* kind, BodyId a, BodyId b, int number_b, const Contact& c) {
     char line[400];
     std::snprintf(line, sizeof line,

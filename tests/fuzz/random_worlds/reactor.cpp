@@ -39,9 +39,9 @@ std::vector<Call> RandomReactor::react(const Line& line, const EventKey& event, 
   using enum Call::Kind;
   if (scenario_.reaction_rate == 0) return {};
   std::uint64_t hash = mixed(scenario_.seed, std::bit_cast<std::uint64_t>(line.contact.time));
-  hash = mixed(hash, std::uint64_t{line.a.slot()} << 32 | line.b.slot());
+  hash = mixed(hash, std::uint64_t{body_slot(line.a)} << 32 | body_slot(line.b));
   // Bodies that take turns in a slot, each put there by a callback, must not be treated all alike, without end.
-  const std::uint64_t generations = std::uint64_t{line.a.generation()} << 32 | line.b.generation();
+  const std::uint64_t generations = std::uint64_t{body_generation(line.a)} << 32 | body_generation(line.b);
   if (generations != 0) hash = mixed(hash, generations);
   hash = mixed(hash, static_cast<std::uint64_t>(line.kind));
   std::vector<Call> calls;
