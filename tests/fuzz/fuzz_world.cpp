@@ -163,7 +163,8 @@ class Scenario {
     if (options_.response != Response::none || options_.edits) return;
     for (const BodyId a : last_in_) {
       for (const BodyId b : last_in_) {
-        if (body_slot(a) >= body_slot(b) || !world_.contains(a) || !world_.contains(b) || !both_round(a, b) || !both_in(a, b))
+        if (body_slot(a) >= body_slot(b) || !world_.contains(a) || !world_.contains(b) || !both_round(a, b) ||
+            !both_in(a, b))
           continue;
         const PlacedShape shape_a = world_.shape(a);
         const PlacedShape shape_b = world_.shape(b);
