@@ -21,7 +21,7 @@ namespace {
 using namespace tests;
 
 /// Who takes part. The next body that is added gets the next slot.
-enum : BodySlot { ground, lower, upper, blow, bouncing, first, second, taken, sensor, passing, bodies };
+enum : BodySlot { ground, lower, upper, blow, bouncing, first, second, gone, gone_sensor, sensor, passing, bodies };
 
 /// Writes down who is told of, by slot; what is said of a body with another generation than all have is wrong.
 class Told final : public WorldListener<2> {
@@ -37,8 +37,10 @@ class Told final : public WorldListener<2> {
   void separation(World<2>& w, const PairEvent& e) override { note(w, "separation", e.a, e.b); }
   void overlap(World<2>& w, const PairEvent& e) override {
     note(w, "overlap", e.a, e.b);
-    // What is still to be told of it is not told any more: neither its overlaps nor that they have ended.
-    if (body_slot(e.b) == second) w.remove_body(id(taken));
+    // What is still to be told of these is not told any more: neither their overlaps nor that they have ended.
+    if (body_slot(e.b) != second) return;
+    w.remove_body(id(gone));
+    w.remove_body(id(gone_sensor));
   }
   void held(World<2>& w, const PairEvent& e) override { note(w, "held", e.a, e.b); }
   void wall(World<2>& w, const WallEvent& e) override { note(w, "wall", e.body, e.body); }
@@ -75,7 +77,8 @@ std::vector<BodyDescription<2>> scene() {
   all[bouncing] = bouncy(ball<2>(1, {-10, 0, 3}, zero, weight), 0.5);
   all[first] = ball<2>(1, {-20, 0, 9});
   all[second] = ball<2>(1, {-20, 1, 9});
-  all[taken] = as_sensor(ball<2>(1, {-20, 0.5, 9}));
+  all[gone] = ball<2>(1, {-20, 0.25, 9});
+  all[gone_sensor] = as_sensor(ball<2>(1, {-20, 0.5, 9}));
   all[sensor] = as_sensor(ball<2>(1, {-30, 0, 9}));
   all[passing] = ball<2>(1, {-30, 3, 9}, {0, -0.5, 0});
   return all;
