@@ -17,8 +17,8 @@ inline constexpr BodySlot no_body = ~BodySlot{0};
 /// generation is how many bodies were removed from that slot before it. So bodies are 0, 1, 2, ... as long as none has
 /// been removed.
 ///
-/// It is a plain number, for callers to store and count as they like. Where slots become ids and ids slots is therefore
-/// not for the compiler to see: a world does so at its border only, by `Bodies::id_of` and `Bodies::slot_of`.
+/// It is a plain number, for callers to store and count as they like, so the compiler does not tell ids from slots. A
+/// world turns the one into the other at its border only, by `Bodies::id_of` and `Bodies::slot_of`.
 using BodyId = std::uint64_t;
 
 inline constexpr int slot_bits = 32;
