@@ -2,7 +2,9 @@
 #pragma once
 
 #include "certificates/point_motion.hpp"
+#include "certificates/positive_parabola.hpp"
 #include "collision/world_options.hpp"
+#include "kds/arithmetic/lattice.hpp"
 #include "kds/simd/two_doubles.hpp"
 
 #include <algorithm>
@@ -12,11 +14,12 @@
 namespace kds::collision {
 
 /// A time before which a ball will not be outside a wall and going outward; `never` for never. Wall 2 d is the lower
-/// one on axis d, 2 d + 1 the upper. Curved paths (degree 2): `now`, which says nothing.
+/// one on axis d, 2 d + 1 the upper. Of degree 3 and above: `now`, which says nothing.
 ///
 /// Error bound, for straight paths: the gap is a sum of five numbers, with a product of a time known to one rounding:
 /// at most 6 units of 2^-53 of their magnitudes. The quotient by the speed, which is a double, and the sum with the
-/// clock round by one each.
+/// clock round by one each. For parabolas: the gap is a sum of six, with two such products: at most 10 units; its rate
+/// is one of two: at most 4.
 template <int Degree>
 double earliest_wall_time(const certificates::PointMotion<Degree>& motion, double radius, const Walls& walls, int wall,
                           double now) {
@@ -32,6 +35,21 @@ double earliest_wall_time(const certificates::PointMotion<Degree>& motion, doubl
         0x1p-49 * (std::abs(plane) + std::abs(motion.coefficients[0][axis]) + std::abs(moved) + radius);
     const double t = now + (gap - error) / speed * (1 - 0x1p-50);
     return t - 0x1p-51 * std::abs(t);
+  } else if constexpr (Degree == 2) {
+    const int axis = wall / 2;
+    const double out = wall % 2 != 0 ? 1 : -1;
+    const double plane = out > 0 ? walls.max[axis] : walls.min[axis];
+    const double elapsed = now - motion.start;
+    const double at = motion.coefficients[0][axis];
+    const double speed = motion.coefficients[1][axis];
+    const double half = motion.coefficients[2][axis];
+    const double moved = speed * elapsed;
+    const double turned = half * elapsed;
+    const double gap = out * (plane - (at + (moved + turned * elapsed))) - radius;
+    const double size = std::abs(plane) + std::abs(at) + std::abs(moved) + std::abs(turned * elapsed) + radius;
+    const double rate = -out * (speed + 2 * turned) - 0x1p-49 * (std::abs(speed) + 2 * std::abs(turned));
+    const double wait = certificates::positive_for(gap - 0x1p-48 * size, rate, -out * half);
+    return wait > 0 && wait < never ? next_down(now + wait) : now + wait;
   } else {
     return now;
   }
@@ -61,6 +79,15 @@ inline double after_wait(double wait, double now) {
 }  // namespace detail
 
 /// The earliest of all walls'.
+template <int Degree>
+double earliest_wall_time_of_all(const certificates::PointMotion<Degree>& motion, double radius, const Walls& walls,
+                                 double now) {
+  double earliest = never;
+  for (int wall = 0; wall < 6; ++wall) {
+    earliest = std::min(earliest, earliest_wall_time(motion, radius, walls, wall, now));
+  }
+  return earliest;
+}
 inline double earliest_wall_time_of_all(const certificates::PointMotion<1>& motion, double radius, const Walls& walls,
                                         double now) {
   const auto wait = [&](int d, int e) {

@@ -35,11 +35,7 @@ template <int Degree>
 void WallTimes<Degree>::schedule(BodySlot slot) {
   if (!walls_) return;
   make_room(bodies_.slots());
-  double earliest = clock_.now;
-  if constexpr (Degree == 1) {
-    earliest = earliest_wall_time_of_all(bodies_.motion(slot), bodies_[slot].bounding_radius, *walls_, clock_.now);
-  }
-  note(slot, earliest);
+  note(slot, earliest_wall_time_of_all(bodies_.motion(slot), bodies_[slot].bounding_radius, *walls_, clock_.now));
 }
 
 template <int Degree>
@@ -49,13 +45,16 @@ void WallTimes<Degree>::schedule(std::span<const Entry> entries) {
   for (std::size_t i = 0; i < entries.size(); i += 2) {
     const BodySlot a = entries[i].slot;
     const BodySlot b = entries[std::min(i + 1, entries.size() - 1)].slot;
-    std::array earliest{clock_.now, clock_.now};
     if constexpr (Degree == 1) {
       const Two radii{bodies_[a].bounding_radius, bodies_[b].bounding_radius};
-      earliest = earliest_wall_times_of_all({&bodies_.motion(a), &bodies_.motion(b)}, radii, *walls_, clock_.now);
+      const auto earliest =
+          earliest_wall_times_of_all({&bodies_.motion(a), &bodies_.motion(b)}, radii, *walls_, clock_.now);
+      note(a, earliest[0]);
+      if (b != a) note(b, earliest[1]);
+    } else {
+      schedule(a);
+      if (b != a) schedule(b);
     }
-    note(a, earliest[0]);
-    if (b != a) note(b, earliest[1]);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace {
 
@@ -128,4 +129,35 @@ TEMPLATE_TEST_CASE_SIG("quick answers about balls are the ones that exact signs 
     if (found != expected) REQUIRE(found == expected);
   }
   CHECK(decided > 30'000);
+}
+
+TEMPLATE_TEST_CASE_SIG("balls do not meet before a plane between them is sure to be gone", "[ball_separation]",
+                       ((int PathDegree), PathDegree), 1, 2, 3) {
+  const std::uint64_t seed = 104;
+  CAPTURE(PathDegree, seed);
+  Random random(seed);
+  int late = 0;
+  int told = 0;
+  int near = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    BallApproach<std::min(PathDegree, 2)> approach(random, random.integer(-20, 20));
+    PointMotion<PathDegree> a, b;
+    for (auto [to, from] : {std::pair(&a, &approach.a), std::pair(&b, &approach.b)}) {
+      to->start = from->start;
+      to->coefficients.fill(Vector3d::Zero());
+      std::copy(from->coefficients.begin(), from->coefficients.end(), to->coefficients.begin());
+    }
+    // Accelerations that differ.
+    if (PathDegree >= 2 && random.one_in(2)) b.coefficients[std::min(PathDegree, 2)] *= random.between(-2, 2);
+    const BallSeparation<PathDegree> balls{a, b, approach.radius_a, approach.radius_b};
+    const double until = balls.apart_until(approach.now);
+    const double meets = balls.first_approach(approach.now, never);
+    REQUIRE(until >= approach.now);
+    late += until > meets;
+    told += until > approach.now;
+    near += meets < never && until - approach.now > 0.9 * (meets - approach.now);
+  }
+  CHECK(late == 0);
+  CHECK(told > (PathDegree <= 2 ? 5000 : -1));
+  CHECK(near > (PathDegree <= 2 ? 500 : -1));
 }

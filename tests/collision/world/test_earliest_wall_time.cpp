@@ -65,6 +65,41 @@ TEST_CASE("No ball leaves through a wall before the earliest time told", "[walls
   CHECK(never_told > 100);
 }
 
+TEST_CASE("No ball on a parabola leaves through a wall before the earliest time told", "[walls]") {
+  constexpr std::uint64_t seed = 2;
+  tests::Random random(seed);
+  int late = 0;
+  int told = 0;
+  int near = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const bool coarse = i % 2 != 0;
+    const auto number = [&] { return coarse ? random.coarse() : random.scaled(-20, 4); };
+    certificates::PointMotion<2> motion;
+    for (auto& coefficient : motion.coefficients) {
+      for (int d = 0; d < 3; ++d) coefficient[d] = random.one_in(3) ? 0 : number();
+    }
+    motion.start = number();
+    const Walls walls{Eigen::Vector3d::Constant(-16), Eigen::Vector3d(16, 17, random.between(15, 18))};
+    const double radius = std::abs(number());
+    const double now = motion.start + std::abs(number());
+    for (int wall = 0; wall < 6; ++wall) {
+      const int axis = wall / 2;
+      const double out = wall % 2 != 0 ? 1 : -1;
+      const double plane = out > 0 ? walls.max[axis] : walls.min[axis];
+      const double earliest = earliest_wall_time(motion, radius, walls, wall, now);
+      const double leaves = failure_time(certificates::WallSeparation<2>{motion.axis(axis), plane, radius, out}, now);
+      REQUIRE(earliest >= now);
+      late += earliest > leaves;
+      told += earliest > now;
+      near += leaves < never && earliest - now > 0.99 * (leaves - now);
+    }
+  }
+  INFO("seed " << seed);
+  CHECK(late == 0);
+  CHECK(told > 10'000);
+  CHECK(near > 10'000);
+}
+
 TEST_CASE("What does not move, and walls that are nowhere, are left out", "[walls]") {
   const Motion motion{{Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(0, -1, 1)}, 0};
   const Walls walls{Eigen::Vector3d(2, -8, -9), Eigen::Vector3d(0, 8, never)};

@@ -1,0 +1,33 @@
+// How long a parabola stays positive.
+#pragma once
+
+#include "kds/certificate.hpp"
+
+#include <cmath>
+
+namespace kds::certificates {
+
+/// An s, rounded down, such that c0 + c1 x + c2 x^2 > 0 for all x in [0, s); near the first root, `never` if there is
+/// none, 0 unless c0 > 0.
+///
+/// Rounding: what is added to the discriminant, or taken from it, is eight times what it is computed with, so that a
+/// double root is found early; the quotient is taken off by far more than it rounds.
+inline double positive_for(double c0, double c1, double c2) {
+  if (!(c0 > 0)) return 0;
+  if (c1 >= 0 && c2 >= 0) return never;
+  const double square = c1 * c1;
+  const double product = 4 * c0 * c2;
+  const double rounding = 0x1p-49 * (square + std::abs(product));
+  double s;
+  if (c1 > 0) {  // It rises first.
+    s = (c1 + std::sqrt(square - product - rounding)) / (-2 * c2);
+  } else {
+    const double discriminant = square - product + rounding;
+    if (discriminant < 0) return never;
+    s = 2 * c0 / (std::sqrt(discriminant) - c1);
+  }
+  s *= 1 - 0x1p-40;
+  return s >= 0 ? s : 0;  // not a NaN, of what is too large
+}
+
+}  // namespace kds::certificates
