@@ -47,7 +47,7 @@ World<Degree>::World(const WorldOptions& options, Listener* listener)
       clock_{options.start_time, options.start_time + options.window},
       volumes_(bodies_, options_, clock_),
       walls_(bodies_, options_.walls, clock_),
-      resting_(bodies_, clock_, *this),
+      resting_(bodies_, options_.walls, clock_, *this),
       pairs_(bodies_, volumes_, resting_, reports_, options_, clock_, counters_, profile()),
       callers_now_(options.start_time) {
   make_broad_phase();
@@ -302,6 +302,7 @@ void World<Degree>::start_pieces() {
   for (const auto& [slot, motion] : pieces) {
     jumps.push_back(bodies_[slot].entered && bodies_.is_jump(slot, motion, clock_.now));
     if (jumps.back()) resting_.drop_all(slot);
+    resting_.leave(slot);
     bodies_.move(slot, motion);
     bodies_.accelerate_freely(slot, motion);
   }

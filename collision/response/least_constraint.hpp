@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -10,12 +11,13 @@ namespace kds::collision {
 
 /// Two bodies that touch and must not come nearer to each other along the normal.
 struct Touch {
-  std::uint32_t a;         ///< place among the rates
+  std::uint32_t a;  ///< place among the rates
   std::uint32_t b;
   Eigen::Vector3d normal;  ///< unit, from a to b
   double inverse_mass_a;   ///< 0: a is fixed; not both
   double inverse_mass_b;
-  double push = 0;         ///< what the touch adds to the relative rate, >= 0; in: a guess
+  double push = 0;   ///< what the touch adds to the relative rate, >= 0; in: a guess
+  double least = 0;  ///< the least relative rate that is allowed: below 0 where there is a gap to be closed
 };
 
 /// Changes rates (velocities, or accelerations, of bodies) as little as possible, measured by mass, so that at every
@@ -35,8 +37,27 @@ struct Touch {
 /// touches, touches x sweeps; a chain of n equal masses takes about 6 n sweeps. Both are bounded.
 bool least_constraint(std::span<Eigen::Vector3d> rates, std::span<Touch> touches);
 
+/// The same to a tolerance, for which touches are visited no more than `most_sweeps` times each: for many bodies whose
+/// pushes are known from a little while ago. Returns whether no relative rate is below what is allowed by more than the
+/// tolerance.
+bool nearly_least_constraint(std::span<Eigen::Vector3d> rates, std::span<Touch> touches, double tolerance,
+                             std::size_t most_sweeps);
+
+/// Pushes the two of a touch apart: changes their relative rate by `amount`. Of a fixed partner nothing is taken, and
+/// the other takes all of it, exactly.
+inline void give_push(std::span<Eigen::Vector3d> rates, Touch& touch, double amount) {
+  touch.push += amount;
+  const double sum = touch.inverse_mass_a + touch.inverse_mass_b;
+  if (touch.inverse_mass_a != 0) rates[touch.a] -= (amount * (touch.inverse_mass_a / sum)) * touch.normal;
+  if (touch.inverse_mass_b != 0) rates[touch.b] += (amount * (touch.inverse_mass_b / sum)) * touch.normal;
+}
+
 /// The relative normal rate of a touch: positive where the bodies part.
-double parting_rate(std::span<const Eigen::Vector3d> rates, const Touch& touch);
+inline double parting_rate(std::span<const Eigen::Vector3d> rates, const Touch& touch) {
+  const Eigen::Vector3d& a = rates[touch.a];
+  const Eigen::Vector3d& b = rates[touch.b];
+  return touch.normal[0] * (b[0] - a[0]) + touch.normal[1] * (b[1] - a[1]) + touch.normal[2] * (b[2] - a[2]);
+}
 
 /// Relative rates of magnitude below this times the largest rate are rounding.
 inline constexpr double rate_rounding = 0x1p-40;

@@ -163,6 +163,7 @@ void World<Degree>::give(BodySlot slot, const Motion& motion) {
   }
   const bool jumped = bodies_.is_jump(slot, motion, clock_.now);
   if (jumped) resting_.drop_all(slot);
+  resting_.leave(slot);
   set_motion(slot, motion, jumped);
   resting_.disturb(slot);
 }

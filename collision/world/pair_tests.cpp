@@ -49,7 +49,7 @@ bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
 
 template <int Degree>
 bool Pairs<Degree>::balls_are_quick() const {
-  return options_.response != Response::none && resting_.empty();
+  return options_.response != Response::none;
 }
 
 /// Most tests by far are these, and need two cache lines. They change nothing but estimates_: for some of the dirty
@@ -61,16 +61,29 @@ void Pairs<Degree>::estimate_balls(std::size_t first, std::size_t last) {
     const Pair& pair = pairs_[dirty_[i]];
     together.put(place, bodies_.mover(pair.a), bodies_.mover(pair.b));
   };
+  const auto care_for = [&](std::size_t i) {
+    if (!std::isnan(estimates_[i])) return;
+    const auto& a = bodies_.mover(pairs_[dirty_[i]].a);
+    const auto& b = bodies_.mover(pairs_[dirty_[i]].b);
+    if (!(a.radius > 0 && b.radius > 0)) return;
+    const double t =
+        certificates::BallSeparation<Degree>{a.motion, b.motion, a.radius, b.radius}.apart_until(clock_.now);
+    if (t > clock_.now) estimates_[i] = t <= clock_.horizon ? t : never;
+  };
   std::size_t i = first;
   for (; i + together.size <= last; i += together.size) {
     for (std::size_t k = 0; k < together.size; ++k) put(k, i + k);
     together.earliest_approaches(clock_.now, clock_.horizon, &estimates_[i]);
+    for (std::size_t k = 0; k < together.size; ++k) care_for(i + k);
   }
   if (i == last) return;
   for (std::size_t k = 0; k < together.size; ++k) put(k, std::min(i + k, last - 1));
   std::array<double, together.size> rest;
   together.earliest_approaches(clock_.now, clock_.horizon, rest.data());
-  for (std::size_t k = 0; i + k < last; ++k) estimates_[i + k] = rest[k];
+  for (std::size_t k = 0; i + k < last; ++k) {
+    estimates_[i + k] = rest[k];
+    care_for(i + k);
+  }
 }
 
 template <int Degree>
@@ -86,6 +99,7 @@ void Pairs<Degree>::test() {
   const Stopwatch watch(profile_, Work::test);
   estimate_dirty();
   const bool sensors = bodies_.any_sensor();
+  const bool any_rest = !resting_.empty();
   const bool follows_boxes = follows_boxes_;
   for (std::size_t i = 0, dirty = dirty_.size(); i < dirty; ++i) {
     const Slot slot = dirty_[i];
@@ -96,7 +110,8 @@ void Pairs<Degree>::test() {
     const double estimate = estimates_[i];
     const bool may_be_together = std::isnan(estimate) || (estimate == -never && pair.fresh);
     const bool passes = sensors && mode(pair.a, pair.b) == ContactMode::transparent;
-    if (may_be_together || pair.overlapping || passes) [[unlikely]] {
+    const bool rests = any_rest && resting_.find(pair.a, pair.b) != Resting::none;
+    if (may_be_together || pair.overlapping || passes || rests) [[unlikely]] {
       test(slot);
     } else {
       pair.estimated = std::abs(estimate) != never;

@@ -18,7 +18,7 @@ bool World<Degree>::touching(BodyId a, BodyId b) const {
 template <int Degree>
 bool World<Degree>::held(BodyId a, BodyId b) const {
   const auto [first, second] = std::minmax({bodies_.slot_of(a), bodies_.slot_of(b)});
-  return resting_.find(first, second) != Resting::none;
+  return resting_.holds(first, second);
 }
 
 template <int Degree>
@@ -27,13 +27,13 @@ bool World<Degree>::held_at_wall(BodyId a, int wall) const {
   if (wall < 0 || wall > 5) {
     throw std::out_of_range("World::held_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
   }
-  return resting_.find(slot, no_body, wall) != Resting::none;
+  return resting_.holds(slot, no_body, wall);
 }
 
 template <int Degree>
 typename World<Degree>::Motion World<Degree>::free_motion(BodyId id) const {
   const BodySlot slot = bodies_.slot_of(id);
-  if (!resting_.rests(slot)) return bodies_.motion(slot);
+  if (!resting_.carries(slot)) return bodies_.motion(slot);
   Motion motion = bodies_.motion(slot).restarted(now());
   for (std::size_t i = 2; i <= Degree; ++i) motion.coefficients[i] = bodies_.free_term(slot, i, now());
   return motion;

@@ -100,8 +100,15 @@ void World<Degree>::process_wall() {
   event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
   ++counters_.wall_contacts;
   const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
-  const bool held = stays(rebound, pressed, size, count_meeting(id));
-  if (held) {
+  const bool clustered = resting_.clustered(id) && !bodies_.fixed(id);
+  bool held = !clustered && stays(rebound, pressed, size, count_meeting(id));
+  if (clustered) {
+    const bool rested = resting_.find(id, no_body, wall) != Resting::none;
+    resting_.impact({.a = id, .wall = wall, .normal = event.contact.normal},
+                    std::min(body.restitution, options_.walls->restitution));
+    held = !rested && resting_.find(id, no_body, wall) != Resting::none;
+    counters_.held += held;
+  } else if (held) {
     ++counters_.held;
     resting_.add({.a = id, .wall = wall, .normal = event.contact.normal});
   } else {
@@ -109,7 +116,7 @@ void World<Degree>::process_wall() {
     ++counters_.motion_updates;
     set_motion(id, motion, false);
   }
-  resting_.disturb(id);
+  if (!clustered) resting_.disturb(id);
   resting_.settle();
   tell([&](Listener& listener) {
     listener.wall(*this, event);
@@ -163,15 +170,35 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
     return dot(n, motion_b.coefficients[order] - motion_a.coefficients[order]);
   };
   const double approach = -relative(1);
-  const double restitution = std::min(bodies_[a].restitution, bodies_[b].restitution);
-  double pressed = 0;
-  if constexpr (Degree >= 2) pressed = -2 * relative(2);
   const std::uint64_t burst = count_meeting(a, b);
   if (burst > patience()) {  // Holding does not help: the pair is left as it is, and so passes through.
     ++counters_.held;
     pairs_.let_pass(a, b);
     return true;
   }
+  const bool often = burst > options_.zeno.contacts;
+  const double restitution = often ? 0 : std::min(bodies_[a].restitution, bodies_[b].restitution);
+  if (restitution < 1 && inverse_a != 0 && inverse_b != 0) resting_.note_meeting(a, b);
+  const auto impact = [&] {
+    const bool rested = resting_.find(a, b) != Resting::none;
+    resting_.impact({.a = a, .b = b, .normal = n}, restitution);
+    resting_.settle();
+    // What the others that lean on the two have turned back towards each other stays together.
+    if (resting_.find(a, b) == Resting::none && parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) {
+      resting_.impact({.a = a, .b = b, .normal = n}, 0);
+      resting_.settle();
+    }
+    const bool rests = resting_.find(a, b) != Resting::none;
+    counters_.held += rests && !rested;
+    return rests && !rested;
+  };
+  if (resting_.clustered(a) || resting_.clustered(b)) return impact();
+  if (often && resting_.can_gather(a, b)) {
+    resting_.gather(a), resting_.gather(b);
+    return impact();
+  }
+  double pressed = 0;
+  if constexpr (Degree >= 2) pressed = -2 * relative(2);
   const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
                       bodies_[a].bounding_radius + bodies_[b].bounding_radius;
   const bool held = stays(restitution * approach, pressed, size, burst);
@@ -190,6 +217,12 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
     }
   }
   resting_.settle();
+  // What neither bounces nor is held by itself is held by what it leans on.
+  if (resting_.find(a, b) == Resting::none && resting_.can_gather(a, b) &&
+      parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) {
+    resting_.gather(a), resting_.gather(b);
+    return impact() || held;
+  }
   return held;
 }
 

@@ -20,6 +20,10 @@ constexpr double slack = 0x1p-20;
 /// The same relative to the coordinates, which are rounded whenever a motion is restarted.
 constexpr double coordinate_slack = 0x1p-40;
 
+/// How far beyond its contacts of this moment a mesh in a cluster may sink before it is a contact anew, relative to the
+/// smaller bounding radius.
+constexpr double approach_slack = 0x1p-21;
+
 /// Normals as near as this are of one and the same place: cosine of the angle between them.
 constexpr double same_normal = 1 - 0x1p-20;
 
@@ -100,7 +104,10 @@ template <int Degree>
 double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
   const auto a = bodies_.moving(id_a);
   const auto b = bodies_.moving(id_b);
-  if (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape)) return never;
+  if (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape)) {
+    if (contacts_[find(id_a, id_b)].proven) return never;
+    return first_contact(a, b, clock_.now, clock_.horizon, ContactMode::resolved);
+  }
   const double began = std::max(a.motion.start, b.motion.start);
   Vector3d out = Vector3d::Zero();
   bool left_behind = false;
@@ -110,6 +117,11 @@ double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
     left_behind = left_behind || contacts_[slot].left_behind == began;
   }
   const double now = clock_.now;
+  if (clustered(id_a) || clustered(id_b)) {  // What sweeps leave of an approach is no contact.
+    const double least = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+    const Motion farther = shifted(b.motion, approach_slack * least * out);
+    return first_contact(a, MovingShape<Degree>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
+  }
   if (!left_behind) {
     const double t = first_contact(a, b, now, clock_.horizon, ContactMode::resolved);
     if (t != now) return t;
@@ -126,7 +138,8 @@ double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
 template <int Degree>
 void RestingContacts<Degree>::schedule_release(Slot slot) {
   const Contact& hold = contacts_[slot];
-  if (hold.b == no_body) {  // Walls have no edge to slide off.
+  if (clustered(hold.a) || (hold.b != no_body && clustered(hold.b))) return;  // Spans see to it.
+  if (hold.b == no_body) {                                                    // Walls have no edge to slide off.
     if constexpr (Degree >= 3) releases_.set(slot, hold.ends);
     return;
   }
@@ -149,9 +162,17 @@ void RestingContacts<Degree>::schedule_release(Slot slot) {
 
 template <int Degree>
 void RestingContacts<Degree>::process() {
+  if (releases_.empty() || (!spans_.empty() && spans_.top().time < releases_.top().time)) {
+    const BodySlot id = spans_.top().slot;
+    spans_.clear(id);
+    disturb(id);
+    return settle();
+  }
   const Slot slot = releases_.top().slot;
   if (Degree >= 3 && contacts_[slot].ends <= releases_.top().time) {
     part(slot);
+  } else if (Degree >= 2 && contacts_[slot].push > 0 && gaps_.turns(contacts_[slot])) {
+    gather(bodies_.fixed(contacts_[slot].a) ? contacts_[slot].b : contacts_[slot].a);
   } else {
     drop(slot);
   }
@@ -177,6 +198,14 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
   std::size_t listed = 0;
   std::size_t expected = 0;
   for (BodySlot id = 0; id < of_.size(); ++id) {
+    const double ends = of_[id].span_ends;
+    if (ends == -never || ends == never) continue;
+    if (ends < t) throw AuditFailure("World: the span of body " + std::to_string(id) + "'s cluster should have ended");
+    if (spans_.empty() || spans_.top().time > ends) {
+      throw AuditFailure("World: no span ends when that of body " + std::to_string(id) + "'s cluster does");
+    }
+  }
+  for (BodySlot id = 0; id < of_.size(); ++id) {
     for (const Slot slot : of_[id].contacts) {
       ++listed;
       if (slot >= contacts_.size() || !contacts_[slot].alive) fail(slot, "a body is held by what is none");
@@ -200,6 +229,9 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     if (std::abs(norm(hold.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
     if (releases_.time(slot) < t) fail(slot, "it should have been let go");
     if (hold.fresh) continue;
+    if ((!at_wall || clustered(hold.a)) && gaps_.overlap(hold) > gaps_.deepest_overlap(hold))
+      fail(slot, "its bodies overlap");
+    if (clustered(hold.a) || (!at_wall && clustered(hold.b))) continue;
     const Eigen::Vector3d a = bodies_.motion(hold.a).velocity(t);
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     if (!at_wall) b = bodies_.motion(hold.b).velocity(t);
@@ -221,11 +253,17 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
 
 template <int Degree>
 typename RestingContacts<Degree>::Image RestingContacts<Degree>::image() const {
-  Image image{contacts_, free_, {}, {}, {}};
+  Image image{contacts_, free_, {}, {}, {}, {}, {}, {}, {}};
   // Of bodies that were disturbed and are gone, or have been settled since, the list may still speak.
   std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
                [&](BodySlot id) { return of_[id].disturbed && bodies_.entered(id); });
-  for (const Member& member : of_) image.of.push_back(member.contacts);
+  for (const Member& member : of_) {
+    image.of.push_back(member.contacts);
+    image.span_ends.push_back(member.span_ends);
+    image.calm_since.push_back(member.calm_since);
+    image.met.push_back(member.met);
+  }
+  for (BodySlot slot = 0; slot < spans_.slots(); ++slot) image.spans.push_back(spans_.time(slot));
   for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(releases_.time(slot));
   return image;
 }
@@ -235,7 +273,12 @@ void RestingContacts<Degree>::become(const Image& image) {
   contacts_ = image.contacts, free_ = image.free, disturbed_ = image.disturbed;
   islands_ = 0;
   of_.clear();
-  for (BodySlot id = 0; id < image.of.size(); ++id) member(id).contacts = image.of[id];
+  for (BodySlot id = 0; id < image.of.size(); ++id) {
+    member(id).contacts = image.of[id];
+    member(id).span_ends = image.span_ends[id];
+    member(id).calm_since = image.calm_since[id];
+    member(id).met = image.met[id] != 0;
+  }
   for (const BodySlot id : disturbed_) member(id).disturbed = true;
   for (BodySlot id = 0; id < of_.size(); ++id) {
     Member& member = of_[id];
@@ -246,6 +289,9 @@ void RestingContacts<Degree>::become(const Image& image) {
   releases_.resize(0);
   releases_.resize(contacts_.size());
   for (Slot slot = 0; slot < contacts_.size(); ++slot) releases_.set(slot, image.releases[slot]);
+  spans_.resize(0);
+  spans_.resize(image.spans.size());
+  for (BodySlot slot = 0; slot < image.spans.size(); ++slot) spans_.set(slot, image.spans[slot]);
 }
 
 #define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;

@@ -6,14 +6,18 @@
 #include "collision/response/least_constraint.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
+#include "collision/world/contact_gaps.hpp"
+#include "collision/world/resting_contact.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,22 +26,6 @@ namespace kds::collision {
 namespace detail {
 
 using RestingSlot = std::uint32_t;
-
-/// Two bodies, or a body (a) and a wall, that stay in touch.
-struct RestingContact {
-  BodySlot a = 0;
-  BodySlot b = no_body;  ///< of a wall
-  int wall = -1;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
-  double push = 0;                                   ///< half the relative acceleration that it gives
-  /// The largest of the velocities that were last solved for with it: what is left along the normal is a rounding of
-  /// that.
-  double solved = 0;
-  bool alive = false;
-  bool fresh = false;           ///< its approach is still to be taken out
-  double ends = never;          ///< s, when nothing presses the two together any more; `never` up to degree 2
-  double left_behind = -never;  ///< s, the epoch of a pair of motions: until it is another, rounding feigns a contact
-};
 
 struct RestingRank {
   const std::vector<RestingContact>* contacts = nullptr;
@@ -85,8 +73,13 @@ class RestingContacts {
     ~Listener() = default;
   };
 
-  RestingContacts(const Bodies<Degree>& bodies, const Clock& clock, Listener& listener)
-      : bodies_(bodies), clock_(clock), listener_(listener), releases_(detail::RestingRank{&contacts_}) {}
+  RestingContacts(const Bodies<Degree>& bodies, const std::optional<Walls>& walls, const Clock& clock,
+                  Listener& listener)
+      : bodies_(bodies),
+        clock_(clock),
+        gaps_(bodies, walls, clock),
+        listener_(listener),
+        releases_(detail::RestingRank{&contacts_}) {}
   RestingContacts(const RestingContacts&) = delete;
   RestingContacts& operator=(const RestingContacts&) = delete;
 
@@ -94,6 +87,11 @@ class RestingContacts {
   bool empty() const { return contacts_.size() == free_.size(); }
   /// One of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
   Slot find(BodySlot a, BodySlot b, int wall = -1) const { return rests(a) ? find_among(a, b, wall) : none; }
+  /// Whether there is one that keeps the two from coming nearer: in a cluster there are others, where it need not.
+  bool holds(BodySlot a, BodySlot b, int wall = -1) const {
+    const Slot slot = find(a, b, wall);
+    return slot != none && (contacts_[slot].push > 0 || !(clustered(a) || (b != no_body && clustered(b))));
+  }
   bool rests(BodySlot id) const { return id < of_.size() && !of_[id].contacts.empty(); }
 
   /// A contact begins to last. Between meshes several may last at once, in a groove, say; one for each normal.
@@ -103,7 +101,15 @@ class RestingContacts {
   /// All of a body end, since it goes.
   void forget(BodySlot id) {
     drop_all(id);
+    leave(id);
     if (id < of_.size()) of_[id] = {};
+  }
+
+  /// A body is moved by a caller: it is in no cluster until it is gathered again.
+  void leave(BodySlot id) {
+    if (!clustered(id)) return;
+    of_[id].span_ends = -never;
+    if (id < spans_.slots()) spans_.clear(id);
   }
 
   /// The motion of a body has changed: those that it rests with are to be looked at by settle().
@@ -120,9 +126,26 @@ class RestingContacts {
   double next_contact(BodySlot a, BodySlot b);
 
   /// When the next contact ends, by sliding off or parting; process() ends it.
-  double next_time() const { return releases_.empty() ? never : releases_.top().time; }
+  double next_time() const {
+    return std::min(releases_.empty() ? never : releases_.top().time, spans_.empty() ? never : spans_.top().time);
+  }
   void process();
   void extend_horizon();
+
+  /// Whether a body belongs to a cluster: bodies in sustained contact that are advanced together, span by span.
+  bool clustered(BodySlot id) const { return id < of_.size() && of_[id].span_ends != -never; }
+  /// Whether its motion is not the one that callers gave.
+  bool carries(BodySlot id) const { return rests(id) || clustered(id); }
+  /// A contact of two bodies, or of a body and a wall, of which one is in a cluster. Precondition: they approach.
+  void impact(const Contact& contact, double restitution);
+  /// Two bodies that are not fixed have met.
+  void note_meeting(BodySlot a, BodySlot b) { member(std::max(a, b)), of_[a].met = of_[b].met = true; }
+  /// Makes a cluster of all that leans on a body that is not fixed.
+  void gather(BodySlot id) { gather(id, clock_.now); }
+  /// Whether a cluster of the two would have a span: something accelerates them.
+  bool can_gather(BodySlot a, BodySlot b) const {
+    return (!bodies_.fixed(a) && longest_span(a) < never) || (!bodies_.fixed(b) && longest_span(b) < never);
+  }
 
   /// Checks all contacts at a time up to which nothing is due; throws AuditFailure. `walls`: whether there are any.
   void audit(double t, bool walls) const;
@@ -134,6 +157,10 @@ class RestingContacts {
     std::vector<BodySlot> disturbed;
     std::vector<std::vector<Slot>> of;  ///< by body
     std::vector<double> releases;       ///< by contact
+    std::vector<double> span_ends;      ///< by body, as many as `of`
+    std::vector<double> calm_since;     ///< by body
+    std::vector<char> met;              ///< by body
+    std::vector<double> spans;          ///< by body, those for which spans_ has room
 
     template <class Archive>
     void archive(Archive& archive);
@@ -154,7 +181,10 @@ class RestingContacts {
     std::uint64_t island = 0;  ///< the last it was seen in
     std::uint32_t place = 0;   ///< in that
     bool disturbed = false;
-    bool carried = false;  ///< degree 3 and above: its motion is what contacts have left of it, or made of it
+    double span_ends = -never;  ///< s, of the cluster's span; `never`: asleep; -never: in no cluster
+    double calm_since = never;  ///< s
+    bool met = false;           ///< another that is not fixed: it may come to rest with it
+    bool carried = false;       ///< degree 3 and above: its motion is what contacts have left of it, or made of it
   };
   /// Bodies that lean on each other, in the arithmetic of least_constraint.
   struct Island {
@@ -185,14 +215,41 @@ class RestingContacts {
   void part(Slot slot);
   bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
 
+  // resting_clusters.cpp
+  class Span;
+  friend Span;
+  bool in_cluster(const Island& island) const;
+  bool slides_on(const Island& island) const;
+  bool step_cluster(Island& island);
+  void gather(BodySlot id, double ends);
+  void dissolve(const Island& island);
+  void set_span(BodySlot first, double ends);
+  void set_proven(Contact& contact, bool proven);
+  void move(BodySlot id, const Eigen::Vector3d& velocity, const Eigen::Vector3d& half_acceleration);
+  Eigen::Vector3d velocity(BodySlot id) const;
+  Eigen::Vector3d acceleration(BodySlot id) const;
+  double longest_span(BodySlot id) const;
+  bool soon_back(const Contact& contact, double rate) const;
+  bool squeezed(const Island& island) const;
+  double comes_to_rest(const Island& island, const std::vector<Eigen::Vector3d>& velocities);
+  void watch(const Island& island, std::vector<Motion>& motions);
+
+  // cluster_impacts.cpp
+  class Neighbourhood;
+  friend Neighbourhood;
+  double wake(const Contact& contact, bool joins);
+  Slot add_to_cluster(const Contact& contact);
+
   const Bodies<Degree>& bodies_;
   const Clock& clock_;
+  ContactGaps<Degree> gaps_;
   Listener& listener_;
   std::vector<Contact> contacts_;
   std::vector<Slot> free_;
   std::vector<Member> of_;  ///< by body, up to the last that has rested
   std::vector<BodySlot> disturbed_;
   DaryQueue<detail::RestingRank> releases_;  ///< when contacts end; slots are contacts
+  DaryQueue<> spans_;                        ///< when spans end; slots are bodies, the first of each cluster
   std::uint64_t islands_ = 0;
 };
 

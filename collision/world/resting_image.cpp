@@ -14,10 +14,11 @@ namespace kds::collision {
 template <int Degree>
 template <class Archive>
 void RestingContacts<Degree>::Image::archive(Archive& archive) {
-  archive(free, disturbed, releases);
+  archive(free, disturbed, releases, span_ends, calm_since, met, spans);
   archive.each(of, [&](auto& slots) { archive(slots); });
   archive.each(contacts, [&](Contact& c) {
-    archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.left_behind, c.solved);
+    archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.left_behind, c.solved, c.gap, c.room, c.since,
+            c.aim);
     image::vector(archive, c.normal);
     if constexpr (Degree >= 3) archive(c.ends);
   });
@@ -28,6 +29,25 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
                                            const WorldOptions& options) const {
   if (releases.size() != contacts.size()) image::fail("releases: are not as many as resting contacts");
   if (of.size() > bodies.bodies.size()) image::fail("resting: of more bodies than there are");
+  if (span_ends.size() != of.size() || calm_since.size() != of.size() || met.size() != of.size()) {
+    image::fail("clusters: are not of as many bodies as resting contacts");
+  }
+  bool spans_go_on = false;
+  double first = never;
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    image::require(image::is_to_come(spans[i], now) && (spans[i] == never || bodies.entered(static_cast<BodySlot>(i))),
+                   "spans", i, "has ended, or is of no body");
+    first = std::min(first, spans[i]);
+  }
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    const bool none = span_ends[i] == -never;
+    image::require(none || (image::is_to_come(span_ends[i], now) && bodies.entered(static_cast<BodySlot>(i))),
+                   "clusters", i, "has ended, or is of no body");
+    image::require(none || options.response == Response::elastic, "clusters", i, "is there where none are held");
+    image::require(calm_since[i] == never || image::is_past(calm_since[i], now), "clusters", i, "is not calm yet");
+    spans_go_on = spans_go_on || (!none && span_ends[i] < never && span_ends[i] < first);
+  }
+  if (spans_go_on && disturbed.empty()) image::fail("clusters: there is one that never ends");
   for (std::size_t i = 0; i < disturbed.size(); ++i) {
     image::require(bodies.entered(disturbed[i]), "disturbed", i, "is no body in the world");
   }
@@ -53,6 +73,9 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
     }
     need(std::abs(contact.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
     need(std::isfinite(contact.push) && std::isfinite(contact.solved), "its push or rate is not finite");
+    need(std::isfinite(contact.gap) && contact.room >= 0 && std::isfinite(contact.room) && std::isfinite(contact.aim) &&
+             image::is_past(contact.since, now),
+         "its gap is not finite, or not known yet");
     need(image::is_to_come(releases[slot], now), "is to be let go before now");
     if constexpr (Degree >= 3) need(image::is_to_come(contact.ends, now), "is pressed together until before now");
   }

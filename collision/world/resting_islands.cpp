@@ -20,7 +20,7 @@ void RestingContacts<Degree>::note(BodySlot id) {
   if constexpr (Degree == 2)
     as_given = bodies_.fixed(id) || bodies_.motion(id).coefficients[2] == bodies_.free_acceleration(id);
   if constexpr (Degree >= 3) as_given = id >= of_.size() || !of_[id].carried;
-  if (!rests(id) && as_given) return;
+  if (!carries(id) && as_given) return;
   if (std::exchange(member(id).disturbed, true)) return;
   disturbed_.push_back(id);
 }
@@ -80,6 +80,7 @@ void RestingContacts<Degree>::settle_fixed(BodySlot id) {
 template <int Degree>
 bool RestingContacts<Degree>::settle_island(BodySlot id) {
   Island island = find_island(id);
+  if (in_cluster(island)) return step_cluster(island);
   if (drop_broken(island)) return false;
   std::vector<Motion> motions;
   for (const BodySlot each : island.bodies) motions.push_back(bodies_.motion(each).restarted(clock_.now));
@@ -106,12 +107,33 @@ bool RestingContacts<Degree>::settle_island(BodySlot id) {
       return false;
     }
   }
+  if constexpr (Degree >= 2) watch(island, motions);
   take_up_all();
   for (const Slot slot : island.contacts) {
     contacts_[slot].fresh = false;
     schedule_release(slot);
   }
   return true;
+}
+
+/// Bodies that slide on slowly, and are not accelerated, come to rest after a while.
+template <int Degree>
+void RestingContacts<Degree>::watch(const Island& island, std::vector<Motion>& motions) {
+  bool slides = false;
+  std::vector<Vector3d> velocities;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const auto& terms = motions[i].coefficients;
+    velocities.push_back(terms[1]);
+    slides = slides || (i < island.free && !terms[1].isZero(0));
+    if (i >= island.free || std::all_of(terms.begin() + 2, terms.end(), [](const Vector3d& x) { return x.isZero(0); }))
+      continue;
+    of_[island.bodies[i]].calm_since = never;
+    return;
+  }
+  const double rests = comes_to_rest(island, velocities);
+  if (!slides || rests == never) return;
+  if (rests > clock_.now) return set_span(island.bodies.front(), rests);
+  for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[1] = Vector3d::Zero();
 }
 
 /// The bodies that lean on each other, directly or not, but not through fixed ones; in the order of their ids, so that
@@ -160,7 +182,8 @@ typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(Bo
   return island;
 }
 
-/// Lets go what has been given speed along its normal; what approaches meets anew, and may bounce.
+/// Lets go what has been given speed along its normal; what approaches meets anew, and may bounce. What is back within
+/// a span, or would bounce to be, makes a cluster.
 template <int Degree>
 bool RestingContacts<Degree>::drop_broken(const Island& island) {
   bool any = false;
@@ -174,9 +197,16 @@ bool RestingContacts<Degree>::drop_broken(const Island& island) {
       largest += velocity_terms(bodies_.motion(hold.a), clock_.now);
       if (hold.b != no_body) largest += velocity_terms(bodies_.motion(hold.b), clock_.now);
     }
-    if (std::abs(dot(hold.normal, b - a)) <= rate_rounding * largest) continue;
-    drop(slot);
+    const double rate = dot(hold.normal, b - a);
+    if (std::abs(rate) <= rate_rounding * largest) continue;
     any = true;
+    const bool turns = std::any_of(island.contacts.begin(), island.contacts.end(),
+                                   [this](Slot each) { return gaps_.turns(contacts_[each]); });
+    if ((rate > 0 || turns) && soon_back(hold, std::abs(rate))) {
+      gather(island.bodies.front());
+      return true;
+    }
+    drop(slot);
   }
   return any;
 }
@@ -193,10 +223,23 @@ bool RestingContacts<Degree>::constrain(Island& island, std::size_t order, std::
   }
   double largest = 0;
   for (const Vector3d& rate : rates) largest = std::max(largest, rate.cwiseAbs().maxCoeff());
-  if (!least_constraint(rates, island.touches)) return !let_pass_worst(island, rates);
+  if (!least_constraint(rates, island.touches)) {
+    const BodySlot id = island.bodies.front();
+    const bool accelerated =
+        std::any_of(island.bodies.begin(), island.bodies.begin() + static_cast<std::ptrdiff_t>(island.free),
+                    [this](BodySlot each) { return longest_span(each) < never; });
+    if (squeezed(island) || !accelerated) return !let_pass_worst(island, rates);
+    gather(id);
+    return false;
+  }
   for (std::size_t k = 0; k < island.contacts.size(); ++k) {
-    if (parting_rate(rates, island.touches[k]) <= rate_rounding * largest) continue;
-    drop(island.contacts[k]);
+    const double rate = parting_rate(rates, island.touches[k]);
+    if (rate <= rate_rounding * largest) continue;
+    if (order == 1 && soon_back(contacts_[island.contacts[k]], rate)) {
+      gather(island.bodies.front());
+    } else {
+      drop(island.contacts[k]);
+    }
     return false;
   }
   for (std::size_t k = 0; k < island.contacts.size(); ++k) {

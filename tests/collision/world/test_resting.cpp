@@ -186,13 +186,17 @@ TEST_CASE("Resting: a ball slides over a ball and off it", "[zeno]") {
     world.add_body(fixed_body<2>(Sphere{2}, motion<2>(zero)));
     world.add_body(bouncy(ball<2>(1, {0.125, 0, 3.25}, zero, weight), 0.25));
     double least = 3;
-    while (world.step(3)) least = std::min(least, world.motion(1).position(world.now()).norm());
+    double leaves_at = 1;  // the height at which they are last held, over the distance of their centres
+    while (world.step(3)) {
+      const Vector3d place = world.motion(1).position(world.now());
+      least = std::min(least, place.norm());
+      if (world.held(0, 1)) leaves_at = place[2] / 3;
+    }
     CHECK(least > 3 - 1e-9);
+    // Without friction it leaves where cos(angle) = 2/3; energy tells its speed (the first bounces have cost some).
+    CHECK(leaves_at == Approx(2.0 / 3).margin(0.02));
   };
   with_all_methods(elastic(), scene, [](World<2>& world, EventLog<2>& log) {
-    // Without friction it leaves where cos(angle) = 2/3; energy tells its speed (bounces have cost some).
-    const Event last = log.events.back();
-    CHECK(last.contact.normal[2] == Approx(2.0 / 3).margin(0.02));
     CHECK(world.motion(1).coefficients[2] == weight);
     CHECK(log.count(Kind::contact) < 20000);
   });
@@ -247,7 +251,7 @@ TEST_CASE("What is left along a normal is a rounding of the speeds there were, n
     REQUIRE_NOTHROW(world.audit());
     ++steps;
   }
-  CHECK(steps > 30);
+  CHECK(steps > 20);
   CHECK(world.counters().held > 0);
 }
 

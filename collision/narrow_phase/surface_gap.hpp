@@ -1,0 +1,34 @@
+// How far apart two shapes are, and along which direction.
+#pragma once
+
+#include "collision/degrees.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
+
+#include <Eigen/Core>
+
+namespace kds::collision {
+
+/// The direction in which two shapes are farthest apart, and by how much.
+struct SurfaceGap {
+  double width;            ///< in units of length; negative where they overlap
+  Eigen::Vector3d normal;  ///< unit, from a to b
+};
+
+/// The gap between a and b at t, in doubles: right to some roundings of the coordinates. Precondition: neither is a
+/// mesh.
+template <int Degree>
+SurfaceGap surface_gap(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+
+/// How far apart a and b are along a unit vector from a to b: negative where its slabs overlap. What has a gap > 0
+/// along any direction does not touch. Precondition: neither is a mesh.
+template <int Degree>
+double gap_along(const MovingShape<Degree>& a, const MovingShape<Degree>& b, const Eigen::Vector3d& normal, double t);
+
+#define KDS_DECLARE(degree)                                                                                        \
+  extern template SurfaceGap surface_gap(const MovingShape<degree>&, const MovingShape<degree>&, double);          \
+  extern template double gap_along(const MovingShape<degree>&, const MovingShape<degree>&, const Eigen::Vector3d&, \
+                                   double);
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
+
+}  // namespace kds::collision

@@ -1,0 +1,171 @@
+#include "collision/world/contact_gaps.hpp"
+
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/vectors.hpp"
+#include "collision/world/cluster_rules.hpp"
+#include "kds/arithmetic/lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Vector3d;
+
+bool is_round(const PlacedShape& shape) {
+  return std::holds_alternative<Sphere>(shape.shape) || std::holds_alternative<Capsule>(shape.shape);
+}
+
+/// b, moved.
+template <int Degree>
+certificates::PointMotion<Degree> moved(certificates::PointMotion<Degree> motion, const Vector3d& by) {
+  motion.coefficients[0] += by;
+  return motion;
+}
+
+/// As a part of their size, what bodies may overlap by rounding.
+constexpr double rounding = 0x1p-34;
+
+}  // namespace
+
+template <int Degree>
+double ContactGaps<Degree>::size(const Contact& contact) const {
+  const double size = bodies_[contact.a].bounding_radius;
+  return contact.b == no_body ? size : std::min(size, bodies_[contact.b].bounding_radius);
+}
+
+template <int Degree>
+bool ContactGaps<Degree>::balls(const Contact& contact) const {
+  return contact.b != no_body && bodies_.mover(contact.a).radius > 0 && bodies_.mover(contact.b).radius > 0;
+}
+
+template <int Degree>
+bool ContactGaps<Degree>::has_mesh(const Contact& contact) const {
+  if (contact.b == no_body || balls(contact)) return false;
+  return collision::has_mesh(bodies_.shape(contact.a).shape) || collision::has_mesh(bodies_.shape(contact.b).shape);
+}
+
+template <int Degree>
+bool ContactGaps<Degree>::turns(const Contact& contact) const {
+  if (contact.b == no_body) return false;
+  if (balls(contact)) return true;
+  const PlacedShape a = bodies_.shape(contact.a);
+  const PlacedShape b = bodies_.shape(contact.b);
+  const bool a_round = is_round(a);
+  const bool b_round = is_round(b);
+  if (a_round && b_round) return true;
+  if (!a_round && !b_round) return false;
+  const PlacedShape& other = a_round ? b : a;
+  if (collision::has_mesh(other.shape)) return true;
+  return std::none_of(other.half_axes.begin(), other.half_axes.end(), [&](const Vector3d& axis) {
+    return std::abs(dot(contact.normal, axis)) >= norm(axis) * (1 - 0x1p-40);
+  });
+}
+
+template <int Degree>
+double ContactGaps<Degree>::parting(const Contact& contact) const {
+  Vector3d apart = -bodies_.motion(contact.a).velocity(clock_.now);
+  if (contact.b != no_body) apart += bodies_.motion(contact.b).velocity(clock_.now);
+  return dot(contact.normal, apart);
+}
+
+template <int Degree>
+double ContactGaps<Degree>::along_normal(const Contact& contact) const {
+  const double now = clock_.now;
+  if (contact.b == no_body) {
+    const Eigen::Index axis = contact.wall / 2;
+    const double place = bodies_.motion(contact.a).position(now)[axis];
+    const double radius = bodies_[contact.a].bounding_radius;
+    return contact.wall % 2 != 0 ? (walls_->max[axis] - radius) - place : place - (walls_->min[axis] + radius);
+  }
+  if (balls(contact)) {
+    const auto& a = bodies_.mover(contact.a);
+    const auto& b = bodies_.mover(contact.b);
+    return dot(contact.normal, b.motion.position(now) - a.motion.position(now)) - a.radius - b.radius;
+  }
+  if (!has_mesh(contact)) return gap_along(bodies_.moving(contact.a), bodies_.moving(contact.b), contact.normal, now);
+  if (contact.since == -never) return 0;  // It has come from outside the cluster.
+  const auto& a = bodies_.motion(contact.a);
+  const auto& b = bodies_.motion(contact.b);
+  const Vector3d went = (b.position(now) - b.position(contact.since)) - (a.position(now) - a.position(contact.since));
+  return contact.gap + dot(contact.normal, went);
+}
+
+template <int Degree>
+double ContactGaps<Degree>::nearest(Contact& contact) const {
+  if (contact.b == no_body || has_mesh(contact)) return along_normal(contact);
+  if (balls(contact)) {
+    const SurfaceGap gap = after(contact, Vector3d::Zero());
+    contact.normal = gap.normal;
+    return gap.width;
+  }
+  const auto a = bodies_.moving(contact.a);
+  const auto b = bodies_.moving(contact.b);
+  if (!is_round(a.shape) && !is_round(b.shape)) return along_normal(contact);
+  const SurfaceGap gap = surface_gap(a, b, clock_.now);
+  contact.normal = gap.normal;
+  return gap.width;
+}
+
+template <int Degree>
+SurfaceGap ContactGaps<Degree>::after(const Contact& contact, const Vector3d& displacement) const {
+  if (balls(contact)) {
+    const double now = clock_.now;
+    const auto& a = bodies_.mover(contact.a);
+    const auto& b = bodies_.mover(contact.b);
+    const Vector3d apart = b.motion.position(now) - a.motion.position(now) + displacement;
+    const double distance = norm(apart);
+    if (distance > 0) return {distance - a.radius - b.radius, apart / distance};
+  }
+  const auto b = bodies_.moving(contact.b);
+  const auto later = moved(b.motion, displacement);
+  return surface_gap(bodies_.moving(contact.a), MovingShape<Degree>{b.shape, later}, clock_.now);
+}
+
+template <int Degree>
+bool ContactGaps<Degree>::renew(Contact& contact) const {
+  const double now = clock_.now;
+  contact.gap = nearest(contact);
+  contact.since = now;
+  if (contact.gap > cluster::kept_gap * size(contact)) return false;
+  if (contact.b == no_body) return true;
+  const auto a = bodies_.moving(contact.a);
+  const auto b = bodies_.moving(contact.b);
+  const bool round = is_round(a.shape) || is_round(b.shape);
+  const bool mesh = has_mesh(contact);
+  if (round && !mesh) return true;
+  // Faces may have slid off each other.
+  const auto nearer = moved(b.motion, -(contact.gap + cluster::room_of_many * size(contact)) * contact.normal);
+  const MovingShape<Degree> touching{b.shape, nearer};
+  if (!in_contact(a, touching, now)) return false;
+  if (mesh && round) contact.normal = contact_at(a, touching, now).normal;
+  return true;
+}
+
+template <int Degree>
+bool ContactGaps<Degree>::proven(const Contact& contact, double rate, double half, double span) const {
+  if (contact.b == no_body) return true;
+  const double gap = along_normal(contact) + rounding * size(contact);
+  return gap >= 0 && gap + (rate + std::min(half, 0.0) * span) * span >= 0;
+}
+
+template <int Degree>
+double ContactGaps<Degree>::deepest_overlap(const Contact& contact) const {
+  const double now = clock_.now;
+  const double spacing = next_up(std::abs(now)) - std::abs(now);
+  double coordinates = 0;
+  for (const BodySlot id : {contact.a, contact.b}) {
+    if (id == no_body) continue;
+    const auto& motion = bodies_.motion(id);
+    coordinates += 0x1p-46 * motion.position(now).cwiseAbs().maxCoeff() + 4 * spacing * norm(motion.velocity(now));
+  }
+  return 0x1p-30 * size(contact) + coordinates;
+}
+
+#define KDS_INSTANTIATE(degree) template class ContactGaps<degree>;
+KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision

@@ -1,0 +1,70 @@
+// What is between bodies that rest on each other.
+#pragma once
+
+#include "collision/degrees.hpp"
+#include "collision/narrow_phase/surface_gap.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/clock.hpp"
+#include "collision/world/resting_contact.hpp"
+#include "collision/world_options.hpp"
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace kds::collision {
+
+/// Gaps and normals of resting contacts, at clock.now, to some roundings of the coordinates. It has no state of its
+/// own.
+template <int Degree>
+class ContactGaps {
+ public:
+  using Contact = detail::RestingContact;
+
+  ContactGaps(const Bodies<Degree>& bodies, const std::optional<Walls>& walls, const Clock& clock)
+      : bodies_(bodies), walls_(walls), clock_(clock) {}
+
+  /// The bounding radius of the smaller of the two.
+  double size(const Contact& contact) const;
+  /// Whether one of the two is a mesh: of its surface nothing is known but where it touches.
+  bool has_mesh(const Contact& contact) const;
+  /// Whether its normal turns while the two slide over each other: one is round, and what it touches no face of a box.
+  bool turns(const Contact& contact) const;
+  /// That, and no mesh: the normal is known elsewhere too.
+  bool bends(const Contact& contact) const { return turns(contact) && !has_mesh(contact); }
+
+  /// Rate at which the two part along the normal.
+  double parting(const Contact& contact) const;
+  /// The gap along the normal. Of meshes, what it was at contact.since and the way they have gone: precondition: they
+  /// have moved since then as they do now.
+  double along_normal(const Contact& contact) const;
+  /// The gap; the normal becomes that of the places where the two are nearest.
+  double nearest(Contact& contact) const;
+  /// The same when b will have moved relative to a. Precondition: turns(), and no mesh.
+  SurfaceGap after(const Contact& contact, const Eigen::Vector3d& displacement) const;
+  /// Takes gap and normal anew. False if the contact is over.
+  bool renew(Contact& contact) const;
+
+  /// Whether a plane across the normal is sure to stay between the two for `span` seconds, in which they part at a rate
+  /// and with half an acceleration: there is a gap, and what follows is a parabola that is above zero when that ends.
+  bool proven(const Contact& contact, double rate, double half, double span) const;
+
+  /// How far the two overlap, as far as that is known: of meshes it is not.
+  double overlap(Contact contact) const { return has_mesh(contact) ? 0 : -nearest(contact); }
+  /// How far they may: by a billionth of the smaller, and by what motions are rounded by at this clock.
+  double deepest_overlap(const Contact& contact) const;
+
+ private:
+  /// Most contacts are of two balls, for which a tenth of the work will do.
+  bool balls(const Contact& contact) const;
+
+  const Bodies<Degree>& bodies_;
+  const std::optional<Walls>& walls_;
+  const Clock& clock_;
+};
+
+#define KDS_DECLARE(degree) extern template class ContactGaps<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
+
+}  // namespace kds::collision

@@ -1,0 +1,40 @@
+// A contact that lasts.
+#pragma once
+
+#include "collision/world/bodies.hpp"
+#include "kds/certificate.hpp"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+
+namespace kds::collision::detail {
+
+/// Two bodies, or a body (a) and a wall, that stay in touch.
+struct RestingContact {
+  BodySlot a = 0;
+  BodySlot b = no_body;  ///< of a wall
+  int wall = -1;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
+  double push = 0;                                   ///< half the relative acceleration that it gives
+  /// The largest of the velocities that were last solved for with it: what is left along the normal is a rounding of
+  /// that.
+  double solved = 0;
+  bool alive = false;
+  bool fresh = false;           ///< its approach is still to be taken out
+  double ends = never;          ///< s, when nothing presses the two together any more; `never` up to degree 2
+  double left_behind = -never;  ///< s, the epoch of a pair of motions: until it is another, rounding feigns a contact
+
+  // In a cluster.
+  double gap = 0;         ///< between the two at `since`, in units of length
+  double since = -never;  ///< s
+  double room = 0;        ///< the gap that the two are kept at, in units of length
+  double aim = 0;         ///< the least gap along the normal when the span ends
+  bool proven = true;     ///< a plane stays between the two until the span ends
+
+  // For walks over contacts that lean on each other.
+  std::uint64_t seen = 0;   ///< the last walk that has come by
+  std::uint32_t place = 0;  ///< in that
+};
+
+}  // namespace kds::collision::detail
