@@ -58,7 +58,7 @@ struct BallSeparation {
 
   /// A time up to which a plane stays between the balls, so that they are apart: the earlier the nearer they pass each
   /// other. No later than now where rounding may have them touch, and where a path is of degree 3 and above. For paths
-  /// that quick_failure_time() does not know it costs a twentieth of first_approach().
+  /// that quick_failure_time() does not know it costs a fifth of first_approach(), or less.
   double apart_until(double now) const;
 
   /// Whether the path of b as seen from a is a line.
