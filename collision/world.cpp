@@ -331,6 +331,11 @@ void World<Degree>::report_next() {
       return tell([&](Listener& listener) { listener.separation(*this, pair); });
     case Reports::Kind::held:
       return tell([&](Listener& listener) { listener.held(*this, pair); });
+    case Reports::Kind::wakes:
+    case Reports::Kind::rests:
+      return report_resting(event);
+    case Reports::Kind::passes:
+      return tell([&](Listener& listener) { listener.passes(*this, pair); });
     case Reports::Kind::moved:
       return tell([&](Listener& listener) { listener.moved(*this, event.a); });
     case Reports::Kind::pair_began:
@@ -338,6 +343,19 @@ void World<Degree>::report_next() {
     case Reports::Kind::pair_ended:
       return tell([&](Listener& listener) { listener.pair_ended(*this, event.a, event.b, event.contact.time); });
   }
+}
+
+template <int Degree>
+void World<Degree>::report_resting(const Reports::Report& event) {
+  const bool begins = event.kind == Reports::Kind::rests;
+  if (event.wall >= 0) {
+    const WallEvent wall{event.a, event.wall, event.contact};
+    return tell([&](Listener& listener) {
+      begins ? listener.rests_at_wall(*this, wall) : listener.wakes_at_wall(*this, wall);
+    });
+  }
+  const PairEvent pair{event.a, event.b, event.contact};
+  tell([&](Listener& listener) { begins ? listener.rests(*this, pair) : listener.wakes(*this, pair); });
 }
 
 /// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are

@@ -203,6 +203,7 @@ class World final : private RestingContacts<Degree>::Listener {
   void go_back(double t);
   void start_pieces();
   void report_next();
+  void report_resting(const Reports::Report& event);
   void count_edit();
 
   // world/guards.cpp: what may be called when, and what is left when something throws
@@ -270,6 +271,9 @@ class World final : private RestingContacts<Degree>::Listener {
   void changed(BodySlot a, BodySlot b) override { pairs_.changed(a, b); }
   void let_pass(BodySlot a, BodySlot b) override { pairs_.let_pass(a, b); }
   void tell_held(BodySlot a, BodySlot b) override;
+  void tell_resting(bool begins, const detail::RestingContact& contact) override;
+  void tell_passes(const detail::RestingContact& contact) override;
+  Contact contact_of(const detail::RestingContact& contact) const;
 
   // world/near.cpp: what is near
   template <class Ask, class Meets>

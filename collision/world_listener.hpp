@@ -26,7 +26,8 @@ class World;
 /// Told of events in order of time, and of those at one time in an order that does not depend on the broad phase:
 /// bodies come by their slots, and those that were in one slot by their generations (body_rank). What follows from an
 /// event, or from what callers do, comes before the next event, in this order:
-/// 1. `held`, by (a, b), then `moved`, by body;
+/// 1. `held`, `wakes`, `passes`, `rests`, each by (a, b), then `moved`, by body; contacts that begin and cease to rest
+///    at one instant have done neither;
 /// 2. `pair_began` and `pair_ended`, by (a, b); volumes that part and meet again at one instant have done neither;
 /// 3. separations of bodies that have been removed, by (a, b);
 /// 4. overlaps, by (a, b).
@@ -56,6 +57,14 @@ class WorldListener {
   virtual void pair_ended(World<Degree>&, BodyId, BodyId, double) {}
   virtual void held(World<Degree>&, const PairEvent&) {}          ///< the Zeno policy has acted on a pair
   virtual void held_at_wall(World<Degree>&, const WallEvent&) {}  ///< or on a body and a wall
+  /// Two bodies, or a body and a wall, begin to lie or slide on each other (docs/resting.md), and cease to: by parting,
+  /// by something that strikes them, or since one of them jumps or is removed. The contact is as it is then.
+  virtual void rests(World<Degree>&, const PairEvent&) {}
+  virtual void rests_at_wall(World<Degree>&, const WallEvent&) {}
+  virtual void wakes(World<Degree>&, const PairEvent&) {}
+  virtual void wakes_at_wall(World<Degree>&, const WallEvent&) {}
+  /// Two bodies are let through each other until they have separated, since nothing else is possible.
+  virtual void passes(World<Degree>&, const PairEvent&) {}
   /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
   virtual void moved(World<Degree>&, BodyId) {}
 };

@@ -12,19 +12,25 @@ bool detail::Pending::operator<(const Pending& other) const {
       switch (event.kind) {
         case Kind::held:
           return 0;
-        case Kind::moved:
+        case Kind::wakes:
           return 1;
+        case Kind::passes:
+          return 2;
+        case Kind::rests:
+          return 3;
+        case Kind::moved:
+          return 4;
         case Kind::pair_ended:
         case Kind::pair_began:
-          return 2;
+          return 5;
         case Kind::separation:
-          return 3;
+          return 6;
         case Kind::overlap:
-          return 4;
+          return 7;
       }
-      return 5;
+      return 8;
     };
-    return std::tuple(stage(), body_rank(event.a), body_rank(event.b), event.kind);
+    return std::tuple(stage(), body_rank(event.a), body_rank(event.b), event.kind, event.wall);
   };
   return key(*this) < key(other);
 }
@@ -34,9 +40,14 @@ void Reports::add_volumes(bool meet, BodyId a, BodyId b, double now) {
   add(meet ? Kind::pair_began : Kind::pair_ended, a, b, {.time = now});
 }
 
-bool Reports::take_back(Kind kind, BodyId a, BodyId b) {
+void Reports::add_resting(bool begins, BodyId a, BodyId b, const Contact& contact, int wall) {
+  if (take_back(begins ? Kind::wakes : Kind::rests, a, b, wall)) return;
+  add(begins ? Kind::rests : Kind::wakes, a, b, contact, wall);
+}
+
+bool Reports::take_back(Kind kind, BodyId a, BodyId b, int wall) {
   if (reports_.empty()) return false;
-  const auto it = reports_.find({kind, a, b, {}});
+  const auto it = reports_.find({kind, a, b, {}, wall});
   if (it == reports_.end()) return false;
   reports_.erase(it);
   return true;
@@ -44,7 +55,7 @@ bool Reports::take_back(Kind kind, BodyId a, BodyId b) {
 
 void Reports::forget(BodyId removed) {
   std::erase_if(reports_, [&](const Report& report) {
-    const bool of_present = report.kind == Kind::overlap || report.kind == Kind::moved;
+    const bool of_present = report.kind == Kind::overlap || report.kind == Kind::moved || report.kind == Kind::rests;
     return of_present && (report.a == removed || report.b == removed);
   });
 }

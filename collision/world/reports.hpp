@@ -14,9 +14,10 @@ namespace detail {
 
 /// A report to be made at this instant. They are in the order in which WorldListener is told of them.
 struct Pending {
-  enum class Kind { held, moved, pair_ended, pair_began, separation, overlap } kind;
-  BodyId a, b;  ///< in order of their ranks; b is a where one body has moved
+  enum class Kind { held, wakes, passes, rests, moved, pair_ended, pair_began, separation, overlap } kind;
+  BodyId a, b;  ///< in order of their ranks; b is a where it is about one body
   Contact contact;
+  int wall = -1;  ///< of a body that rests at one, or ceases to
 
   bool operator<(const Pending& other) const;
 };
@@ -31,14 +32,20 @@ class Reports {
   using Kind = Report::Kind;
 
   bool empty() const { return reports_.empty(); }
-  void add(Kind kind, BodyId a, BodyId b, const Contact& contact) { reports_.insert({kind, a, b, contact}); }
+  void add(Kind kind, BodyId a, BodyId b, const Contact& contact, int wall = -1) {
+    reports_.insert({kind, a, b, contact, wall});
+  }
 
   /// Bounding volumes meet, or part. Those that meet and part at one instant, or part and meet (bodies that are moved
   /// in turn, lists of ends that are brought into order one after the other), have done neither.
   void add_volumes(bool meet, BodyId a, BodyId b, double now);
 
+  /// Two bodies, or a and a wall, begin or cease to rest on each other. Those that do both at one instant have done
+  /// neither.
+  void add_resting(bool begins, BodyId a, BodyId b, const Contact& contact, int wall);
+
   /// Forgets a report that has been undone before it was made; false if there is none.
-  bool take_back(Kind kind, BodyId a, BodyId b);
+  bool take_back(Kind kind, BodyId a, BodyId b, int wall = -1);
 
   /// A body has been removed, and has no pairs any more: its separations are told as they were, and what would be told
   /// of a body that is there is not.

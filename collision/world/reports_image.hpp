@@ -16,7 +16,7 @@ namespace detail {
 
 template <class Archive>
 void archive_members(Archive& archive, detail::Pending& report) {
-  archive(report.kind, report.a, report.b, report.contact.time);
+  archive(report.kind, report.a, report.b, report.contact.time, report.wall);
   for (Feature* f : {&report.contact.feature_a, &report.contact.feature_b}) archive(f->kind, f->first, f->second);
   image::vector(archive, report.contact.point), image::vector(archive, report.contact.normal);
 }
@@ -32,14 +32,18 @@ void check_reports(const std::vector<Reports::Report>& pending, const BodiesImag
     const Report& event = pending[i];
     const auto need = [i](bool right, const char* what) { image::require(right, "pending", i, what); };
     need(event.kind >= Kind::held && event.kind <= Kind::overlap, "is of an unknown kind");
-    if (event.kind == Kind::moved) {
-      need(bodies.present(event.a) && event.b == event.a, "is not of a body in the world");
+    const bool resting = event.kind == Kind::rests || event.kind == Kind::wakes;
+    need(event.wall == -1 || (resting && event.wall >= 0 && event.wall < 6), "is at no wall");
+    if (event.kind == Kind::moved || event.wall >= 0) {
+      const bool known = bodies.present(event.a) || (event.kind == Kind::wakes && bodies.removed(event.a));
+      need(known && event.b == event.a, "is not of a body in the world");
     } else {
       need(body_slot(event.a) < body_slot(event.b), "is of no pair");
       const bool of_present = bodies.present(event.a) && bodies.present(event.b);
       const auto known = [&](BodyId id) { return bodies.present(id) || bodies.removed(id); };
       need(of_present || (known(event.a) && known(event.b)), "is not of two bodies that are or were in the world");
-      need(of_present || event.kind != Kind::overlap, "is an overlap of a body that was removed");
+      need(of_present || (event.kind != Kind::overlap && event.kind != Kind::rests),
+           "is an overlap or a rest of a body that was removed");
     }
     const Contact& contact = event.contact;
     need(std::isfinite(contact.time) && contact.time <= now, "is of no time up to now");

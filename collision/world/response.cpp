@@ -67,7 +67,9 @@ void World<Degree>::process_contact(BodySlot a, BodySlot b, const Contact& conta
     if (!contains(event.a) || !contains(event.b) || resting_.find(a, b) != Resting::none) return;
     // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a
     // rounding.
-    if (passes || parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) pairs_.let_pass(a, b);
+    if (!passes && !(parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0)) return;
+    pairs_.let_pass(a, b);
+    reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);
   };
   try {
     tell([&](Listener& listener) {
@@ -98,19 +100,20 @@ void World<Degree>::process_wall() {
   event.contact.normal[axis] = out;
   event.contact.point = motion.coefficients[0];
   event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
+  const Vector3d point = event.contact.point - motion.coefficients[0];
   ++counters_.wall_contacts;
   const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
   const bool clustered = resting_.clustered(id) && !bodies_.fixed(id);
   bool held = !clustered && stays(rebound, pressed, size, count_meeting(id));
   if (clustered) {
     const bool rested = resting_.find(id, no_body, wall) != Resting::none;
-    resting_.impact({.a = id, .wall = wall, .normal = event.contact.normal},
+    resting_.impact({.a = id, .wall = wall, .normal = event.contact.normal, .point = point},
                     std::min(body.restitution, options_.walls->restitution));
     held = !rested && resting_.find(id, no_body, wall) != Resting::none;
     counters_.held += held;
   } else if (held) {
     ++counters_.held;
-    resting_.add({.a = id, .wall = wall, .normal = event.contact.normal});
+    resting_.add({.a = id, .wall = wall, .normal = event.contact.normal, .point = point});
   } else {
     motion.coefficients[1][axis] = -rebound * out;
     ++counters_.motion_updates;
@@ -166,6 +169,7 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   Motion motion_a = bodies_.motion(a).restarted(contact.time);
   Motion motion_b = bodies_.motion(b).restarted(contact.time);
   const Vector3d& n = contact.normal;
+  const Vector3d point = contact.point - motion_a.coefficients[0];
   const auto relative = [&](std::size_t order) {
     return dot(n, motion_b.coefficients[order] - motion_a.coefficients[order]);
   };
@@ -174,6 +178,8 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   if (burst > patience()) {  // Holding does not help: the pair is left as it is, and so passes through.
     ++counters_.held;
     pairs_.let_pass(a, b);
+    const PairEvent event = event_of(a, b, contact);
+    reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);
     return true;
   }
   const bool often = burst > options_.zeno.contacts;
@@ -181,11 +187,11 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   if (restitution < 1 && inverse_a != 0 && inverse_b != 0) resting_.note_meeting(a, b);
   const auto impact = [&] {
     const bool rested = resting_.find(a, b) != Resting::none;
-    resting_.impact({.a = a, .b = b, .normal = n}, restitution);
+    resting_.impact({.a = a, .b = b, .normal = n, .point = point}, restitution);
     resting_.settle();
     // What the others that lean on the two have turned back towards each other stays together.
     if (resting_.find(a, b) == Resting::none && parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) {
-      resting_.impact({.a = a, .b = b, .normal = n}, 0);
+      resting_.impact({.a = a, .b = b, .normal = n, .point = point}, 0);
       resting_.settle();
     }
     const bool rests = resting_.find(a, b) != Resting::none;
@@ -204,7 +210,7 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   const bool held = stays(restitution * approach, pressed, size, burst);
   if (held) {
     ++counters_.held;
-    resting_.add({.a = a, .b = b, .normal = n});
+    resting_.add({.a = a, .b = b, .normal = n, .point = point});
     resting_.disturb(a), resting_.disturb(b);
   } else {
     change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,
@@ -238,6 +244,24 @@ void World<Degree>::tell_held(BodySlot a, BodySlot b) {
   ++counters_.held;
   const PairEvent event = event_of(a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
   reports_.add(Reports::Kind::held, event.a, event.b, event.contact);
+}
+
+template <int Degree>
+void World<Degree>::tell_resting(bool begins, const detail::RestingContact& resting) {
+  const BodySlot b = resting.b == no_body ? resting.a : resting.b;
+  reports_.add_resting(begins, bodies_.id_of(resting.a), bodies_.id_of(b), contact_of(resting), resting.wall);
+}
+
+template <int Degree>
+void World<Degree>::tell_passes(const detail::RestingContact& resting) {
+  reports_.add(Reports::Kind::passes, bodies_.id_of(resting.a), bodies_.id_of(resting.b), contact_of(resting));
+}
+
+template <int Degree>
+Contact World<Degree>::contact_of(const detail::RestingContact& resting) const {
+  Contact contact{.time = clock_.now, .point = bodies_.motion(resting.a).position(clock_.now) + resting.point};
+  contact.normal = resting.normal;
+  return contact;
 }
 
 #define KDS_INSTANTIATE(degree) template class World<degree>;

@@ -16,6 +16,7 @@ struct RestingContact {
   BodySlot b = no_body;  ///< of a wall
   int wall = -1;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from a to b or out of the domain
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< where it began, from the centre of a
   double push = 0;                                   ///< half the relative acceleration that it gives
   /// The largest of the velocities that were last solved for with it: what is left along the normal is a rounding of
   /// that.

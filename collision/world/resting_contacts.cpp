@@ -74,12 +74,14 @@ void RestingContacts<Degree>::add(const Contact& hold) {
   contacts_[slot].fresh = true;
   member(hold.a).contacts.push_back(slot);
   if (hold.b != no_body) member(hold.b).contacts.push_back(slot);
+  listener_.tell_resting(true, contacts_[slot]);
 }
 
 template <int Degree>
 void RestingContacts<Degree>::drop(Slot slot) {
   Contact& hold = contacts_[slot];
   hold.alive = false;
+  listener_.tell_resting(false, hold);
   releases_.clear(slot);
   free_.push_back(slot);
   for (const BodySlot id : {hold.a, hold.b}) {

@@ -67,7 +67,9 @@ class RestingContacts {
     virtual void take_up(BodySlot id, const Motion& motion) = 0;  ///< a new motion
     virtual void changed(BodySlot a, BodySlot b) = 0;             ///< what the two may meet next has to be found anew
     virtual void let_pass(BodySlot a, BodySlot b) = 0;
-    virtual void tell_held(BodySlot a, BodySlot b) = 0;  ///< that the policy has acted on the two
+    virtual void tell_held(BodySlot a, BodySlot b) = 0;                  ///< that the policy has acted on the two
+    virtual void tell_resting(bool begins, const Contact& contact) = 0;  ///< a contact begins or ceases to last
+    virtual void tell_passes(const Contact& contact) = 0;
 
    protected:
     ~Listener() = default;

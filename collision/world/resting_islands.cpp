@@ -355,6 +355,7 @@ bool RestingContacts<Degree>::let_pass_worst(const Island& island, const std::ve
   if (worst == none) return false;
   const Contact hold = contacts_[worst];
   listener_.let_pass(hold.a, hold.b);
+  listener_.tell_passes(hold);
   drop(worst);
   if (!hold.fresh) listener_.tell_held(hold.a, hold.b);  // else the event that made it is about to be reported
   return true;

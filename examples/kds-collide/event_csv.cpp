@@ -35,7 +35,7 @@ void append_csv_line(std::string& text, const Event& event, const Scene& scene) 
   text += ',';
   append_name(text, scene.bodies[event.a].name);
   text += ',';
-  append_name(text, event.kind == EventKind::wall ? wall_names[event.b] : std::string_view(scene.bodies[event.b].name));
+  append_name(text, event.is_at_wall() ? wall_names[event.b] : std::string_view(scene.bodies[event.b].name));
   if (event.is_about_volumes()) {
     text += ",,,,,,,-,-\n";
     return;

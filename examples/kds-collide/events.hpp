@@ -13,10 +13,23 @@
 
 namespace kds_collide {
 
-enum class EventKind { contact, separation, overlap, wall, pair_begin, pair_end };
+enum class EventKind {
+  contact,
+  separation,
+  overlap,
+  wall,
+  pair_begin,
+  pair_end,
+  rest,
+  wake,
+  rest_at_wall,
+  wake_at_wall,
+  pass
+};
 
-inline constexpr std::array<std::string_view, 6> event_kind_names{"contact", "separation", "overlap",
-                                                                  "wall",    "pair_begin", "pair_end"};
+/// As the file has them.
+inline constexpr std::array<std::string_view, 11> event_kind_names{
+    "contact", "separation", "overlap", "wall", "pair_begin", "pair_end", "rest", "wake", "rest", "wake", "pass"};
 inline constexpr std::array<std::string_view, 6> wall_names{"-x", "+x", "-y", "+y", "-z", "+z"};
 
 struct Event {
@@ -30,6 +43,10 @@ struct Event {
   kds::collision::Feature feature_a{};
   kds::collision::Feature feature_b{};
 
+  bool is_at_wall() const {
+    return kind == EventKind::wall || kind == EventKind::rest_at_wall || kind == EventKind::wake_at_wall;
+  }
+  bool is_about_rest() const { return kind >= EventKind::rest && kind <= EventKind::wake_at_wall; }
   bool is_about_volumes() const { return kind == EventKind::pair_begin || kind == EventKind::pair_end; }
 };
 

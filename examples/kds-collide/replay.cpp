@@ -108,7 +108,7 @@ ReplayRecorder::ReplayRecorder(const Scene& scene) : scene_(scene) {
 
 void ReplayRecorder::on_event(const Event& event) {
   if (event.kind == EventKind::wall || event.is_about_volumes()) return;
-  touches_.push_back(event);
+  (event.is_about_rest() ? rests_ : touches_).push_back(event);
 }
 
 void ReplayRecorder::on_motion(std::uint32_t body, const MotionPiece& piece) {
@@ -169,6 +169,19 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
     for (const std::uint32_t value : {static_cast<std::uint32_t>(touch.kind), touch.a, touch.b}) {
       text += ',';
       append_number(text, value);
+    }
+    text += ']';
+  }
+  text += "],\n\"rests\":[";
+  for (std::size_t i = 0; i < rests_.size(); ++i) {
+    const Event& rest = rests_[i];
+    text += i > 0 ? ",[" : "[";
+    append_number(text, rest.time - scene_.begin_time);
+    text += rest.kind == EventKind::rest || rest.kind == EventKind::rest_at_wall ? ",1," : ",-1,";
+    append_number(text, rest.a);
+    if (!rest.is_at_wall()) {
+      text += ',';
+      append_number(text, rest.b);
     }
     text += ']';
   }

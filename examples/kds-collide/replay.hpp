@@ -30,6 +30,7 @@ class ReplayRecorder final : public EventSink {
   const Scene& scene_;
   std::vector<std::vector<MotionPiece>> motion_;  ///< of each body; starts ascend
   std::vector<Event> touches_;                    ///< contacts, separations, overlaps
+  std::vector<Event> rests_;                      ///< contacts that begin and cease to last
 };
 
 /// The page: viewer, three.js and data in one text. Throws ReplayError where three.js is not found in `three_folder`.

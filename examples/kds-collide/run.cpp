@@ -53,6 +53,7 @@ class Teller final : public kds::collision::WorldListener<Degree> {
  public:
   using World = kds::collision::World<Degree>;
   using PairEvent = kds::collision::PairEvent;
+  using WallEvent = kds::collision::WallEvent;
 
   Teller(EventSink& sink, Response response) : sink_(sink), response_(response) {}
 
@@ -65,12 +66,15 @@ class Teller final : public kds::collision::WorldListener<Degree> {
   void held(World& world, const PairEvent& event) override { tell_motions(world, event); }
   void moved(World& world, BodyId id) override { tell_motion(world, id); }
 
-  void wall(World& world, const kds::collision::WallEvent& event) override {
-    const Contact& c = event.contact;
-    const auto wall = static_cast<std::uint32_t>(event.wall);
-    sink_.on_event({c.time, EventKind::wall, body_slot(event.body), wall, c.point, c.normal, {}, {}});
+  void wall(World& world, const WallEvent& event) override {
+    tell_wall(EventKind::wall, event);
     tell_motion(world, event.body);
   }
+  void rests(World&, const PairEvent& event) override { tell(EventKind::rest, event); }
+  void wakes(World&, const PairEvent& event) override { tell(EventKind::wake, event); }
+  void rests_at_wall(World&, const WallEvent& event) override { tell_wall(EventKind::rest_at_wall, event); }
+  void wakes_at_wall(World&, const WallEvent& event) override { tell_wall(EventKind::wake_at_wall, event); }
+  void passes(World&, const PairEvent& event) override { tell(EventKind::pass, event); }
   void pair_began(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_begin, a, b, t); }
   void pair_ended(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_end, a, b, t); }
 
@@ -78,6 +82,11 @@ class Teller final : public kds::collision::WorldListener<Degree> {
   void tell(EventKind kind, const PairEvent& event) {
     const Contact& c = event.contact;
     sink_.on_event({c.time, kind, body_slot(event.a), body_slot(event.b), c.point, c.normal, c.feature_a, c.feature_b});
+  }
+  void tell_wall(EventKind kind, const WallEvent& event) {
+    const Contact& c = event.contact;
+    const auto wall = static_cast<std::uint32_t>(event.wall);
+    sink_.on_event({c.time, kind, body_slot(event.body), wall, c.point, c.normal, {}, {}});
   }
   void tell_volumes(EventKind kind, BodyId a, BodyId b, double t) {
     sink_.on_event({t, kind, body_slot(a), body_slot(b), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}});

@@ -50,6 +50,8 @@ struct Parts final : RestingContacts<Degree>::Listener {
   void changed(BodySlot a, BodySlot b) override { pairs.changed(a, b); }
   void let_pass(BodySlot a, BodySlot b) override { pairs.let_pass(a, b); }
   void tell_held(BodySlot a, BodySlot b) override { told.emplace_back(a, b); }
+  void tell_resting(bool, const detail::RestingContact&) override {}
+  void tell_passes(const detail::RestingContact&) override {}
 
   WorldOptions options;
   Clock clock;

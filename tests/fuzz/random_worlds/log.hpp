@@ -28,6 +28,11 @@ struct Line {
     pair_ended,
     held,
     held_at_wall,
+    rests,
+    rests_at_wall,
+    wakes,
+    wakes_at_wall,
+    passes,
     moved,
     thrown,  ///< by a call; `text` is what it says
     state,   ///< behind an advance: `text` says the clock, where the bodies are, and who touches and is held
@@ -39,9 +44,14 @@ struct Line {
   std::string text{};
 };
 
-inline constexpr std::string_view line_names[] = {"contact",    "separation", "overlap", "wall",
-                                                  "pair_began", "pair_ended", "held",    "held_at_wall",
-                                                  "moved",      "thrown",     "state"};
+inline constexpr std::string_view line_names[] = {
+    "contact", "separation",    "overlap", "wall",          "pair_began", "pair_ended", "held",   "held_at_wall",
+    "rests",   "rests_at_wall", "wakes",   "wakes_at_wall", "passes",     "moved",      "thrown", "state"};
+
+constexpr bool is_of_a_wall(Line::Kind kind) {
+  using enum Line::Kind;
+  return kind == wall || kind == held_at_wall || kind == rests_at_wall || kind == wakes_at_wall;
+}
 
 /// Text of a line for a call that must be refused and was not.
 inline constexpr std::string_view not_refused = "nothing, where it must be";

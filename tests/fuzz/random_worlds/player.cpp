@@ -39,7 +39,7 @@ std::vector<Line> Player<Degree>::run() {
 template <int Degree>
 void Player<Degree>::note(Line::Kind kind, BodyId a, BodyId b, const Contact& contact) {
   log_.push_back({kind, a, b, contact, {}});
-  const bool of_a_wall = kind == Line::Kind::wall || kind == Line::Kind::held_at_wall;
+  const bool of_a_wall = is_of_a_wall(kind);
   const EventKey event{static_cast<std::uint8_t>(kind), number_of(a), of_a_wall ? b : number_of(b), 0};
   const Line line = log_.back();  // the log may move
   for (const Call& each : reactor_.react(line, event, bodies_)) call(each, &line.contact);

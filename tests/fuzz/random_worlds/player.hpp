@@ -34,6 +34,11 @@ class Player final : public collision::WorldListener<Degree> {
   void held(World&, const PairEvent& e) override { note(Line::Kind::held, e.a, e.b, e.contact); }
   void wall(World&, const WallEvent& e) override { note_wall(Line::Kind::wall, e); }
   void held_at_wall(World&, const WallEvent& e) override { note_wall(Line::Kind::held_at_wall, e); }
+  void rests(World&, const PairEvent& e) override { note(Line::Kind::rests, e.a, e.b, e.contact); }
+  void rests_at_wall(World&, const WallEvent& e) override { note_wall(Line::Kind::rests_at_wall, e); }
+  void wakes(World&, const PairEvent& e) override { note(Line::Kind::wakes, e.a, e.b, e.contact); }
+  void wakes_at_wall(World&, const WallEvent& e) override { note_wall(Line::Kind::wakes_at_wall, e); }
+  void passes(World&, const PairEvent& e) override { note(Line::Kind::passes, e.a, e.b, e.contact); }
   void pair_began(World&, BodyId a, BodyId b, double t) override { note(Line::Kind::pair_began, a, b, {.time = t}); }
   void pair_ended(World&, BodyId a, BodyId b, double t) override { note(Line::Kind::pair_ended, a, b, {.time = t}); }
   void moved(World& world, BodyId a) override { note(Line::Kind::moved, a, 0, {.time = world.now()}); }

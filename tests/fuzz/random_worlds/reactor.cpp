@@ -16,9 +16,7 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
   return hash ^ (hash >> 29);
 }
 
-bool is_of_two_bodies(Line::Kind kind) {
-  return kind != Line::Kind::wall && kind != Line::Kind::held_at_wall && kind != Line::Kind::moved;
-}
+bool is_of_two_bodies(Line::Kind kind) { return !is_of_a_wall(kind) && kind != Line::Kind::moved; }
 
 EventKey counted(const EventKey& event, std::map<EventKey, std::size_t>& counts) {
   EventKey result = event;
