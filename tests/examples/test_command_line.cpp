@@ -68,8 +68,9 @@ TEST_CASE("command line: a ball that bounces ever lower comes to rest, which the
   const auto stats = nlohmann::json::parse(read_file(folder / "s.json"));
   CHECK(stats["held"] == 1);
   const auto events = lines_of(read_file(folder / "e.csv"));
-  CHECK(events.size() == stats["contacts"].get<std::size_t>() + 1);
+  CHECK(events.size() == stats["contacts"].get<std::size_t>() + 2);
   CHECK(events.size() < 100);
+  CHECK_THAT(events.back(), Catch::Contains(",rest,floor,ball,"));
   // Flights that shrink by a half: at rest three times as late as it first lands.
   CHECK(std::stod(events.back()) == Approx(3 * std::stod(events[1])).epsilon(1e-6));
 }

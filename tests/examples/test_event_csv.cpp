@@ -43,6 +43,9 @@ TEST_CASE("event csv: the line of each kind of event") {
   CHECK(line_of({0, EventKind::overlap, 0, 1, p, n, {}, {}}) ==
         "0,overlap,plain name,\"a \"\"b\"\", c\",0.1,0,1e-07,0,0,-1,-,-\n");
   CHECK(line_of({2, EventKind::wall, 0, 4, p, n, {}, {}}) == "2,wall,plain name,-z,0.1,0,1e-07,0,0,-1,-,-\n");
+  CHECK(line_of({2, EventKind::rest, 0, 1, p, n, {}, {}}).starts_with("2,rest,plain name,"));
+  CHECK(line_of({2, EventKind::wake_at_wall, 0, 4, p, n, {}, {}}) == "2,wake,plain name,-z,0.1,0,1e-07,0,0,-1,-,-\n");
+  CHECK(line_of({2, EventKind::pass, 0, 1, p, n, {}, {}}).starts_with("2,pass,plain name,"));
   CHECK(line_of({3, EventKind::pair_begin, 0, 1, {}, {}, {}, {}}) ==
         "3,pair_begin,plain name,\"a \"\"b\"\", c\",,,,,,,-,-\n");
   CHECK(line_of({3, EventKind::pair_end, 0, 1, {}, {}, {}, {}}) ==

@@ -33,6 +33,9 @@ TEST_CASE("replay: the record holds pieces of motion and contacts, counted from 
   ReplayRecorder recorder(scene);
   recorder.on_event({11, EventKind::contact, 0, 1, {}, {}, {}, {}});
   recorder.on_event({11.5, EventKind::wall, 0, 1, {}, {}, {}, {}});
+  recorder.on_event({11.5, EventKind::rest_at_wall, 0, 1, {}, {}, {}, {}});
+  recorder.on_event({12, EventKind::rest, 0, 1, {}, {}, {}, {}});
+  recorder.on_event({12.5, EventKind::wake, 0, 1, {}, {}, {}, {}});
   MotionPiece piece = scene.bodies[1].motion[0];
   piece.start = 11;
   recorder.on_motion(0, piece);
@@ -50,6 +53,7 @@ TEST_CASE("replay: the record holds pieces of motion and contacts, counted from 
   CHECK(data["bodies"][0]["motion"] == json::parse("[[0,0,0,0,1,0,0],[1,0,0,0,-1,0,0,0,0,-5]]"));
   CHECK(data["bodies"][1]["motion"] == json::parse("[[0,0,0,0,-1,0,0]]"));
   CHECK(data["touches"] == json::parse("[[1,0,0,1]]"));
+  CHECK(data["rests"] == json::parse("[[1.5,1,0],[2,1,0,1],[2.5,-1,0,1]]"));
 }
 
 TEST_CASE("replay: shapes by their names and measures") {
