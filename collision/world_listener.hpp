@@ -63,7 +63,8 @@ class WorldListener {
   virtual void rests_at_wall(World<Degree>&, const WallEvent&) {}
   virtual void wakes(World<Degree>&, const PairEvent&) {}
   virtual void wakes_at_wall(World<Degree>&, const WallEvent&) {}
-  /// Two bodies are let through each other until they have separated, since nothing else is possible.
+  /// Two bodies are let through each other until they have separated: no motion keeps them apart (a piston), they meet
+  /// without end, or a callback has left them approaching.
   virtual void passes(World<Degree>&, const PairEvent&) {}
   /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
   virtual void moved(World<Degree>&, BodyId) {}

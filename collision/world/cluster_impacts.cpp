@@ -105,7 +105,7 @@ class RestingContacts<Degree>::Neighbourhood {
                         inverse_mass(contact.b), 0, least});
     slots_.push_back(slot);
     spans_.push_back(span_of(contact));
-    tolerances_.push_back(contact.room > 0 ? absorbed * contact.room : 0x1p-34 * all_.gaps_.size(contact));
+    tolerances_.push_back(contact.room > 0 ? absorbed * contact.room : rounding * all_.gaps_.size(contact));
     waiting_.push_back(place);
     waits_.push_back(1);
     turned_.push_back(0);

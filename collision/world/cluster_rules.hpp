@@ -30,6 +30,9 @@ inline constexpr double lift = 0x1p-3;
 inline constexpr double tolerated = 0x1p-3;
 inline constexpr double absorbed = 0x1p-2;
 
+/// As a part of their size, what bodies may overlap by rounding.
+inline constexpr double rounding = 0x1p-34;
+
 /// Up to so many contacts are solved exactly where sweeps do not get there.
 inline constexpr std::size_t most_active = 64;
 inline constexpr std::size_t most_sweeps = 100;

@@ -25,9 +25,6 @@ certificates::PointMotion<Degree> moved(certificates::PointMotion<Degree> motion
   return motion;
 }
 
-/// As a part of their size, what bodies may overlap by rounding.
-constexpr double rounding = 0x1p-34;
-
 }  // namespace
 
 template <int Degree>
@@ -147,7 +144,7 @@ bool ContactGaps<Degree>::renew(Contact& contact) const {
 template <int Degree>
 bool ContactGaps<Degree>::proven(const Contact& contact, double rate, double half, double span) const {
   if (contact.b == no_body) return true;
-  const double gap = along_normal(contact) + rounding * size(contact);
+  const double gap = along_normal(contact) + cluster::rounding * size(contact);
   return gap >= 0 && gap + (rate + std::min(half, 0.0) * span) * span >= 0;
 }
 

@@ -51,7 +51,8 @@ class ContactGaps {
 
   /// How far the two overlap, as far as that is known: of meshes it is not.
   double overlap(Contact contact) const { return has_mesh(contact) ? 0 : -nearest(contact); }
-  /// How far they may: by a billionth of the smaller, and by what motions are rounded by at this clock.
+  /// How much farther they may than when the contact began: by a billionth of the smaller, and by what motions are
+  /// rounded by at this clock.
   double deepest_overlap(const Contact& contact) const;
 
  private:

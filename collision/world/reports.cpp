@@ -8,29 +8,9 @@ namespace kds::collision {
 /// As WorldListener says.
 bool detail::Pending::operator<(const Pending& other) const {
   const auto key = [](const Pending& event) {
-    const auto stage = [&] {
-      switch (event.kind) {
-        case Kind::held:
-          return 0;
-        case Kind::wakes:
-          return 1;
-        case Kind::passes:
-          return 2;
-        case Kind::rests:
-          return 3;
-        case Kind::moved:
-          return 4;
-        case Kind::pair_ended:
-        case Kind::pair_began:
-          return 5;
-        case Kind::separation:
-          return 6;
-        case Kind::overlap:
-          return 7;
-      }
-      return 8;
-    };
-    return std::tuple(stage(), body_rank(event.a), body_rank(event.b), event.kind, event.wall);
+    // Volumes that meet and those that part are told together.
+    const Kind stage = event.kind == Kind::pair_began ? Kind::pair_ended : event.kind;
+    return std::tuple(stage, body_rank(event.a), body_rank(event.b), event.kind, event.wall);
   };
   return key(*this) < key(other);
 }

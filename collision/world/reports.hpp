@@ -12,8 +12,9 @@ namespace kds::collision {
 
 namespace detail {
 
-/// A report to be made at this instant. They are in the order in which WorldListener is told of them.
+/// A report to be made at this instant.
 struct Pending {
+  /// In the order in which WorldListener is told of them.
   enum class Kind { held, wakes, passes, rests, moved, pair_ended, pair_began, separation, overlap } kind;
   BodyId a, b;  ///< in order of their ranks; b is a where it is about one body
   Contact contact;

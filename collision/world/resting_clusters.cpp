@@ -208,6 +208,13 @@ bool RestingContacts<Degree>::in_cluster(const Island& island) const {
   return std::any_of(island.bodies.begin(), island.bodies.end(), [this](BodySlot id) { return clustered(id); });
 }
 
+/// Whether the normal of any contact does while bodies slide.
+template <int Degree>
+bool RestingContacts<Degree>::turns(const Island& island) const {
+  return std::any_of(island.contacts.begin(), island.contacts.end(),
+                     [this](Slot slot) { return gaps_.turns(contacts_[slot]); });
+}
+
 template <int Degree>
 Vector3d RestingContacts<Degree>::acceleration(BodySlot id) const {
   if constexpr (Degree >= 2) {
@@ -321,9 +328,7 @@ bool RestingContacts<Degree>::step_cluster(Island& island) {
     dissolve(island);
     return false;
   }
-  const bool turns = std::any_of(island.contacts.begin(), island.contacts.end(),
-                                 [this](Slot slot) { return gaps_.turns(contacts_[slot]); });
-  if (!span.solve_velocities(turns) && squeezed(island) && let_pass_worst(island, span.velocities)) return false;
+  if (!span.solve_velocities(turns(island)) && squeezed(island) && let_pass_worst(island, span.velocities)) return false;
   if (!span.solve_accelerations() && squeezed(island) && let_pass_worst(island, span.halves)) return false;
   const bool sleeps = comes_to_rest(island, span.velocities) <= now;
   double length = span.usable();

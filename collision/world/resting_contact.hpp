@@ -21,6 +21,7 @@ struct RestingContact {
   /// The largest of the velocities that were last solved for with it: what is left along the normal is a rounding of
   /// that.
   double solved = 0;
+  double depth = 0;  ///< by which the two overlapped when it began, for roundings of the clock; 0 if they did not
   bool alive = false;
   bool fresh = false;           ///< its approach is still to be taken out
   double ends = never;          ///< s, when nothing presses the two together any more; `never` up to degree 2

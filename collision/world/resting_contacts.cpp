@@ -72,6 +72,7 @@ void RestingContacts<Degree>::add(const Contact& hold) {
   contacts_[slot] = hold;
   contacts_[slot].alive = true;
   contacts_[slot].fresh = true;
+  contacts_[slot].depth = std::max(gaps_.overlap(hold), 0.0);
   member(hold.a).contacts.push_back(slot);
   if (hold.b != no_body) member(hold.b).contacts.push_back(slot);
   listener_.tell_resting(true, contacts_[slot]);
@@ -231,7 +232,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     if (std::abs(norm(hold.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
     if (releases_.time(slot) < t) fail(slot, "it should have been let go");
     if (hold.fresh) continue;
-    if ((!at_wall || clustered(hold.a)) && gaps_.overlap(hold) > gaps_.deepest_overlap(hold))
+    if ((!at_wall || clustered(hold.a)) && gaps_.overlap(hold) > hold.depth + gaps_.deepest_overlap(hold))
       fail(slot, "its bodies overlap");
     if (clustered(hold.a) || (!at_wall && clustered(hold.b))) continue;
     const Eigen::Vector3d a = bodies_.motion(hold.a).velocity(t);

@@ -221,6 +221,7 @@ class RestingContacts {
   class Span;
   friend Span;
   bool in_cluster(const Island& island) const;
+  bool turns(const Island& island) const;
   bool slides_on(const Island& island) const;
   bool step_cluster(Island& island);
   void gather(BodySlot id, double ends);

@@ -17,8 +17,8 @@ void RestingContacts<Degree>::Image::archive(Archive& archive) {
   archive(free, disturbed, releases, span_ends, calm_since, met, spans);
   archive.each(of, [&](auto& slots) { archive(slots); });
   archive.each(contacts, [&](Contact& c) {
-    archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.left_behind, c.solved, c.gap, c.room, c.since,
-            c.aim);
+    archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.left_behind, c.solved, c.depth, c.gap, c.room,
+            c.since, c.aim);
     image::vector(archive, c.normal), image::vector(archive, c.point);
     if constexpr (Degree >= 3) archive(c.ends);
   });
@@ -73,6 +73,7 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
     }
     need(std::abs(contact.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
     need(std::isfinite(contact.push) && std::isfinite(contact.solved), "its push or rate is not finite");
+    need(contact.depth >= 0 && std::isfinite(contact.depth), "its depth is negative or not finite");
     need(contact.point.allFinite(), "its point is not finite");
     need(std::isfinite(contact.gap) && contact.room >= 0 && std::isfinite(contact.room) && std::isfinite(contact.aim) &&
              image::is_past(contact.since, now),

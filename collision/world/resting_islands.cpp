@@ -200,9 +200,7 @@ bool RestingContacts<Degree>::drop_broken(const Island& island) {
     const double rate = dot(hold.normal, b - a);
     if (std::abs(rate) <= rate_rounding * largest) continue;
     any = true;
-    const bool turns = std::any_of(island.contacts.begin(), island.contacts.end(),
-                                   [this](Slot each) { return gaps_.turns(contacts_[each]); });
-    if ((rate > 0 || turns) && soon_back(hold, std::abs(rate))) {
+    if ((rate > 0 || turns(island)) && soon_back(hold, std::abs(rate))) {
       gather(island.bodies.front());
       return true;
     }

@@ -1,5 +1,6 @@
 // On inclined boxes, on curved surfaces, and on meshes.
 #include "collision/shapes/mesh.hpp"
+#include "tests/collision/sample_meshes.hpp"
 #include "tests/fuzz/random_piles/maker.hpp"
 
 #include <algorithm>
@@ -126,23 +127,6 @@ std::shared_ptr<const Mesh> tetrahedron() {
       std::vector<Mesh::Triangle>{{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}});
 }
 
-std::shared_ptr<const Mesh> cube() {
-  std::vector<Vector3d> vertices;
-  for (int i = 0; i < 8; ++i) vertices.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
-  return std::make_shared<const Mesh>(std::move(vertices), std::vector<Mesh::Triangle>{{0, 4, 2},
-                                                                                       {2, 4, 6},
-                                                                                       {1, 3, 5},
-                                                                                       {3, 7, 5},
-                                                                                       {0, 1, 4},
-                                                                                       {1, 5, 4},
-                                                                                       {2, 6, 3},
-                                                                                       {3, 6, 7},
-                                                                                       {0, 2, 1},
-                                                                                       {1, 2, 3},
-                                                                                       {4, 5, 6},
-                                                                                       {5, 7, 6}});
-}
-
 void mesh_bowl(Maker& make) {
   make.fix(MeshShape{bowl(4, 12, 2.5, make.random.between(0.5, 4)), 1}, Vector3d::Zero());
   make.fix_box({-30, -3, -30}, {30, -2, 30});
@@ -153,7 +137,7 @@ void mesh_bowl(Maker& make) {
 /// Meshes that lie on a floor, or fall on it.
 void mesh_on_floor(Maker& make) {
   make.fix_box({-30, -1, -30}, {30, 0, 30});
-  const auto mesh = make.random.one_in(2) ? tetrahedron() : cube();
+  const auto mesh = make.random.one_in(2) ? tetrahedron() : collision::samples::cuboid();
   const Quaterniond turn = make.random.one_in(2) ? Quaterniond::Identity() : make.orientation();
   if (make.random.one_in(3)) {
     make.add({.shape = MeshShape{mesh, 0.5}, .orientation = turn}, Vector3d(0, make.random.between(1, 3), 0));

@@ -12,57 +12,26 @@
 #include "tests/fuzz/random_piles/make_scene.hpp"
 #include "tests/fuzz/random_piles/measure.hpp"
 #include "tests/fuzz/random_piles/reduce.hpp"
+#include "tests/fuzz/watched_seed.hpp"
 
-#include <sys/time.h>
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 
 namespace {
 
 using namespace kds::piles;
+using kds::fuzz::now_running, kds::fuzz::number, kds::fuzz::seconds_from, kds::fuzz::set_alarm, kds::fuzz::watch_seeds;
 
 /// Every so many seeds events are compared with those of other broad phases and of a world that was saved and loaded.
 constexpr std::uint64_t compared_every = 20;
 constexpr int most_seconds_a_step = 100;  // of the processor, added to what a scene may take
-
-/// What is being run, for whoever reports a crash or that it takes too long.
-volatile std::uint64_t now_running = 0;
-
-extern "C" void failed(int signal) {
-  std::fprintf(stderr, "seed %llu %s\n", static_cast<unsigned long long>(now_running),
-               signal == SIGVTALRM ? "takes too long in a step" : "crashes");
-  if (signal == SIGVTALRM) std::_Exit(3);
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
-}
-
-/// Of the processor, or none.
-void set_alarm(int seconds) {
-  const itimerval timer{{0, 0}, {seconds, 0}};
-  setitimer(ITIMER_VIRTUAL, &timer, nullptr);
-}
-
-std::optional<std::uint64_t> number(std::string_view text) {
-  std::uint64_t result = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return result;
-}
-
-double seconds_from(const char* variable, double otherwise) {
-  const char* const wished = std::getenv(variable);
-  return wished ? std::strtod(wished, nullptr) : otherwise;
-}
 
 struct Tally {
   std::uint64_t scenes = 0, wrong = 0, events = 0, most_events = 0, resting = 0;
@@ -180,10 +149,7 @@ int reduce(std::uint64_t seed, const std::string& what, double least) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const int signal : {SIGABRT, SIGFPE, SIGILL, SIGVTALRM}) std::signal(signal, failed);
-#if !defined(__SANITIZE_ADDRESS__)  // which reports it better
-  std::signal(SIGSEGV, failed);
-#endif
+  watch_seeds();
   const std::string_view command = argc >= 2 ? argv[1] : "";
   if (argc == 3) {
     const auto last = number(argv[2]);

@@ -9,16 +9,12 @@
 #include "tests/fuzz/random_worlds/differences.hpp"
 #include "tests/fuzz/random_worlds/print.hpp"
 #include "tests/fuzz/random_worlds/reduce.hpp"
+#include "tests/fuzz/watched_seed.hpp"
 
-#include <sys/time.h>
-#include <charconv>
 #include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -29,40 +25,10 @@ using namespace kds::fuzz;
 constexpr int most_seconds_a_scenario = 300;  // of the processor; the longest take 10, under sanitizers tenfold
 constexpr double seconds_to_reduce = 40;
 
-/// What is being run, for whoever reports a crash or that it takes too long.
-volatile std::uint64_t now_running = 0;
-
-extern "C" void failed(int signal) {
-  std::fprintf(stderr, "seed %llu %s\n", static_cast<unsigned long long>(now_running),
-               signal == SIGVTALRM ? "takes too long" : "crashes");
-  if (signal == SIGVTALRM) std::_Exit(3);
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
-}
-
-/// Of the processor, or none.
-void set_alarm(int seconds) {
-  const itimerval timer{{0, 0}, {seconds, 0}};
-  setitimer(ITIMER_VIRTUAL, &timer, nullptr);
-}
-
-/// A number and nothing else.
-std::optional<std::uint64_t> number(std::string_view text) {
-  std::uint64_t result = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return result;
-}
-
-double seconds_allowed() {
-  const char* const wished = std::getenv("KDS_FUZZ_SECONDS");
-  return wished ? std::strtod(wished, nullptr) : kds::never;
-}
-
 int run_seeds(std::uint64_t first, std::uint64_t last) {
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
-  const double allowed = seconds_allowed();
+  const double allowed = seconds_from("KDS_FUZZ_SECONDS", kds::never);
   std::map<std::string, std::uint64_t> kinds;
   std::uint64_t done = 0;
   std::uint64_t lines = 0;
@@ -131,10 +97,7 @@ int check() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const int signal : {SIGABRT, SIGFPE, SIGILL, SIGVTALRM}) std::signal(signal, failed);
-#if !defined(__SANITIZE_ADDRESS__)  // which reports it better
-  std::signal(SIGSEGV, failed);
-#endif
+  watch_seeds();
   const std::string_view command = argc >= 2 ? argv[1] : "";
   if (argc == 2 && command == "check") return check();
   if (argc == 3) {
