@@ -35,9 +35,14 @@ class RestingContacts<Degree>::Neighbourhood {
     ++all_.islands_;
     add_body(no_body);
     if (slot != none) {
-      all_.contacts_[slot].seen = all_.islands_;
-      all_.contacts_[slot].place = 0;
-      if (all_.gaps_.has_mesh(struck)) all_.contacts_[slot].gap = 0, all_.contacts_[slot].since = all_.clock_.now;
+      Contact& contact = all_.contacts_[slot];
+      contact.seen = all_.islands_;
+      contact.place = 0;
+      if (all_.gaps_.has_mesh(contact)) {  // They touch, or are known to be deeper by some roundings.
+        contact.gap = std::min(all_.gaps_.along_normal(contact), 0.0);
+        contact.since = all_.clock_.now;
+        contact.aim = contact.gap - closing(contact, contact.gap);
+      }
     }
     add_touch(struck, slot, least);
   }
@@ -271,7 +276,7 @@ typename RestingContacts<Degree>::Slot RestingContacts<Degree>::add_to_cluster(c
   }
   lasting.room = part * gaps_.size(contact);
   add(lasting);
-  const Slot slot = find(contact.a, contact.b, contact.wall);
+  const Slot slot = find_like(contact);
   contacts_[slot].fresh = false;
   return slot;
 }
@@ -293,7 +298,7 @@ void RestingContacts<Degree>::impact(const Contact& contact, double restitution)
   const bool joins = 2 * restitution * approach <= bounce * weight;
   if (joins) restitution = 0;
   double span = wake(contact, joins) - now;
-  Slot slot = find(contact.a, contact.b, contact.wall);
+  Slot slot = find_like(contact);
   if (joins && slot == none) slot = add_to_cluster(contact);
   const bool anew = !(span > shortest_span * bounce);  // The span begins anew.
   if (anew) {

@@ -17,11 +17,11 @@ inline constexpr double part_of_slide = 0x1p-5;
 inline constexpr double shortest_span = 0x1p-6;
 
 /// Contacts are kept while they are nearer than this part of the smaller size.
-inline constexpr double kept_gap = 0x1p-10;
+inline constexpr double kept_gap = 0x1p-7;
 /// The gap that contacts are kept at, as a part of the smaller size: room for what sweeps leave, which with many
 /// contacts would take long to be little; for what a path on a curved surface differs from a parabola; and for what is
 /// left where planes have to give way.
-inline constexpr double room_of_many = 0x1p-14;
+inline constexpr double room_of_many = 0x1p-12;
 inline constexpr double room_of_curves = 0x1p-17;
 inline constexpr double room_of_planes = 0x1p-23;
 /// Parts of that room: what a gap that is too small grows by in a span, what sweeps may leave, and what an impact

@@ -25,6 +25,9 @@ certificates::PointMotion<Degree> moved(certificates::PointMotion<Degree> motion
   return motion;
 }
 
+/// As a part of their size, how much nearer a mesh is moved to find what is nearest.
+constexpr double nearest_part = 0x1p-26;
+
 }  // namespace
 
 template <int Degree>
@@ -133,12 +136,24 @@ bool ContactGaps<Degree>::renew(Contact& contact) const {
   const bool round = is_round(a.shape) || is_round(b.shape);
   const bool mesh = has_mesh(contact);
   if (round && !mesh) return true;
-  // Faces may have slid off each other.
-  const auto nearer = moved(b.motion, -(contact.gap + cluster::room_of_many * size(contact)) * contact.normal);
-  const MovingShape<Degree> touching{b.shape, nearer};
-  if (!in_contact(a, touching, now)) return false;
-  if (mesh && round) contact.normal = contact_at(a, touching, now).normal;
-  return true;
+  // Faces may have slid off each other. What is nearest is found first, then what is near.
+  for (const double part : {nearest_part, cluster::room_of_many}) {
+    const Vector3d nearer = -(contact.gap + part * size(contact)) * contact.normal;
+    const auto motion = moved(b.motion, nearer);
+    const MovingShape<Degree> touching{b.shape, motion};
+    if (!in_contact(a, touching, now)) continue;
+    if (!mesh || !round) return true;
+    const collision::Contact touch = contact_at(a, touching, now);
+    contact.normal = touch.normal;
+    // From the surface of the mesh to that of a ball.
+    if (const double of_b = bodies_.mover(contact.b).radius; of_b > 0) {
+      contact.gap = dot(contact.normal, b.motion.position(now) - touch.point) - of_b;
+    } else if (const double of_a = bodies_.mover(contact.a).radius; of_a > 0) {
+      contact.gap = dot(contact.normal, touch.point - nearer - a.motion.position(now)) - of_a;
+    }
+    return true;
+  }
+  return false;
 }
 
 template <int Degree>

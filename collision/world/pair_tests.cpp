@@ -94,13 +94,39 @@ void Pairs<Degree>::estimate_dirty() {
            [&](std::size_t, std::size_t first, std::size_t last) { estimate_balls(first, last); });
 }
 
+/// Most pairs of a heap need no test, since the resting contact keeps them apart.
+template <int Degree>
+void Pairs<Degree>::pass_over_resting() {
+  std::erase_if(dirty_, [this](Slot slot) {
+    Pair& pair = pairs_[slot];
+    if (!pair.alive || pair.fresh || pair.overlapping || !resting_.keeps_apart(pair.a, pair.b)) return false;
+    ++counters_.pair_tests;
+    pair.dirty = pair.estimated = false;
+    if (contacts_.contains(slot)) contacts_.set(slot, never);
+    finish_test(slot);
+    return true;
+  });
+}
+
+/// What is left to do when it is known when a pair meets.
+template <int Degree>
+void Pairs<Degree>::finish_test(Slot slot) {
+  Pair& pair = pairs_[slot];
+  pair.fresh = false;
+  if (pair.listed) {
+    if (follows_boxes_) test_boxes(slot);
+  } else if (!pair.overlapping) {
+    release(slot);
+  }
+}
+
 template <int Degree>
 void Pairs<Degree>::test() {
   const Stopwatch watch(profile_, Work::test);
+  const bool any_rest = !resting_.empty();
+  if (any_rest) pass_over_resting();
   estimate_dirty();
   const bool sensors = bodies_.any_sensor();
-  const bool any_rest = !resting_.empty();
-  const bool follows_boxes = follows_boxes_;
   for (std::size_t i = 0, dirty = dirty_.size(); i < dirty; ++i) {
     const Slot slot = dirty_[i];
     Pair& pair = pairs_[slot];
@@ -117,12 +143,7 @@ void Pairs<Degree>::test() {
       pair.estimated = std::abs(estimate) != never;
       if (pair.estimated || contacts_.contains(slot)) contacts_.set(slot, pair.estimated ? estimate : never);
     }
-    pair.fresh = false;
-    if (pair.listed) {
-      if (follows_boxes) test_boxes(slot);
-    } else if (!pair.overlapping) {
-      release(slot);
-    }
+    finish_test(slot);
   }
   dirty_.clear();
 }

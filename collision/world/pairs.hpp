@@ -188,6 +188,8 @@ class Pairs final : public PairListener {
 
   // pair_tests.cpp
   bool balls_are_quick() const;
+  void pass_over_resting();
+  void finish_test(Slot slot);
   void estimate_dirty();
   void estimate_balls(std::size_t first, std::size_t last);
   void test(Slot slot);

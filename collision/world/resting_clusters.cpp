@@ -104,22 +104,12 @@ class RestingContacts<Degree>::Span {
   /// How long it may last: what has been left too near ends it before it is too late. Contacts know from then on how
   /// far they will be, and which of them are proven.
   double usable() {
-    double result = length;
-    for (std::size_t k = 0; k < touches_.size(); ++k) {
-      Contact& contact = this->contact(k);
-      const double rate = parting_rate(velocities, touches_[k]);
-      const double half = parting_rate(halves, touches_[k]);
-      contact.fresh = false;
-      contact.aim = all_.gaps_.along_normal(contact) - closing(contact, contact.gap);
-      proven_.push_back(all_.gaps_.proven(contact, rate, half, length));
-      if (proven_.back()) continue;
-      const auto apart_at = [&](double time) {
-        if (!all_.gaps_.bends(contact)) return all_.gaps_.proven(contact, rate, half, time);
-        return all_.gaps_.after(contact, displacement(touches_[k], time)).width >= 0;
-      };
-      while (result > 0 && !apart_at(result)) result /= 2;
+    for (double result = length;;) {
+      pay(result);
+      const double lasts = provable(result);
+      if (lasts == result) return result;
+      result = lasts;
     }
-    return result;
   }
 
   /// Of what cannot be solved all bodies get one velocity and one acceleration, which no contact forbids: those of the
@@ -169,6 +159,51 @@ class RestingContacts<Degree>::Span {
       if (along > 0) span = std::min(span, part_of_slide * all_.gaps_.size(contact) / along);
     }
     return span;
+  }
+
+  /// What lifts contacts to their room, and what is rounded, is paid by the speeds: the bodies end the span with no more
+  /// energy than they have before it, if it lasts for a time. Fixed bodies that move do work, which nobody pays.
+  void pay(double time) {
+    const auto moves = [](const Vector3d& vector) { return !vector.isZero(0); };
+    const auto fixed = static_cast<std::ptrdiff_t>(island_.free);
+    if (std::any_of(velocities.begin() + fixed, velocities.end(), moves)) return;
+    if (std::any_of(halves.begin() + fixed, halves.end(), moves)) return;
+    double gained = 0;
+    double by_speeds = 0;  // its derivative by a factor of all velocities
+    for (std::size_t i = 0; i < island_.free; ++i) {
+      const BodySlot id = island_.bodies[i];
+      const Vector3d weight = all_.acceleration(id);
+      const Vector3d end = velocities[i] + 2 * time * halves[i];
+      const Vector3d way = time * (velocities[i] + time * halves[i]);
+      const double mass = all_.bodies_[id].mass;
+      gained += mass * (0.5 * (squared_norm(end) - squared_norm(all_.velocity(id))) - dot(weight, way));
+      by_speeds += mass * (dot(end, velocities[i]) - time * dot(weight, velocities[i]));
+    }
+    if (!(gained > 0 && by_speeds > gained)) return;
+    for (std::size_t i = 0; i < island_.free; ++i) velocities[i] *= 1 - gained / by_speeds;
+  }
+
+  /// For how much of a time no bodies come into each other.
+  double provable(double time) {
+    proven_.clear();
+    for (std::size_t k = 0; k < touches_.size(); ++k) {
+      Contact& contact = this->contact(k);
+      const double rate = parting_rate(velocities, touches_[k]);
+      const double half = parting_rate(halves, touches_[k]);
+      contact.fresh = false;
+      contact.aim = all_.gaps_.along_normal(contact) - closing(contact, contact.gap);
+      proven_.push_back(all_.gaps_.proven(contact, rate, half, time));
+      if (proven_.back()) continue;
+      const auto apart_at = [&](double at) {
+        return all_.gaps_.after(contact, displacement(touches_[k], at)).width >= 0;
+      };
+      const auto lasts = [&](double until) {  // What would meet at once lasts not at all.
+        if (!all_.gaps_.bends(contact)) return all_.gaps_.proven(contact, rate, half, until);
+        return apart_at(until) && apart_at(shortest_span * until);
+      };
+      while (time > 0 && !lasts(time)) time /= 2;
+    }
+    return time;
   }
 
   /// Of b, seen from a.

@@ -20,9 +20,9 @@ constexpr double slack = 0x1p-20;
 /// The same relative to the coordinates, which are rounded whenever a motion is restarted.
 constexpr double coordinate_slack = 0x1p-40;
 
-/// How far beyond its contacts of this moment a mesh in a cluster may sink before it is a contact anew, relative to the
-/// smaller bounding radius.
-constexpr double approach_slack = 0x1p-21;
+/// How far beyond its contacts of this moment a mesh in a cluster may sink, for roundings, before it is a contact anew;
+/// relative to the smaller bounding radius.
+constexpr double approach_slack = 0x1p-35;
 
 /// Normals as near as this are of one and the same place: cosine of the angle between them.
 constexpr double same_normal = 1 - 0x1p-20;
@@ -44,9 +44,23 @@ double slack_of(const MovingShape<Degree>& a, const MovingShape<Degree>& b, doub
 
 template <int Degree>
 typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_among(BodySlot a, BodySlot b, int wall) const {
-  for (const Slot slot : of_[a].contacts) {
+  // A floor has many.
+  const bool from_b = b != no_body && b < of_.size() && of_[b].contacts.size() < of_[a].contacts.size();
+  for (const Slot slot : of_[from_b ? b : a].contacts) {
     const Contact& hold = contacts_[slot];
     if (hold.a == a && hold.b == b && hold.wall == wall) return slot;
+  }
+  return none;
+}
+
+/// The one of the same bodies and in the same place: convex bodies have but one.
+template <int Degree>
+typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_like(const Contact& contact) const {
+  if (!gaps_.has_mesh(contact)) return find(contact.a, contact.b, contact.wall);
+  if (!rests(contact.a)) return none;
+  for (const Slot slot : of_[contact.a].contacts) {
+    const Contact& other = contacts_[slot];
+    if (other.b == contact.b && dot(other.normal, contact.normal) > same_normal) return slot;
   }
   return none;
 }
@@ -108,7 +122,7 @@ double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
   const auto a = bodies_.moving(id_a);
   const auto b = bodies_.moving(id_b);
   if (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape)) {
-    if (contacts_[find(id_a, id_b)].proven) return never;
+    if (keeps_apart(id_a, id_b)) return never;
     return first_contact(a, b, clock_.now, clock_.horizon, ContactMode::resolved);
   }
   const double began = std::max(a.motion.start, b.motion.start);

@@ -103,7 +103,7 @@ class RestingContacts {
   /// All of a body end, since it goes.
   void forget(BodySlot id) {
     drop_all(id);
-    leave(id);
+    if (id < spans_.slots()) spans_.clear(id);
     if (id < of_.size()) of_[id] = {};
   }
 
@@ -124,6 +124,12 @@ class RestingContacts {
     if (!settled()) settle_all();
   }
 
+  /// Whether two bodies surely do not meet until the motion of one changes, or their contact does: a plane stays between
+  /// them.
+  bool keeps_apart(BodySlot a, BodySlot b) const {
+    const Slot slot = find(a, b);
+    return slot != none && contacts_[slot].proven && !gaps_.has_mesh(contacts_[slot]);
+  }
   /// When two bodies that rest on each other may meet elsewhere.
   double next_contact(BodySlot a, BodySlot b);
 
@@ -201,6 +207,7 @@ class RestingContacts {
     return of_[id];
   }
   Slot find_among(BodySlot a, BodySlot b, int wall) const;
+  Slot find_like(const Contact& contact) const;
   void note(BodySlot id);
   void drop(Slot slot);
   void schedule_release(Slot slot);

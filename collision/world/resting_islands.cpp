@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace kds::collision {
@@ -141,16 +140,17 @@ void RestingContacts<Degree>::watch(const Island& island, std::vector<Motion>& m
 template <int Degree>
 typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(BodySlot id) {
   ++islands_;
+  member(id);  // All that touches others is known.
   Island island;
   std::vector<BodySlot> anchored;
   const auto visit = [&](BodySlot next) {
-    if (std::exchange(member(next).island, islands_) == islands_) return;
+    if (std::exchange(of_[next].island, islands_) == islands_) return;
     (bodies_.fixed(next) ? anchored : island.bodies).push_back(next);
   };
   visit(id);
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     const BodySlot at = island.bodies[i];
-    for (const Slot slot : std::vector<Slot>(of_[at].contacts)) {  // members may be made
+    for (const Slot slot : of_[at].contacts) {
       const Contact& hold = contacts_[slot];
       const BodySlot other = hold.a == at ? hold.b : hold.a;
       const bool met_first = hold.a == at || bodies_.fixed(other);
@@ -165,11 +165,15 @@ typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(Bo
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     of_[island.bodies[i]].place = static_cast<std::uint32_t>(i);
   }
-  const auto key = [&](Slot slot) {
-    const Contact& h = contacts_[slot];
-    return std::tuple(h.a, h.b, h.wall, h.normal[0], h.normal[1], h.normal[2]);
-  };
-  std::sort(island.contacts.begin(), island.contacts.end(), [&](Slot x, Slot y) { return key(x) < key(y); });
+  std::sort(island.contacts.begin(), island.contacts.end(), [this](Slot x, Slot y) {
+    const Contact& of_x = contacts_[x];
+    const Contact& of_y = contacts_[y];
+    if (of_x.a != of_y.a) return of_x.a < of_y.a;
+    if (of_x.b != of_y.b) return of_x.b < of_y.b;
+    if (of_x.wall != of_y.wall) return of_x.wall < of_y.wall;
+    return std::lexicographical_compare(of_x.normal.begin(), of_x.normal.end(), of_y.normal.begin(),
+                                        of_y.normal.end());
+  });
   for (const Slot slot : island.contacts) {
     const Contact& hold = contacts_[slot];
     const bool at_wall = hold.b == no_body;

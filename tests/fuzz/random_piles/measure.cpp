@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <deque>
 #include <exception>
 #include <limits>
 
@@ -26,6 +27,8 @@ constexpr std::size_t few = 8;
 constexpr double sample = 0.05;
 /// Samples between audits.
 constexpr int audits_every = 16;
+/// A gain of energy lasts if it does for so many times sqrt(size / acceleration): two spans of clusters.
+constexpr double lasting_gain = 0x1p-3;
 /// Bodies that begin deeper in each other than this part of the smaller radius are not measured. Those that touch
 /// exactly may begin in overlap by a rounding.
 constexpr double begins_apart = 1e-12;
@@ -120,12 +123,10 @@ class Meter : public collision::WorldListener<2> {
     const std::size_t n = solids_.size();
     for (std::size_t k = 0; k < n; ++k) {
       if (skipped_[i * n + k] || (k < after && !scene_.bodies[k].fixed)) continue;
-      const bool mesh = collision::has_mesh(solids_[i].shape.shape) || collision::has_mesh(solids_[k].shape.shape);
       const double deep = depth(solids_[i], places_[i], solids_[k], places_[k]) / smaller(i, k);
-      if (!mesh) result_.overlap = std::max(result_.overlap, deep);
-      if (deep > (mesh ? deepest_overlap_of_meshes : deepest_overlap)) {
-        find(mesh ? "overlap of a mesh" : "overlap", now, deep,
-             "bodies " + std::to_string(i) + " and " + std::to_string(k));
+      result_.overlap = std::max(result_.overlap, deep);
+      if (deep > deepest_overlap) {
+        find("overlap", now, deep, "bodies " + std::to_string(i) + " and " + std::to_string(k));
       }
     }
     const double radius = solids_[i].shape.bounding_radius;
@@ -157,9 +158,7 @@ class Meter : public collision::WorldListener<2> {
 
   void look_at_sums(World<2>& world) {
     if (!scene_.driven()) {
-      const double now = energy(world);
-      least_energy_ = std::min(least_energy_, now);
-      const double gain = (now - least_energy_) / scale_;
+      const double gain = gained_for_good(world.now(), energy(world)) / scale_;
       result_.energy = std::max(result_.energy, gain);
       if (gain > greatest_gain) find("energy", world.now(), gain, "");
     }
@@ -167,6 +166,17 @@ class Meter : public collision::WorldListener<2> {
       const double change = (momentum(world) - momentum_).norm() / momenta_;
       if (change > greatest_change_of_momentum) find("momentum", world.now(), change, "");
     }
+  }
+
+  /// By how much the least energy of the last few spans is more than the least before. Within a span of a cluster energy
+  /// comes and goes, since a parabola is not an arc (docs/resting.md).
+  double gained_for_good(double now, double energy) {
+    while (!recent_.empty() && recent_.back().energy >= energy) recent_.pop_back();
+    recent_.push_back({now, energy});
+    for (; recent_.front().time < now - lasting_; recent_.pop_front()) {
+      least_energy_ = std::min(least_energy_, recent_.front().energy);
+    }
+    return recent_.front().energy - least_energy_;
   }
 
   /// The energy at the start, over that at the lowest place of a free body, less its radius.
@@ -184,6 +194,9 @@ class Meter : public collision::WorldListener<2> {
       momentum_ += mass * velocity;
       momenta_ += mass * velocity.norm();
     }
+    double size = 0;
+    for (const std::size_t i : free_) size = std::max(size, solids_[i].shape.bounding_radius);
+    if (g > 0) lasting_ = lasting_gain * std::sqrt(size / g);
     if (!(scale_ > 0)) scale_ = 1;
     if (!(momenta_ > 0)) momenta_ = 1;
   }
@@ -198,6 +211,11 @@ class Meter : public collision::WorldListener<2> {
   std::vector<char> left_;  ///< have been above the region: a light body among heavy ones may be tossed over its sides
   std::vector<std::size_t> list_;
   double scale_ = 0;
+  struct Sample {
+    double time, energy;
+  };
+  std::deque<Sample> recent_;  ///< of the last few spans; no later one has less energy
+  double lasting_ = 0;         ///< s
   double least_energy_ = std::numeric_limits<double>::infinity();
   Vector3d momentum_ = Vector3d::Zero();
   double momenta_ = 0;

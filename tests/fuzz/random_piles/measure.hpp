@@ -25,14 +25,13 @@ struct Result {
   double seconds = 0;  ///< of the processor
   double reached = 0;  ///< s of simulated time
   double overlap = 0;  ///< the deepest, in parts of the smaller of two radii
-  double energy = 0;   ///< the greatest rise, in parts of the energy at the start
+  double energy = 0;   ///< the greatest rise that lasts, in parts of the energy at the start
   double kinetic = 0;  ///< at the end, in parts of the energy at the start
 };
 
-/// Deeper than this part of the smaller bounding radius is wrong. Tests of meshes have a margin.
+/// Deeper than this part of the smaller bounding radius is wrong.
 inline constexpr double deepest_overlap = 1e-9;
-inline constexpr double deepest_overlap_of_meshes = 1e-6;
-/// More than this part of the energy at the start, gained since it was least, is wrong.
+/// More than this part of the energy at the start, gained for good since it was least, is wrong.
 inline constexpr double greatest_gain = 1e-6;
 /// Momentum may change by this part of the sum of its magnitudes, where nothing acts from outside.
 inline constexpr double greatest_change_of_momentum = 1e-12;
