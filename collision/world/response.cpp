@@ -207,11 +207,14 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   if constexpr (Degree >= 2) pressed = -2 * relative(2);
   const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
                       bodies_[a].bounding_radius + bodies_[b].bounding_radius;
-  const bool held = stays(restitution * approach, pressed, size, burst);
-  if (held) {
+  const auto hold = [&] {
     ++counters_.held;
     resting_.add({.a = a, .b = b, .normal = n, .point = point});
     resting_.disturb(a), resting_.disturb(b);
+  };
+  const bool held = stays(restitution * approach, pressed, size, burst);
+  if (held) {
+    hold();
   } else {
     change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,
                              inverse_a, inverse_b);
@@ -224,12 +227,14 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   }
   resting_.settle();
   // What neither bounces nor is held by itself is held by what it leans on.
-  if (resting_.find(a, b) == Resting::none && resting_.can_gather(a, b) &&
-      parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) {
+  if (resting_.find(a, b) != Resting::none || !(parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0)) return held;
+  if (resting_.can_gather(a, b)) {
     resting_.gather(a), resting_.gather(b);
     return impact() || held;
   }
-  return held;
+  hold();
+  resting_.settle();
+  return true;
 }
 
 template <int Degree>

@@ -22,7 +22,7 @@ constexpr double coordinate_slack = 0x1p-40;
 
 /// How far beyond its contacts of this moment a mesh in a cluster may sink, for roundings, before it is a contact anew;
 /// relative to the smaller bounding radius.
-constexpr double approach_slack = 0x1p-35;
+constexpr double approach_slack = 0x1p-37;
 
 /// Normals as near as this are of one and the same place: cosine of the angle between them.
 constexpr double same_normal = 1 - 0x1p-20;
