@@ -38,7 +38,7 @@ inline constexpr double greatest_change_of_momentum = 1e-12;
 
 /// A run that makes more steps, or takes more seconds of the processor, is a stall.
 struct Budget {
-  std::uint64_t steps = 2'000'000;
+  std::uint64_t steps = 20'000'000;
   double seconds = 20;
   /// If given: the run ends when this has been found and is as bad as that.
   std::string sought{};
