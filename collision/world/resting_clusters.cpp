@@ -337,13 +337,28 @@ bool RestingContacts<Degree>::slides_on(const Island& island) const {
   });
 }
 
+/// Whether a contact with a mesh has come to where one before it is: the bodies have left the facet that it was on.
+template <int Degree>
+bool RestingContacts<Degree>::repeats(const Island& island, std::size_t k) const {
+  const Contact& contact = contacts_[island.contacts[k]];
+  if (!gaps_.has_mesh(contact)) return false;
+  for (std::size_t i = k; i-- > 0;) {
+    const Contact& other = contacts_[island.contacts[i]];
+    if (other.a != contact.a || other.b != contact.b) return false;
+    if (other.alive && dot(other.normal, contact.normal) > detail::same_normal) return true;
+  }
+  return false;
+}
+
 /// The span of a cluster begins. False if it is to be called again.
 template <int Degree>
 bool RestingContacts<Degree>::step_cluster(Island& island) {
   const double now = clock_.now;
   bool over = false;
-  for (const Slot slot : island.contacts) {
-    if (!gaps_.renew(contacts_[slot])) drop(slot), over = true;
+  for (std::size_t k = 0; k < island.contacts.size(); ++k) {
+    if (gaps_.renew(contacts_[island.contacts[k]]) && !repeats(island, k)) continue;
+    drop(island.contacts[k]);
+    over = true;
   }
   if (over) return false;
   if (slides_on(island)) {

@@ -10,6 +10,9 @@
 
 namespace kds::collision::detail {
 
+/// Normals as near as this are of one and the same place: cosine of the angle between them.
+inline constexpr double same_normal = 1 - 0x1p-20;
+
 /// Two bodies, or a body (a) and a wall, that stay in touch.
 struct RestingContact {
   BodySlot a = 0;

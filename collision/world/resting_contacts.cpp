@@ -24,9 +24,6 @@ constexpr double coordinate_slack = 0x1p-40;
 /// relative to the smaller bounding radius.
 constexpr double approach_slack = 0x1p-37;
 
-/// Normals as near as this are of one and the same place: cosine of the angle between them.
-constexpr double same_normal = 1 - 0x1p-20;
-
 template <int Degree>
 certificates::PointMotion<Degree> shifted(certificates::PointMotion<Degree> motion, const Vector3d& by) {
   motion.coefficients[0] += by;
@@ -60,7 +57,7 @@ typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_like(const 
   if (!rests(contact.a)) return none;
   for (const Slot slot : of_[contact.a].contacts) {
     const Contact& other = contacts_[slot];
-    if (other.b == contact.b && dot(other.normal, contact.normal) > same_normal) return slot;
+    if (other.b == contact.b && dot(other.normal, contact.normal) > detail::same_normal) return slot;
   }
   return none;
 }
@@ -69,7 +66,7 @@ template <int Degree>
 void RestingContacts<Degree>::add(const Contact& hold) {
   for (const Slot slot : member(hold.a).contacts) {
     Contact& other = contacts_[slot];
-    if (other.a != hold.a || other.b != hold.b || !(dot(other.normal, hold.normal) > same_normal)) continue;
+    if (other.a != hold.a || other.b != hold.b || !(dot(other.normal, hold.normal) > detail::same_normal)) continue;
     other.normal = hold.normal;
     other.fresh = true;
     return;

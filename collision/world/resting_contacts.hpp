@@ -230,6 +230,7 @@ class RestingContacts {
   bool in_cluster(const Island& island) const;
   bool turns(const Island& island) const;
   bool slides_on(const Island& island) const;
+  bool repeats(const Island& island, std::size_t k) const;
   bool step_cluster(Island& island);
   void gather(BodySlot id, double ends);
   void dissolve(const Island& island);
