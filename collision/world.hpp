@@ -261,9 +261,13 @@ class World final : private RestingContacts<Degree>::Listener {
   void process_contact(BodySlot a, BodySlot b, const Contact& contact);
   void process_wall();
   bool respond(BodySlot a, BodySlot b, const Contact& contact);
+  bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution);
+  bool bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution, std::uint64_t burst);
+  void hold(BodySlot a, BodySlot b, const Contact& contact);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   std::uint64_t count_meeting(BodySlot a, BodySlot b);
   std::uint64_t count_meeting(BodySlot slot);
+  bool do_not_end(std::uint64_t burst) const;
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
   // What resting contacts tell (RestingContacts::Listener).

@@ -105,7 +105,9 @@ void World<Degree>::process_wall() {
   const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
   const bool clustered = resting_.clustered(id) && !bodies_.fixed(id);
   bool held = !clustered && stays(rebound, pressed, size, count_meeting(id));
-  if (clustered) {
+  if (clustered && do_not_end(count_meeting(id))) {
+    resting_.halt(id);
+  } else if (clustered) {
     const bool rested = resting_.find(id, no_body, wall) != Resting::none;
     resting_.impact({.a = id, .wall = wall, .normal = event.contact.normal, .point = point},
                     std::min(body.restitution, options_.walls->restitution));
@@ -161,19 +163,16 @@ bool World<Degree>::stays(double rebound, double pressed, double size, std::uint
   return 2 * rebound < shortest * pressed || rebound * rebound < 2 * pressed * lowest;
 }
 
+/// Whether so many meetings at nearly one time are a sign that there will be more without end.
+template <int Degree>
+bool World<Degree>::do_not_end(std::uint64_t burst) const {
+  const std::uint64_t many = std::max(options_.zeno.contacts, 1u);
+  return burst > many && burst % many == 0;
+}
+
 template <int Degree>
 bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
-  const double inverse_a = bodies_[a].inverse_mass;
-  const double inverse_b = bodies_[b].inverse_mass;
-  if (inverse_a + inverse_b == 0) return false;
-  Motion motion_a = bodies_.motion(a).restarted(contact.time);
-  Motion motion_b = bodies_.motion(b).restarted(contact.time);
-  const Vector3d& n = contact.normal;
-  const Vector3d point = contact.point - motion_a.coefficients[0];
-  const auto relative = [&](std::size_t order) {
-    return dot(n, motion_b.coefficients[order] - motion_a.coefficients[order]);
-  };
-  const double approach = -relative(1);
+  if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
   const std::uint64_t burst = count_meeting(a, b);
   if (burst > patience()) {  // Holding does not help: the pair is left as it is, and so passes through.
     ++counters_.held;
@@ -184,57 +183,86 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   }
   const bool often = burst > options_.zeno.contacts;
   const double restitution = often ? 0 : std::min(bodies_[a].restitution, bodies_[b].restitution);
-  if (restitution < 1 && inverse_a != 0 && inverse_b != 0) resting_.note_meeting(a, b);
-  const auto impact = [&] {
-    const bool rested = resting_.find(a, b) != Resting::none;
-    resting_.impact({.a = a, .b = b, .normal = n, .point = point}, restitution);
-    resting_.settle();
-    // What the others that lean on the two have turned back towards each other stays together.
-    if (resting_.find(a, b) == Resting::none && parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) {
-      resting_.impact({.a = a, .b = b, .normal = n, .point = point}, 0);
-      resting_.settle();
+  if (restitution < 1 && !bodies_.fixed(a) && !bodies_.fixed(b)) resting_.note_meeting(a, b);
+  const auto approach = [&] { return parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0; };
+  const auto rest = [&] { return resting_.find(a, b) != Resting::none; };
+  if (resting_.clustered(a) || resting_.clustered(b)) {
+    if (do_not_end(burst)) {
+      resting_.halt(a), resting_.halt(b);
+      if (rest() && !approach()) return false;
     }
-    const bool rests = resting_.find(a, b) != Resting::none;
-    counters_.held += rests && !rested;
-    return rests && !rested;
-  };
-  if (resting_.clustered(a) || resting_.clustered(b)) return impact();
+    return strike(a, b, contact, restitution);
+  }
   if (often && resting_.can_gather(a, b)) {
     resting_.gather(a), resting_.gather(b);
-    return impact();
+    return strike(a, b, contact, restitution);
   }
+  const bool held = bounce_or_hold(a, b, contact, restitution, burst);
+  // What neither bounces nor is held by itself is held by what it leans on.
+  if (rest() || !approach()) return held;
+  if (resting_.can_gather(a, b)) {
+    resting_.gather(a), resting_.gather(b);
+    return strike(a, b, contact, restitution) || held;
+  }
+  hold(a, b, contact);
+  return true;
+}
+
+/// A contact in a cluster. Whether the two are held from now on.
+template <int Degree>
+bool World<Degree>::strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) {
+  const bool rested = resting_.find(a, b) != Resting::none;
+  const Vector3d point = contact.point - bodies_.motion(a).position(contact.time);
+  resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, restitution);
+  resting_.settle();
+  // What the others that lean on the two have turned back towards each other stays together.
+  if (resting_.find(a, b) == Resting::none && parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) {
+    resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, 0);
+    resting_.settle();
+  }
+  const bool rests = resting_.find(a, b) != Resting::none;
+  counters_.held += rests && !rested;
+  return rests && !rested;
+}
+
+template <int Degree>
+void World<Degree>::hold(BodySlot a, BodySlot b, const Contact& contact) {
+  ++counters_.held;
+  const Vector3d point = contact.point - bodies_.motion(a).position(contact.time);
+  resting_.add({.a = a, .b = b, .normal = contact.normal, .point = point});
+  resting_.disturb(a), resting_.disturb(b);
+  resting_.settle();
+}
+
+/// A contact in no cluster. Whether the two are held from now on.
+template <int Degree>
+bool World<Degree>::bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+                                   std::uint64_t burst) {
+  Motion motion_a = bodies_.motion(a).restarted(contact.time);
+  Motion motion_b = bodies_.motion(b).restarted(contact.time);
+  const Vector3d& n = contact.normal;
+  const auto relative = [&](std::size_t order) {
+    return dot(n, motion_b.coefficients[order] - motion_a.coefficients[order]);
+  };
+  const double approach = -relative(1);
   double pressed = 0;
   if constexpr (Degree >= 2) pressed = -2 * relative(2);
   const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
                       bodies_[a].bounding_radius + bodies_[b].bounding_radius;
-  const auto hold = [&] {
-    ++counters_.held;
-    resting_.add({.a = a, .b = b, .normal = n, .point = point});
-    resting_.disturb(a), resting_.disturb(b);
-  };
-  const bool held = stays(restitution * approach, pressed, size, burst);
-  if (held) {
-    hold();
-  } else {
-    change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,
-                             inverse_a, inverse_b);
-    for (const auto& [id, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
-      if (bodies_.fixed(id)) continue;
-      ++counters_.motion_updates;
-      set_motion(id, motion, false);
-      resting_.disturb(id);
-    }
+  if (stays(restitution * approach, pressed, size, burst)) {
+    hold(a, b, contact);
+    return true;
+  }
+  change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,
+                           bodies_[a].inverse_mass, bodies_[b].inverse_mass);
+  for (const auto& [id, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
+    if (bodies_.fixed(id)) continue;
+    ++counters_.motion_updates;
+    set_motion(id, motion, false);
+    resting_.disturb(id);
   }
   resting_.settle();
-  // What neither bounces nor is held by itself is held by what it leans on.
-  if (resting_.find(a, b) != Resting::none || !(parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0)) return held;
-  if (resting_.can_gather(a, b)) {
-    resting_.gather(a), resting_.gather(b);
-    return impact() || held;
-  }
-  hold();
-  resting_.settle();
-  return true;
+  return false;
 }
 
 template <int Degree>

@@ -133,7 +133,7 @@ class RestingContacts<Degree>::Span {
       rate /= mass, half /= mass;
     }
     for (std::size_t i = 0; i < island_.free; ++i) velocities[i] = rate, halves[i] = half;
-    std::fill(proven_.begin(), proven_.end(), 1);
+    proven_.assign(touches_.size(), 1);
     for (const Slot slot : island_.contacts) all_.contacts_[slot].push = 0;
   }
 
@@ -386,18 +386,36 @@ bool RestingContacts<Degree>::step_cluster(Island& island) {
     length = span.length;
     span.move_as_one();
   }
+  take_up(island, span, sleeps ? never : length);
+  return true;
+}
+
+/// What a span says, until it ends. One without end is rest.
+template <int Degree>
+void RestingContacts<Degree>::take_up(const Island& island, Span& span, double length) {
+  const bool sleeps = length == never;
   for (std::size_t i = 0; i < island.free; ++i) {
     const BodySlot id = island.bodies[i];
-    of_[id].span_ends = sleeps ? never : now + length;
+    of_[id].span_ends = clock_.now + length;
     of_[id].disturbed = false;
     const Vector3d still = Vector3d::Zero();
     move(id, sleeps ? still : span.velocities[i], sleeps ? still : span.halves[i]);
     if (id < spans_.slots()) spans_.clear(id);
   }
-  if (sleeps) return true;
+  if (sleeps) return;
   span.prove();
-  set_span(island.bodies.front(), now + length);
-  return true;
+  set_span(island.bodies.front(), clock_.now + length);
+}
+
+/// Bodies that fill all the room that there is may be driven to and fro by roundings alone.
+template <int Degree>
+void RestingContacts<Degree>::halt(BodySlot id) {
+  if (!clustered(id) || bodies_.fixed(id)) return;
+  Island island = find_island(id);
+  Span span(*this, island);
+  if (span.length == never) return;
+  span.move_as_one();
+  take_up(island, span, span.length);
 }
 
 template <int Degree>

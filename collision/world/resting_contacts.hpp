@@ -146,6 +146,8 @@ class RestingContacts {
   bool carries(BodySlot id) const { return rests(id) || clustered(id); }
   /// A contact of two bodies, or of a body and a wall, of which one is in a cluster. Precondition: they approach.
   void impact(const Contact& contact, double restitution);
+  /// The cluster of a body moves as one for a span, since its impacts do not end.
+  void halt(BodySlot id);
   /// Two bodies that are not fixed have met.
   void note_meeting(BodySlot a, BodySlot b) { member(std::max(a, b)), of_[a].met = of_[b].met = true; }
   /// Makes a cluster of all that leans on a body that is not fixed.
@@ -232,6 +234,7 @@ class RestingContacts {
   bool slides_on(const Island& island) const;
   bool repeats(const Island& island, std::size_t k) const;
   bool step_cluster(Island& island);
+  void take_up(const Island& island, Span& span, double length);
   void gather(BodySlot id, double ends);
   void dissolve(const Island& island);
   void set_span(BodySlot first, double ends);
