@@ -124,8 +124,8 @@ class RestingContacts {
     if (!settled()) settle_all();
   }
 
-  /// Whether two bodies surely do not meet until the motion of one changes, or their contact does: a plane stays between
-  /// them.
+  /// Whether two bodies surely do not meet until the motion of one changes, or their contact does: a plane stays
+  /// between them.
   bool keeps_apart(BodySlot a, BodySlot b) const {
     const Slot slot = find(a, b);
     return slot != none && contacts_[slot].proven && !gaps_.has_mesh(contacts_[slot]);
@@ -245,6 +245,8 @@ class RestingContacts {
   double longest_span(BodySlot id) const;
   bool soon_back(const Contact& contact, double rate) const;
   bool squeezed(const Island& island) const;
+
+  // coming_to_rest.cpp
   double comes_to_rest(const Island& island, const std::vector<Eigen::Vector3d>& velocities);
   void watch(const Island& island, std::vector<Motion>& motions);
 

@@ -115,26 +115,6 @@ bool RestingContacts<Degree>::settle_island(BodySlot id) {
   return true;
 }
 
-/// Bodies that slide on slowly, and are not accelerated, come to rest after a while.
-template <int Degree>
-void RestingContacts<Degree>::watch(const Island& island, std::vector<Motion>& motions) {
-  bool slides = false;
-  std::vector<Vector3d> velocities;
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    const auto& terms = motions[i].coefficients;
-    velocities.push_back(terms[1]);
-    slides = slides || (i < island.free && !terms[1].isZero(0));
-    if (i >= island.free || std::all_of(terms.begin() + 2, terms.end(), [](const Vector3d& x) { return x.isZero(0); }))
-      continue;
-    of_[island.bodies[i]].calm_since = never;
-    return;
-  }
-  const double rests = comes_to_rest(island, velocities);
-  if (!slides || rests == never) return;
-  if (rests > clock_.now) return set_span(island.bodies.front(), rests);
-  for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[1] = Vector3d::Zero();
-}
-
 /// The bodies that lean on each other, directly or not, but not through fixed ones; in the order of their ids, so that
 /// the arithmetic does not depend on how they were found.
 template <int Degree>
@@ -171,8 +151,7 @@ typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(Bo
     if (of_x.a != of_y.a) return of_x.a < of_y.a;
     if (of_x.b != of_y.b) return of_x.b < of_y.b;
     if (of_x.wall != of_y.wall) return of_x.wall < of_y.wall;
-    return std::lexicographical_compare(of_x.normal.begin(), of_x.normal.end(), of_y.normal.begin(),
-                                        of_y.normal.end());
+    return std::lexicographical_compare(of_x.normal.begin(), of_x.normal.end(), of_y.normal.begin(), of_y.normal.end());
   });
   for (const Slot slot : island.contacts) {
     const Contact& hold = contacts_[slot];

@@ -168,8 +168,8 @@ class Meter : public collision::WorldListener<2> {
     }
   }
 
-  /// By how much the least energy of the last few spans is more than the least before. Within a span of a cluster energy
-  /// comes and goes, since a parabola is not an arc (docs/resting.md).
+  /// By how much the least energy of the last few spans is more than the least before. Within a span of a cluster
+  /// energy comes and goes, since a parabola is not an arc (docs/resting.md).
   double gained_for_good(double now, double energy) {
     while (!recent_.empty() && recent_.back().energy >= energy) recent_.pop_back();
     recent_.push_back({now, energy});
