@@ -201,7 +201,7 @@ bool World<Degree>::next_event(double limit, Search search) {
   double reached = callers_now_;  // the clock, should nothing come
   for (;;) {
     if (bodies_.any_waits()) enter_new_bodies();
-    if (!resting_.settled()) resting_.settle();
+    if (!resting_.solved()) resting_.solve();
     if (!pairs_.tested()) pairs_.test();
     const Due due = next_due();
     // What is pending is of this instant, all of which has to be known before any of it is told.

@@ -45,7 +45,7 @@ namespace kds::collision {
 /// Degree 1 (straight paths) never pays for degree 2, nor either for degrees 3 to 5 (splines), which are in a library
 /// of their own, kds::collision_splines (docs/splines.md). Lengths and masses are in units of the caller's own, times
 /// in seconds. An id of no body, or of one that was removed, throws std::out_of_range, naming it and saying which (of
-/// held() and touching(), either id).
+/// resting() and touching(), either id).
 template <int Degree>
 class World final : private RestingContacts<Degree>::Listener {
   static_assert(Degree >= 1 && Degree <= KDS_GREATEST_DEGREE,
@@ -115,8 +115,8 @@ class World final : private RestingContacts<Degree>::Listener {
   std::size_t size() const { return bodies_.size(); }
   bool contains(BodyId id) const { return bodies_.contains(id); }
 
-  /// Includes what held contacts do to the acceleration; to change a motion, begin with free_motion(). The reference is
-  /// valid until bodies are added, removed or moved, or the clock advances.
+  /// Includes what resting contacts do to the acceleration; to change a motion, begin with free_motion(). The reference
+  /// is valid until bodies are added, removed or moved, or the clock advances.
   const Motion& motion(BodyId id) const { return bodies_.motion(bodies_.slot_of(id)); }
   /// The motion as it would go on without the contacts that hold it: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
@@ -130,8 +130,8 @@ class World final : private RestingContacts<Degree>::Listener {
 
   /// Whether a and b are held together (mode `elastic` alone), or a is held at a wall, numbered as in WallEvent (all
   /// modes; std::out_of_range for any other number).
-  bool held(BodyId a, BodyId b) const;
-  bool held_at_wall(BodyId a, int wall) const;
+  bool resting(BodyId a, BodyId b) const;
+  bool resting_at_wall(BodyId a, int wall) const;
 
   WorldCounters counters() const;
   /// The broad phase in use: a name of broad_phase_kind.hpp; "auto" is "grid", or "few-boxes" with few bodies.
@@ -196,7 +196,7 @@ class World final : private RestingContacts<Degree>::Listener {
   enum class Search { makes, looks };
   bool next_event(double limit, Search search = Search::makes);
   bool guarded_event(double limit, Search search);
-  bool work_left() const { return bodies_.any_waits() || !resting_.settled() || !pairs_.tested() || !reports_.empty(); }
+  bool work_left() const { return bodies_.any_waits() || !resting_.solved() || !pairs_.tested() || !reports_.empty(); }
   void make_broad_phase();
   void rebuild_broad_phase();
   void reach(double limit);

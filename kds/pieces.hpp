@@ -66,7 +66,7 @@ class Pieces final : private MovingSet<E>::Observer {
   void process() {
     const double time = queue_.top().time;
     const detail::RaisedFlag processing(processing_);
-    elements_.settle(time);
+    elements_.process_due(time);
     if (next_time() != time) return;
     const Id id = queue_.top().slot;
     const Piece piece = plans_[id].front();
@@ -128,7 +128,7 @@ class Pieces final : private MovingSet<E>::Observer {
     }
   }
 
-  void settle(double now) override {
+  void process_due(double now) override {
     if (next_time() < now)
       throw std::logic_error("Pieces: an edit at " + std::to_string(now) + " would pass over a piece");
     while (!processing_ && next_time() <= now) process();

@@ -95,7 +95,7 @@ struct BoxGrid::Census {
 };
 
 /// The boxes and cells of some ahead are fetched meanwhile: they lie anywhere in memory.
-void BoxGrid::settle(std::span<const Id> ids) {
+void BoxGrid::enter_all(std::span<const Id> ids) {
   if (ids.size() > natives_.room()) natives_.restart(ids.size());
   struct Ready {
     std::size_t place;

@@ -111,7 +111,7 @@ class BoxGrid {
   void enter(Id id, Changes& changes);
   /// In place of enter() for all that have been announced, where it is known what they overlap. Best in the order of
   /// places, x fastest.
-  void settle(std::span<const Id> ids);
+  void enter_all(std::span<const Id> ids);
 
   /// Precondition: contains(id). Appends to `changes`.
   void remove(Id id, Changes& changes);

@@ -97,7 +97,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
     std::vector<BodySlot> order(bodies.size());
     std::transform(pairs.order().begin(), pairs.order().end(), order.begin(),
                    [&](BoxPairs::Index i) { return bodies[i].slot; });
-    fat_boxes_.settle(order);
+    fat_boxes_.enter_all(order);
     listener.pairs_to_come(pairs.pairs().size());
     const bool filters = listener.filters();
     for (const auto& [i, j] : pairs.pairs()) {

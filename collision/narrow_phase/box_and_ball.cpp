@@ -22,7 +22,7 @@ BoxAndBall<Degree>::BoxAndBall(const Body& box, const Body& ball, double now, do
   for (std::size_t d = 0; d < 3; ++d) {
     axes_[d] = box.shape.rotation.col(static_cast<int>(d));
     along_[d] = motion_.along(axes_[d]);
-    motion_.settle(along_[d], reach(d, grown));
+    motion_.note_parting(along_[d], reach(d, grown));
   }
   for (std::size_t d = 0; d < 3; ++d) {
     if (clip(d, grown, hull)) continue;

@@ -58,7 +58,7 @@ class BoxAndBox {
         window_{0, motion_.end()} {
     for (int k = 0; k < 3 && !motion_.whole(); ++k) {
       const Axis axis = placed(a, b, motion_, box_axis(a.shape, b.shape, k));
-      motion_.settle(axis.along, axis.reach);
+      motion_.note_parting(axis.along, axis.reach);
     }
     every_box_axis(a.shape, b.shape, [&](const Eigen::Vector3d& axis, int k) {
       return !(faces_do && k >= 6 && separated_ > 0) && add(axis, k);
@@ -166,7 +166,7 @@ double BoxAndBox<Degree>::apart_until(const Body& a, const Body& b, double now, 
     QuickMotion<Degree> motion(a.motion, b.motion, now, horizon, a.shape.bounding_radius + b.shape.bounding_radius);
     TimeWindow window{0, motion.end()};
     const Axis axis = placed(a, b, motion, box_axis(a.shape, b.shape, memory.axis));
-    motion.settle(axis.along, axis.reach);
+    motion.note_parting(axis.along, axis.reach);
     const bool near = clip(motion, axis, window);
     if (!near && motion.whole()) return never;
     if (near && window.begin > 0) return motion.time_before(window.begin);

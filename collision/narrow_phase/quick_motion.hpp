@@ -28,7 +28,7 @@ namespace kds::collision {
 /// at times off by 2 u, 4 u M. The reach is known to 33 u size, and takes part in what is rounded. That is less than
 /// 60 u (M + 2 size); charged are 128 u, so that a gap that is closed by rounding alone is never taken for one that
 /// stays open, nor the other way round. T is no longer than it takes for the highest term to outgrow the others, after
-/// which boxes part for good (settle()); where M would be 2^20 times what it is now the filter ends in any case.
+/// which boxes part for good (note_parting()); where M would be 2^20 times what it is now the filter ends in any case.
 ///
 /// Degree n = 3 to 5: M has the terms M_i T^i, and the filter ends at that growth alone. Moving a coefficient to now
 /// takes a term through 5 n roundings (detail::shifted_balls() in kds/motion.hpp) and one for the difference; the axis
@@ -59,7 +59,7 @@ class QuickMotion {
   double end() const { return end_; }
   bool whole() const { return whole_; }
   /// Looks whether one side of a gap, open at the end, can only open further from there on. That makes it whole.
-  void settle(const Along& p, double reach) {
+  void note_parting(const Along& p, double reach) {
     whole_ = whole_ || opens_for_good(p, 1, reach) || opens_for_good(p, -1, reach);
   }
 
@@ -139,12 +139,12 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
     most[2] = greatest(r_[2]);
   }
   const double base = most[0] + 2 * size;
-  // Long enough for the highest term to outgrow the others along some axis of a box: see settle().
+  // Long enough for the highest term to outgrow the others along some axis of a box: see note_parting().
   const double near = greatest(r_[0]) + 2 * size;
   const double speed = greatest(r_[1]);
-  double settled = 16 * near / speed;
+  double far = 16 * near / speed;
   if constexpr (Degree == 2) {
-    if (most[2] > 0) settled = 8 * std::max(std::sqrt(near / most[2]), speed / most[2]);
+    if (most[2] > 0) far = 8 * std::max(std::sqrt(near / most[2]), speed / most[2]);
   }
   end_ = horizon - now;
   whole_ = true;
@@ -154,7 +154,7 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
     whole_ = false;
   };
   end_at(0x1p200);
-  if (settled > 0) end_at(settled);
+  if (far > 0) end_at(far);
   if (most[1] > 0) end_at(most_growth * base / most[1]);
   if constexpr (Degree == 2) {
     if (most[2] > 0) end_at(std::sqrt(most_growth * base / most[2]));

@@ -45,7 +45,7 @@ RoundedZonotope<Degree>::RoundedZonotope(const Body& a, const Body& b, const Rou
     const auto k = static_cast<std::size_t>(d);
     coordinates_[k] = motion_.along(Vector3d::Unit(d));
     reach[k] = reach_along(Vector3d::Unit(d)) + core_.radius;
-    motion_.settle(coordinates_[k], reach[k]);
+    motion_.note_parting(coordinates_[k], reach[k]);
   }
   hull_ = {0, motion_.end()};
   const auto near = [this](const Along& along, double within) {

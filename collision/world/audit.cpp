@@ -15,7 +15,7 @@ void World<Degree>::audit(double t) const {
   broad_phase_->audit(t);
   // Work of this instant may still have to be done.
   if (bodies_.any_waits() || !pairs_.tested() || volumes_.next_time() <= t) return;
-  if (resting_.settled()) resting_.audit(t, options_.walls.has_value());
+  if (resting_.solved()) resting_.audit(t, options_.walls.has_value());
   pairs_.audit(t);
   if (broad_phase_->next_time() <= t) return;
   for (BodySlot a = 0; a < bodies_.slots(); ++a) {

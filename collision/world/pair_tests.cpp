@@ -191,7 +191,7 @@ void Pairs<Degree>::test(Slot slot) {
   remember(slot, found);
 }
 
-/// For the contact, if nothing comes before it.
+/// Keeps what a test has found of a contact to come, so that it need not be found again when the contact is due.
 template <int Degree>
 void Pairs<Degree>::remember(Slot slot, const FoundTouch& found) {
   if (slot >= found_.size()) {

@@ -16,16 +16,16 @@ bool World<Degree>::touching(BodyId a, BodyId b) const {
 }
 
 template <int Degree>
-bool World<Degree>::held(BodyId a, BodyId b) const {
+bool World<Degree>::resting(BodyId a, BodyId b) const {
   const auto [first, second] = std::minmax({bodies_.slot_of(a), bodies_.slot_of(b)});
   return resting_.holds(first, second);
 }
 
 template <int Degree>
-bool World<Degree>::held_at_wall(BodyId a, int wall) const {
+bool World<Degree>::resting_at_wall(BodyId a, int wall) const {
   const BodySlot slot = bodies_.slot_of(a);
   if (wall < 0 || wall > 5) {
-    throw std::out_of_range("World::held_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
+    throw std::out_of_range("World::resting_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
   }
   return resting_.holds(slot, no_body, wall);
 }

@@ -122,7 +122,7 @@ void World<Degree>::process_wall() {
     set_motion(id, motion, false);
   }
   if (!clustered) resting_.disturb(id);
-  resting_.settle();
+  resting_.solve();
   tell([&](Listener& listener) {
     listener.wall(*this, event);
     if (held) listener.held_at_wall(*this, event);
@@ -214,11 +214,11 @@ bool World<Degree>::strike(BodySlot a, BodySlot b, const Contact& contact, doubl
   const bool rested = resting_.find(a, b) != Resting::none;
   const Vector3d point = contact.point - bodies_.motion(a).position(contact.time);
   resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, restitution);
-  resting_.settle();
+  resting_.solve();
   // What the others that lean on the two have turned back towards each other stays together.
   if (resting_.find(a, b) == Resting::none && parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0) {
     resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, 0);
-    resting_.settle();
+    resting_.solve();
   }
   const bool rests = resting_.find(a, b) != Resting::none;
   counters_.held += rests && !rested;
@@ -231,7 +231,7 @@ void World<Degree>::hold(BodySlot a, BodySlot b, const Contact& contact) {
   const Vector3d point = contact.point - bodies_.motion(a).position(contact.time);
   resting_.add({.a = a, .b = b, .normal = contact.normal, .point = point});
   resting_.disturb(a), resting_.disturb(b);
-  resting_.settle();
+  resting_.solve();
 }
 
 /// A contact in no cluster. Whether the two are held from now on.
@@ -261,7 +261,7 @@ bool World<Degree>::bounce_or_hold(BodySlot a, BodySlot b, const Contact& contac
     set_motion(id, motion, false);
     resting_.disturb(id);
   }
-  resting_.settle();
+  resting_.solve();
   return false;
 }
 

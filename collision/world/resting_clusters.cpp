@@ -84,7 +84,7 @@ void RestingContacts<Degree>::gather(BodySlot id, double ends) {
   }
 }
 
-/// Bodies go on as they are, and settle_island() sees to the rest.
+/// Bodies go on as they are, and solve_island() sees to the rest.
 template <int Degree>
 void RestingContacts<Degree>::dissolve(const Island& island) {
   for (std::size_t i = 0; i < island.free; ++i) {

@@ -44,8 +44,8 @@ typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_among(BodyS
   // A floor has many.
   const bool from_b = b != no_body && b < of_.size() && of_[b].contacts.size() < of_[a].contacts.size();
   for (const Slot slot : of_[from_b ? b : a].contacts) {
-    const Contact& hold = contacts_[slot];
-    if (hold.a == a && hold.b == b && hold.wall == wall) return slot;
+    const Contact& contact = contacts_[slot];
+    if (contact.a == a && contact.b == b && contact.wall == wall) return slot;
   }
   return none;
 }
@@ -63,11 +63,12 @@ typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_like(const 
 }
 
 template <int Degree>
-void RestingContacts<Degree>::add(const Contact& hold) {
-  for (const Slot slot : member(hold.a).contacts) {
+void RestingContacts<Degree>::add(const Contact& contact) {
+  for (const Slot slot : member(contact.a).contacts) {
     Contact& other = contacts_[slot];
-    if (other.a != hold.a || other.b != hold.b || !(dot(other.normal, hold.normal) > detail::same_normal)) continue;
-    other.normal = hold.normal;
+    if (other.a != contact.a || other.b != contact.b || !(dot(other.normal, contact.normal) > detail::same_normal))
+      continue;
+    other.normal = contact.normal;
     other.fresh = true;
     return;
   }
@@ -80,29 +81,29 @@ void RestingContacts<Degree>::add(const Contact& hold) {
     slot = free_.back();
     free_.pop_back();
   }
-  contacts_[slot] = hold;
+  contacts_[slot] = contact;
   contacts_[slot].alive = true;
   contacts_[slot].fresh = true;
-  contacts_[slot].depth = std::max(gaps_.overlap(hold), 0.0);
-  member(hold.a).contacts.push_back(slot);
-  if (hold.b != no_body) member(hold.b).contacts.push_back(slot);
+  contacts_[slot].depth = std::max(gaps_.overlap(contact), 0.0);
+  member(contact.a).contacts.push_back(slot);
+  if (contact.b != no_body) member(contact.b).contacts.push_back(slot);
   listener_.tell_resting(true, contacts_[slot]);
 }
 
 template <int Degree>
 void RestingContacts<Degree>::drop(Slot slot) {
-  Contact& hold = contacts_[slot];
-  hold.alive = false;
-  listener_.tell_resting(false, hold);
+  Contact& contact = contacts_[slot];
+  contact.alive = false;
+  listener_.tell_resting(false, contact);
   releases_.clear(slot);
   free_.push_back(slot);
-  for (const BodySlot id : {hold.a, hold.b}) {
+  for (const BodySlot id : {contact.a, contact.b}) {
     if (id == no_body) continue;
     auto& list = of_[id].contacts;
     list.erase(std::find(list.begin(), list.end(), slot));
     disturb(id);
   }
-  if (hold.b != no_body) listener_.changed(hold.a, hold.b);
+  if (contact.b != no_body) listener_.changed(contact.a, contact.b);
 }
 
 template <int Degree>
@@ -151,15 +152,15 @@ double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
 /// Held pairs part by sliding off, or by `slack`.
 template <int Degree>
 void RestingContacts<Degree>::schedule_release(Slot slot) {
-  const Contact& hold = contacts_[slot];
-  if (clustered(hold.a) || (hold.b != no_body && clustered(hold.b))) return;  // Spans see to it.
-  if (hold.b == no_body) {                                                    // Walls have no edge to slide off.
-    if constexpr (Degree >= 3) releases_.set(slot, hold.ends);
+  const Contact& contact = contacts_[slot];
+  if (clustered(contact.a) || (contact.b != no_body && clustered(contact.b))) return;  // Spans see to it.
+  if (contact.b == no_body) {  // Walls have no edge to slide off.
+    if constexpr (Degree >= 3) releases_.set(slot, contact.ends);
     return;
   }
   const double now = clock_.now;
-  const auto a = bodies_.moving(hold.a);
-  const auto b = bodies_.moving(hold.b);
+  const auto a = bodies_.moving(contact.a);
+  const auto b = bodies_.moving(contact.b);
   bool together = true;
   for (std::size_t i = 1; i <= Degree; ++i) {
     together = together && a.motion.coefficients[i] == b.motion.coefficients[i];
@@ -167,11 +168,11 @@ void RestingContacts<Degree>::schedule_release(Slot slot) {
   bool steady = true;  // about any start the same
   for (std::size_t i = 2; i <= Degree; ++i) steady = steady && a.motion.coefficients[i].isZero(0);
   if (together && (steady || a.motion.start == b.motion.start)) {
-    return Degree >= 3 ? releases_.set(slot, hold.ends) : releases_.clear(slot);
+    return Degree >= 3 ? releases_.set(slot, contact.ends) : releases_.clear(slot);
   }
-  const Motion nearer = shifted(b.motion, -slack_of(a, b, now) * hold.normal);
+  const Motion nearer = shifted(b.motion, -slack_of(a, b, now) * contact.normal);
   const double t = first_separation(a, MovingShape<Degree>{b.shape, nearer}, now, clock_.horizon);
-  releases_.set(slot, Degree >= 3 ? std::min(t, hold.ends) : t);
+  releases_.set(slot, Degree >= 3 ? std::min(t, contact.ends) : t);
 }
 
 template <int Degree>
@@ -180,7 +181,7 @@ void RestingContacts<Degree>::process() {
     const BodySlot id = spans_.top().slot;
     spans_.clear(id);
     disturb(id);
-    return settle();
+    return solve();
   }
   const Slot slot = releases_.top().slot;
   if (Degree >= 3 && contacts_[slot].ends <= releases_.top().time) {
@@ -190,7 +191,7 @@ void RestingContacts<Degree>::process() {
   } else {
     drop(slot);
   }
-  settle();
+  solve();
 }
 
 template <int Degree>
@@ -201,9 +202,9 @@ void RestingContacts<Degree>::extend_horizon() {
   }
 }
 
-/// Each hold is of two bodies that are there (or one and a wall), is listed with them and no others, and is held: along
-/// its normal the two have no relative velocity but for rounding, as drop_broken() measures it, and accelerations that
-/// cancel. What is due to be let go lies ahead.
+/// Each contact is of two bodies that are there (or one and a wall), is listed with them and no others, and is held:
+/// along its normal the two have no relative velocity but for rounding, as drop_broken() measures it, and accelerations
+/// that cancel. What is due to be let go lies ahead.
 template <int Degree>
 void RestingContacts<Degree>::audit(double t, bool walls) const {
   const auto fail = [](Slot slot, const char* what) {
@@ -227,38 +228,39 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     }
   }
   for (Slot slot = 0; slot < contacts_.size(); ++slot) {
-    const Contact& hold = contacts_[slot];
-    if (!hold.alive) {
+    const Contact& contact = contacts_[slot];
+    if (!contact.alive) {
       if (releases_.contains(slot)) fail(slot, "it is over, and is to be let go");
       continue;
     }
-    const bool at_wall = hold.b == no_body;
+    const bool at_wall = contact.b == no_body;
     expected += at_wall ? 1 : 2;
-    for (const BodySlot id : {hold.a, at_wall ? hold.a : hold.b}) {
+    for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b}) {
       if (!bodies_.entered(id)) fail(slot, "a body is not there");
       const auto& known = of_[id].contacts;
       if (std::count(known.begin(), known.end(), slot) != 1) fail(slot, "a body does not know it");
     }
-    if (at_wall && (hold.wall < 0 || hold.wall > 5 || !walls)) fail(slot, "there is no such wall");
-    if (std::abs(norm(hold.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
+    if (at_wall && (contact.wall < 0 || contact.wall > 5 || !walls)) fail(slot, "there is no such wall");
+    if (std::abs(norm(contact.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
     if (releases_.time(slot) < t) fail(slot, "it should have been let go");
-    if (hold.fresh) continue;
-    if ((!at_wall || clustered(hold.a)) && gaps_.overlap(hold) > hold.depth + gaps_.deepest_overlap(hold))
+    if (contact.fresh) continue;
+    if ((!at_wall || clustered(contact.a)) && gaps_.overlap(contact) > contact.depth + gaps_.deepest_overlap(contact))
       fail(slot, "its bodies overlap");
-    if (clustered(hold.a) || (!at_wall && clustered(hold.b))) continue;
-    const Eigen::Vector3d a = bodies_.motion(hold.a).velocity(t);
+    if (clustered(contact.a) || (!at_wall && clustered(contact.b))) continue;
+    const Eigen::Vector3d a = bodies_.motion(contact.a).velocity(t);
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    if (!at_wall) b = bodies_.motion(hold.b).velocity(t);
-    double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
+    if (!at_wall) b = bodies_.motion(contact.b).velocity(t);
+    double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), contact.solved});
     if constexpr (Degree >= 2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
-      for (const BodySlot id : {hold.a, at_wall ? hold.a : hold.b}) {
+      for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b}) {
         largest += 2 * bodies_.free_term(id, 2, t).cwiseAbs().maxCoeff() * (1 + t - bodies_.motion(id).start);
       }
     }
     if constexpr (Degree >= 3) {
-      for (const BodySlot id : {hold.a, at_wall ? hold.a : hold.b}) largest += velocity_terms(bodies_.motion(id), t);
+      for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b})
+        largest += velocity_terms(bodies_.motion(id), t);
     }
-    if (std::abs(dot(hold.normal, b - a)) > 16 * rate_rounding * largest) {
+    if (std::abs(dot(contact.normal, b - a)) > 16 * rate_rounding * largest) {
       fail(slot, "the bodies part or press on along its normal");
     }
   }
@@ -268,7 +270,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
 template <int Degree>
 typename RestingContacts<Degree>::Image RestingContacts<Degree>::image() const {
   Image image{contacts_, free_, {}, {}, {}, {}, {}, {}, {}};
-  // Of bodies that were disturbed and are gone, or have been settled since, the list may still speak.
+  // Of bodies that were disturbed and are gone, or have been solved for since, the list may still speak.
   std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
                [&](BodySlot id) { return of_[id].disturbed && bodies_.entered(id); });
   for (const Member& member : of_) {

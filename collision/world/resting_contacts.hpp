@@ -114,14 +114,14 @@ class RestingContacts {
     if (id < spans_.slots()) spans_.clear(id);
   }
 
-  /// The motion of a body has changed: those that it rests with are to be looked at by settle().
+  /// The motion of a body has changed: those that it rests with are to be looked at by solve().
   void disturb(BodySlot id) {
     if (!contacts_.empty()) note(id);
   }
-  bool settled() const { return disturbed_.empty(); }
+  bool solved() const { return disturbed_.empty(); }
   /// Gives all that have been disturbed the motions that their contacts leave them.
-  void settle() {
-    if (!settled()) settle_all();
+  void solve() {
+    if (!solved()) solve_all();
   }
 
   /// Whether two bodies surely do not meet until the motion of one changes, or their contact does: a plane stays
@@ -215,14 +215,14 @@ class RestingContacts {
   void schedule_release(Slot slot);
 
   // resting_islands.cpp
-  void settle_all();
-  void settle_fixed(BodySlot id);
-  bool settle_island(BodySlot id);
+  void solve_all();
+  void solve_fixed(BodySlot id);
+  bool solve_island(BodySlot id);
   Island find_island(BodySlot id);
   bool drop_broken(const Island& island);
   bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
   bool constrain_curves(Island& island, std::vector<Motion>& motions);
-  bool press(Motion& motion, Contact& hold) const;
+  bool press(Motion& motion, Contact& contact) const;
   void part(Slot slot);
   bool let_pass_worst(const Island& island, const std::vector<Eigen::Vector3d>& rates);
 

@@ -25,15 +25,15 @@ void RestingContacts<Degree>::note(BodySlot id) {
 }
 
 template <int Degree>
-void RestingContacts<Degree>::settle_all() {
+void RestingContacts<Degree>::solve_all() {
   while (!disturbed_.empty()) {
     const BodySlot id = disturbed_.back();
     disturbed_.pop_back();
     if (!std::exchange(member(id).disturbed, false) || !bodies_.entered(id)) continue;
     if (bodies_.fixed(id)) {
-      settle_fixed(id);
+      solve_fixed(id);
     } else {
-      while (!settle_island(id)) {
+      while (!solve_island(id)) {
       }
     }
   }
@@ -41,7 +41,7 @@ void RestingContacts<Degree>::settle_all() {
 
 /// Nothing but walls holds a fixed body: they take the speed and the acceleration that lead out of the domain.
 template <int Degree>
-void RestingContacts<Degree>::settle_fixed(BodySlot id) {
+void RestingContacts<Degree>::solve_fixed(BodySlot id) {
   const Motion before = bodies_.motion(id).restarted(clock_.now);
   Motion motion = before;
   const std::vector<Slot> holds = of_[id].contacts;  // some may be dropped
@@ -50,21 +50,21 @@ void RestingContacts<Degree>::settle_fixed(BodySlot id) {
   for (std::size_t i = 2; i <= Degree && given_anew; ++i) motion.coefficients[i] = bodies_.free_term(id, i, clock_.now);
   of_[id].carried = false;
   for (const Slot slot : holds) {
-    Contact& hold = contacts_[slot];
-    if (hold.wall < 0) {
-      disturb(hold.a == id ? hold.b : hold.a);
+    Contact& contact = contacts_[slot];
+    if (contact.wall < 0) {
+      disturb(contact.a == id ? contact.b : contact.a);
       continue;
     }
-    const Eigen::Index axis = hold.wall / 2;
-    if (hold.fresh) motion.coefficients[1][axis] = 0;
+    const Eigen::Index axis = contact.wall / 2;
+    if (contact.fresh) motion.coefficients[1][axis] = 0;
     bool parts = motion.coefficients[1][axis] != 0;  // inward, or outward: then it meets the wall anew
     if constexpr (Degree == 2) {
       double& force = motion.coefficients[2][axis];
-      parts = parts || force * hold.normal[axis] < 0;
+      parts = parts || force * contact.normal[axis] < 0;
       if (!parts) force = 0;
     }
-    if constexpr (Degree >= 3) parts = parts || !press(motion, hold);
-    hold.fresh = false;
+    if constexpr (Degree >= 3) parts = parts || !press(motion, contact);
+    contact.fresh = false;
     if (parts) {
       drop(slot);
     } else if (Degree >= 3) {
@@ -75,9 +75,9 @@ void RestingContacts<Degree>::settle_fixed(BodySlot id) {
   if (given_anew && !(motion == before)) listener_.take_up(id, motion);
 }
 
-/// False if a hold had to be dropped: then it is to be called again. Each time there is one hold less.
+/// False if a contact had to be dropped: then it is to be called again. Each time there is one contact less.
 template <int Degree>
-bool RestingContacts<Degree>::settle_island(BodySlot id) {
+bool RestingContacts<Degree>::solve_island(BodySlot id) {
   Island island = find_island(id);
   if (in_cluster(island)) return step_cluster(island);
   if (drop_broken(island)) return false;
@@ -131,9 +131,9 @@ typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(Bo
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     const BodySlot at = island.bodies[i];
     for (const Slot slot : of_[at].contacts) {
-      const Contact& hold = contacts_[slot];
-      const BodySlot other = hold.a == at ? hold.b : hold.a;
-      const bool met_first = hold.a == at || bodies_.fixed(other);
+      const Contact& contact = contacts_[slot];
+      const BodySlot other = contact.a == at ? contact.b : contact.a;
+      const bool met_first = contact.a == at || bodies_.fixed(other);
       if (met_first) island.contacts.push_back(slot);
       if (other != no_body) visit(other);
     }
@@ -154,13 +154,13 @@ typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(Bo
     return std::lexicographical_compare(of_x.normal.begin(), of_x.normal.end(), of_y.normal.begin(), of_y.normal.end());
   });
   for (const Slot slot : island.contacts) {
-    const Contact& hold = contacts_[slot];
-    const bool at_wall = hold.b == no_body;
-    const double a = bodies_[hold.a].inverse_mass;
-    const double b = at_wall ? 0 : bodies_[hold.b].inverse_mass;
+    const Contact& contact = contacts_[slot];
+    const bool at_wall = contact.b == no_body;
+    const double a = bodies_[contact.a].inverse_mass;
+    const double b = at_wall ? 0 : bodies_[contact.b].inverse_mass;
     // The walls come after the bodies.
-    const auto place_b = at_wall ? static_cast<std::uint32_t>(island.bodies.size()) : of_[hold.b].place;
-    island.touches.push_back({of_[hold.a].place, place_b, hold.normal, a, b});
+    const auto place_b = at_wall ? static_cast<std::uint32_t>(island.bodies.size()) : of_[contact.b].place;
+    island.touches.push_back({of_[contact.a].place, place_b, contact.normal, a, b});
   }
   return island;
 }
@@ -171,19 +171,20 @@ template <int Degree>
 bool RestingContacts<Degree>::drop_broken(const Island& island) {
   bool any = false;
   for (const Slot slot : island.contacts) {
-    const Contact& hold = contacts_[slot];
-    if (hold.fresh) continue;
-    const Vector3d a = bodies_.motion(hold.a).velocity(clock_.now);
-    const Vector3d b = hold.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.motion(hold.b).velocity(clock_.now);
-    double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), hold.solved});
+    const Contact& contact = contacts_[slot];
+    if (contact.fresh) continue;
+    const Vector3d a = bodies_.motion(contact.a).velocity(clock_.now);
+    const Vector3d b =
+        contact.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.motion(contact.b).velocity(clock_.now);
+    double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), contact.solved});
     if constexpr (Degree >= 3) {
-      largest += velocity_terms(bodies_.motion(hold.a), clock_.now);
-      if (hold.b != no_body) largest += velocity_terms(bodies_.motion(hold.b), clock_.now);
+      largest += velocity_terms(bodies_.motion(contact.a), clock_.now);
+      if (contact.b != no_body) largest += velocity_terms(bodies_.motion(contact.b), clock_.now);
     }
-    const double rate = dot(hold.normal, b - a);
+    const double rate = dot(contact.normal, b - a);
     if (std::abs(rate) <= rate_rounding * largest) continue;
     any = true;
-    if ((rate > 0 || turns(island)) && soon_back(hold, std::abs(rate))) {
+    if ((rate > 0 || turns(island)) && soon_back(contact, std::abs(rate))) {
       gather(island.bodies.front());
       return true;
     }
@@ -192,8 +193,8 @@ bool RestingContacts<Degree>::drop_broken(const Island& island) {
   return any;
 }
 
-/// Velocities (order 1) or accelerations (2) by least constraint. False if a hold had to be dropped: one that parts, or
-/// one that cannot be held.
+/// Velocities (order 1) or accelerations (2) by least constraint. False if a contact had to be dropped: one that parts,
+/// or one that cannot be held.
 template <int Degree>
 bool RestingContacts<Degree>::constrain(Island& island, std::size_t order, std::vector<Motion>& motions) {
   std::vector<Vector3d> rates;
@@ -237,7 +238,7 @@ bool RestingContacts<Degree>::constrain(Island& island, std::size_t order, std::
 /// What a contact pushes is a polynomial of the time, of which constrain() has found the constant. While it is positive
 /// the two stay together whatever their higher terms are, so that of each order they are made equal along the normal; a
 /// push that vanishes up to some order gives way in the next like any other (no contact approaches). It lasts until the
-/// polynomial turns negative. False if a hold had to be dropped.
+/// polynomial turns negative. False if a contact had to be dropped.
 template <int Degree>
 bool RestingContacts<Degree>::constrain_curves(Island& island, std::vector<Motion>& motions) {
   if constexpr (Degree >= 3) {
@@ -296,18 +297,18 @@ bool RestingContacts<Degree>::constrain_curves(Island& island, std::vector<Motio
 /// A fixed body at a wall, of degree 3 and above: takes what presses it outward, as long as that does. False if it is
 /// drawn inward at once.
 template <int Degree>
-bool RestingContacts<Degree>::press(Motion& motion, Contact& hold) const {
+bool RestingContacts<Degree>::press(Motion& motion, Contact& contact) const {
   if constexpr (Degree >= 3) {
-    const Eigen::Index axis = hold.wall / 2;
+    const Eigen::Index axis = contact.wall / 2;
     kds::Motion<Degree - 2> push;
     push.start = clock_.now;
     for (std::size_t order = 2; order <= Degree; ++order) {
       const auto factor = static_cast<double>(order * (order - 1));
-      push.position.c[order - 2] = factor * motion.coefficients[order][axis] * hold.normal[axis];
+      push.position.c[order - 2] = factor * motion.coefficients[order][axis] * contact.normal[axis];
     }
     const PolynomialCertificate<Degree - 2> pressed{push};
-    hold.ends = failure_time(pressed, push.start, never);
-    if (hold.ends == push.start) return false;
+    contact.ends = failure_time(pressed, push.start, never);
+    if (contact.ends == push.start) return false;
     for (std::size_t order = 2; order <= Degree; ++order) motion.coefficients[order][axis] = 0;
   }
   return true;
@@ -317,8 +318,8 @@ bool RestingContacts<Degree>::press(Motion& motion, Contact& hold) const {
 /// order. What they overlap by rounding is no new contact.
 template <int Degree>
 void RestingContacts<Degree>::part(Slot slot) {
-  const Contact hold = contacts_[slot];
-  if (hold.b != no_body) listener_.let_pass(hold.a, hold.b);
+  const Contact contact = contacts_[slot];
+  if (contact.b != no_body) listener_.let_pass(contact.a, contact.b);
   drop(slot);
 }
 
@@ -334,11 +335,11 @@ bool RestingContacts<Degree>::let_pass_worst(const Island& island, const std::ve
     worst = island.contacts[k];
   }
   if (worst == none) return false;
-  const Contact hold = contacts_[worst];
-  listener_.let_pass(hold.a, hold.b);
-  listener_.tell_passes(hold);
+  const Contact contact = contacts_[worst];
+  listener_.let_pass(contact.a, contact.b);
+  listener_.tell_passes(contact);
   drop(worst);
-  if (!hold.fresh) listener_.tell_held(hold.a, hold.b);  // else the event that made it is about to be reported
+  if (!contact.fresh) listener_.tell_held(contact.a, contact.b);  // else the event that made it is about to be reported
   return true;
 }
 

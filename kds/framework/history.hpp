@@ -53,7 +53,8 @@ class History {
   }
   /// As Simulator::advance_to(), which throws for a t that is not finite or before the clock.
   void advance_to(double t) {
-    while (std::isfinite(t) && t >= simulator_.now() && step(t)) {}
+    while (std::isfinite(t) && t >= simulator_.now() && step(t)) {
+    }
     simulator_.advance_to(t);
     calls_.push_back({t, 0, {}});
   }

@@ -137,7 +137,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
 
  private:
   // How edits come in: kinetic_edits.hpp.
-  void settle(double now) override;
+  void process_due(double now) override;
   void inserted(Id id, double now) override;
   void removing(Id id, double now) override;
   void changing(Id id, const Element& next, double now) override;

@@ -9,11 +9,11 @@
 
 namespace kds {
 
-// The set calls settle(), with the elements as they were; makes the edit; and tells of it: inserted(), removing() while
-// the element is still there, or changing() before and changed() after it has its new motion. Law: an edit comes after
-// the events of its time. So the rule is called with a state that is right, and marks what the edit changes. A new
-// motion that the rule does not keep (ChoosesMotions), or any if it cannot (TakesUpMotions), is a removal before the
-// change and an insertion after it.
+// The set calls process_due(), with the elements as they were; makes the edit; and tells of it: inserted(), removing()
+// while the element is still there, or changing() before and changed() after it has its new motion. Law: an edit comes
+// after the events of its time. So the rule is called with a state that is right, and marks what the edit changes. A
+// new motion that the rule does not keep (ChoosesMotions), or any if it cannot (TakesUpMotions), is a removal before
+// the change and an insertion after it.
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::inserted(Id id, double now) {
@@ -55,7 +55,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::require_ready() const {
 
 /// Makes what is due up to now. What is due for a sample, not for a failure, can wait until after the edit.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
-void Kinetic<Rule, Listener, Queue, Solver>::settle(double now) {
+void Kinetic<Rule, Listener, Queue, Solver>::process_due(double now) {
   require_ready();
   if (now < last_) {
     fail_use("an edit at " + std::to_string(now) + " comes after a change at " + std::to_string(last_));

@@ -50,7 +50,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::sample_again(Slot slot, double time
     const auto members = rule_.members(slot);
     const std::vector<Id> ids(std::begin(members), std::end(members));
     for (const Id id : ids) {
-      elements_.settle(time);
+      elements_.process_due(time);
       if (elements_.contains(id)) elements_.resample(id, time);  // else a listener has removed it
     }
   }

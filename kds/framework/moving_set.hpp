@@ -89,10 +89,10 @@ class MovingSet {
  public:
   using Element = E;
 
-  /// Who is told of edits. In their order: settle(), then one of the others, which must not throw.
+  /// Who is told of edits. In their order: process_due(), then one of the others, which must not throw.
   class Observer {
    public:
-    virtual void settle(double now) = 0;                          ///< process what is due up to now, or throw
+    virtual void process_due(double now) = 0;                     ///< process what is due up to now, or throw
     virtual void inserted(Id id, double now) = 0;                 ///< the element is there
     virtual void removing(Id id, double now) = 0;                 ///< the element is still there
     virtual void changing(Id id, const E& next, double now) = 0;  ///< the element still moves as before
@@ -124,9 +124,9 @@ class MovingSet {
 
   /// What every edit begins with: the structures process what is due up to now. What their listeners do to the set is
   /// done then: an edit of the same time that follows finds it as it is now.
-  void settle(double now) {
+  void process_due(double now) {
     if (!std::isfinite(now)) throw std::invalid_argument("MovingSet: the time of an edit must be finite");
-    for (Observer* observer : observers_) observer->settle(now);
+    for (Observer* observer : observers_) observer->process_due(now);
   }
 
   /// Throws std::invalid_argument for an id that is used or reserved (`nobody`), also if it is the listener of an event
@@ -134,14 +134,14 @@ class MovingSet {
   void insert(Id id, Element element, double now) {
     require_free(id);
     require_finite(id, element);
-    settle(now);
+    process_due(now);
     put(id, std::move(element), now);
   }
 
   /// Inserts under the first id above all that were ever used, and gives it. Throws as insert() does.
   Id add(Element element, double now) {
     require_finite(end_id(), element);
-    settle(now);
+    process_due(now);
     const Id id = end_id();
     put(id, std::move(element), now);
     return id;
@@ -151,8 +151,8 @@ class MovingSet {
   /// removed it.
   void remove(Id id, double now) {
     require(id);
-    settle(now);
-    require(id);  // A listener may have had its way with it.
+    process_due(now);
+    require(id);  // A listener of an event that was due may have removed it.
     for (Observer* observer : observers_) observer->removing(id, now);
     present_[id] = 0;
     --size_;
@@ -162,7 +162,7 @@ class MovingSet {
   void update(Id id, Element element, double now) {
     require(id);
     require_finite(id, element);
-    settle(now);
+    process_due(now);
     require(id);
     replace(id, element, now);
   }
@@ -185,7 +185,7 @@ class MovingSet {
   void resample(Id id, double now) requires Sampled<Element> {
     if (!sampler_) throw std::logic_error("MovingSet: an element is to be sampled, but there is no sampler");
     require(id);
-    settle(now);
+    process_due(now);
     require(id);
     const Element element = sampler_(id, now);
     if (element.start != now) throw std::logic_error("MovingSet: a sample must be of the time it is asked for");
@@ -231,7 +231,7 @@ class MovingSet {
     for (Observer* observer : observers_) observer->changed(id, now);
   }
 
-  /// After settle().
+  /// After process_due().
   void put(Id id, Element&& element, double now) {
     require_free(id);  // A listener may have taken it.
     if (id >= present_.size()) {

@@ -12,7 +12,9 @@ namespace kds {
 /// Semantic law: turn_round(now, horizon) makes laws 1 to 4 of KineticStructure hold for the reversed motions, the
 /// clock now standing at `now`.
 template <class S>
-concept ReversibleStructure = KineticStructure<S> && requires(S& structure, double t) { structure.turn_round(t, t); };
+concept ReversibleStructure = KineticStructure<S> && requires(S& structure, double t) {
+  structure.turn_round(t, t);
+};
 
 /// Turns time round: from now on the simulator runs into the past. All structures that are attached to the sets must be
 /// its own, and all sets must be given.

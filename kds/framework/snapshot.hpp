@@ -113,9 +113,10 @@ class Archive {
   void several(T& values) {
     auto& self = static_cast<Derived&>(*this);
     using Entry = std::remove_cvref_t<decltype(values[0])>;
-    constexpr bool plain = std::is_trivially_copyable_v<Entry> && !OptionalLike<Entry> &&
-                           !requires(Entry & entry) { entry.archive(self); } &&
-                           !requires(Entry & entry) { archive_members(self, entry); };
+    constexpr bool plain = std::is_trivially_copyable_v<Entry> && !OptionalLike<Entry> && !requires(Entry & entry) {
+      entry.archive(self);
+    }
+    &&!requires(Entry & entry) { archive_members(self, entry); };
     std::uint64_t size = values.size();
     std::uint32_t length = plain ? sizeof(Entry) : 0;
     one(size);

@@ -1,4 +1,4 @@
-// Rung 3: failure times by the exact signs of all derivatives, the net under the quicker methods.
+// Rung 3: failure times by the exact signs of all derivatives, for what the quicker methods leave undecided.
 #pragma once
 
 #include "kds/roots/lattice_crossing.hpp"

@@ -45,7 +45,7 @@ TEST_CASE("Curves: a crate follows a lift that starts and stops gently", "[splin
   for (int i = 1; i <= 50; ++i) {
     lift.audit_until(0.1 * i);
     INFO("at " << lift.world.now());
-    REQUIRE(lift.world.held(0, 1));
+    REQUIRE(lift.world.resting(0, 1));
     // Some roundings of the coordinates: nothing sinks in, nothing is left behind.
     REQUIRE(std::abs(lift.height() - 2) < 1e-14);
   }
@@ -57,10 +57,10 @@ TEST_CASE("Curves: a lift that goes down ever faster leaves its crate when it fa
   // z = -t^3: its acceleration -6 t is that of the crate at t = g / 6.
   Lift<3> lift({Path<3>{{zero, zero, zero, {0, 0, -1}}, 0}});
   lift.audit_until(g / 6 - 0.01);
-  CHECK(lift.world.held(0, 1));
+  CHECK(lift.world.resting(0, 1));
   CHECK(std::abs(lift.height() - 2) < 1e-14);
   lift.audit_until(g / 6 + 0.5);
-  CHECK_FALSE(lift.world.held(0, 1));
+  CHECK_FALSE(lift.world.resting(0, 1));
   // From there on the crate falls freely: |z - z0 - v t - ...| is all in the cubic term, t'^3.
   CHECK(lift.height() == Approx(2 + 0.125));
   const Vector3d acceleration = lift.world.motion(1).acceleration(lift.world.now());
@@ -76,11 +76,11 @@ TEST_CASE("Curves: a body whose own thrust grows lifts off when it outweighs it"
   rocket.restitution = 0;
   world.add_body(rocket);
   while (world.step(g / 6 - 1e-6)) world.audit();
-  CHECK(world.held(0, 1));
+  CHECK(world.resting(0, 1));
   CHECK(world.motion(1).position(world.now())[2] == 1);
   // The acceleration is 6 t - g: what the floor took of it before it does not come back.
   while (world.step(g / 6 + 1)) world.audit();
-  CHECK_FALSE(world.held(0, 1));
+  CHECK_FALSE(world.resting(0, 1));
   CHECK(world.motion(1).position(world.now())[2] == Approx(1 + 1.0));
   CHECK(world.free_motion(1).acceleration(world.now())[2] == Approx(6));
 }
@@ -91,10 +91,10 @@ TEST_CASE("Curves: a stack on a lift parts where it is no longer pressed", "[spl
   second.restitution = 0;
   lift.world.add_body(second);
   lift.audit_until(1);
-  CHECK(lift.world.held(0, 1));
-  CHECK(lift.world.held(1, 2));
+  CHECK(lift.world.resting(0, 1));
+  CHECK(lift.world.resting(1, 2));
   lift.audit_until(g / 6 + 0.25);
-  CHECK_FALSE(lift.world.held(0, 1));
+  CHECK_FALSE(lift.world.resting(0, 1));
   const double gap =
       lift.world.motion(2).position(lift.world.now())[2] - lift.world.motion(1).position(lift.world.now())[2];
   CHECK(std::abs(gap - 2) < 1e-12);
@@ -112,10 +112,10 @@ TEST_CASE("Curves: a ball pressed against a wall by a force that turns leaves it
     ball.fixed = fixed;
     world.add_body(ball);
     while (world.step(0.5)) world.audit();
-    CHECK(world.held_at_wall(0, 1));
+    CHECK(world.resting_at_wall(0, 1));
     CHECK(world.motion(0).position(0.5)[0] == 3);
     while (world.step(2)) world.audit();
-    CHECK_FALSE(world.held_at_wall(0, 1));
+    CHECK_FALSE(world.resting_at_wall(0, 1));
     CHECK(world.motion(0).position(2)[0] == Approx(3 - 2));
   }
 }
@@ -124,7 +124,7 @@ TEST_CASE("Curves: bodies that bounce on a lift come to rest on it", "[splines][
   Lift<3> lift({Path<3>{{zero, zero, {0, 0, 0.25}, {0, 0, 0.125}}, 0}}, 0.5);
   lift.world.update_motion(1, Path<3>{{{0, 0, 3}, zero, {0, 0, -g / 2}}, 0});
   lift.audit_until(4);
-  CHECK(lift.world.held(0, 1));
+  CHECK(lift.world.resting(0, 1));
   CHECK(std::abs(lift.height() - 2) < 1e-12);
   CHECK(lift.log.count(Kind::contact) > 10);
 }
@@ -136,7 +136,7 @@ TEST_CASE("Curves: a world that is loaded goes on as the one that was saved", "[
   EventLog<3> log;
   World<3> loaded(with_response(Response::elastic), &log);
   restore(snapshot, loaded);
-  CHECK(loaded.held(0, 1));
+  CHECK(loaded.resting(0, 1));
   saved.log.events.clear();
   saved.world.advance_to(3);
   loaded.advance_to(3);

@@ -162,7 +162,7 @@ TEST_CASE("Boxes that are announced and enter in any order overlap as they do", 
   }
 }
 
-TEST_CASE("Boxes that settle are found by those that come and move", "[box_grid]") {
+TEST_CASE("Boxes that enter together are found by those that come and move", "[box_grid]") {
   std::size_t seen = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Random random(seed);
@@ -176,23 +176,23 @@ TEST_CASE("Boxes that settle are found by those that come and move", "[box_grid]
       }
       return box;
     };
-    BoxGrid settled, entered;
-    settled.reserve(count);
+    BoxGrid together, entered;
+    together.reserve(count);
     entered.reserve(count);
     std::vector<BoxGrid::Id> ids;
     BoxGrid::Changes changes, expected;
     for (BoxGrid::Id id = 0; id < count; ++id) {
       const StaticBox box = random_box();
       ids.push_back(id);
-      settled.announce(id, box);
+      together.announce(id, box);
       entered.put(id, box, expected);
     }
-    settled.settle(ids);
+    together.enter_all(ids);
     for (int step = 0; step < 100; ++step) {
       changes.clear(), expected.clear();
       const auto id = static_cast<BoxGrid::Id>(random.below(count + 1));
       const StaticBox box = random_box();
-      settled.put(id, box, changes);
+      together.put(id, box, changes);
       entered.put(id, box, expected);
       for (auto* list : {&changes.began, &changes.ended, &expected.began, &expected.ended}) {
         std::sort(list->begin(), list->end());

@@ -68,10 +68,10 @@ TEST_CASE("capsules come to lie, on a floor, on each other and on a mesh", "[wor
       INFO("body " << id);
       CHECK(at_rest(world, id));
     }
-    CHECK(world.held(0, 2));
-    CHECK(world.held(2, 3));
-    CHECK(world.held(1, 4));
-    CHECK(world.held(0, 5));
+    CHECK(world.resting(0, 2));
+    CHECK(world.resting(2, 3));
+    CHECK(world.resting(1, 4));
+    CHECK(world.resting(0, 5));
     CHECK(place_of(world, 2)[2] == Approx(0.5).margin(1e-9));
     CHECK(place_of(world, 3)[2] == Approx(2.25).margin(1e-9));
     CHECK(place_of(world, 4)[2] == Approx(1.5).margin(1e-9));
@@ -87,10 +87,10 @@ TEST_CASE("a capsule that slides off an edge leaves it", "[world][capsule]") {
     world.advance_to(1);
   };
   with_all_methods(elastic(), scene, [](World<2>& world, EventLog<2>&) {
-    CHECK(world.held(0, 1));
+    CHECK(world.resting(0, 1));
     CHECK(place_of(world, 1)[2] == Approx(0.5).margin(1e-12));
     world.advance_to(4);
-    CHECK_FALSE(world.held(0, 1));
+    CHECK_FALSE(world.resting(0, 1));
     CHECK(place_of(world, 1)[2] < -1);
   });
 }

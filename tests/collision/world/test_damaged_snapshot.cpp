@@ -163,8 +163,8 @@ TEST_CASE("damaged: a heap at rest", "[world][snapshot][damaged]") {
     world.add_body(one);
   }
   world.advance_to(4);
-  REQUIRE(world.held_at_wall(0, 4));
-  REQUIRE(world.held(0, 1));
+  REQUIRE(world.resting_at_wall(0, 4));
+  REQUIRE(world.resting(0, 1));
   auto pushed = world.free_motion(2).restarted(world.now());
   pushed.coefficients[1] = Vector3d(0.5, 0, 0);
   world.update_motion(2, pushed);  // what holds it is to be looked at

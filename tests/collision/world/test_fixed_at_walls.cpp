@@ -47,26 +47,26 @@ TEMPLATE_TEST_CASE_SIG("A fixed body stops at a wall without rebound, slides alo
     REQUIRE(log.count(Kind::wall) == 1);
     CHECK(log.of(Kind::wall)[0].time() == 2);
     CHECK(world.counters().held == 1);
-    CHECK(world.held_at_wall(0, 1));
-    CHECK_FALSE(world.held_at_wall(0, 0));
+    CHECK(world.resting_at_wall(0, 1));
+    CHECK_FALSE(world.resting_at_wall(0, 0));
     CHECK(world.motion(0).position(4) == Vector3d(9, 4, 0));
     CHECK(world.motion(0).velocity(4) == Vector3d(0, 1, 0));
     // A motion along the wall leaves it there; one inward lets it go; one outward meets the wall anew.
     world.update_motion(0, motion<Degree>({9, 4, 0}, {0, -1, 0}, zero, 4));
     REQUIRE(advance(world, 5));
-    CHECK(world.held_at_wall(0, 1));
+    CHECK(world.resting_at_wall(0, 1));
     world.update_motion(0, motion<Degree>({9, 3, 0}, {-1, 0, 0}, zero, 5));
     REQUIRE(advance(world, 6));
-    CHECK_FALSE(world.held_at_wall(0, 1));
+    CHECK_FALSE(world.resting_at_wall(0, 1));
     CHECK(world.motion(0).position(6) == Vector3d(8, 3, 0));
     world.update_motion(0, motion<Degree>({8, 3, 0}, {1, 6, 0}, zero, 6));
     REQUIRE(advance(world, 8));  // into the corner
-    CHECK(world.held_at_wall(0, 1));
-    CHECK(world.held_at_wall(0, 3));
+    CHECK(world.resting_at_wall(0, 1));
+    CHECK(world.resting_at_wall(0, 3));
     CHECK(world.motion(0).position(8) == Vector3d(9, 9, 0));
     CHECK(log.count(Kind::wall) == 3);
     world.update_motion(0, motion<Degree>({0, 0, 0}, {0, 0, 1}, zero, 8));  // jumps
-    CHECK_FALSE(world.held_at_wall(0, 1));
+    CHECK_FALSE(world.resting_at_wall(0, 1));
     REQUIRE(advance(world, 9));
     CHECK(world.motion(0).position(9) == Vector3d(0, 0, 1));
   }
@@ -81,7 +81,7 @@ TEST_CASE("A fixed body pressed against a wall comes to rest there, and keeps it
       world.add_body(fixed_ball<2>({0, 0, -5}, zero, pull));
       REQUIRE(advance(world, 2.0 * (1 + restitution) / (1 - restitution) + 1e-6));
       CHECK(world.counters().held == 1);
-      CHECK(world.held_at_wall(0, 4));
+      CHECK(world.resting_at_wall(0, 4));
       const double t = world.now();
       CHECK(world.motion(0).position(t)[2] == Approx(-9).epsilon(1e-12));
       CHECK(world.motion(0).velocity(t)[2] == 0);
@@ -92,7 +92,7 @@ TEST_CASE("A fixed body pressed against a wall comes to rest there, and keeps it
       const Vector3d place = world.motion(0).position(t);
       world.update_motion(0, motion<2>(place, zero, {0, 0, 1}, t));
       REQUIRE(advance(world, t + 1));
-      CHECK_FALSE(world.held_at_wall(0, 4));
+      CHECK_FALSE(world.resting_at_wall(0, 4));
       CHECK(world.motion(0).position(t + 1)[2] == Approx(place[2] + 1));
     }
   }
@@ -107,7 +107,7 @@ TEST_CASE("A fixed body without rebound that is pulled away from the wall stops,
   const double since = 3 - log.of(Kind::wall)[0].time();
   CHECK(since == Approx(std::sqrt(5)));
   CHECK(world.motion(0).position(3)[0] == Approx(9 - since * since));
-  CHECK_FALSE(world.held_at_wall(0, 1));
+  CHECK_FALSE(world.resting_at_wall(0, 1));
 }
 
 TEST_CASE("Pieces of a script go on after a wall has held a fixed body", "[world][walls]") {
@@ -118,13 +118,13 @@ TEST_CASE("Pieces of a script go on after a wall has held a fixed body", "[world
   scripted.motion.push_back(motion<1>({8, 0, 0}, {1, 0, 0}, zero, 5));
   world.add_body(scripted);
   REQUIRE(advance(world, 3));
-  CHECK(world.held_at_wall(0, 1));
+  CHECK(world.resting_at_wall(0, 1));
   REQUIRE(advance(world, 4.5));
-  CHECK_FALSE(world.held_at_wall(0, 1));
+  CHECK_FALSE(world.resting_at_wall(0, 1));
   CHECK(world.motion(0).position(4.5) == Vector3d(8.5, 0, 0));
   REQUIRE(advance(world, 10));
   CHECK(log.count(Kind::wall) == 2);
-  CHECK(world.held_at_wall(0, 1));
+  CHECK(world.resting_at_wall(0, 1));
   CHECK(world.motion(0).position(10) == Vector3d(9, 0, 0));
 }
 
@@ -137,10 +137,10 @@ TEST_CASE("A fixed body that carries another stops at a wall, and what it carrie
   rider.restitution = 0;
   world.add_body(rider);
   REQUIRE(advance(world, 2));
-  CHECK(world.held(0, 1));
+  CHECK(world.resting(0, 1));
   REQUIRE(advance(world, 5));
-  CHECK(world.held_at_wall(0, 4));
-  CHECK(world.held(0, 1));
+  CHECK(world.resting_at_wall(0, 4));
+  CHECK(world.resting(0, 1));
   CHECK(world.motion(1).position(5)[2] == Approx(-7));
   CHECK(log.count(Kind::wall) == 1);
 }
@@ -151,7 +151,7 @@ TEST_CASE("A fixed body that presses another against a wall passes through it, a
   world.add_body(fixed_ball<2>({0, 0, -7}, {0, 0, 2}));
   world.add_body(ball<2>(1, {0, 0, -5}, {0, 0, 2}, {0, 0, -5}));
   REQUIRE(advance(world, 20, 20000));
-  CHECK(world.held_at_wall(0, 5));
+  CHECK(world.resting_at_wall(0, 5));
   CHECK(world.motion(0).position(20)[2] == Approx(9));
 }
 

@@ -243,7 +243,7 @@ TEST_CASE("guards: after a box function has failed nothing but looking and destr
         CHECK(world->mass(0) == 1);
         CHECK(world->shape(0).bounding_radius == 1);
         CHECK_FALSE(world->fixed(0));
-        CHECK_FALSE(world->held(0, 1));
+        CHECK_FALSE(world->resting(0, 1));
         world->touching(0, 1);
         world->counters();
         CHECK_FALSE(world->broad_phase().empty());

@@ -53,9 +53,9 @@ void require_stale(World<Degree>& world, BodyId gone, BodyId there) {
   throws([&] { world.fixed(gone); });
   throws([&] { world.touching(gone, there); });
   throws([&] { world.touching(there, gone); });
-  throws([&] { world.held(gone, there); });
-  throws([&] { world.held(there, gone); });
-  throws([&] { world.held_at_wall(gone, 0); });
+  throws([&] { world.resting(gone, there); });
+  throws([&] { world.resting(there, gone); });
+  throws([&] { world.resting_at_wall(gone, 0); });
   throws([&] { world.update_motion(gone, motion<Degree>({7, 7, 7}, zero, zero, world.now())); });
   throws([&] { world.remove_body(gone); });
   CHECK(world.contains(there));

@@ -110,8 +110,8 @@ TEST_CASE("Ids: everything told in a world of reused slots names bodies by their
       world.audit();
       REQUIRE(world.touching(told.id(sensor), told.id(passing)));
       world.advance_to(12);  // it has passed
-      CHECK(world.held(told.id(ground), told.id(lower)));
-      CHECK(world.held_at_wall(told.id(bouncing), 4));
+      CHECK(world.resting(told.id(ground), told.id(lower)));
+      CHECK(world.resting_at_wall(told.id(bouncing), 4));
       world.advance_to(40);
       CHECK(told.wrong == 0);
       for (const char* what :

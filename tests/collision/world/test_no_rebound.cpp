@@ -23,7 +23,7 @@ TEST_CASE("What meets a wall without rebound, and is pulled away from it, stops 
   const double since = 3 - log.of(Kind::wall)[0].time();
   CHECK(world.motion(0).position(3)[0] == Approx(9 - since * since));
   CHECK(world.motion(0).position(3)[1] == Approx(3));
-  CHECK_FALSE(world.held_at_wall(0, 1));
+  CHECK_FALSE(world.resting_at_wall(0, 1));
 }
 
 TEST_CASE("Balls that meet without rebound, and are pulled apart, do not pass through each other", "[world][zeno]") {

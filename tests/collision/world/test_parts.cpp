@@ -383,9 +383,9 @@ TEST_CASE("Resting contacts: a ball that is pressed on a fixed box stays, and sl
   CHECK_FALSE(parts.resting.empty());
   CHECK(parts.resting.rests(resting));
   parts.resting.disturb(resting);
-  CHECK_FALSE(parts.resting.settled());
-  parts.resting.settle();
-  CHECK(parts.resting.settled());
+  CHECK_FALSE(parts.resting.solved());
+  parts.resting.solve();
+  CHECK(parts.resting.solved());
   REQUIRE(std::find(parts.taken_up.begin(), parts.taken_up.end(), resting) != parts.taken_up.end());
   CHECK(parts.bodies.motion(resting).coefficients[2].isZero(0));
   CHECK(parts.bodies.motion(resting).coefficients[1] == Vector3d(1, 0, 0));
@@ -406,7 +406,7 @@ TEST_CASE("Resting contacts: a body that jumps has none any more") {
   const BodySlot resting = parts.add(ball<2>(1, {0, 0, 1}, zero, {0, 0, -5}));
   parts.resting.add({.a = floor, .b = resting, .normal = Vector3d(0, 0, 1)});
   parts.resting.disturb(resting);
-  parts.resting.settle();
+  parts.resting.solve();
   parts.resting.audit(0, false);
   parts.resting.drop_all(resting);
   CHECK(parts.resting.empty());

@@ -22,7 +22,7 @@ TEST_CASE("Resting: a box slides off the edge and falls, from the instant at whi
   };
   with_all_methods(elastic(), scene, [&](World<2>& world, EventLog<2>& log) {
     CHECK(log.count(Kind::held) == 1);
-    CHECK_FALSE(world.held(0, 1));
+    CHECK_FALSE(world.resting(0, 1));
     CHECK(world.motion(1).start == Approx(2.25));
     const double fallen = 5 * 7.75 * 7.75;
     CHECK(world.motion(1).position(10)[2] == Approx(0.5 - fallen));
@@ -34,20 +34,20 @@ TEST_CASE("Resting: the support goes away, comes back, lifts, the body falls, la
     world.add_body(floor_box());
     world.add_body(bouncy(ball<2>(1, {0, 0, 1}, zero, weight), 0.5));
     world.advance_to(1);
-    CHECK(world.held(0, 1));
+    CHECK(world.resting(0, 1));
     // Faster down than the ball follows, for 0.5 s.
     world.update_motion(0, motion<2>({0, 0, -1}, {0, 0, -8}, zero, 1));
     world.advance_to(1.5);
-    CHECK_FALSE(world.held(0, 1));
+    CHECK_FALSE(world.resting(0, 1));
     CHECK(world.motion(1).position(1.5)[2] == Approx(1 - 1.25));
     world.update_motion(0, motion<2>({0, 0, -5}, zero, zero, 1.5));
     world.advance_to(10);
-    CHECK(world.held(0, 1));
+    CHECK(world.resting(0, 1));
     CHECK(world.motion(1).position(10)[2] == Approx(-3));
     // Up: it is thrown, comes back, and rides.
     world.update_motion(0, motion<2>({0, 0, -5}, {0, 0, 0.5}, zero, 10));
     world.advance_to(11);
-    CHECK(world.held(0, 1));
+    CHECK(world.resting(0, 1));
     CHECK(world.motion(1).velocity(11) == Vector3d(0, 0, 0.5));
     CHECK(world.motion(1).position(11)[2] == Approx(-2.5));
     // The floor is taken away.
@@ -68,7 +68,7 @@ TEST_CASE("Resting: a floor that sinks with less than gravity carries on, with m
       world.advance_to(2);
     };
     with_all_methods(elastic(), scene, [&](World<2>& world, EventLog<2>&) {
-      CHECK(world.held(0, 1) == (half < 5));
+      CHECK(world.resting(0, 1) == (half < 5));
       CHECK(world.motion(1).position(2)[2] == Approx(1 - std::min(half, 5.0)));
     });
   }
@@ -88,7 +88,7 @@ TEST_CASE("Resting: what lies on the floor may be knocked up, along and down", "
     REQUIRE(hit != contacts.end());
     CHECK(hit->contact.normal[2] < 0);  // from the large ball down to the small one
     CHECK(world.motion(1).coefficients[2] == weight);
-    CHECK_FALSE(world.held(0, 1));
+    CHECK_FALSE(world.resting(0, 1));
   });
 }
 
@@ -122,7 +122,7 @@ TEST_CASE("Resting: an elastic blow goes through a body at rest on the floor and
     blow.motion[0].start = 1;
     world.add_body(blow);
     world.advance_to(1.25);
-    CHECK(world.held(0, 1));
+    CHECK(world.resting(0, 1));
     world.advance_to(1.75);
   };
   with_all_methods(elastic(), scene, [](World<2>& world, EventLog<2>&) {
@@ -153,7 +153,7 @@ TEST_CASE("Resting: two balls, one upon the other, and a pile of three boxes", "
         CHECK(log.count(Kind::held) >= world.size() - 1);
         CHECK(log.count(Kind::contact) < 20000);
         for (BodyId id = 1; id < world.size(); ++id) {
-          CHECK(world.held(id - 1, id));
+          CHECK(world.resting(id - 1, id));
           CHECK(at_rest(world, id));
           CHECK(std::abs(world.motion(id).position(1000)[2] - (2.0 * id - 1)) < 1e-9);
         }
@@ -167,7 +167,7 @@ TEST_CASE("Resting: the lowest of a pile is taken away and the rest lands on the
     world.add_body(floor_box());
     for (int i = 0; i < 4; ++i) world.add_body(bouncy(box<2>({1, 1, 1}, {0, 0, 1 + 2.0 * i}, zero, weight), 0.25));
     world.advance_to(1);
-    for (BodyId id = 1; id <= 4; ++id) CHECK(world.held(id - 1, id));
+    for (BodyId id = 1; id <= 4; ++id) CHECK(world.resting(id - 1, id));
     world.remove_body(1);
     world.advance_to(1.5);
     CHECK(world.motion(4).position(1.5)[2] == Approx(7 - 5 * 0.25));  // all fall as one
@@ -190,7 +190,7 @@ TEST_CASE("Resting: a ball slides over a ball and off it", "[zeno]") {
     while (world.step(3)) {
       const Vector3d place = world.motion(1).position(world.now());
       least = std::min(least, place.norm());
-      if (world.held(0, 1)) leaves_at = place[2] / 3;
+      if (world.resting(0, 1)) leaves_at = place[2] / 3;
     }
     CHECK(least > 3 - 1e-9);
     // Without friction it leaves where cos(angle) = 2/3; energy tells its speed (the first bounces have cost some).

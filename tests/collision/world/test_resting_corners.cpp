@@ -103,7 +103,7 @@ TEST_CASE("Resting: on a large clock bodies that met by some spacings of it too 
   const BodyId b = world.add_body(fixed_body<2>(Box{{1, 1, 1}}, path));
   while (world.step(1e9 + 5)) world.audit();
   world.audit();
-  CHECK(world.held(a, b));
+  CHECK(world.resting(a, b));
 }
 
 TEST_CASE("Resting: a body goes that was to come to rest a little later, and the world is saved", "[degenerate]") {

@@ -201,13 +201,13 @@ TEST_CASE("A heap of balls that has come to rest is still at rest when it is loa
   }
   world.advance_to(4);
   REQUIRE(world.counters().held > 3);
-  REQUIRE(world.held_at_wall(0, 4));
+  REQUIRE(world.resting_at_wall(0, 4));
   world.audit();
   const Snapshot snapshot = save(world);
   EventLog<2> other_log;
   World<2> other(options, &other_log);
   restore(snapshot, other);
-  CHECK(other.held_at_wall(0, 4));
+  CHECK(other.resting_at_wall(0, 4));
   CHECK(save(other) == snapshot);
   log.events.clear();
   for (World<2>* each : {&world, &other}) {

@@ -56,7 +56,7 @@ TEST_CASE("Zeno: a ball or box that bounces ever lower comes to rest at the righ
         const double fall = std::sqrt(2 * 3.0 / 10);
         CHECK(log.of(Kind::held)[0].time() == Approx(fall * (1 + e) / (1 - e)).margin(1e-9));
         CHECK(log.events.back().kind == Kind::held);  // and nothing after it
-        CHECK(world.held(0, 1));
+        CHECK(world.resting(0, 1));
         CHECK(world.motion(1).velocity(100) == Vector3d(0.25, 0, 0));
         CHECK(world.motion(1).coefficients[2] == zero);
         CHECK((world.motion(1).position(100) - Vector3d(25, 0, 1)).cwiseAbs().maxCoeff() < 1e-11);
@@ -77,11 +77,11 @@ TEST_CASE("Zeno: a ball comes to rest on a wall, and in a corner", "[zeno]") {
   with_all_methods(options, scene, [&](World<2>& world, EventLog<2>& log) {
     CHECK(world.counters().held == 4);
     CHECK(log.count(Kind::wall) < 200);
-    CHECK(world.held_at_wall(0, 4));
-    CHECK_FALSE(world.held_at_wall(0, 1));
+    CHECK(world.resting_at_wall(0, 4));
+    CHECK_FALSE(world.resting_at_wall(0, 1));
     CHECK(at_rest(world, 0));
     CHECK((world.motion(0).position(100) - Vector3d(0, 0, 1)).norm() < 1e-12);
-    for (const int wall : {1, 3, 4}) CHECK(world.held_at_wall(1, wall));
+    for (const int wall : {1, 3, 4}) CHECK(world.resting_at_wall(1, wall));
     CHECK(at_rest(world, 1));
     CHECK((world.motion(1).position(100) - Vector3d(4, 4, 1)).norm() < 1e-12);
   });
