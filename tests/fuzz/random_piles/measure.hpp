@@ -24,11 +24,13 @@ struct Result {
   std::uint64_t events = 0;
   double seconds = 0;  ///< of the processor
   double reached = 0;  ///< s of simulated time
-  double overlap = 0;  ///< the deepest, in parts of the smaller of two radii
+  double overlap = 0;  ///< the deepest, with a wall too, in parts of the smaller of two radii
   double energy = 0;   ///< the greatest rise that lasts, in parts of the energy at the start
   double kinetic = 0;  ///< at the end, in parts of the energy at the start
 };
 
+/// s of simulated time between measurements of all bodies.
+inline constexpr double sample = 0.05;
 /// Deeper than this part of the smaller bounding radius is wrong.
 inline constexpr double deepest_overlap = 1e-9;
 /// More than this part of the energy at the start, gained for good since it was least, is wrong.
@@ -48,7 +50,7 @@ struct Budget {
 /// Whether what is sought has been found.
 bool found(const Budget& budget, const Result& result);
 
-/// Runs and measures: at each event what has moved, or all if there are few bodies, and all every 0.05 s.
+/// Runs and measures: at each event what has moved, or all if there are few bodies, and all each `sample`.
 Result measure(const Scene& scene, const Budget& budget);
 
 /// Compares the events, bit for bit, with those of another broad phase, and of a world saved and loaded in the midst.
