@@ -124,9 +124,10 @@ bool RestingContacts<Degree>::repeats(const Island& island, std::size_t k) const
   return false;
 }
 
-/// The span of a cluster begins. False if it is to be called again.
+/// The span of a cluster begins. False if it is to be called again. `dissolved`: whether its bodies have been a cluster
+/// at this instant that was dissolved; what cannot do without one stays one.
 template <int Degree>
-bool RestingContacts<Degree>::step_cluster(Island& island) {
+bool RestingContacts<Degree>::step_cluster(Island& island, bool& dissolved) {
   const double now = clock_.now;
   bool over = false;
   for (std::size_t k = 0; k < island.contacts.size(); ++k) {
@@ -135,12 +136,12 @@ bool RestingContacts<Degree>::step_cluster(Island& island) {
     over = true;
   }
   if (over) return false;
-  if (slides_on(island)) {
+  if (!dissolved && slides_on(island)) {
     bool far = false;
     for (const Slot slot : island.contacts) {
       if (contacts_[slot].gap > 4 * room_of_many * gaps_.size(contacts_[slot])) drop(slot), far = true;
     }
-    if (!far) dissolve(island);
+    if (!far) dissolve(island), dissolved = true;
     return false;
   }
   for (std::size_t i = 0; i < island.free; ++i) {

@@ -217,7 +217,7 @@ class RestingContacts {
   // resting_islands.cpp
   void solve_all();
   void solve_fixed(BodySlot id);
-  bool solve_island(BodySlot id);
+  bool solve_island(BodySlot id, bool& dissolved);
   Island find_island(BodySlot id);
   bool drop_broken(const Island& island);
   bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
@@ -233,7 +233,7 @@ class RestingContacts {
   bool turns(const Island& island) const;
   bool slides_on(const Island& island) const;
   bool repeats(const Island& island, std::size_t k) const;
-  bool step_cluster(Island& island);
+  bool step_cluster(Island& island, bool& dissolved);
   void take_up(const Island& island, Span& span, double length);
   void gather(BodySlot id, double ends);
   void dissolve(const Island& island);

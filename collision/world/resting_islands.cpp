@@ -33,7 +33,7 @@ void RestingContacts<Degree>::solve_all() {
     if (bodies_.fixed(id)) {
       solve_fixed(id);
     } else {
-      while (!solve_island(id)) {
+      for (bool dissolved = false; !solve_island(id, dissolved);) {
       }
     }
   }
@@ -77,9 +77,9 @@ void RestingContacts<Degree>::solve_fixed(BodySlot id) {
 
 /// False if a contact had to be dropped: then it is to be called again. Each time there is one contact less.
 template <int Degree>
-bool RestingContacts<Degree>::solve_island(BodySlot id) {
+bool RestingContacts<Degree>::solve_island(BodySlot id, bool& dissolved) {
   Island island = find_island(id);
-  if (in_cluster(island)) return step_cluster(island);
+  if (in_cluster(island)) return step_cluster(island, dissolved);
   if (drop_broken(island)) return false;
   std::vector<Motion> motions;
   for (const BodySlot each : island.bodies) motions.push_back(bodies_.motion(each).restarted(clock_.now));
