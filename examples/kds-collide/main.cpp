@@ -83,7 +83,7 @@ void print_summary(const RunResult& result) {
     std::fprintf(stderr, " (%.4g s per simulated second)", result.run_cpu_seconds / result.sim_seconds);
   }
   if (result.held > 0) {
-    std::fprintf(stderr, "\nheld together %llu times where bounces piled up without end",
+    std::fprintf(stderr, "\n%llu contacts came to last: bodies lie or slide on each other",
                  static_cast<unsigned long long>(result.held));
   }
   std::fputc('\n', stderr);

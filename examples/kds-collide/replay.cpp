@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 #include <string_view>
+#include <vector>
 
 namespace kds_collide {
 namespace {
@@ -74,6 +75,26 @@ void append_piece(std::string& text, const MotionPiece& piece, double begin) {
     }
   }
   text += ']';
+}
+
+/// As a part of a body's size, how far from its place it may be drawn: bodies in a heap change their motions thousands
+/// of times, most of them by less.
+constexpr double drawn_within = 0x1p-10;
+
+/// The pieces that are to be drawn. Where the one before leads to the same place, until the next begins, it goes on.
+std::vector<MotionPiece> drawn(const std::vector<MotionPiece>& pieces, double size, double end) {
+  std::vector<MotionPiece> result;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const MotionPiece& piece = pieces[i];
+    const double until = i + 1 < pieces.size() ? pieces[i + 1].start : std::max(end, piece.start);
+    const auto goes_on = [&](double part) {
+      const double time = piece.start + part * (until - piece.start);
+      return (result.back().position(time) - piece.position(time)).norm() <= drawn_within * size;
+    };
+    if (!result.empty() && goes_on(0) && goes_on(0.5) && goes_on(1)) continue;
+    result.push_back(piece);
+  }
+  return result;
 }
 
 void append_shape(std::string& text, const kds::collision::Shape& shape,
@@ -155,9 +176,11 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
     text += ",\"turn\":";
     append_list(text, {q.x(), q.y(), q.z(), q.w()});
     text += ",\"motion\":[";
-    for (std::size_t p = 0; p < motion_[i].size(); ++p) {
+    const double size = kds::collision::place(body.shape, body.orientation).bounding_radius;
+    const auto pieces = drawn(motion_[i], size, scene_.end_time);
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
       if (p > 0) text += ',';
-      append_piece(text, motion_[i][p], scene_.begin_time);
+      append_piece(text, pieces[p], scene_.begin_time);
     }
     text += "]}";
   }

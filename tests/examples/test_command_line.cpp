@@ -64,7 +64,7 @@ TEST_CASE("command line: a ball that bounces ever lower comes to rest, which the
      "motion": [{"start": 0, "position": [[0,0,4], [0,0,0], [0,0,-5]]}]}]})");
   const Outcome outcome = kds_collide_in(folder, "scene.json --events e.csv --stats s.json");
   CHECK(outcome.code == 0);
-  CHECK_THAT(outcome.err, Catch::Contains("held together 1 times"));
+  CHECK_THAT(outcome.err, Catch::Contains("1 contacts came to last"));
   const auto stats = nlohmann::json::parse(read_file(folder / "s.json"));
   CHECK(stats["held"] == 1);
   const auto events = lines_of(read_file(folder / "e.csv"));

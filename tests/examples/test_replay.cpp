@@ -56,6 +56,21 @@ TEST_CASE("replay: the record holds pieces of motion and contacts, counted from 
   CHECK(data["rests"] == json::parse("[[1.5,1,0],[2,1,0,1],[2.5,-1,0,1]]"));
 }
 
+TEST_CASE("replay: changes of motion that nobody could see are left out") {
+  Scene scene = scene_of_two();
+  ReplayRecorder recorder(scene);
+  for (int i = 1; i < 100; ++i) {
+    MotionPiece piece = scene.bodies[0].motion[0].restarted(10 + 0.01 * i);
+    piece.coefficients[1][1] = i % 2 == 0 ? 1e-4 : -1e-4;  // it never is 1e-4 from its way
+    recorder.on_motion(0, piece);
+  }
+  MotionPiece turned = scene.bodies[0].motion[0].restarted(11.5);
+  turned.coefficients[1][1] = 0.01;  // 5e-3 at the end
+  recorder.on_motion(0, turned);
+  const json data = json::parse(recorder.to_json("title"));
+  CHECK(data["bodies"][0]["motion"] == json::parse("[[0,0,0,0,1,0,0],[1.5,1.5,0,0,1,0.01,0]]"));
+}
+
 TEST_CASE("replay: shapes by their names and measures") {
   Scene scene = scene_of_two();
   scene.bodies[0].shape = kds::collision::Box{{1, 2, 3}};
