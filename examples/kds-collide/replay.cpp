@@ -175,6 +175,7 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
     const Eigen::Quaterniond& q = body.orientation;
     text += ",\"turn\":";
     append_list(text, {q.x(), q.y(), q.z(), q.w()});
+    if (body.fixed) text += ",\"fixed\":true";
     text += ",\"motion\":[";
     const double size = kds::collision::place(body.shape, body.orientation).bounding_radius;
     const auto pieces = drawn(motion_[i], size, scene_.end_time);
