@@ -64,6 +64,12 @@ double Exact::approximate() const {
   return std::ldexp(static_cast<double>(leading), exponent_ + excess);
 }
 
+int Exact::magnitude_bits() const {
+  const auto& integer = mantissa().integer;
+  if (integer.is_zero()) return 0;
+  return static_cast<int>(boost::multiprecision::msb(boost::multiprecision::abs(integer))) + 1 + exponent_;
+}
+
 Exact operator-(const Exact& a) { return {Exact::Mantissa{-a.mantissa().integer}, a.exponent_}; }
 
 Exact operator+(const Exact& a, const Exact& b) {
@@ -79,6 +85,36 @@ Exact operator-(const Exact& a, const Exact& b) { return a + (-b); }
 
 Exact operator*(const Exact& a, const Exact& b) {
   return {Exact::Mantissa{a.mantissa().integer * b.mantissa().integer}, a.exponent_ + b.exponent_};
+}
+
+Exact scaled(const Exact& a, int exponent) {
+  Exact result = a;
+  if (a.sign() != 0) result.exponent_ += exponent;
+  return result;
+}
+
+// Quotients of integers are truncated towards zero; a shift to the right is made of magnitudes.
+Exact truncated(const Exact& a, int bits) {
+  const int excess = -bits - a.exponent_;
+  if (excess <= 0 || a.sign() == 0) return a;
+  if (a.sign() < 0) return -truncated(-a, bits);
+  return {Exact::Mantissa{a.mantissa().integer >> excess}, -bits};
+}
+
+Exact truncated_quotient(const Exact& a, const Exact& b, int bits) {
+  const int shift = a.exponent_ - b.exponent_ + bits;
+  const auto& x = a.mantissa().integer;
+  const auto& y = b.mantissa().integer;
+  if (shift >= 0) return {Exact::Mantissa{(x << shift) / y}, -bits};
+  return {Exact::Mantissa{x / (y << -shift)}, -bits};
+}
+
+Exact truncated_square_root(const Exact& a, int bits) {
+  const int shift = a.exponent_ + 2 * bits;
+  const auto& x = a.mantissa().integer;
+  return {
+      Exact::Mantissa{sqrt(shift >= 0 ? Exact::Mantissa{x << shift}.integer : Exact::Mantissa{x >> -shift}.integer)},
+      -bits};
 }
 
 }  // namespace kds

@@ -30,10 +30,23 @@ class Exact {
   /// Nearest double or one of its neighbours; for approximations only.
   double approximate() const;
 
+  /// Least n with |a| < 2^n; 0 for zero.
+  int magnitude_bits() const;
+
   friend Exact operator-(const Exact& a);
   friend Exact operator+(const Exact& a, const Exact& b);
   friend Exact operator-(const Exact& a, const Exact& b);
   friend Exact operator*(const Exact& a, const Exact& b);
+  friend bool operator==(const Exact& a, const Exact& b) { return (a - b).sign() == 0; }
+
+  /// a 2^exponent.
+  friend Exact scaled(const Exact& a, int exponent);
+
+  /// The multiple of 2^-bits next to a, a / b or the square root of a, towards zero: less than 2^-bits away.
+  /// Preconditions: b != 0; a >= 0 under the root.
+  friend Exact truncated(const Exact& a, int bits);
+  friend Exact truncated_quotient(const Exact& a, const Exact& b, int bits);
+  friend Exact truncated_square_root(const Exact& a, int bits);
 
  private:
   struct Mantissa;

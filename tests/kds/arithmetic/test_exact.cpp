@@ -126,3 +126,34 @@ TEST_CASE("the absolute value of an exact number has no sign", "[exact]") {
   CHECK(absolute(Exact(-least) + Exact(largest)).sign() == 1);
   CHECK(absolute(Exact(0.0)).sign() == 0);
 }
+
+TEST_CASE("what leaves the ring is truncated towards zero", "[exact]") {
+  const std::uint64_t seed = 23;
+  CAPTURE(seed);
+  Random random(seed);
+  const auto within = [](const Exact& magnitude, const Exact& least,
+                         int bits) {  // least <= magnitude < least + 2^-bits
+    return (magnitude - least).sign() >= 0 && (least + scaled(Exact(1.0), -bits) - magnitude).sign() > 0;
+  };
+  int wrong = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Exact a = Exact(random.scaled(-60, 60)) * Exact(random.coarse() + 0x1p-40);
+    const Exact b = random.scaled(-60, 60);
+    const int bits = random.integer(-40, 120);
+    const Exact unit = scaled(Exact(1.0), -bits);
+    const Exact part = truncated(a, bits);
+    wrong += !within(absolute(a), absolute(part), bits) || (part.sign() != 0 && part.sign() != a.sign());
+    const Exact ratio = absolute(truncated_quotient(a, b, bits)) * absolute(b);
+    wrong += (absolute(a) - ratio).sign() < 0 || (ratio + unit * absolute(b) - absolute(a)).sign() <= 0;
+    const Exact root = truncated_square_root(absolute(a), bits);
+    wrong += (absolute(a) - root * root).sign() < 0 || ((root + unit) * (root + unit) - absolute(a)).sign() <= 0;
+    const int n = a.magnitude_bits();
+    wrong += a.sign() != 0 && !((scaled(Exact(1.0), n) - absolute(a)).sign() > 0 &&
+                                (scaled(Exact(1.0), n - 1) - absolute(a)).sign() <= 0);
+  }
+  CHECK(wrong == 0);
+  CHECK(Exact().magnitude_bits() == 0);
+  CHECK(truncated(Exact(-1.75), 1) == Exact(-1.5));
+  CHECK(truncated_quotient(Exact(-1.0), Exact(3.0), 2) == Exact(-0.25));
+  CHECK(scaled(Exact(3.0), -2) == Exact(0.75));
+}
