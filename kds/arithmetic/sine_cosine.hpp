@@ -19,8 +19,9 @@ struct SineCosine {
   Number sine, cosine;
 };
 
-/// Greatest angle that sine_cosine() knows, rad. Beyond it nothing is decided: the radii are infinite.
-inline constexpr double greatest_angle = 0x1p30;
+/// Greatest angle that sine_cosine() knows, rad: a million million. Beyond it nothing is decided: the radii are
+/// infinite.
+inline constexpr double greatest_angle = 0x1p40;
 
 /// Sine and cosine of an angle in rad, given as a double-double within a radius. Number is Ball<double> or
 /// Ball<DoubleDouble>. Made of + - * alone, each rounded as it is written: the same bits on every system, which those
@@ -45,21 +46,28 @@ namespace detail {
 
 /// angle = remainder + quadrant * pi / 2, up to `error`, which is 0 in the quadrant 0.
 struct ReducedAngle {
-  DoubleDouble remainder;  ///< below 0.7855 in magnitude
+  DoubleDouble remainder;  ///< below 0.786 in magnitude
   int quadrant;            ///< 0 ... 3
   double error;
 };
 
-/// Error bound. k = angle * 2 / pi is below 2^30 and known to 2^-21, so that rounding it to an integer leaves at most
-/// pi / 4 + 2^-20 < 0.7855. pi / 2 is p0 + p1 + p2 up to 2^-163, three doubles that fall by 2^-54 each. k p0 and k p1
+inline constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
+inline constexpr std::array<double, 3> half_pi{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110};
+
+/// How many right angles are in an angle, to the nearest.
+inline double right_angles(double angle) {
+  constexpr double to_integer = 0x1.8p52;  // a sum with it has the unit 1
+  return (angle * two_over_pi + to_integer) - to_integer;
+}
+inline int quadrant_of(double k) { return static_cast<int>(static_cast<std::int64_t>(k) & 3); }
+
+/// Error bound. k = angle * 2 / pi is below 2^40 and known to 2^-12, so that rounding it to an integer leaves at most
+/// pi / 4 + 2^-11 < 0.786. pi / 2 is p0 + p1 + p2 up to 2^-163, three doubles that fall by 2^-54 each. k p0 and k p1
 /// are exact as two doubles each, and so is the sum of the two leading terms. The four sums of a double-double and a
 /// double err by 2^-105 each, relative to partial results below 1 [Joldes17, DWPlusFP]; k p2 and its sum with a double
-/// below 2^-76 are rounded by 2^-128; k times what is left out of pi / 2 is below 2^-133. In all less than 2^-102.
+/// below 2^-66 are rounded by 2^-118; k times what is left out of pi / 2 is below 2^-123. In all less than 2^-102.
 inline ReducedAngle reduced(const DoubleDouble& angle) {
-  constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
-  constexpr double to_integer = 0x1.8p52;  // a sum with it has the unit 1
-  constexpr std::array<double, 3> half_pi{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110};
-  const double k = (angle.high * two_over_pi + to_integer) - to_integer;
+  const double k = right_angles(angle.high);
   if (k == 0) return {angle, 0, 0};
   const DoubleDouble first = two_product(k, half_pi[0]);
   const DoubleDouble second = two_product(k, half_pi[1]);
@@ -68,7 +76,19 @@ inline ReducedAngle reduced(const DoubleDouble& angle) {
   rest = rest - first.low;
   rest = rest - second.high;
   rest = rest - (second.low + k * half_pi[2]);
-  return {rest, static_cast<int>(static_cast<std::int64_t>(k) & 3), 0x1p-102};
+  return {rest, quadrant_of(k), 0x1p-102};
+}
+
+/// The same for doubles, of which the remainder has no more than one.
+///
+/// Error bound, with u = 2^-53: the first difference is exact, or below 0.79 and rounded once, where the two are not
+/// within a factor of two; so are the next sum and the last one, and what they leave out is below 2^-64: 2.4 u.
+inline ReducedAngle quickly_reduced(const DoubleDouble& angle) {
+  const double k = right_angles(angle.high);
+  if (k == 0) return {angle, 0, 0};
+  const DoubleDouble first = two_product(k, half_pi[0]);
+  const double rest = ((angle.high - first.high) - first.low) + (angle.low - k * half_pi[1]);
+  return {rest, quadrant_of(k), 0x1p-51};
 }
 
 /// (-1)^m / (2 m + 1)! and (-1)^m / (2 m)!, m from 1: Taylor's series.
@@ -113,7 +133,7 @@ double series(const std::array<DoubleDouble, 13>& c, double z) {
 
 /// Of a reduced angle r, in doubles.
 ///
-/// Error bound, with u = 2^-53 and z = r^2 < 0.6171. Each coefficient of the series is at most 1/12 of the one before,
+/// Error bound, with u = 2^-53 and z = r^2 < 0.618. Each coefficient of the series is at most 1/12 of the one before,
 /// and signs alternate, so that each partial result of Horner's rule lies between 0 and the coefficient c_m that it
 /// begins with. If the result at m + 1 errs by E c_(m+1), that at m errs by z / 12 (E + 2 u) c_m for the product (z and
 /// the product are rounded), by u for the sum and by u for c_m: E <= 2.3 u in the end. The product of r, z and the
@@ -172,7 +192,7 @@ SineCosine<Number> sine_cosine(const Ball<DoubleDouble>& angle) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     return {{0.0, infinity}, {0.0, infinity}};
   }
-  const detail::ReducedAngle reduced = detail::reduced(angle.middle);
+  const auto reduced = quick ? detail::quickly_reduced(angle.middle) : detail::reduced(angle.middle);
   const double error = angle.radius + reduced.error;
   const double size = std::abs(reduced.remainder.high);
   SineCosine<Number> a;

@@ -27,12 +27,16 @@ class Random {
 
   /// 53 random bits of either sign, between 2^low and 2^(high + 1) in size.
   double scaled(int low, int high) {
-    const double size = std::ldexp(1 + unit(), integer(low, high));
+    const int exponent = integer(low, high);  // first: compilers differ in the order of arguments
+    const double size = std::ldexp(1 + unit(), exponent);
     return one_in(2) ? -size : size;
   }
 
   /// A few random bits: sums and products of such numbers are often exact and often coincide.
-  double coarse() { return integer(-8, 8) * std::ldexp(1.0, integer(-3, 1)); }
+  double coarse() {
+    const int mantissa = integer(-8, 8);
+    return mantissa * std::ldexp(1.0, integer(-3, 1));
+  }
 
   /// Any finite double, by its bits.
   double any() {

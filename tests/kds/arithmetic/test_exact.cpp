@@ -131,9 +131,9 @@ TEST_CASE("what leaves the ring is truncated towards zero", "[exact]") {
   const std::uint64_t seed = 23;
   CAPTURE(seed);
   Random random(seed);
-  const auto within = [](const Exact& magnitude, const Exact& least,
-                         int bits) {  // least <= magnitude < least + 2^-bits
-    return (magnitude - least).sign() >= 0 && (least + scaled(Exact(1.0), -bits) - magnitude).sign() > 0;
+  // part <= magnitude < part + 2^-bits
+  const auto within = [](const Exact& magnitude, const Exact& part, int bits) {
+    return (magnitude - part).sign() >= 0 && (part + scaled(Exact(1.0), -bits) - magnitude).sign() > 0;
   };
   int wrong = 0;
   for (int i = 0; i < 2000; ++i) {

@@ -1,0 +1,54 @@
+// What the certificates of two bodies that turn add up: products of their turned vectors, and the way between them.
+#pragma once
+
+#include "certificates/point_motion.hpp"
+#include "certificates/turning/turned_vector.hpp"
+#include "kds/polynomial.hpp"
+#include "kds/turning/turning_sum.hpp"
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace kds::certificates {
+
+/// b - a to an order at most the degree, about the epoch.
+template <class Number, int Order, int Degree>
+VectorOf<Polynomial<Order, Number>> way_between(const PointMotion<Degree>& a, const PointMotion<Degree>& b,
+                                                double epoch) {
+  static_assert(Order <= Degree);
+  const auto whole = relative_motion<Number>(a, b, epoch);
+  VectorOf<Polynomial<Order, Number>> way;
+  for (std::size_t d = 0; d < 3; ++d) {
+    for (std::size_t i = 0; i <= Order; ++i) way[d].c[i] = whole[d].c[i];
+  }
+  return way;
+}
+
+/// x . way.
+template <class Number, int Order>
+Polynomial<Order, Number> along(const VectorOf<Number>& x, const VectorOf<Polynomial<Order, Number>>& way) {
+  Polynomial<Order, Number> sum;
+  for (std::size_t i = 0; i <= Order; ++i) {
+    sum.c[i] = x[0] * way[0].c[i] + x[1] * way[1].c[i] + x[2] * way[2].c[i];
+  }
+  return sum;
+}
+
+/// Adds a . b, of vectors that turn with the first and with the second spin.
+template <int Order, class Number>
+void add_product(TurningSum<Order, Number>& f, const TurnedVector<Number>& a, const TurnedVector<Number>& b) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) f.p[i][j].c[0] = f.p[i][j].c[0] + dot(a[i], b[j]);
+  }
+}
+
+/// A value in doubles that is off by `lengths` times `error`, where `lengths` bounds the product of two vectors and
+/// `size` a third one. Besides, underflow of the turned vectors costs up to 2^-600, and products of the two others of
+/// up to 2^200 make 2^-390 of it. Where they are longer nothing is said.
+inline Ball<double> bounded_value(double value, double lengths, double size, double error) {
+  const bool usual = lengths <= 0x1p100 && size <= 0x1p100;
+  return {value, usual ? lengths * error + 0x1p-380 : std::numeric_limits<double>::infinity()};
+}
+
+}  // namespace kds::certificates

@@ -1,0 +1,157 @@
+// Certificates of bodies that turn: sums of polynomials times sines and cosines, and their exact signs.
+#pragma once
+
+#include "kds/arithmetic/ball.hpp"
+#include "kds/arithmetic/enclosure.hpp"
+#include "kds/arithmetic/exact.hpp"
+#include "kds/certificate.hpp"
+#include "kds/turning/exact_zero.hpp"
+#include "kds/turning/spin.hpp"
+#include "kds/turning/turning_sum.hpp"
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+
+namespace kds {
+
+/// A fact about motions that turn: f(t) >= 0 while it holds.
+///
+/// A certificate names the degree of its polynomials and its two spins, and gives f as a TurningSum about any epoch, in
+/// any number type. Order cuts the polynomials off: of order 0 is f at the epoch alone.
+///
+/// Semantic laws: those of Certificate, with `turning_sum` in place of `polynomial`: ring operations on finite doubles
+/// alone; about all epochs the same function of t, to the order that is asked for.
+template <class C>
+concept TurningCertificate = requires(const C& certificate, double epoch) {
+  { C::degree } -> std::convertible_to<int>;
+  { certificate.spins() } -> std::same_as<std::array<Spin, 2>>;
+  { certificate.template turning_sum<Exact, C::degree>(epoch) } -> std::same_as<TurningSum<C::degree, Exact>>;
+  { certificate.template turning_sum<Ball<double>, 0>(epoch) } -> std::same_as<TurningSum<0, Ball<double>>>;
+  { certificate.template turning_sum<Ball<DoubleDouble>, 0>(epoch) } -> std::same_as<TurningSum<0, Ball<DoubleDouble>>>;
+};
+
+/// Hook: `Ball<double> quick_value(double t) const`, a ball that holds f(t) times any positive number, got for less
+/// than turning_sum<Ball<double>, 0>(t) takes. It spares work and changes no sign.
+template <class C>
+concept GivesQuickValue = requires {
+  static_cast<Ball<double> (C::*)(double) const>(&C::quick_value);
+};
+
+/// How often the cheaper rungs of the ladder of turning certificates did not decide. One set a thread; reset by
+/// assigning {}.
+struct TurningSignCounters {
+  std::uint64_t extended = 0;  ///< values that asked for double-doubles
+  std::uint64_t exact = 0;     ///< values of which the coefficients were tested for zero, exactly
+  std::uint64_t zeros = 0;     ///< of these, how many are zero
+  std::uint64_t enclosed = 0;  ///< enclosures of growing precision that were computed
+};
+inline thread_local TurningSignCounters turning_sign_counters;
+
+/// Sign of f, or of its derivative number `derivative`, at t itself; 0 only where it is zero. Exact. Precondition: t is
+/// finite, 0 <= derivative.
+///
+/// The ladder: doubles with an error bound; double-doubles with an error bound; the exact test whether f(t) is zero
+/// (exact_zero.hpp); and where it is not, enclosures of twice as many digits each time, which come to an end for that
+/// reason.
+template <TurningCertificate C>
+int sign_at(const C& certificate, double t, int derivative = 0);
+
+/// Sign of f (or its derivative) at t+, the instant after t: that of the first of f(t), f'(t), f''(t) ... that is not
+/// zero, and 0 only if f is zero at all times. f is analytic, so unless it is zero throughout, which is decided by its
+/// coefficients, one of them is not.
+template <TurningCertificate C>
+int sign_after(const C& certificate, double t, int derivative = 0);
+
+/// Whether f, or its derivative, is zero at all times. Exact.
+template <TurningCertificate C>
+bool vanishes(const C& certificate, int derivative = 0);
+
+// ---------------------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+/// f, or its derivative, with all its polynomials or of order 0 only.
+template <class Number, class C>
+auto derived_sum(const C& certificate, double t, int derivative) {
+  auto f = certificate.template turning_sum<Number, C::degree>(t);
+  if (derivative > 0) {
+    const std::array<Spin, 2> spins = certificate.spins();
+    const Number a = spins[0].template squared_rate<Number>();
+    const Number b = spins[1].template squared_rate<Number>();
+    for (int k = 0; k < derivative; ++k) f = kds::derivative(f, a, b);
+  }
+  return f;
+}
+
+/// The value of f, or of its derivative, at t, in balls.
+template <class Number, class C>
+Number turning_value(const C& certificate, double t, int derivative) {
+  const std::array<Spin, 2> spins = certificate.spins();
+  const Turn<Number> a = spins[0].template turn<Number>(t);
+  const Turn<Number> b = spins[1].template turn<Number>(t);
+  if (derivative == 0) return value_at_epoch(certificate.template turning_sum<Number, 0>(t), a, b);
+  return value_at_epoch(derived_sum<Number>(certificate, t, derivative), a, b);
+}
+
+/// Of a sum that is not zero at its epoch t.
+template <int Degree>
+int enclosed_sign(const TurningSum<Degree, Exact>& f, const std::array<Spin, 2>& spins, double t) {
+  for (int bits = 160;; bits *= 2) {
+    ++turning_sign_counters.enclosed;
+    if (const int s =
+            certain_sign(value_at_epoch(f, spins[0].enclosed_turn(t, bits), spins[1].enclosed_turn(t, bits)))) {
+      return s;
+    }
+  }
+}
+
+/// The last rungs.
+template <class C>
+int exact_turning_sign(const C& certificate, double t, int derivative) {
+  ++turning_sign_counters.exact;
+  const std::array<Spin, 2> spins = certificate.spins();
+  const auto f = derived_sum<Exact>(certificate, t, derivative);
+  if (vanishes_at_epoch(f, relation_at(spins[0], spins[1], t))) {
+    ++turning_sign_counters.zeros;
+    return 0;
+  }
+  return enclosed_sign(f, spins, t);
+}
+
+}  // namespace detail
+
+template <TurningCertificate C>
+int sign_at(const C& certificate, double t, int derivative) {
+  if constexpr (GivesQuickValue<C>) {
+    if (derivative == 0) {
+      if (const int s = certain_sign(certificate.quick_value(t))) return s;
+    }
+  }
+  if (!GivesQuickValue<C> || derivative > 0) {
+    const auto value = detail::turning_value<Ball<double>>(certificate, t, derivative);
+    if (const int s = certain_sign(value)) return s;
+    if (value.is_zero()) return 0;
+  }
+  ++turning_sign_counters.extended;
+  const auto value = detail::turning_value<Ball<DoubleDouble>>(certificate, t, derivative);
+  if (const int s = certain_sign(value)) return s;
+  return value.is_zero() ? 0 : detail::exact_turning_sign(certificate, t, derivative);
+}
+
+template <TurningCertificate C>
+bool vanishes(const C& certificate, int derivative) {
+  const std::array<Spin, 2> spins = certificate.spins();
+  return vanishes_throughout(detail::derived_sum<Exact>(certificate, spins[0].start, derivative), spins[0], spins[1]);
+}
+
+template <TurningCertificate C>
+int sign_after(const C& certificate, double t, int derivative) {
+  if (const int s = sign_at(certificate, t, derivative)) return s;
+  if (vanishes(certificate, derivative)) return 0;
+  for (int k = derivative + 1;; ++k) {
+    if (const int s = sign_at(certificate, t, k)) return s;
+  }
+}
+
+}  // namespace kds
