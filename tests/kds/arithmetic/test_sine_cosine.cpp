@@ -52,7 +52,7 @@ std::vector<Product> random_products(Random& random, int count) {
     Product p{random.scaled(-30, 13), random.scaled(-30, 26)};
     switch (random.below(5)) {
       case 0:
-        p.time = std::floor(std::ldexp(1 + random.unit(), random.integer(0, 38))) * 1.5707963267948966 / p.rate;
+        p.time = std::floor(std::abs(random.scaled(0, 38))) * 1.5707963267948966 / p.rate;
         break;
       case 1:
         p = {random.scaled(-2, 0), random.scaled(-2, 0)};
@@ -139,7 +139,7 @@ TEST_CASE("sines have the same bits on every system", "[sine_cosine]") {
       add(x);
     }
   }
-  CHECK(hash == 0xa0e7d22e069db1e1u);
+  CHECK(hash == 0x897c4baf4466c003u);
 }
 
 TEST_CASE("enclosures of sines hold them to any number of bits", "[sine_cosine]") {
