@@ -61,7 +61,7 @@ TEST_CASE("what is aligned for good is zero at all times, and a nudge makes sign
   Random random(seed);
   LadderTally tally;
   int wrong = 0;
-  for (int round = 0; round < 120; ++round) {
+  for (int round = 0; round < 100; ++round) {
     const bool coarse = random.one_in(2);
     Scene scene = turning_scene<2>(random, coarse);
     CAPTURE(round, coarse);
