@@ -164,6 +164,15 @@ bool ContactGaps<Degree>::proven(const Contact& contact, double rate, double hal
 }
 
 template <int Degree>
+bool ContactGaps<Degree>::deeper(const Contact& contact, double by) const {
+  if (!(overlap(contact) > by)) return false;
+  if (contact.b == no_body) return true;
+  const auto b = bodies_.moving(contact.b);
+  const auto apart = moved(b.motion, by * contact.normal);
+  return in_contact(bodies_.moving(contact.a), MovingShape<Degree>{b.shape, apart}, clock_.now);
+}
+
+template <int Degree>
 double ContactGaps<Degree>::deepest_overlap(const Contact& contact) const {
   const double now = clock_.now;
   const double spacing = next_up(std::abs(now)) - std::abs(now);

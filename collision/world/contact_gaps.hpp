@@ -51,6 +51,8 @@ class ContactGaps {
 
   /// How far the two overlap, as far as that is known: of meshes it is not.
   double overlap(Contact contact) const { return has_mesh(contact) ? 0 : -nearest(contact); }
+  /// Whether they overlap by more than that. Boxes that have slid off each other overlap along the normal alone.
+  bool deeper(const Contact& contact, double by) const;
   /// How much farther they may than when the contact began: by a billionth of the smaller, and by what motions are
   /// rounded by at this clock.
   double deepest_overlap(const Contact& contact) const;

@@ -244,7 +244,7 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     if (std::abs(norm(contact.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
     if (releases_.time(slot) < t) fail(slot, "it should have been let go");
     if (contact.fresh) continue;
-    if ((!at_wall || clustered(contact.a)) && gaps_.overlap(contact) > contact.depth + gaps_.deepest_overlap(contact))
+    if ((!at_wall || clustered(contact.a)) && gaps_.deeper(contact, contact.depth + gaps_.deepest_overlap(contact)))
       fail(slot, "its bodies overlap");
     if (clustered(contact.a) || (!at_wall && clustered(contact.b))) continue;
     const Eigen::Vector3d a = bodies_.motion(contact.a).velocity(t);

@@ -34,7 +34,7 @@ inline constexpr double sample = 0.05;
 /// Deeper than this part of the smaller bounding radius is wrong.
 inline constexpr double deepest_overlap = 1e-9;
 /// More than this part of the energy at the start, gained for good since it was least, is wrong.
-inline constexpr double greatest_gain = 2e-4;
+inline constexpr double greatest_gain = 1e-3;
 /// Momentum may change by this part of the sum of its magnitudes, where nothing acts from outside.
 inline constexpr double greatest_change_of_momentum = 1e-12;
 
