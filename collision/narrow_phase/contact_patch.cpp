@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace kds::collision {
@@ -19,21 +20,30 @@ Vector3d mean(std::span<const Vector3d> points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Halfway between the closest points of two segments.
+/// From where to where on the first of two parallel segments, from 0 to 1, the second is beside it; none of segments
+/// that are not parallel.
+std::optional<std::pair<double, double>> shared_stretch(const Vector3d& p0, const Vector3d& p1, const Vector3d& q0,
+                                                        const Vector3d& q1) {
+  const Vector3d u = p1 - p0;
+  const Vector3d v = q1 - q0;
+  const Vector3d w = p0 - q0;
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w);
+  if (uu * vv - uv * uv > parallel_sine * uu * vv) return std::nullopt;
+  const double q_start = -uw / uu;
+  const double q_stop = q_start + uv / uu;
+  return std::pair(std::max(0.0, std::min(q_start, q_stop)), std::min(1.0, std::max(q_start, q_stop)));
+}
+
+/// Halfway between the closest points of two segments; of parallel ones, in the middle of what they share.
 Vector3d between_segments(const Vector3d& p0, const Vector3d& p1, const Vector3d& q0, const Vector3d& q1) {
   const Vector3d u = p1 - p0;
   const Vector3d v = q1 - q0;
   const Vector3d w = p0 - q0;
+  if (const auto stretch = shared_stretch(p0, p1, q0, q1)) {
+    return p0 + u * std::clamp(0.5 * (stretch->first + stretch->second), 0.0, 1.0);
+  }
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
   const double determinant = uu * vv - uv * uv;
-  if (determinant <= parallel_sine * uu * vv) {
-    // Parallel: the middle of the stretch they share, measured along u.
-    const double q_start = -uw / uu;
-    const double q_stop = q_start + uv / uu;
-    const double low = std::max(0.0, std::min(q_start, q_stop));
-    const double high = std::min(1.0, std::max(q_start, q_stop));
-    return p0 + u * std::clamp(0.5 * (low + high), 0.0, 1.0);
-  }
   double s = std::clamp((uv * vw - vv * uw) / determinant, 0.0, 1.0);
   const double t = std::clamp((uv * s + vw) / vv, 0.0, 1.0);
   s = std::clamp((uv * t - uw) / uu, 0.0, 1.0);
@@ -62,17 +72,15 @@ std::vector<Vector3d> clip(const std::vector<Vector3d>& polygon, const Vector3d&
   return kept;
 }
 
-}  // namespace
-
-Vector3d patch_centre(std::span<const Vector3d> a, std::span<const Vector3d> b, const Vector3d& offset,
-                      const Vector3d& normal) {
-  if (a.size() == 1) return a[0];
-  if (b.size() == 1) return b[0] + offset;
-  std::vector<Vector3d> moved(b.begin(), b.end());
+std::vector<Vector3d> moved_by(std::span<const Vector3d> points, const Vector3d& offset) {
+  std::vector<Vector3d> moved(points.begin(), points.end());
   for (Vector3d& p : moved) p += offset;
-  if (a.size() == 2 && moved.size() == 2) return between_segments(a[0], a[1], moved[0], moved[1]);
-  std::vector<Vector3d> cut(a.begin(), a.end());
-  std::vector<Vector3d> window = std::move(moved);
+  return moved;
+}
+
+/// What a segment or polygon shares with a polygon, seen along the normal. All of the polygon where that is nothing:
+/// rounding has just parted them.
+std::vector<Vector3d> shared(std::vector<Vector3d> cut, std::vector<Vector3d> window, const Vector3d& normal) {
   if (window.size() == 2) std::swap(cut, window);
   const auto [first, second] = tangents(normal);
   double area = 0;
@@ -86,8 +94,28 @@ Vector3d patch_centre(std::span<const Vector3d> a, std::span<const Vector3d> b, 
     const Vector3d along = window[(i + 1) % window.size()] - window[i];
     cut = clip(cut, window[i], turn * cross(normal, along));
   }
-  // Empty only where rounding has just parted them.
-  return cut.empty() ? mean(window) : mean(cut);
+  return cut.empty() ? window : cut;
+}
+
+}  // namespace
+
+Vector3d patch_centre(std::span<const Vector3d> a, std::span<const Vector3d> b, const Vector3d& offset,
+                      const Vector3d& normal) {
+  if (a.size() == 1) return a[0];
+  if (b.size() == 1) return b[0] + offset;
+  const std::vector<Vector3d> moved = moved_by(b, offset);
+  if (a.size() == 2 && moved.size() == 2) return between_segments(a[0], a[1], moved[0], moved[1]);
+  return mean(shared({a.begin(), a.end()}, moved, normal));
+}
+
+std::vector<Vector3d> patch_corners(std::span<const Vector3d> a, std::span<const Vector3d> b, const Vector3d& offset,
+                                    const Vector3d& normal) {
+  if (a.size() == 1 || b.size() == 1) return {patch_centre(a, b, offset, normal)};
+  const std::vector<Vector3d> moved = moved_by(b, offset);
+  if (a.size() > 2 || moved.size() > 2) return shared({a.begin(), a.end()}, moved, normal);
+  const auto stretch = shared_stretch(a[0], a[1], moved[0], moved[1]);
+  if (!stretch) return {between_segments(a[0], a[1], moved[0], moved[1])};
+  return {a[0] + (a[1] - a[0]) * stretch->first, a[0] + (a[1] - a[0]) * stretch->second};
 }
 
 }  // namespace kds::collision

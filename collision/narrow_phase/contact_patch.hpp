@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include <span>
+#include <vector>
 
 namespace kds::collision {
 
@@ -13,5 +14,10 @@ namespace kds::collision {
 /// middle of the overlap of the two polygons' projections.
 Eigen::Vector3d patch_centre(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b,
                              const Eigen::Vector3d& offset, const Eigen::Vector3d& normal);
+
+/// The corners of what they share: the ends of a stretch, or the vertices of a polygon; one point where they have no
+/// more in common. Between these corners all that is affine (how fast points approach) is greatest and least at them.
+std::vector<Eigen::Vector3d> patch_corners(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b,
+                                           const Eigen::Vector3d& offset, const Eigen::Vector3d& normal);
 
 }  // namespace kds::collision

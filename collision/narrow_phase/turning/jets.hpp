@@ -1,0 +1,76 @@
+// Numbers and vectors that turn, with their first two derivatives at one time, and how long what they add up to stays
+// positive for certain.
+#pragma once
+
+#include "certificates/turning/rigid_motion.hpp"
+#include "collision/vectors.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace kds::collision {
+
+/// f, f' and f'' at one time.
+struct Jet {
+  double value = 0;
+  double rate = 0;
+  double bend = 0;
+
+  friend Jet operator+(const Jet& a, const Jet& b) { return {a.value + b.value, a.rate + b.rate, a.bend + b.bend}; }
+  friend Jet operator-(const Jet& a, const Jet& b) { return {a.value - b.value, a.rate - b.rate, a.bend - b.bend}; }
+  friend Jet operator*(double factor, const Jet& a) { return {factor * a.value, factor * a.rate, factor * a.bend}; }
+};
+
+/// The same of a vector.
+struct VectorJet {
+  Eigen::Vector3d value;
+  Eigen::Vector3d rate;
+  Eigen::Vector3d bend;
+
+  friend VectorJet operator*(double factor, const VectorJet& a) {
+    return {factor * a.value, factor * a.rate, factor * a.bend};
+  }
+};
+
+inline Jet dot(const VectorJet& a, const VectorJet& b) {
+  return {dot(a.value, b.value), dot(a.rate, b.value) + dot(a.value, b.rate),
+          dot(a.bend, b.value) + 2 * dot(a.rate, b.rate) + dot(a.value, b.bend)};
+}
+inline VectorJet cross(const VectorJet& a, const VectorJet& b) {
+  return {cross(a.value, b.value), cross(a.rate, b.value) + cross(a.value, b.rate),
+          cross(a.bend, b.value) + 2 * cross(a.rate, b.rate) + cross(a.value, b.bend)};
+}
+/// Of a vector of a body that turns with the angular velocity w.
+inline VectorJet turning(const Eigen::Vector3d& vector, const Eigen::Vector3d& w) {
+  const Eigen::Vector3d rate = cross(w, vector);
+  return {vector, rate, cross(w, rate)};
+}
+
+/// A time s in [0, longest], rounded down, such that value + rate x + bend x^2 / 2 - third x^3 / 6 > 0 for all x in
+/// [0, s]. Near the first root, unless bend is positive, which is not made use of. `third` >= 0.
+///
+/// Method: without a positive bend the function is concave. Where it is positive at the far end, too, it is so all the
+/// way. Else its chords meet zero before it does, and its tangents after.
+inline double positive_for(const Jet& f, double third, double longest) {
+  if (!(f.value > 0)) return 0;
+  const double c2 = std::min(f.bend, 0.0) / 2;
+  const double c3 = third / 6;
+  const auto at = [&](double s) { return f.value + s * (f.rate + s * (c2 - s * c3)); };
+  if (at(longest) > 0) return longest;
+  double low = 0, at_low = f.value;
+  double high = longest;
+  for (int round = 0; round < 5 && at_low > 0; ++round) {
+    const double at_high = at(high);
+    if (!(at_high < 0)) break;
+    const double slope = f.rate + high * (2 * c2 - 3 * high * c3);
+    low += (high - low) * (at_low / (at_low - at_high));
+    at_low = at(low);
+    if (slope < 0) high = std::max(low, high - at_high / slope);
+  }
+  return low * (1 - 0x1p-30);
+}
+
+}  // namespace kds::collision

@@ -1,0 +1,115 @@
+// Two bodies that turn, seen at one time in doubles.
+#pragma once
+
+#include "certificates/ball_separation.hpp"
+#include "certificates/turning/rigid_motion.hpp"
+#include "collision/narrow_phase/turning/jets.hpp"
+#include "kds/arithmetic/lattice.hpp"
+#include "kds/roots/failure_time.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace kds::collision {
+
+/// The axes of two bodies and the way from one to the other at one time, with bounds on what they do in the time to
+/// come.
+///
+/// Error bound. Axes are off by 2^-46 of their length at most (Rotation), the way by `way_error`. A product of an axis,
+/// or of the cross product of two, with the way or with half an edge is then off by less than 2^-43 of the lengths that
+/// are multiplied; its derivatives, times a power of the time that is at most one over the sum of the rates, by no
+/// more than that for each of the up to five products that they add up to. `rounding` = 2^-40 of the lengths is
+/// charged for all of it.
+template <int Degree>
+class PairFrame {
+ public:
+  using RigidMotion = certificates::RigidMotion<Degree>;
+  static constexpr double rounding = 0x1p-40;
+
+  PairFrame(const RigidMotion& a, const RigidMotion& b, double t)
+      : time(t), turn_a(a.rotation(t)), turn_b(b.rotation(t)), spin_a(a.angular_velocity), spin_b(b.angular_velocity),
+        rate_a(norm(spin_a) * (1 + 0x1p-40)), rate_b(norm(spin_b) * (1 + 0x1p-40)) {
+    const auto origin_a = a.origin(t);
+    const auto origin_b = b.origin(t);
+    way.value = origin_b.vector - origin_a.vector;
+    way.rate = b.path.velocity(t) - a.path.velocity(t);
+    way.bend = b.path.acceleration(t) - a.path.acceleration(t);
+    way_error = origin_a.error + origin_b.error + rounding * certificates::magnitude_sum(way.value);
+    rate_error = 0x1p-48 * (speeds(a, t) + speeds(b, t));
+    certain = turn_a.error() + turn_b.error() <= 0x1p-44 && rate_a + rate_b <= 0x1p200 && way_error < 0x1p200;
+  }
+
+  VectorJet axis_a(int i) const { return turning(turn_a(Eigen::Vector3d::Unit(i)), spin_a); }
+  VectorJet axis_b(int i) const { return turning(turn_b(Eigen::Vector3d::Unit(i)), spin_b); }
+
+  /// How far to look ahead, s: no more than a radian of both turns together, nor than the time in which the bodies, of
+  /// the sizes given, come to be elsewhere.
+  double stretch(double sizes, double limit) const {
+    const double rates = rate_a + rate_b;
+    const double far = 2 * (norm(way.value) + sizes);
+    double longest = std::min(limit, std::numeric_limits<double>::max());
+    if (rates > 0) longest = std::min(longest, 1 / rates);
+    if (const double speed = norm(way.rate); speed > 0) longest = std::min(longest, far / speed);
+    if (const double bend = norm(way.bend); bend > 0) longest = std::min(longest, std::sqrt(2 * far / bend));
+    return longest;
+  }
+
+  double time;
+  certificates::Rotation turn_a, turn_b;
+  Eigen::Vector3d spin_a, spin_b;
+  double rate_a, rate_b;  ///< rad/s, rounded up
+  VectorJet way;          ///< from the centre of a to that of b
+  double way_error;
+  double rate_error;  ///< of the rate of the way
+  bool certain;       ///< whether numbers are in the range in which the bounds hold
+
+ private:
+  static double speeds(const RigidMotion& motion, double t) {
+    const double elapsed = std::abs(t - motion.path.start);
+    double sum = certificates::magnitude_sum(motion.path.coefficients[1]);
+    if constexpr (Degree == 2) sum += 2 * elapsed * certificates::magnitude_sum(motion.path.coefficients[2]);
+    return sum;
+  }
+};
+
+/// Bounds on f = n . p for all the time of a stretch: n turns at a rate, and p is the way and vectors that turn.
+struct TurningBounds {
+  double third;     ///< of |f'''|
+  double rounding;  ///< of what is lost in computing f, f' and f'', and following them
+
+  /// |n| is at most 1. `of_a`, `of_b`: sums of the lengths of the vectors that turn with each body.
+  template <int Degree>
+  TurningBounds(const PairFrame<Degree>& frame, double rate_n, double of_a, double of_b, double stretch) {
+    const double bend = norm(frame.way.bend) * (1 + 0x1p-40);
+    const double speed = norm(frame.way.rate) * (1 + 0x1p-40) + frame.rate_error + bend * stretch;
+    const double distance = norm(frame.way.value) * (1 + 0x1p-40) + frame.way_error + speed * stretch;
+    const double wa = frame.rate_a, wb = frame.rate_b;
+    const double p = distance + of_a + of_b;
+    const double p1 = speed + wa * of_a + wb * of_b;
+    const double p2 = bend + wa * wa * of_a + wb * wb * of_b;
+    const double p3 = wa * wa * wa * of_a + wb * wb * wb * of_b;
+    third = rate_n > 0 || p3 > 0 ? rate_n * (rate_n * (rate_n * p + 3 * p1) + 3 * p2) + p3 : 0;
+    third *= 1 + 0x1p-40;
+    rounding = PairFrame<Degree>::rounding * (norm(frame.way.value) + of_a + of_b + speed * stretch) +
+               frame.way_error + frame.rate_error * stretch;
+  }
+};
+
+/// The time that is so much later, rounded down, or t itself if that is not worth while: then exact signs get on faster.
+inline double after_wait(double t, double wait, double stretch) {
+  constexpr double worth = 0x1p-16;  // of the stretch; at 2^-12 and at 2^-20 pairs that graze each other take as long
+  return wait > worth * stretch ? std::max(t, next_down(t + wait)) : t;
+}
+
+/// When the balls around two bodies meet, `never` if they do not until the horizon; t if they overlap.
+template <int Degree>
+double balls_apart_until(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b,
+                         double radius_a, double radius_b, double t, double horizon) {
+  return failure_time(certificates::BallSeparation<Degree>{a.path, b.path, radius_a, radius_b}, t, horizon);
+}
+
+}  // namespace kds::collision

@@ -1,0 +1,237 @@
+// Two boxes that turn: by which of their axes they are apart, and for how long.
+#pragma once
+
+#include "certificates/turning/edge_edge_separation.hpp"
+#include "certificates/turning/rigid_motion.hpp"
+#include "certificates/turning/vertex_face_separation.hpp"
+#include "collision/narrow_phase/turning/pair_frame.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace kds::collision {
+
+/// Two boxes are apart while one of 15 axes separates them [Gottschalk96]: a normal of a face of either, or across an
+/// edge of each. An axis with a sense, from a to b, is a *way* of being apart: numbers 0 to 5 are the faces of a, 6 to
+/// 11 those of b, 12 to 29 pairs of edges.
+///
+/// A way says that all vertices of one box are beyond a face of the other (8 conditions), or that all edges of one
+/// direction pass on one side of all those of another direction (16 conditions). Each is a turning certificate, so that
+/// it is decided exactly. Two directions that are parallel at all times separate nothing: all of their conditions are
+/// zero then, and only then.
+template <int Degree>
+class TurningBoxes {
+ public:
+  using RigidMotion = certificates::RigidMotion<Degree>;
+  static constexpr int ways = 30;
+
+  TurningBoxes(const RigidMotion& a, const Eigen::Vector3d& half_a, const RigidMotion& b, const Eigen::Vector3d& half_b)
+      : a_(a), b_(b), half_a_(half_a), half_b_(half_b), radius_a_(outer_radius(half_a)),
+        radius_b_(outer_radius(half_b)) {}
+
+  /// Whether all conditions of a way may be zero though it separates nothing.
+  static bool needs_positive(int way) { return way >= 12; }
+
+  /// Calls test(certificate) for the conditions of a way until it returns false.
+  template <class Test>
+  bool every_condition(int way, const Test& test) const {
+    if (way < 6) return every_vertex(a_, half_a_, b_, half_b_, way, test);
+    if (way < 12) return every_vertex(b_, half_b_, a_, half_a_, (way - 6) ^ 1, test);
+    const int pair = (way - 12) / 2;
+    for (int k = 0; k < 4; ++k) {
+      for (int l = 0; l < 4; ++l) {
+        // (u x v) . (a - b) >= 0: the product of the edges has to point from b to a.
+        const auto u = edge(half_a_, pair / 3, k, way % 2 != 0);
+        const auto v = edge(half_b_, pair % 3, l, false);
+        if (!test(certificates::EdgeEdgeSeparation<Degree>{a_, b_, u, v})) return false;
+      }
+    }
+    return true;
+  }
+
+  /// How wide the gap is along each way at t, in doubles; not to be told from zero within the bound that is returned.
+  /// Of ways that cross edges it is that times the sine of their angle.
+  double gaps(double t, std::array<double, ways>& gap) const { return gaps(PairFrame<Degree>(a_, b_, t), gap); }
+
+  /// A time from t on until which the boxes are apart; t where doubles do not tell, or where it would be hardly later.
+  double apart_until(double t, double horizon) const {
+    t = balls_apart_until(a_, b_, radius_a_, radius_b_, t, horizon);
+    if (t == never) return never;
+    const PairFrame<Degree> frame(a_, b_, t);
+    std::array<double, ways> gap;
+    const double error = gaps(frame, gap);
+    const int way = widest(frame, gap);
+    if (!(gap[static_cast<std::size_t>(way)] > error)) return t;
+    const double stretch = frame.stretch(radius_a_ + radius_b_, (horizon - t) * (1 + 0x1p-40));
+    return after_wait(t, open_for(frame, way, stretch), stretch);
+  }
+
+  /// The same pair with its first box smaller by `margin` on each side; none where nothing of it is left.
+  std::optional<TurningBoxes> smaller(double margin) const {
+    if (!(half_a_.minCoeff() > margin)) return std::nullopt;
+    return TurningBoxes(a_, half_a_ - Eigen::Vector3d::Constant(margin), b_, half_b_);
+  }
+
+  /// The time in which the directions of the two change by about half a radian.
+  double time_of_turning() const {
+    const double rates = norm(a_.angular_velocity) + norm(b_.angular_velocity);
+    return rates > 0 ? 0.5 / rates : never;
+  }
+
+ private:
+  static double outer_radius(const Eigen::Vector3d& half) { return norm(half) * (1 + 0x1p-50); }
+
+  static Eigen::Vector3d corner(const Eigen::Vector3d& half, int signs) {
+    return {signs & 1 ? half[0] : -half[0], signs & 2 ? half[1] : -half[1], signs & 4 ? half[2] : -half[2]};
+  }
+  /// Number 0 to 3 of the edges along an axis, forwards or backwards.
+  static std::array<Eigen::Vector3d, 2> edge(const Eigen::Vector3d& half, int axis, int number, bool backwards) {
+    Eigen::Vector3d from = half;
+    const int second = (axis + 1) % 3, third = (axis + 2) % 3;
+    if (number & 1) from[second] = -from[second];
+    if (number & 2) from[third] = -from[third];
+    Eigen::Vector3d to = from;
+    (backwards ? to : from)[axis] = -half[axis];
+    return {from, to};
+  }
+  /// Three corners of a face, counter-clockwise from outside: 0 is -x, 1 is +x, 2 is -y ...
+  static std::array<Eigen::Vector3d, 3> face(const Eigen::Vector3d& half, int number) {
+    const int axis = number / 2;
+    const bool upper = number % 2 != 0;
+    Eigen::Vector3d first = -half;
+    first[axis] = upper ? half[axis] : -half[axis];
+    Eigen::Vector3d second = first, third = first;
+    second[(axis + (upper ? 1 : 2)) % 3] *= -1;
+    third[(axis + (upper ? 2 : 1)) % 3] *= -1;
+    return {first, second, third};
+  }
+  template <class Test>
+  static bool every_vertex(const RigidMotion& of_face, const Eigen::Vector3d& half_face, const RigidMotion& of_vertex,
+                           const Eigen::Vector3d& half_vertex, int number, const Test& test) {
+    const auto corners = face(half_face, number);
+    for (int signs = 0; signs < 8; ++signs) {
+      if (!test(certificates::VertexFaceSeparation<Degree>{of_vertex, of_face, corner(half_vertex, signs), corners})) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  double gaps(const PairFrame<Degree>& frame, std::array<double, ways>& gap) const;
+  int widest(const PairFrame<Degree>& frame, const std::array<double, ways>& gap) const;
+  double open_for(const PairFrame<Degree>& frame, int way, double stretch) const;
+
+  const RigidMotion& a_;
+  const RigidMotion& b_;
+  Eigen::Vector3d half_a_, half_b_;
+  double radius_a_, radius_b_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+template <int Degree>
+double TurningBoxes<Degree>::gaps(const PairFrame<Degree>& frame, std::array<double, ways>& gap) const {
+  std::array<Eigen::Vector3d, 3> u, v;
+  for (int i = 0; i < 3; ++i) {
+    u[static_cast<std::size_t>(i)] = frame.turn_a(Eigen::Vector3d::Unit(i));
+    v[static_cast<std::size_t>(i)] = frame.turn_b(Eigen::Vector3d::Unit(i));
+  }
+  const auto note = [&](std::size_t way, double distance, double size) {
+    gap[way] = -distance - size;  // towards the negative side of the axis, then towards the positive one
+    gap[way + 1] = distance - size;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    double of_a = half_a_[static_cast<Eigen::Index>(i)], of_b = half_b_[static_cast<Eigen::Index>(i)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      of_a += half_b_[static_cast<Eigen::Index>(k)] * std::abs(dot(u[i], v[k]));
+      of_b += half_a_[static_cast<Eigen::Index>(k)] * std::abs(dot(u[k], v[i]));
+    }
+    note(2 * i, dot(u[i], frame.way.value), of_a);
+    note(6 + 2 * i, dot(v[i], frame.way.value), of_b);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Eigen::Vector3d n = cross(u[i], v[j]);
+      double size = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (k != i) size += half_a_[static_cast<Eigen::Index>(k)] * std::abs(dot(n, u[k]));
+        if (k != j) size += half_b_[static_cast<Eigen::Index>(k)] * std::abs(dot(n, v[k]));
+      }
+      note(12 + 2 * (3 * i + j), dot(n, frame.way.value), size);
+    }
+  }
+  if (!frame.certain) return never;
+  const double lengths = certificates::magnitude_sum(half_a_) + certificates::magnitude_sum(half_b_);
+  return frame.way_error + PairFrame<Degree>::rounding * lengths;
+}
+
+/// The way along which the gap is widest, but for edges that are nearly parallel.
+template <int Degree>
+int TurningBoxes<Degree>::widest(const PairFrame<Degree>& frame, const std::array<double, ways>& gap) const {
+  int best = 0;
+  double widest = -never;
+  for (int way = 0; way < ways; ++way) {
+    double width = gap[static_cast<std::size_t>(way)];
+    if (way >= 12 && width > 0) {
+      const int pair = (way - 12) / 2;
+      const double sine = norm(cross(frame.turn_a(Eigen::Vector3d::Unit(pair / 3)),
+                                     frame.turn_b(Eigen::Vector3d::Unit(pair % 3))));
+      width = sine > 0x1p-10 ? width / sine : -never;
+    }
+    if (width > widest) widest = width, best = way;
+  }
+  return best;
+}
+
+/// How long a way is surely open: all of its conditions hold.
+template <int Degree>
+double TurningBoxes<Degree>::open_for(const PairFrame<Degree>& frame, int way, double stretch) const {
+  std::array<VectorJet, 4> half;  // of the edges that reach towards the other body, or away from it
+  std::size_t count = 0;
+  double of_a = 0, of_b = 0, rate = 0, offset = 0;
+  VectorJet n;
+  const auto add = [&](bool from_a, int axis) {
+    const double length = (from_a ? half_a_ : half_b_)[axis];
+    half[count++] = length * (from_a ? frame.axis_a(axis) : frame.axis_b(axis));
+    (from_a ? of_a : of_b) += length;
+  };
+  if (way < 12) {
+    const bool of_face_a = way < 6;
+    const int axis = (way % 6) / 2;
+    n = of_face_a ? frame.axis_a(axis) : frame.axis_b(axis);
+    rate = of_face_a ? frame.rate_a : frame.rate_b;
+    offset = (of_face_a ? half_a_ : half_b_)[axis];
+    for (int k = 0; k < 3; ++k) add(!of_face_a, k);
+  } else {
+    const int pair = (way - 12) / 2;
+    n = cross(frame.axis_a(pair / 3), frame.axis_b(pair % 3));
+    rate = frame.rate_a + frame.rate_b;
+    for (int k = 0; k < 3; ++k) {
+      if (k != pair / 3) add(true, k);
+      if (k != pair % 3) add(false, k);
+    }
+  }
+  if (way % 2 == 0) n = -1.0 * n;
+  const TurningBounds bounds(frame, rate, of_a, of_b, stretch);
+  Jet base = dot(n, frame.way);
+  base.value -= offset + bounds.rounding + PairFrame<Degree>::rounding * offset;
+  std::array<Jet, 4> reach;
+  for (std::size_t k = 0; k < count; ++k) {
+    reach[k] = dot(n, half[k]);
+    if (reach[k].value < 0) reach[k] = -1.0 * reach[k];
+    base = base - reach[k];  // the vertex, or the pair of edges, that is nearest
+  }
+  double wait = stretch;
+  for (unsigned farther = 0; farther < 1u << count && wait > 0; ++farther) {
+    Jet f = base;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (farther >> k & 1) f = f + 2.0 * reach[k];
+    }
+    wait = std::min(wait, positive_for(f, bounds.third, wait));
+  }
+  return wait;
+}
+
+}  // namespace kds::collision

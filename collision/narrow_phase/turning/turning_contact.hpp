@@ -1,0 +1,46 @@
+// Contacts of bodies that turn: balls and boxes, by exact signs.
+#pragma once
+
+#include "certificates/turning/rigid_motion.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/shapes/shape.hpp"
+
+namespace kds::collision {
+
+// The functions of narrow_phase.hpp for bodies that turn. What they answer is a function of motions and shapes alone, as
+// there: contact is the first double just after which the two penetrate, by exact signs.
+//
+// A box is the exact box of its half extents, turned by the exact rotation of its motion: nothing of it is rounded. The
+// rotation in PlacedShape does not count; orientations are those of motions.
+//
+// Mode `resolved`, bodies that overlap by rounding: they are in contact if they approach at some point that they share,
+// faster than roundings can feign. Where they do not they are looked at again when they have parted and meet, or are
+// deeper in each other, by more than roundings.
+
+/// Whether there are tests for a shape that turns.
+bool can_turn(const Shape& shape);
+
+/// Of two bodies of which both can turn.
+template <int Degree>
+struct TurningContact {
+  using Motion = certificates::RigidMotion<Degree>;
+  struct Body {
+    const PlacedShape& shape;
+    const Motion& motion;
+  };
+
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
+  /// A time before which there is no contact; t0 where that takes exact signs.
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon);
+  static bool in_contact(const Body& a, const Body& b, double t);
+  static double first_separation(const Body& a, const Body& b, double t0, double horizon);
+
+  /// Point, normal and features as of the shapes as they are placed at t. Of the points that the two share the middle,
+  /// or where that does not approach but another does, the corner of what they share that approaches fastest.
+  static Contact contact_at(const Body& a, const Body& b, double t);
+};
+
+extern template struct TurningContact<1>;
+extern template struct TurningContact<2>;
+
+}  // namespace kds::collision
