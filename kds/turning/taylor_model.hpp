@@ -24,15 +24,15 @@ struct TaylorModel {
 
   /// The sign that derivative number n has throughout [-1, 1]; 0 where that is not certain.
   int certain_sign(int n) const {
-    double weight = factorial(n);
-    const double value = weight * std::abs(c[at(n)]);
-    double bound = weight * error[at(n)] + tail(n);
-    for (int k = n + 1; k <= Order; ++k) {
-      weight *= k / static_cast<double>(k - n);
-      bound += weight * (std::abs(c[at(k)]) + error[at(k)]);
-    }
-    return value > bound * Ball<double>::slack ? (c[at(n)] > 0 ? 1 : -1) : 0;
+    const double value = c[at(n)];
+    return factorial(n) * std::abs(value) > rest(n) * Ball<double>::slack ? (value > 0 ? 1 : -1) : 0;
   }
+
+  /// At least the magnitude of derivative number n throughout [-1, 1].
+  double size(int n) const { return (factorial(n) * std::abs(c[at(n)]) + rest(n)) * Ball<double>::slack; }
+
+  /// At most the magnitude of derivative number n anywhere in [-1, 1]; negative where that is not known.
+  double least_size(int n) const { return factorial(n) * std::abs(c[at(n)]) - rest(n) * Ball<double>::slack; }
 
   /// Whether nothing but more precise coefficients helps: no derivative is told from zero, in however small a part of
   /// [-1, 1]. As that shrinks, so do c_k and error_k, alike.
@@ -67,6 +67,17 @@ struct TaylorModel {
     double product = 1;
     for (int k = 2; k <= n; ++k) product *= k;
     return product;
+  }
+
+  /// Of derivative number n, what is not in its coefficient.
+  double rest(int n) const {
+    double weight = factorial(n);
+    double sum = weight * error[at(n)] + tail(n);
+    for (int k = n + 1; k <= Order; ++k) {
+      weight *= k / static_cast<double>(k - n);
+      sum += weight * (std::abs(c[at(k)]) + error[at(k)]);
+    }
+    return sum;
   }
 
   /// Of derivative number n < Order, what the powers above Order can add.

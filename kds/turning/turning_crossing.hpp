@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace kds {
@@ -32,6 +33,35 @@ class TurningCrossing {
   int sign(double t, int order = 0) const {
     ++turning_search_counters.signs;
     return side_ * sign_after(certificate_, t, order);
+  }
+
+  /// f in double-doubles.
+  Ball<DoubleDouble> value(double t) const {
+    ++turning_search_counters.signs;
+    const auto value = turning_value<Ball<DoubleDouble>>(certificate_, t, 0);
+    return side_ > 0 ? value : -value;
+  }
+
+  /// The first double not before a root of f, by one value in double-doubles; no number where that does not tell.
+  ///
+  /// `slope` is f' at the guess, 1/s, and `bend` at least |f''|, 1/s^2, up to `reach` from it. Error bound: up to d = 2
+  /// |f / slope| from the guess f' is off by at most q = bend d, and its radius; where that is less than a quarter of
+  /// it, f changes its sign within d, for there it changes by more than 3/4 of 2 |f|. So the root is at guess - f / (f'
+  /// at a time between): the quotient by the slope is off by 4/3 of q / slope of itself at most, and by 4/3 of the
+  /// radius of f, divided by the slope; a rounding of the quotient is charged with four.
+  double next_to_root(double guess, const Ball<double>& slope, double bend, double reach) const {
+    const Ball<DoubleDouble> at_guess = value(guess);
+    const double steepness = std::abs(slope.middle);
+    const double quotient = at_guess.middle.high / slope.middle;
+    const double d = 2.1 * (std::abs(quotient) + at_guess.radius / steepness);
+    const double unsure = (slope.radius + bend * d) * Ball<double>::slack;
+    if (!(unsure <= 0.25 * steepness && d <= reach)) return std::numeric_limits<double>::quiet_NaN();
+    const double error = std::abs(quotient) * (1.5 * unsure / steepness + 0x1p-51) + 1.5 * at_guess.radius / steepness;
+    const DoubleDouble root = two_sum(guess, -quotient);
+    const double next = next_up(root.high);
+    if (root.low > error && root.low + error < next - root.high) return next;
+    if (-root.low > error && error - root.low < root.high - next_down(root.high)) return root.high;
+    return std::numeric_limits<double>::quiet_NaN();
   }
 
   /// The first double in (below, above] whose sign is that of `above`, for derivative number `order`. Precondition: the

@@ -30,7 +30,8 @@ namespace kds {
 ///    taken together: ten powers in doubles, with a bound on all that is left out. Most often f, f' or f'' certainly
 ///    keeps its sign there. If f does there is no root; if f' does there is at most one; if f is concave the signs at
 ///    both ends tell; if convex, its least value does.
-/// 3. *A root.* Exact signs find the double, from Newton's: LatticeCrossing's method, three or four of them.
+/// 3. *A root.* One value in double-doubles where the polynomial has its root most often tells which double is next to
+///    it (TurningCrossing::next_to_root); else exact signs do, three or four of them.
 /// 4. *Undecided* stretches are halved; where no derivative is told from zero they are expanded in double-doubles, and
 ///    then of exact coefficients, with 160, 320 ... bits. One of the first 9 (degree + 1) derivatives is not zero
 ///    (turning_dimension), so some stretch about any time comes to know one that keeps its sign.
@@ -161,9 +162,9 @@ class TurningSearch {
   template <class Model>
   double first_negative(const Expansion& f, const Stretch& s, const Model& model, double m, double rho) const {
     if (model.certain_sign(0) > 0) return never;
-    if (const int slope = model.certain_sign(1)) return slope > 0 ? never : fall(s.l, s.r, model, m, rho);
+    if (const int slope = model.certain_sign(1)) return slope > 0 ? never : fall(s, model, m, rho);
     if (const int bend = model.certain_sign(2)) {
-      return bend < 0 ? fall(s.l, s.r, model, m, rho) : first_negative_of_convex(s, model, m, rho);
+      return bend < 0 ? fall(s, model, m, rho) : first_negative_of_convex(s, model, m, rho);
     }
     if (model.blurred()) return first_negative(f, {s.l, s.r, s.halvings, s.precision + 1});
     if (s.halvings >= most_halvings) {
@@ -176,14 +177,28 @@ class TurningSearch {
 
   /// f falls, or is concave, from l, where it is not negative, to r: so it changes its sign once, or not at all.
   template <class Model>
-  double fall(double l, double r, const Model& model, double m, double rho) const {
-    if (certain_sign(model.derivative(0, (r - m) / rho)) > 0) return never;
-    if (crossing_.sign(r) > 0) return never;
-    return crossing_(0, l, r, -1, root(model, 0, l, r, m, rho));
+  double fall(const Stretch& s, const Model& model, double m, double rho) const {
+    if (certain_sign(model.derivative(0, (s.r - m) / rho)) > 0) return never;
+    return crossing_.sign(s.r) > 0 ? never : change(s, model, m, rho);
   }
 
-  /// f'' > 0. With an x where the polynomial's slope is nearly zero, f is not below its tangent there. If it is
-  /// certainly negative at x it falls to there through one root; if that is not certain, signs tell.
+  /// f changes its sign once, and is negative just after r.
+  template <class Model>
+  double change(const Stretch& s, const Model& model, double m, double rho) const {
+    const double guess = root(model, 0, s.l, s.r, m, rho);
+    if (s.precision < 2) {  // else the model has another factor than f
+      const Ball<double> slope = model.derivative(1, (guess - m) / rho);
+      const double reach = std::min(guess - s.l, s.r - guess);
+      const double t = crossing_.next_to_root(guess, {slope.middle / rho, slope.radius / rho * (1 + 0x1p-40)},
+                                              model.size(2) / rho / rho * (1 + 0x1p-40), reach);
+      if (t > s.l && t <= s.r) return t;
+    }
+    return crossing_(0, s.l, s.r, -1, guess);
+  }
+
+  /// f'' > 0. With an x where the polynomial's slope is nearly zero, f is not below its tangent there. If that does not
+  /// tell, f is computed there in double-doubles: if it is negative, f falls to there through one root; if it exceeds
+  /// slope^2 / (2 f''), the most that it can fall yet, there is none; and else signs tell.
   template <class Model>
   double first_negative_of_convex(const Stretch& s, const Model& model, double m, double rho) const {
     const double from = (s.l - m) / rho;
@@ -197,13 +212,20 @@ class TurningSearch {
     }
     const Ball<double> least = model.derivative(0, x);
     const Ball<double> slope = model.derivative(1, x);
-    const bool rises = x == from && slope.middle >= 0;
-    const bool falls = x == to && slope.middle <= 0;
-    const double tilt = rises || falls ? 0 : std::abs(slope.middle);
+    const bool at_end = (x == from && slope.middle >= 0) || (x == to && slope.middle <= 0);
+    const double tilt = at_end ? 0 : std::abs(slope.middle);
     if (least.middle > (least.radius + 2 * (tilt + slope.radius)) * Ball<double>::slack) return never;
+
     const double t = std::clamp(m + rho * x, next_up(s.l), s.r);
-    if (certain_sign(least) < 0 && crossing_.sign(t) < 0) {
-      return crossing_(0, s.l, t, -1, root(model, 0, s.l, t, m, rho));
+    const Ball<DoubleDouble> value = crossing_.value(t);
+    int sign = certain_sign(value);
+    if (sign == 0 && certain_sign(least) < 0) sign = crossing_.sign(t);
+    if (sign < 0) return change({s.l, t, s.halvings, s.precision}, model, m, rho);
+    if (sign > 0 && s.precision < 2) {  // else the model has another factor than f
+      const Ball<double> slope_there = model.derivative(1, (t - m) / rho);
+      const double steepness = std::abs(slope_there.middle) + slope_there.radius;
+      const double fall = steepness * steepness / (2 * model.least_size(2));
+      if (value.middle.high > (value.radius + fall) * (1 + 0x1p-30)) return never;
     }
     return by_signs(s, 2, model, m, rho);
   }
