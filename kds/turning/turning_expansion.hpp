@@ -1,0 +1,289 @@
+// Taylor's series of sums of sines and cosines about a time, in doubles and as precisely as it takes.
+#pragma once
+
+#include "kds/arithmetic/power_of_two.hpp"
+#include "kds/turning/taylor_model.hpp"
+#include "kds/turning/turning_certificate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+
+namespace kds::detail {
+
+/// At least the rate of a spin, rad/s, whatever its size. Roundings: of a sum of squares of numbers up to 1, its root
+/// and a product, less than 2^-50; the last step is for rates that are not normal numbers.
+inline double rate_bound(const Spin& spin) {
+  const auto [x, y, z] = spin.velocity;
+  const double greatest = std::max({std::abs(x), std::abs(y), std::abs(z)});
+  if (greatest == 0) return 0;
+  const double a = x / greatest, b = y / greatest, c = z / greatest;
+  return std::nextafter(greatest * std::sqrt(a * a + b * b + c * c) * (1 + 0x1p-48),
+                        std::numeric_limits<double>::infinity());
+}
+
+/// f in doubles: its polynomials about an epoch, from which it is expanded about other times.
+template <int Degree>
+class TurningExpansion {
+ public:
+  static constexpr int order = 10;
+  using Model = TaylorModel<Degree, order>;
+
+  /// f is multiplied by `side`, which is 1 or -1.
+  template <class C>
+  TurningExpansion(const C& certificate, int side, double epoch) : spins_(certificate.spins()), epoch_(epoch) {
+    for (std::size_t s = 0; s < 2; ++s) {
+      rates_[s] = spins_[s].still() ? Ball<DoubleDouble>() : spins_[s].rate();
+      rate_bounds_[s] = rate_bound(spins_[s]);
+    }
+    const auto f = certificate.template turning_sum<Ball<double>, Degree>(epoch);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        const double w = (i == 2 ? rates_[0].middle.high : 1.0) * (j == 2 ? rates_[1].middle.high : 1.0);
+        const double bound = (i == 2 ? rate_bounds_[0] : 1.0) * (j == 2 ? rate_bounds_[1] : 1.0);
+        for (std::size_t k = 0; k <= Degree; ++k) {
+          const Ball<double>& c = f.p[i][j].c[k];
+          p_[i][j][k] = side * c.middle * w;
+          size_[k] += (std::abs(c.middle) + c.radius) * bound;
+          radius_[k] += c.radius * bound + underflow;
+        }
+      }
+    }
+    // Of rates out of range nothing is said in doubles.
+    for (const Ball<DoubleDouble>& rate : rates_) {
+      if (!(rate.radius <= 0x1p-99 * rate.middle.high)) radius_[0] = std::numeric_limits<double>::infinity();
+    }
+  }
+
+  /// About m, for times up to rho away. Precondition: the sum of the rates times rho is at most 1.
+  ///
+  /// The factors of p[i][j] are taken as cos and sin, the rates being multiplied to p. p is shifted to m, then turned:
+  /// cos(a + w h) = cos a cos(w h) - sin a sin(w h), sin(a + w h) = sin a cos(w h) + cos a sin(w h). What is left are
+  /// products of polynomials with the series of cos(w h) and sin(w h).
+  ///
+  /// Error bound, with u = 2^-53. Written out, coefficient k is a sum of terms of which the magnitudes add up to that
+  /// of S(|m - epoch| + rho x) exp(theta x) at most, S being made of the sums of the magnitudes of p's coefficients. A
+  /// term has two rates (4 u), the shift (6 u), a cosine or sine of each spin (4 u, besides their own errors), two
+  /// series' coefficients, each with up to ten times an angle and a divisor (50 u each), a power of rho (4 u) and the
+  /// sums of two convolutions (26 u): less than 160 u, and 2^-45 = 256 u is charged.
+  Model about(double m, double rho) const {
+    double unsure = roundings;
+    std::array<SineCosine<Ball<double>>, 2> turn{};
+    std::array<std::array<double, order + 1>, 2> series;
+    for (std::size_t s = 0; s < 2; ++s) {
+      turn[s].cosine = Ball<double>(1.0);
+      if (!spins_[s].still()) turn[s] = sine_cosine<Ball<double>>(spins_[s].angle(rates_[s], m));
+      unsure += std::max(turn[s].cosine.radius, turn[s].sine.radius);
+      // The coefficients of cos at even, of sin at odd places.
+      const double angle = rates_[s].middle.high * rho;
+      double power = 1;
+      for (std::size_t k = 0; k <= order; ++k) {
+        series[s][k] = k % 4 < 2 ? power : -power;
+        power *= angle * reciprocals[k + 1];
+      }
+    }
+    Parts q = shifted(m - epoch_, rho);
+    const auto rotate = [](Coefficients& even, Coefficients& odd, const SineCosine<Ball<double>>& a) {
+      for (std::size_t k = 0; k <= Degree; ++k) {
+        const double x = even[k] * a.cosine.middle + odd[k] * a.sine.middle;
+        odd[k] = odd[k] * a.cosine.middle - even[k] * a.sine.middle;
+        even[k] = x;
+      }
+    };
+    for (std::size_t j = 0; j < 3; ++j) rotate(q[1][j], q[2][j], turn[0]);
+    for (std::size_t i = 0; i < 3; ++i) rotate(q[i][1], q[i][2], turn[1]);
+
+    std::array<std::array<double, order + 1>, 3> rows{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j <= Degree; ++j) {
+        rows[i][j] += q[i][0][j];
+        for (std::size_t k = j; k <= order; ++k) rows[i][k] += q[i][1 + (k - j) % 2][j] * series[1][k - j];
+      }
+    }
+    Model model;
+    for (std::size_t k = 0; k <= order; ++k) {
+      double sum = rows[0][k];
+      for (std::size_t l = 0; l <= k; ++l) sum += series[0][l] * rows[1 + l % 2][k - l];
+      model.c[k] = sum;
+    }
+    model.theta = (rate_bounds_[0] + rate_bounds_[1]) * rho * Ball<double>::slack;
+    bound(model, m, rho, unsure);
+    return model;
+  }
+
+  /// Whether f is certainly positive at all times up to rho from m, however far it turns: p[0][0] exceeds what all the
+  /// others can make. Of four coefficients of cos a cos b, cos a sin b ... no more is made than the root of the sum of
+  /// their squares, of two of them likewise.
+  bool outweighs(double m, double rho) const {
+    const Parts q = shifted(m - epoch_, rho);
+    const auto size = [&q](std::size_t i, std::size_t j) {
+      double sum = 0;
+      for (const double c : q[i][j]) sum += std::abs(c);
+      return sum;
+    };
+    const auto squares = [&size](std::size_t i, std::size_t j) { return size(i, j) * size(i, j); };
+    const double turning = std::sqrt(squares(1, 0) + squares(2, 0)) + std::sqrt(squares(0, 1) + squares(0, 2)) +
+                           std::sqrt(squares(1, 1) + squares(1, 2) + squares(2, 1) + squares(2, 2));
+    const double span = std::abs(m - epoch_) + rho;
+    double unsure = 0;
+    for (std::size_t k = Degree + 1; k-- > 0;) unsure = unsure * span + roundings * size_[k] + radius_[k];
+    return 2 * q[0][0][0] - size(0, 0) - turning > unsure * Ball<double>::slack;
+  }
+
+ private:
+  using Coefficients = std::array<double, std::size_t{Degree} + 1>;
+  using Parts = std::array<std::array<Coefficients, 3>, 3>;
+
+  static constexpr double roundings = 0x1p-45;
+  static constexpr double underflow = 0x1p-900;  ///< more than all products here lose by it
+  static constexpr auto reciprocals = [] {
+    std::array<double, order + 2> r{};
+    for (std::size_t k = 1; k < r.size(); ++k) r[k] = 1 / static_cast<double>(k);
+    return r;
+  }();
+
+  /// p(tau + rho x).
+  static Coefficients shifted(const Coefficients& p, double tau, double rho) {
+    Coefficients q = p;
+    for (std::size_t first = 0; first < Degree; ++first) {
+      for (std::size_t k = Degree; k-- > first;) q[k] += tau * q[k + 1];
+    }
+    double power = rho;
+    for (std::size_t k = 1; k <= Degree; ++k) {
+      q[k] *= power;
+      power *= rho;
+    }
+    return q;
+  }
+  Parts shifted(double tau, double rho) const {
+    Parts q;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) q[i][j] = shifted(p_[i][j], tau, rho);
+    }
+    return q;
+  }
+
+  void bound(Model& model, double m, double rho, double unsure) const {
+    const double tau = std::abs(m - epoch_) * Ball<double>::slack;
+    model.majorant = shifted(size_, tau, rho);
+    Coefficients radii = shifted(radius_, tau, rho);
+    for (std::size_t k = 0; k <= Degree; ++k) {
+      radii[k] += unsure * model.majorant[k] + underflow;
+      model.majorant[k] += underflow;
+    }
+    std::array<double, order + 1> exponential;
+    exponential[0] = 1;
+    for (std::size_t k = 1; k <= order; ++k) exponential[k] = exponential[k - 1] * model.theta * reciprocals[k];
+    for (std::size_t j = 0; j <= Degree; ++j) {
+      for (std::size_t k = j; k <= order; ++k) model.error[k] += radii[j] * exponential[k - j];
+    }
+  }
+
+  std::array<Spin, 2> spins_;
+  double epoch_;
+  std::array<Ball<DoubleDouble>, 2> rates_;
+  std::array<double, 2> rate_bounds_{};
+  Parts p_{};              ///< about the epoch, times the rates of their sines
+  Coefficients size_{};    ///< sums of the magnitudes of the coefficients, and of their radii
+  Coefficients radius_{};  ///< sums of the radii
+};
+
+/// How many derivatives there are of which one is not zero, at any time, unless f is zero throughout: f solves a linear
+/// differential equation of this order with constant coefficients, for it is a sum of so many solutions of one (powers
+/// of t up to Degree times nine products of cosines and sines).
+template <int Degree>
+inline constexpr int turning_dimension = 9 * (Degree + 1);
+
+template <int Degree>
+using PreciseTurningModel = TaylorModel<Degree, turning_dimension<Degree>>;
+
+inline Ball<DoubleDouble> times_power_of_two(const Ball<DoubleDouble>& a, int exponent) {
+  return a * power_of_two(exponent);
+}
+inline Exact times_power_of_two(const Exact& a, int exponent) { return scaled(a, exponent); }
+inline Enclosure times_power_of_two(const Enclosure& a, int exponent) {
+  return {scaled(a.middle, exponent), scaled(a.radius, exponent)};
+}
+
+/// f about m with the unit of time 2^exponent, in double-doubles (Number = Ball<DoubleDouble>), or of exact
+/// coefficients (Number = Exact) and sines to so many bits. Precondition: the rates times 2^exponent are at most 1 in
+/// sum.
+///
+/// All derivatives are computed as such. For numbers of any size: what is exact is multiplied by a power of two, which
+/// is a positive factor, before it becomes doubles; double-doubles leave times beyond 2^+-200 to that.
+template <class Number, class C>
+PreciseTurningModel<C::degree> precise_turning_model(const C& certificate, int side, double m, int exponent, int bits) {
+  constexpr bool exact = std::is_same_v<Number, Exact>;
+  using Value = std::conditional_t<exact, Enclosure, Number>;
+  using Model = PreciseTurningModel<C::degree>;
+  Model model;
+  if (!exact && std::abs(exponent) > 200) {
+    model.error.fill(std::numeric_limits<double>::infinity());
+    return model;
+  }
+  const std::array<Spin, 2> spins = certificate.spins();
+  std::array<Number, 2> squared_rates;
+  std::array<Turn<Value>, 2> turns;
+  std::array<double, 2> angles{};  // at least those of the unit of time
+  for (std::size_t s = 0; s < 2; ++s) {
+    squared_rates[s] = times_power_of_two(spins[s].template squared_rate<Number>(), 2 * exponent);
+    if constexpr (exact) {
+      turns[s] = spins[s].enclosed_turn(m, bits);
+    } else {
+      turns[s] = spins[s].template turn<Number>(m);
+    }
+    turns[s].rate_sine = times_power_of_two(turns[s].rate_sine, exponent);
+    if (!spins[s].still()) angles[s] = std::ldexp(rate_bound(spins[s]), exponent) + 0x1p-1000;
+  }
+  model.theta = angles[0] + angles[1];
+
+  auto f = certificate.template turning_sum<Number, C::degree>(m);
+  std::array<Number, C::degree + 1> majorant{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const int sines = (i == 2) + (j == 2);
+      for (std::size_t k = 0; k <= C::degree; ++k) {
+        Number& c = f.p[i][j].c[k];
+        c = times_power_of_two(c, exponent * (static_cast<int>(k) - sines));
+        majorant[k] = majorant[k] + absolute(c) * Number(i == 2 ? angles[0] : 1) * Number(j == 2 ? angles[1] : 1);
+      }
+    }
+  }
+  int scale = 0;
+  if constexpr (exact) {
+    bool first = true;
+    for (const Exact& c : majorant) {
+      if (c.sign() == 0) continue;
+      scale = first ? c.magnitude_bits() : std::max(scale, c.magnitude_bits());
+      first = false;
+    }
+  }
+  const auto rounded = [scale](const Value& x) {
+    if constexpr (exact) {
+      const double middle = scaled(x.middle, -scale).approximate();
+      const double radius = scaled(x.radius, -scale).approximate();
+      return Ball<double>(middle, radius * Ball<double>::slack + 0x1p-50 * std::abs(middle) + 0x1p-1000);
+    } else {
+      return Ball<double>(x.middle.high, x.radius + std::abs(x.middle.low));
+    }
+  };
+  for (std::size_t k = 0; k <= C::degree; ++k) {
+    const Ball<double> c = rounded(Value(majorant[k]));
+    model.majorant[k] = (std::abs(c.middle) + c.radius) * Ball<double>::slack;
+  }
+  double reciprocal = side;  // side / k!, rounded k times
+  for (int k = 0;; ++k) {
+    const Ball<double> c =
+        rounded(value_at_epoch(f, turns[0], turns[1])) * Ball<double>(reciprocal, 0x1p-52 * k * std::abs(reciprocal));
+    model.c[static_cast<std::size_t>(k)] = c.middle;
+    model.error[static_cast<std::size_t>(k)] = c.radius * Ball<double>::slack;
+    if (k == turning_dimension<C::degree>) return model;
+    f = derivative(f, squared_rates[0], squared_rates[1]);
+    reciprocal /= k + 1;
+  }
+}
+
+}  // namespace kds::detail
