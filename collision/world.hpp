@@ -267,7 +267,7 @@ class World final : private RestingContacts<Degree>::Listener {
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   std::uint64_t count_meeting(BodySlot a, BodySlot b);
   std::uint64_t count_meeting(BodySlot slot);
-  bool do_not_end(std::uint64_t burst) const;
+  bool endless(std::uint64_t burst) const;
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
   // What resting contacts tell (RestingContacts::Listener).

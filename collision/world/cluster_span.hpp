@@ -138,7 +138,11 @@ class RestingContacts<Degree>::Span {
     }
     for (std::size_t i = 0; i < island_.free; ++i) velocities[i] = rate, halves[i] = half;
     proven_.assign(touches_.size(), 1);
-    for (const Slot slot : island_.contacts) all_.contacts_[slot].push = 0;
+    for (const Slot slot : island_.contacts) {
+      Contact& contact = all_.contacts_[slot];
+      contact.push = 0;
+      contact.aim = contact.gap;
+    }
   }
 
   void prove() {

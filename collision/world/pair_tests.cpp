@@ -94,18 +94,29 @@ void Pairs<Degree>::estimate_dirty() {
            [&](std::size_t, std::size_t first, std::size_t last) { estimate_balls(first, last); });
 }
 
-/// Most pairs of a heap need no test, since the resting contact keeps them apart.
+/// Tests the dirty pairs that rest on each other, and leaves the others. Most of a heap need no test, since the resting
+/// contact keeps them apart.
 template <int Degree>
-void Pairs<Degree>::pass_over_resting() {
-  std::erase_if(dirty_, [this](Slot slot) {
+void Pairs<Degree>::test_resting() {
+  std::size_t others = 0;
+  for (const Slot slot : dirty_) {
     Pair& pair = pairs_[slot];
-    if (!pair.alive || pair.fresh || pair.overlapping || !resting_.keeps_apart(pair.a, pair.b)) return false;
+    const auto contact = pair.alive ? resting_.find(pair.a, pair.b) : Resting::none;
+    if (contact == Resting::none) {
+      dirty_[others++] = slot;
+      continue;
+    }
     ++counters_.pair_tests;
-    pair.dirty = pair.estimated = false;
-    if (contacts_.contains(slot)) contacts_.set(slot, never);
+    pair.dirty = false;
+    if (pair.fresh || pair.overlapping || !resting_.keeps_apart(contact)) {
+      test(slot);
+    } else {
+      pair.estimated = false;
+      if (contacts_.contains(slot)) contacts_.set(slot, never);
+    }
     finish_test(slot);
-    return true;
-  });
+  }
+  dirty_.resize(others);
 }
 
 /// What is left to do when it is known when a pair meets.
@@ -123,8 +134,7 @@ void Pairs<Degree>::finish_test(Slot slot) {
 template <int Degree>
 void Pairs<Degree>::test() {
   const Stopwatch watch(profile_, Work::test);
-  const bool any_rest = !resting_.empty();
-  if (any_rest) pass_over_resting();
+  if (!resting_.empty()) test_resting();
   estimate_dirty();
   const bool sensors = bodies_.any_sensor();
   for (std::size_t i = 0, dirty = dirty_.size(); i < dirty; ++i) {
@@ -136,8 +146,7 @@ void Pairs<Degree>::test() {
     const double estimate = estimates_[i];
     const bool may_be_together = std::isnan(estimate) || (estimate == -never && pair.fresh);
     const bool passes = sensors && mode(pair.a, pair.b) == ContactMode::transparent;
-    const bool rests = any_rest && resting_.find(pair.a, pair.b) != Resting::none;
-    if (may_be_together || pair.overlapping || passes || rests) [[unlikely]] {
+    if (may_be_together || pair.overlapping || passes) [[unlikely]] {
       test(slot);
     } else {
       pair.estimated = std::abs(estimate) != never;

@@ -188,7 +188,7 @@ class Pairs final : public PairListener {
 
   // pair_tests.cpp
   bool balls_are_quick() const;
-  void pass_over_resting();
+  void test_resting();
   void finish_test(Slot slot);
   void estimate_dirty();
   void estimate_balls(std::size_t first, std::size_t last);

@@ -105,7 +105,7 @@ void World<Degree>::process_wall() {
   const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
   const bool clustered = resting_.clustered(id) && !bodies_.fixed(id);
   bool held = !clustered && stays(rebound, pressed, size, count_meeting(id));
-  if (clustered && do_not_end(count_meeting(id))) {
+  if (clustered && endless(count_meeting(id))) {
     resting_.halt(id);
   } else if (clustered) {
     const bool rested = resting_.find(id, no_body, wall) != Resting::none;
@@ -165,7 +165,7 @@ bool World<Degree>::stays(double rebound, double pressed, double size, std::uint
 
 /// Whether so many meetings at nearly one time are a sign that there will be more without end.
 template <int Degree>
-bool World<Degree>::do_not_end(std::uint64_t burst) const {
+bool World<Degree>::endless(std::uint64_t burst) const {
   const std::uint64_t many = std::max(options_.zeno.contacts, 1u);
   return burst > many && burst % many == 0;
 }
@@ -187,7 +187,7 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   const auto approach = [&] { return parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0; };
   const auto rest = [&] { return resting_.find(a, b) != Resting::none; };
   if (resting_.clustered(a) || resting_.clustered(b)) {
-    if (do_not_end(burst)) {
+    if (endless(burst)) {
       resting_.halt(a), resting_.halt(b);
       if (rest() && !approach()) return false;
     }

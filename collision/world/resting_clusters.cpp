@@ -124,18 +124,23 @@ bool RestingContacts<Degree>::repeats(const Island& island, std::size_t k) const
   return false;
 }
 
+/// Takes the contacts of a cluster anew. False if some are over, and dropped: then the cluster is another.
+template <int Degree>
+bool RestingContacts<Degree>::renew(const Island& island) {
+  bool all = true;
+  for (std::size_t k = 0; k < island.contacts.size(); ++k) {
+    if (gaps_.renew(contacts_[island.contacts[k]]) && !repeats(island, k)) continue;
+    drop(island.contacts[k]);
+    all = false;
+  }
+  return all;
+}
+
 /// The span of a cluster begins. False if it is to be called again. `dissolved`: whether its bodies have been a cluster
 /// at this instant that was dissolved; what cannot do without one stays one.
 template <int Degree>
 bool RestingContacts<Degree>::step_cluster(Island& island, bool& dissolved) {
-  const double now = clock_.now;
-  bool over = false;
-  for (std::size_t k = 0; k < island.contacts.size(); ++k) {
-    if (gaps_.renew(contacts_[island.contacts[k]]) && !repeats(island, k)) continue;
-    drop(island.contacts[k]);
-    over = true;
-  }
-  if (over) return false;
+  if (!renew(island)) return false;
   if (!dissolved && slides_on(island)) {
     bool far = false;
     for (const Slot slot : island.contacts) {
@@ -156,7 +161,7 @@ bool RestingContacts<Degree>::step_cluster(Island& island, bool& dissolved) {
   if (!span.solve_velocities(turns(island)) && squeezed(island) && let_pass_worst(island, span.velocities))
     return false;
   if (!span.solve_accelerations() && squeezed(island) && let_pass_worst(island, span.halves)) return false;
-  const bool sleeps = comes_to_rest(island, span.velocities) <= now;
+  const bool sleeps = comes_to_rest(island, span.velocities) <= clock_.now;
   double length = span.usable();
   if (length < shortest_span * span.length) {
     length = span.length;
@@ -188,6 +193,7 @@ template <int Degree>
 void RestingContacts<Degree>::halt(BodySlot id) {
   if (!clustered(id) || bodies_.fixed(id)) return;
   Island island = find_island(id);
+  while (!renew(island)) island = find_island(id);
   Span span(*this, island);
   if (span.length == never) return;
   span.move_as_one();

@@ -120,7 +120,7 @@ double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
   const auto a = bodies_.moving(id_a);
   const auto b = bodies_.moving(id_b);
   if (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape)) {
-    if (keeps_apart(id_a, id_b)) return never;
+    if (keeps_apart(find(id_a, id_b))) return never;
     return first_contact(a, b, clock_.now, clock_.horizon, ContactMode::resolved);
   }
   const double began = std::max(a.motion.start, b.motion.start);

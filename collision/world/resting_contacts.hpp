@@ -124,12 +124,9 @@ class RestingContacts {
     if (!solved()) solve_all();
   }
 
-  /// Whether two bodies surely do not meet until the motion of one changes, or their contact does: a plane stays
-  /// between them.
-  bool keeps_apart(BodySlot a, BodySlot b) const {
-    const Slot slot = find(a, b);
-    return slot != none && contacts_[slot].proven && !gaps_.has_mesh(contacts_[slot]);
-  }
+  /// Whether the two bodies of a contact surely do not meet until the motion of one changes, or the contact does: a
+  /// plane stays between them.
+  bool keeps_apart(Slot contact) const { return contacts_[contact].proven && !gaps_.has_mesh(contacts_[contact]); }
   /// When two bodies that rest on each other may meet elsewhere.
   double next_contact(BodySlot a, BodySlot b);
 
@@ -233,6 +230,7 @@ class RestingContacts {
   bool turns(const Island& island) const;
   bool slides_on(const Island& island) const;
   bool repeats(const Island& island, std::size_t k) const;
+  bool renew(const Island& island);
   bool step_cluster(Island& island, bool& dissolved);
   void take_up(const Island& island, Span& span, double length);
   void gather(BodySlot id, double ends);
