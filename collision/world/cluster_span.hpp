@@ -42,8 +42,8 @@ inline bool solve(std::vector<Eigen::Vector3d>& rates, std::vector<Touch>& touch
 
 /// A span of a cluster that begins now: what its bodies do in it. Places among rates are those of the island, and the
 /// walls come last.
-template <int Degree>
-class RestingContacts<Degree>::Span {
+template <class Motion>
+class RestingContacts<Motion>::Span {
   using Vector3d = Eigen::Vector3d;
 
  public:
@@ -51,7 +51,7 @@ class RestingContacts<Degree>::Span {
     const double now = all.clock_.now;
     for (const BodySlot id : island.bodies) {
       velocities.push_back(all.velocity(id));
-      halves.push_back(0.5 * all.bodies_.motion(id).acceleration(now));
+      halves.push_back(0.5 * all.bodies_.path(id).acceleration(now));
     }
     velocities.push_back(Vector3d::Zero());
     halves.push_back(Vector3d::Zero());
