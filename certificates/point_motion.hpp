@@ -201,6 +201,12 @@ struct PointMotion {
   }
 };
 
+/// The path of the centre of a body that moves like this: the motion itself. Other motions have another.
+template <int Degree>
+const PointMotion<Degree>& path_of(const PointMotion<Degree>& motion) {
+  return motion;
+}
+
 /// The motion without its last coefficient, which counts as zero.
 template <int Degree>
 PointMotion<Degree - 1> without_last(const PointMotion<Degree>& path) requires(Degree >= 2) {

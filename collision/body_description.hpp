@@ -29,16 +29,16 @@ inline constexpr std::uint32_t default_category = 1;
 /// A body to add. Numbers have to be in the range of shape.hpp: sizes and masses from 2^-205 to 2^205 (1.9e-62 to
 /// 5.1e61), coefficients and starts of motions up to 2^205 in magnitude. The edges of a mesh, scaled, are at least
 /// 2^-110 long, and its coordinates at most 2^100.
-template <int Degree>
-struct BodyDescription {
-  using Motion = certificates::PointMotion<Degree>;
+template <class BodyMotionType>
+struct BasicBodyDescription {
+  using Motion = BodyMotionType;
   /// Returns a box that holds the body from time t until the box's valid_until. It must be finite and valid_until later
   /// than t, else the call that asked for it, step() or update_motion(), throws std::invalid_argument. It may look at
   /// the world but must not change it: to add, remove or move bodies, to run, save or load the world from within it
   /// throws std::logic_error. After a bad box, or whatever else comes out of the function, the world can no longer be
   /// used: all that would run, change, check or save it throws std::logic_error and says why. It can still be looked
   /// at, and destroyed.
-  using BoxFunction = std::function<KineticBox<Degree>(double t, const Motion& motion)>;
+  using BoxFunction = std::function<KineticBox<Motion::degree>(double t, const Motion& motion)>;
 
   Shape shape;
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit to 1e-6; the body keeps it
@@ -57,6 +57,10 @@ struct BodyDescription {
   BoundingVolume volume = BoundingVolume::shape;
   BoxFunction box{};  ///< if given: the caller's own conservative boxes, instead of `volume`
 };
+
+/// A body of a World<Degree>.
+template <int Degree>
+using BodyDescription = BasicBodyDescription<certificates::PointMotion<Degree>>;
 
 /// Whether all numbers of a motion are finite and in range.
 template <int Degree>

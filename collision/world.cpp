@@ -1,7 +1,7 @@
 // The clock of the world: which event is next, and what the callers of the engine see.
 #include "collision/world.hpp"
 
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/new_broad_phase.hpp"
 #include "kds/arithmetic/strict.hpp"
@@ -40,8 +40,8 @@ void require_ahead(const char* function, double t, double now) {
 
 }  // namespace
 
-template <int Degree>
-World<Degree>::World(const WorldOptions& options, Listener* listener)
+template <class Motion>
+BasicWorld<Motion>::BasicWorld(const WorldOptions& options, Listener* listener)
     : options_(validated(options)),
       listener_(listener ? listener : &silent_),
       clock_{options.start_time, options.start_time + options.window},
@@ -53,23 +53,23 @@ World<Degree>::World(const WorldOptions& options, Listener* listener)
   make_broad_phase();
 }
 
-template <int Degree>
-World<Degree>::~World() = default;
+template <class Motion>
+BasicWorld<Motion>::~BasicWorld() = default;
 
-template <int Degree>
-void World<Degree>::make_broad_phase() {
-  broad_phase_ = new_broad_phase<Degree>(options_, clock_.now, profile(), volumes_.kdops());
+template <class Motion>
+void BasicWorld<Motion>::make_broad_phase() {
+  broad_phase_ = new_broad_phase<Motion::degree>(options_, clock_.now, profile(), volumes_.kdops());
   broad_phase_->extend_horizon(clock_.now, clock_.horizon);
   pairs_.expect_exact(broad_phase_->exact());
 }
 
 /// A broad phase of the bodies as they are now; pairs are listed as it finds them.
-template <int Degree>
-void World<Degree>::rebuild_broad_phase() {
+template <class Motion>
+void BasicWorld<Motion>::rebuild_broad_phase() {
   make_broad_phase();
   PairCollector found;
   std::vector<Entry> entries;
-  std::vector<KineticBox<Degree>> boxes;
+  std::vector<KineticBox<Motion::degree>> boxes;
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (!bodies_[slot].entered || !bodies_.collides(slot)) continue;
     entries.push_back({slot, nullptr});
@@ -84,16 +84,16 @@ void World<Degree>::rebuild_broad_phase() {
 
 /// A search for an event without a limit has found none, and gone beyond all times: the clock is put back to where it
 /// was. Nothing has happened since but that bounding volumes have met and parted.
-template <int Degree>
-void World<Degree>::go_back(double t) {
+template <class Motion>
+void BasicWorld<Motion>::go_back(double t) {
   if (clock_.now == t) return;
   clock_.now = t;
   counters_.broad_phase = counters_.broad_phase + broad_phase_->counters();
   rebuild_broad_phase();
 }
 
-template <int Degree>
-void World<Degree>::reach(double limit) {
+template <class Motion>
+void BasicWorld<Motion>::reach(double limit) {
   if (!(limit > clock_.horizon)) return;
   clock_.horizon = std::max(limit, clock_.horizon + options_.window);
   broad_phase_->extend_horizon(clock_.now, clock_.horizon);
@@ -103,8 +103,8 @@ void World<Degree>::reach(double limit) {
   resting_.extend_horizon();
 }
 
-template <int Degree>
-bool World<Degree>::step(double limit) {
+template <class Motion>
+bool BasicWorld<Motion>::step(double limit) {
   require_idle("World::step");
   if (limit < idle_until_ || (limit == never && idle_until_ == never)) {
     if (limit < never) callers_now_ = std::max(callers_now_, limit);
@@ -124,8 +124,8 @@ bool World<Degree>::step(double limit) {
 }
 
 /// The clock follows what has been done, even where a listener throws.
-template <int Degree>
-bool World<Degree>::guarded_event(double limit, Search search) {
+template <class Motion>
+bool BasicWorld<Motion>::guarded_event(double limit, Search search) {
   const kds::detail::RaisedFlag stepping(stepping_);  // Callbacks are called from here alone.
   try {
     const bool found = next_event(limit, search);
@@ -138,8 +138,8 @@ bool World<Degree>::guarded_event(double limit, Search search) {
   }
 }
 
-template <int Degree>
-inline typename World<Degree>::Due World<Degree>::next_due() const {
+template <class Motion>
+inline typename BasicWorld<Motion>::Due BasicWorld<Motion>::next_due() const {
   Due first{never, Task::start_pieces};
   const auto consider = [&first](double time, Task task) {
     if (time < first.time) first = {time, task};
@@ -154,20 +154,20 @@ inline typename World<Degree>::Due World<Degree>::next_due() const {
 }
 
 /// Where the time of a task is no more than a bound, its part finds the exact time: true if so.
-template <int Degree>
-bool World<Degree>::certify(Task task) {
+template <class Motion>
+bool BasicWorld<Motion>::certify(Task task) {
   return (task == Task::meet_or_separate && pairs_.certify()) || (task == Task::meet_wall && walls_.certify());
 }
 
 /// Whether a task is an event, which changes what can be observed.
-template <int Degree>
-bool World<Degree>::happens(Task task) const {
+template <class Motion>
+bool BasicWorld<Motion>::happens(Task task) const {
   return task != Task::renew_volume || volumes_.from_caller(volumes_.next_body());
 }
 
 /// Does what is due. True if it ends a step.
-template <int Degree>
-bool World<Degree>::process(Task task) {
+template <class Motion>
+bool BasicWorld<Motion>::process(Task task) {
   switch (task) {
     case Task::start_pieces:
       start_pieces();
@@ -193,8 +193,8 @@ bool World<Degree>::process(Task task) {
   return false;
 }
 
-template <int Degree>
-bool World<Degree>::next_event(double limit, Search search) {
+template <class Motion>
+bool BasicWorld<Motion>::next_event(double limit, Search search) {
   const bool looks = search == Search::looks;
   idle_until_ = -never;
   bool looked_ahead = false;
@@ -244,43 +244,43 @@ bool World<Degree>::next_event(double limit, Search search) {
 }
 
 /// What is found is kept in queues and lists, as all that is known of the time to come.
-template <int Degree>
-double World<Degree>::next_time() const {
+template <class Motion>
+double BasicWorld<Motion>::next_time() const {
   require_idle("World::next_time");
   if (next_time_ != -never) return next_time_;
   if (clock_.now == callers_now_ && work_left()) return callers_now_;
   if (clock_.horizon == never && options_.broad_phase == BroadPhaseKind::sap) {
     throw std::invalid_argument("World::next_time: sweep and prune by frames has no last event, so it needs a window");
   }
-  auto& self = const_cast<World&>(*this);
+  auto& self = const_cast<BasicWorld&>(*this);
   self.next_time_ = self.guarded_event(clock_.horizon, Search::looks) ? clock_.now : never;
   return next_time_;
 }
 
-template <int Degree>
-void World<Degree>::process() {
+template <class Motion>
+void BasicWorld<Motion>::process() {
   const double t = next_time();
   if (t < never) step(t);
 }
 
-template <int Degree>
-void World<Degree>::extend_horizon(double now, double horizon) {
+template <class Motion>
+void BasicWorld<Motion>::extend_horizon(double now, double horizon) {
   require_idle("World::extend_horizon");
   if (now > callers_now_) advance_to(now);
   idle_until_ = next_time_ = -never;
   change_or_fail([&] { reach(horizon); });
 }
 
-template <int Degree>
-void World<Degree>::advance_to(double t) {
+template <class Motion>
+void BasicWorld<Motion>::advance_to(double t) {
   require_idle("World::advance_to");
   require_ahead("World::advance_to", t, callers_now_);
   while (step(t)) {
   }
 }
 
-template <int Degree>
-bool World<Degree>::advance_for(double budget_seconds, double t) {
+template <class Motion>
+bool BasicWorld<Motion>::advance_for(double budget_seconds, double t) {
   using WallClock = std::chrono::steady_clock;
   require_idle("World::advance_for");
   require_ahead("World::advance_for", t, callers_now_);
@@ -295,8 +295,8 @@ bool World<Degree>::advance_for(double budget_seconds, double t) {
 }
 
 /// All that are due at once: bodies that jump together are not apart in between.
-template <int Degree>
-void World<Degree>::start_pieces() {
+template <class Motion>
+void BasicWorld<Motion>::start_pieces() {
   const auto pieces = scripts_.take_next();
   std::vector<char> jumps;
   for (const auto& [slot, motion] : pieces) {
@@ -318,8 +318,8 @@ void World<Degree>::start_pieces() {
   }
 }
 
-template <int Degree>
-void World<Degree>::report_next() {
+template <class Motion>
+void BasicWorld<Motion>::report_next() {
   const Reports::Report event = reports_.take_first();
   PairEvent pair{event.a, event.b, event.contact};
   switch (event.kind) {
@@ -345,8 +345,8 @@ void World<Degree>::report_next() {
   }
 }
 
-template <int Degree>
-void World<Degree>::report_resting(const Reports::Report& event) {
+template <class Motion>
+void BasicWorld<Motion>::report_resting(const Reports::Report& event) {
   const bool begins = event.kind == Reports::Kind::rests;
   if (event.wall >= 0) {
     const WallEvent wall{event.a, event.wall, event.contact};
@@ -360,15 +360,15 @@ void World<Degree>::report_resting(const Reports::Report& event) {
 
 /// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are
 /// counted, so that a run ends.
-template <int Degree>
-void World<Degree>::count_edit() {
+template <class Motion>
+void BasicWorld<Motion>::count_edit() {
   idle_until_ = next_time_ = -never;
   if (stepping_)
     edits_.count(clock_.now, options_.zeno.interval, std::max<std::uint64_t>(options_.most_edits, 64 * bodies_.size()));
 }
 
-#define KDS_INSTANTIATE(degree) template class World<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

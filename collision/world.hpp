@@ -2,8 +2,9 @@
 #pragma once
 
 #include "collision/body_description.hpp"
+#include "collision/body_motion.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/bodies.hpp"
@@ -27,7 +28,8 @@
 
 namespace kds::collision {
 
-/// Runs bodies through time and reports their contacts at exact times.
+/// Runs bodies through time and reports their contacts at exact times. How they move is a type (body_motion.hpp): most
+/// worlds are a World<Degree>, below, whose bodies keep their orientation.
 ///
 /// [Coming06] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
 /// broad phase, bounding volumes that have to be renewed, walls, resting contacts that end, contacts and separations by
@@ -46,24 +48,25 @@ namespace kds::collision {
 /// of their own, kds::collision_splines (docs/splines.md). Lengths and masses are in units of the caller's own, times
 /// in seconds. An id of no body, or of one that was removed, throws std::out_of_range, naming it and saying which (of
 /// resting() and touching(), either id).
-template <int Degree>
-class World final : private RestingContacts<Degree>::Listener {
-  static_assert(Degree >= 1 && Degree <= KDS_GREATEST_DEGREE,
+template <class BodyMotionType>
+class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
+  static_assert(BodyMotion<BodyMotionType>, "World: bodies move as body_motion.hpp says");
+  static_assert(BodyMotionType::degree >= 1 && BodyMotionType::degree <= KDS_GREATEST_DEGREE,
                 "World: bodies move on lines (degree 1) or parabolas (degree 2), and with kds::collision_splines on "
                 "curves of degree 3 to 5");
 
  public:
-  using Motion = certificates::PointMotion<Degree>;
-  using Description = BodyDescription<Degree>;
-  using Listener = WorldListener<Degree>;
+  using Motion = BodyMotionType;
+  using Description = BasicBodyDescription<Motion>;
+  using Listener = BasicWorldListener<Motion>;
 
   /// Throws std::invalid_argument, naming the option, for one that is out of range or does not go with the others, and
   /// std::runtime_error where arithmetic is not that of kds/arithmetic/strict.hpp.
   /// The listener, if there is one, must outlive the world.
-  explicit World(const WorldOptions& options, Listener* listener = nullptr);
-  ~World();
-  World(const World&) = delete;
-  World& operator=(const World&) = delete;
+  explicit BasicWorld(const WorldOptions& options, Listener* listener = nullptr);
+  ~BasicWorld();
+  BasicWorld(const BasicWorld&) = delete;
+  BasicWorld& operator=(const BasicWorld&) = delete;
 
   /// Adds a body and returns its id, which no other body of this world ever gets: 0, 1, 2, ... as long as none has been
   /// removed (body_id.hpp). Throws std::invalid_argument, naming the member that is wrong; then nothing is added.
@@ -154,7 +157,7 @@ class World final : private RestingContacts<Degree>::Listener {
 
   /// The same for each body whose bounding box may meet a moving box at some time from now() to `until`, if all goes on
   /// as it does at now(): compared are the boxes that the two sweep.
-  void visit_swept(const KineticBox<Degree>& box, double until, BodyVisitor visit) const;
+  void visit_swept(const KineticBox<Motion::degree>& box, double until, BodyVisitor visit) const;
 
   /// Checks the broad phase against the motions, exactly, and the pairs against brute force, in O(n^2); throws
   /// AuditFailure. Just after bodies were added or moved, while the next step has work left at now(), only the broad
@@ -168,11 +171,11 @@ class World final : private RestingContacts<Degree>::Listener {
   void archive(Archive& archive);
 
  private:
-  using Body = detail::Body<Degree>;
-  using Mover = typename Bodies<Degree>::Mover;
-  using Entry = typename BroadPhase<Degree>::Entry;
-  using Resting = RestingContacts<Degree>;
-  using Begin = typename Pairs<Degree>::Begin;
+  using Body = detail::Body<Motion>;
+  using Mover = typename Bodies<Motion>::Mover;
+  using Entry = typename BroadPhase<Motion::degree>::Entry;
+  using Resting = RestingContacts<Motion>;
+  using Begin = typename Pairs<Motion>::Begin;
 
   // world.cpp: the clock
   /// What the parts of the world do, in the order in which it is done where it is due at one time.
@@ -251,7 +254,7 @@ class World final : private RestingContacts<Degree>::Listener {
   void take_out(BodySlot slot);
   void give(BodySlot slot, const Motion& motion);
   void set_motion(BodySlot slot, const Motion& motion, bool jumped);
-  void update_volume(BodySlot slot, const KineticBox<Degree>& box);
+  void update_volume(BodySlot slot, const KineticBox<Motion::degree>& box);
 
   // world/response.cpp: what follows from contacts
   void process_meeting();
@@ -267,7 +270,7 @@ class World final : private RestingContacts<Degree>::Listener {
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   std::uint64_t count_meeting(BodySlot a, BodySlot b);
   std::uint64_t count_meeting(BodySlot slot);
-  bool do_not_end(std::uint64_t burst) const;
+  bool endless(std::uint64_t burst) const;
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
 
   // What resting contacts tell (RestingContacts::Listener).
@@ -297,14 +300,14 @@ class World final : private RestingContacts<Degree>::Listener {
   WorldCounters counters_;
   Profile profile_;
   // The parts, each with a state, a queue and laws of its own.
-  Bodies<Degree> bodies_;
-  Scripts<Degree> scripts_;
-  Volumes<Degree> volumes_;
-  WallTimes<Degree> walls_;
+  Bodies<Motion> bodies_;
+  Scripts<Motion> scripts_;
+  Volumes<Motion> volumes_;
+  WallTimes<Motion> walls_;
   Reports reports_;
   Resting resting_;
-  Pairs<Degree> pairs_;
-  std::unique_ptr<BroadPhase<Degree>> broad_phase_;
+  Pairs<Motion> pairs_;
+  std::unique_ptr<BroadPhase<Motion::degree>> broad_phase_;
   EditLimit edits_;
   double callers_now_;          ///< the clock as callers know it
   double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
@@ -314,8 +317,12 @@ class World final : private RestingContacts<Degree>::Listener {
   std::exception_ptr failure_;  ///< what has left the world in pieces
 };
 
-#define KDS_DECLARE(degree) extern template class World<degree>;
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+/// A world of bodies that keep their orientation, on paths of a degree.
+template <int Degree>
+using World = BasicWorld<certificates::PointMotion<Degree>>;
+
+#define KDS_DECLARE(motion) extern template class BasicWorld<motion>;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

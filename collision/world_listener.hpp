@@ -1,6 +1,7 @@
 // What a world tells.
 #pragma once
 
+#include "certificates/point_motion.hpp"
 #include "collision/body_id.hpp"
 #include "collision/narrow_phase/contact.hpp"
 
@@ -20,8 +21,8 @@ struct WallEvent {
   Contact contact;  ///< the point lies on the wall; the normal points out of the domain; there are no features
 };
 
-template <int Degree>
-class World;
+template <class Motion>
+class BasicWorld;
 
 /// Told of events in order of time, and of those at one time in an order that does not depend on the broad phase:
 /// bodies come by their slots, and those that were in one slot by their generations (body_rank). What follows from an
@@ -39,35 +40,39 @@ class World;
 /// advance, save or load the world from within a callback throws std::logic_error. WorldOptions::most_edits limits the
 /// changes. What a callback throws comes out of the step, and the run may go on: the clock stands at the event, which
 /// has been made, and only what else was to be told of that event is not.
-template <int Degree>
-class WorldListener {
+template <class Motion>
+class BasicWorldListener {
  public:
-  virtual ~WorldListener() = default;
+  virtual ~BasicWorldListener() = default;
   /// Penetration begins; motions are as after response.
-  virtual void contact(World<Degree>&, const PairEvent&) {}
+  virtual void contact(BasicWorld<Motion>&, const PairEvent&) {}
   /// Penetration ends: in mode `none`, and of sensors in every mode.
-  virtual void separation(World<Degree>&, const PairEvent&) {}
+  virtual void separation(BasicWorld<Motion>&, const PairEvent&) {}
   /// In contact when one of the two enters the world or, where contacts are resolved, jumps. (In mode `none`, and for
   /// sensors, a jump into contact is a contact.)
-  virtual void overlap(World<Degree>&, const PairEvent&) {}
-  virtual void wall(World<Degree>&, const WallEvent&) {}  ///< motions are as after response
+  virtual void overlap(BasicWorld<Motion>&, const PairEvent&) {}
+  virtual void wall(BasicWorld<Motion>&, const WallEvent&) {}  ///< motions are as after response
   /// With WorldOptions.report_pairs: the bounding volumes of two bodies, the first in the lower slot, begin and cease
   /// to overlap at a time in s.
-  virtual void pair_began(World<Degree>&, BodyId, BodyId, double) {}
-  virtual void pair_ended(World<Degree>&, BodyId, BodyId, double) {}
-  virtual void held(World<Degree>&, const PairEvent&) {}          ///< the Zeno policy has acted on a pair
-  virtual void held_at_wall(World<Degree>&, const WallEvent&) {}  ///< or on a body and a wall
+  virtual void pair_began(BasicWorld<Motion>&, BodyId, BodyId, double) {}
+  virtual void pair_ended(BasicWorld<Motion>&, BodyId, BodyId, double) {}
+  virtual void held(BasicWorld<Motion>&, const PairEvent&) {}          ///< the Zeno policy has acted on a pair
+  virtual void held_at_wall(BasicWorld<Motion>&, const WallEvent&) {}  ///< or on a body and a wall
   /// Two bodies, or a body and a wall, begin to lie or slide on each other (docs/resting.md), and cease to: by parting,
   /// by something that strikes them, or since one of them jumps or is removed. The contact is as it is then.
-  virtual void rests(World<Degree>&, const PairEvent&) {}
-  virtual void rests_at_wall(World<Degree>&, const WallEvent&) {}
-  virtual void wakes(World<Degree>&, const PairEvent&) {}
-  virtual void wakes_at_wall(World<Degree>&, const WallEvent&) {}
+  virtual void rests(BasicWorld<Motion>&, const PairEvent&) {}
+  virtual void rests_at_wall(BasicWorld<Motion>&, const WallEvent&) {}
+  virtual void wakes(BasicWorld<Motion>&, const PairEvent&) {}
+  virtual void wakes_at_wall(BasicWorld<Motion>&, const WallEvent&) {}
   /// Two bodies are let through each other until they have separated: no motion keeps them apart (a piston), they meet
   /// without end, or a callback has left them approaching.
-  virtual void passes(World<Degree>&, const PairEvent&) {}
+  virtual void passes(BasicWorld<Motion>&, const PairEvent&) {}
   /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
-  virtual void moved(World<Degree>&, BodyId) {}
+  virtual void moved(BasicWorld<Motion>&, BodyId) {}
 };
+
+/// Of a World<Degree>.
+template <int Degree>
+using WorldListener = BasicWorldListener<certificates::PointMotion<Degree>>;
 
 }  // namespace kds::collision

@@ -77,6 +77,12 @@ struct RigidMotion {
   }
 };
 
+/// The path of the origin of the body.
+template <int Degree>
+const PointMotion<Degree>& path_of(const RigidMotion<Degree>& motion) {
+  return motion.path;
+}
+
 /// The same motion in time that runs backwards, exactly: see Motion.
 template <int Degree>
 RigidMotion<Degree> reversed(const RigidMotion<Degree>& motion) {

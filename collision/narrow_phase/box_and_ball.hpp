@@ -34,7 +34,7 @@ namespace kds::collision {
 template <int Degree>
 class BoxAndBall {
  public:
-  using Body = MovingShape<Degree>;
+  using Body = TranslatingShape<Degree>;
   using Quick = QuickMotion<Degree>;
   enum Place { between, grown, around_low, around_high };
 

@@ -47,7 +47,7 @@ void every_box_axis(const PlacedShape& a, const PlacedShape& b, const Visit& vis
 template <int Degree>
 class BoxAndBox {
  public:
-  using Body = MovingShape<Degree>;
+  using Body = TranslatingShape<Degree>;
 
   /// With `faces_do` products of edges are looked at only where no face keeps the boxes apart now: the pair is for
   /// apart_until() alone.

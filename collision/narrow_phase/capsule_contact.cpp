@@ -94,7 +94,7 @@ Vector3d normal_at(const ZonotopeCells& cells, const Vector3d& x) {
 }  // namespace
 
 template <int Degree>
-Contact rounded_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+Contact rounded_contact(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t) {
   RoundedCore core = rounded_core(a.shape);
   for (const Generator& each : rounded_core(b.shape).generators) core.generators.push_back(each);
   const Vector3d centre_a = a.motion.position(t);
@@ -111,7 +111,7 @@ Contact rounded_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
 }
 
 #define KDS_INSTANTIATE(degree) \
-  template Contact rounded_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);
+  template Contact rounded_contact(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double);
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -12,13 +12,13 @@ namespace kds::collision {
 /// that is the difference of their cores to the place of b; where the cores overlap, out of its nearest face. The point
 /// is in the middle of what both turn towards each other, as for boxes.
 template <int Degree>
-Contact rounded_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+Contact rounded_contact(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t);
 
 /// The tests (see pair_tests.hpp) of a capsule with a ball, a capsule or a box.
 template <int Degree>
 struct CapsuleContact : PiecewiseContact<Degree, RoundedZonotope<Degree>, rounded_contact<Degree>> {
   using Piecewise = PiecewiseContact<Degree, RoundedZonotope<Degree>, rounded_contact<Degree>>;
-  using Body = MovingShape<Degree>;
+  using Body = TranslatingShape<Degree>;
 
   /// What one direction tells will do: the pieces, a dozen times as much work, are for those that are near already.
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory) {
@@ -29,7 +29,7 @@ struct CapsuleContact : PiecewiseContact<Degree, RoundedZonotope<Degree>, rounde
 };
 
 #define KDS_DECLARE(degree) \
-  extern template Contact rounded_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);
+  extern template Contact rounded_contact(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double);
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 #undef KDS_DECLARE
 

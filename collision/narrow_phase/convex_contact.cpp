@@ -18,11 +18,11 @@ using certificates::BallSeparation;
 using Eigen::Vector3d;
 
 template <int Degree>
-double radius(const MovingShape<Degree>& body) {
+double radius(const TranslatingShape<Degree>& body) {
   return std::get<Sphere>(body.shape.shape).radius;
 }
 template <int Degree>
-const Vector3d& half_extents(const MovingShape<Degree>& body) {
+const Vector3d& half_extents(const TranslatingShape<Degree>& body) {
   return std::get<Box>(body.shape.shape).half_extents;
 }
 
@@ -30,7 +30,7 @@ const Vector3d& half_extents(const MovingShape<Degree>& body) {
 
 /// Contact of two boxes: along the axis on which they penetrate least.
 template <int Degree>
-Contact box_box_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+Contact box_box_contact(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t) {
   const Vector3d apart = b.motion.position(t) - a.motion.position(t);
   double deepest = -never;
   Contact contact;
@@ -55,14 +55,14 @@ Contact box_box_contact(const MovingShape<Degree>& a, const MovingShape<Degree>&
 }
 
 template <int Degree>
-BallSeparation<Degree> balls_apart(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+BallSeparation<Degree> balls_apart(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b) {
   return {a.motion, b.motion, radius(a), radius(b)};
 }
 
 }  // namespace
 
 template <int Degree>
-Contact box_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+Contact box_ball_contact(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t) {
   const Vector3d& h = half_extents(a);
   const Vector3d centre_a = a.motion.position(t);
   const Vector3d x = rotated_back(a.shape.rotation, b.motion.position(t) - centre_a);
@@ -151,7 +151,7 @@ Contact BoxesContact<Degree>::contact_at(const Body& a, const Body& b, double t,
 #define KDS_INSTANTIATE(degree)         \
   template struct BallsContact<degree>; \
   template struct BoxesContact<degree>; \
-  template Contact box_ball_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);
+  template Contact box_ball_contact(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double);
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -20,7 +20,7 @@ namespace kds::collision {
 /// Two balls.
 template <int Degree>
 struct BallsContact {
-  using Body = MovingShape<Degree>;
+  using Body = TranslatingShape<Degree>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*);
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
@@ -32,7 +32,7 @@ struct BallsContact {
 /// Two boxes.
 template <int Degree>
 struct BoxesContact {
-  using Body = MovingShape<Degree>;
+  using Body = TranslatingShape<Degree>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*);
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
@@ -43,7 +43,7 @@ struct BoxesContact {
 
 /// How a box (a) and a ball (b) touch: at the point of the box nearest the ball's centre.
 template <int Degree>
-Contact box_ball_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+Contact box_ball_contact(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t);
 
 /// A box (a) and a ball (b).
 template <int Degree>
@@ -52,7 +52,7 @@ using BoxBallContact = PiecewiseContact<Degree, BoxAndBall<Degree>, box_ball_con
 #define KDS_DECLARE(degree)                    \
   extern template struct BallsContact<degree>; \
   extern template struct BoxesContact<degree>; \
-  extern template Contact box_ball_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);
+  extern template Contact box_ball_contact(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double);
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 #undef KDS_DECLARE
 

@@ -98,7 +98,7 @@ double clock_time(double epoch, double tau) {
 /// A pair in which a is a mesh, on the clock.
 template <int Degree>
 struct ClockedPair {
-  using Body = MovingShape<Degree>;
+  using Body = TranslatingShape<Degree>;
 
   ClockedPair(const Body& a, const Body& b) : motion(relative_to(a.motion, b.motion)), pair(a.shape, b.shape, motion) {}
 

@@ -91,7 +91,7 @@ KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 /// t0 if that is later.
 template <int Degree>
 struct MeshContact {
-  using Body = MovingShape<Degree>;
+  using Body = TranslatingShape<Degree>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                               FoundTouch* found = nullptr);

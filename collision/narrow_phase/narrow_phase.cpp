@@ -1,6 +1,7 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 
-#include "collision/degrees.hpp"
+#include "collision/body_motion.hpp"
+#include "collision/motions.hpp"
 #include "collision/narrow_phase/capsule_contact.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
@@ -11,8 +12,8 @@ namespace {
 
 /// A row for each kind of shape: what tests it against itself and the kinds above it.
 template <int Degree>
-constexpr PairTable<Degree> make_table() {
-  PairTable<Degree> table;
+constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
+  PairTable<certificates::PointMotion<Degree>> table;
   table.template add<Sphere, Sphere>(BallsContact<Degree>{});
   table.template add<Box, Sphere>(BoxBallContact<Degree>{});
   table.template add<Box, Box>(BoxesContact<Degree>{});
@@ -21,19 +22,20 @@ constexpr PairTable<Degree> make_table() {
   return table;
 }
 
-template <int Degree>
-constexpr PairTable<Degree> table = make_table<Degree>();
+template <class Motion>
+constexpr PairTable<Motion> table = translating_table<Motion::degree>();
 
 /// Calls ask(a, b) with the motions as they are, or of the least degree from 2 on that both have: what is asked of them
 /// is then answered as in a world of that degree, bit for bit, and by its quicker tests.
-template <int Degree, class Ask>
-auto in_least_degree(const MovingShape<Degree>& a, const MovingShape<Degree>& b, const Ask& ask) {
-  if constexpr (Degree >= 3) {
-    if (a.motion.coefficients[Degree].isZero(0) && b.motion.coefficients[Degree].isZero(0)) {
+template <class Motion, class Ask>
+auto in_least_degree(const MovingShape<Motion>& a, const MovingShape<Motion>& b, const Ask& ask) {
+  constexpr int degree = Motion::degree;
+  if constexpr (!turns<Motion> && degree >= 3) {
+    if (a.motion.coefficients[degree].isZero(0) && b.motion.coefficients[degree].isZero(0)) {
       const auto motion_a = without_last(a.motion);
       const auto motion_b = without_last(b.motion);
-      return in_least_degree(MovingShape<Degree - 1>{a.shape, motion_a}, MovingShape<Degree - 1>{b.shape, motion_b},
-                             ask);
+      return in_least_degree(TranslatingShape<degree - 1>{a.shape, motion_a},
+                             TranslatingShape<degree - 1>{b.shape, motion_b}, ask);
     }
   }
   return ask(a, b);
@@ -41,24 +43,24 @@ auto in_least_degree(const MovingShape<Degree>& a, const MovingShape<Degree>& b,
 
 }  // namespace
 
-template <int Degree>
-const PairTests<Degree>& pair_tests(const PlacedShape& a, const PlacedShape& b) {
-  return table<Degree>.of(a.shape.index(), b.shape.index());
+template <class Motion>
+const PairTests<Motion>& pair_tests(const PlacedShape& a, const PlacedShape& b) {
+  return table<Motion>.of(a.shape.index(), b.shape.index());
 }
 
-template <int Degree>
-double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
+template <class Motion>
+double first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon,
                      ContactMode mode, FoundTouch* found) {
-  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
-    return pair_tests<D>(x.shape, y.shape).first_contact(x, y, t0, horizon, mode, found);
+  return in_least_degree(a, b, [&]<class M>(const MovingShape<M>& x, const MovingShape<M>& y) {
+    return pair_tests<M>(x.shape, y.shape).first_contact(x, y, t0, horizon, mode, found);
   });
 }
 
-template <int Degree>
-ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
+template <class Motion>
+ContactEstimate estimated_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
                                         double horizon, ContactMode mode, PairMemory& memory, FoundTouch* found) {
-  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) -> ContactEstimate {
-    const PairTests<D>& tests = pair_tests<D>(x.shape, y.shape);
+  return in_least_degree(a, b, [&]<class M>(const MovingShape<M>& x, const MovingShape<M>& y) -> ContactEstimate {
+    const PairTests<M>& tests = pair_tests<M>(x.shape, y.shape);
     const double time = tests.apart_until(x, y, t0, horizon, memory);
     if (time == never || time > horizon) return {never, true};
     if (time > t0) return {time, false};
@@ -66,38 +68,38 @@ ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const Movi
   });
 }
 
-template <int Degree>
-bool in_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
-  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
-    return pair_tests<D>(x.shape, y.shape).in_contact(x, y, t);
+template <class Motion>
+bool in_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t) {
+  return in_least_degree(a, b, [&]<class M>(const MovingShape<M>& x, const MovingShape<M>& y) {
+    return pair_tests<M>(x.shape, y.shape).in_contact(x, y, t);
   });
 }
 
-template <int Degree>
-double first_separation(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon) {
-  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
-    return pair_tests<D>(x.shape, y.shape).first_separation(x, y, t0, horizon);
+template <class Motion>
+double first_separation(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon) {
+  return in_least_degree(a, b, [&]<class M>(const MovingShape<M>& x, const MovingShape<M>& y) {
+    return pair_tests<M>(x.shape, y.shape).first_separation(x, y, t0, horizon);
   });
 }
 
-template <int Degree>
-Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t, const FoundTouch& found) {
-  return in_least_degree(a, b, [&]<int D>(const MovingShape<D>& x, const MovingShape<D>& y) {
-    return pair_tests<D>(x.shape, y.shape).contact_at(x, y, t, found);
+template <class Motion>
+Contact contact_at(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t, const FoundTouch& found) {
+  return in_least_degree(a, b, [&]<class M>(const MovingShape<M>& x, const MovingShape<M>& y) {
+    return pair_tests<M>(x.shape, y.shape).contact_at(x, y, t, found);
   });
 }
 
-#define KDS_INSTANTIATE(degree)                                                                                      \
-  static_assert(table<degree>.complete());                                                                           \
-  template const PairTests<degree>& pair_tests(const PlacedShape&, const PlacedShape&);                              \
-  template double first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double, double, ContactMode, \
+#define KDS_INSTANTIATE(motion)                                                                                      \
+  static_assert(table<motion>.complete());                                                                           \
+  template const PairTests<motion>& pair_tests(const PlacedShape&, const PlacedShape&);                              \
+  template double first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double, double, ContactMode, \
                                 FoundTouch*);                                                                        \
-  template ContactEstimate estimated_first_contact(const MovingShape<degree>&, const MovingShape<degree>&, double,   \
+  template ContactEstimate estimated_first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double,   \
                                                    double, ContactMode, PairMemory&, FoundTouch*);                   \
-  template bool in_contact(const MovingShape<degree>&, const MovingShape<degree>&, double);                          \
-  template double first_separation(const MovingShape<degree>&, const MovingShape<degree>&, double, double);          \
-  template Contact contact_at(const MovingShape<degree>&, const MovingShape<degree>&, double, const FoundTouch&);
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+  template bool in_contact(const MovingShape<motion>&, const MovingShape<motion>&, double);                          \
+  template double first_separation(const MovingShape<motion>&, const MovingShape<motion>&, double, double);          \
+  template Contact contact_at(const MovingShape<motion>&, const MovingShape<motion>&, double, const FoundTouch&);
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

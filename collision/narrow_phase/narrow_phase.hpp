@@ -18,11 +18,15 @@ enum class ContactMode {
 };
 
 /// A shape and its motion; refers to both.
-template <int Degree>
+template <class Motion>
 struct MovingShape {
   const PlacedShape& shape;
-  const certificates::PointMotion<Degree>& motion;
+  const Motion& motion;
 };
+
+/// One that keeps its orientation: what most tests are of.
+template <int Degree>
+using TranslatingShape = MovingShape<certificates::PointMotion<Degree>>;
 
 /// The triangles of two shapes that touch first, and when: what contact_at would look for again. It saves time and
 /// decides nothing.
@@ -45,8 +49,8 @@ struct FoundTouch {
 ///
 /// If `found` is given and meshes touch, it receives the triangles, where contact_at can use them; else it is left as
 /// it is. Precondition, here and below: where there is a mesh, both motions have started by t0 (or t).
-template <int Degree>
-double first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon,
+template <class Motion>
+double first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon,
                      ContactMode mode, FoundTouch* found = nullptr);
 
 /// What a pair remembers from test to test. It saves time and decides nothing.
@@ -66,24 +70,24 @@ struct ContactEstimate {
 /// themselves) are apart, nothing happens; the last such direction fails at a root of a polynomial of the motion's
 /// degree. Until then the pair needs no further test. If a motion changes before, the old direction is tried first; so
 /// for most pairs the exact time is never asked for. Two balls: the time of first_contact.
-template <int Degree>
-ContactEstimate estimated_first_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
+template <class Motion>
+ContactEstimate estimated_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
                                         double horizon, ContactMode mode, PairMemory& memory,
                                         FoundTouch* found = nullptr);
 
 /// Whether a and b penetrate just after t.
-template <int Degree>
-bool in_contact(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+template <class Motion>
+bool in_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t);
 
 /// The first time t in [t0, horizon] just after which a and b do not penetrate, or `never`.
-template <int Degree>
-double first_separation(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0, double horizon);
+template <class Motion>
+double first_separation(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon);
 
 /// Point, normal and features of the contact at t, a time that first_contact, in_contact or first_separation has named.
 /// In doubles: accurate to some ulps of the coordinates. `found`: what first_contact has told of the same motions; the
 /// contact is the same without it.
-template <int Degree>
-Contact contact_at(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t, const FoundTouch& found = {});
+template <class Motion>
+Contact contact_at(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t, const FoundTouch& found = {});
 
 /// The same of two balls; the first has the radius `radius_a`. Concentric balls have the normal (1, 0, 0).
 template <int Degree>

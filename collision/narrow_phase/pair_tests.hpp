@@ -1,7 +1,7 @@
 // The seam at which kinds of shapes meet: what is asked of a pair of them, as a table.
 #pragma once
 
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
 
@@ -14,9 +14,9 @@
 namespace kds::collision {
 
 /// The tests of two shapes of given kinds. They answer as the functions of narrow_phase.hpp.
-template <int Degree>
+template <class Motion>
 struct PairTests {
-  using Body = MovingShape<Degree>;
+  using Body = MovingShape<Motion>;
 
   double (*first_contact)(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch* found);
   /// A time in [t0, never] before which there is no contact; later than the horizon if there is none until then.
@@ -27,17 +27,17 @@ struct PairTests {
 };
 
 /// The tests of the kinds of two shapes.
-template <int Degree>
-const PairTests<Degree>& pair_tests(const PlacedShape& a, const PlacedShape& b);
+template <class Motion>
+const PairTests<Motion>& pair_tests(const PlacedShape& a, const PlacedShape& b);
 
-#define KDS_DECLARE(degree) extern template const PairTests<degree>& pair_tests(const PlacedShape&, const PlacedShape&);
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#define KDS_DECLARE(motion) extern template const PairTests<motion>& pair_tests(const PlacedShape&, const PlacedShape&);
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 /// Tests, given as a struct of static functions with these names, of the same pair named the other way round.
-template <int Degree, class Tests>
+template <class Motion, class Tests>
 struct Swapped {
-  using Body = MovingShape<Degree>;
+  using Body = MovingShape<Motion>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                               FoundTouch* found) {
@@ -59,12 +59,12 @@ struct Swapped {
 };
 
 /// Pair tests by the kinds of a and b, the places of their shapes in the list of Shape.
-template <int Degree>
+template <class Motion>
 class PairTable {
  public:
   static constexpr std::size_t kinds = std::variant_size_v<Shape>;
 
-  constexpr const PairTests<Degree>& of(std::size_t a, std::size_t b) const { return tests_[a][b]; }
+  constexpr const PairTests<Motion>& of(std::size_t a, std::size_t b) const { return tests_[a][b]; }
 
   /// Adds the tests of an A with each of the Others, and of them with it.
   template <class A, class... Others, class Tests>
@@ -93,17 +93,17 @@ class PairTable {
     }(std::type_identity<Shape>{});
   }
   template <class Tests>
-  static constexpr PairTests<Degree> functions_of() {
+  static constexpr PairTests<Motion> functions_of() {
     return {Tests::first_contact, Tests::apart_until, Tests::in_contact, Tests::first_separation, Tests::contact_at};
   }
   template <class A, class B, class Tests>
   constexpr void add_pair() {
     tests_[kind_of<A>()][kind_of<B>()] = functions_of<Tests>();
-    if (!std::is_same_v<A, B>) tests_[kind_of<B>()][kind_of<A>()] = functions_of<Swapped<Degree, Tests>>();
+    if (!std::is_same_v<A, B>) tests_[kind_of<B>()][kind_of<A>()] = functions_of<Swapped<Motion, Tests>>();
     given_[kind_of<A>()][kind_of<B>()] = given_[kind_of<B>()][kind_of<A>()] = true;
   }
 
-  std::array<std::array<PairTests<Degree>, kinds>, kinds> tests_{};
+  std::array<std::array<PairTests<Motion>, kinds>, kinds> tests_{};
   /// Which have been added: whether a pointer to a function is null is no constant under sanitizers (g++ 12).
   std::array<std::array<bool, kinds>, kinds> given_{};
 };

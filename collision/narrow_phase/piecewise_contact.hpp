@@ -16,14 +16,14 @@ namespace kds::collision {
 /// of their place along it. (In doubles a path that comes to rest would be lost in the roundings of its terms.)
 template <int Degree>
 DerivativeCertificate<certificates::PlaneSeparation<Degree>> parting(const Contact& contact,
-                                                                     const MovingShape<Degree>& a,
-                                                                     const MovingShape<Degree>& b) {
+                                                                     const TranslatingShape<Degree>& a,
+                                                                     const TranslatingShape<Degree>& b) {
   return {{a.motion, b.motion, contact.normal, 1.0, {}, {}}};
 }
 
 /// Whether b moves towards a along the normal just after t.
 template <int Degree>
-bool approaching(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+bool approaching(const Contact& contact, const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b) {
   if constexpr (Degree >= 3) return sign_after(parting(contact, a, b), contact.time) < 0;
   const double rate = dot(contact.normal, b.motion.velocity(contact.time) - a.motion.velocity(contact.time));
   if (rate != 0) return rate < 0;
@@ -32,7 +32,7 @@ bool approaching(const Contact& contact, const MovingShape<Degree>& a, const Mov
 
 /// When bodies that move apart along the contact's normal will turn towards each other.
 template <int Degree>
-double turning_time(const Contact& contact, const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+double turning_time(const Contact& contact, const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b) {
   const double t = contact.time;
   if constexpr (Degree >= 3) return std::max(next_up(t), failure_time(parting(contact, a, b), t));
   const double rate = dot(contact.normal, b.motion.velocity(t) - a.motion.velocity(t));
@@ -43,7 +43,7 @@ double turning_time(const Contact& contact, const MovingShape<Degree>& a, const 
 /// Where to begin to look for a contact that counts, from t0 on: later where the bodies have just been in contact, do
 /// not approach, and part before they turn. Exact signs would say whether they overlap by a rounding, and until when.
 template <class P, int Degree, class Where>
-double after_contact(const P& piece, const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
+double after_contact(const P& piece, const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t0,
                      const Where& where) {
   const double opened = opened_after_touch(piece, t0);
   if (opened == t0) return t0;
@@ -53,8 +53,8 @@ double after_contact(const P& piece, const MovingShape<Degree>& a, const MovingS
 
 /// First contact of one piece. `resolved` counts only the times at which the bodies approach.
 template <class P, int Degree, class Where>
-double first_piece_contact(const P& piece, const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t0,
-                           double horizon, ContactMode mode, Where&& where) {
+double first_piece_contact(const P& piece, const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b,
+                           double t0, double horizon, ContactMode mode, Where&& where) {
   for (double t = mode == ContactMode::resolved ? after_contact(piece, a, b, t0, where) : t0;;) {
     t = piece.first_inside(t, horizon);
     if (t == never || mode == ContactMode::transparent) return t;
@@ -70,9 +70,10 @@ double first_piece_contact(const P& piece, const MovingShape<Degree>& a, const M
 ///
 /// `Pieces`: made of (a, b, now, horizon); `every_piece` and `earliest_pieces` of it are as those of BoxAndBall, and
 /// its pieces have `earliest`, `inside`, `first_inside` and `first_outside`. `where`: contact_at.
-template <int Degree, class Pieces, Contact (*where)(const MovingShape<Degree>&, const MovingShape<Degree>&, double)>
+template <int Degree, class Pieces,
+          Contact (*where)(const TranslatingShape<Degree>&, const TranslatingShape<Degree>&, double)>
 struct PiecewiseContact {
-  using Body = MovingShape<Degree>;
+  using Body = TranslatingShape<Degree>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*) {
     if (!(t0 <= horizon)) return never;

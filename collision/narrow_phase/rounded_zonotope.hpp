@@ -42,7 +42,7 @@ namespace kds::collision {
 template <int Degree>
 class RoundedZonotope {
  public:
-  using Body = MovingShape<Degree>;
+  using Body = TranslatingShape<Degree>;
   using Quick = QuickMotion<Degree>;
   using Cell = certificates::ZonotopeCell;
 

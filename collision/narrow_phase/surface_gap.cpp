@@ -24,13 +24,14 @@ double reach(const PlacedShape& shape, const Vector3d& along) {
 }  // namespace
 
 template <int Degree>
-double gap_along(const MovingShape<Degree>& a, const MovingShape<Degree>& b, const Vector3d& normal, double t) {
+double gap_along(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Vector3d& normal,
+                 double t) {
   const Vector3d apart = b.motion.position(t) - a.motion.position(t);
   return dot(normal, apart) - reach(a.shape, normal) - reach(b.shape, normal);
 }
 
 template <int Degree>
-SurfaceGap surface_gap(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+SurfaceGap surface_gap(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t) {
   const double radius_a = ball_radius(a.shape.shape);
   const double radius_b = ball_radius(b.shape.shape);
   if (radius_a > 0 && radius_b > 0) {
@@ -42,9 +43,9 @@ SurfaceGap surface_gap(const MovingShape<Degree>& a, const MovingShape<Degree>& 
   return {gap_along(a, b, normal, t), normal};
 }
 
-#define KDS_INSTANTIATE(degree)                                                                    \
-  template SurfaceGap surface_gap(const MovingShape<degree>&, const MovingShape<degree>&, double); \
-  template double gap_along(const MovingShape<degree>&, const MovingShape<degree>&, const Vector3d&, double);
+#define KDS_INSTANTIATE(degree)                                                                              \
+  template SurfaceGap surface_gap(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double); \
+  template double gap_along(const TranslatingShape<degree>&, const TranslatingShape<degree>&, const Vector3d&, double);
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

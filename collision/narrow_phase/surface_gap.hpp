@@ -17,17 +17,18 @@ struct SurfaceGap {
 /// The gap between a and b at t, in doubles: right to some roundings of the coordinates. Precondition: neither is a
 /// mesh.
 template <int Degree>
-SurfaceGap surface_gap(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t);
+SurfaceGap surface_gap(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t);
 
 /// How far apart a and b are along a unit vector from a to b: negative where its slabs overlap. What has a gap > 0
 /// along any direction does not touch. Precondition: neither is a mesh.
 template <int Degree>
-double gap_along(const MovingShape<Degree>& a, const MovingShape<Degree>& b, const Eigen::Vector3d& normal, double t);
+double gap_along(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Eigen::Vector3d& normal,
+                 double t);
 
-#define KDS_DECLARE(degree)                                                                                        \
-  extern template SurfaceGap surface_gap(const MovingShape<degree>&, const MovingShape<degree>&, double);          \
-  extern template double gap_along(const MovingShape<degree>&, const MovingShape<degree>&, const Eigen::Vector3d&, \
-                                   double);
+#define KDS_DECLARE(degree)                                                                                         \
+  extern template SurfaceGap surface_gap(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double); \
+  extern template double gap_along(const TranslatingShape<degree>&, const TranslatingShape<degree>&,                \
+                                   const Eigen::Vector3d&, double);
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 #undef KDS_DECLARE
 

@@ -1,6 +1,6 @@
 // What the world checks of itself.
 #include "kds/audit.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace kds::collision {
 
-template <int Degree>
-void World<Degree>::audit(double t) const {
+template <class Motion>
+void BasicWorld<Motion>::audit(double t) const {
   require_whole("World::audit");
   t = std::max(t, clock_.now);
   broad_phase_->audit(t);
@@ -29,8 +29,8 @@ void World<Degree>::audit(double t) const {
   }
 }
 
-#define KDS_INSTANTIATE(degree) template class World<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

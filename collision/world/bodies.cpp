@@ -1,6 +1,6 @@
 #include "collision/world/bodies.hpp"
 
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world/bodies_image.hpp"
 
 #include <algorithm>
@@ -17,8 +17,8 @@ constexpr double jump_tolerance = 0x1p-40;
 
 }  // namespace
 
-template <int Degree>
-void Bodies<Degree>::refuse(BodyId id) const {
+template <class Motion>
+void Bodies<Motion>::refuse(BodyId id) const {
   const BodySlot slot = body_slot(id);
   const bool free = std::find(free_.begin(), free_.end(), slot) != free_.end();
   const bool retired = slot < bodies_.size() && !bodies_[slot].alive && !free;
@@ -28,16 +28,16 @@ void Bodies<Degree>::refuse(BodyId id) const {
                           (removed ? "was removed" : "has never been there"));
 }
 
-template <int Degree>
-bool Bodies<Degree>::is_jump(BodySlot slot, const Motion& to, double t) const {
-  const Eigen::Vector3d before = movers_[slot].motion.position(t);
-  const Eigen::Vector3d after = to.position(t);
+template <class Motion>
+bool Bodies<Motion>::is_jump(BodySlot slot, const Motion& to, double t) const {
+  const Eigen::Vector3d before = path(slot).position(t);
+  const Eigen::Vector3d after = path_of(to).position(t);
   const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + bodies_[slot].bounding_radius;
   return (after - before).cwiseAbs().maxCoeff() > jump_tolerance * scale;
 }
 
-template <int Degree>
-inline BodySlot Bodies<Degree>::new_slot() {
+template <class Motion>
+inline BodySlot Bodies<Motion>::new_slot() {
   if (!free_.empty()) {
     const BodySlot slot = free_.back();
     free_.pop_back();
@@ -46,11 +46,12 @@ inline BodySlot Bodies<Degree>::new_slot() {
   const auto slot = static_cast<BodySlot>(bodies_.size());
   bodies_.emplace_back();
   movers_.emplace_back();
+  if constexpr (turns<Motion>) motions_.emplace_back();
   return slot;
 }
 
-template <int Degree>
-BodySlot Bodies<Degree>::add(const Description& description, std::shared_ptr<const PlacedShape> shape,
+template <class Motion>
+BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<const PlacedShape> shape,
                              const Motion& motion) {
   const double ball = ball_radius(shape ? shape->shape : description.shape);
   const BodySlot slot = new_slot();
@@ -67,15 +68,15 @@ BodySlot Bodies<Degree>::add(const Description& description, std::shared_ptr<con
   added.sensor = description.sensor;
   sensors_ = sensors_ || description.sensor;
   added.alive = true;
-  movers_[slot].motion = motion;
+  move(slot, motion);
   movers_[slot].radius = ball > 0 ? ball : Mover::no_radius;
   accelerate_freely(slot, motion);
   ++alive_;
   return slot;
 }
 
-template <int Degree>
-void Bodies<Degree>::remove(BodySlot slot) {
+template <class Motion>
+void Bodies<Motion>::remove(BodySlot slot) {
   std::erase(waiting_, slot);  // or the next in this slot would enter in its stead
   bodies_[slot] = Body{};
   --alive_;
@@ -85,20 +86,21 @@ void Bodies<Degree>::remove(BodySlot slot) {
   free_.push_back(slot);
 }
 
-template <int Degree>
-void Bodies<Degree>::reserve(std::size_t bodies) {
+template <class Motion>
+void Bodies<Motion>::reserve(std::size_t bodies) {
   bodies_.reserve(bodies);
   movers_.reserve(bodies);
+  if constexpr (turns<Motion>) motions_.reserve(bodies);
   waiting_.reserve(bodies);
 }
 
-template <int Degree>
-bool Bodies<Degree>::waits(BodySlot slot) const {
+template <class Motion>
+bool Bodies<Motion>::waits(BodySlot slot) const {
   return std::find(waiting_.begin(), waiting_.end(), slot) != waiting_.end();
 }
 
-template <int Degree>
-std::vector<std::shared_ptr<const Mesh>> Bodies<Degree>::meshes() const {
+template <class Motion>
+std::vector<std::shared_ptr<const Mesh>> Bodies<Motion>::meshes() const {
   std::vector<std::shared_ptr<const Mesh>> result;
   for (BodySlot slot = 0; slot < bodies_.size(); ++slot) {
     if (!bodies_[slot].alive) continue;
@@ -108,8 +110,8 @@ std::vector<std::shared_ptr<const Mesh>> Bodies<Degree>::meshes() const {
   return result;
 }
 
-template <int Degree>
-typename Bodies<Degree>::Image Bodies<Degree>::image() const {
+template <class Motion>
+typename Bodies<Motion>::Image Bodies<Motion>::image() const {
   Image image;
   image.meshes = meshes();
   for (BodySlot slot = 0; slot < bodies_.size(); ++slot) {
@@ -122,19 +124,19 @@ typename Bodies<Degree>::Image Bodies<Degree>::image() const {
       to.mesh =
           static_cast<std::uint32_t>(std::find(image.meshes.begin(), image.meshes.end(), mesh) - image.meshes.begin());
     }
-    to.motion = movers_[slot].motion;
+    to.motion = motion(slot);
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
     to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume, to.sensor = b.sensor;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
-    if constexpr (Degree <= 2) to.force = free_acceleration(slot);
-    if constexpr (Degree >= 3) to.given = b.given;
+    if constexpr (Motion::degree <= 2) to.force = free_acceleration(slot);
+    if constexpr (Motion::degree >= 3) to.given = b.given;
   }
   image.generations = generations_, image.free = free_, image.waiting = waiting_;
   return image;
 }
 
-template <int Degree>
-void Bodies<Degree>::set_shape(BodySlot slot, PlacedShape placed) {
+template <class Motion>
+void Bodies<Motion>::set_shape(BodySlot slot, PlacedShape placed) {
   Body& b = bodies_[slot];
   const double ball = ball_radius(placed.shape);
   b.bounding_radius = placed.bounding_radius;
@@ -142,12 +144,13 @@ void Bodies<Degree>::set_shape(BodySlot slot, PlacedShape placed) {
   if (!(ball > 0) || !placed.rotation.isIdentity(0)) b.shape = std::make_shared<const PlacedShape>(std::move(placed));
 }
 
-template <int Degree>
-void Bodies<Degree>::become(const Image& image) {
+template <class Motion>
+void Bodies<Motion>::become(const Image& image) {
   generations_ = image.generations, free_ = image.free, waiting_ = image.waiting;
   const std::size_t count = image.bodies.size();
   bodies_.clear(), movers_.clear();
   bodies_.resize(count), movers_.resize(count);
+  if constexpr (turns<Motion>) motions_.resize(count);
   alive_ = 0;
   for (BodySlot slot = 0; slot < count; ++slot) {
     const auto& from = image.bodies[slot];
@@ -156,19 +159,19 @@ void Bodies<Degree>::become(const Image& image) {
     Body& b = bodies_[slot];
     b.alive = true, b.entered = from.entered;
     set_shape(slot, from.placed);
-    movers_[slot].motion = from.motion;
+    move(slot, from.motion);
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
     b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume, b.sensor = from.sensor;
     sensors_ = sensors_ || b.sensor;
     filters_ = filters_ || b.category != default_category || ~b.collides_with != 0;
     b.meetings = from.meetings, b.burst_start = from.burst_start;
-    if constexpr (Degree == 2) b.force = from.force;
-    if constexpr (Degree >= 3) b.given = from.given;
+    if constexpr (Motion::degree == 2) b.force = from.force;
+    if constexpr (Motion::degree >= 3) b.given = from.given;
   }
 }
 
-#define KDS_INSTANTIATE(degree) template class Bodies<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class Bodies<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

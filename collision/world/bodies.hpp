@@ -4,7 +4,8 @@
 #include "certificates/balls_together.hpp"
 #include "collision/body_description.hpp"
 #include "collision/body_id.hpp"
-#include "collision/degrees.hpp"
+#include "collision/body_motion.hpp"
+#include "collision/motions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
 
@@ -30,15 +31,16 @@ struct Force {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
 };
 struct NoForce {};
-/// From degree 3 on the whole motion that callers gave: its acceleration is not one number.
-template <int Degree>
+/// From degree 3 on the whole path that callers gave: its acceleration is not one number.
+template <class Motion>
 struct Course {
-  certificates::PointMotion<Degree> given;
+  PathOf<Motion> given;
 };
 
 /// A body, but for its motion and its radius, which the tests of balls read and which have a place of their own.
-template <int Degree>
-struct Body : std::conditional_t<Degree >= 3, Course<Degree>, std::conditional_t<Degree == 2, Force, NoForce>> {
+template <class Motion>
+struct Body
+    : std::conditional_t<Motion::degree >= 3, Course<Motion>, std::conditional_t<Motion::degree == 2, Force, NoForce>> {
   Body() {}  // not the implicit one, for which all is set to zero first
 
   double inverse_mass = 1;
@@ -57,12 +59,12 @@ struct Body : std::conditional_t<Degree >= 3, Course<Degree>, std::conditional_t
 };
 
 /// A body for the narrow phase; the shape of a ball is made for the occasion.
-template <int Degree>
-class Moving : private std::optional<PlacedShape>, public MovingShape<Degree> {
+template <class Motion>
+class Moving : private std::optional<PlacedShape>, public MovingShape<Motion> {
  public:
-  Moving(const Body<Degree>& body, const certificates::PointMotion<Degree>& path)
+  Moving(const Body<Motion>& body, const Motion& its_motion)
       : std::optional<PlacedShape>(body.shape ? std::nullopt : std::optional(placed_ball(body.bounding_radius))),
-        MovingShape<Degree>{body.shape ? *body.shape : **this, path} {}
+        MovingShape<Motion>{body.shape ? *body.shape : **this, its_motion} {}
   Moving(const Moving&) = delete;
   Moving& operator=(const Moving&) = delete;
 };
@@ -77,14 +79,14 @@ class Moving : private std::optional<PlacedShape>, public MovingShape<Degree> {
 ///
 /// Cost: O(1) each; memory for the largest number of bodies that there have been at once. Worlds from which nothing is
 /// removed keep no generations.
-template <int Degree>
+template <class Motion>
 class Bodies {
  public:
-  using Motion = certificates::PointMotion<Degree>;
-  using Description = BodyDescription<Degree>;
-  using Body = detail::Body<Degree>;
-  using Moving = detail::Moving<Degree>;
-  using Mover = certificates::MovingBall<Degree>;  ///< what the tests of balls read of a body
+  using Path = PathOf<Motion>;
+  using Description = BasicBodyDescription<Motion>;
+  using Body = detail::Body<Motion>;
+  using Moving = detail::Moving<Motion>;
+  using Mover = certificates::MovingBall<Motion::degree>;  ///< what the tests of balls read of a body: path and radius
 
   std::size_t size() const { return alive_; }
   bool contains(BodyId id) const { return alive(body_slot(id)) && generation(body_slot(id)) == body_generation(id); }
@@ -107,16 +109,27 @@ class Bodies {
   const Body& operator[](BodySlot slot) const { return bodies_[slot]; }
   Body& operator[](BodySlot slot) { return bodies_[slot]; }
   const Mover& mover(BodySlot slot) const { return movers_[slot]; }
-  const Motion& motion(BodySlot slot) const { return movers_[slot].motion; }
-  Moving moving(BodySlot slot) const { return Moving(bodies_[slot], movers_[slot].motion); }
+  const Motion& motion(BodySlot slot) const {
+    if constexpr (turns<Motion>) {
+      return motions_[slot];
+    } else {
+      return movers_[slot].motion;
+    }
+  }
+  /// The path of its centre.
+  const Path& path(BodySlot slot) const { return movers_[slot].motion; }
+  Moving moving(BodySlot slot) const { return Moving(bodies_[slot], motion(slot)); }
   PlacedShape shape(BodySlot slot) const { return moving(slot).shape; }
   /// Whether no other body changes its motion.
   bool fixed(BodySlot slot) const { return bodies_[slot].inverse_mass == 0; }
 
-  void move(BodySlot slot, const Motion& motion) { movers_[slot].motion = motion; }
+  void move(BodySlot slot, const Motion& motion) {
+    movers_[slot].motion = path_of(motion);
+    if constexpr (turns<Motion>) motions_[slot] = motion;
+  }
   /// Half the acceleration that the body has by itself: that of the motion that callers gave last.
-  Eigen::Vector3d free_acceleration(BodySlot slot) const requires(Degree <= 2) {
-    if constexpr (Degree == 2) {
+  Eigen::Vector3d free_acceleration(BodySlot slot) const requires(Motion::degree <= 2) {
+    if constexpr (Motion::degree == 2) {
       return bodies_[slot].force;
     } else {
       return Eigen::Vector3d::Zero();
@@ -125,15 +138,15 @@ class Bodies {
   /// The same at t, and its derivatives up to factors: coefficient `order` >= 2 about t of the motion that callers
   /// gave.
   Eigen::Vector3d free_term(BodySlot slot, [[maybe_unused]] std::size_t order, [[maybe_unused]] double t) const {
-    if constexpr (Degree >= 3) {
+    if constexpr (Motion::degree >= 3) {
       return bodies_[slot].given.restarted(t).coefficients[order];
     } else {
       return free_acceleration(slot);
     }
   }
   void accelerate_freely(BodySlot slot, const Motion& motion) {
-    if constexpr (Degree == 2) bodies_[slot].force = motion.coefficients[2];
-    if constexpr (Degree >= 3) bodies_[slot].given = motion;
+    if constexpr (Motion::degree == 2) bodies_[slot].force = path_of(motion).coefficients[2];
+    if constexpr (Motion::degree >= 3) bodies_[slot].given = path_of(motion);
   }
   /// Whether a body that takes up another motion at t is then elsewhere, by more than rounding.
   bool is_jump(BodySlot slot, const Motion& to, double t) const;
@@ -177,6 +190,7 @@ class Bodies {
   void set_shape(BodySlot slot, PlacedShape placed);
 
   std::vector<Mover> movers_;
+  std::vector<Motion> motions_;  ///< by slot, where bodies turn
   std::vector<Body> bodies_;
   /// By slot, up to the last from which a body was removed: of the body that is there, or of the next.
   std::vector<std::uint32_t> generations_;
@@ -187,8 +201,8 @@ class Bodies {
   bool sensors_ = false;
 };
 
-#define KDS_DECLARE(degree) extern template class Bodies<degree>;
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#define KDS_DECLARE(motion) extern template class Bodies<motion>;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

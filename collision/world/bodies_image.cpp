@@ -1,7 +1,7 @@
 // The image of a world's bodies, written, read and checked.
 #include "collision/world/bodies_image.hpp"
 
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape_archive.hpp"
 #include "collision/world/image_tools.hpp"
@@ -32,9 +32,9 @@ void check_shape(const PlacedShape& placed, std::size_t slot) {
 
 }  // namespace
 
-template <int Degree>
+template <class Motion>
 template <class Archive>
-void Bodies<Degree>::Image::mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
+void Bodies<Motion>::Image::mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
                                  const std::vector<std::shared_ptr<const Mesh>>& known) {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Mesh::Triangle> triangles;
@@ -57,33 +57,33 @@ void Bodies<Degree>::Image::mesh(Archive& archive, std::shared_ptr<const Mesh>& 
   }
 }
 
-template <int Degree>
+template <class Motion>
 template <class Archive>
-void Bodies<Degree>::Image::body(Archive& archive, One& body) const {
+void Bodies<Motion>::Image::body(Archive& archive, One& body) const {
   archive(body.alive);
   if (!body.alive) return;
   archive_shape(archive, body.placed, body.mesh, meshes);
   archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category,
           body.collides_with, body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
-  if constexpr (Degree >= 3) archive(body.given);
+  if constexpr (Motion::degree >= 3) archive(body.given);
 }
 
-template <int Degree>
+template <class Motion>
 template <class Archive>
-void Bodies<Degree>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
+void Bodies<Motion>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
   archive.each(meshes, [&](auto& one) { mesh(archive, one, known); });
   archive.each(bodies, [&](One& one) { body(archive, one); });
   archive(generations, free, waiting);
 }
 
-template <int Degree>
-void Bodies<Degree>::Image::check(double now) const {
+template <class Motion>
+void Bodies<Motion>::Image::check(double now) const {
   if (bodies.size() > no_body) image::fail("bodies: there are more than there are slots");
   if (generations.size() > bodies.size()) image::fail("generations: there are more than there are slots");
   for (std::size_t i = 0; i < waiting.size(); ++i) {
     image::require(alive(waiting[i]) && !bodies[waiting[i]].entered, "waiting", i, "is no body that waits to enter");
-    image::require(bodies[waiting[i]].motion.start <= now, "waiting", i, "its motion begins after now");
+    image::require(path_of(bodies[waiting[i]].motion).start <= now, "waiting", i, "its motion begins after now");
   }
   for (std::size_t slot = 0; slot < bodies.size(); ++slot) {
     const One& body = bodies[slot];
@@ -91,14 +91,14 @@ void Bodies<Degree>::Image::check(double now) const {
     if (!body.alive) continue;
     check_shape(body.placed, slot);
     need(body.motion.finite(), "its motion is not finite");
-    need(!body.entered || body.motion.start <= now, "its motion begins after now");
+    need(!body.entered || path_of(body.motion).start <= now, "its motion begins after now");
     const bool has_mass = std::isfinite(body.mass) && body.mass > 0 && body.inverse_mass == 1 / body.mass;
     need(has_mass || body.inverse_mass == 0, "its mass is not > 0, or not that of its inverse");
     need(body.restitution >= 0 && body.restitution <= 1, "its restitution is not in [0, 1]");
     need(body.volume == BoundingVolume::shape || body.volume == BoundingVolume::sphere, "its volume is unknown");
     need(image::is_past(body.burst_start, now), "its meetings are counted from a time after now");
     need(body.force.allFinite(), "its acceleration is not finite");
-    if constexpr (Degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
+    if constexpr (Motion::degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
   }
   std::vector<char> listed(bodies.size());
   for (std::size_t i = 0; i < free.size(); ++i) {
@@ -113,11 +113,11 @@ void Bodies<Degree>::Image::check(double now) const {
   }
 }
 
-#define KDS_INSTANTIATE(degree)                                                                                        \
-  template struct Bodies<degree>::Image;                                                                               \
-  template void Bodies<degree>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&); \
-  template void Bodies<degree>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion)                                                                                        \
+  template struct Bodies<motion>::Image;                                                                               \
+  template void Bodies<motion>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&); \
+  template void Bodies<motion>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

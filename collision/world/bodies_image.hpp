@@ -11,8 +11,8 @@
 
 namespace kds::collision {
 
-template <int Degree>
-struct Bodies<Degree>::Image {
+template <class Motion>
+struct Bodies<Motion>::Image {
   struct One {
     bool alive = false;
     bool entered = false;
@@ -26,7 +26,7 @@ struct Bodies<Degree>::Image {
     std::uint64_t meetings = 0;
     double burst_start = 0;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    Motion given{};  ///< of degree 3 and above, in place of the force
+    Path given{};  ///< of degree 3 and above, in place of the force
   };
 
   std::vector<std::shared_ptr<const Mesh>> meshes;

@@ -1,5 +1,5 @@
 // Impacts on clusters: what is struck passes it on to all that leans on it, at once.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/cluster_rules.hpp"
 #include "collision/world/resting_contacts.hpp"
@@ -25,8 +25,8 @@ constexpr double struck_precision = 0x1p-8;
 
 /// The bodies and contacts that an impact reaches, one after the other, from where it happens: solved by sweeps
 /// [Cryer71] over those whose bodies have changed.
-template <int Degree>
-class RestingContacts<Degree>::Neighbourhood {
+template <class Motion>
+class RestingContacts<Motion>::Neighbourhood {
  public:
   /// From a contact on, which may be a resting one. `least`: the rate at which it is to part. `span`: s, of bodies in
   /// no cluster.
@@ -97,7 +97,7 @@ class RestingContacts<Degree>::Neighbourhood {
     before_.push_back(id == no_body ? Vector3d(Vector3d::Zero()) : all_.velocity(id));
     velocities.push_back(before_.back());
     halves.push_back(Vector3d::Zero());
-    if (id != no_body) halves.back() = 0.5 * all_.bodies_.motion(id).acceleration(all_.clock_.now);
+    if (id != no_body) halves.back() = 0.5 * all_.bodies_.path(id).acceleration(all_.clock_.now);
     known_.push_back(0);
     of_body_.emplace_back();
     return static_cast<std::uint32_t>(bodies.size() - 1);
@@ -240,8 +240,8 @@ class RestingContacts<Degree>::Neighbourhood {
 
 /// A body that is struck joins the cluster of what it strikes, or stays in its own; what rested wakes. The time at
 /// which their span ends, which is now if it is to begin.
-template <int Degree>
-double RestingContacts<Degree>::wake(const Contact& contact, bool joins) {
+template <class Motion>
+double RestingContacts<Motion>::wake(const Contact& contact, bool joins) {
   const double now = clock_.now;
   const auto free = [this](BodySlot id) { return id != no_body && !bodies_.fixed(id); };
   double ends = never;
@@ -263,8 +263,8 @@ double RestingContacts<Degree>::wake(const Contact& contact, bool joins) {
 }
 
 /// A contact in a cluster begins to last, with the room that its neighbours have, which says whether there are many.
-template <int Degree>
-typename RestingContacts<Degree>::Slot RestingContacts<Degree>::add_to_cluster(const Contact& contact) {
+template <class Motion>
+typename RestingContacts<Motion>::Slot RestingContacts<Motion>::add_to_cluster(const Contact& contact) {
   Contact lasting = contact;
   lasting.since = clock_.now;
   double part = gaps_.bends(contact) ? room_of_curves : room_of_planes;
@@ -283,8 +283,8 @@ typename RestingContacts<Degree>::Slot RestingContacts<Degree>::add_to_cluster(c
 
 /// The law of impacts [Moreau88]: of all velocities that no contact forbids those nearest to the ones before, by mass;
 /// and as far beyond as restitution says. Only what the impact reaches is looked at.
-template <int Degree>
-void RestingContacts<Degree>::impact(const Contact& contact, double restitution) {
+template <class Motion>
+void RestingContacts<Motion>::impact(const Contact& contact, double restitution) {
   const double now = clock_.now;
   double bounce = never;  // flights that are shorter are none
   double weight = 0;
@@ -321,7 +321,7 @@ void RestingContacts<Degree>::impact(const Contact& contact, double restitution)
     const Motion before = bodies_.motion(id).restarted(now);
     Motion motion = before;
     motion.coefficients[1] = near.velocities[i];
-    if constexpr (Degree >= 2) motion.coefficients[2] = near.halves[i];
+    if constexpr (Motion::degree >= 2) motion.coefficients[2] = near.halves[i];
     if (!(motion == before)) listener_.take_up(id, motion);
   }
   if (!solved && slot == none) add_to_cluster(contact);  // What is squeezed does not bounce.
@@ -333,8 +333,8 @@ void RestingContacts<Degree>::impact(const Contact& contact, double restitution)
   }
 }
 
-#define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -42,8 +42,8 @@ inline bool solve(std::vector<Eigen::Vector3d>& rates, std::vector<Touch>& touch
 
 /// A span of a cluster that begins now: what its bodies do in it. Places among rates are those of the island, and the
 /// walls come last.
-template <int Degree>
-class RestingContacts<Degree>::Span {
+template <class Motion>
+class RestingContacts<Motion>::Span {
   using Vector3d = Eigen::Vector3d;
 
  public:
@@ -51,7 +51,7 @@ class RestingContacts<Degree>::Span {
     const double now = all.clock_.now;
     for (const BodySlot id : island.bodies) {
       velocities.push_back(all.velocity(id));
-      halves.push_back(0.5 * all.bodies_.motion(id).acceleration(now));
+      halves.push_back(0.5 * all.bodies_.path(id).acceleration(now));
     }
     velocities.push_back(Vector3d::Zero());
     halves.push_back(Vector3d::Zero());
@@ -138,7 +138,11 @@ class RestingContacts<Degree>::Span {
     }
     for (std::size_t i = 0; i < island_.free; ++i) velocities[i] = rate, halves[i] = half;
     proven_.assign(touches_.size(), 1);
-    for (const Slot slot : island_.contacts) all_.contacts_[slot].push = 0;
+    for (const Slot slot : island_.contacts) {
+      Contact& contact = all_.contacts_[slot];
+      contact.push = 0;
+      contact.aim = contact.gap;
+    }
   }
 
   void prove() {

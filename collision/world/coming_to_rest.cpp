@@ -1,5 +1,5 @@
 // When bodies that are slow come to rest.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/cluster_rules.hpp"
 #include "collision/world/resting_contacts.hpp"
@@ -17,8 +17,8 @@ using namespace cluster;
 /// When bodies that go on like this come to rest, `never` if they do not: something at rest carries them, no contact is
 /// perfectly elastic, all have met others that are free (what slides alone on a plane slides on), and have been slow
 /// for long enough.
-template <int Degree>
-double RestingContacts<Degree>::comes_to_rest(const Island& island, const std::vector<Vector3d>& velocities) {
+template <class Motion>
+double RestingContacts<Motion>::comes_to_rest(const Island& island, const std::vector<Vector3d>& velocities) {
   const bool carried = std::any_of(island.contacts.begin(), island.contacts.end(), [this](Slot slot) {
     const Contact& contact = contacts_[slot];
     return contact.push > 0 && (contact.b == no_body || bodies_.fixed(contact.a) || bodies_.fixed(contact.b));
@@ -49,8 +49,8 @@ double RestingContacts<Degree>::comes_to_rest(const Island& island, const std::v
 }
 
 /// Bodies that slide on slowly, and are not accelerated, come to rest after a while.
-template <int Degree>
-void RestingContacts<Degree>::watch(const Island& island, std::vector<Motion>& motions) {
+template <class Motion>
+void RestingContacts<Motion>::watch(const Island& island, std::vector<Motion>& motions) {
   bool slides = false;
   std::vector<Vector3d> velocities;
   for (std::size_t i = 0; i < motions.size(); ++i) {
@@ -68,8 +68,8 @@ void RestingContacts<Degree>::watch(const Island& island, std::vector<Motion>& m
   for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[1] = Vector3d::Zero();
 }
 
-#define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

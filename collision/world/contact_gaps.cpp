@@ -30,25 +30,25 @@ constexpr double nearest_part = 0x1p-26;
 
 }  // namespace
 
-template <int Degree>
-double ContactGaps<Degree>::size(const Contact& contact) const {
+template <class Motion>
+double ContactGaps<Motion>::size(const Contact& contact) const {
   const double size = bodies_[contact.a].bounding_radius;
   return contact.b == no_body ? size : std::min(size, bodies_[contact.b].bounding_radius);
 }
 
-template <int Degree>
-bool ContactGaps<Degree>::balls(const Contact& contact) const {
+template <class Motion>
+bool ContactGaps<Motion>::balls(const Contact& contact) const {
   return contact.b != no_body && bodies_.mover(contact.a).radius > 0 && bodies_.mover(contact.b).radius > 0;
 }
 
-template <int Degree>
-bool ContactGaps<Degree>::has_mesh(const Contact& contact) const {
+template <class Motion>
+bool ContactGaps<Motion>::has_mesh(const Contact& contact) const {
   if (contact.b == no_body || balls(contact)) return false;
   return collision::has_mesh(bodies_.shape(contact.a).shape) || collision::has_mesh(bodies_.shape(contact.b).shape);
 }
 
-template <int Degree>
-bool ContactGaps<Degree>::turns(const Contact& contact) const {
+template <class Motion>
+bool ContactGaps<Motion>::turns(const Contact& contact) const {
   if (contact.b == no_body) return false;
   if (balls(contact)) return true;
   const PlacedShape a = bodies_.shape(contact.a);
@@ -64,19 +64,19 @@ bool ContactGaps<Degree>::turns(const Contact& contact) const {
   });
 }
 
-template <int Degree>
-double ContactGaps<Degree>::parting(const Contact& contact) const {
-  Vector3d apart = -bodies_.motion(contact.a).velocity(clock_.now);
-  if (contact.b != no_body) apart += bodies_.motion(contact.b).velocity(clock_.now);
+template <class Motion>
+double ContactGaps<Motion>::parting(const Contact& contact) const {
+  Vector3d apart = -bodies_.path(contact.a).velocity(clock_.now);
+  if (contact.b != no_body) apart += bodies_.path(contact.b).velocity(clock_.now);
   return dot(contact.normal, apart);
 }
 
-template <int Degree>
-double ContactGaps<Degree>::along_normal(const Contact& contact) const {
+template <class Motion>
+double ContactGaps<Motion>::along_normal(const Contact& contact) const {
   const double now = clock_.now;
   if (contact.b == no_body) {
     const Eigen::Index axis = contact.wall / 2;
-    const double place = bodies_.motion(contact.a).position(now)[axis];
+    const double place = bodies_.path(contact.a).position(now)[axis];
     const double radius = bodies_[contact.a].bounding_radius;
     return contact.wall % 2 != 0 ? (walls_->max[axis] - radius) - place : place - (walls_->min[axis] + radius);
   }
@@ -87,14 +87,14 @@ double ContactGaps<Degree>::along_normal(const Contact& contact) const {
   }
   if (!has_mesh(contact)) return gap_along(bodies_.moving(contact.a), bodies_.moving(contact.b), contact.normal, now);
   if (contact.since == -never) return 0;  // It has come from outside the cluster.
-  const auto& a = bodies_.motion(contact.a);
-  const auto& b = bodies_.motion(contact.b);
+  const auto& a = bodies_.path(contact.a);
+  const auto& b = bodies_.path(contact.b);
   const Vector3d went = (b.position(now) - b.position(contact.since)) - (a.position(now) - a.position(contact.since));
   return contact.gap + dot(contact.normal, went);
 }
 
-template <int Degree>
-double ContactGaps<Degree>::nearest(Contact& contact) const {
+template <class Motion>
+double ContactGaps<Motion>::nearest(Contact& contact) const {
   if (contact.b == no_body || has_mesh(contact)) return along_normal(contact);
   if (balls(contact)) {
     const SurfaceGap gap = after(contact, Vector3d::Zero());
@@ -109,8 +109,8 @@ double ContactGaps<Degree>::nearest(Contact& contact) const {
   return gap.width;
 }
 
-template <int Degree>
-SurfaceGap ContactGaps<Degree>::after(const Contact& contact, const Vector3d& displacement) const {
+template <class Motion>
+SurfaceGap ContactGaps<Motion>::after(const Contact& contact, const Vector3d& displacement) const {
   if (balls(contact)) {
     const double now = clock_.now;
     const auto& a = bodies_.mover(contact.a);
@@ -121,11 +121,11 @@ SurfaceGap ContactGaps<Degree>::after(const Contact& contact, const Vector3d& di
   }
   const auto b = bodies_.moving(contact.b);
   const auto later = moved(b.motion, displacement);
-  return surface_gap(bodies_.moving(contact.a), MovingShape<Degree>{b.shape, later}, clock_.now);
+  return surface_gap(bodies_.moving(contact.a), MovingShape<Motion>{b.shape, later}, clock_.now);
 }
 
-template <int Degree>
-bool ContactGaps<Degree>::renew(Contact& contact) const {
+template <class Motion>
+bool ContactGaps<Motion>::renew(Contact& contact) const {
   const double now = clock_.now;
   contact.gap = nearest(contact);
   contact.since = now;
@@ -140,7 +140,7 @@ bool ContactGaps<Degree>::renew(Contact& contact) const {
   for (const double part : {nearest_part, cluster::room_of_many}) {
     const Vector3d nearer = -(contact.gap + part * size(contact)) * contact.normal;
     const auto motion = moved(b.motion, nearer);
-    const MovingShape<Degree> touching{b.shape, motion};
+    const MovingShape<Motion> touching{b.shape, motion};
     if (!in_contact(a, touching, now)) continue;
     if (!mesh || !round) return true;
     const collision::Contact touch = contact_at(a, touching, now);
@@ -156,37 +156,37 @@ bool ContactGaps<Degree>::renew(Contact& contact) const {
   return false;
 }
 
-template <int Degree>
-bool ContactGaps<Degree>::proven(const Contact& contact, double rate, double half, double span) const {
+template <class Motion>
+bool ContactGaps<Motion>::proven(const Contact& contact, double rate, double half, double span) const {
   if (contact.b == no_body) return true;
   const double gap = along_normal(contact) + cluster::rounding * size(contact);
   return gap >= 0 && gap + (rate + std::min(half, 0.0) * span) * span >= 0;
 }
 
-template <int Degree>
-bool ContactGaps<Degree>::deeper(const Contact& contact, double by) const {
+template <class Motion>
+bool ContactGaps<Motion>::deeper(const Contact& contact, double by) const {
   if (!(overlap(contact) > by)) return false;
   if (contact.b == no_body) return true;
   const auto b = bodies_.moving(contact.b);
   const auto apart = moved(b.motion, by * contact.normal);
-  return in_contact(bodies_.moving(contact.a), MovingShape<Degree>{b.shape, apart}, clock_.now);
+  return in_contact(bodies_.moving(contact.a), MovingShape<Motion>{b.shape, apart}, clock_.now);
 }
 
-template <int Degree>
-double ContactGaps<Degree>::deepest_overlap(const Contact& contact) const {
+template <class Motion>
+double ContactGaps<Motion>::deepest_overlap(const Contact& contact) const {
   const double now = clock_.now;
   const double spacing = next_up(std::abs(now)) - std::abs(now);
   double coordinates = 0;
   for (const BodySlot id : {contact.a, contact.b}) {
     if (id == no_body) continue;
-    const auto& motion = bodies_.motion(id);
-    coordinates += 0x1p-46 * motion.position(now).cwiseAbs().maxCoeff() + 4 * spacing * norm(motion.velocity(now));
+    const auto& path = bodies_.path(id);
+    coordinates += 0x1p-46 * path.position(now).cwiseAbs().maxCoeff() + 4 * spacing * norm(path.velocity(now));
   }
   return 0x1p-30 * size(contact) + coordinates;
 }
 
-#define KDS_INSTANTIATE(degree) template class ContactGaps<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class ContactGaps<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,7 +1,7 @@
 // What is between bodies that rest on each other.
 #pragma once
 
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/narrow_phase/surface_gap.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
@@ -16,12 +16,12 @@ namespace kds::collision {
 
 /// Gaps and normals of resting contacts, at clock.now, to some roundings of the coordinates. It has no state of its
 /// own.
-template <int Degree>
+template <class Motion>
 class ContactGaps {
  public:
   using Contact = detail::RestingContact;
 
-  ContactGaps(const Bodies<Degree>& bodies, const std::optional<Walls>& walls, const Clock& clock)
+  ContactGaps(const Bodies<Motion>& bodies, const std::optional<Walls>& walls, const Clock& clock)
       : bodies_(bodies), walls_(walls), clock_(clock) {}
 
   /// The bounding radius of the smaller of the two.
@@ -61,13 +61,13 @@ class ContactGaps {
   /// Most contacts are of two balls, for which a tenth of the work will do.
   bool balls(const Contact& contact) const;
 
-  const Bodies<Degree>& bodies_;
+  const Bodies<Motion>& bodies_;
   const std::optional<Walls>& walls_;
   const Clock& clock_;
 };
 
-#define KDS_DECLARE(degree) extern template class ContactGaps<degree>;
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#define KDS_DECLARE(motion) extern template class ContactGaps<motion>;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

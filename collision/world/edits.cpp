@@ -1,5 +1,5 @@
 // How bodies come into the world, change and go.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
 #include "collision/world.hpp"
@@ -15,14 +15,14 @@
 namespace kds::collision {
 namespace {
 
-template <int Degree>
-void validate(const BodyDescription<Degree>& description) {
+template <class Motion>
+void validate(const BasicBodyDescription<Motion>& description) {
   const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
   if (description.motion.empty()) fail("motion: has no piece");
   for (std::size_t i = 0; i < description.motion.size(); ++i) {
     const auto& piece = description.motion[i];
     if (!in_range(piece)) refuse_motion(piece, "motion[" + std::to_string(i) + "]");
-    if (i > 0 && !(piece.start > description.motion[i - 1].start)) {
+    if (i > 0 && !(path_of(piece).start > path_of(description.motion[i - 1]).start)) {
       fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
     }
   }
@@ -39,8 +39,8 @@ void validate(const BodyDescription<Degree>& description) {
 
 }  // namespace
 
-template <int Degree>
-void World<Degree>::reserve(std::size_t bodies) {
+template <class Motion>
+void BasicWorld<Motion>::reserve(std::size_t bodies) {
   require_editable("World::reserve");
   if (bodies > no_body) {
     throw std::length_error("World::reserve: " + std::to_string(bodies) + " bodies are more than there are slots");
@@ -49,8 +49,8 @@ void World<Degree>::reserve(std::size_t bodies) {
   walls_.reserve(bodies);
 }
 
-template <int Degree>
-BodyId World<Degree>::add_body(const Description& description) {
+template <class Motion>
+BodyId BasicWorld<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
   count_edit();
@@ -65,14 +65,14 @@ BodyId World<Degree>::add_body(const Description& description) {
 }
 
 /// No shape is that of a ball that is not turned.
-template <int Degree>
-inline BodySlot World<Degree>::put(const Description& description, std::shared_ptr<const PlacedShape> shape) {
+template <class Motion>
+inline BodySlot BasicWorld<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape) {
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
-  while (std::next(piece) != description.motion.end() && std::next(piece)->start <= clock_.now) ++piece;
+  while (std::next(piece) != description.motion.end() && path_of(*std::next(piece)).start <= clock_.now) ++piece;
   if (has_mesh(description.shape)) make_room_for_meshes();
   const BodySlot slot = bodies_.add(description, std::move(shape), *piece);
-  if (piece->start <= clock_.now) {
+  if (path_of(*piece).start <= clock_.now) {
     bodies_.wait(slot);
     ++piece;
   }
@@ -82,8 +82,8 @@ inline BodySlot World<Degree>::put(const Description& description, std::shared_p
 }
 
 /// From the first mesh on all volumes have room for contact gaps: those of bodies that are there already get it now.
-template <int Degree>
-void World<Degree>::make_room_for_meshes() {
+template <class Motion>
+void BasicWorld<Motion>::make_room_for_meshes() {
   if (!volumes_.make_room_for_meshes()) return;
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (bodies_[slot].entered) update_volume(slot, volumes_.box(slot));
@@ -91,15 +91,15 @@ void World<Degree>::make_room_for_meshes() {
 }
 
 /// Makes known a volume that is another though nothing has moved.
-template <int Degree>
-void World<Degree>::update_volume(BodySlot slot, const KineticBox<Degree>& box) {
+template <class Motion>
+void BasicWorld<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degree>& box) {
   if (bodies_.collides(slot)) broad_phase_->update(slot, box, clock_.now, pairs_);
   pairs_.box_changed(slot);
   volumes_.schedule(slot);
 }
 
-template <int Degree>
-void World<Degree>::enter_new_bodies() {
+template <class Motion>
+void BasicWorld<Motion>::enter_new_bodies() {
   const std::vector<BodySlot> entering = bodies_.take_waiting();
   // What is due now among the others comes first, lest it count as what the new ones bring.
   while (broad_phase_->advance(clock_.now, pairs_)) {
@@ -112,12 +112,12 @@ void World<Degree>::enter_new_bodies() {
     b.entered = true;
     entries.push_back({slot, nullptr});
   }
-  const auto boxes = std::make_unique_for_overwrite<KineticBox<Degree>[]>(entries.size());
+  const auto boxes = std::make_unique_for_overwrite<KineticBox<Motion::degree>[]>(entries.size());
   // The functions of callers are called by their own thread, and in order.
   const std::size_t threads = volumes_.any_from_callers() ? 1 : threads_for(entries.size(), options_.threads);
   in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      entries[i].box = new (&boxes[i]) KineticBox<Degree>(volumes_.renew(entries[i].slot));  // not copied there
+      entries[i].box = new (&boxes[i]) KineticBox<Motion::degree>(volumes_.renew(entries[i].slot));  // not copied there
     }
   });
   const std::span<const Entry> all(entries);
@@ -138,21 +138,21 @@ void World<Degree>::enter_new_bodies() {
   for (const Entry& entry : entries) volumes_.schedule(entry.slot);
 }
 
-template <int Degree>
-void World<Degree>::update_motion(BodyId id, const Motion& motion) {
+template <class Motion>
+void BasicWorld<Motion>::update_motion(BodyId id, const Motion& motion) {
   require_editable("World::update_motion");
   const BodySlot slot = bodies_.slot_of(id);
   if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
-  if (motion.start > clock_.now) {
-    throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(motion.start) +
+  if (path_of(motion).start > clock_.now) {
+    throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(path_of(motion).start) +
                                 ", after the clock at " + std::to_string(clock_.now));
   }
   count_edit();
   change_or_fail([&] { give(slot, motion); });
 }
 
-template <int Degree>
-void World<Degree>::give(BodySlot slot, const Motion& motion) {
+template <class Motion>
+void BasicWorld<Motion>::give(BodySlot slot, const Motion& motion) {
   scripts_.clear(slot);
   ++counters_.motion_updates;
   bodies_.accelerate_freely(slot, motion);
@@ -168,8 +168,8 @@ void World<Degree>::give(BodySlot slot, const Motion& motion) {
   resting_.disturb(slot);
 }
 
-template <int Degree>
-void World<Degree>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
+template <class Motion>
+void BasicWorld<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   bodies_.move(slot, motion);
   pairs_.prefetch(slot);  // while the broad phase is at work
@@ -181,16 +181,16 @@ void World<Degree>::set_motion(BodySlot slot, const Motion& motion, bool jumped)
   volumes_.schedule(slot);
 }
 
-template <int Degree>
-void World<Degree>::remove_body(BodyId id) {
+template <class Motion>
+void BasicWorld<Motion>::remove_body(BodyId id) {
   require_editable("World::remove_body");
   const BodySlot slot = bodies_.slot_of(id);
   count_edit();
   change_or_fail([&] { take_out(slot); });
 }
 
-template <int Degree>
-void World<Degree>::take_out(BodySlot slot) {
+template <class Motion>
+void BasicWorld<Motion>::take_out(BodySlot slot) {
   resting_.forget(slot);
   scripts_.clear(slot);
   walls_.remove(slot);
@@ -201,8 +201,8 @@ void World<Degree>::take_out(BodySlot slot) {
   bodies_.remove(slot);
 }
 
-#define KDS_INSTANTIATE(degree) template class World<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

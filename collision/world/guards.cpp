@@ -1,5 +1,5 @@
 // What may be asked of a world at which moment, and what is left of it when something throws.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world.hpp"
 
 #include <exception>
@@ -9,13 +9,13 @@
 namespace kds::collision {
 
 /// Keeps the first reason: what is thrown later follows from it.
-template <int Degree>
-void World<Degree>::note_failure() {
+template <class Motion>
+void BasicWorld<Motion>::note_failure() {
   if (!failure_) failure_ = std::current_exception();
 }
 
-template <int Degree>
-void World<Degree>::refuse(const char* function) const {
+template <class Motion>
+void BasicWorld<Motion>::refuse(const char* function) const {
   const std::string called = std::string(function) + ": ";
   if (!failure_ && volumes_.calling()) throw std::logic_error(called + "a box function must not change the world");
   if (!failure_) throw std::logic_error(called + "must not be called from within a callback");
@@ -29,8 +29,8 @@ void World<Degree>::refuse(const char* function) const {
   throw std::logic_error(called + "the world can no longer be used, since a change was interrupted half-way: " + why);
 }
 
-#define KDS_INSTANTIATE(degree) template class World<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

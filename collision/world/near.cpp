@@ -1,6 +1,6 @@
 // What a world says of what is near.
 #include "collision/broad_phase/swept_box.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -12,9 +12,9 @@ namespace kds::collision {
 
 /// `ask(look)` asks the broad phase. What it names depends on which it is; meets(slot), of all that are named, does
 /// not.
-template <int Degree>
+template <class Motion>
 template <class Ask, class Meets>
-void World<Degree>::answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const {
+void BasicWorld<Motion>::answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const {
   require_whole(function);
   if (volumes_.calling()) {
     throw std::logic_error(std::string(function) + ": must not be called from within a box function");
@@ -41,8 +41,9 @@ void World<Degree>::answer(const char* function, const Ask& ask, const Meets& me
   for (const BodyId id : named) visit(id);
 }
 
-template <int Degree>
-void World<Degree>::visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max, BodyVisitor visit) const {
+template <class Motion>
+void BasicWorld<Motion>::visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
+                                           BodyVisitor visit) const {
   if (!(min.array() <= max.array()).all()) {
     throw std::invalid_argument("World::visit_overlapping: min must not be above max, and both must be numbers");
   }
@@ -53,8 +54,8 @@ void World<Degree>::visit_overlapping(const Eigen::Vector3d& min, const Eigen::V
       "World::visit_overlapping", ask, [&](BodySlot slot) { return volumes_.meets(slot, box, t); }, visit);
 }
 
-template <int Degree>
-void World<Degree>::visit_swept(const KineticBox<Degree>& box, double until, BodyVisitor visit) const {
+template <class Motion>
+void BasicWorld<Motion>::visit_swept(const KineticBox<Motion::degree>& box, double until, BodyVisitor visit) const {
   const double from = now();
   if (!box.min.finite() || !box.max.finite()) {
     throw std::invalid_argument("World::visit_swept: the box is not finite");
@@ -70,8 +71,8 @@ void World<Degree>::visit_swept(const KineticBox<Degree>& box, double until, Bod
       visit);
 }
 
-#define KDS_INSTANTIATE(degree) template class World<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -2,7 +2,7 @@
 #include "certificates/ball_separation.hpp"
 #include "certificates/balls_together.hpp"
 #include "certificates/conjunction.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/pairs.hpp"
@@ -34,7 +34,7 @@ constexpr double touch_rounding = 0x1p-40;
 
 /// Whether bodies in contact at t only touch: at rest in their places, and a rounding farther apart, they are free.
 template <int Degree>
-bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+bool only_touching(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t) {
   const Contact contact = contact_at(a, b, t);
   certificates::PointMotion<Degree> place_a = a.motion.restarted(t);
   certificates::PointMotion<Degree> place_b = b.motion.restarted(t);
@@ -42,21 +42,21 @@ bool only_touching(const MovingShape<Degree>& a, const MovingShape<Degree>& b, d
   const double size = place_a.coefficients[0].cwiseAbs().maxCoeff() + place_b.coefficients[0].cwiseAbs().maxCoeff() +
                       std::min(a.shape.bounding_radius, b.shape.bounding_radius);
   place_b.coefficients[0] += touch_rounding * size * contact.normal;
-  return !in_contact(MovingShape<Degree>{a.shape, place_a}, MovingShape<Degree>{b.shape, place_b}, t);
+  return !in_contact(TranslatingShape<Degree>{a.shape, place_a}, TranslatingShape<Degree>{b.shape, place_b}, t);
 }
 
 }  // namespace
 
-template <int Degree>
-bool Pairs<Degree>::balls_are_quick() const {
+template <class Motion>
+bool Pairs<Motion>::balls_are_quick() const {
   return options_.response != Response::none;
 }
 
 /// Most tests by far are these, and need two cache lines. They change nothing but estimates_: for some of the dirty
 /// pairs, a time before which the balls do not meet, as BallsTogether tells it. Precondition: balls_are_quick().
-template <int Degree>
-void Pairs<Degree>::estimate_balls(std::size_t first, std::size_t last) {
-  certificates::BallsTogether<Degree> together;
+template <class Motion>
+void Pairs<Motion>::estimate_balls(std::size_t first, std::size_t last) {
+  certificates::BallsTogether<Motion::degree> together;
   const auto put = [&](std::size_t place, std::size_t i) {
     const Pair& pair = pairs_[dirty_[i]];
     together.put(place, bodies_.mover(pair.a), bodies_.mover(pair.b));
@@ -67,7 +67,7 @@ void Pairs<Degree>::estimate_balls(std::size_t first, std::size_t last) {
     const auto& b = bodies_.mover(pairs_[dirty_[i]].b);
     if (!(a.radius > 0 && b.radius > 0)) return;
     const double t =
-        certificates::BallSeparation<Degree>{a.motion, b.motion, a.radius, b.radius}.apart_until(clock_.now);
+        certificates::BallSeparation<Motion::degree>{a.motion, b.motion, a.radius, b.radius}.apart_until(clock_.now);
     if (t > clock_.now) estimates_[i] = t <= clock_.horizon ? t : never;
   };
   std::size_t i = first;
@@ -86,31 +86,42 @@ void Pairs<Degree>::estimate_balls(std::size_t first, std::size_t last) {
   }
 }
 
-template <int Degree>
-void Pairs<Degree>::estimate_dirty() {
+template <class Motion>
+void Pairs<Motion>::estimate_dirty() {
   if (!balls_are_quick()) return estimates_.assign(dirty_.size(), undecided);
   estimates_.resize(dirty_.size());
   in_parts(dirty_.size(), threads_for(dirty_.size(), options_.threads),
            [&](std::size_t, std::size_t first, std::size_t last) { estimate_balls(first, last); });
 }
 
-/// Most pairs of a heap need no test, since the resting contact keeps them apart.
-template <int Degree>
-void Pairs<Degree>::pass_over_resting() {
-  std::erase_if(dirty_, [this](Slot slot) {
+/// Tests the dirty pairs that rest on each other, and leaves the others. Most of a heap need no test, since the resting
+/// contact keeps them apart.
+template <class Motion>
+void Pairs<Motion>::test_resting() {
+  std::size_t others = 0;
+  for (const Slot slot : dirty_) {
     Pair& pair = pairs_[slot];
-    if (!pair.alive || pair.fresh || pair.overlapping || !resting_.keeps_apart(pair.a, pair.b)) return false;
+    const auto contact = pair.alive ? resting_.find(pair.a, pair.b) : Resting::none;
+    if (contact == Resting::none) {
+      dirty_[others++] = slot;
+      continue;
+    }
     ++counters_.pair_tests;
-    pair.dirty = pair.estimated = false;
-    if (contacts_.contains(slot)) contacts_.set(slot, never);
+    pair.dirty = false;
+    if (pair.fresh || pair.overlapping || !resting_.keeps_apart(contact)) {
+      test(slot);
+    } else {
+      pair.estimated = false;
+      if (contacts_.contains(slot)) contacts_.set(slot, never);
+    }
     finish_test(slot);
-    return true;
-  });
+  }
+  dirty_.resize(others);
 }
 
 /// What is left to do when it is known when a pair meets.
-template <int Degree>
-void Pairs<Degree>::finish_test(Slot slot) {
+template <class Motion>
+void Pairs<Motion>::finish_test(Slot slot) {
   Pair& pair = pairs_[slot];
   pair.fresh = false;
   if (pair.listed) {
@@ -120,11 +131,10 @@ void Pairs<Degree>::finish_test(Slot slot) {
   }
 }
 
-template <int Degree>
-void Pairs<Degree>::test() {
+template <class Motion>
+void Pairs<Motion>::test() {
   const Stopwatch watch(profile_, Work::test);
-  const bool any_rest = !resting_.empty();
-  if (any_rest) pass_over_resting();
+  if (!resting_.empty()) test_resting();
   estimate_dirty();
   const bool sensors = bodies_.any_sensor();
   for (std::size_t i = 0, dirty = dirty_.size(); i < dirty; ++i) {
@@ -136,8 +146,7 @@ void Pairs<Degree>::test() {
     const double estimate = estimates_[i];
     const bool may_be_together = std::isnan(estimate) || (estimate == -never && pair.fresh);
     const bool passes = sensors && mode(pair.a, pair.b) == ContactMode::transparent;
-    const bool rests = any_rest && resting_.find(pair.a, pair.b) != Resting::none;
-    if (may_be_together || pair.overlapping || passes || rests) [[unlikely]] {
+    if (may_be_together || pair.overlapping || passes) [[unlikely]] {
       test(slot);
     } else {
       pair.estimated = std::abs(estimate) != never;
@@ -148,8 +157,8 @@ void Pairs<Degree>::test() {
   dirty_.clear();
 }
 
-template <int Degree>
-void Pairs<Degree>::test(Slot slot) {
+template <class Motion>
+void Pairs<Motion>::test(Slot slot) {
   Pair& pair = pairs_[slot];
   const auto a = bodies_.moving(pair.a);
   const auto b = bodies_.moving(pair.b);
@@ -192,8 +201,8 @@ void Pairs<Degree>::test(Slot slot) {
 }
 
 /// Keeps what a test has found of a contact to come, so that it need not be found again when the contact is due.
-template <int Degree>
-void Pairs<Degree>::remember(Slot slot, const FoundTouch& found) {
+template <class Motion>
+void Pairs<Motion>::remember(Slot slot, const FoundTouch& found) {
   if (slot >= found_.size()) {
     if (found.time == never) return;
     found_.resize(pairs_.capacity());
@@ -201,22 +210,22 @@ void Pairs<Degree>::remember(Slot slot, const FoundTouch& found) {
   found_[slot] = found;
 }
 
-template <int Degree>
-void Pairs<Degree>::set_contact(Slot slot, double time) {
+template <class Motion>
+void Pairs<Motion>::set_contact(Slot slot, double time) {
   pairs_[slot].estimated = false;
   contacts_.set(slot, time);
 }
 
 /// Most bounds never come first, since motions change before.
-template <int Degree>
-bool Pairs<Degree>::certify() {
+template <class Motion>
+bool Pairs<Motion>::certify() {
   const Slot slot = contacts_.top().slot;
   const Pair& pair = pairs_[slot];
   if (!pair.estimated) return false;
   const auto& a = bodies_.mover(pair.a);
   const auto& b = bodies_.mover(pair.b);
   if (a.radius > 0 && b.radius > 0) {
-    const certificates::BallSeparation<Degree> apart{a.motion, b.motion, a.radius, b.radius};
+    const certificates::BallSeparation<Motion::degree> apart{a.motion, b.motion, a.radius, b.radius};
     set_contact(slot, apart.first_approach(clock_.now, clock_.horizon));
     return true;
   }
@@ -227,12 +236,12 @@ bool Pairs<Degree>::certify() {
   return true;
 }
 
-template <int Degree>
-void Pairs<Degree>::test_boxes(Slot slot) {
+template <class Motion>
+void Pairs<Motion>::test_boxes(Slot slot) {
   Pair& pair = pairs_[slot];
-  const BoxOverlap<Degree> boxes(volumes_.box(pair.a), volumes_.box(pair.b));
+  const BoxOverlap<Motion::degree> boxes(volumes_.box(pair.a), volumes_.box(pair.b));
   const auto apart = boxes.separations();
-  const std::span<const typename BoxOverlap<Degree>::Apart> sides(apart);
+  const std::span<const typename BoxOverlap<Motion::degree>::Apart> sides(apart);
   // A change of motion may leave boxes that touch for good: they do not overlap, although no side has a gap.
   const double next = !pair.boxes_overlap ? certificates::first_all_broken(clock_.now, clock_.horizon, sides)
                       : certificates::all_broken(clock_.now, sides)
@@ -242,8 +251,8 @@ void Pairs<Degree>::test_boxes(Slot slot) {
   if (next == clock_.now) process_boxes(slot, clock_.now);
 }
 
-template <int Degree>
-void Pairs<Degree>::process_boxes(Slot slot, double t) {
+template <class Motion>
+void Pairs<Motion>::process_boxes(Slot slot, double t) {
   Pair& pair = pairs_[slot];
   pair.boxes_overlap = !pair.boxes_overlap;
   clock_.now = t;
@@ -251,8 +260,8 @@ void Pairs<Degree>::process_boxes(Slot slot, double t) {
   test_boxes(slot);
 }
 
-#define KDS_INSTANTIATE(degree) template class Pairs<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class Pairs<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,6 +1,6 @@
 #include "collision/world/pairs.hpp"
 
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/audit.hpp"
 
@@ -9,8 +9,8 @@
 
 namespace kds::collision {
 
-template <int Degree>
-Pairs<Degree>::Pairs(const Bodies<Degree>& bodies, const Volumes<Degree>& volumes, Resting& resting, Reports& reports,
+template <class Motion>
+Pairs<Motion>::Pairs(const Bodies<Motion>& bodies, const Volumes<Motion>& volumes, Resting& resting, Reports& reports,
                      const WorldOptions& options, Clock& clock, WorldCounters& counters, Profile* profile)
     : bodies_(bodies),
       volumes_(volumes),
@@ -24,8 +24,8 @@ Pairs<Degree>::Pairs(const Bodies<Degree>& bodies, const Volumes<Degree>& volume
       boxes_(detail::PairRank{&pairs_}) {}
 
 /// Room for them and some more, if they are the first.
-template <int Degree>
-void Pairs<Degree>::pairs_to_come(std::size_t pairs) {
+template <class Motion>
+void Pairs<Motion>::pairs_to_come(std::size_t pairs) {
   if (!pairs_.empty()) return;
   const std::size_t room = pairs + pairs / 4;
   pairs_.reserve(room);
@@ -34,8 +34,8 @@ void Pairs<Degree>::pairs_to_come(std::size_t pairs) {
   links_.reserve(2 * first_pairs * pairs);
 }
 
-template <int Degree>
-void Pairs<Degree>::pair_began(BodySlot a, BodySlot b, double t) {
+template <class Motion>
+void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
   const Stopwatch watch(profile_, Work::prune);
   clock_.now = t;
   if (!bodies_.may_collide(a, b)) return;
@@ -51,8 +51,8 @@ void Pairs<Degree>::pair_began(BodySlot a, BodySlot b, double t) {
   if (options_.report_pairs && exact_) report_boxes(true, a, b);
 }
 
-template <int Degree>
-inline typename Pairs<Degree>::Slot Pairs<Degree>::add(BodySlot a, BodySlot b) {
+template <class Motion>
+inline typename Pairs<Motion>::Slot Pairs<Motion>::add(BodySlot a, BodySlot b) {
   Slot slot;
   if (free_.empty()) {
     slot = static_cast<Slot>(pairs_.size());
@@ -74,8 +74,8 @@ inline typename Pairs<Degree>::Slot Pairs<Degree>::add(BodySlot a, BodySlot b) {
 }
 
 /// Makes a pair known to its bodies.
-template <int Degree>
-inline void Pairs<Degree>::link(Slot slot, std::uint32_t first_room) {
+template <class Motion>
+inline void Pairs<Motion>::link(Slot slot, std::uint32_t first_room) {
   Pair& pair = pairs_[slot];
   if (of_.size() <= pair.b) of_.resize(bodies_.slots());
   pair.place_in_a = of_[pair.a].size;
@@ -84,8 +84,8 @@ inline void Pairs<Degree>::link(Slot slot, std::uint32_t first_room) {
   links_.push_back(of_[pair.b], {pair.a, slot}, first_room);
 }
 
-template <int Degree>
-void Pairs<Degree>::pair_ended(BodySlot a, BodySlot b, double t) {
+template <class Motion>
+void Pairs<Motion>::pair_ended(BodySlot a, BodySlot b, double t) {
   const Stopwatch watch(profile_, Work::prune);
   clock_.now = t;
   const Slot slot = find(a, b);
@@ -98,8 +98,8 @@ void Pairs<Degree>::pair_ended(BodySlot a, BodySlot b, double t) {
   }
 }
 
-template <int Degree>
-void Pairs<Degree>::list_anew(std::span<const std::pair<BodySlot, BodySlot>> listed) {
+template <class Motion>
+void Pairs<Motion>::list_anew(std::span<const std::pair<BodySlot, BodySlot>> listed) {
   for (Slot slot = 0; slot < pairs_.size(); ++slot) {
     const Pair& pair = pairs_[slot];
     if (!pair.alive || !pair.listed) continue;
@@ -113,8 +113,8 @@ void Pairs<Degree>::list_anew(std::span<const std::pair<BodySlot, BodySlot>> lis
 }
 
 /// The broad phase does not list the pair any more.
-template <int Degree>
-void Pairs<Degree>::unlist(Slot slot) {
+template <class Motion>
+void Pairs<Motion>::unlist(Slot slot) {
   Pair& pair = pairs_[slot];
   if (options_.report_pairs && (exact_ || pair.boxes_overlap)) report_boxes(false, pair.a, pair.b);
   pair.boxes_overlap = false;
@@ -123,8 +123,8 @@ void Pairs<Degree>::unlist(Slot slot) {
   if (slot < boxes_.slots()) boxes_.clear(slot);
 }
 
-template <int Degree>
-typename Pairs<Degree>::Slot Pairs<Degree>::find(BodySlot a, BodySlot b) const {
+template <class Motion>
+typename Pairs<Motion>::Slot Pairs<Motion>::find(BodySlot a, BodySlot b) const {
   const auto of_a = links(a);
   const auto of_b = links(b);
   const bool from_a = of_a.size() <= of_b.size();
@@ -136,8 +136,8 @@ typename Pairs<Degree>::Slot Pairs<Degree>::find(BodySlot a, BodySlot b) const {
 }
 
 /// Precondition: it is not listed.
-template <int Degree>
-void Pairs<Degree>::release(Slot slot) {
+template <class Motion>
+void Pairs<Motion>::release(Slot slot) {
   Pair& pair = pairs_[slot];
   // Each body's list closes up with its last entry.
   for (const BodySlot id : {pair.a, pair.b}) {
@@ -154,20 +154,20 @@ void Pairs<Degree>::release(Slot slot) {
   free_.push_back(slot);
 }
 
-template <int Degree>
-void Pairs<Degree>::box_changed(BodySlot id) {
+template <class Motion>
+void Pairs<Motion>::box_changed(BodySlot id) {
   if (!follows_boxes_) return;  // when it meets others is the broad phase's to find anew
   for (const Link& link : links(id)) mark_dirty(link.slot);
 }
 
-template <int Degree>
-void Pairs<Degree>::changed(BodySlot a, BodySlot b) {
+template <class Motion>
+void Pairs<Motion>::changed(BodySlot a, BodySlot b) {
   const Slot slot = find(a, b);
   if (slot != none) mark_dirty(slot);
 }
 
-template <int Degree>
-void Pairs<Degree>::let_pass(BodySlot a, BodySlot b) {
+template <class Motion>
+void Pairs<Motion>::let_pass(BodySlot a, BodySlot b) {
   Slot slot = find(a, b);
   if (slot == none) {
     slot = add(a, b);
@@ -180,8 +180,8 @@ void Pairs<Degree>::let_pass(BodySlot a, BodySlot b) {
   mark_dirty(slot);
 }
 
-template <int Degree>
-void Pairs<Degree>::remove(BodySlot id) {
+template <class Motion>
+void Pairs<Motion>::remove(BodySlot id) {
   while (!links(id).empty()) {  // those that overlap, or have just separated
     const Slot slot = links(id).back().slot;
     const Pair& pair = pairs_[slot];
@@ -196,29 +196,29 @@ void Pairs<Degree>::remove(BodySlot id) {
   if (id < of_.size()) links_.free(of_[id]);
 }
 
-template <int Degree>
-void Pairs<Degree>::extend_horizon() {
+template <class Motion>
+void Pairs<Motion>::extend_horizon() {
   for (Slot slot = 0; slot < pairs_.size(); ++slot) {
     const bool boxes_known = slot >= boxes_.slots() || boxes_.contains(slot);
     if (pairs_[slot].alive && !(contacts_.contains(slot) && boxes_known)) mark_dirty(slot);
   }
 }
 
-template <int Degree>
-bool Pairs<Degree>::overlapping(BodySlot a, BodySlot b) const {
+template <class Motion>
+bool Pairs<Motion>::overlapping(BodySlot a, BodySlot b) const {
   const Slot slot = find(a, b);
   return slot != none && pairs_[slot].overlapping;
 }
 
-template <int Degree>
-bool Pairs<Degree>::listed(BodySlot a, BodySlot b) const {
+template <class Motion>
+bool Pairs<Motion>::listed(BodySlot a, BodySlot b) const {
   const Slot slot = find(a, b);
   return slot != none && pairs_[slot].listed;
 }
 
 /// Balls need not be made into shapes for it.
-template <int Degree>
-Contact Pairs<Degree>::contact(BodySlot a, BodySlot b, double t, const FoundTouch& found) const {
+template <class Motion>
+Contact Pairs<Motion>::contact(BodySlot a, BodySlot b, double t, const FoundTouch& found) const {
   const auto& of_a = bodies_.mover(a);
   const auto& of_b = bodies_.mover(b);
   if (of_a.radius > 0 && of_b.radius > 0) {
@@ -227,8 +227,8 @@ Contact Pairs<Degree>::contact(BodySlot a, BodySlot b, double t, const FoundTouc
   return contact_at(bodies_.moving(a), bodies_.moving(b), t, found);
 }
 
-template <int Degree>
-void Pairs<Degree>::audit(double t) const {
+template <class Motion>
+void Pairs<Motion>::audit(double t) const {
   std::size_t unlisted = 0;
   for (Slot slot = 0; slot < pairs_.size(); ++slot) {
     const Pair& pair = pairs_[slot];
@@ -247,8 +247,8 @@ void Pairs<Degree>::audit(double t) const {
   if (unlisted != unlisted_) throw AuditFailure("World: pairs that are not listed are miscounted");
 }
 
-#define KDS_INSTANTIATE(degree) template class Pairs<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class Pairs<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
@@ -64,14 +64,14 @@ struct PairRank {
 /// certified.
 ///
 /// Cost: O(1) a pair that begins, ends or becomes dirty; one dynamic test a dirty pair; O(log n) an event.
-template <int Degree>
+template <class Motion>
 class Pairs final : public PairListener {
  public:
   using Slot = detail::PairSlot;
   using Pair = detail::Pair;
-  using Resting = RestingContacts<Degree>;
+  using Resting = RestingContacts<Motion>;
 
-  Pairs(const Bodies<Degree>& bodies, const Volumes<Degree>& volumes, Resting& resting, Reports& reports,
+  Pairs(const Bodies<Motion>& bodies, const Volumes<Motion>& volumes, Resting& resting, Reports& reports,
         const WorldOptions& options, Clock& clock, WorldCounters& counters, Profile* profile);
   Pairs(const Pairs&) = delete;
   Pairs& operator=(const Pairs&) = delete;
@@ -156,7 +156,7 @@ class Pairs final : public PairListener {
     template <class Archive>
     void archive(Archive& archive);
     /// Throws std::runtime_error, naming what is wrong.
-    void check(const typename Bodies<Degree>::Image& bodies, double now, const WorldOptions& options) const;
+    void check(const typename Bodies<Motion>::Image& bodies, double now, const WorldOptions& options) const;
   };
   Image image() const;
   void become(const Image& image);
@@ -188,7 +188,7 @@ class Pairs final : public PairListener {
 
   // pair_tests.cpp
   bool balls_are_quick() const;
-  void pass_over_resting();
+  void test_resting();
   void finish_test(Slot slot);
   void estimate_dirty();
   void estimate_balls(std::size_t first, std::size_t last);
@@ -198,8 +198,8 @@ class Pairs final : public PairListener {
   void test_boxes(Slot slot);
   void process_boxes(Slot slot, double t);
 
-  const Bodies<Degree>& bodies_;
-  const Volumes<Degree>& volumes_;
+  const Bodies<Motion>& bodies_;
+  const Volumes<Motion>& volumes_;
   Resting& resting_;
   Reports& reports_;
   const WorldOptions& options_;
@@ -225,23 +225,23 @@ class Pairs final : public PairListener {
 // What a change of motion or a contact needs, in the header: each is a few instructions for a pair, in the innermost
 // loops of World.
 
-template <int Degree>
-inline void Pairs<Degree>::mark_dirty(Slot slot) {
+template <class Motion>
+inline void Pairs<Motion>::mark_dirty(Slot slot) {
   if (pairs_[slot].dirty) return;
   pairs_[slot].dirty = true;
   dirty_.push_back(slot);
 }
 
-template <int Degree>
-inline void Pairs<Degree>::prefetch(BodySlot id) const {
+template <class Motion>
+inline void Pairs<Motion>::prefetch(BodySlot id) const {
   for (const Link& link : links(id)) {
     __builtin_prefetch(&pairs_[link.slot], 1);
     __builtin_prefetch(&bodies_.mover(link.other));
   }
 }
 
-template <int Degree>
-inline void Pairs<Degree>::motion_changed(BodySlot id, bool jumped) {
+template <class Motion>
+inline void Pairs<Motion>::motion_changed(BodySlot id, bool jumped) {
   for (const Link& link : links(id)) mark_dirty(link.slot);
   if (!jumped) return;
   for (const Link& link : links(id)) {
@@ -249,8 +249,8 @@ inline void Pairs<Degree>::motion_changed(BodySlot id, bool jumped) {
   }
 }
 
-template <int Degree>
-inline typename Pairs<Degree>::Event Pairs<Degree>::take_next() {
+template <class Motion>
+inline typename Pairs<Motion>::Event Pairs<Motion>::take_next() {
   const Slot slot = contacts_.top().slot;
   Pair& pair = pairs_[slot];
   const Event event{pair.a, pair.b, pair.overlapping, slot < found_.size() ? found_[slot] : FoundTouch{}};
@@ -264,8 +264,8 @@ inline typename Pairs<Degree>::Event Pairs<Degree>::take_next() {
   return event;
 }
 
-#define KDS_DECLARE(degree) extern template class Pairs<degree>;
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#define KDS_DECLARE(motion) extern template class Pairs<motion>;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

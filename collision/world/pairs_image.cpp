@@ -1,5 +1,5 @@
 // The pairs of a world as plain data: written, read and checked.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/pairs.hpp"
@@ -10,8 +10,8 @@
 
 namespace kds::collision {
 
-template <int Degree>
-typename Pairs<Degree>::Image Pairs<Degree>::image() const {
+template <class Motion>
+typename Pairs<Motion>::Image Pairs<Motion>::image() const {
   Image image;
   for (Slot slot = 0; slot < pairs_.size(); ++slot) {
     if (!pairs_[slot].alive) continue;
@@ -23,8 +23,8 @@ typename Pairs<Degree>::Image Pairs<Degree>::image() const {
   return image;
 }
 
-template <int Degree>
-void Pairs<Degree>::become(const Image& image) {
+template <class Motion>
+void Pairs<Motion>::become(const Image& image) {
   pairs_.clear(), free_.clear(), dirty_.clear(), found_.clear(), links_.clear();
   of_.assign(bodies_.slots(), {});
   unlisted_ = 0;
@@ -44,9 +44,9 @@ void Pairs<Degree>::become(const Image& image) {
   }
 }
 
-template <int Degree>
+template <class Motion>
 template <class Archive>
-void Pairs<Degree>::Image::archive(Archive& archive) {
+void Pairs<Motion>::Image::archive(Archive& archive) {
   archive.each(pairs, [&](One& one) {
     Pair& p = one.pair;
     archive(p.a, p.b, p.listed, p.dirty, p.fresh, p.overlapping, p.boxes_overlap, p.estimated, p.passes_at, one.contact,
@@ -54,8 +54,8 @@ void Pairs<Degree>::Image::archive(Archive& archive) {
   });
 }
 
-template <int Degree>
-void Pairs<Degree>::Image::check(const typename Bodies<Degree>::Image& bodies, double now,
+template <class Motion>
+void Pairs<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, double now,
                                  const WorldOptions& options) const {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Pair& pair = pairs[i].pair;
@@ -75,11 +75,11 @@ void Pairs<Degree>::Image::check(const typename Bodies<Degree>::Image& bodies, d
   }
 }
 
-#define KDS_INSTANTIATE(degree)                                      \
-  template class Pairs<degree>;                                      \
-  template void Pairs<degree>::Image::archive(kds::detail::Writer&); \
-  template void Pairs<degree>::Image::archive(kds::detail::Reader&);
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion)                                      \
+  template class Pairs<motion>;                                      \
+  template void Pairs<motion>::Image::archive(kds::detail::Writer&); \
+  template void Pairs<motion>::Image::archive(kds::detail::Reader&);
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

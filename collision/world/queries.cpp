@@ -1,5 +1,5 @@
 // What can be asked of a world.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
@@ -8,21 +8,21 @@
 
 namespace kds::collision {
 
-template <int Degree>
-bool World<Degree>::touching(BodyId a, BodyId b) const {
+template <class Motion>
+bool BasicWorld<Motion>::touching(BodyId a, BodyId b) const {
   const BodySlot of_a = bodies_.slot_of(a);
   const BodySlot of_b = bodies_.slot_of(b);
   return pairs_.mode(of_a, of_b) == ContactMode::transparent && pairs_.overlapping(of_a, of_b);
 }
 
-template <int Degree>
-bool World<Degree>::resting(BodyId a, BodyId b) const {
+template <class Motion>
+bool BasicWorld<Motion>::resting(BodyId a, BodyId b) const {
   const auto [first, second] = std::minmax({bodies_.slot_of(a), bodies_.slot_of(b)});
   return resting_.holds(first, second);
 }
 
-template <int Degree>
-bool World<Degree>::resting_at_wall(BodyId a, int wall) const {
+template <class Motion>
+bool BasicWorld<Motion>::resting_at_wall(BodyId a, int wall) const {
   const BodySlot slot = bodies_.slot_of(a);
   if (wall < 0 || wall > 5) {
     throw std::out_of_range("World::resting_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
@@ -30,24 +30,24 @@ bool World<Degree>::resting_at_wall(BodyId a, int wall) const {
   return resting_.holds(slot, no_body, wall);
 }
 
-template <int Degree>
-typename World<Degree>::Motion World<Degree>::free_motion(BodyId id) const {
+template <class Motion>
+typename BasicWorld<Motion>::Motion BasicWorld<Motion>::free_motion(BodyId id) const {
   const BodySlot slot = bodies_.slot_of(id);
   if (!resting_.carries(slot)) return bodies_.motion(slot);
   Motion motion = bodies_.motion(slot).restarted(now());
-  for (std::size_t i = 2; i <= Degree; ++i) motion.coefficients[i] = bodies_.free_term(slot, i, now());
+  for (std::size_t i = 2; i <= Motion::degree; ++i) motion.coefficients[i] = bodies_.free_term(slot, i, now());
   return motion;
 }
 
-template <int Degree>
-WorldCounters World<Degree>::counters() const {
+template <class Motion>
+WorldCounters BasicWorld<Motion>::counters() const {
   WorldCounters counters = counters_;
   counters.broad_phase = counters_.broad_phase + broad_phase_->counters();  // and those of before it was loaded
   return counters;
 }
 
-#define KDS_INSTANTIATE(degree) template class World<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

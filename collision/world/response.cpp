@@ -1,5 +1,5 @@
 // What follows from contacts: what is told, how bodies bounce, and which contacts last.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/response/impulse.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world.hpp"
@@ -33,8 +33,8 @@ double parting(const Contact& contact, const certificates::PointMotion<Degree>& 
 
 }  // namespace
 
-template <int Degree>
-void World<Degree>::process_meeting() {
+template <class Motion>
+void BasicWorld<Motion>::process_meeting() {
   const auto meeting = pairs_.take_next();
   const BodySlot a = meeting.a;
   const BodySlot b = meeting.b;
@@ -47,8 +47,8 @@ void World<Degree>::process_meeting() {
   tell([&](Listener& listener) { listener.separation(*this, event); });
 }
 
-template <int Degree>
-void World<Degree>::process_contact(BodySlot a, BodySlot b, const Contact& contact) {
+template <class Motion>
+void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& contact) {
   const PairEvent event = event_of(a, b, contact);
   ++counters_.contacts;
   if (pairs_.mode(a, b) == ContactMode::transparent) {
@@ -83,8 +83,8 @@ void World<Degree>::process_contact(BodySlot a, BodySlot b, const Contact& conta
   after();
 }
 
-template <int Degree>
-void World<Degree>::process_wall() {
+template <class Motion>
+void BasicWorld<Motion>::process_wall() {
   const BodySlot id = walls_.next_body();
   const Body& body = bodies_[id];
   const int wall = walls_.next_wall();
@@ -93,7 +93,7 @@ void World<Degree>::process_wall() {
   Motion motion = bodies_.motion(id).restarted(clock_.now);
   const double approach = motion.coefficients[1][axis] * out;
   double pressed = 0;
-  if constexpr (Degree >= 2) pressed = 2 * motion.coefficients[2][axis] * out;
+  if constexpr (Motion::degree >= 2) pressed = 2 * motion.coefficients[2][axis] * out;
   const double rebound = std::min(body.restitution, options_.walls->restitution) * approach;
   WallEvent event{bodies_.id_of(id), wall, {.time = clock_.now}};
   event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
@@ -105,7 +105,7 @@ void World<Degree>::process_wall() {
   const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
   const bool clustered = resting_.clustered(id) && !bodies_.fixed(id);
   bool held = !clustered && stays(rebound, pressed, size, count_meeting(id));
-  if (clustered && do_not_end(count_meeting(id))) {
+  if (clustered && endless(count_meeting(id))) {
     resting_.halt(id);
   } else if (clustered) {
     const bool rested = resting_.find(id, no_body, wall) != Resting::none;
@@ -130,8 +130,8 @@ void World<Degree>::process_wall() {
 }
 
 /// Both have met others so often; a fixed body's meetings count only with another fixed one.
-template <int Degree>
-std::uint64_t World<Degree>::count_meeting(BodySlot a, BodySlot b) {
+template <class Motion>
+std::uint64_t BasicWorld<Motion>::count_meeting(BodySlot a, BodySlot b) {
   const bool a_fixed = bodies_.fixed(a);
   const bool b_fixed = bodies_.fixed(b);
   if (a_fixed != b_fixed) return count_meeting(a_fixed ? b : a);
@@ -139,8 +139,8 @@ std::uint64_t World<Degree>::count_meeting(BodySlot a, BodySlot b) {
   return std::min(of_a, count_meeting(b));
 }
 
-template <int Degree>
-std::uint64_t World<Degree>::count_meeting(BodySlot id) {
+template <class Motion>
+std::uint64_t BasicWorld<Motion>::count_meeting(BodySlot id) {
   Body& body = bodies_[id];
   if (clock_.now - body.burst_start > options_.zeno.interval) {
     body.meetings = 0;
@@ -151,8 +151,8 @@ std::uint64_t World<Degree>::count_meeting(BodySlot id) {
 
 /// Whether what meets is held: see ZenoPolicy. `pressed`: relative acceleration towards each other; `size`: of the
 /// coordinates.
-template <int Degree>
-bool World<Degree>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
+template <class Motion>
+bool BasicWorld<Motion>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
   if (!(rebound > 0) || burst > options_.zeno.contacts) return true;
   if (!(pressed > 0)) return false;
   // Near a large clock doubles are sparse: a flight lasts some of them at least. And it rises by some roundings of the
@@ -164,14 +164,14 @@ bool World<Degree>::stays(double rebound, double pressed, double size, std::uint
 }
 
 /// Whether so many meetings at nearly one time are a sign that there will be more without end.
-template <int Degree>
-bool World<Degree>::do_not_end(std::uint64_t burst) const {
+template <class Motion>
+bool BasicWorld<Motion>::endless(std::uint64_t burst) const {
   const std::uint64_t many = std::max(options_.zeno.contacts, 1u);
   return burst > many && burst % many == 0;
 }
 
-template <int Degree>
-bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
+template <class Motion>
+bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
   const std::uint64_t burst = count_meeting(a, b);
   if (burst > patience()) {  // Holding does not help: the pair is left as it is, and so passes through.
@@ -187,7 +187,7 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
   const auto approach = [&] { return parting(contact, bodies_.motion(a), bodies_.motion(b)) < 0; };
   const auto rest = [&] { return resting_.find(a, b) != Resting::none; };
   if (resting_.clustered(a) || resting_.clustered(b)) {
-    if (do_not_end(burst)) {
+    if (endless(burst)) {
       resting_.halt(a), resting_.halt(b);
       if (rest() && !approach()) return false;
     }
@@ -209,10 +209,10 @@ bool World<Degree>::respond(BodySlot a, BodySlot b, const Contact& contact) {
 }
 
 /// A contact in a cluster. Whether the two are held from now on.
-template <int Degree>
-bool World<Degree>::strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) {
+template <class Motion>
+bool BasicWorld<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) {
   const bool rested = resting_.find(a, b) != Resting::none;
-  const Vector3d point = contact.point - bodies_.motion(a).position(contact.time);
+  const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, restitution);
   resting_.solve();
   // What the others that lean on the two have turned back towards each other stays together.
@@ -225,19 +225,19 @@ bool World<Degree>::strike(BodySlot a, BodySlot b, const Contact& contact, doubl
   return rests && !rested;
 }
 
-template <int Degree>
-void World<Degree>::hold(BodySlot a, BodySlot b, const Contact& contact) {
+template <class Motion>
+void BasicWorld<Motion>::hold(BodySlot a, BodySlot b, const Contact& contact) {
   ++counters_.held;
-  const Vector3d point = contact.point - bodies_.motion(a).position(contact.time);
+  const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.add({.a = a, .b = b, .normal = contact.normal, .point = point});
   resting_.disturb(a), resting_.disturb(b);
   resting_.solve();
 }
 
 /// A contact in no cluster. Whether the two are held from now on.
-template <int Degree>
-bool World<Degree>::bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution,
-                                   std::uint64_t burst) {
+template <class Motion>
+bool BasicWorld<Motion>::bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+                                        std::uint64_t burst) {
   Motion motion_a = bodies_.motion(a).restarted(contact.time);
   Motion motion_b = bodies_.motion(b).restarted(contact.time);
   const Vector3d& n = contact.normal;
@@ -246,7 +246,7 @@ bool World<Degree>::bounce_or_hold(BodySlot a, BodySlot b, const Contact& contac
   };
   const double approach = -relative(1);
   double pressed = 0;
-  if constexpr (Degree >= 2) pressed = -2 * relative(2);
+  if constexpr (Motion::degree >= 2) pressed = -2 * relative(2);
   const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
                       bodies_[a].bounding_radius + bodies_[b].bounding_radius;
   if (stays(restitution * approach, pressed, size, burst)) {
@@ -265,40 +265,40 @@ bool World<Degree>::bounce_or_hold(BodySlot a, BodySlot b, const Contact& contac
   return false;
 }
 
-template <int Degree>
-void World<Degree>::take_up(BodySlot id, const Motion& motion) {
+template <class Motion>
+void BasicWorld<Motion>::take_up(BodySlot id, const Motion& motion) {
   ++counters_.motion_updates;
   set_motion(id, motion, false);
   reports_.add(Reports::Kind::moved, bodies_.id_of(id), bodies_.id_of(id), {.time = clock_.now});
 }
 
-template <int Degree>
-void World<Degree>::tell_held(BodySlot a, BodySlot b) {
+template <class Motion>
+void BasicWorld<Motion>::tell_held(BodySlot a, BodySlot b) {
   ++counters_.held;
   const PairEvent event = event_of(a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
   reports_.add(Reports::Kind::held, event.a, event.b, event.contact);
 }
 
-template <int Degree>
-void World<Degree>::tell_resting(bool begins, const detail::RestingContact& resting) {
+template <class Motion>
+void BasicWorld<Motion>::tell_resting(bool begins, const detail::RestingContact& resting) {
   const BodySlot b = resting.b == no_body ? resting.a : resting.b;
   reports_.add_resting(begins, bodies_.id_of(resting.a), bodies_.id_of(b), contact_of(resting), resting.wall);
 }
 
-template <int Degree>
-void World<Degree>::tell_passes(const detail::RestingContact& resting) {
+template <class Motion>
+void BasicWorld<Motion>::tell_passes(const detail::RestingContact& resting) {
   reports_.add(Reports::Kind::passes, bodies_.id_of(resting.a), bodies_.id_of(resting.b), contact_of(resting));
 }
 
-template <int Degree>
-Contact World<Degree>::contact_of(const detail::RestingContact& resting) const {
-  Contact contact{.time = clock_.now, .point = bodies_.motion(resting.a).position(clock_.now) + resting.point};
+template <class Motion>
+Contact BasicWorld<Motion>::contact_of(const detail::RestingContact& resting) const {
+  Contact contact{.time = clock_.now, .point = bodies_.path(resting.a).position(clock_.now) + resting.point};
   contact.normal = resting.normal;
   return contact;
 }
 
-#define KDS_INSTANTIATE(degree) template class World<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,5 +1,5 @@
 // Clusters: bodies in sustained contact on curved surfaces, advanced together, span by span.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world/cluster_span.hpp"
 
 #include <algorithm>
@@ -12,42 +12,42 @@ namespace kds::collision {
 using Eigen::Vector3d;
 using namespace cluster;
 
-template <int Degree>
-bool RestingContacts<Degree>::in_cluster(const Island& island) const {
+template <class Motion>
+bool RestingContacts<Motion>::in_cluster(const Island& island) const {
   return std::any_of(island.bodies.begin(), island.bodies.end(), [this](BodySlot id) { return clustered(id); });
 }
 
 /// Whether the normal of any contact does while bodies slide.
-template <int Degree>
-bool RestingContacts<Degree>::turns(const Island& island) const {
+template <class Motion>
+bool RestingContacts<Motion>::turns(const Island& island) const {
   return std::any_of(island.contacts.begin(), island.contacts.end(),
                      [this](Slot slot) { return gaps_.turns(contacts_[slot]); });
 }
 
-template <int Degree>
-Vector3d RestingContacts<Degree>::acceleration(BodySlot id) const {
-  if constexpr (Degree >= 2) {
+template <class Motion>
+Vector3d RestingContacts<Motion>::acceleration(BodySlot id) const {
+  if constexpr (Motion::degree >= 2) {
     return 2 * bodies_.free_term(id, 2, clock_.now);
   } else {
     return Vector3d::Zero();
   }
 }
 
-template <int Degree>
-Vector3d RestingContacts<Degree>::velocity(BodySlot id) const {
-  return bodies_.motion(id).velocity(clock_.now);
+template <class Motion>
+Vector3d RestingContacts<Motion>::velocity(BodySlot id) const {
+  return bodies_.path(id).velocity(clock_.now);
 }
 
 /// Of a cluster to which a body belongs, as far as its weight alone matters.
-template <int Degree>
-double RestingContacts<Degree>::longest_span(BodySlot id) const {
+template <class Motion>
+double RestingContacts<Motion>::longest_span(BodySlot id) const {
   const double a = norm(acceleration(id));
   return a > 0 ? part_of_fall * std::sqrt(bodies_[id].bounding_radius / a) : never;
 }
 
 /// Whether what parts at a rate is back within a span: a flight that short is none.
-template <int Degree>
-bool RestingContacts<Degree>::soon_back(const Contact& contact, double rate) const {
+template <class Motion>
+bool RestingContacts<Motion>::soon_back(const Contact& contact, double rate) const {
   if (contact.b == no_body || !(contact.fresh || contact.push > 0)) return false;
   for (const BodySlot id : {contact.a, contact.b}) {
     if (bodies_.fixed(id)) continue;
@@ -58,8 +58,8 @@ bool RestingContacts<Degree>::soon_back(const Contact& contact, double rate) con
 }
 
 /// Makes a cluster of all that leans on a body, with a span that ends then.
-template <int Degree>
-void RestingContacts<Degree>::gather(BodySlot id, double ends) {
+template <class Motion>
+void RestingContacts<Motion>::gather(BodySlot id, double ends) {
   if (bodies_.fixed(id)) return;
   const Island island = find_island(id);
   bool woken = false;
@@ -85,21 +85,21 @@ void RestingContacts<Degree>::gather(BodySlot id, double ends) {
 }
 
 /// Bodies go on as they are, and solve_island() sees to the rest.
-template <int Degree>
-void RestingContacts<Degree>::dissolve(const Island& island) {
+template <class Motion>
+void RestingContacts<Motion>::dissolve(const Island& island) {
   for (std::size_t i = 0; i < island.free; ++i) {
     const BodySlot id = island.bodies[i];
     leave(id);
     Motion motion = bodies_.motion(id).restarted(clock_.now);
-    for (std::size_t k = 2; k <= Degree; ++k) motion.coefficients[k] = bodies_.free_term(id, k, clock_.now);
+    for (std::size_t k = 2; k <= Motion::degree; ++k) motion.coefficients[k] = bodies_.free_term(id, k, clock_.now);
     if (!(motion == bodies_.motion(id))) listener_.take_up(id, motion);
   }
   for (const Slot slot : island.contacts) contacts_[slot].fresh = true;
 }
 
 /// Whether no contact of a cluster turns any more, nor parts, so that it needs no more spans.
-template <int Degree>
-bool RestingContacts<Degree>::slides_on(const Island& island) const {
+template <class Motion>
+bool RestingContacts<Motion>::slides_on(const Island& island) const {
   const auto at_wall = [this](Slot slot) { return contacts_[slot].b == no_body; };
   const bool at_walls = std::all_of(island.contacts.begin(), island.contacts.end(), at_wall);
   if (!at_walls && island.contacts.size() != 1) return false;
@@ -112,8 +112,8 @@ bool RestingContacts<Degree>::slides_on(const Island& island) const {
 }
 
 /// Whether a contact with a mesh has come to where one before it is: the bodies have left the facet that it was on.
-template <int Degree>
-bool RestingContacts<Degree>::repeats(const Island& island, std::size_t k) const {
+template <class Motion>
+bool RestingContacts<Motion>::repeats(const Island& island, std::size_t k) const {
   const Contact& contact = contacts_[island.contacts[k]];
   if (!gaps_.has_mesh(contact)) return false;
   for (std::size_t i = k; i-- > 0;) {
@@ -124,18 +124,23 @@ bool RestingContacts<Degree>::repeats(const Island& island, std::size_t k) const
   return false;
 }
 
-/// The span of a cluster begins. False if it is to be called again. `dissolved`: whether its bodies have been a cluster
-/// at this instant that was dissolved; what cannot do without one stays one.
-template <int Degree>
-bool RestingContacts<Degree>::step_cluster(Island& island, bool& dissolved) {
-  const double now = clock_.now;
-  bool over = false;
+/// Takes the contacts of a cluster anew. False if some are over, and dropped: then the cluster is another.
+template <class Motion>
+bool RestingContacts<Motion>::renew(const Island& island) {
+  bool all = true;
   for (std::size_t k = 0; k < island.contacts.size(); ++k) {
     if (gaps_.renew(contacts_[island.contacts[k]]) && !repeats(island, k)) continue;
     drop(island.contacts[k]);
-    over = true;
+    all = false;
   }
-  if (over) return false;
+  return all;
+}
+
+/// The span of a cluster begins. False if it is to be called again. `dissolved`: whether its bodies have been a cluster
+/// at this instant that was dissolved; what cannot do without one stays one.
+template <class Motion>
+bool RestingContacts<Motion>::step_cluster(Island& island, bool& dissolved) {
+  if (!renew(island)) return false;
   if (!dissolved && slides_on(island)) {
     bool far = false;
     for (const Slot slot : island.contacts) {
@@ -156,7 +161,7 @@ bool RestingContacts<Degree>::step_cluster(Island& island, bool& dissolved) {
   if (!span.solve_velocities(turns(island)) && squeezed(island) && let_pass_worst(island, span.velocities))
     return false;
   if (!span.solve_accelerations() && squeezed(island) && let_pass_worst(island, span.halves)) return false;
-  const bool sleeps = comes_to_rest(island, span.velocities) <= now;
+  const bool sleeps = comes_to_rest(island, span.velocities) <= clock_.now;
   double length = span.usable();
   if (length < shortest_span * span.length) {
     length = span.length;
@@ -167,8 +172,8 @@ bool RestingContacts<Degree>::step_cluster(Island& island, bool& dissolved) {
 }
 
 /// What a span says, until it ends. One without end is rest.
-template <int Degree>
-void RestingContacts<Degree>::take_up(const Island& island, Span& span, double length) {
+template <class Motion>
+void RestingContacts<Motion>::take_up(const Island& island, Span& span, double length) {
   const bool sleeps = length == never;
   for (std::size_t i = 0; i < island.free; ++i) {
     const BodySlot id = island.bodies[i];
@@ -184,49 +189,50 @@ void RestingContacts<Degree>::take_up(const Island& island, Span& span, double l
 }
 
 /// Bodies that fill all the room that there is may be driven to and fro by roundings alone.
-template <int Degree>
-void RestingContacts<Degree>::halt(BodySlot id) {
+template <class Motion>
+void RestingContacts<Motion>::halt(BodySlot id) {
   if (!clustered(id) || bodies_.fixed(id)) return;
   Island island = find_island(id);
+  while (!renew(island)) island = find_island(id);
   Span span(*this, island);
   if (span.length == never) return;
   span.move_as_one();
   take_up(island, span, span.length);
 }
 
-template <int Degree>
-void RestingContacts<Degree>::move(BodySlot id, const Vector3d& velocity, const Vector3d& half_acceleration) {
+template <class Motion>
+void RestingContacts<Motion>::move(BodySlot id, const Vector3d& velocity, const Vector3d& half_acceleration) {
   Motion motion = bodies_.motion(id).restarted(clock_.now);
   motion.coefficients[1] = velocity;
-  for (std::size_t i = 2; i <= Degree; ++i) motion.coefficients[i] = Vector3d::Zero();
-  if constexpr (Degree >= 2) motion.coefficients[2] = half_acceleration;
+  for (std::size_t i = 2; i <= Motion::degree; ++i) motion.coefficients[i] = Vector3d::Zero();
+  if constexpr (Motion::degree >= 2) motion.coefficients[2] = half_acceleration;
   if (!(motion == bodies_.motion(id))) listener_.take_up(id, motion);
 }
 
 /// What is not proven is tested as pairs that do not rest are.
-template <int Degree>
-void RestingContacts<Degree>::set_proven(Contact& contact, bool proven) {
+template <class Motion>
+void RestingContacts<Motion>::set_proven(Contact& contact, bool proven) {
   if (contact.b == no_body) return;
   const bool tested = !std::exchange(contact.proven, proven);
   if (tested || !proven) listener_.changed(contact.a, contact.b);
 }
 
-template <int Degree>
-void RestingContacts<Degree>::set_span(BodySlot first, double ends) {
+template <class Motion>
+void RestingContacts<Motion>::set_span(BodySlot first, double ends) {
   if (spans_.slots() <= first) spans_.resize(2 * (first + std::size_t{1}));
   spans_.set(first, ends);
 }
 
 /// Whether fixed bodies may close in on others, so that there may be no way for these to stay apart.
-template <int Degree>
-bool RestingContacts<Degree>::squeezed(const Island& island) const {
+template <class Motion>
+bool RestingContacts<Motion>::squeezed(const Island& island) const {
   const bool at_wall = std::any_of(island.contacts.begin(), island.contacts.end(),
                                    [this](Slot slot) { return contacts_[slot].b == no_body; });
   const auto terms = [this](BodySlot id, std::size_t i) {
     return Vector3d(bodies_.motion(id).restarted(clock_.now).coefficients[i]);
   };
   for (std::size_t k = island.free; k < island.bodies.size(); ++k) {
-    for (std::size_t i = 1; i <= Degree; ++i) {
+    for (std::size_t i = 1; i <= Motion::degree; ++i) {
       const Vector3d other = at_wall ? Vector3d(Vector3d::Zero()) : terms(island.bodies[island.free], i);
       if (terms(island.bodies[k], i) != other) return true;
     }
@@ -234,8 +240,8 @@ bool RestingContacts<Degree>::squeezed(const Island& island) const {
   return false;
 }
 
-#define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

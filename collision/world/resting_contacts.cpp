@@ -1,6 +1,6 @@
 // Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
 #include "collision/world/resting_contacts.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/vectors.hpp"
 #include "kds/audit.hpp"
 
@@ -31,7 +31,7 @@ certificates::PointMotion<Degree> shifted(certificates::PointMotion<Degree> moti
 }
 
 template <int Degree>
-double slack_of(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+double slack_of(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t) {
   const double size = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
   const double coordinates = a.motion.position(t).cwiseAbs().maxCoeff() + b.motion.position(t).cwiseAbs().maxCoeff();
   return std::max(slack * size, coordinate_slack * coordinates);
@@ -39,8 +39,8 @@ double slack_of(const MovingShape<Degree>& a, const MovingShape<Degree>& b, doub
 
 }  // namespace
 
-template <int Degree>
-typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_among(BodySlot a, BodySlot b, int wall) const {
+template <class Motion>
+typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_among(BodySlot a, BodySlot b, int wall) const {
   // A floor has many.
   const bool from_b = b != no_body && b < of_.size() && of_[b].contacts.size() < of_[a].contacts.size();
   for (const Slot slot : of_[from_b ? b : a].contacts) {
@@ -51,8 +51,8 @@ typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_among(BodyS
 }
 
 /// The one of the same bodies and in the same place: convex bodies have but one.
-template <int Degree>
-typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_like(const Contact& contact) const {
+template <class Motion>
+typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const Contact& contact) const {
   if (!gaps_.has_mesh(contact)) return find(contact.a, contact.b, contact.wall);
   if (!rests(contact.a)) return none;
   for (const Slot slot : of_[contact.a].contacts) {
@@ -62,8 +62,8 @@ typename RestingContacts<Degree>::Slot RestingContacts<Degree>::find_like(const 
   return none;
 }
 
-template <int Degree>
-void RestingContacts<Degree>::add(const Contact& contact) {
+template <class Motion>
+void RestingContacts<Motion>::add(const Contact& contact) {
   for (const Slot slot : member(contact.a).contacts) {
     Contact& other = contacts_[slot];
     if (other.a != contact.a || other.b != contact.b || !(dot(other.normal, contact.normal) > detail::same_normal))
@@ -90,8 +90,8 @@ void RestingContacts<Degree>::add(const Contact& contact) {
   listener_.tell_resting(true, contacts_[slot]);
 }
 
-template <int Degree>
-void RestingContacts<Degree>::drop(Slot slot) {
+template <class Motion>
+void RestingContacts<Motion>::drop(Slot slot) {
   Contact& contact = contacts_[slot];
   contact.alive = false;
   listener_.tell_resting(false, contact);
@@ -106,8 +106,8 @@ void RestingContacts<Degree>::drop(Slot slot) {
   if (contact.b != no_body) listener_.changed(contact.a, contact.b);
 }
 
-template <int Degree>
-void RestingContacts<Degree>::drop_all(BodySlot id) {
+template <class Motion>
+void RestingContacts<Motion>::drop_all(BodySlot id) {
   while (rests(id)) drop(of_[id].contacts.back());
 }
 
@@ -115,12 +115,12 @@ void RestingContacts<Degree>::drop_all(BodySlot id) {
 /// again before they are let go. A mesh may have something else in the way; where rounding makes it the held touch that
 /// is found, that is left behind by some roundings, for as long as the two move as they do: so the answer does not
 /// depend on how often it is asked for.
-template <int Degree>
-double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
+template <class Motion>
+double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
   const auto a = bodies_.moving(id_a);
   const auto b = bodies_.moving(id_b);
   if (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape)) {
-    if (keeps_apart(id_a, id_b)) return never;
+    if (keeps_apart(find(id_a, id_b))) return never;
     return first_contact(a, b, clock_.now, clock_.horizon, ContactMode::resolved);
   }
   const double began = std::max(a.motion.start, b.motion.start);
@@ -135,7 +135,7 @@ double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
   if (clustered(id_a) || clustered(id_b)) {  // What sweeps leave of an approach is no contact.
     const double least = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
     const Motion farther = shifted(b.motion, approach_slack * least * out);
-    return first_contact(a, MovingShape<Degree>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
+    return first_contact(a, MovingShape<Motion>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
   }
   if (!left_behind) {
     const double t = first_contact(a, b, now, clock_.horizon, ContactMode::resolved);
@@ -146,37 +146,37 @@ double RestingContacts<Degree>::next_contact(BodySlot id_a, BodySlot id_b) {
       a.motion.position(began).cwiseAbs().maxCoeff() + b.motion.position(began).cwiseAbs().maxCoeff();
   const double size = a.shape.bounding_radius + b.shape.bounding_radius;
   const Motion farther = shifted(b.motion, coordinate_slack * (size + coordinates) * out);
-  return first_contact(a, MovingShape<Degree>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
+  return first_contact(a, MovingShape<Motion>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
 }
 
 /// Held pairs part by sliding off, or by `slack`.
-template <int Degree>
-void RestingContacts<Degree>::schedule_release(Slot slot) {
+template <class Motion>
+void RestingContacts<Motion>::schedule_release(Slot slot) {
   const Contact& contact = contacts_[slot];
   if (clustered(contact.a) || (contact.b != no_body && clustered(contact.b))) return;  // Spans see to it.
   if (contact.b == no_body) {  // Walls have no edge to slide off.
-    if constexpr (Degree >= 3) releases_.set(slot, contact.ends);
+    if constexpr (Motion::degree >= 3) releases_.set(slot, contact.ends);
     return;
   }
   const double now = clock_.now;
   const auto a = bodies_.moving(contact.a);
   const auto b = bodies_.moving(contact.b);
   bool together = true;
-  for (std::size_t i = 1; i <= Degree; ++i) {
+  for (std::size_t i = 1; i <= Motion::degree; ++i) {
     together = together && a.motion.coefficients[i] == b.motion.coefficients[i];
   }
   bool steady = true;  // about any start the same
-  for (std::size_t i = 2; i <= Degree; ++i) steady = steady && a.motion.coefficients[i].isZero(0);
+  for (std::size_t i = 2; i <= Motion::degree; ++i) steady = steady && a.motion.coefficients[i].isZero(0);
   if (together && (steady || a.motion.start == b.motion.start)) {
-    return Degree >= 3 ? releases_.set(slot, contact.ends) : releases_.clear(slot);
+    return Motion::degree >= 3 ? releases_.set(slot, contact.ends) : releases_.clear(slot);
   }
   const Motion nearer = shifted(b.motion, -slack_of(a, b, now) * contact.normal);
-  const double t = first_separation(a, MovingShape<Degree>{b.shape, nearer}, now, clock_.horizon);
-  releases_.set(slot, Degree >= 3 ? std::min(t, contact.ends) : t);
+  const double t = first_separation(a, MovingShape<Motion>{b.shape, nearer}, now, clock_.horizon);
+  releases_.set(slot, Motion::degree >= 3 ? std::min(t, contact.ends) : t);
 }
 
-template <int Degree>
-void RestingContacts<Degree>::process() {
+template <class Motion>
+void RestingContacts<Motion>::process() {
   if (releases_.empty() || (!spans_.empty() && spans_.top().time < releases_.top().time)) {
     const BodySlot id = spans_.top().slot;
     spans_.clear(id);
@@ -184,9 +184,9 @@ void RestingContacts<Degree>::process() {
     return solve();
   }
   const Slot slot = releases_.top().slot;
-  if (Degree >= 3 && contacts_[slot].ends <= releases_.top().time) {
+  if (Motion::degree >= 3 && contacts_[slot].ends <= releases_.top().time) {
     part(slot);
-  } else if (Degree >= 2 && contacts_[slot].push > 0 && gaps_.turns(contacts_[slot])) {
+  } else if (Motion::degree >= 2 && contacts_[slot].push > 0 && gaps_.turns(contacts_[slot])) {
     gather(bodies_.fixed(contacts_[slot].a) ? contacts_[slot].b : contacts_[slot].a);
   } else {
     drop(slot);
@@ -194,10 +194,10 @@ void RestingContacts<Degree>::process() {
   solve();
 }
 
-template <int Degree>
-void RestingContacts<Degree>::extend_horizon() {
+template <class Motion>
+void RestingContacts<Motion>::extend_horizon() {
   for (Slot slot = 0; slot < contacts_.size(); ++slot) {
-    const bool known = releases_.contains(slot) && (Degree <= 2 || releases_.time(slot) < contacts_[slot].ends);
+    const bool known = releases_.contains(slot) && (Motion::degree <= 2 || releases_.time(slot) < contacts_[slot].ends);
     if (contacts_[slot].alive && !known) schedule_release(slot);
   }
 }
@@ -205,8 +205,8 @@ void RestingContacts<Degree>::extend_horizon() {
 /// Each contact is of two bodies that are there (or one and a wall), is listed with them and no others, and is held:
 /// along its normal the two have no relative velocity but for rounding, as drop_broken() measures it, and accelerations
 /// that cancel. What is due to be let go lies ahead.
-template <int Degree>
-void RestingContacts<Degree>::audit(double t, bool walls) const {
+template <class Motion>
+void RestingContacts<Motion>::audit(double t, bool walls) const {
   const auto fail = [](Slot slot, const char* what) {
     throw AuditFailure("World: resting contact " + std::to_string(slot) + ": " + what);
   };
@@ -247,18 +247,19 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
     if ((!at_wall || clustered(contact.a)) && gaps_.deeper(contact, contact.depth + gaps_.deepest_overlap(contact)))
       fail(slot, "its bodies overlap");
     if (clustered(contact.a) || (!at_wall && clustered(contact.b))) continue;
-    const Eigen::Vector3d a = bodies_.motion(contact.a).velocity(t);
+    const Eigen::Vector3d a = bodies_.path(contact.a).velocity(t);
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    if (!at_wall) b = bodies_.motion(contact.b).velocity(t);
+    if (!at_wall) b = bodies_.path(contact.b).velocity(t);
     double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), contact.solved});
-    if constexpr (Degree >= 2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
+    if constexpr (Motion::degree >=
+                  2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
       for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b}) {
-        largest += 2 * bodies_.free_term(id, 2, t).cwiseAbs().maxCoeff() * (1 + t - bodies_.motion(id).start);
+        largest += 2 * bodies_.free_term(id, 2, t).cwiseAbs().maxCoeff() * (1 + t - bodies_.path(id).start);
       }
     }
-    if constexpr (Degree >= 3) {
+    if constexpr (Motion::degree >= 3) {
       for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b})
-        largest += velocity_terms(bodies_.motion(id), t);
+        largest += velocity_terms(bodies_.path(id), t);
     }
     if (std::abs(dot(contact.normal, b - a)) > 16 * rate_rounding * largest) {
       fail(slot, "the bodies part or press on along its normal");
@@ -267,8 +268,8 @@ void RestingContacts<Degree>::audit(double t, bool walls) const {
   if (listed != expected) fail(static_cast<Slot>(contacts_.size()), "bodies list more holds than there are");
 }
 
-template <int Degree>
-typename RestingContacts<Degree>::Image RestingContacts<Degree>::image() const {
+template <class Motion>
+typename RestingContacts<Motion>::Image RestingContacts<Motion>::image() const {
   Image image{contacts_, free_, {}, {}, {}, {}, {}, {}, {}};
   // Of bodies that were disturbed and are gone, or have been solved for since, the list may still speak.
   std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
@@ -284,8 +285,8 @@ typename RestingContacts<Degree>::Image RestingContacts<Degree>::image() const {
   return image;
 }
 
-template <int Degree>
-void RestingContacts<Degree>::become(const Image& image) {
+template <class Motion>
+void RestingContacts<Motion>::become(const Image& image) {
   contacts_ = image.contacts, free_ = image.free, disturbed_ = image.disturbed;
   islands_ = 0;
   of_.clear();
@@ -310,8 +311,8 @@ void RestingContacts<Degree>::become(const Image& image) {
   for (BodySlot slot = 0; slot < image.spans.size(); ++slot) spans_.set(slot, image.spans[slot]);
 }
 
-#define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,7 +1,7 @@
 // Contacts that last: bodies that lie, lean and slide on each other and on walls.
 #pragma once
 
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/response/least_constraint.hpp"
 #include "collision/world/bodies.hpp"
@@ -53,10 +53,9 @@ double velocity_terms(const certificates::PointMotion<Degree>& motion, double t)
 ///
 /// Cost: nothing while nothing rests. O(1) a contact that begins or ends; a change of motion of a body that rests
 /// solves for all that lean on each other with it (least_constraint.hpp).
-template <int Degree>
+template <class Motion>
 class RestingContacts {
  public:
-  using Motion = certificates::PointMotion<Degree>;
   using Slot = detail::RestingSlot;
   using Contact = detail::RestingContact;
   static constexpr Slot none = ~Slot{0};
@@ -75,7 +74,7 @@ class RestingContacts {
     ~Listener() = default;
   };
 
-  RestingContacts(const Bodies<Degree>& bodies, const std::optional<Walls>& walls, const Clock& clock,
+  RestingContacts(const Bodies<Motion>& bodies, const std::optional<Walls>& walls, const Clock& clock,
                   Listener& listener)
       : bodies_(bodies),
         clock_(clock),
@@ -124,12 +123,9 @@ class RestingContacts {
     if (!solved()) solve_all();
   }
 
-  /// Whether two bodies surely do not meet until the motion of one changes, or their contact does: a plane stays
-  /// between them.
-  bool keeps_apart(BodySlot a, BodySlot b) const {
-    const Slot slot = find(a, b);
-    return slot != none && contacts_[slot].proven && !gaps_.has_mesh(contacts_[slot]);
-  }
+  /// Whether the two bodies of a contact surely do not meet until the motion of one changes, or the contact does: a
+  /// plane stays between them.
+  bool keeps_apart(Slot contact) const { return contacts_[contact].proven && !gaps_.has_mesh(contacts_[contact]); }
   /// When two bodies that rest on each other may meet elsewhere.
   double next_contact(BodySlot a, BodySlot b);
 
@@ -175,7 +171,7 @@ class RestingContacts {
     template <class Archive>
     void archive(Archive& archive);
     /// Throws std::runtime_error, naming what is wrong.
-    void check(const typename Bodies<Degree>::Image& bodies, double now, const WorldOptions& options) const;
+    void check(const typename Bodies<Motion>::Image& bodies, double now, const WorldOptions& options) const;
 
    private:
     /// How far a normal may be from unit length: far above what normalising rounds.
@@ -233,6 +229,7 @@ class RestingContacts {
   bool turns(const Island& island) const;
   bool slides_on(const Island& island) const;
   bool repeats(const Island& island, std::size_t k) const;
+  bool renew(const Island& island);
   bool step_cluster(Island& island, bool& dissolved);
   void take_up(const Island& island, Span& span, double length);
   void gather(BodySlot id, double ends);
@@ -256,9 +253,9 @@ class RestingContacts {
   double wake(const Contact& contact, bool joins);
   Slot add_to_cluster(const Contact& contact);
 
-  const Bodies<Degree>& bodies_;
+  const Bodies<Motion>& bodies_;
   const Clock& clock_;
-  ContactGaps<Degree> gaps_;
+  ContactGaps<Motion> gaps_;
   Listener& listener_;
   std::vector<Contact> contacts_;
   std::vector<Slot> free_;
@@ -269,8 +266,8 @@ class RestingContacts {
   std::uint64_t islands_ = 0;
 };
 
-#define KDS_DECLARE(degree) extern template class RestingContacts<degree>;
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#define KDS_DECLARE(motion) extern template class RestingContacts<motion>;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

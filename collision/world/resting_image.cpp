@@ -1,5 +1,5 @@
 // The resting contacts of a world as plain data: written, read and checked.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/resting_contacts.hpp"
@@ -11,21 +11,21 @@
 
 namespace kds::collision {
 
-template <int Degree>
+template <class Motion>
 template <class Archive>
-void RestingContacts<Degree>::Image::archive(Archive& archive) {
+void RestingContacts<Motion>::Image::archive(Archive& archive) {
   archive(free, disturbed, releases, span_ends, calm_since, met, spans);
   archive.each(of, [&](auto& slots) { archive(slots); });
   archive.each(contacts, [&](Contact& c) {
     archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.left_behind, c.solved, c.depth, c.gap, c.room,
             c.since, c.aim);
     image::vector(archive, c.normal), image::vector(archive, c.point);
-    if constexpr (Degree >= 3) archive(c.ends);
+    if constexpr (Motion::degree >= 3) archive(c.ends);
   });
 }
 
-template <int Degree>
-void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image& bodies, double now,
+template <class Motion>
+void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, double now,
                                            const WorldOptions& options) const {
   if (releases.size() != contacts.size()) image::fail("releases: are not as many as resting contacts");
   if (of.size() > bodies.bodies.size()) image::fail("resting: of more bodies than there are");
@@ -79,7 +79,8 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
              image::is_past(contact.since, now),
          "its gap is not finite, or not known yet");
     need(image::is_to_come(releases[slot], now), "is to be let go before now");
-    if constexpr (Degree >= 3) need(image::is_to_come(contact.ends, now), "is pressed together until before now");
+    if constexpr (Motion::degree >= 3)
+      need(image::is_to_come(contact.ends, now), "is pressed together until before now");
   }
   for (std::size_t id = 0; id < of.size(); ++id) {
     const auto& of_body = of[id];
@@ -100,11 +101,11 @@ void RestingContacts<Degree>::Image::check(const typename Bodies<Degree>::Image&
   if (free.size() != dead) image::fail("resting: not all that are free are listed");
 }
 
-#define KDS_INSTANTIATE(degree)                                                \
-  template class RestingContacts<degree>;                                      \
-  template void RestingContacts<degree>::Image::archive(kds::detail::Writer&); \
-  template void RestingContacts<degree>::Image::archive(kds::detail::Reader&);
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion)                                                \
+  template class RestingContacts<motion>;                                      \
+  template void RestingContacts<motion>::Image::archive(kds::detail::Writer&); \
+  template void RestingContacts<motion>::Image::archive(kds::detail::Reader&);
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

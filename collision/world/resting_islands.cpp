@@ -1,5 +1,5 @@
 // Bodies that lean on each other: found, and moved as their resting contacts let them.
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting_contacts.hpp"
 #include "kds/certificate.hpp"
@@ -12,20 +12,20 @@
 namespace kds::collision {
 using Eigen::Vector3d;
 
-template <int Degree>
-void RestingContacts<Degree>::note(BodySlot id) {
+template <class Motion>
+void RestingContacts<Motion>::note(BodySlot id) {
   if (!bodies_.entered(id)) return;
   bool as_given = true;
-  if constexpr (Degree == 2)
+  if constexpr (Motion::degree == 2)
     as_given = bodies_.fixed(id) || bodies_.motion(id).coefficients[2] == bodies_.free_acceleration(id);
-  if constexpr (Degree >= 3) as_given = id >= of_.size() || !of_[id].carried;
+  if constexpr (Motion::degree >= 3) as_given = id >= of_.size() || !of_[id].carried;
   if (!carries(id) && as_given) return;
   if (std::exchange(member(id).disturbed, true)) return;
   disturbed_.push_back(id);
 }
 
-template <int Degree>
-void RestingContacts<Degree>::solve_all() {
+template <class Motion>
+void RestingContacts<Motion>::solve_all() {
   while (!disturbed_.empty()) {
     const BodySlot id = disturbed_.back();
     disturbed_.pop_back();
@@ -40,14 +40,15 @@ void RestingContacts<Degree>::solve_all() {
 }
 
 /// Nothing but walls holds a fixed body: they take the speed and the acceleration that lead out of the domain.
-template <int Degree>
-void RestingContacts<Degree>::solve_fixed(BodySlot id) {
+template <class Motion>
+void RestingContacts<Motion>::solve_fixed(BodySlot id) {
   const Motion before = bodies_.motion(id).restarted(clock_.now);
   Motion motion = before;
   const std::vector<Slot> holds = of_[id].contacts;  // some may be dropped
   const bool at_wall = std::any_of(holds.begin(), holds.end(), [&](Slot slot) { return contacts_[slot].wall >= 0; });
-  const bool given_anew = at_wall || (Degree >= 3 && of_[id].carried);  // or a wall has let it go
-  for (std::size_t i = 2; i <= Degree && given_anew; ++i) motion.coefficients[i] = bodies_.free_term(id, i, clock_.now);
+  const bool given_anew = at_wall || (Motion::degree >= 3 && of_[id].carried);  // or a wall has let it go
+  for (std::size_t i = 2; i <= Motion::degree && given_anew; ++i)
+    motion.coefficients[i] = bodies_.free_term(id, i, clock_.now);
   of_[id].carried = false;
   for (const Slot slot : holds) {
     Contact& contact = contacts_[slot];
@@ -58,16 +59,16 @@ void RestingContacts<Degree>::solve_fixed(BodySlot id) {
     const Eigen::Index axis = contact.wall / 2;
     if (contact.fresh) motion.coefficients[1][axis] = 0;
     bool parts = motion.coefficients[1][axis] != 0;  // inward, or outward: then it meets the wall anew
-    if constexpr (Degree == 2) {
+    if constexpr (Motion::degree == 2) {
       double& force = motion.coefficients[2][axis];
       parts = parts || force * contact.normal[axis] < 0;
       if (!parts) force = 0;
     }
-    if constexpr (Degree >= 3) parts = parts || !press(motion, contact);
+    if constexpr (Motion::degree >= 3) parts = parts || !press(motion, contact);
     contact.fresh = false;
     if (parts) {
       drop(slot);
-    } else if (Degree >= 3) {
+    } else if (Motion::degree >= 3) {
       of_[id].carried = true;
       schedule_release(slot);
     }
@@ -76,8 +77,8 @@ void RestingContacts<Degree>::solve_fixed(BodySlot id) {
 }
 
 /// False if a contact had to be dropped: then it is to be called again. Each time there is one contact less.
-template <int Degree>
-bool RestingContacts<Degree>::solve_island(BodySlot id, bool& dissolved) {
+template <class Motion>
+bool RestingContacts<Motion>::solve_island(BodySlot id, bool& dissolved) {
   Island island = find_island(id);
   if (in_cluster(island)) return step_cluster(island, dissolved);
   if (drop_broken(island)) return false;
@@ -90,23 +91,23 @@ bool RestingContacts<Degree>::solve_island(BodySlot id, bool& dissolved) {
       if (!(motions[i] == before[i])) listener_.take_up(island.bodies[i], motions[i]);
     }
   };
-  if constexpr (Degree >= 2) {
+  if constexpr (Motion::degree >= 2) {
     const std::vector<Motion> stopped = motions;
     for (std::size_t i = 0; i < island.free; ++i) {
-      for (std::size_t order = 2; order <= Degree; ++order) {
+      for (std::size_t order = 2; order <= Motion::degree; ++order) {
         motions[i].coefficients[order] = bodies_.free_term(island.bodies[i], order, clock_.now);
       }
-      if constexpr (Degree >= 3) of_[island.bodies[i]].carried = !island.contacts.empty();
+      if constexpr (Motion::degree >= 3) of_[island.bodies[i]].carried = !island.contacts.empty();
     }
     if (!constrain(island, 2, motions) ||
-        (Degree >= 3 &&
+        (Motion::degree >= 3 &&
          !constrain_curves(island, motions))) {  // What is pulled away at once has been stopped all the same.
       motions = stopped;
       take_up_all();
       return false;
     }
   }
-  if constexpr (Degree >= 2) watch(island, motions);
+  if constexpr (Motion::degree >= 2) watch(island, motions);
   take_up_all();
   for (const Slot slot : island.contacts) {
     contacts_[slot].fresh = false;
@@ -117,8 +118,8 @@ bool RestingContacts<Degree>::solve_island(BodySlot id, bool& dissolved) {
 
 /// The bodies that lean on each other, directly or not, but not through fixed ones; in the order of their ids, so that
 /// the arithmetic does not depend on how they were found.
-template <int Degree>
-typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(BodySlot id) {
+template <class Motion>
+typename RestingContacts<Motion>::Island RestingContacts<Motion>::find_island(BodySlot id) {
   ++islands_;
   member(id);  // All that touches others is known.
   Island island;
@@ -167,19 +168,18 @@ typename RestingContacts<Degree>::Island RestingContacts<Degree>::find_island(Bo
 
 /// Lets go what has been given speed along its normal; what approaches meets anew, and may bounce. What is back within
 /// a span, or would bounce to be, makes a cluster.
-template <int Degree>
-bool RestingContacts<Degree>::drop_broken(const Island& island) {
+template <class Motion>
+bool RestingContacts<Motion>::drop_broken(const Island& island) {
   bool any = false;
   for (const Slot slot : island.contacts) {
     const Contact& contact = contacts_[slot];
     if (contact.fresh) continue;
-    const Vector3d a = bodies_.motion(contact.a).velocity(clock_.now);
-    const Vector3d b =
-        contact.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.motion(contact.b).velocity(clock_.now);
+    const Vector3d a = bodies_.path(contact.a).velocity(clock_.now);
+    const Vector3d b = contact.b == no_body ? Vector3d(Vector3d::Zero()) : bodies_.path(contact.b).velocity(clock_.now);
     double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), contact.solved});
-    if constexpr (Degree >= 3) {
-      largest += velocity_terms(bodies_.motion(contact.a), clock_.now);
-      if (contact.b != no_body) largest += velocity_terms(bodies_.motion(contact.b), clock_.now);
+    if constexpr (Motion::degree >= 3) {
+      largest += velocity_terms(bodies_.path(contact.a), clock_.now);
+      if (contact.b != no_body) largest += velocity_terms(bodies_.path(contact.b), clock_.now);
     }
     const double rate = dot(contact.normal, b - a);
     if (std::abs(rate) <= rate_rounding * largest) continue;
@@ -195,8 +195,8 @@ bool RestingContacts<Degree>::drop_broken(const Island& island) {
 
 /// Velocities (order 1) or accelerations (2) by least constraint. False if a contact had to be dropped: one that parts,
 /// or one that cannot be held.
-template <int Degree>
-bool RestingContacts<Degree>::constrain(Island& island, std::size_t order, std::vector<Motion>& motions) {
+template <class Motion>
+bool RestingContacts<Motion>::constrain(Island& island, std::size_t order, std::vector<Motion>& motions) {
   std::vector<Vector3d> rates;
   for (const Motion& motion : motions) rates.push_back(motion.coefficients[order]);
   rates.push_back(Vector3d::Zero());  // of the walls
@@ -239,11 +239,11 @@ bool RestingContacts<Degree>::constrain(Island& island, std::size_t order, std::
 /// the two stay together whatever their higher terms are, so that of each order they are made equal along the normal; a
 /// push that vanishes up to some order gives way in the next like any other (no contact approaches). It lasts until the
 /// polynomial turns negative. False if a contact had to be dropped.
-template <int Degree>
-bool RestingContacts<Degree>::constrain_curves(Island& island, std::vector<Motion>& motions) {
-  if constexpr (Degree >= 3) {
+template <class Motion>
+bool RestingContacts<Motion>::constrain_curves(Island& island, std::vector<Motion>& motions) {
+  if constexpr (Motion::degree >= 3) {
     const std::size_t count = island.contacts.size();
-    std::vector<kds::Motion<Degree - 2>> pushes(count);
+    std::vector<kds::Motion<Motion::degree - 2>> pushes(count);
     std::vector<char> pressed(count);
     double accelerations = 0;
     for (const Motion& motion : motions) {
@@ -255,7 +255,7 @@ bool RestingContacts<Degree>::constrain_curves(Island& island, std::vector<Motio
       pushes[k].start = clock_.now;
       pushes[k].position.c[0] = pressed[k] ? 2 * push : 0;
     }
-    for (std::size_t order = 3; order <= Degree; ++order) {
+    for (std::size_t order = 3; order <= Motion::degree; ++order) {
       std::vector<Vector3d> rates;
       for (const Motion& motion : motions) rates.push_back(motion.coefficients[order]);
       rates.push_back(Vector3d::Zero());  // of the walls
@@ -288,7 +288,7 @@ bool RestingContacts<Degree>::constrain_curves(Island& island, std::vector<Motio
     }
     for (std::size_t k = 0; k < count; ++k) {
       contacts_[island.contacts[k]].ends =
-          failure_time(PolynomialCertificate<Degree - 2>{pushes[k]}, clock_.now, never);
+          failure_time(PolynomialCertificate<Motion::degree - 2>{pushes[k]}, clock_.now, never);
     }
   }
   return true;
@@ -296,36 +296,36 @@ bool RestingContacts<Degree>::constrain_curves(Island& island, std::vector<Motio
 
 /// A fixed body at a wall, of degree 3 and above: takes what presses it outward, as long as that does. False if it is
 /// drawn inward at once.
-template <int Degree>
-bool RestingContacts<Degree>::press(Motion& motion, Contact& contact) const {
-  if constexpr (Degree >= 3) {
+template <class Motion>
+bool RestingContacts<Motion>::press(Motion& motion, Contact& contact) const {
+  if constexpr (Motion::degree >= 3) {
     const Eigen::Index axis = contact.wall / 2;
-    kds::Motion<Degree - 2> push;
+    kds::Motion<Motion::degree - 2> push;
     push.start = clock_.now;
-    for (std::size_t order = 2; order <= Degree; ++order) {
+    for (std::size_t order = 2; order <= Motion::degree; ++order) {
       const auto factor = static_cast<double>(order * (order - 1));
       push.position.c[order - 2] = factor * motion.coefficients[order][axis] * contact.normal[axis];
     }
-    const PolynomialCertificate<Degree - 2> pressed{push};
+    const PolynomialCertificate<Motion::degree - 2> pressed{push};
     contact.ends = failure_time(pressed, push.start, never);
     if (contact.ends == push.start) return false;
-    for (std::size_t order = 2; order <= Degree; ++order) motion.coefficients[order][axis] = 0;
+    for (std::size_t order = 2; order <= Motion::degree; ++order) motion.coefficients[order][axis] = 0;
   }
   return true;
 }
 
 /// Ends a contact of bodies that are no longer pressed together: from now on they part, if only by terms of a higher
 /// order. What they overlap by rounding is no new contact.
-template <int Degree>
-void RestingContacts<Degree>::part(Slot slot) {
+template <class Motion>
+void RestingContacts<Motion>::part(Slot slot) {
   const Contact contact = contacts_[slot];
   if (contact.b != no_body) listener_.let_pass(contact.a, contact.b);
   drop(slot);
 }
 
 /// Of bodies that cannot all be held the pair that is pressed together most passes through. Walls do not give way.
-template <int Degree>
-bool RestingContacts<Degree>::let_pass_worst(const Island& island, const std::vector<Vector3d>& rates) {
+template <class Motion>
+bool RestingContacts<Motion>::let_pass_worst(const Island& island, const std::vector<Vector3d>& rates) {
   Slot worst = none;
   double least = never;
   for (std::size_t k = 0; k < island.contacts.size(); ++k) {
@@ -343,8 +343,8 @@ bool RestingContacts<Degree>::let_pass_worst(const Island& island, const std::ve
   return true;
 }
 
-#define KDS_INSTANTIATE(degree) template class RestingContacts<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -3,7 +3,7 @@
 
 #include "certificates/point_motion.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world/image_tools.hpp"
 #include "kds/events/dary_queue.hpp"
 
@@ -16,11 +16,9 @@ namespace kds::collision {
 /// The scripts of a world's bodies: for each the pieces of motion to come, and when the next of all begins.
 ///
 /// Cost: nothing for bodies without a script; O(log n) a piece.
-template <int Degree>
+template <class Motion>
 class Scripts {
  public:
-  using Motion = certificates::PointMotion<Degree>;
-
   /// Gives a body pieces to come, in order of their starts. Precondition: it has none.
   void add(BodySlot slot, std::span<const Motion> pieces);
   /// Forgets what was to come.
@@ -56,21 +54,22 @@ class Scripts {
   DaryQueue<> starts_;                        ///< slots are bodies
 };
 
-#define KDS_DECLARE(degree) extern template class Scripts<degree>;
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#define KDS_DECLARE(motion) extern template class Scripts<motion>;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
-template <int Degree>
+template <class Motion>
 template <class Alive>
-void Scripts<Degree>::Image::check(double now, const Alive& alive) const {
+void Scripts<Motion>::Image::check(double now, const Alive& alive) const {
   for (std::size_t slot = 0; slot < of.size(); ++slot) {
     const auto need = [slot](bool right, const char* what) { image::require(right, "scripts", slot, what); };
     need(of[slot].empty() || alive(static_cast<BodySlot>(slot)), "is of no body");
     double next = never;  // pieces are listed last first
     for (const Motion& piece : of[slot]) {
       need(piece.finite(), "a piece of motion to come is not finite");
-      need(image::is_to_come(piece.start, now) && piece.start < next, "pieces of motion to come are out of order");
-      next = piece.start;
+      need(image::is_to_come(path_of(piece).start, now) && path_of(piece).start < next,
+           "pieces of motion to come are out of order");
+      next = path_of(piece).start;
     }
   }
 }

@@ -1,6 +1,6 @@
 // Worlds saved, and loaded again: the sum of their parts.
 #include "kds/framework/snapshot.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
@@ -49,15 +49,15 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact) 
 /// nor are times that are. What has been decided with the past in view is: contact times of known pairs, the places
 /// where resting bodies lean on each other, who passes through whom, the counts of the Zeno policy, reports not yet
 /// made.
-template <int Degree>
-struct World<Degree>::Image {
+template <class Motion>
+struct BasicWorld<Motion>::Image {
   double now = 0, callers_now = 0, horizon = 0;
   bool room_for_meshes = false;
   WorldCounters counters;
   EditLimit edits;
-  typename Bodies<Degree>::Image bodies;
-  typename Scripts<Degree>::Image scripts;
-  typename Pairs<Degree>::Image pairs;
+  typename Bodies<Motion>::Image bodies;
+  typename Scripts<Motion>::Image scripts;
+  typename Pairs<Motion>::Image pairs;
   typename Resting::Image resting;
   std::vector<Reports::Report> pending;
 
@@ -90,8 +90,8 @@ struct World<Degree>::Image {
   }
 };
 
-template <int Degree>
-typename World<Degree>::Image World<Degree>::image() const {
+template <class Motion>
+typename BasicWorld<Motion>::Image BasicWorld<Motion>::image() const {
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (!volumes_.from_caller(slot)) continue;
     throw std::invalid_argument("World: body " + std::to_string(bodies_.id_of(slot)) +
@@ -110,8 +110,8 @@ typename World<Degree>::Image World<Degree>::image() const {
           .pending = reports_.image()};
 }
 
-template <int Degree>
-void World<Degree>::become(const Image& image) {
+template <class Motion>
+void BasicWorld<Motion>::become(const Image& image) {
   clock_ = {image.now, image.horizon};
   callers_now_ = image.callers_now;
   idle_until_ = next_time_ = -never;
@@ -128,12 +128,12 @@ void World<Degree>::become(const Image& image) {
   counters_.broad_phase = image.counters.broad_phase - broad_phase_->counters();
 }
 
-template <int Degree>
+template <class Motion>
 template <class Archive>
-void World<Degree>::archive(Archive& archive) {
+void BasicWorld<Motion>::archive(Archive& archive) {
   // What has been interrupted may be loaded: then it is whole again.
   if (!Archive::loading || stepping_ || volumes_.calling()) require_idle("World::archive");
-  archive.tag("World of degree " + std::to_string(Degree) + ", form " + std::to_string(snapshot_form));
+  archive.tag("World of degree " + std::to_string(Motion::degree) + ", form " + std::to_string(snapshot_form));
   archive_options(archive, options_, broad_phase_->exact());
   if constexpr (Archive::loading) {
     Image loaded;
@@ -147,11 +147,11 @@ void World<Degree>::archive(Archive& archive) {
   }
 }
 
-#define KDS_INSTANTIATE(degree)                               \
-  template class World<degree>;                               \
-  template void World<degree>::archive(kds::detail::Writer&); \
-  template void World<degree>::archive(kds::detail::Reader&);
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion)                                    \
+  template class BasicWorld<motion>;                               \
+  template void BasicWorld<motion>::archive(kds::detail::Writer&); \
+  template void BasicWorld<motion>::archive(kds::detail::Reader&);
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

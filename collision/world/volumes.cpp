@@ -1,7 +1,7 @@
 #include "collision/world/volumes.hpp"
 
 #include "collision/broad_phase/swept_box.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/raised_flag.hpp"
@@ -38,18 +38,18 @@ bool surely_overlap_rounded(const KineticBox<Degree>& a, const KineticBox<Degree
 
 }  // namespace
 
-template <int Degree>
-Volumes<Degree>::Volumes(const Bodies<Degree>& bodies, const WorldOptions& options, const Clock& clock)
+template <class Motion>
+Volumes<Motion>::Volumes(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock)
     : bodies_(bodies), options_(options), clock_(clock), directions_(directions_of(options)) {}
 
-template <int Degree>
-Kdops<Degree> Volumes<Degree>::kdops() const {
+template <class Motion>
+Kdops<Motion::degree> Volumes<Motion>::kdops() const {
   if (directions_.empty()) return {};
   return {directions_, [this](BodySlot slot, std::size_t i, double now) { return slab(slot, i, now); }};
 }
 
-template <int Degree>
-void Volumes<Degree>::add(BodySlot slot, const BoxFunction& function) {
+template <class Motion>
+void Volumes<Motion>::add(BodySlot slot, const BoxFunction& function) {
   if (!directions_.empty()) place_extents(slot);
   if (!function) return;
   make_room(ends_, bodies_.slots());
@@ -57,14 +57,14 @@ void Volumes<Degree>::add(BodySlot slot, const BoxFunction& function) {
   given_[slot] = std::make_unique<Given>(Given{function, {}});
 }
 
-template <int Degree>
-void Volumes<Degree>::remove(BodySlot slot) {
+template <class Motion>
+void Volumes<Motion>::remove(BodySlot slot) {
   clear(ends_, slot);
   if (from_caller(slot)) given_[slot] = nullptr;
 }
 
-template <int Degree>
-KineticBox<Degree> Volumes<Degree>::renew(BodySlot slot) {
+template <class Motion>
+KineticBox<Motion::degree> Volumes<Motion>::renew(BodySlot slot) {
   if (!from_caller(slot)) [[likely]]
     return box(slot);
   const Box made = [&] {
@@ -81,8 +81,8 @@ KineticBox<Degree> Volumes<Degree>::renew(BodySlot slot) {
   return box(slot);
 }
 
-template <int Degree>
-void Volumes<Degree>::set_end(BodySlot slot) {
+template <class Motion>
+void Volumes<Motion>::set_end(BodySlot slot) {
   const double until = from_caller(slot) ? given_[slot]->box.valid_until : clearance_until(slot);
   if (until <= clock_.horizon && until < never) {
     make_room(ends_, bodies_.slots());
@@ -92,16 +92,16 @@ void Volumes<Degree>::set_end(BodySlot slot) {
   }
 }
 
-template <int Degree>
-void Volumes<Degree>::extend_horizon() {
+template <class Motion>
+void Volumes<Motion>::extend_horizon() {
   if (given_.empty() && !meshes_) return;
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (bodies_[slot].entered) schedule(slot);
   }
 }
 
-template <int Degree>
-void Volumes<Degree>::become(bool room_for_meshes) {
+template <class Motion>
+void Volumes<Motion>::become(bool room_for_meshes) {
   meshes_ = room_for_meshes;
   given_.clear();
   ends_.resize(0);
@@ -110,15 +110,16 @@ void Volumes<Degree>::become(bool room_for_meshes) {
   }
 }
 
-/// How far a body that comes in reaches in the directions beyond the axes: that stays so, as it does not turn.
-template <int Degree>
-void Volumes<Degree>::place_extents(BodySlot slot) {
-  const detail::Body<Degree>& b = bodies_[slot];
+/// How far a body that comes in reaches in the directions beyond the axes: that stays so, as it does not turn or its
+/// volume is round.
+template <class Motion>
+void Volumes<Motion>::place_extents(BodySlot slot) {
+  const detail::Body<Motion>& b = bodies_[slot];
   extents_.resize(std::max(extents_.size(), (slot + std::size_t{1}) * directions_.size()));
   for (std::size_t i = 0; i < directions_.size(); ++i) {
     const Eigen::Vector3d direction(directions_[i].data());
     auto& reach = extents_[slot * directions_.size() + i];
-    if (!b.shape || b.volume == BoundingVolume::sphere) {
+    if (is_round(slot)) {
       const double radius = b.bounding_radius * norm(direction) * (1 + 0x1p-48);
       reach = {-radius, radius};
     } else {
@@ -128,15 +129,15 @@ void Volumes<Degree>::place_extents(BodySlot slot) {
 }
 
 /// What a body covers along a direction from now on.
-template <int Degree>
-KineticSlab<Degree> Volumes<Degree>::slab(BodySlot slot, std::size_t i, double now) const {
+template <class Motion>
+KineticSlab<Motion::degree> Volumes<Motion>::slab(BodySlot slot, std::size_t i, double now) const {
   const auto& [low, high] = extents_[slot * directions_.size() + i];
-  if (!from_caller(slot) && bodies_.motion(slot).start <= now) {
-    KineticSlab<Degree> slab = slab_around(bodies_.motion(slot), low, high, directions_[i]);
+  if (!from_caller(slot) && bodies_.path(slot).start <= now) {
+    KineticSlab<Motion::degree> slab = slab_around(bodies_.path(slot), low, high, directions_[i]);
     if (!meshes_) return slab;
     const auto by = growth(slot);
     const double length = norm(Eigen::Vector3d(directions_[i].data())) * (1 + 0x1p-48);
-    for (std::size_t k = 0; k <= Degree; ++k) {
+    for (std::size_t k = 0; k <= Motion::degree; ++k) {
       slab.min.position.c[k] -= by[k] * length;
       slab.max.position.c[k] += by[k] * length;
     }
@@ -145,35 +146,35 @@ KineticSlab<Degree> Volumes<Degree>::slab(BodySlot slot, std::size_t i, double n
   return slab_around(box(slot), directions_[i], now);
 }
 
-template <int Degree>
-bool Volumes<Degree>::overlap(BodySlot a, BodySlot b, double t, bool exact) const {
-  const auto broken = [t](const kds::Motion<Degree>& left, const kds::Motion<Degree>& right) {
-    return sign_after(certificates::Order<Degree>{left, right}, t) < 0;
+template <class Motion>
+bool Volumes<Motion>::overlap(BodySlot a, BodySlot b, double t, bool exact) const {
+  const auto broken = [t](const kds::Motion<Motion::degree>& left, const kds::Motion<Motion::degree>& right) {
+    return sign_after(certificates::Order<Motion::degree>{left, right}, t) < 0;
   };
   const Box box_a = box(a);
   const Box box_b = box(b);
-  const BoxOverlap<Degree> boxes(box_a, box_b);
+  const BoxOverlap<Motion::degree> boxes(box_a, box_b);
   for (const auto& side : boxes.separations()) {
     if (sign_after(side, t) >= 0) return false;
   }
   if (!exact && !surely_overlap_rounded(box_a, box_b, t)) return false;
   for (std::size_t i = 0; i < directions_.size(); ++i) {
-    const KineticSlab<Degree> slab_a = slab(a, i, t);
-    const KineticSlab<Degree> slab_b = slab(b, i, t);
+    const KineticSlab<Motion::degree> slab_a = slab(a, i, t);
+    const KineticSlab<Motion::degree> slab_b = slab(b, i, t);
     if (!broken(slab_a.max, slab_b.min) || !broken(slab_b.max, slab_a.min)) return false;
   }
   return true;
 }
 
-template <int Degree>
-KineticBox<Degree> Volumes<Degree>::box_or_ball(BodySlot slot) const {
+template <class Motion>
+KineticBox<Motion::degree> Volumes<Motion>::box_or_ball(BodySlot slot) const {
   if (asked(slot)) return box(slot);
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(bodies_[slot].bounding_radius);
-  return box_around<Degree>(bodies_.motion(slot), -reach, reach);
+  return box_around<Motion::degree>(bodies_.path(slot), -reach, reach);
 }
 
-template <int Degree>
-bool Volumes<Degree>::meets(BodySlot slot, const StaticBox& box, double t) const {
+template <class Motion>
+bool Volumes<Motion>::meets(BodySlot slot, const StaticBox& box, double t) const {
   if (!box_at(box_or_ball(slot), t).overlaps(box)) return false;
   for (std::size_t i = 0; i < directions_.size() && asked(slot); ++i) {
     const auto [low, high] = slab_at(slab(slot, i, t), t);
@@ -183,13 +184,13 @@ bool Volumes<Degree>::meets(BodySlot slot, const StaticBox& box, double t) const
   return true;
 }
 
-template <int Degree>
-StaticBox Volumes<Degree>::swept(BodySlot slot, double from, double until) const {
+template <class Motion>
+StaticBox Volumes<Motion>::swept(BodySlot slot, double from, double until) const {
   return bounded_swept_box(box_or_ball(slot), from, until);
 }
 
-#define KDS_INSTANTIATE(degree) template class Volumes<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class Volumes<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

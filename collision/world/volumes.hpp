@@ -1,10 +1,11 @@
 // The bounding volumes of a world's bodies.
 #pragma once
 
+#include "collision/body_motion.hpp"
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/broad_phase/swept_box.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world_options.hpp"
@@ -24,18 +25,17 @@ namespace kds::collision {
 /// contact gaps of meshes (mesh_margins.hpp). Most hold their body for good.
 ///
 /// Cost: O(1) a volume; nothing is kept of bodies whose volumes hold for good, but for k-DOPs.
-template <int Degree>
+template <class Motion>
 class Volumes {
  public:
-  using Motion = certificates::PointMotion<Degree>;
-  using BoxFunction = typename BodyDescription<Degree>::BoxFunction;
-  using Box = KineticBox<Degree>;
+  using BoxFunction = typename BasicBodyDescription<Motion>::BoxFunction;
+  using Box = KineticBox<Motion::degree>;
 
   /// Throws std::invalid_argument, naming the option, for a k-DOP that there is not.
-  Volumes(const Bodies<Degree>& bodies, const WorldOptions& options, const Clock& clock);
+  Volumes(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock);
 
   /// For the broad phase.
-  Kdops<Degree> kdops() const;
+  Kdops<Motion::degree> kdops() const;
 
   /// A body comes. `function`: the caller's, or an empty one. Throws std::length_error, before anything is changed, if
   /// there is no room.
@@ -86,16 +86,17 @@ class Volumes {
   bool asked(BodySlot slot) const { return bodies_[slot].entered || !from_caller(slot); }
   Box box_or_ball(BodySlot slot) const;
   Box bare_box(BodySlot slot) const;
+  bool is_round(BodySlot slot) const;
   void set_end(BodySlot slot);
   void place_extents(BodySlot slot);
-  KineticSlab<Degree> slab(BodySlot slot, std::size_t i, double now) const;
+  KineticSlab<Motion::degree> slab(BodySlot slot, std::size_t i, double now) const;
 
   // clearance.cpp: what boxes reach beyond bodies, for the contact gap of meshes
-  std::array<double, std::size_t{Degree} + 1> growth(BodySlot slot) const;
+  std::array<double, std::size_t{Motion::degree} + 1> growth(BodySlot slot) const;
   Box grown(BodySlot slot, Box box) const;
   double clearance_until(BodySlot slot) const;
 
-  const Bodies<Degree>& bodies_;
+  const Bodies<Motion>& bodies_;
   const WorldOptions& options_;
   const Clock& clock_;
   std::vector<std::unique_ptr<Given>> given_;   ///< by body, up to the last that has had one
@@ -106,20 +107,27 @@ class Volumes {
   bool calling_ = false;
 };
 
-/// The same without room for the contact gap of meshes.
-template <int Degree>
-inline KineticBox<Degree> Volumes<Degree>::bare_box(BodySlot slot) const {
-  if (from_caller(slot)) return given_[slot]->box;
-  const detail::Body<Degree>& b = bodies_[slot];
-  const bool sphere = !b.shape || b.volume == BoundingVolume::sphere;
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
-  const double rounding = sphere && !options_.report_pairs ? b.bounding_radius : 0;  // of boxes those are told
-  return box_around<Degree>(bodies_.motion(slot), sphere ? -reach : b.shape->low, sphere ? reach : b.shape->high,
-                            rounding);
+/// Whether the volume is around the bounding sphere, which holds the body however it is turned. If not, it is around
+/// the shape as it is placed.
+template <class Motion>
+inline bool Volumes<Motion>::is_round(BodySlot slot) const {
+  return turns<Motion> || !bodies_[slot].shape || bodies_[slot].volume == BoundingVolume::sphere;
 }
 
-#define KDS_DECLARE(degree) extern template class Volumes<degree>;
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+/// The same without room for the contact gap of meshes.
+template <class Motion>
+inline KineticBox<Motion::degree> Volumes<Motion>::bare_box(BodySlot slot) const {
+  if (from_caller(slot)) return given_[slot]->box;
+  const detail::Body<Motion>& b = bodies_[slot];
+  const bool sphere = is_round(slot);
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
+  const double rounding = sphere && !options_.report_pairs ? b.bounding_radius : 0;  // of boxes those are told
+  return box_around<Motion::degree>(bodies_.path(slot), sphere ? -reach : b.shape->low, sphere ? reach : b.shape->high,
+                                    rounding);
+}
+
+#define KDS_DECLARE(motion) extern template class Volumes<motion>;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

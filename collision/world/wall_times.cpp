@@ -2,7 +2,7 @@
 
 #include "certificates/conjunction.hpp"
 #include "certificates/wall_separation.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world/earliest_wall_time.hpp"
 #include "collision/world/queue_room.hpp"
 
@@ -11,15 +11,15 @@
 
 namespace kds::collision {
 
-template <int Degree>
-inline void WallTimes<Degree>::make_room(std::size_t slots) {
+template <class Motion>
+inline void WallTimes<Motion>::make_room(std::size_t slots) {
   collision::make_room(times_, slots);
   if (is_bound_.size() < times_.slots()) is_bound_.resize(times_.slots());
 }
 
 /// Takes note that a body is at no wall before some time. Precondition: there is room for it.
-template <int Degree>
-inline void WallTimes<Degree>::note(BodySlot slot, double earliest) {
+template <class Motion>
+inline void WallTimes<Motion>::note(BodySlot slot, double earliest) {
   if (bodies_[slot].sensor) return;
   is_bound_[slot] = true;
   // An earlier one is a lower bound as well: most are replaced again before they are due.
@@ -31,24 +31,24 @@ inline void WallTimes<Degree>::note(BodySlot slot, double earliest) {
   }
 }
 
-template <int Degree>
-void WallTimes<Degree>::schedule(BodySlot slot) {
+template <class Motion>
+void WallTimes<Motion>::schedule(BodySlot slot) {
   if (!walls_) return;
   make_room(bodies_.slots());
-  note(slot, earliest_wall_time_of_all(bodies_.motion(slot), bodies_[slot].bounding_radius, *walls_, clock_.now));
+  note(slot, earliest_wall_time_of_all(bodies_.path(slot), bodies_[slot].bounding_radius, *walls_, clock_.now));
 }
 
-template <int Degree>
-void WallTimes<Degree>::schedule(std::span<const Entry> entries) {
+template <class Motion>
+void WallTimes<Motion>::schedule(std::span<const Entry> entries) {
   if (!walls_) return;
   make_room(bodies_.slots());
   for (std::size_t i = 0; i < entries.size(); i += 2) {
     const BodySlot a = entries[i].slot;
     const BodySlot b = entries[std::min(i + 1, entries.size() - 1)].slot;
-    if constexpr (Degree == 1) {
+    if constexpr (Motion::degree == 1) {
       const Two radii{bodies_[a].bounding_radius, bodies_[b].bounding_radius};
       const auto earliest =
-          earliest_wall_times_of_all({&bodies_.motion(a), &bodies_.motion(b)}, radii, *walls_, clock_.now);
+          earliest_wall_times_of_all({&bodies_.path(a), &bodies_.path(b)}, radii, *walls_, clock_.now);
       note(a, earliest[0]);
       if (b != a) note(b, earliest[1]);
     } else {
@@ -58,42 +58,42 @@ void WallTimes<Degree>::schedule(std::span<const Entry> entries) {
   }
 }
 
-template <int Degree>
-void WallTimes<Degree>::remove(BodySlot slot) {
+template <class Motion>
+void WallTimes<Motion>::remove(BodySlot slot) {
   clear(times_, slot);
 }
 
-template <int Degree>
-void WallTimes<Degree>::reserve(std::size_t bodies) {
+template <class Motion>
+void WallTimes<Motion>::reserve(std::size_t bodies) {
   if (!walls_ || times_.slots() >= bodies) return;
   times_.resize(bodies);
   make_room(bodies);
 }
 
-template <int Degree>
-void WallTimes<Degree>::extend_horizon() {
+template <class Motion>
+void WallTimes<Motion>::extend_horizon() {
   if (!walls_) return;
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (bodies_[slot].entered) schedule(slot);
   }
 }
 
-template <int Degree>
-void WallTimes<Degree>::become() {
+template <class Motion>
+void WallTimes<Motion>::become() {
   times_.resize(0);
   is_bound_.clear();
   extend_horizon();
 }
 
-template <int Degree>
-bool WallTimes<Degree>::certify() {
+template <class Motion>
+bool WallTimes<Motion>::certify() {
   const BodySlot slot = times_.top().slot;
   if (!is_bound_[slot]) return false;
   is_bound_[slot] = false;
   double first = never;
   for (int wall = 0; wall < 6; ++wall) {
     const double horizon = std::min(first, clock_.horizon);
-    if (earliest_wall_time(bodies_.motion(slot), bodies_[slot].bounding_radius, *walls_, wall, clock_.now) > horizon) {
+    if (earliest_wall_time(bodies_.path(slot), bodies_[slot].bounding_radius, *walls_, wall, clock_.now) > horizon) {
       continue;
     }
     first = std::min(first, exact_time(slot, wall, horizon));
@@ -103,20 +103,20 @@ bool WallTimes<Degree>::certify() {
 }
 
 /// When the ball around a body is outside a wall and still going outward.
-template <int Degree>
-double WallTimes<Degree>::exact_time(BodySlot slot, int wall, double horizon) const {
+template <class Motion>
+double WallTimes<Motion>::exact_time(BodySlot slot, int wall, double horizon) const {
   const int axis = wall / 2;
   const double out = wall % 2 != 0 ? 1 : -1;
-  const Motion& motion = bodies_.motion(slot);
-  using Wall = certificates::WallSeparation<Degree>;
+  const auto& path = bodies_.path(slot);
+  using Wall = certificates::WallSeparation<Motion::degree>;
   const auto inside = [&] {
-    return Wall{motion.axis(axis), out > 0 ? walls_->max[axis] : walls_->min[axis], bodies_[slot].bounding_radius, out};
+    return Wall{path.axis(axis), out > 0 ? walls_->max[axis] : walls_->min[axis], bodies_[slot].bounding_radius, out};
   };
-  if constexpr (Degree == 1) {
-    return motion.coefficients[1][axis] * out > 0 ? failure_time(inside(), clock_.now, horizon) : never;
+  if constexpr (Motion::degree == 1) {
+    return path.coefficients[1][axis] * out > 0 ? failure_time(inside(), clock_.now, horizon) : never;
   } else {
     bool moves = false;
-    for (std::size_t i = 1; i <= Degree; ++i) moves = moves || motion.coefficients[i][axis] != 0;
+    for (std::size_t i = 1; i <= Motion::degree; ++i) moves = moves || path.coefficients[i][axis] != 0;
     if (!moves) return never;
     const Wall wall_inside = inside();
     const DerivativeCertificate<Wall> leaving{wall_inside};
@@ -125,16 +125,16 @@ double WallTimes<Degree>::exact_time(BodySlot slot, int wall, double horizon) co
   }
 }
 
-template <int Degree>
-int WallTimes<Degree>::next_wall() const {
+template <class Motion>
+int WallTimes<Motion>::next_wall() const {
   const double t = next_time();
   int wall = 0;
   while (wall < 6 && exact_time(next_body(), wall, t) != t) ++wall;
   return wall;
 }
 
-#define KDS_INSTANTIATE(degree) template class WallTimes<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template class WallTimes<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world_options.hpp"
@@ -21,13 +21,12 @@ namespace kds::collision {
 /// A ball reaches a wall when it is outside and still going outward. Walls have the numbers of WallEvent.
 ///
 /// Cost: nothing where there are no walls; O(1) for a change of motion.
-template <int Degree>
+template <class Motion>
 class WallTimes {
  public:
-  using Motion = certificates::PointMotion<Degree>;
-  using Entry = typename BroadPhase<Degree>::Entry;
+  using Entry = typename BroadPhase<Motion::degree>::Entry;
 
-  WallTimes(const Bodies<Degree>& bodies, const std::optional<Walls>& walls, const Clock& clock)
+  WallTimes(const Bodies<Motion>& bodies, const std::optional<Walls>& walls, const Clock& clock)
       : bodies_(bodies), walls_(walls), clock_(clock) {}
 
   /// Bodies have entered, or one has another motion.
@@ -54,15 +53,15 @@ class WallTimes {
   void note(BodySlot slot, double earliest);
   double exact_time(BodySlot slot, int wall, double horizon) const;
 
-  const Bodies<Degree>& bodies_;
+  const Bodies<Motion>& bodies_;
   const std::optional<Walls>& walls_;
   const Clock& clock_;
   CalendarQueue<> times_;       ///< slots are bodies
   std::vector<char> is_bound_;  ///< by body: its time is a lower bound
 };
 
-#define KDS_DECLARE(degree) extern template class WallTimes<degree>;
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#define KDS_DECLARE(motion) extern template class WallTimes<motion>;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -46,7 +46,8 @@ inline std::vector<Stretch> on_the_clock(const std::vector<oracle::Stretch>& exa
 
 /// What the narrow phase finds by its three questions.
 template <int Degree>
-std::vector<Stretch> ask(const MovingShape<Degree>& a, const MovingShape<Degree>& b, double start, double limit) {
+std::vector<Stretch> ask(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double start,
+                         double limit) {
   std::vector<Stretch> result;
   double t = start;
   bool at_start = in_contact(a, b, start);

@@ -22,7 +22,7 @@ using namespace tests;
 
 /// Orientations that doubles hold exactly: the axes go to axes.
 const std::vector<Eigen::Quaterniond>& exact_orientations() {
-  static const std::vector<Eigen::Quaterniond> all{{1, 0, 0, 0},         {0, 1, 0, 0},          {0.5, 0.5, 0.5, 0.5},
+  static const std::vector<Eigen::Quaterniond> all{{1, 0, 0, 0},          {0, 1, 0, 0},          {0.5, 0.5, 0.5, 0.5},
                                                    {0.5, -0.5, 0.5, 0.5}, {0.5, 0.5, 0.5, -0.5}, {0, 0, 0, 1}};
   return all;
 }
@@ -37,8 +37,8 @@ template <int Degree>
 void compare_pair(const BodyDescription<Degree>& a, const BodyDescription<Degree>& b, double limit, Found& found) {
   const PlacedShape shape_a = place(a.shape, a.orientation);
   const PlacedShape shape_b = place(b.shape, b.orientation);
-  const MovingShape<Degree> moving_a{shape_a, a.motion[0]};
-  const MovingShape<Degree> moving_b{shape_b, b.motion[0]};
+  const TranslatingShape<Degree> moving_a{shape_a, a.motion[0]};
+  const TranslatingShape<Degree> moving_b{shape_b, b.motion[0]};
   const auto expected = on_the_clock(oracle::contacts(oracle::exact_body(a), oracle::exact_body(b), 0, limit), limit);
   REQUIRE(ask(moving_a, moving_b, 0, limit) == expected);
   // The order of the two bodies does not matter.
@@ -98,8 +98,8 @@ TEMPLATE_TEST_CASE_SIG("Pairs of spheres and boxes on a lattice against exact ar
   }
 }
 
-TEMPLATE_TEST_CASE_SIG("Random pairs of spheres and boxes against exact arithmetic", "[oracle]",
-                       ((int Degree), Degree), 1, 2) {
+TEMPLATE_TEST_CASE_SIG("Random pairs of spheres and boxes against exact arithmetic", "[oracle]", ((int Degree), Degree),
+                       1, 2) {
   for (int kinds = 0; kinds < 3; ++kinds) {
     Found found;
     for (std::uint64_t seed = 1; seed <= 120; ++seed) {
@@ -131,7 +131,8 @@ TEST_CASE("Turned boxes: the shapes are rounded, so that times are near the exac
     const auto exact_contact = oracle::first_contact(oracle::exact_body(a), oracle::exact_body(b), 0, 5);
     const PlacedShape shape_a = place(a.shape, a.orientation.normalized());
     const PlacedShape shape_b = place(b.shape, b.orientation.normalized());
-    const double t = first_contact<1>({shape_a, a.motion[0]}, {shape_b, b.motion[0]}, 0, 5, ContactMode::transparent);
+    const double t = first_contact(TranslatingShape<1>{shape_a, a.motion[0]}, TranslatingShape<1>{shape_b, b.motion[0]},
+                                   0, 5, ContactMode::transparent);
     REQUIRE(exact_contact.has_value() == (t != never));
     if (t == never) continue;
     CHECK(std::abs(t - exact_contact->approximate()) <= most);

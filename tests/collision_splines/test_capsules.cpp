@@ -70,7 +70,7 @@ TEMPLATE_TEST_CASE_SIG("Curves: contacts of capsules are where the distances are
     auto path_b = maker.template path<Degree>(0);
     bend(path_a, random, Numbers::fine);
     bend(path_b, random, Numbers::fine);
-    const MovingShape<Degree> moving_a{a, path_a}, moving_b{b, path_b};
+    const TranslatingShape<Degree> moving_a{a, path_a}, moving_b{b, path_b};
     const double limit = 2;
     const double t = first_contact(moving_a, moving_b, 0, limit, ContactMode::transparent);
     INFO("trial " << trial << ", contact at " << t);

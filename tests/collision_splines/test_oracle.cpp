@@ -52,8 +52,8 @@ int compare_pairs(int kinds, bool coarse, std::uint64_t seeds) {
     const double limit = 3;
     const PlacedShape shape_a = place(a.shape, a.orientation);
     const PlacedShape shape_b = place(b.shape, b.orientation);
-    const MovingShape<Degree> moving_a{shape_a, a.motion[0]};
-    const MovingShape<Degree> moving_b{shape_b, b.motion[0]};
+    const TranslatingShape<Degree> moving_a{shape_a, a.motion[0]};
+    const TranslatingShape<Degree> moving_b{shape_b, b.motion[0]};
     const auto expected = on_the_clock(oracle::contacts(oracle::exact_body(a), oracle::exact_body(b), 0, limit), limit);
     REQUIRE(ask(moving_a, moving_b, 0, limit) == expected);
     // The estimate is a lower bound of it, or says that it is exact.

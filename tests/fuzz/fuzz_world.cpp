@@ -168,8 +168,8 @@ class Scenario {
           continue;
         const PlacedShape shape_a = world_.shape(a);
         const PlacedShape shape_b = world_.shape(b);
-        const bool touch = in_contact(MovingShape<Degree>{shape_a, world_.motion(a)},
-                                      MovingShape<Degree>{shape_b, world_.motion(b)}, world_.now());
+        const bool touch = in_contact(TranslatingShape<Degree>{shape_a, world_.motion(a)},
+                                      TranslatingShape<Degree>{shape_b, world_.motion(b)}, world_.now());
         if (world_.touching(a, b) && !touch) throw Failure("bodies are said to touch and do not");
       }
     }

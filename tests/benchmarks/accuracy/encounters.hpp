@@ -33,7 +33,7 @@ struct Setting {
   double coordinates = 0;  ///< each coordinate of the first body, but for a random part of the bodies' size
   double speed_a = 1;      ///< units of length / s
   double speed_b = 1;
-  double size_a = 1;       ///< radius or half extent, units of length
+  double size_a = 1;  ///< radius or half extent, units of length
   double size_b = 1;
 };
 
@@ -108,8 +108,8 @@ Encounter<Degree> encounter(Random& random, const Setting& s, const Shape& shape
 /// Of the times of contact, in s and in spacings of the doubles there.
 struct TimeErrors {
   int contacts = 0;
-  int wrong = 0;        ///< found where there is none, or the other way round
-  int not_first = 0;    ///< another double than the first at or after the exact instant
+  int wrong = 0;      ///< found where there is none, or the other way round
+  int not_first = 0;  ///< another double than the first at or after the exact instant
   double least_ulps = std::numeric_limits<double>::infinity();
   double most_ulps = -std::numeric_limits<double>::infinity();  ///< < 0: early
   double most_seconds = 0;
@@ -123,8 +123,8 @@ void compare(const Encounter<Degree>& e, const Setting& s, TimeErrors& errors) {
   const PlacedShape a = place(e.a.shape, e.a.orientation);
   const PlacedShape b = place(e.b.shape, e.b.orientation);
   const double limit = s.clock + 4 * e.duration;
-  const double t =
-      first_contact<Degree>({a, e.a.motion[0]}, {b, e.b.motion[0]}, s.clock, limit, ContactMode::transparent);
+  const double t = first_contact(TranslatingShape<Degree>{a, e.a.motion[0]}, TranslatingShape<Degree>{b, e.b.motion[0]},
+                                 s.clock, limit, ContactMode::transparent);
   const auto root = oracle::first_contact(oracle::exact_body(e.a), oracle::exact_body(e.b), s.clock, limit);
   const bool seen = root && root->ceiling() <= limit;
   if (seen != (t != kds::never)) {

@@ -13,13 +13,13 @@ namespace accuracy {
 
 struct EarlyContacts {
   int contacts = 0;
-  int missed = 0;          ///< the surfaces meet, and no contact was reported
-  int near_misses = 0;     ///< reported, and the surfaces never meet: they pass within the gap
-  int late = 0;            ///< the surfaces meet before the reported time
-  double most_of_gap = 0;  ///< the distance at the report over the contact gap; the library says at most 1
-  double gap_over_size = 0;       ///< the greatest contact gap over the bodies' radii
-  double most_seconds = 0;        ///< how much before the exact time
-  double most_of_bound = 0;       ///< that over gap / closing speed along the axis: 1 where the bound is reached
+  int missed = 0;            ///< the surfaces meet, and no contact was reported
+  int near_misses = 0;       ///< reported, and the surfaces never meet: they pass within the gap
+  int late = 0;              ///< the surfaces meet before the reported time
+  double most_of_gap = 0;    ///< the distance at the report over the contact gap; the library says at most 1
+  double gap_over_size = 0;  ///< the greatest contact gap over the bodies' radii
+  double most_seconds = 0;   ///< how much before the exact time
+  double most_of_bound = 0;  ///< that over gap / closing speed along the axis: 1 where the bound is reached
 };
 
 /// A contact of two meshes. Paths of degree 2 have no exact time here: the distance is looked at instead.
@@ -31,7 +31,8 @@ void compare(const Encounter<Degree>& e, const Setting& s, EarlyContacts& errors
   const auto& motion_a = e.a.motion[0];
   const auto& motion_b = e.b.motion[0];
   const double limit = s.clock + 4 * e.duration;
-  const double t = first_contact<Degree>({a, motion_a}, {b, motion_b}, s.clock, limit, ContactMode::transparent);
+  const double t = first_contact(TranslatingShape<Degree>{a, motion_a}, TranslatingShape<Degree>{b, motion_b}, s.clock,
+                                 limit, ContactMode::transparent);
   if (t == s.clock) return;
   const ExactMesh exact_a(e.a), exact_b(e.b);
   std::optional<Rational> root;
@@ -52,7 +53,7 @@ void compare(const Encounter<Degree>& e, const Setting& s, EarlyContacts& errors
   if (root) {
     late = late || *root < oracle::rational(t);
     const double early = oracle::approximate(*root - oracle::rational(t));
-    const Contact where = contact_at<Degree>({a, motion_a}, {b, motion_b}, t);
+    const Contact where = contact_at(TranslatingShape<Degree>{a, motion_a}, TranslatingShape<Degree>{b, motion_b}, t);
     const double closing = -where.normal.dot(motion_b.velocity(t) - motion_a.velocity(t));
     errors.most_seconds = std::max(errors.most_seconds, early);
     if (closing > 0) errors.most_of_bound = std::max(errors.most_of_bound, early * closing / gap);

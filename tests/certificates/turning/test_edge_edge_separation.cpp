@@ -1,12 +1,12 @@
 // Edges of bodies that turn, against the definition in 330 bits.
 #include "certificates/turning/edge_edge_separation.hpp"
+#include "tests/certificates/turning/check_random_signs.hpp"
 #include "tests/certificates/turning/check_turning.hpp"
 #include "tests/certificates/turning/turning_scenes.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <cstdint>
 
 namespace {
 
@@ -20,25 +20,13 @@ using Eigen::Vector3d;
 
 TEMPLATE_TEST_CASE_SIG("signs of two edges that turn are those of the definition", "[turning]", ((int Degree), Degree),
                        1, 2) {
-  const std::uint64_t seed = 320 + Degree;
-  CAPTURE(Degree, seed);
-  Random random(seed);
-  for (const bool coarse : {false, true}) {
-    LadderTally tally;
-    for (int round = 0; round < 850; ++round) {
-      const auto scene = turning_scene<Degree>(random, coarse);
-      EdgeEdgeSeparation<Degree> f{scene.a, scene.b, {}, {}};
-      for (Vector3d& end : f.edge_a) end = turning_vector(random, coarse);
-      for (Vector3d& end : f.edge_b) end = turning_vector(random, coarse);
-      if (random.one_in(10)) f.edge_b = f.edge_a;
-      compare(f, scene.time, scene.span, tally);
-    }
-    tally.print(coarse ? "two edges, coarse" : "two edges", seed);
-    CHECK(tally.wrong == 0);
-    CHECK(tally.cases >= 8000);
-    CHECK(tally.rungs.extended > 1000);
-    CHECK(tally.rungs.zeros >= (coarse ? 100u : 0u));
-  }
+  check_random_signs<Degree>("two edges", 320 + Degree, [](Random& random, bool coarse, const auto& scene) {
+    EdgeEdgeSeparation<Degree> f{scene.a, scene.b, {}, {}};
+    for (Vector3d& end : f.edge_a) end = turning_vector(random, coarse);
+    for (Vector3d& end : f.edge_b) end = turning_vector(random, coarse);
+    if (random.one_in(10)) f.edge_b = f.edge_a;
+    return f;
+  });
 }
 
 TEST_CASE("a blade that turns meets an edge", "[turning]") {

@@ -1,5 +1,6 @@
 // A vertex and a face of bodies that turn, against the definition in 330 bits.
 #include "certificates/turning/vertex_face_separation.hpp"
+#include "tests/certificates/turning/check_random_signs.hpp"
 #include "tests/certificates/turning/check_turning.hpp"
 #include "tests/certificates/turning/turning_scenes.hpp"
 
@@ -7,7 +8,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 
 namespace {
 
@@ -23,23 +23,11 @@ const std::array<Vector3d, 3> floor_of_body{Vector3d(0, 0, 0), Vector3d(1, 0, 0)
 
 TEMPLATE_TEST_CASE_SIG("signs of a vertex and a face that turn are those of the definition", "[turning]",
                        ((int Degree), Degree), 1, 2) {
-  const std::uint64_t seed = 310 + Degree;
-  CAPTURE(Degree, seed);
-  Random random(seed);
-  for (const bool coarse : {false, true}) {
-    LadderTally tally;
-    for (int round = 0; round < 850; ++round) {
-      const auto scene = turning_scene<Degree>(random, coarse);
-      VertexFaceSeparation<Degree> f{scene.a, scene.b, turning_vector(random, coarse), {}};
-      for (Vector3d& corner : f.corners) corner = turning_vector(random, coarse);
-      compare(f, scene.time, scene.span, tally);
-    }
-    tally.print(coarse ? "vertex and face, coarse" : "vertex and face", seed);
-    CHECK(tally.wrong == 0);
-    CHECK(tally.cases >= 8000);
-    CHECK(tally.rungs.extended > 1000);
-    CHECK(tally.rungs.zeros >= (coarse ? 100u : 0u));
-  }
+  check_random_signs<Degree>("vertex and face", 310 + Degree, [](Random& random, bool coarse, const auto& scene) {
+    VertexFaceSeparation<Degree> f{scene.a, scene.b, turning_vector(random, coarse), {}};
+    for (Vector3d& corner : f.corners) corner = turning_vector(random, coarse);
+    return f;
+  });
 }
 
 TEST_CASE("a corner that turns goes through the floor where it is as low as its body is high", "[turning]") {

@@ -58,7 +58,7 @@ struct Piece {
 /// The pieces of a pair: of all sums of segments and their ends, be they at the surface or not.
 template <int Degree>
 struct Pieces {
-  Pieces(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+  Pieces(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b) {
     const RoundedCore core_a = rounded_core(a.shape);
     const RoundedCore core_b = rounded_core(b.shape);
     generators.assign(core_a.generators.begin(), core_a.generators.end());
@@ -174,7 +174,8 @@ LongVector place(const PointMotion<Degree>& path, double t) {
 
 /// How far the surfaces are apart at a time; below zero down to the sum of the radii where they overlap.
 template <int Degree>
-Long gap_at(const Pieces<Degree>& pieces, const MovingShape<Degree>& a, const MovingShape<Degree>& b, double t) {
+Long gap_at(const Pieces<Degree>& pieces, const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b,
+            double t) {
   const Long radii = static_cast<Long>(rounded_core(a.shape).radius) + static_cast<Long>(rounded_core(b.shape).radius);
   return distance(pieces.generators, place(b.motion, t) - place(a.motion, t)) - radii;
 }
@@ -265,8 +266,8 @@ TEMPLATE_TEST_CASE_SIG("Filtered contacts of capsules are those of exact signs a
     const PlacedShape shape_b = pairs.other();
     const auto path_a = pairs.path<Degree>();
     const auto path_b = pairs.path<Degree>();
-    const MovingShape<Degree> a{shape_a, path_a};
-    const MovingShape<Degree> b{shape_b, path_b};
+    const TranslatingShape<Degree> a{shape_a, path_a};
+    const TranslatingShape<Degree> b{shape_b, path_b};
     const double t0 = pairs.start();
     const double horizon = pairs.horizon();
     const Pieces<Degree> pieces(a, b);
@@ -308,8 +309,8 @@ TEMPLATE_TEST_CASE_SIG("Contacts of capsules are where the distances are", "[cap
     const PlacedShape shape_b = pairs.other();
     const auto path_a = pairs.path<Degree>();
     const auto path_b = pairs.path<Degree>();
-    const MovingShape<Degree> a{shape_a, path_a};
-    const MovingShape<Degree> b{shape_b, path_b};
+    const TranslatingShape<Degree> a{shape_a, path_a};
+    const TranslatingShape<Degree> b{shape_b, path_b};
     const Pieces<Degree> pieces(a, b);
     const double t0 = pairs.start();
     const double horizon = t0 + 4 * pairs.duration();

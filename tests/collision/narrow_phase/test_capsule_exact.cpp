@@ -34,7 +34,7 @@ struct Flight {
   auto ask(const Ask& question) const {
     const PointMotion<2> still{{Vector3d::Zero()}, 0};
     const PointMotion<2> path{{from, velocity, half_acceleration}, 0};
-    return question(MovingShape<2>{a, still}, MovingShape<2>{b, path});
+    return question(TranslatingShape<2>{a, still}, TranslatingShape<2>{b, path});
   }
   /// The same whichever is named first.
   double contact(ContactMode mode = ContactMode::transparent, double t0 = 0, double horizon = 100) const {

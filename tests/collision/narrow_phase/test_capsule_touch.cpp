@@ -182,8 +182,8 @@ TEST_CASE("capsule and mesh: tip, side and end on a cube of triangles", "[capsul
                         const Vector3d& point, const char* feature) {
     INFO("from " << from.transpose());
     const PointMotion<1> path{{from, velocity}, 0};
-    const MovingShape<1> a{cube, still};
-    const MovingShape<1> b{capsule, path};
+    const TranslatingShape<1> a{cube, still};
+    const TranslatingShape<1> b{capsule, path};
     const double t = first_contact(a, b, 0, 100, ContactMode::resolved);
     CHECK(t <= expected);
     CHECK(t > expected - 1e-13);
@@ -194,7 +194,7 @@ TEST_CASE("capsule and mesh: tip, side and end on a cube of triangles", "[capsul
     CHECK(to_string(contact.feature_b) == feature);
     // Turned back, they do not meet again.
     const PointMotion<1> back{{path.position(t), -velocity}, t};
-    CHECK(first_contact(a, MovingShape<1>{capsule, back}, t, 100, ContactMode::resolved) == infinity);
+    CHECK(first_contact(a, TranslatingShape<1>{capsule, back}, t, 100, ContactMode::resolved) == infinity);
   };
   const PlacedShape upright = place(Capsule{0.25, 0.5}, Quaterniond::Identity());
   const PlacedShape lying = place(Capsule{0.25, 0.25}, along_x);
@@ -207,8 +207,8 @@ TEST_CASE("capsule and mesh: tip, side and end on a cube of triangles", "[capsul
   // Beside the cube, and along it: nothing.
   const auto passes = [&](const PlacedShape& capsule, const Vector3d& from, const Vector3d& velocity) {
     const PointMotion<1> path{{from, velocity}, 0};
-    return first_contact(MovingShape<1>{cube, still}, MovingShape<1>{capsule, path}, 0, 100, ContactMode::resolved) ==
-           infinity;
+    return first_contact(TranslatingShape<1>{cube, still}, TranslatingShape<1>{capsule, path}, 0, 100,
+                         ContactMode::resolved) == infinity;
   };
   CHECK(passes(lying, {-9, 0, 0.76}, {1, 0, 0}));
   CHECK_FALSE(passes(lying, {-9, 0, 0.74}, {1, 0, 0}));
@@ -222,8 +222,8 @@ TEST_CASE("capsule and mesh: one that rises and turns back meets again", "[capsu
   const PointMotion<2> still{{Vector3d::Zero()}, 0};
   const PointMotion<2> up{{Vector3d(0.125, 0.25, 0.75), Vector3d(0, 0, 2), Vector3d(0, 0, -1)}, 0};
   const PointMotion<2> down{{Vector3d(0.125, 0.25, 0.75), Vector3d::Zero(), Vector3d(0, 0, -1)}, 0};
-  const MovingShape<2> a{cube, still};
-  const double again = first_contact(a, MovingShape<2>{lying, up}, 0, 100, ContactMode::resolved);
+  const TranslatingShape<2> a{cube, still};
+  const double again = first_contact(a, TranslatingShape<2>{lying, up}, 0, 100, ContactMode::resolved);
   CHECK(again == Approx(2).epsilon(1e-12));
-  CHECK(first_contact(a, MovingShape<2>{lying, down}, 0, 100, ContactMode::resolved) == 0);
+  CHECK(first_contact(a, TranslatingShape<2>{lying, down}, 0, 100, ContactMode::resolved) == 0);
 }

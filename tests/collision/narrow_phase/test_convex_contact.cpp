@@ -35,7 +35,7 @@ struct Piece {
 };
 
 template <int Degree>
-std::vector<Piece<Degree>> box_and_ball(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+std::vector<Piece<Degree>> box_and_ball(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b) {
   const Vector3d h = std::get<Box>(a.shape.shape).half_extents;
   const double r = std::get<Sphere>(b.shape.shape).radius;
   std::array<Vector3d, 3> axes;
@@ -67,7 +67,7 @@ std::vector<Piece<Degree>> box_and_ball(const MovingShape<Degree>& a, const Movi
 }
 
 template <int Degree>
-std::vector<Piece<Degree>> pieces_of(const MovingShape<Degree>& a, const MovingShape<Degree>& b) {
+std::vector<Piece<Degree>> pieces_of(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b) {
   if (std::holds_alternative<Sphere>(b.shape.shape)) return box_and_ball(a, b);
   Piece<Degree> piece;
   const auto& u = a.shape.half_axes;
@@ -178,8 +178,8 @@ TEMPLATE_TEST_CASE_SIG("Filtered contacts of boxes are those of exact signs alon
     const PlacedShape other = pairs.other();
     const auto path_a = pairs.path<Degree>();
     const auto path_b = pairs.path<Degree>();
-    const MovingShape<Degree> a{box, path_a};
-    const MovingShape<Degree> b{other, path_b};
+    const TranslatingShape<Degree> a{box, path_a};
+    const TranslatingShape<Degree> b{other, path_b};
     const double t0 = pairs.start();
     const double horizon = pairs.horizon();
     const auto pieces = pieces_of(a, b);

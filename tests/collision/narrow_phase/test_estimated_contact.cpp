@@ -30,8 +30,8 @@ TEMPLATE_TEST_CASE_SIG("Until its estimate a pair with a mesh needs no test", "[
     auto path_b = samples::random_path<Degree>(random, clock, 2);
     path_b.coefficients[1] += path_a.coefficients[0] - path_b.coefficients[0];
     const bool swapped = random.below(2) == 0;
-    const MovingShape<Degree> a{swapped ? other : mesh, path_a};
-    const MovingShape<Degree> b{swapped ? mesh : other, path_b};
+    const TranslatingShape<Degree> a{swapped ? other : mesh, path_a};
+    const TranslatingShape<Degree> b{swapped ? mesh : other, path_b};
     const double horizon = random.below(4) == 0 ? never : clock + random.uniform(0, 3);
     for (const ContactMode mode : {ContactMode::transparent, ContactMode::resolved}) {
       PairMemory memory;

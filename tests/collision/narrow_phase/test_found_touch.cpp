@@ -37,8 +37,8 @@ TEMPLATE_TEST_CASE_SIG("A contact is described alike with and without what was f
     path_b.coefficients[1] += path_a.coefficients[0] - path_b.coefficients[0];
     if (random.below(4) != 0) path_b.coefficients[0] -= 2 * path_b.coefficients[1];
     const bool swapped = random.below(2) == 0;
-    const MovingShape<Degree> a{swapped ? other : mesh, path_a};
-    const MovingShape<Degree> b{swapped ? mesh : other, path_b};
+    const TranslatingShape<Degree> a{swapped ? other : mesh, path_a};
+    const TranslatingShape<Degree> b{swapped ? mesh : other, path_b};
     const ContactMode mode = random.below(2) == 0 ? ContactMode::transparent : ContactMode::resolved;
     double from = clock;
     for (int turn = 0; turn < 6; ++turn) {

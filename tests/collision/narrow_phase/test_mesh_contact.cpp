@@ -299,8 +299,8 @@ void on_the_clock(std::uint64_t seed, double epoch) {
       path_b.coefficients[i] = path_a.coefficients[i] + relative.coefficients[i];
     }
     path_a.start = path_b.start = epoch;
-    const MovingShape<Degree> a{shape_a, path_a};
-    const MovingShape<Degree> b{shape_b, path_b};
+    const TranslatingShape<Degree> a{shape_a, path_a};
+    const TranslatingShape<Degree> b{shape_b, path_b};
     const double begin = first_contact(a, b, epoch, infinity, ContactMode::transparent);
     REQUIRE(begin == first_contact(b, a, epoch, infinity, ContactMode::transparent));
     if (begin == infinity) continue;
@@ -326,8 +326,8 @@ void on_the_clock(std::uint64_t seed, double epoch) {
     PointMotion<Degree> after_b = path_b.restarted(t);
     const double approach = contact.normal.dot(after_b.coefficients[1] - after_a.coefficients[1]);
     after_b.coefficients[1] -= 2 * approach * contact.normal;
-    const MovingShape<Degree> next_a{shape_a, after_a};
-    const MovingShape<Degree> next_b{shape_b, after_b};
+    const TranslatingShape<Degree> next_a{shape_a, after_a};
+    const TranslatingShape<Degree> next_b{shape_b, after_b};
     const double next = first_contact(next_a, next_b, t, infinity, ContactMode::resolved);
     REQUIRE((next == infinity || next > t));
   }
@@ -351,8 +351,8 @@ TEST_CASE("A contact near clock 0 of bodies that have begun long before") {
       // Cubes that reach 1 and 0.5 to the side.
       const PointMotion<1> path_a{{Vector3d{1.5 - epoch + late, 0, 0}, Vector3d::Zero()}, epoch};
       const PointMotion<1> path_b{{Vector3d::Zero(), Vector3d::UnitX()}, epoch};
-      const MovingShape<1> a{placed(cuboid()), path_a};
-      const MovingShape<1> b{place(Box{{0.5, 0.5, 0.5}}, Eigen::Quaterniond::Identity()), path_b};
+      const TranslatingShape<1> a{placed(cuboid()), path_a};
+      const TranslatingShape<1> b{place(Box{{0.5, 0.5, 0.5}}, Eigen::Quaterniond::Identity()), path_b};
       const double begin = first_contact(a, b, epoch, infinity, ContactMode::transparent);
       CHECK(std::abs(begin) < 1e-13 * -epoch);
       CHECK(in_contact(a, b, begin));

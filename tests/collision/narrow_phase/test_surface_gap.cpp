@@ -14,7 +14,7 @@ using namespace tests;
 struct Placed {
   PlacedShape shape;
   certificates::PointMotion<2> motion;
-  MovingShape<2> moving() const { return {shape, motion}; }
+  TranslatingShape<2> moving() const { return {shape, motion}; }
 };
 
 Placed at(const Shape& shape, const Vector3d& place) {

@@ -19,7 +19,7 @@ namespace kds::collision::tests {
 
 /// Bodies, volumes, pairs and resting contacts that know each other, with a record of what resting contacts tell.
 template <int Degree>
-struct Parts final : RestingContacts<Degree>::Listener {
+struct Parts final : RestingContacts<certificates::PointMotion<Degree>>::Listener {
   using Motion = certificates::PointMotion<Degree>;
 
   explicit Parts(const WorldOptions& chosen = {})
@@ -56,11 +56,11 @@ struct Parts final : RestingContacts<Degree>::Listener {
   WorldOptions options;
   Clock clock;
   WorldCounters counters;
-  Bodies<Degree> bodies;
-  Volumes<Degree> volumes;
+  Bodies<Motion> bodies;
+  Volumes<Motion> volumes;
   Reports reports;
-  RestingContacts<Degree> resting;
-  Pairs<Degree> pairs;
+  RestingContacts<Motion> resting;
+  Pairs<Motion> pairs;
   std::vector<BodySlot> taken_up;
   std::vector<std::pair<BodySlot, BodySlot>> told;
 };

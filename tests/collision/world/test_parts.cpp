@@ -16,6 +16,7 @@ namespace kds::collision {
 namespace {
 
 using namespace tests;
+using certificates::PointMotion;
 
 constexpr double no_limit = never;
 
@@ -27,7 +28,7 @@ WorldOptions resolved() {
 
 TEST_CASE("Bodies: the slot of one that is removed is given again, its id is not") {
   Parts<1> parts;
-  Bodies<1>& bodies = parts.bodies;
+  Bodies<PointMotion<1>>& bodies = parts.bodies;
   const auto one = ball<1>(1, {0, 0, 0});
   CHECK(bodies.id_of(parts.add(one)) == 0);
   CHECK(bodies.id_of(parts.add(one)) == 1);
@@ -161,7 +162,7 @@ TEST_CASE("Bodies: two may collide if each one's category is in the other's mask
 }
 
 TEST_CASE("Scripts: pieces begin in order of time, all of one time at once, by id") {
-  Scripts<1> scripts;
+  Scripts<PointMotion<1>> scripts;
   CHECK(scripts.next_time() == never);
   const auto piece = [](double start) { return motion<1>({start, 0, 0}, zero, zero, start); };
   const std::vector of_5{piece(1), piece(2)};
@@ -177,9 +178,9 @@ TEST_CASE("Scripts: pieces begin in order of time, all of one time at once, by i
   CHECK(next[0].motion.start == 1);
   REQUIRE(scripts.next_time() == 2);
 
-  Scripts<1> copy;
+  Scripts<PointMotion<1>> copy;
   copy.become(scripts.image());
-  for (Scripts<1>* each : {&scripts, &copy}) {
+  for (Scripts<PointMotion<1>>* each : {&scripts, &copy}) {
     next = each->take_next();
     REQUIRE(next.size() == 2);
     CHECK(next[0].slot == 2);
@@ -195,7 +196,7 @@ TEST_CASE("Scripts: pieces begin in order of time, all of one time at once, by i
 TEST_CASE("Wall times: the body that comes next, its exact time and its wall") {
   const std::optional<Walls> walls(Walls{{0, 0, 0}, {10, 10, 10}, 1});
   Parts<2> parts;
-  WallTimes<2> times(parts.bodies, walls, parts.clock);
+  WallTimes<PointMotion<2>> times(parts.bodies, walls, parts.clock);
   const BodySlot to_right = parts.add(ball<2>(1, {5, 5, 5}, {1, 0, 0}));             // at 4
   const BodySlot falls = parts.add(ball<2>(1, {5, 5, 3}, {0, 0, 0}, {0, 0, -0.5}));  // at 2, on wall -z
   const BodySlot rests = parts.add(ball<2>(1, {5, 5, 1}));
@@ -225,7 +226,7 @@ TEST_CASE("Wall times: nothing beyond the horizon, until it is extended") {
   const std::optional<Walls> walls(Walls{{0, 0, 0}, {10, 10, 10}, 1});
   Parts<1> parts;
   parts.clock.horizon = 3;
-  WallTimes<1> times(parts.bodies, walls, parts.clock);
+  WallTimes<PointMotion<1>> times(parts.bodies, walls, parts.clock);
   const BodySlot id = parts.add(ball<1>(1, {5, 5, 5}, {1, 0, 0}));
   times.schedule(id);
   CHECK(times.next_time() == never);
@@ -278,7 +279,7 @@ TEST_CASE("Pairs: contacts of the pairs that are listed, the earliest first, eac
     for (BodySlot b = a + 1; b < 8; ++b) {
       parts.pairs.pair_began(a, b, 0);
       const double t =
-          first_contact<2>(parts.bodies.moving(a), parts.bodies.moving(b), 0, no_limit, ContactMode::resolved);
+          first_contact(parts.bodies.moving(a), parts.bodies.moving(b), 0, no_limit, ContactMode::resolved);
       if (t < never) expected.push_back(t);
     }
   }
@@ -307,9 +308,9 @@ TEST_CASE("Pairs: what overlaps lives on when the broad phase does not list it, 
   Parts<1> parts;  // mode none
   parts.add(ball<1>(1, {0, 0, 0}));
   parts.add(ball<1>(1, {1, 0, 0}, {1, 0, 0}));
-  parts.pairs.set_begin(Pairs<1>::Begin::entering);
+  parts.pairs.set_begin(Pairs<PointMotion<1>>::Begin::entering);
   parts.pairs.pair_began(0, 1, 0);
-  parts.pairs.set_begin(Pairs<1>::Begin::moving);
+  parts.pairs.set_begin(Pairs<PointMotion<1>>::Begin::moving);
   parts.pairs.test();
   CHECK(parts.pairs.overlapping(0, 1));
   REQUIRE(parts.reports.take_first().kind == Reports::Kind::overlap);
@@ -410,7 +411,7 @@ TEST_CASE("Resting contacts: a body that jumps has none any more") {
   parts.resting.audit(0, false);
   parts.resting.drop_all(resting);
   CHECK(parts.resting.empty());
-  CHECK(parts.resting.find(floor, resting) == RestingContacts<2>::none);
+  CHECK(parts.resting.find(floor, resting) == RestingContacts<PointMotion<2>>::none);
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+// How bodies move: what a world asks of a motion.
+#pragma once
+
+#include "certificates/point_motion.hpp"
+
+#include <concepts>
+#include <type_traits>
+
+namespace kds::collision {
+
+namespace detail {
+struct AnyArchive {};  ///< stands for archives in a concept
+}  // namespace detail
+
+/// A motion that the bodies of a world may have: a path of the centre, which is a polynomial, and whatever else moves.
+///
+/// 1. path_of(motion), found where the motion is declared, is the path of the centre: the point about which shapes are
+///    placed. Its start is that of the whole motion, and all that the motion says holds from then on. The path of a
+///    PointMotion is the motion itself.
+/// 2. finite(): all numbers are, and they mean a motion.
+/// 3. restarted(t) starts at t and goes on as this one does, up to the rounding of its numbers; its path is the path of
+///    this one restarted, bit for bit.
+/// 4. Two that are equal are the same at all times, bit for bit.
+/// 5. archive_members() writes and reads all numbers (kds/framework/snapshot.hpp).
+template <class Motion>
+concept BodyMotion = std::default_initializable<Motion> && std::copyable<Motion> &&
+    requires(const Motion& motion, Motion& changed, detail::AnyArchive& archive, double t) {
+  requires std::same_as<decltype(Motion::degree), const int>;  // of the path
+  { path_of(motion) } -> std::same_as<const certificates::PointMotion<Motion::degree>&>;
+  { motion.finite() } -> std::same_as<bool>;
+  { motion.restarted(t) } -> std::same_as<Motion>;
+  { motion == motion } -> std::same_as<bool>;
+  archive_members(archive, changed);
+};
+
+/// The path of a body's centre.
+template <class Motion>
+using PathOf = certificates::PointMotion<Motion::degree>;
+
+/// Whether bodies that move like this may turn. Those of a PointMotion keep their orientation, and the motion is the
+/// path.
+template <class Motion>
+inline constexpr bool turns = !std::is_same_v<Motion, PathOf<Motion>>;
+
+}  // namespace kds::collision
