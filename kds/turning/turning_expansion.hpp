@@ -29,7 +29,7 @@ inline double rate_bound(const Spin& spin) {
 template <int Degree>
 class TurningExpansion {
  public:
-  static constexpr int order = 10;
+  static constexpr int order = std::max(10, 3 * Degree + 2);
   using Model = TaylorModel<Degree, order>;
 
   /// f is multiplied by `side`, which is 1 or -1.

@@ -41,7 +41,7 @@ auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
 
 /// Two balls do not care how they turn.
 template <int Degree>
-MovingShape<Degree> path_of(const Body<Degree>& body) {
+TranslatingShape<Degree> ball_of(const Body<Degree>& body) {
   return {body.shape, body.motion.path};
 }
 
@@ -72,10 +72,10 @@ bool can_turn(const Shape& shape) { return std::holds_alternative<Sphere>(shape)
 
 template <int Degree>
 Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double t) {
-  if (is_ball(a.shape) && is_ball(b.shape)) return collision::contact_at(path_of<Degree>(a), path_of<Degree>(b), t);
+  if (is_ball(a.shape) && is_ball(b.shape)) return collision::contact_at(ball_of<Degree>(a), ball_of<Degree>(b), t);
   const PlacedShape placed_a = placed_at<Degree>(a, t);
   const PlacedShape placed_b = placed_at<Degree>(b, t);
-  Contact contact = collision::contact_at<Degree>({placed_a, a.motion.path}, {placed_b, b.motion.path}, t);
+  Contact contact = collision::contact_at<PointMotion<Degree>>({placed_a, a.motion.path}, {placed_b, b.motion.path}, t);
   if (is_ball(a.shape) || is_ball(b.shape)) return contact;
   const PointRates<Degree> rates(a.motion, b.motion, t);
   const auto parting = [&](const Vector3d& x) { return dot(contact.normal, rates.velocity(x)); };
@@ -96,7 +96,7 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
                                              ContactMode mode) {
   if (!(t0 <= horizon)) return never;
   if (is_ball(a.shape) && is_ball(b.shape)) {
-    return collision::first_contact(path_of<Degree>(a), path_of<Degree>(b), t0, horizon, mode);
+    return collision::first_contact(ball_of<Degree>(a), ball_of<Degree>(b), t0, horizon, mode);
   }
   return with_ways<Degree>(a, b, [&](const auto& pair) {
     const WaysApart<std::decay_t<decltype(pair)>> ways(pair);
@@ -123,7 +123,7 @@ double TurningContact<Degree>::apart_until(const Body& a, const Body& b, double 
 
 template <int Degree>
 bool TurningContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
-  if (is_ball(a.shape) && is_ball(b.shape)) return collision::in_contact(path_of<Degree>(a), path_of<Degree>(b), t);
+  if (is_ball(a.shape) && is_ball(b.shape)) return collision::in_contact(ball_of<Degree>(a), ball_of<Degree>(b), t);
   return with_ways<Degree>(a, b, [&](const auto& pair) {
     return WaysApart<std::decay_t<decltype(pair)>>(pair).penetrate(t);
   });
@@ -133,7 +133,7 @@ template <int Degree>
 double TurningContact<Degree>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
   if (!(t0 <= horizon)) return never;
   if (is_ball(a.shape) && is_ball(b.shape)) {
-    return collision::first_separation(path_of<Degree>(a), path_of<Degree>(b), t0, horizon);
+    return collision::first_separation(ball_of<Degree>(a), ball_of<Degree>(b), t0, horizon);
   }
   return with_ways<Degree>(a, b, [&](const auto& pair) {
     return WaysApart<std::decay_t<decltype(pair)>>(pair).first_parting(t0, horizon);

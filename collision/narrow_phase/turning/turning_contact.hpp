@@ -24,10 +24,7 @@ bool can_turn(const Shape& shape);
 template <int Degree>
 struct TurningContact {
   using Motion = certificates::RigidMotion<Degree>;
-  struct Body {
-    const PlacedShape& shape;
-    const Motion& motion;
-  };
+  using Body = MovingShape<Motion>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
   /// A time before which there is no contact; t0 where that takes exact signs.
