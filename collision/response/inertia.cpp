@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Matrix3d;
 
-constexpr double least_entry = 0x1p-615;
-constexpr double greatest_entry = 0x1p615;
+constexpr double least_entry = 0x1p-617;
+constexpr double greatest_entry = 0x1p617;
 
 /// Of symmetric matrices; the product of their entries must neither overflow nor underflow.
 DoubleDouble minor_of(const Matrix3d& m, Eigen::Index i, Eigen::Index j, Eigen::Index k, Eigen::Index l) {
@@ -60,7 +60,7 @@ Matrix3d checked_inertia(const Matrix3d& inertia) {
   if (!(greatest > 0)) refuse("must not be zero");
   if (!(greatest >= least_entry && greatest <= greatest_entry)) {
     refuse("its greatest entry is " + detail::number_text(greatest) +
-           "; from 2^-615 (7.4e-186) to 2^615 (1.4e185) is supported");
+           "; from 2^-617 (1.8e-186) to 2^617 (5.4e185) is supported");
   }
   const double unit = unit_of(inertia);
   Matrix3d m = unit * inertia;
@@ -79,7 +79,8 @@ Matrix3d checked_inertia(const Matrix3d& inertia) {
   const double trace = m(0, 0) + m(1, 1) + m(2, 2);
   Matrix3d spread = -m;
   for (Eigen::Index i = 0; i < 3; ++i) spread(i, i) += trace / 2 + 4 * inertia_tolerance * trace;
-  if (!detail::positive_definite(spread)) refuse("is of no body: its greatest moment exceeds the sum of the two others");
+  if (!detail::positive_definite(spread))
+    refuse("is of no body: its greatest moment exceeds the sum of the two others");
   return m / unit;
 }
 

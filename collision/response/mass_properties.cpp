@@ -23,9 +23,7 @@ using detail::PreciseVector;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument("mass_properties: the mesh " + what);
-}
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("mass_properties: the mesh " + what); }
 
 /// For each vertex the first one at its place.
 std::vector<std::uint32_t> first_at_place(std::span<const Vector3d> vertices) {
@@ -101,9 +99,9 @@ struct Integrals {
   PreciseVector squares{}, products{};  // of x x, y y, z z; of y z, z x, x y
   double magnitude = 0;                 // sum of what the volumes of the tetrahedra can be at most
 
-  /// 6 times the volume, off the exact one by at most this. A determinant is 6 products of 3 exact differences, each sum
-  /// and product rounded by 2^-102 of itself; so are the n sums. The other integrals, with their factors of 6 / 24 and
-  /// 6 / 120 and coordinates up to 1, are off by less.
+  /// 6 times the volume, off the exact one by at most this. A determinant is 6 products of 3 exact differences, each
+  /// sum and product rounded by 2^-102 of itself; so are the n sums. The other integrals, with their factors of 6 / 24
+  /// and 6 / 120 and coordinates up to 1, are off by less.
   double error(std::size_t triangles) const { return (static_cast<double>(triangles) + 16) * 0x1p-102 * magnitude; }
 };
 
@@ -147,11 +145,12 @@ Integrals integrate(const Mesh& mesh) {
 }
 
 /// Errors of the integrals, each relative to 6 times the volume and in the unit of lengths, make at most 12 times as
-/// much of the tensor: 2 for a quotient of integrals, 4 for the product of two centres, both of two squares. The unit is
-/// at most twice the extent, so it makes 48 of 2^-56 m s^2.
+/// much of the tensor: 2 for a quotient of integrals, 4 for the product of two centres, both of two squares. The unit
+/// is at most twice the extent, so it makes 48 of 2^-56 m s^2.
 constexpr double largest_error = 0x1p-56;
 
-/// 16 times the bound on the error of the tensor, 2^-50, over a greatest moment that is seldom below a quarter of m s^2.
+/// 16 times the bound on the error of the tensor, 2^-50, over a greatest moment that is seldom below a quarter of m
+/// s^2.
 constexpr double least_share = 0x1p-44;
 
 MassProperties of_mesh(const MeshShape& shape, double mass) {

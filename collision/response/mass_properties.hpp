@@ -18,10 +18,10 @@ struct MassProperties {
 /// what two parts share counts twice. Vertices at one place count as one; the scale is included.
 ///
 /// Errors, with u = 2^-53: ball and box, each moment 4 u of itself; capsule 12 u. Mesh: each coordinate of the centre
-/// 2 u of itself, and each entry of the tensor 4 u of itself; and besides 2^-54 s for the centre and 2^-50 m s^2 for the
-/// tensor, where s is the greatest extent of the mesh along an axis, m the mass. These are reached only by meshes that
-/// are nearly flat: the integrals are made in double-doubles, from a vertex of the mesh, so for n triangles that make a
-/// body of some thickness it is some n 2^-95. (Where the mesh is far from its origin, its vertices were rounded
+/// 2 u of itself, and each entry of the tensor 4 u of itself; and besides 2^-54 s for the centre and 2^-50 m s^2 for
+/// the tensor, where s is the greatest extent of the mesh along an axis, m the mass. These are reached only by meshes
+/// that are nearly flat: the integrals are made in double-doubles, from a vertex of the mesh, so for n triangles that
+/// make a body of some thickness it is some n 2^-95. (Where the mesh is far from its origin, its vertices were rounded
 /// before; that is another matter.)
 ///
 /// Throws std::invalid_argument, in one line:

@@ -46,45 +46,92 @@ PreciseVector contact_velocity(const RigidVelocity& body, const Vector3d& arm) {
   return PreciseVector(body.velocity) + detail::cross(body.angular_velocity, arm);
 }
 
+/// One body of a pair, and what impulses along up to three directions do to it.
+class Partner {
+ public:
+  Partner(const Mobility& mobility, const Vector3d& arm) : mobility_(mobility), arm_(arm), turns_(mobility.turns()) {}
+
+  void set_direction(std::size_t i, const PreciseVector& direction) {
+    if (!turns_) return;
+    levers_[i] = detail::cross(arm_, direction);
+    turns_by_[i] = turned_by(mobility_, levers_[i]);
+  }
+
+  /// What an impulse along d_j does to the velocity along d_i of the point of contact by turning the body.
+  DoubleDouble by_turning(std::size_t i, std::size_t j) const {
+    return turns_ ? detail::dot(levers_[i], turns_by_[j]) : DoubleDouble(0.0);
+  }
+
+  /// `impulse` is the sum of `parts` along the directions, of which there are `count`.
+  void give(RigidVelocity& body, const PreciseVector& impulse, const std::array<DoubleDouble, 3>& parts,
+            std::size_t count) const {
+    if (mobility_.inverse_mass != 0) {
+      body.velocity = (PreciseVector(body.velocity) + impulse * mobility_.inverse_mass).rounded();
+    }
+    if (!turns_) return;
+    PreciseVector angular_velocity(body.angular_velocity);
+    for (std::size_t i = 0; i < count; ++i) angular_velocity += turns_by_[i] * parts[i];
+    body.angular_velocity = angular_velocity.rounded();
+  }
+
+ private:
+  const Mobility& mobility_;
+  const Vector3d& arm_;
+  bool turns_;
+  std::array<PreciseVector, 3> levers_, turns_by_;
+};
+
 /// A pair in contact. Directions: unit vectors d_0 = n, and d_1, d_2 in the plane of contact where that is asked for.
 class Pair {
  public:
   Pair(const Mobility& of_a, const Mobility& of_b, const ContactArms& arms)
-      : of_a_(of_a), of_b_(of_b), arms_(arms), masses_(two_sum(of_a.inverse_mass, of_b.inverse_mass)) {
-    set_direction(0, unit(arms.normal));
+      : a_(of_a, arms.a),
+        b_(of_b, arms.b),
+        normal_(arms.normal),
+        masses_(two_sum(of_a.inverse_mass, of_b.inverse_mass)) {
+    set_direction(unit(arms.normal));
   }
 
   /// d_1 is perpendicular to n and to the axis that is the least along n, so neither product is short.
   void set_tangents() {
     Eigen::Index axis = 0;
-    arms_.normal.cwiseAbs().minCoeff(&axis);
+    for (Eigen::Index d = 1; d < 3; ++d) {
+      if (std::abs(normal_[d]) < std::abs(normal_[axis])) axis = d;
+    }
     const PreciseVector across = detail::cross(Vector3d(Vector3d::Unit(axis)), directions_[0]);
-    set_direction(1, across * (DoubleDouble(1.0) / kds::detail::rounded_root(detail::dot(across, across))));
-    set_direction(2, detail::cross(directions_[0], directions_[1]));
+    set_direction(across * (DoubleDouble(1.0) / kds::detail::rounded_root(detail::dot(across, across))));
+    set_direction(detail::cross(directions_[0], directions_[1]));
   }
 
   const PreciseVector& direction(std::size_t i) const { return directions_[i]; }
 
   /// K_ij: what an impulse along d_j changes of the relative velocity along d_i.
   DoubleDouble coupling(std::size_t i, std::size_t j) const {
-    DoubleDouble sum = i == j ? masses_ : DoubleDouble(0.0);
-    if (of_a_.turns()) sum = sum + detail::dot(levers_a_[i], turned_by(of_a_, levers_a_[j]));
-    if (of_b_.turns()) sum = sum + detail::dot(levers_b_[i], turned_by(of_b_, levers_b_[j]));
-    return sum;
+    const DoubleDouble turning = a_.by_turning(i, j) + b_.by_turning(i, j);
+    return i == j ? masses_ + turning : turning;
+  }
+
+  /// An impulse on b with these parts along the directions, and the opposite on a. Returns it, rounded.
+  Vector3d give(RigidVelocity& a, RigidVelocity& b, const std::array<DoubleDouble, 3>& parts) const {
+    PreciseVector impulse = directions_[0] * parts[0];
+    for (std::size_t i = 1; i < count_; ++i) impulse += directions_[i] * parts[i];
+    a_.give(a, impulse * -1.0, {-parts[0], -parts[1], -parts[2]}, count_);
+    b_.give(b, impulse, parts, count_);
+    return impulse.rounded();
   }
 
  private:
-  void set_direction(std::size_t i, const PreciseVector& direction) {
-    directions_[i] = direction;
-    levers_a_[i] = detail::cross(arms_.a, direction);
-    levers_b_[i] = detail::cross(arms_.b, direction);
+  void set_direction(const PreciseVector& direction) {
+    a_.set_direction(count_, direction);
+    b_.set_direction(count_, direction);
+    directions_[count_++] = direction;
   }
 
-  const Mobility& of_a_;
-  const Mobility& of_b_;
-  const ContactArms& arms_;
+  Partner a_, b_;
+  const Vector3d& normal_;
   DoubleDouble masses_;
-  std::array<PreciseVector, 3> directions_, levers_a_, levers_b_;
+  std::array<PreciseVector, 3> directions_;
+  std::size_t count_ = 0;
 };
 
 /// The tangential part of an impulse: law 3 to 5. `push` is j0, `tilt` K_nt / K_nn, h the slip, S by its three entries.
@@ -110,8 +157,8 @@ class Friction {
   Result solve() const {
     if (slip_.x.high == 0 && slip_.y.high == 0) return {{}, push_, false};
     const DoubleDouble determinant = xx_ * yy_ - xy_ * xy_;
-    const PlaneVector sticking = PlaneVector{xy_ * slip_.y - yy_ * slip_.x, xy_ * slip_.x - xx_ * slip_.y} *
-                                 (factor_ / determinant);
+    const PlaneVector sticking =
+        PlaneVector{xy_ * slip_.y - yy_ * slip_.x, xy_ * slip_.x - xx_ * slip_.y} * (factor_ / determinant);
     if (in_cone(sticking)) return {sticking, normal(sticking), false};
     const PlaneVector along = sliding(sticking);
     return {along, normal(along), true};
@@ -152,16 +199,6 @@ class Friction {
   DoubleDouble xx_, xy_, yy_;
 };
 
-void give(RigidVelocity& body, const Mobility& mobility, const Vector3d& arm, const PreciseVector& impulse) {
-  if (mobility.inverse_mass != 0) {
-    body.velocity = (PreciseVector(body.velocity) + impulse * mobility.inverse_mass).rounded();
-  }
-  if (mobility.turns()) {
-    const PreciseVector change = turned_by(mobility, detail::cross(arm, impulse));
-    body.angular_velocity = (PreciseVector(body.angular_velocity) + change).rounded();
-  }
-}
-
 /// Whether neither the impulse along the normal turns the body, nor its turning moves the contact along the normal.
 bool passes_centre(const RigidVelocity& body, const Mobility& mobility, const Vector3d& arm, const Vector3d& normal) {
   return (!mobility.turns() && body.angular_velocity.isZero(0)) || cross(arm, normal).isZero(0);
@@ -191,18 +228,11 @@ TurningImpulse collide(RigidVelocity& a, RigidVelocity& b, const Mobility& of_a,
   if (!(approach.high < 0)) return {};
   const DoubleDouble resistance = pair.coupling(0, 0);
   const DoubleDouble push = -(two_sum(1, surfaces.restitution) * approach) / resistance;
-  PreciseVector impulse = pair.direction(0) * push;
-  bool slides = false;
-  if (!smooth) {
-    pair.set_tangents();
-    const PlaneVector slip{detail::dot(pair.direction(1), apart), detail::dot(pair.direction(2), apart)};
-    const auto [along, normal, too_little] = Friction(pair, resistance, push, slip, approach, surfaces).solve();
-    impulse = pair.direction(0) * normal + pair.direction(1) * along.x + pair.direction(2) * along.y;
-    slides = too_little;
-  }
-  give(a, of_a, arms.a, impulse * -1.0);
-  give(b, of_b, arms.b, impulse);
-  return {impulse.rounded(), slides};
+  if (smooth) return {pair.give(a, b, {push, {}, {}}), false};
+  pair.set_tangents();
+  const PlaneVector slip{detail::dot(pair.direction(1), apart), detail::dot(pair.direction(2), apart)};
+  const auto [along, normal, slides] = Friction(pair, resistance, push, slip, approach, surfaces).solve();
+  return {pair.give(a, b, {normal, along.x, along.y}), slides};
 }
 
 }  // namespace kds::collision
