@@ -32,7 +32,7 @@ double unit_of(const Matrix3d& m) {
   return power_of_two(-exponent);
 }
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("inertia: " + what); }
+[[noreturn]] void refuse_tensor(const std::string& what) { throw std::invalid_argument("inertia: " + what); }
 
 }  // namespace
 
@@ -55,32 +55,32 @@ bool is_spherical(const Matrix3d& inertia) {
 }
 
 Matrix3d checked_inertia(const Matrix3d& inertia) {
-  if (!inertia.allFinite()) refuse("must be finite");
+  if (!inertia.allFinite()) refuse_tensor("must be finite");
   const double greatest = inertia.cwiseAbs().maxCoeff();
-  if (!(greatest > 0)) refuse("must not be zero");
+  if (!(greatest > 0)) refuse_tensor("must not be zero");
   if (!(greatest >= least_entry && greatest <= greatest_entry)) {
-    refuse("its greatest entry is " + detail::number_text(greatest) +
-           "; from 2^-617 (1.8e-186) to 2^617 (5.4e185) is supported");
+    refuse_tensor("its greatest entry is " + detail::number_text(greatest) +
+                  "; from 2^-617 (1.8e-186) to 2^617 (5.4e185) is supported");
   }
   const double unit = unit_of(inertia);
   Matrix3d m = unit * inertia;
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       if (!(std::abs(m(i, j) - m(j, i)) <= inertia_tolerance)) {
-        refuse("must be symmetric: entries (" + std::to_string(j) + ", " + std::to_string(i) + ") and (" +
-               std::to_string(i) + ", " + std::to_string(j) + ") are " + detail::number_text(inertia(j, i)) + " and " +
-               detail::number_text(inertia(i, j)));
+        refuse_tensor("must be symmetric: entries (" + std::to_string(j) + ", " + std::to_string(i) + ") and (" +
+                      std::to_string(i) + ", " + std::to_string(j) + ") are " + detail::number_text(inertia(j, i)) +
+                      " and " + detail::number_text(inertia(i, j)));
       }
       m(i, j) = m(j, i) = (m(i, j) + m(j, i)) / 2;
     }
   }
-  if (!detail::positive_definite(m)) refuse("must be positive definite");
+  if (!detail::positive_definite(m)) refuse_tensor("must be positive definite");
   // The integrals of x x^T over the body: half the trace less the tensor. No body has a negative one.
   const double trace = m(0, 0) + m(1, 1) + m(2, 2);
   Matrix3d spread = -m;
   for (Eigen::Index i = 0; i < 3; ++i) spread(i, i) += trace / 2 + 4 * inertia_tolerance * trace;
   if (!detail::positive_definite(spread))
-    refuse("is of no body: its greatest moment exceeds the sum of the two others");
+    refuse_tensor("is of no body: its greatest moment exceeds the sum of the two others");
   return m / unit;
 }
 

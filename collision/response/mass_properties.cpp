@@ -19,11 +19,12 @@
 namespace kds::collision {
 namespace {
 
-using detail::PreciseVector;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("mass_properties: the mesh " + what); }
+[[noreturn]] void refuse_mesh(const std::string& what) {
+  throw std::invalid_argument("mass_properties: the mesh " + what);
+}
 
 /// For each vertex the first one at its place.
 std::vector<std::uint32_t> first_at_place(std::span<const Vector3d> vertices) {
@@ -53,14 +54,15 @@ struct Side {
 [[noreturn]] void refuse_edge(std::span<const Side> sides) {
   const std::string edge = "edge " + std::to_string(sides[0].low) + "-" + std::to_string(sides[0].high);
   if (sides.size() == 1) {
-    refuse("is open: " + edge + " belongs to one triangle, " + std::to_string(sides[0].triangle));
+    refuse_mesh("is open: " + edge + " belongs to one triangle, " + std::to_string(sides[0].triangle));
   }
-  if (sides.size() % 2 != 0) refuse("is open: " + edge + " belongs to " + std::to_string(sides.size()) + " triangles");
+  if (sides.size() % 2 != 0)
+    refuse_mesh("is open: " + edge + " belongs to " + std::to_string(sides.size()) + " triangles");
   std::vector<std::uint32_t> up, down;
   for (const Side& side : sides) (side.upward ? up : down).push_back(side.triangle);
   const std::vector<std::uint32_t>& more = up.size() > down.size() ? up : down;
-  refuse("is not consistently oriented: triangles " + std::to_string(more[0]) + " and " + std::to_string(more[1]) +
-         " both run along " + edge + " that way");
+  refuse_mesh("is not consistently oriented: triangles " + std::to_string(more[0]) + " and " + std::to_string(more[1]) +
+              " both run along " + edge + " that way");
 }
 
 /// Each edge is run along as often in one direction as in the other. Then the solid does not depend on the point from
@@ -121,11 +123,11 @@ Integrals integrate(const Mesh& mesh) {
   const double per_unit = power_of_two(-exponent);
   for (const auto& [i, j, k] : mesh.triangles()) {
     const Vector3d &p = mesh.vertices()[i], &q = mesh.vertices()[j], &r = mesh.vertices()[k];
-    const PreciseVector a = detail::difference(p, sum.origin) * per_unit;
-    const PreciseVector b = detail::difference(q, sum.origin) * per_unit;
-    const PreciseVector c = detail::difference(r, sum.origin) * per_unit;
-    const PreciseVector e = detail::difference(q, p) * per_unit;
-    const PreciseVector f = detail::difference(r, p) * per_unit;
+    const PreciseVector a = precise_difference(p, sum.origin) * per_unit;
+    const PreciseVector b = precise_difference(q, sum.origin) * per_unit;
+    const PreciseVector c = precise_difference(r, sum.origin) * per_unit;
+    const PreciseVector e = precise_difference(q, p) * per_unit;
+    const PreciseVector f = precise_difference(r, p) * per_unit;
     const DoubleDouble determinant = dot(a, cross(e, f));
     sum.magnitude += magnitude_sum(a) * magnitude_sum(e) * magnitude_sum(f);
     sum.volume = sum.volume + determinant;
@@ -158,8 +160,8 @@ MassProperties of_mesh(const MeshShape& shape, double mass) {
   require_closed(mesh);
   const Integrals sum = integrate(mesh);
   const double least = sum.error(mesh.triangles().size()) / largest_error;
-  if (sum.volume.high < -least) refuse("is inside out: its triangles turn clockwise seen from outside");
-  if (!(sum.volume.high > least)) refuse("has no volume beyond rounding");
+  if (sum.volume.high < -least) refuse_mesh("is inside out: its triangles turn clockwise seen from outside");
+  if (!(sum.volume.high > least)) refuse_mesh("has no volume beyond rounding");
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   PreciseVector centre, mean_square;
   for (std::size_t d = 0; d < 3; ++d) {
@@ -180,23 +182,23 @@ MassProperties of_mesh(const MeshShape& shape, double mass) {
   }
   Matrix3d certain = result.inertia;
   certain.diagonal().array() -= least_share * result.inertia.diagonal().maxCoeff();
-  if (!detail::positive_definite(certain)) refuse("is too thin: its least moment of inertia is lost in roundings");
+  if (!detail::positive_definite(certain)) refuse_mesh("is too thin: its least moment of inertia is lost in roundings");
   checked_inertia(result.inertia);
   return result;
 }
 
-MassProperties diagonal(double mass, const Vector3d& moments) {
+MassProperties solid(double mass, const Vector3d& moments) {
   return {mass, Vector3d::Zero(), Matrix3d(moments.asDiagonal())};
 }
 
 MassProperties of(const Sphere& ball, double mass) {
-  return diagonal(mass, Vector3d::Constant(0.4 * mass * (ball.radius * ball.radius)));
+  return solid(mass, Vector3d::Constant(0.4 * mass * (ball.radius * ball.radius)));
 }
 
 MassProperties of(const Box& box, double mass) {
   const Vector3d squares = box.half_extents.cwiseProduct(box.half_extents);
-  return diagonal(mass, Vector3d(mass * (squares[1] + squares[2]) / 3, mass * (squares[2] + squares[0]) / 3,
-                                 mass * (squares[0] + squares[1]) / 3));
+  return solid(mass, Vector3d(mass * (squares[1] + squares[2]) / 3, mass * (squares[2] + squares[0]) / 3,
+                              mass * (squares[0] + squares[1]) / 3));
 }
 
 /// A cylinder and two halves of a ball, whose centres of mass are 3/8 of the radius from where they are cut.
@@ -207,7 +209,7 @@ MassProperties of(const Capsule& capsule, double mass) {
   const double ball = 0.4 * (r * r);
   const double across = of_cylinder * (r * r / 4 + h * h / 3) + of_ball * (ball + h * h + 0.75 * (h * r));
   const double along = of_cylinder * (r * r / 2) + of_ball * ball;
-  return diagonal(mass, Vector3d(across, across, along));
+  return solid(mass, Vector3d(across, across, along));
 }
 
 MassProperties of(const MeshShape& shape, double mass) { return of_mesh(shape, mass); }

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 
-namespace kds::collision::detail {
+namespace kds::collision {
 
 struct PreciseVector {
   std::array<DoubleDouble, 3> coordinates{};
@@ -50,7 +50,7 @@ inline PreciseVector cross(const PreciseVector& a, const PreciseVector& b) {
 inline PreciseVector cross(const Eigen::Vector3d& a, const PreciseVector& b) {
   return {b[2] * a[1] - b[1] * a[2], b[0] * a[2] - b[2] * a[0], b[1] * a[0] - b[0] * a[1]};
 }
-inline PreciseVector cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+inline PreciseVector precise_cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return {two_product(a[1], b[2]) - two_product(a[2], b[1]), two_product(a[2], b[0]) - two_product(a[0], b[2]),
           two_product(a[0], b[1]) - two_product(a[1], b[0])};
 }
@@ -60,11 +60,11 @@ inline PreciseVector operator*(const Eigen::Matrix3d& m, const PreciseVector& v)
 }
 
 /// a - b, exactly but for underflow.
-inline PreciseVector difference(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+inline PreciseVector precise_difference(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return {two_sum(a[0], -b[0]), two_sum(a[1], -b[1]), two_sum(a[2], -b[2])};
 }
 
 /// |x| + |y| + |z|, rounded.
 inline double magnitude_sum(const PreciseVector& v) { return magnitude(v[0]) + magnitude(v[1]) + magnitude(v[2]); }
 
-}  // namespace kds::collision::detail
+}  // namespace kds::collision

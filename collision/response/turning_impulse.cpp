@@ -13,7 +13,6 @@
 namespace kds::collision {
 namespace {
 
-using detail::PreciseVector;
 using Eigen::Vector3d;
 
 /// In the plane of contact.
@@ -38,12 +37,12 @@ PreciseVector turned_by(const Mobility& body, const PreciseVector& angular_impul
 }
 
 /// The unit vector that is meant: to 2^-100.
-PreciseVector unit(const Vector3d& normal) {
+PreciseVector precise_unit(const Vector3d& normal) {
   return PreciseVector(normal) * (DoubleDouble(1.0) - 0.5 * excess_of_unit(normal));
 }
 
 PreciseVector contact_velocity(const RigidVelocity& body, const Vector3d& arm) {
-  return PreciseVector(body.velocity) + detail::cross(body.angular_velocity, arm);
+  return PreciseVector(body.velocity) + precise_cross(body.angular_velocity, arm);
 }
 
 /// One body of a pair, and what impulses along up to three directions do to it.
@@ -53,13 +52,13 @@ class Partner {
 
   void set_direction(std::size_t i, const PreciseVector& direction) {
     if (!turns_) return;
-    levers_[i] = detail::cross(arm_, direction);
+    levers_[i] = cross(arm_, direction);
     turns_by_[i] = turned_by(mobility_, levers_[i]);
   }
 
   /// What an impulse along d_j does to the velocity along d_i of the point of contact by turning the body.
   DoubleDouble by_turning(std::size_t i, std::size_t j) const {
-    return turns_ ? detail::dot(levers_[i], turns_by_[j]) : DoubleDouble(0.0);
+    return turns_ ? dot(levers_[i], turns_by_[j]) : DoubleDouble(0.0);
   }
 
   /// `impulse` is the sum of `parts` along the directions, of which there are `count`.
@@ -89,7 +88,7 @@ class Pair {
         b_(of_b, arms.b),
         normal_(arms.normal),
         masses_(two_sum(of_a.inverse_mass, of_b.inverse_mass)) {
-    set_direction(unit(arms.normal));
+    set_direction(precise_unit(arms.normal));
   }
 
   /// d_1 is perpendicular to n and to the axis that is the least along n, so neither product is short.
@@ -98,9 +97,9 @@ class Pair {
     for (Eigen::Index d = 1; d < 3; ++d) {
       if (std::abs(normal_[d]) < std::abs(normal_[axis])) axis = d;
     }
-    const PreciseVector across = detail::cross(Vector3d(Vector3d::Unit(axis)), directions_[0]);
-    set_direction(across * (DoubleDouble(1.0) / kds::detail::rounded_root(detail::dot(across, across))));
-    set_direction(detail::cross(directions_[0], directions_[1]));
+    const PreciseVector across = cross(Vector3d(Vector3d::Unit(axis)), directions_[0]);
+    set_direction(across * (DoubleDouble(1.0) / kds::detail::rounded_root(dot(across, across))));
+    set_direction(cross(directions_[0], directions_[1]));
   }
 
   const PreciseVector& direction(std::size_t i) const { return directions_[i]; }
@@ -201,12 +200,12 @@ class Friction {
 
 /// Whether neither the impulse along the normal turns the body, nor its turning moves the contact along the normal.
 bool passes_centre(const RigidVelocity& body, const Mobility& mobility, const Vector3d& arm, const Vector3d& normal) {
-  return (!mobility.turns() && body.angular_velocity.isZero(0)) || cross(arm, normal).isZero(0);
+  return (!mobility.turns() && body.angular_velocity.isZero(0)) || collision::cross(arm, normal).isZero(0);
 }
 
 TurningImpulse collide_centrally(RigidVelocity& a, RigidVelocity& b, const Mobility& of_a, const Mobility& of_b,
                                  const Vector3d& normal, double restitution) {
-  const double approach = -dot(normal, b.velocity - a.velocity);
+  const double approach = -collision::dot(normal, b.velocity - a.velocity);
   if (!(approach > 0)) return {};
   const double change = (1 + restitution) * approach;
   change_relative_velocity(a.velocity, b.velocity, normal, change, of_a.inverse_mass, of_b.inverse_mass);
@@ -224,13 +223,13 @@ TurningImpulse collide(RigidVelocity& a, RigidVelocity& b, const Mobility& of_a,
   }
   Pair pair(of_a, of_b, arms);
   const PreciseVector apart = contact_velocity(b, arms.b) - contact_velocity(a, arms.a);
-  const DoubleDouble approach = detail::dot(pair.direction(0), apart);
+  const DoubleDouble approach = dot(pair.direction(0), apart);
   if (!(approach.high < 0)) return {};
   const DoubleDouble resistance = pair.coupling(0, 0);
   const DoubleDouble push = -(two_sum(1, surfaces.restitution) * approach) / resistance;
   if (smooth) return {pair.give(a, b, {push, {}, {}}), false};
   pair.set_tangents();
-  const PlaneVector slip{detail::dot(pair.direction(1), apart), detail::dot(pair.direction(2), apart)};
+  const PlaneVector slip{dot(pair.direction(1), apart), dot(pair.direction(2), apart)};
   const auto [along, normal, slides] = Friction(pair, resistance, push, slip, approach, surfaces).solve();
   return {pair.give(a, b, {normal, along.x, along.y}), slides};
 }

@@ -70,8 +70,8 @@ struct TurningImpulse {
 /// Energy: s changes it by h . s + s . S s / 2, and law 2 by -(1 - e^2) (n . g)^2 / (2 K_nn). With p the point of the
 /// path, s = (1 + e_t) p, and p . (h + S p) <= 0 all along that path, so the first is at most -(1 - e_t^2) / 2 times p
 /// . S p: never positive, and zero for e_t = 1 where nothing slides. So energy never grows, however eccentric the
-/// bodies are; the laws of Newton and Coulomb, applied to the velocities before and after, would let it grow [Kane85].
-/// The component of the slip along h ends at no less than -e_t times h.
+/// bodies are; the laws of Newton and Coulomb, applied to the velocities before and after, would let it grow
+/// [Stronge90]. The component of the slip along h ends at no less than -e_t times h.
 ///
 /// **Roundings.** All is calculated in double-doubles (some 2^-95), but for how far s goes where it slides, which law 3
 /// does not need; the new velocities are rounded once, to the nearest double. So with u = 2^-53 each coordinate of a

@@ -167,20 +167,21 @@ TEST_CASE("Balls and boxes", "[mass properties]") {
 /// Sums over discs across the axis: their squares of radii are polynomials of degree 2, their moments of degree 4, so
 /// three points of Gauss are exact.
 TEST_CASE("Capsules are their discs summed up", "[mass properties]") {
-  for (const auto& [r, h] : std::vector<std::array<double, 2>>{{1, 1}, {0.1, 7}, {5, 0.01}, {1e-20, 3e-20}, {2, 0}}) {
+  for (const Capsule& capsule : std::vector<Capsule>{{1, 1}, {0.1, 7}, {5, 0.01}, {1e-20, 3e-20}, {2, 0}}) {
+    const Long r = capsule.radius, h = capsule.half_length;
     Long volume = 0, along = 0, across = 0;
     const auto add = [&](Long from, Long to, bool cap) {
       const Long root = std::sqrt(0.6L) * (to - from) / 2;
       for (int i = -1; i <= 1; ++i) {
         const Long z = (from + to) / 2 + i * root, into = z - from;
-        const Long square = cap ? Long(r) * r - into * into : Long(r) * r;
+        const Long square = cap ? r * r - into * into : r * r;
         const Long disc = square * (i == 0 ? 8 : 5) / 18 * (to - from);
         volume += disc, along += disc * square / 2, across += disc * (square / 4 + z * z);
       }
     };
     add(0, h, false);
-    add(h, Long(h) + r, true);
-    const MassProperties found = mass_properties(Capsule{r, h}, 3);
+    add(h, h + r, true);
+    const MassProperties found = mass_properties(capsule, 3);
     CHECK(std::abs(found.inertia(2, 2) / (3 * along / volume) - 1) < 12 * 0x1p-53);
     CHECK(std::abs(found.inertia(0, 0) / (3 * across / volume) - 1) < 12 * 0x1p-53);
     CHECK(found.inertia(1, 1) == found.inertia(0, 0));
