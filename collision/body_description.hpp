@@ -1,6 +1,7 @@
 // What a body is when it is added to a world.
 #pragma once
 
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/shapes/shape.hpp"
 
@@ -26,6 +27,9 @@ enum class BoundingVolume : std::uint8_t {
 /// The category of bodies that are given none.
 inline constexpr std::uint32_t default_category = 1;
 
+/// Of angular velocities, rad/s.
+inline constexpr double largest_rate = 0x1p200;  ///< 1.6e60
+
 /// A body to add. Numbers have to be in the range of shape.hpp: sizes and masses from 2^-205 to 2^205 (1.9e-62 to
 /// 5.1e61), coefficients and starts of motions up to 2^205 in magnitude. The edges of a mesh, scaled, are at least
 /// 2^-110 long, and its coordinates at most 2^100.
@@ -41,11 +45,17 @@ struct BasicBodyDescription {
   using BoxFunction = std::function<KineticBox<Motion::degree>(double t, const Motion& motion)>;
 
   Shape shape;
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit to 1e-6; the body keeps it
+  /// Unit to 1e-6; the body keeps it. Of bodies that turn it has to be left as it is: their motions say how they are
+  /// turned.
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   /// One or more pieces, each starting later than the one before. The first may start in the past; if it starts in the
   /// future, the body enters then.
   std::vector<Motion> motion{};
   double mass = 1;     ///< > 0, unless the body is fixed
+  /// Of bodies that turn: the moment of inertia about every axis through the centre, mass * length^2, > 0. 0: that of a
+  /// solid of the shape and mass; then it has to be the same about all axes, as those of balls and cubes are. (A body
+  /// whose moments differ does not turn about a fixed axis when it is free.)
+  double inertia = 0;
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.
   double restitution = 1;
@@ -72,6 +82,14 @@ bool in_range(const certificates::PointMotion<Degree>& motion) {
   return all;
 }
 
+template <int Degree>
+bool in_range(const certificates::RigidMotion<Degree>& motion) {
+  bool all = in_range(motion.path) && motion.finite();
+  for (int d = 0; d < 3; ++d) all = all && std::abs(motion.angular_velocity[d]) <= largest_rate;
+  const double length = motion.orientation.coeffs().cwiseAbs().maxCoeff();
+  return all && length >= smallest_size && length <= largest_magnitude;
+}
+
 /// Throws std::invalid_argument, naming the motion by `name` and the member that is wrong. Precondition: !in_range().
 template <int Degree>
 [[noreturn]] void refuse_motion(const certificates::PointMotion<Degree>& motion, const std::string& name) {
@@ -87,6 +105,19 @@ template <int Degree>
   }
   std::ostringstream text;
   text << name << "." << member << ": " << value << " is beyond 2^205 (5.1e61) in magnitude";
+  throw std::invalid_argument(text.str());
+}
+
+template <int Degree>
+[[noreturn]] void refuse_motion(const certificates::RigidMotion<Degree>& motion, const std::string& name) {
+  if (!in_range(motion.path)) refuse_motion(motion.path, name + ".path");
+  const auto& q = motion.orientation.coeffs();
+  std::ostringstream text;
+  if (!(q.cwiseAbs().maxCoeff() >= smallest_size && q.cwiseAbs().maxCoeff() <= largest_magnitude)) {
+    text << name << ".orientation: its greatest component is to be between 2^-205 and 2^205 in magnitude";
+  } else {
+    text << name << ".angular_velocity: must be finite, and each component at most 2^200 (1.6e60) rad/s";
+  }
   throw std::invalid_argument(text.str());
 }
 

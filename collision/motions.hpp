@@ -1,27 +1,45 @@
 // Which motions the engine is compiled for.
 //
 // A world and its parts are templates of how bodies move (body_motion.hpp), compiled once for each of these; what is
-// about paths alone is a template of their degree (degrees.hpp).
+// about paths alone is a template of their degree (degrees.hpp). Those of bodies that turn are in a library of their
+// own, kds::collision_turning, from the same files: whoever does not link it pays nothing for them.
 #pragma once
 
 #include "certificates/point_motion.hpp"
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/degrees.hpp"
 
-/// KDS_FOR_EACH_MOTION(instantiate), in a .cpp: instantiate(motion) for the motions of the library that is compiled.
+// KDS_FOR_EACH_MOTION(instantiate), in a .cpp: instantiate(motion) for the motions of the library that is compiled.
+// KDS_FOR_EACH_PATH(instantiate): the same for those of bodies that keep their orientation.
 #ifdef KDS_SPLINE_DEGREES
-#define KDS_FOR_EACH_MOTION(instantiate)                                              \
+#define KDS_FOR_EACH_PATH(instantiate)                                                \
   instantiate(certificates::PointMotion<3>) instantiate(certificates::PointMotion<4>) \
       instantiate(certificates::PointMotion<5>)
 #else
-#define KDS_FOR_EACH_MOTION(instantiate) \
+#define KDS_FOR_EACH_PATH(instantiate) \
   instantiate(certificates::PointMotion<1>) instantiate(certificates::PointMotion<2>)
 #endif
 
-/// The same for all that a program is linked with, in a header: for `extern template`.
+#ifdef KDS_TURNING_MOTIONS
+#define KDS_FOR_EACH_MOTION(instantiate) \
+  instantiate(certificates::RigidMotion<1>) instantiate(certificates::RigidMotion<2>)
+#else
+#define KDS_FOR_EACH_MOTION(instantiate) KDS_FOR_EACH_PATH(instantiate)
+#endif
+
+// The same for all that a program is linked with, in a header: for `extern template`. (KDS_TURNING is defined for all
+// that link kds::collision_turning.)
 #ifdef KDS_SPLINES
-#define KDS_FOR_ALL_MOTIONS(declare)                                                                                \
+#define KDS_FOR_ALL_PATHS(declare)                                                                                  \
   declare(certificates::PointMotion<1>) declare(certificates::PointMotion<2>) declare(certificates::PointMotion<3>) \
       declare(certificates::PointMotion<4>) declare(certificates::PointMotion<5>)
 #else
-#define KDS_FOR_ALL_MOTIONS(declare) declare(certificates::PointMotion<1>) declare(certificates::PointMotion<2>)
+#define KDS_FOR_ALL_PATHS(declare) declare(certificates::PointMotion<1>) declare(certificates::PointMotion<2>)
+#endif
+
+#ifdef KDS_TURNING
+#define KDS_FOR_ALL_MOTIONS(declare) \
+  KDS_FOR_ALL_PATHS(declare) declare(certificates::RigidMotion<1>) declare(certificates::RigidMotion<2>)
+#else
+#define KDS_FOR_ALL_MOTIONS(declare) KDS_FOR_ALL_PATHS(declare)
 #endif

@@ -95,7 +95,9 @@ void BasicWorld<Motion>::go_back(double t) {
 template <class Motion>
 void BasicWorld<Motion>::reach(double limit) {
   if (!(limit > clock_.horizon)) return;
-  clock_.horizon = std::max(limit, clock_.horizon + options_.window);
+  constexpr double farthest = 1;  // s, of bodies that turn, whose contacts are searched turn by turn
+  const double window = turns<Motion> ? std::min(options_.window, farthest) : options_.window;
+  clock_.horizon = std::max(limit, clock_.horizon + window);
   broad_phase_->extend_horizon(clock_.now, clock_.horizon);
   pairs_.extend_horizon();
   walls_.extend_horizon();
@@ -114,6 +116,9 @@ bool BasicWorld<Motion>::step(double limit) {
   if (std::isnan(limit)) throw std::invalid_argument("World::step: the limit is not a number");
   if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
     throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
+  }
+  if (turns<Motion> && limit == never) {
+    throw std::invalid_argument("World::step: bodies that turn may come near each other for ever, so it needs a limit");
   }
   if (limit < clock_.now) {  // Up to there nothing happens, as next_time() has found.
     callers_now_ = std::max(callers_now_, limit);

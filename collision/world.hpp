@@ -262,16 +262,27 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
     return {bodies_.id_of(a), bodies_.id_of(b), contact};
   }
   void process_contact(BodySlot a, BodySlot b, const Contact& contact);
-  void process_wall();
-  bool respond(BodySlot a, BodySlot b, const Contact& contact);
-  bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution);
-  bool bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution, std::uint64_t burst);
-  void hold(BodySlot a, BodySlot b, const Contact& contact);
-  bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   std::uint64_t count_meeting(BodySlot a, BodySlot b);
   std::uint64_t count_meeting(BodySlot slot);
-  bool endless(std::uint64_t burst) const;
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
+
+  // world/bounces.cpp: of bodies that keep their orientation
+  /// Rate at which b parts from a along the normal just after the contact.
+  double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>);
+  void process_wall() requires(!turns<Motion>);
+  bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
+  bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>);
+  bool bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+                      std::uint64_t burst) requires(!turns<Motion>);
+  void hold(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
+  bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
+  bool endless(std::uint64_t burst) const;
+
+  // world/turning/turning_bounces.cpp: of bodies that turn
+  double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>);
+  double rebound(double approach, double pressed, double restitution) const requires(turns<Motion>);
+  void process_wall() requires(turns<Motion>);
+  bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
 
   // What resting contacts tell (RestingContacts::Listener).
   void take_up(BodySlot slot, const Motion& motion) override;

@@ -26,6 +26,7 @@ void validate(const WorldOptions& options) {
   }
   if (options.zeno.contacts == 0) throw std::invalid_argument("WorldOptions.zeno.contacts: must be > 0");
   if (!(options.zeno.interval >= 0)) throw std::invalid_argument("WorldOptions.zeno.interval: must be >= 0");
+  if (!(options.shortest_flight > 0)) throw std::invalid_argument("WorldOptions.shortest_flight: must be > 0");
   if (options.walls) {
     const Walls& walls = *options.walls;
     if (!walls.min.allFinite() || !walls.max.allFinite()) {

@@ -68,6 +68,10 @@ struct WorldOptions {
   /// Events and counters do not depend on it.
   std::size_t threads = 1;
   ZenoPolicy zeno{};
+  /// s, > 0. In worlds of bodies that turn contacts do not come to rest: what is pressed together rebounds fast enough
+  /// to fly for so long at least, so that a run always ends. Of bodies that weigh on each other with the acceleration g
+  /// it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1 ms), and costs a contact per flight.
+  double shortest_flight = 1e-3;
   /// How often callbacks may add, remove or move bodies within zeno.interval of simulated time; 64 times the number of
   /// bodies, if that is more. The call that exceeds it throws std::runtime_error: callbacks that go on for ever at one
   /// time would never let the clock move. Without callbacks a run always ends.

@@ -6,6 +6,9 @@
 #include "collision/narrow_phase/convex_contact.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
 #include "collision/narrow_phase/pair_tests.hpp"
+#include "collision/narrow_phase/turning/turning_contact.hpp"
+
+#include <algorithm>
 
 namespace kds::collision {
 namespace {
@@ -22,8 +25,34 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   return table;
 }
 
+/// Of bodies that turn. Kinds without a row are refused (can_move_by).
+template <int Degree>
+constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
+  PairTable<certificates::RigidMotion<Degree>> table;
+  table.template add<Sphere, Sphere>(TurningContact<Degree>{});
+  table.template add<Box, Sphere, Box>(TurningContact<Degree>{});
+  return table;
+}
+
 template <class Motion>
-constexpr PairTable<Motion> table = translating_table<Motion::degree>();
+constexpr PairTable<Motion> make_table() {
+  if constexpr (turns<Motion>) {
+    return turning_table<Motion::degree>();
+  } else {
+    return translating_table<Motion::degree>();
+  }
+}
+
+template <class Motion>
+constexpr PairTable<Motion> table = make_table<Motion>();
+
+/// Up to when exact tests look from t0 on. The paths of bodies that turn may come near each other for ever, so that to
+/// look to the end of time would take for ever.
+template <class Motion>
+double end_of_search(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon) {
+  if constexpr (turns<Motion>) return std::min(horizon, t0 + time_to_look_ahead(a.motion, b.motion));
+  return horizon;
+}
 
 /// Calls ask(a, b) with the motions as they are, or of the least degree from 2 on that both have: what is asked of them
 /// is then answered as in a world of that degree, bit for bit, and by its quicker tests.
@@ -49,11 +78,32 @@ const PairTests<Motion>& pair_tests(const PlacedShape& a, const PlacedShape& b) 
 }
 
 template <class Motion>
+bool can_move_by(const Shape& shape) {
+  return table<Motion>.has(shape.index());
+}
+
+template <class Motion>
 double first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon,
                      ContactMode mode, FoundTouch* found) {
   return in_least_degree(a, b, [&]<class M>(const MovingShape<M>& x, const MovingShape<M>& y) {
     return pair_tests<M>(x.shape, y.shape).first_contact(x, y, t0, horizon, mode, found);
   });
+}
+
+template <class Motion>
+ContactEstimate certified_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
+                                        double horizon, ContactMode mode, FoundTouch* found) {
+  const double end = end_of_search(a, b, t0, horizon);
+  const double time = first_contact(a, b, t0, end, mode, found);
+  return time == never && end < horizon ? ContactEstimate{end, false} : ContactEstimate{time, true};
+}
+
+template <class Motion>
+ContactEstimate certified_first_separation(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
+                                           double horizon) {
+  const double end = end_of_search(a, b, t0, horizon);
+  const double time = first_separation(a, b, t0, end);
+  return time == never && end < horizon ? ContactEstimate{end, false} : ContactEstimate{time, true};
 }
 
 template <class Motion>
@@ -64,7 +114,7 @@ ContactEstimate estimated_first_contact(const MovingShape<Motion>& a, const Movi
     const double time = tests.apart_until(x, y, t0, horizon, memory);
     if (time == never || time > horizon) return {never, true};
     if (time > t0) return {time, false};
-    return {tests.first_contact(x, y, t0, horizon, mode, found), true};
+    return certified_first_contact(x, y, t0, horizon, mode, found);
   });
 }
 
@@ -90,12 +140,17 @@ Contact contact_at(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
 }
 
 #define KDS_INSTANTIATE(motion)                                                                                      \
-  static_assert(table<motion>.complete());                                                                           \
+  static_assert(turns<motion> || table<motion>.complete());                                                          \
   template const PairTests<motion>& pair_tests(const PlacedShape&, const PlacedShape&);                              \
+  template bool can_move_by<motion>(const Shape&);                                                                   \
   template double first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double, double, ContactMode, \
                                 FoundTouch*);                                                                        \
   template ContactEstimate estimated_first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double,   \
                                                    double, ContactMode, PairMemory&, FoundTouch*);                   \
+  template ContactEstimate certified_first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double,   \
+                                                   double, ContactMode, FoundTouch*);                                \
+  template ContactEstimate certified_first_separation(const MovingShape<motion>&, const MovingShape<motion>&,        \
+                                                      double, double);                                               \
   template bool in_contact(const MovingShape<motion>&, const MovingShape<motion>&, double);                          \
   template double first_separation(const MovingShape<motion>&, const MovingShape<motion>&, double, double);          \
   template Contact contact_at(const MovingShape<motion>&, const MovingShape<motion>&, double, const FoundTouch&);

@@ -36,6 +36,10 @@ struct FoundTouch {
   std::uint32_t triangle_a = 0, triangle_b = 0;
 };
 
+/// Whether there are tests for shapes of this kind that move so: bodies that turn are balls and boxes.
+template <class Motion>
+bool can_move_by(const Shape& shape);
+
 /// The first time t in [t0, horizon] at which a and b come into contact, or `never`.
 ///
 /// Spheres, boxes and capsules: the first double just after which they penetrate, by exact signs, of shapes as their
@@ -43,6 +47,8 @@ struct FoundTouch {
 /// by at most that part of their size: box_and_box.hpp.) Meshes: never late, early by at most the margin of
 /// mesh_contact.hpp. The answer depends on the two shapes and motions alone, and on t0 only in that earlier contacts
 /// are passed over.
+///
+/// Of bodies that turn the horizon is finite, here and below.
 ///
 /// Mode `resolved`: shapes that overlap at t0 by rounding (an impulse has just been applied) are in contact only if
 /// they approach. Mode `transparent`: t0 itself where they overlap there.
@@ -74,6 +80,15 @@ template <class Motion>
 ContactEstimate estimated_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
                                         double horizon, ContactMode mode, PairMemory& memory,
                                         FoundTouch* found = nullptr);
+
+/// As first_contact, but of bodies that turn no farther than for some turns: if there is none, when to go on.
+template <class Motion>
+ContactEstimate certified_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
+                                        double horizon, ContactMode mode, FoundTouch* found = nullptr);
+/// The same of first_separation.
+template <class Motion>
+ContactEstimate certified_first_separation(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
+                                           double horizon);
 
 /// Whether a and b penetrate just after t.
 template <class Motion>

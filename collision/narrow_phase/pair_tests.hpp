@@ -72,6 +72,9 @@ class PairTable {
     (add_pair<A, Others, Tests>(), ...);
   }
 
+  /// Whether there are tests of a kind, with itself at least.
+  constexpr bool has(std::size_t kind) const { return given_[kind][kind]; }
+
   /// Whether all pairs have tests.
   constexpr bool complete() const {
     for (const auto& row : given_) {

@@ -33,7 +33,15 @@ bool Bodies<Motion>::is_jump(BodySlot slot, const Motion& to, double t) const {
   const Eigen::Vector3d before = path(slot).position(t);
   const Eigen::Vector3d after = path_of(to).position(t);
   const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + bodies_[slot].bounding_radius;
-  return (after - before).cwiseAbs().maxCoeff() > jump_tolerance * scale;
+  double farthest = (after - before).cwiseAbs().maxCoeff();
+  if constexpr (turns<Motion>) {
+    const certificates::Rotation from = motion(slot).rotation(t), into = to.rotation(t);
+    for (int d = 0; d < 3; ++d) {
+      const Eigen::Vector3d turned = into(Eigen::Vector3d::Unit(d)) - from(Eigen::Vector3d::Unit(d));
+      farthest = std::max(farthest, turned.cwiseAbs().maxCoeff() * bodies_[slot].bounding_radius);
+    }
+  }
+  return farthest > jump_tolerance * scale;
 }
 
 template <class Motion>
@@ -60,6 +68,7 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
   added.shape = std::move(shape);
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
+  if constexpr (turns<Motion>) added.inverse_inertia = description.fixed ? 0 : 1 / description.inertia;
   added.restitution = description.restitution;
   added.category = description.category;
   added.collides_with = description.collides_with;
@@ -128,6 +137,7 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
     to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume, to.sensor = b.sensor;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
+    if constexpr (turns<Motion>) to.inverse_inertia = b.inverse_inertia;
     if constexpr (Motion::degree <= 2) to.force = free_acceleration(slot);
     if constexpr (Motion::degree >= 3) to.given = b.given;
   }
@@ -162,6 +172,7 @@ void Bodies<Motion>::become(const Image& image) {
     move(slot, from.motion);
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
     b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume, b.sensor = from.sensor;
+    if constexpr (turns<Motion>) b.inverse_inertia = from.inverse_inertia;
     sensors_ = sensors_ || b.sensor;
     filters_ = filters_ || b.category != default_category || ~b.collides_with != 0;
     b.meetings = from.meetings, b.burst_start = from.burst_start;

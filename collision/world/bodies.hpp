@@ -37,10 +37,17 @@ struct Course {
   PathOf<Motion> given;
 };
 
+/// Of bodies that turn.
+struct Turns {
+  double inverse_inertia = 0;  ///< the same about all axes; 0 if no other body changes how it turns
+};
+struct TurnsNot {};
+
 /// A body, but for its motion and its radius, which the tests of balls read and which have a place of their own.
 template <class Motion>
 struct Body
-    : std::conditional_t<Motion::degree >= 3, Course<Motion>, std::conditional_t<Motion::degree == 2, Force, NoForce>> {
+    : std::conditional_t<Motion::degree >= 3, Course<Motion>, std::conditional_t<Motion::degree == 2, Force, NoForce>>,
+      std::conditional_t<turns<Motion>, Turns, TurnsNot> {
   Body() {}  // not the implicit one, for which all is set to zero first
 
   double inverse_mass = 1;
@@ -163,7 +170,8 @@ class Bodies {
            (bodies_[b].category & bodies_[a].collides_with) != 0;
   }
 
-  /// Adds one with a motion to begin with. No `shape` is that of a ball that is not turned. Precondition: valid.
+  /// Adds one with a motion to begin with. No `shape` is that of a ball that is not turned. Precondition: valid, and of
+  /// bodies that turn, which are not fixed, with an inertia.
   BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion);
   void remove(BodySlot slot);
   void reserve(std::size_t bodies);

@@ -66,6 +66,7 @@ void Bodies<Motion>::Image::body(Archive& archive, One& body) const {
   archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category,
           body.collides_with, body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
+  if constexpr (turns<Motion>) archive(body.inverse_inertia);
   if constexpr (Motion::degree >= 3) archive(body.given);
 }
 
@@ -98,6 +99,8 @@ void Bodies<Motion>::Image::check(double now) const {
     need(body.volume == BoundingVolume::shape || body.volume == BoundingVolume::sphere, "its volume is unknown");
     need(image::is_past(body.burst_start, now), "its meetings are counted from a time after now");
     need(body.force.allFinite(), "its acceleration is not finite");
+    const bool turnable = std::isfinite(body.inverse_inertia) && body.inverse_inertia > 0;
+    need(!turns<Motion> || turnable == (body.inverse_mass > 0), "its inertia is not > 0");
     if constexpr (Motion::degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
   }
   std::vector<char> listed(bodies.size());

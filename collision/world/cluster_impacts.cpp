@@ -334,7 +334,7 @@ void RestingContacts<Motion>::impact(const Contact& contact, double restitution)
 }
 
 #define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
-KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -186,7 +186,7 @@ double ContactGaps<Motion>::deepest_overlap(const Contact& contact) const {
 }
 
 #define KDS_INSTANTIATE(motion) template class ContactGaps<motion>;
-KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -67,7 +67,7 @@ class ContactGaps {
 };
 
 #define KDS_DECLARE(motion) extern template class ContactGaps<motion>;
-KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
+KDS_FOR_ALL_PATHS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

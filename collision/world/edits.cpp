@@ -2,12 +2,15 @@
 #include "collision/motions.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
+#include "collision/response/inertia.hpp"
+#include "collision/response/mass_properties.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
 #include <memory>
 #include <new>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -27,6 +30,17 @@ void validate(const BasicBodyDescription<Motion>& description) {
     }
   }
   if (!description.fixed) require_size(description.mass, "mass");
+  if (!can_move_by<Motion>(description.shape)) {
+    fail(std::string("shape: a ") + kind_name(description.shape) + " cannot turn: balls and boxes can");
+  }
+  if constexpr (turns<Motion>) {
+    if (description.orientation.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
+      fail("orientation: a body that turns has that of its motion");
+    }
+    if (description.inertia != 0) require_size(description.inertia, "inertia");
+  } else if (description.inertia != 0) {
+    fail("inertia: bodies of this world do not turn");
+  }
   switch (description.volume) {
     case BoundingVolume::shape:
     case BoundingVolume::sphere:
@@ -35,6 +49,17 @@ void validate(const BasicBodyDescription<Motion>& description) {
       fail("volume: unknown");
   }
   if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
+}
+
+/// The moment of inertia of a body that turns freely.
+double inertia_of(const Shape& shape, double mass) {
+  const Eigen::Matrix3d inertia = mass_properties(shape, mass).inertia;
+  if (is_spherical(inertia)) return inertia(0, 0);
+  std::ostringstream text;
+  text << "inertia: the moments of this " << kind_name(shape) << " differ (" << inertia(0, 0) << ", " << inertia(1, 1)
+       << ", " << inertia(2, 2) << "), and only bodies of equal moments turn about a fixed axis when they are free: "
+       << "give one number, or make the body fixed";
+  throw std::invalid_argument(text.str());
 }
 
 }  // namespace
@@ -53,6 +78,13 @@ template <class Motion>
 BodyId BasicWorld<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
+  if constexpr (turns<Motion>) {
+    if (!description.fixed && description.inertia == 0) {
+      Description whole = description;
+      whole.inertia = inertia_of(description.shape, description.mass);
+      return add_body(whole);
+    }
+  }
   count_edit();
   const double ball = ball_radius(description.shape);
   std::shared_ptr<const PlacedShape> shape;

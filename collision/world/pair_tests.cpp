@@ -28,21 +28,42 @@ bool at_rest(const certificates::PointMotion<Degree>& motion) {
   return true;
 }
 
+template <int Degree>
+bool at_rest(const certificates::RigidMotion<Degree>& motion) {
+  return at_rest(motion.path) && motion.angular_velocity.isZero(0);
+}
+
+/// The same place for good, moved by a way.
+template <int Degree>
+certificates::PointMotion<Degree> standing(const certificates::PointMotion<Degree>& motion, double t,
+                                           const Vector3d& way) {
+  certificates::PointMotion<Degree> place = motion.restarted(t);
+  for (std::size_t i = 1; i <= Degree; ++i) place.coefficients[i] = Vector3d::Zero();
+  place.coefficients[0] += way;
+  return place;
+}
+template <int Degree>
+certificates::RigidMotion<Degree> standing(const certificates::RigidMotion<Degree>& motion, double t,
+                                           const Vector3d& way) {
+  auto place = motion.restarted(t);
+  place.path = standing(motion.path, t, way);
+  place.angular_velocity = Vector3d::Zero();
+  return place;
+}
+
 /// Bodies that have been put so near that nothing but rounding is between them, this times their coordinates: they
 /// touch, and so meet if they approach, and rest if they are pressed together. Larger takes more for a touch.
 constexpr double touch_rounding = 0x1p-40;
 
 /// Whether bodies in contact at t only touch: at rest in their places, and a rounding farther apart, they are free.
-template <int Degree>
-bool only_touching(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t) {
+template <class Motion>
+bool only_touching(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t) {
   const Contact contact = contact_at(a, b, t);
-  certificates::PointMotion<Degree> place_a = a.motion.restarted(t);
-  certificates::PointMotion<Degree> place_b = b.motion.restarted(t);
-  for (std::size_t i = 1; i <= Degree; ++i) place_a.coefficients[i] = place_b.coefficients[i] = Vector3d::Zero();
-  const double size = place_a.coefficients[0].cwiseAbs().maxCoeff() + place_b.coefficients[0].cwiseAbs().maxCoeff() +
-                      std::min(a.shape.bounding_radius, b.shape.bounding_radius);
-  place_b.coefficients[0] += touch_rounding * size * contact.normal;
-  return !in_contact(TranslatingShape<Degree>{a.shape, place_a}, TranslatingShape<Degree>{b.shape, place_b}, t);
+  const Motion place_a = standing(a.motion, t, Vector3d::Zero());
+  const auto largest = [t](const Motion& motion) { return path_of(motion).position(t).cwiseAbs().maxCoeff(); };
+  const double size = largest(a.motion) + largest(b.motion) + std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+  const Motion place_b = standing(b.motion, t, touch_rounding * size * contact.normal);
+  return !in_contact(MovingShape<Motion>{a.shape, place_a}, MovingShape<Motion>{b.shape, place_b}, t);
 }
 
 }  // namespace
@@ -176,7 +197,7 @@ void Pairs<Motion>::test(Slot slot) {
     if (at_rest(a.motion) && at_rest(b.motion)) {  // Nothing will happen, but a jump may have happened.
       next.time = in_contact(a, b, clock_.now) == pair.overlapping ? never : clock_.now;
     } else if (pair.overlapping) {
-      next.time = first_separation(a, b, clock_.now, clock_.horizon);
+      next = certified_first_separation(a, b, clock_.now, clock_.horizon);
     } else {
       next = estimated_first_contact(a, b, clock_.now, clock_.horizon, mode, pair.memory, &found);
     }
@@ -188,7 +209,7 @@ void Pairs<Motion>::test(Slot slot) {
     }
     if (pair.overlapping) {
       const double start = pair.passes_at == clock_.now ? next_up(clock_.now) : clock_.now;
-      if (start <= clock_.horizon) next.time = first_separation(a, b, start, clock_.horizon);
+      if (start <= clock_.horizon) next = certified_first_separation(a, b, start, clock_.horizon);
     } else if (resting_.find(pair.a, pair.b) != Resting::none) {
       next.time = resting_.next_contact(pair.a, pair.b);
     } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
@@ -230,8 +251,13 @@ bool Pairs<Motion>::certify() {
     return true;
   }
   FoundTouch found;
-  set_contact(slot, first_contact(bodies_.moving(pair.a), bodies_.moving(pair.b), clock_.now, clock_.horizon,
-                                  mode(pair.a, pair.b), &found));
+  const auto a_moves = bodies_.moving(pair.a), b_moves = bodies_.moving(pair.b);
+  const ContactEstimate next =
+      pair.overlapping ? certified_first_separation<Motion>(a_moves, b_moves, clock_.now, clock_.horizon)
+                       : certified_first_contact<Motion>(a_moves, b_moves, clock_.now, clock_.horizon,
+                                                         mode(pair.a, pair.b), &found);
+  set_contact(slot, next.time);
+  pairs_[slot].estimated = !next.exact;
   remember(slot, found);
   return true;
 }

@@ -33,10 +33,13 @@ bool BasicWorld<Motion>::resting_at_wall(BodyId a, int wall) const {
 template <class Motion>
 typename BasicWorld<Motion>::Motion BasicWorld<Motion>::free_motion(BodyId id) const {
   const BodySlot slot = bodies_.slot_of(id);
-  if (!resting_.carries(slot)) return bodies_.motion(slot);
-  Motion motion = bodies_.motion(slot).restarted(now());
-  for (std::size_t i = 2; i <= Motion::degree; ++i) motion.coefficients[i] = bodies_.free_term(slot, i, now());
-  return motion;
+  if constexpr (!turns<Motion>) {  // Nothing carries what turns.
+    if (!resting_.carries(slot)) return bodies_.motion(slot);
+    Motion motion = bodies_.motion(slot).restarted(now());
+    for (std::size_t i = 2; i <= Motion::degree; ++i) motion.coefficients[i] = bodies_.free_term(slot, i, now());
+    return motion;
+  }
+  return bodies_.motion(slot);
 }
 
 template <class Motion>

@@ -241,7 +241,7 @@ bool RestingContacts<Motion>::squeezed(const Island& island) const {
 }
 
 #define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
-KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

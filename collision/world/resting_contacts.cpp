@@ -312,7 +312,7 @@ void RestingContacts<Motion>::become(const Image& image) {
 }
 
 #define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
-KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

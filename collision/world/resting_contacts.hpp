@@ -8,6 +8,7 @@
 #include "collision/world/clock.hpp"
 #include "collision/world/contact_gaps.hpp"
 #include "collision/world/resting_contact.hpp"
+#include "collision/world/turning/no_resting_contacts.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
 
@@ -46,6 +47,22 @@ double velocity_terms(const certificates::PointMotion<Degree>& motion, double t)
   return sum;
 }
 
+/// What resting contacts tell a world.
+template <class Motion>
+class RestingListener {
+ public:
+  virtual void take_up(BodySlot id, const Motion& motion) = 0;  ///< a new motion
+  virtual void changed(BodySlot a, BodySlot b) = 0;             ///< what the two may meet next has to be found anew
+  virtual void let_pass(BodySlot a, BodySlot b) = 0;
+  virtual void tell_held(BodySlot a, BodySlot b) = 0;  ///< that the policy has acted on the two
+  /// A contact begins or ceases to last.
+  virtual void tell_resting(bool begins, const detail::RestingContact& contact) = 0;
+  virtual void tell_passes(const detail::RestingContact& contact) = 0;
+
+ protected:
+  ~RestingListener() = default;
+};
+
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
 /// docs/resting.md says what the law is.
 ///
@@ -60,19 +77,7 @@ class RestingContacts {
   using Contact = detail::RestingContact;
   static constexpr Slot none = ~Slot{0};
 
-  /// What resting contacts tell a world.
-  class Listener {
-   public:
-    virtual void take_up(BodySlot id, const Motion& motion) = 0;  ///< a new motion
-    virtual void changed(BodySlot a, BodySlot b) = 0;             ///< what the two may meet next has to be found anew
-    virtual void let_pass(BodySlot a, BodySlot b) = 0;
-    virtual void tell_held(BodySlot a, BodySlot b) = 0;                  ///< that the policy has acted on the two
-    virtual void tell_resting(bool begins, const Contact& contact) = 0;  ///< a contact begins or ceases to last
-    virtual void tell_passes(const Contact& contact) = 0;
-
-   protected:
-    ~Listener() = default;
-  };
+  using Listener = RestingListener<Motion>;
 
   RestingContacts(const Bodies<Motion>& bodies, const std::optional<Walls>& walls, const Clock& clock,
                   Listener& listener)
@@ -267,7 +272,7 @@ class RestingContacts {
 };
 
 #define KDS_DECLARE(motion) extern template class RestingContacts<motion>;
-KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
+KDS_FOR_ALL_PATHS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -105,7 +105,7 @@ void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image&
   template class RestingContacts<motion>;                                      \
   template void RestingContacts<motion>::Image::archive(kds::detail::Writer&); \
   template void RestingContacts<motion>::Image::archive(kds::detail::Reader&);
-KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

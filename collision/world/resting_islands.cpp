@@ -344,7 +344,7 @@ bool RestingContacts<Motion>::let_pass_worst(const Island& island, const std::ve
 }
 
 #define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
-KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -8,6 +8,7 @@
 #include "collision/motions.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
+#include "collision/world/turning/turning_reach.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
 
@@ -108,7 +109,7 @@ class Volumes {
 };
 
 /// Whether the volume is around the bounding sphere, which holds the body however it is turned. If not, it is around
-/// the shape as it is placed.
+/// the shape as it is placed, or (boxes) as it turns (turning_reach()).
 template <class Motion>
 inline bool Volumes<Motion>::is_round(BodySlot slot) const {
   return turns<Motion> || !bodies_[slot].shape || bodies_[slot].volume == BoundingVolume::sphere;
@@ -119,6 +120,12 @@ template <class Motion>
 inline KineticBox<Motion::degree> Volumes<Motion>::bare_box(BodySlot slot) const {
   if (from_caller(slot)) return given_[slot]->box;
   const detail::Body<Motion>& b = bodies_[slot];
+  if constexpr (turns<Motion>) {
+    if (b.shape && b.volume == BoundingVolume::shape) {
+      const Eigen::Vector3d reach = turning_reach(*b.shape, bodies_.motion(slot));
+      return box_around<Motion::degree>(bodies_.path(slot), -reach, reach);
+    }
+  }
   const bool sphere = is_round(slot);
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
   const double rounding = sphere && !options_.report_pairs ? b.bounding_radius : 0;  // of boxes those are told

@@ -68,10 +68,16 @@ PlacedShape placed_at(const Body<Degree>& body, double t) {
 
 }  // namespace
 
-bool can_turn(const Shape& shape) { return std::holds_alternative<Sphere>(shape) || std::holds_alternative<Box>(shape); }
+template <int Degree>
+double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b) {
+  constexpr double radians = 8;  // 2 and 32 make no difference to speak of
+  constexpr double longest = 0x1p20;  // s, of bodies that hardly turn
+  const double rates = norm(a.angular_velocity) + norm(b.angular_velocity);
+  return rates > 0 ? std::min(longest, radians / rates) : longest;
+}
 
 template <int Degree>
-Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double t) {
+Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch&) {
   if (is_ball(a.shape) && is_ball(b.shape)) return collision::contact_at(ball_of<Degree>(a), ball_of<Degree>(b), t);
   const PlacedShape placed_a = placed_at<Degree>(a, t);
   const PlacedShape placed_b = placed_at<Degree>(b, t);
@@ -93,7 +99,7 @@ Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double 
 
 template <int Degree>
 double TurningContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon,
-                                             ContactMode mode) {
+                                             ContactMode mode, FoundTouch*) {
   if (!(t0 <= horizon)) return never;
   if (is_ball(a.shape) && is_ball(b.shape)) {
     return collision::first_contact(ball_of<Degree>(a), ball_of<Degree>(b), t0, horizon, mode);
@@ -103,7 +109,7 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
     for (double t = t0;;) {
       t = ways.first_penetration(t, horizon);
       if (t == never || mode == ContactMode::transparent) return t;
-      const Contact contact = contact_at(a, b, t);
+      const Contact contact = contact_at(a, b, t, {});
       const PointRates<Degree> rates(a.motion, b.motion, t);
       if (dot(contact.normal, rates.velocity(contact.point)) < -rates.noise(contact.point)) return t;
       // Next when they are deeper in each other by more than roundings, or again after they have parted.
@@ -115,7 +121,7 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
 }
 
 template <int Degree>
-double TurningContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon) {
+double TurningContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
   if (!(t0 <= horizon)) return never;
   if (is_ball(a.shape) && is_ball(b.shape)) return t0;
   return with_ways<Degree>(a, b, [&](const auto& pair) { return pair.apart_until(t0, horizon); });
@@ -140,7 +146,11 @@ double TurningContact<Degree>::first_separation(const Body& a, const Body& b, do
   });
 }
 
-template struct TurningContact<1>;
-template struct TurningContact<2>;
+#define KDS_INSTANTIATE(degree)                                                   \
+  template struct TurningContact<degree>;                                         \
+  template double time_to_look_ahead(const certificates::RigidMotion<degree>&, \
+                                     const certificates::RigidMotion<degree>&);
+KDS_INSTANTIATE(1) KDS_INSTANTIATE(2)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

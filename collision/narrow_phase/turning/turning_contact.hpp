@@ -17,8 +17,9 @@ namespace kds::collision {
 // faster than roundings can feign. Where they do not they are looked at again when they have parted and meet, or are
 // deeper in each other, by more than roundings.
 
-/// Whether there are tests for a shape that turns.
-bool can_turn(const Shape& shape);
+/// In what time two bodies turn by some radians, s: how far exact tests look at a time. Finite.
+template <int Degree>
+double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b);
 
 /// Of two bodies of which both can turn.
 template <int Degree>
@@ -26,18 +27,22 @@ struct TurningContact {
   using Motion = certificates::RigidMotion<Degree>;
   using Body = MovingShape<Motion>;
 
-  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*);
   /// A time before which there is no contact; t0 where that takes exact signs.
-  static double apart_until(const Body& a, const Body& b, double t0, double horizon);
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&);
   static bool in_contact(const Body& a, const Body& b, double t);
   static double first_separation(const Body& a, const Body& b, double t0, double horizon);
 
   /// Point, normal and features as of the shapes as they are placed at t. Of the points that the two share the middle,
   /// or where that does not approach but another does, the corner of what they share that approaches fastest.
-  static Contact contact_at(const Body& a, const Body& b, double t);
+  static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch&);
 };
 
-extern template struct TurningContact<1>;
-extern template struct TurningContact<2>;
+#define KDS_DECLARE(degree)                                                              \
+  extern template struct TurningContact<degree>;                                         \
+  extern template double time_to_look_ahead(const certificates::RigidMotion<degree>&, \
+                                            const certificates::RigidMotion<degree>&);
+KDS_DECLARE(1) KDS_DECLARE(2)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

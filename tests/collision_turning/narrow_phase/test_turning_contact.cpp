@@ -2,7 +2,7 @@
 #include "collision/narrow_phase/turning/turning_contact.hpp"
 
 #include "kds/arithmetic/lattice.hpp"
-#include "tests/collision/narrow_phase/turning/turning_oracle.hpp"
+#include "tests/collision_turning/narrow_phase/turning_oracle.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>

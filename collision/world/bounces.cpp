@@ -1,0 +1,200 @@
+// How bodies that keep their orientation bounce, and which of their contacts last.
+#include "collision/motions.hpp"
+#include "collision/response/impulse.hpp"
+#include "collision/vectors.hpp"
+#include "collision/world.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace kds::collision {
+
+using Eigen::Vector3d;
+
+/// Of two that have no rate, its first derivative that is not zero, up to a factor.
+template <class Motion>
+double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const
+    requires(!turns<Motion>) {
+  const auto& path_a = bodies_.path(a);
+  const auto& path_b = bodies_.path(b);
+  const double t = contact.time;
+  const double rate = dot(contact.normal, path_b.velocity(t) - path_a.velocity(t));
+  if constexpr (Motion::degree >= 3) {
+    if (rate != 0) return rate;
+    const auto at_a = path_a.restarted(t), at_b = path_b.restarted(t);
+    double later = 0;
+    for (std::size_t i = 2; i <= Motion::degree && later == 0; ++i) {
+      later = dot(contact.normal, at_b.coefficients[i] - at_a.coefficients[i]);
+    }
+    return later;
+  }
+  return rate != 0 ? rate : dot(contact.normal, path_b.acceleration(t) - path_a.acceleration(t));
+}
+
+template <class Motion>
+void BasicWorld<Motion>::process_wall() requires(!turns<Motion>) {
+  const BodySlot id = walls_.next_body();
+  const Body& body = bodies_[id];
+  const int wall = walls_.next_wall();
+  const int axis = wall / 2;
+  const double out = wall % 2 != 0 ? 1 : -1;
+  Motion motion = bodies_.motion(id).restarted(clock_.now);
+  const double approach = motion.coefficients[1][axis] * out;
+  double pressed = 0;
+  if constexpr (Motion::degree >= 2) pressed = 2 * motion.coefficients[2][axis] * out;
+  const double rebound = std::min(body.restitution, options_.walls->restitution) * approach;
+  WallEvent event{bodies_.id_of(id), wall, {.time = clock_.now}};
+  event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
+  event.contact.normal[axis] = out;
+  event.contact.point = motion.coefficients[0];
+  event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
+  const Vector3d point = event.contact.point - motion.coefficients[0];
+  ++counters_.wall_contacts;
+  const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
+  const bool clustered = resting_.clustered(id) && !bodies_.fixed(id);
+  bool held = !clustered && stays(rebound, pressed, size, count_meeting(id));
+  if (clustered && endless(count_meeting(id))) {
+    resting_.halt(id);
+  } else if (clustered) {
+    const bool rested = resting_.find(id, no_body, wall) != Resting::none;
+    resting_.impact({.a = id, .wall = wall, .normal = event.contact.normal, .point = point},
+                    std::min(body.restitution, options_.walls->restitution));
+    held = !rested && resting_.find(id, no_body, wall) != Resting::none;
+    counters_.held += held;
+  } else if (held) {
+    ++counters_.held;
+    resting_.add({.a = id, .wall = wall, .normal = event.contact.normal, .point = point});
+  } else {
+    motion.coefficients[1][axis] = -rebound * out;
+    ++counters_.motion_updates;
+    set_motion(id, motion, false);
+  }
+  if (!clustered) resting_.disturb(id);
+  resting_.solve();
+  tell([&](Listener& listener) {
+    listener.wall(*this, event);
+    if (held) listener.held_at_wall(*this, event);
+  });
+}
+
+/// Whether what meets is held: see ZenoPolicy. `pressed`: relative acceleration towards each other; `size`: of the
+/// coordinates.
+template <class Motion>
+bool BasicWorld<Motion>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
+  if (!(rebound > 0) || burst > options_.zeno.contacts) return true;
+  if (!(pressed > 0)) return false;
+  // Near a large clock doubles are sparse: a flight lasts some of them at least. And it rises by some roundings of the
+  // coordinates: bodies with a light one between them bounce for ever where positions cannot come nearer.
+  const double spacing = next_up(std::abs(clock_.now)) - std::abs(clock_.now);
+  const double shortest = std::max(options_.zeno.interval / std::max(options_.zeno.contacts, 1u), 16 * spacing);
+  const double lowest = 0x1p-48 * size;
+  return 2 * rebound < shortest * pressed || rebound * rebound < 2 * pressed * lowest;
+}
+
+/// Whether so many meetings at nearly one time are a sign that there will be more without end.
+template <class Motion>
+bool BasicWorld<Motion>::endless(std::uint64_t burst) const {
+  const std::uint64_t many = std::max(options_.zeno.contacts, 1u);
+  return burst > many && burst % many == 0;
+}
+
+template <class Motion>
+bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
+  if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
+  const std::uint64_t burst = count_meeting(a, b);
+  if (burst > patience()) {  // Holding does not help: the pair is left as it is, and so passes through.
+    ++counters_.held;
+    pairs_.let_pass(a, b);
+    const PairEvent event = event_of(a, b, contact);
+    reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);
+    return true;
+  }
+  const bool often = burst > options_.zeno.contacts;
+  const double restitution = often ? 0 : std::min(bodies_[a].restitution, bodies_[b].restitution);
+  if (restitution < 1 && !bodies_.fixed(a) && !bodies_.fixed(b)) resting_.note_meeting(a, b);
+  const auto approach = [&] { return parting(a, b, contact) < 0; };
+  const auto rest = [&] { return resting_.find(a, b) != Resting::none; };
+  if (resting_.clustered(a) || resting_.clustered(b)) {
+    if (endless(burst)) {
+      resting_.halt(a), resting_.halt(b);
+      if (rest() && !approach()) return false;
+    }
+    return strike(a, b, contact, restitution);
+  }
+  if (often && resting_.can_gather(a, b)) {
+    resting_.gather(a), resting_.gather(b);
+    return strike(a, b, contact, restitution);
+  }
+  const bool held = bounce_or_hold(a, b, contact, restitution, burst);
+  // What neither bounces nor is held by itself is held by what it leans on.
+  if (rest() || !approach()) return held;
+  if (resting_.can_gather(a, b)) {
+    resting_.gather(a), resting_.gather(b);
+    return strike(a, b, contact, restitution) || held;
+  }
+  hold(a, b, contact);
+  return true;
+}
+
+/// A contact in a cluster. Whether the two are held from now on.
+template <class Motion>
+bool BasicWorld<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>) {
+  const bool rested = resting_.find(a, b) != Resting::none;
+  const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
+  resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, restitution);
+  resting_.solve();
+  // What the others that lean on the two have turned back towards each other stays together.
+  if (resting_.find(a, b) == Resting::none && parting(a, b, contact) < 0) {
+    resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, 0);
+    resting_.solve();
+  }
+  const bool rests = resting_.find(a, b) != Resting::none;
+  counters_.held += rests && !rested;
+  return rests && !rested;
+}
+
+template <class Motion>
+void BasicWorld<Motion>::hold(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
+  ++counters_.held;
+  const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
+  resting_.add({.a = a, .b = b, .normal = contact.normal, .point = point});
+  resting_.disturb(a), resting_.disturb(b);
+  resting_.solve();
+}
+
+/// A contact in no cluster. Whether the two are held from now on.
+template <class Motion>
+bool BasicWorld<Motion>::bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+                                        std::uint64_t burst) requires(!turns<Motion>) {
+  Motion motion_a = bodies_.motion(a).restarted(contact.time);
+  Motion motion_b = bodies_.motion(b).restarted(contact.time);
+  const Vector3d& n = contact.normal;
+  const auto relative = [&](std::size_t order) {
+    return dot(n, motion_b.coefficients[order] - motion_a.coefficients[order]);
+  };
+  const double approach = -relative(1);
+  double pressed = 0;
+  if constexpr (Motion::degree >= 2) pressed = -2 * relative(2);
+  const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
+                      bodies_[a].bounding_radius + bodies_[b].bounding_radius;
+  if (stays(restitution * approach, pressed, size, burst)) {
+    hold(a, b, contact);
+    return true;
+  }
+  change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,
+                           bodies_[a].inverse_mass, bodies_[b].inverse_mass);
+  for (const auto& [id, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
+    if (bodies_.fixed(id)) continue;
+    ++counters_.motion_updates;
+    set_motion(id, motion, false);
+    resting_.disturb(id);
+  }
+  resting_.solve();
+  return false;
+}
+
+#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision

@@ -1,0 +1,103 @@
+// How bodies that turn bounce off each other and off walls.
+#include "collision/motions.hpp"
+#include "collision/narrow_phase/turning/point_rates.hpp"
+#include "collision/response/turning_impulse.hpp"
+#include "collision/vectors.hpp"
+#include "collision/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kds::collision {
+
+using Eigen::Vector3d;
+
+/// At the point of contact. Roundings count as nothing.
+template <class Motion>
+double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const
+    requires(turns<Motion>) {
+  const PointRates<Motion::degree> rates(bodies_.motion(a), bodies_.motion(b), contact.time);
+  const double rate = dot(contact.normal, rates.velocity(contact.point));
+  return std::abs(rate) <= rates.noise(contact.point) ? 0 : rate;
+}
+
+/// What is pressed together flies for a while, and what would stick parts, if ever so slowly: else the two would meet
+/// without end.
+template <class Motion>
+double BasicWorld<Motion>::rebound(double approach, double pressed, double restitution) const
+    requires(turns<Motion>) {
+  constexpr double least = 0x1p-26;  // of the speed of approach
+  return std::max({restitution * approach, least * approach, 0.5 * options_.shortest_flight * pressed});
+}
+
+template <class Motion>
+bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
+  if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
+  if (count_meeting(a, b) > patience()) {  // No rebound helps: between fixed bodies that close in, say.
+    ++counters_.held;
+    pairs_.let_pass(a, b);
+    const PairEvent event = event_of(a, b, contact);
+    reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);
+    return true;
+  }
+  Motion motion_a = bodies_.motion(a).restarted(contact.time);
+  Motion motion_b = bodies_.motion(b).restarted(contact.time);
+  const Vector3d& n = contact.normal;
+  const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
+  const double approach = -dot(n, rates.velocity(contact.point));
+  if (!(approach > 0)) return false;
+  const double pressed = -dot(n, rates.acceleration(contact.point));
+  const double restitution = std::min(bodies_[a].restitution, bodies_[b].restitution);
+  RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
+  RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
+  const auto mobility = [&](BodySlot slot) {
+    return Mobility::of_spherical(bodies_[slot].inverse_mass, bodies_[slot].inverse_inertia);
+  };
+  // A ball is turned by nothing that acts along its normal.
+  const auto arm = [&](BodySlot slot, const Motion& motion) {
+    return bodies_.mover(slot).radius > 0 ? Vector3d(Vector3d::Zero())
+                                          : Vector3d(contact.point - motion.path.coefficients[0]);
+  };
+  collide(velocity_a, velocity_b, mobility(a), mobility(b), {n, arm(a, motion_a), arm(b, motion_b)},
+          {.restitution = rebound(approach, pressed, restitution) / approach});
+  motion_a.path.coefficients[1] = velocity_a.velocity, motion_a.angular_velocity = velocity_a.angular_velocity;
+  motion_b.path.coefficients[1] = velocity_b.velocity, motion_b.angular_velocity = velocity_b.angular_velocity;
+  for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
+    if (bodies_.fixed(slot)) continue;
+    ++counters_.motion_updates;
+    set_motion(slot, motion, false);
+  }
+  return false;
+}
+
+/// Walls meet bounding balls, so that they turn nothing.
+template <class Motion>
+void BasicWorld<Motion>::process_wall() requires(turns<Motion>) {
+  const BodySlot slot = walls_.next_body();
+  const Body& body = bodies_[slot];
+  const int wall = walls_.next_wall();
+  const int axis = wall / 2;
+  const double out = wall % 2 != 0 ? 1 : -1;
+  Motion motion = bodies_.motion(slot).restarted(clock_.now);
+  auto& path = motion.path.coefficients;
+  const double approach = path[1][axis] * out;
+  double pressed = 0;
+  if constexpr (Motion::degree >= 2) pressed = 2 * path[2][axis] * out;
+  path[1][axis] = -out * rebound(approach, pressed, std::min(body.restitution, options_.walls->restitution));
+  WallEvent event{bodies_.id_of(slot), wall, {.time = clock_.now}};
+  event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
+  event.contact.normal[axis] = out;
+  event.contact.point = path[0];
+  event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
+  ++counters_.wall_contacts;
+  ++counters_.motion_updates;
+  set_motion(slot, motion, false);
+  tell([&](Listener& listener) { listener.wall(*this, event); });
+}
+
+#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision

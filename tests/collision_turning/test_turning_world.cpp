@@ -1,0 +1,92 @@
+// Worlds of bodies that turn.
+#include "collision/world.hpp"
+
+#include "tests/support/random_numbers.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace kds;
+using namespace kds::collision;
+using Eigen::Vector3d;
+using certificates::RigidMotion;
+using Turning = BasicWorld<RigidMotion<1>>;
+
+struct Log : Turning::Listener {
+  std::vector<std::string> lines;
+  void note(const char* what, const PairEvent& event) {
+    char text[200];
+    std::snprintf(text, sizeof text, "%a %s %llu %llu %a %a %a", event.contact.time, what,
+                  static_cast<unsigned long long>(event.a), static_cast<unsigned long long>(event.b),
+                  event.contact.normal[0], event.contact.normal[1], event.contact.normal[2]);
+    lines.emplace_back(text);
+  }
+  void contact(Turning&, const PairEvent& event) override { note("contact", event); }
+  void separation(Turning&, const PairEvent& event) override { note("separation", event); }
+};
+
+RigidMotion<1> motion(const Vector3d& position, const Vector3d& velocity, const Vector3d& spin) {
+  RigidMotion<1> result{{{position, velocity}}};
+  result.angular_velocity = spin;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a rod that turns meets a ball, and both fly on with their energy and momenta", "[turning]") {
+  Log log;
+  Turning world({.response = Response::elastic}, &log);
+  const BodyId rod = world.add_body({.shape = Box{Vector3d(2, 0.125, 0.125)},
+                                     .motion = {motion({0, 0, 0}, {0, 0, 0}, {0, 0, 1})},
+                                     .inertia = 1.5});
+  const BodyId ball = world.add_body({.shape = Sphere{0.25}, .motion = {motion({0, 1.5, 0}, {0, 0, 0}, {0, 0, 0})}});
+  world.advance_to(3);
+  REQUIRE(log.lines.size() == 1);
+  const auto& of_rod = world.motion(rod);
+  const auto& of_ball = world.motion(ball);
+  CHECK(of_rod.path.velocity(3).norm() > 0.1);
+  const Vector3d momentum = of_rod.path.velocity(3) + of_ball.path.velocity(3);
+  CHECK(momentum.norm() < 1e-15);
+  const double energy = 0.5 * (of_rod.path.velocity(3).squaredNorm() + of_ball.path.velocity(3).squaredNorm()) +
+                        0.5 * 1.5 * of_rod.angular_velocity.squaredNorm();
+  CHECK(std::abs(energy - 0.75) < 1e-15);
+  const double spin = 1.5 * of_rod.angular_velocity[2] +
+                      of_rod.path.position(3).cross(of_rod.path.velocity(3))[2] +
+                      of_ball.path.position(3).cross(of_ball.path.velocity(3))[2];
+  CHECK(std::abs(spin - 1.5) < 1e-14);
+}
+
+TEST_CASE("turning worlds find the same contacts whichever broad phase they have", "[turning]") {
+  std::vector<std::vector<std::string>> logs;
+  for (const BroadPhaseKind kind : {BroadPhaseKind::all_pairs, BroadPhaseKind::sap, BroadPhaseKind::kinetic_sap,
+                                    BroadPhaseKind::grid, BroadPhaseKind::automatic}) {
+    Log log;
+    WorldOptions options{.response = Response::elastic, .broad_phase = kind};
+    options.walls = Walls{Vector3d::Constant(-4), Vector3d::Constant(4)};
+    if (kind == BroadPhaseKind::sap) options.rate = 60;
+    Turning world(options, &log);
+    tests::Random random(77);
+    for (int i = 0; i < 30; ++i) {
+      const Vector3d place(i % 3 * 2.0 - 2, i / 3 % 3 * 2.0 - 2, i / 9 * 2.0 - 3);
+      const auto between = [&] { return random.between(-1, 1); };
+      Turning::Description body{.shape = Box{Vector3d(0.5, 0.5, 0.5)},
+                                .motion = {motion(place, {between(), between(), between()},
+                                                  5 * Vector3d(between(), between(), between()))}};
+      if (i % 3 == 0) body.shape = Sphere{0.5};
+      if (i % 5 == 0) body.shape = Box{Vector3d(0.75, 0.1, 0.2)}, body.inertia = 0.2;
+      world.add_body(body);
+    }
+    for (double t = 0.5; t <= 3; t += 0.5) {
+      world.advance_to(t);
+      world.audit();
+    }
+    CHECK(log.lines.size() > 50);
+    logs.push_back(log.lines);
+  }
+  for (const auto& lines : logs) CHECK(lines == logs.front());
+}
