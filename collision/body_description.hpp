@@ -51,7 +51,7 @@ struct BasicBodyDescription {
   /// One or more pieces, each starting later than the one before. The first may start in the past; if it starts in the
   /// future, the body enters then.
   std::vector<Motion> motion{};
-  double mass = 1;     ///< > 0, unless the body is fixed
+  double mass = 1;  ///< > 0, unless the body is fixed
   /// Of bodies that turn: the moment of inertia about every axis through the centre, mass * length^2, > 0. 0: that of a
   /// solid of the shape and mass; then it has to be the same about all axes, as those of balls and cubes are. (A body
   /// whose moments differ does not turn about a fixed axis when it is free.)

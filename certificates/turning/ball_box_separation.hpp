@@ -65,9 +65,9 @@ struct CentreBeyondSide : detail::BallAndBox<Degree> {
 
   template <class Number, int Order>
   TurningSum<Order, Number> turning_sum(double epoch) const {
-    const auto beyond = detail::beyond_side<Number, Order, Degree>(
-        Turner<Number>(this->box), this->template way<Number, Order>(epoch), axis, side,
-        this->half_extents[static_cast<Eigen::Index>(axis)]);
+    const auto beyond =
+        detail::beyond_side<Number, Order, Degree>(Turner<Number>(this->box), this->template way<Number, Order>(epoch),
+                                                   axis, side, this->half_extents[static_cast<Eigen::Index>(axis)]);
     TurningSum<Order, Number> f{};
     for (std::size_t i = 0; i < 3; ++i) f.p[i][0] = beyond[i];
     return f;

@@ -139,20 +139,20 @@ Contact contact_at(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
   });
 }
 
-#define KDS_INSTANTIATE(motion)                                                                                      \
-  static_assert(turns<motion> || table<motion>.complete());                                                          \
-  template const PairTests<motion>& pair_tests(const PlacedShape&, const PlacedShape&);                              \
-  template bool can_move_by<motion>(const Shape&);                                                                   \
-  template double first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double, double, ContactMode, \
-                                FoundTouch*);                                                                        \
-  template ContactEstimate estimated_first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double,   \
-                                                   double, ContactMode, PairMemory&, FoundTouch*);                   \
-  template ContactEstimate certified_first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double,   \
-                                                   double, ContactMode, FoundTouch*);                                \
-  template ContactEstimate certified_first_separation(const MovingShape<motion>&, const MovingShape<motion>&,        \
-                                                      double, double);                                               \
-  template bool in_contact(const MovingShape<motion>&, const MovingShape<motion>&, double);                          \
-  template double first_separation(const MovingShape<motion>&, const MovingShape<motion>&, double, double);          \
+#define KDS_INSTANTIATE(motion)                                                                                       \
+  static_assert(turns<motion> || table<motion>.complete());                                                           \
+  template const PairTests<motion>& pair_tests(const PlacedShape&, const PlacedShape&);                               \
+  template bool can_move_by<motion>(const Shape&);                                                                    \
+  template double first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double, double, ContactMode,  \
+                                FoundTouch*);                                                                         \
+  template ContactEstimate estimated_first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double,    \
+                                                   double, ContactMode, PairMemory&, FoundTouch*);                    \
+  template ContactEstimate certified_first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double,    \
+                                                   double, ContactMode, FoundTouch*);                                 \
+  template ContactEstimate certified_first_separation(const MovingShape<motion>&, const MovingShape<motion>&, double, \
+                                                      double);                                                        \
+  template bool in_contact(const MovingShape<motion>&, const MovingShape<motion>&, double);                           \
+  template double first_separation(const MovingShape<motion>&, const MovingShape<motion>&, double, double);           \
   template Contact contact_at(const MovingShape<motion>&, const MovingShape<motion>&, double, const FoundTouch&);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE

@@ -13,8 +13,7 @@ using Eigen::Vector3d;
 
 /// Of two that have no rate, its first derivative that is not zero, up to a factor.
 template <class Motion>
-double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const
-    requires(!turns<Motion>) {
+double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>) {
   const auto& path_a = bodies_.path(a);
   const auto& path_b = bodies_.path(b);
   const double t = contact.time;
@@ -138,7 +137,8 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
 
 /// A contact in a cluster. Whether the two are held from now on.
 template <class Motion>
-bool BasicWorld<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>) {
+bool BasicWorld<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact,
+                                double restitution) requires(!turns<Motion>) {
   const bool rested = resting_.find(a, b) != Resting::none;
   const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, restitution);

@@ -52,8 +52,10 @@ void validate(const BasicBodyDescription<Motion>& description) {
 }
 
 /// The moment of inertia of a body that turns freely.
-double inertia_of(const Shape& shape, double mass) {
-  const Eigen::Matrix3d inertia = mass_properties(shape, mass).inertia;
+template <class Motion>
+double inertia_of(const BasicBodyDescription<Motion>& description) {
+  const Shape& shape = description.shape;
+  const Eigen::Matrix3d inertia = mass_properties(shape, description.mass).inertia;
   if (is_spherical(inertia)) return inertia(0, 0);
   std::ostringstream text;
   text << "inertia: the moments of this " << kind_name(shape) << " differ (" << inertia(0, 0) << ", " << inertia(1, 1)
@@ -81,7 +83,7 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
   if constexpr (turns<Motion>) {
     if (!description.fixed && description.inertia == 0) {
       Description whole = description;
-      whole.inertia = inertia_of(description.shape, description.mass);
+      whole.inertia = inertia_of(description);
       return add_body(whole);
     }
   }

@@ -61,7 +61,8 @@ bool only_touching(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
   const Contact contact = contact_at(a, b, t);
   const Motion place_a = standing(a.motion, t, Vector3d::Zero());
   const auto largest = [t](const Motion& motion) { return path_of(motion).position(t).cwiseAbs().maxCoeff(); };
-  const double size = largest(a.motion) + largest(b.motion) + std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+  const double size =
+      largest(a.motion) + largest(b.motion) + std::min(a.shape.bounding_radius, b.shape.bounding_radius);
   const Motion place_b = standing(b.motion, t, touch_rounding * size * contact.normal);
   return !in_contact(MovingShape<Motion>{a.shape, place_a}, MovingShape<Motion>{b.shape, place_b}, t);
 }
@@ -253,9 +254,9 @@ bool Pairs<Motion>::certify() {
   FoundTouch found;
   const auto a_moves = bodies_.moving(pair.a), b_moves = bodies_.moving(pair.b);
   const ContactEstimate next =
-      pair.overlapping ? certified_first_separation<Motion>(a_moves, b_moves, clock_.now, clock_.horizon)
-                       : certified_first_contact<Motion>(a_moves, b_moves, clock_.now, clock_.horizon,
-                                                         mode(pair.a, pair.b), &found);
+      pair.overlapping
+          ? certified_first_separation<Motion>(a_moves, b_moves, clock_.now, clock_.horizon)
+          : certified_first_contact<Motion>(a_moves, b_moves, clock_.now, clock_.horizon, mode(pair.a, pair.b), &found);
   set_contact(slot, next.time);
   pairs_[slot].estimated = !next.exact;
   remember(slot, found);

@@ -133,7 +133,8 @@ template <class Archive>
 void BasicWorld<Motion>::archive(Archive& archive) {
   // What has been interrupted may be loaded: then it is whole again.
   if (!Archive::loading || stepping_ || volumes_.calling()) require_idle("World::archive");
-  archive.tag((turns<Motion> ? "World of bodies that turn, of degree " : "World of degree ") + std::to_string(Motion::degree) + ", form " + std::to_string(snapshot_form));
+  archive.tag((turns<Motion> ? "World of bodies that turn, of degree " : "World of degree ") +
+              std::to_string(Motion::degree) + ", form " + std::to_string(snapshot_form));
   archive_options(archive, options_, broad_phase_->exact());
   if constexpr (Archive::loading) {
     Image loaded;

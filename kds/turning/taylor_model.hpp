@@ -3,24 +3,21 @@
 
 #include "kds/arithmetic/ball.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
 namespace kds::detail {
 
-/// f(m + rho x) for -1 <= x <= 1, up to a positive factor: the sum of (c_k +- error_k) x^k to the power Order, and of
-/// higher powers those of which the coefficients are at most those of M(x) exp(theta x), where M is `majorant`.
-///
-/// Such a bound holds for polynomials times products of cosines and sines of w_1 x, w_2 x ... with theta = w_1 + w_2 +
-/// ...: each coefficient of cos(w x) and sin(w x) is at most that of exp(w x), and products keep that.
-template <int Degree, int Order>
+/// f(m + rho x) for -1 <= x <= 1, up to a positive factor: the sum of (c_k +- error_k) x^k to the power Order, and what
+/// is beyond that, of which the derivative number Order + 1 is bounded.
+template <int Order>
 struct TaylorModel {
-  static constexpr std::size_t terms = std::size_t{Order} + 1;
+  static constexpr int order = Order;
 
-  std::array<double, terms> c{}, error{};
-  std::array<double, std::size_t{Degree} + 1> majorant{};
-  double theta = 0;  ///< at most 1
+  std::array<double, std::size_t{Order} + 1> c{}, error{};
+  double next = 0;  ///< at least the magnitude of derivative number Order + 1 throughout [-1, 1]
 
   /// The sign that derivative number n has throughout [-1, 1]; 0 where that is not certain.
   int certain_sign(int n) const {
@@ -34,13 +31,17 @@ struct TaylorModel {
   /// At most the magnitude of derivative number n anywhere in [-1, 1]; negative where that is not known.
   double least_size(int n) const { return factorial(n) * std::abs(c[at(n)]) - rest(n) * Ball<double>::slack; }
 
-  /// Whether nothing but more precise coefficients helps: no derivative is told from zero, in however small a part of
-  /// [-1, 1]. As that shrinks, so do c_k and error_k, alike.
+  /// Whether more precise coefficients are wanted: the errors of the derivatives at m are not small beside the greatest
+  /// of these. Otherwise some derivative keeps its sign where [-1, 1] is small enough, unless lower ones outgrow it.
   bool blurred() const {
-    for (int n = 0; n < Order; ++n) {
-      if (std::abs(c[at(n)]) > 2 * error[at(n)]) return false;
+    constexpr double small = 0x1p-10;
+    double greatest = 0;
+    double unsure = 0;
+    for (int n = 0; n <= Order; ++n) {
+      greatest = std::max(greatest, factorial(n) * std::abs(c[at(n)]));
+      unsure += factorial(n) * error[at(n)];
     }
-    return true;
+    return !(unsure <= small * greatest);
   }
 
   /// Derivative number n of the polynomial, with the bound on what it is off by.
@@ -60,8 +61,6 @@ struct TaylorModel {
   }
 
  private:
-  static_assert(Order >= 3 * Degree + 2);
-
   static constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
   static constexpr double factorial(int n) {
     double product = 1;
@@ -80,24 +79,32 @@ struct TaylorModel {
     return sum;
   }
 
-  /// Of derivative number n < Order, what the powers above Order can add.
-  ///
-  /// The coefficient k of x^j exp(theta x) is theta^(k - j) / (k - j)!, and the derivative multiplies it by k! / (k -
-  /// n)!. From one k > Order to the next it falls by (k + 1) / (k + 1 - n) theta / (k + 1 - j), which is at most (Order
-  /// + 2) / 3 / (Order + 2 - Degree) <= 1/2: so the sum is at most twice its first term.
-  double tail(int n) const {
-    if (theta == 0) return 0;
-    double weight = 2;  // (Order + 1)! / (Order + 1 - n)!, twice
-    for (int k = 0; k < n; ++k) weight *= Order + 1 - k;
-    double power = theta;  // theta^(Order + 1 - j) / (Order + 1 - j)!
-    for (int k = 2; k <= Order + 1 - Degree; ++k) power *= theta / k;
-    double sum = 0;
-    for (int j = Degree; j >= 0; --j) {
-      sum += majorant[at(j)] * power;
-      power *= theta / (Order + 2 - j);
-    }
-    return weight * sum;
-  }
+  /// Of derivative number n, what is beyond the power Order: the remainder of Taylor's theorem.
+  double tail(int n) const { return next / factorial(Order + 1 - n); }
 };
+
+/// At least the magnitude of derivative number n, throughout [-1, 1], of a function of which each coefficient is at
+/// most that of M(x) exp(theta x), where M is `majorant`. Preconditions: theta <= 1, n >= Size.
+///
+/// Such a bound holds for polynomials times products of cosines and sines of w_1 x, w_2 x ... with theta = w_1 + w_2 +
+/// ...: each coefficient of cos(w x) and sin(w x) is at most that of exp(w x), and products keep that. No derivative is
+/// greater than that of the majorant at 1, for x^j exp(theta x) the sum of n! / (i! (n - i)!) j! / (j - i)! theta^(n -
+/// i) over i <= j, times exp(theta) < 2.72.
+template <std::size_t Size>
+double derivative_bound(const std::array<double, Size>& majorant, double theta, int n) {
+  std::array<double, Size> power;  // theta^(n - i)
+  power[Size - 1] = 1;
+  for (int k = 0; k <= n - static_cast<int>(Size); ++k) power[Size - 1] *= theta;
+  for (std::size_t i = Size - 1; i > 0; --i) power[i - 1] = power[i] * theta;
+  double sum = 0;
+  for (std::size_t j = 0; j < Size; ++j) {
+    double weight = 1;
+    for (std::size_t i = 0; i <= j; ++i) {
+      sum += majorant[j] * weight * power[i];
+      weight *= (n - static_cast<double>(i)) / static_cast<double>(i + 1) * static_cast<double>(j - i);
+    }
+  }
+  return 2.72 * sum * Ball<double>::slack;
+}
 
 }  // namespace kds::detail

@@ -4,6 +4,7 @@
 #include "kds/arithmetic/lattice.hpp"
 #include "kds/turning/turning_certificate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -67,34 +68,45 @@ class TurningCrossing {
   /// The first double in (below, above] whose sign is that of `above`, for derivative number `order`. Precondition: the
   /// sign at `below` differs, and there is one change between. `guess` may be anything.
   ///
-  /// Newton's method on values in double-doubles, with the slope at the guess; bisection of the doubles where that
-  /// makes no way. Three or four signs where the guess is good.
+  /// Newton's method on values in double-doubles, with the slope at the guess: three or four signs where the guess is
+  /// good. Where double-doubles do not tell the sign, growing steps away from the guess, and where either makes no way
+  /// bisection of the doubles.
   double operator()(int order, double below, double above, int sign_above, double guess) const {
     int without_progress = 0;
+    std::uint64_t stride = 1;
     double slope = 0;
     double candidate = guess;
     while (next_up(below) < above) {
       const std::uint64_t width = lattice_distance(below, above);
-      if (!(candidate > below)) candidate = next_up(below);
-      if (!(candidate < above)) candidate = next_down(above);
-      if (without_progress > 2) {
+      if (without_progress > 2 || std::isnan(candidate)) {
         candidate = lattice_middle(below, above);
         without_progress = 0;
       }
+      candidate = std::clamp(candidate, next_up(below), next_down(above));
       const auto value = turning_value<Ball<DoubleDouble>>(certificate_, candidate, order);
       int s = side_ * certain_sign(value);
-      if (s == 0) {
-        s = sign(candidate, order);
-      } else {
+      const bool certain = s != 0;
+      if (certain) {
         ++turning_search_counters.signs;
+      } else {
+        s = sign(candidate, order);
       }
-      if (slope == 0) slope = turning_value<Ball<double>>(certificate_, candidate, order + 1).middle;
-      const DoubleDouble root = -value.middle / DoubleDouble(slope) + candidate;
       (s == sign_above ? above : below) = candidate;
-      if (lattice_distance(below, above) > width / 2) ++without_progress;
-      // The first double not before Newton's root; once that is known to be past the root, the one before it.
-      candidate = root.low > 0 ? next_up(root.high) : root.high;
-      if (candidate == above) candidate = next_down(above);
+      const std::uint64_t left = lattice_distance(below, above);
+      if (certain) {
+        if (left > width / 2) ++without_progress;
+        if (slope == 0) slope = turning_value<Ball<double>>(certificate_, candidate, order + 1).middle;
+        const DoubleDouble root = -value.middle / DoubleDouble(slope) + candidate;
+        // The first double not before Newton's root; once that is known to be past the root, the one before it.
+        candidate = root.low > 0 ? next_up(root.high) : root.high;
+        if (candidate == above) candidate = next_down(above);
+      } else if (stride < left / 2) {
+        const auto step = static_cast<std::int64_t>(stride);
+        candidate = lattice_point(lattice_index(candidate) + (s == sign_above ? -step : step));
+        stride *= 8;
+      } else {
+        candidate = lattice_middle(below, above);
+      }
     }
     return above;
   }

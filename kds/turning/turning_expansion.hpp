@@ -1,7 +1,6 @@
-// Taylor's series of sums of sines and cosines about a time, in doubles and as precisely as it takes.
+// Taylor's series of sums of sines and cosines about a time, in doubles.
 #pragma once
 
-#include "kds/arithmetic/power_of_two.hpp"
 #include "kds/turning/taylor_model.hpp"
 #include "kds/turning/turning_certificate.hpp"
 
@@ -10,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <type_traits>
 
 namespace kds::detail {
 
@@ -29,8 +27,8 @@ inline double rate_bound(const Spin& spin) {
 template <int Degree>
 class TurningExpansion {
  public:
-  static constexpr int order = std::max(10, 3 * Degree + 2);
-  using Model = TaylorModel<Degree, order>;
+  static constexpr int order = 10;
+  using Model = TaylorModel<order>;
 
   /// f is multiplied by `side`, which is 1 or -1.
   template <class C>
@@ -109,7 +107,6 @@ class TurningExpansion {
       for (std::size_t l = 0; l <= k; ++l) sum += series[0][l] * rows[1 + l % 2][k - l];
       model.c[k] = sum;
     }
-    model.theta = (rate_bounds_[0] + rate_bounds_[1]) * rho * Ball<double>::slack;
     bound(model, m, rho, unsure);
     return model;
   }
@@ -167,19 +164,20 @@ class TurningExpansion {
   }
 
   void bound(Model& model, double m, double rho, double unsure) const {
+    const double theta = (rate_bounds_[0] + rate_bounds_[1]) * rho * Ball<double>::slack;
     const double tau = std::abs(m - epoch_) * Ball<double>::slack;
-    model.majorant = shifted(size_, tau, rho);
+    Coefficients sizes = shifted(size_, tau, rho);
     Coefficients radii = shifted(radius_, tau, rho);
     for (std::size_t k = 0; k <= Degree; ++k) {
-      radii[k] += unsure * model.majorant[k] + underflow;
-      model.majorant[k] += underflow;
+      radii[k] += unsure * sizes[k] + underflow;
+      sizes[k] += underflow;
     }
-    std::array<double, order + 1> exponential;
-    exponential[0] = 1;
-    for (std::size_t k = 1; k <= order; ++k) exponential[k] = exponential[k - 1] * model.theta * reciprocals[k];
-    for (std::size_t j = 0; j <= Degree; ++j) {
-      for (std::size_t k = j; k <= order; ++k) model.error[k] += radii[j] * exponential[k - j];
+    double power = 1;  // theta^i / i!
+    for (std::size_t i = 0; i <= order; ++i) {
+      for (std::size_t j = 0; j <= Degree && i + j <= order; ++j) model.error[i + j] += radii[j] * power;
+      power *= theta * reciprocals[i + 1];
     }
+    model.next = theta > 0 ? derivative_bound(sizes, theta, order + 1) : 0;
   }
 
   std::array<Spin, 2> spins_;
@@ -190,100 +188,5 @@ class TurningExpansion {
   Coefficients size_{};    ///< sums of the magnitudes of the coefficients, and of their radii
   Coefficients radius_{};  ///< sums of the radii
 };
-
-/// How many derivatives there are of which one is not zero, at any time, unless f is zero throughout: f solves a linear
-/// differential equation of this order with constant coefficients, for it is a sum of so many solutions of one (powers
-/// of t up to Degree times nine products of cosines and sines).
-template <int Degree>
-inline constexpr int turning_dimension = 9 * (Degree + 1);
-
-template <int Degree>
-using PreciseTurningModel = TaylorModel<Degree, turning_dimension<Degree>>;
-
-inline Ball<DoubleDouble> times_power_of_two(const Ball<DoubleDouble>& a, int exponent) {
-  return a * power_of_two(exponent);
-}
-inline Exact times_power_of_two(const Exact& a, int exponent) { return scaled(a, exponent); }
-inline Enclosure times_power_of_two(const Enclosure& a, int exponent) {
-  return {scaled(a.middle, exponent), scaled(a.radius, exponent)};
-}
-
-/// f about m with the unit of time 2^exponent, in double-doubles (Number = Ball<DoubleDouble>), or of exact
-/// coefficients (Number = Exact) and sines to so many bits. Precondition: the rates times 2^exponent are at most 1 in
-/// sum.
-///
-/// All derivatives are computed as such. For numbers of any size: what is exact is multiplied by a power of two, which
-/// is a positive factor, before it becomes doubles; double-doubles leave times beyond 2^+-200 to that.
-template <class Number, class C>
-PreciseTurningModel<C::degree> precise_turning_model(const C& certificate, int side, double m, int exponent, int bits) {
-  constexpr bool exact = std::is_same_v<Number, Exact>;
-  using Value = std::conditional_t<exact, Enclosure, Number>;
-  using Model = PreciseTurningModel<C::degree>;
-  Model model;
-  if (!exact && std::abs(exponent) > 200) {
-    model.error.fill(std::numeric_limits<double>::infinity());
-    return model;
-  }
-  const std::array<Spin, 2> spins = certificate.spins();
-  std::array<Number, 2> squared_rates;
-  std::array<Turn<Value>, 2> turns;
-  std::array<double, 2> angles{};  // at least those of the unit of time
-  for (std::size_t s = 0; s < 2; ++s) {
-    squared_rates[s] = times_power_of_two(spins[s].template squared_rate<Number>(), 2 * exponent);
-    if constexpr (exact) {
-      turns[s] = spins[s].enclosed_turn(m, bits);
-    } else {
-      turns[s] = spins[s].template turn<Number>(m);
-    }
-    turns[s].rate_sine = times_power_of_two(turns[s].rate_sine, exponent);
-    if (!spins[s].still()) angles[s] = std::ldexp(rate_bound(spins[s]), exponent) + 0x1p-1000;
-  }
-  model.theta = angles[0] + angles[1];
-
-  auto f = certificate.template turning_sum<Number, C::degree>(m);
-  std::array<Number, C::degree + 1> majorant{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const int sines = (i == 2) + (j == 2);
-      for (std::size_t k = 0; k <= C::degree; ++k) {
-        Number& c = f.p[i][j].c[k];
-        c = times_power_of_two(c, exponent * (static_cast<int>(k) - sines));
-        majorant[k] = majorant[k] + absolute(c) * Number(i == 2 ? angles[0] : 1) * Number(j == 2 ? angles[1] : 1);
-      }
-    }
-  }
-  int scale = 0;
-  if constexpr (exact) {
-    bool first = true;
-    for (const Exact& c : majorant) {
-      if (c.sign() == 0) continue;
-      scale = first ? c.magnitude_bits() : std::max(scale, c.magnitude_bits());
-      first = false;
-    }
-  }
-  const auto rounded = [scale](const Value& x) {
-    if constexpr (exact) {
-      const double middle = scaled(x.middle, -scale).approximate();
-      const double radius = scaled(x.radius, -scale).approximate();
-      return Ball<double>(middle, radius * Ball<double>::slack + 0x1p-50 * std::abs(middle) + 0x1p-1000);
-    } else {
-      return Ball<double>(x.middle.high, x.radius + std::abs(x.middle.low));
-    }
-  };
-  for (std::size_t k = 0; k <= C::degree; ++k) {
-    const Ball<double> c = rounded(Value(majorant[k]));
-    model.majorant[k] = (std::abs(c.middle) + c.radius) * Ball<double>::slack;
-  }
-  double reciprocal = side;  // side / k!, rounded k times
-  for (int k = 0;; ++k) {
-    const Ball<double> c =
-        rounded(value_at_epoch(f, turns[0], turns[1])) * Ball<double>(reciprocal, 0x1p-52 * k * std::abs(reciprocal));
-    model.c[static_cast<std::size_t>(k)] = c.middle;
-    model.error[static_cast<std::size_t>(k)] = c.radius * Ball<double>::slack;
-    if (k == turning_dimension<C::degree>) return model;
-    f = derivative(f, squared_rates[0], squared_rates[1]);
-    reciprocal /= k + 1;
-  }
-}
 
 }  // namespace kds::detail

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/arithmetic/lattice.hpp"
+#include "kds/turning/precise_turning_model.hpp"
 #include "kds/turning/turning_certificate.hpp"
 #include "kds/turning/turning_crossing.hpp"
 #include "kds/turning/turning_expansion.hpp"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -137,8 +139,7 @@ class TurningSearch {
     if (!(unit * rate_ <= 1)) return first_negative_of_halves(f, s);
     if (s.precision == 1) {
       ++turning_search_counters.extended;
-      return first_negative(f, s, precise_turning_model<Ball<DoubleDouble>>(certificate_, side_, m, exponent, 0), m,
-                            unit);
+      return first_negative(f, s, precise_turning_model<Ball<DoubleDouble>>(certificate_, side_, m, exponent), m, unit);
     }
     ++turning_search_counters.enclosed;
     return first_negative(f, s, precise_turning_model<Exact>(certificate_, side_, m, exponent, 80 << (s.precision - 1)),
@@ -166,12 +167,12 @@ class TurningSearch {
     if (const int bend = model.certain_sign(2)) {
       return bend < 0 ? fall(s, model, m, rho) : first_negative_of_convex(s, model, m, rho);
     }
-    if (model.blurred()) return first_negative(f, {s.l, s.r, s.halvings, s.precision + 1});
     if (s.halvings >= most_halvings) {
-      for (int top = 3; top < static_cast<int>(Model::terms) - 1; ++top) {
+      for (int top = 3; top <= Model::order; ++top) {
         if (model.certain_sign(top) != 0) return by_signs(s, top, model, m, rho);
       }
     }
+    if (model.blurred()) return first_negative(f, {s.l, s.r, s.halvings, s.precision + 1});
     return first_negative_of_halves(f, s);
   }
 

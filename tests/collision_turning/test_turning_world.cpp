@@ -13,8 +13,8 @@ namespace {
 
 using namespace kds;
 using namespace kds::collision;
-using Eigen::Vector3d;
 using certificates::RigidMotion;
+using Eigen::Vector3d;
 using Turning = BasicWorld<RigidMotion<1>>;
 
 struct Log : Turning::Listener {
@@ -41,9 +41,8 @@ RigidMotion<1> motion(const Vector3d& position, const Vector3d& velocity, const 
 TEST_CASE("a rod that turns meets a ball, and both fly on with their energy and momenta", "[turning]") {
   Log log;
   Turning world({.response = Response::elastic}, &log);
-  const BodyId rod = world.add_body({.shape = Box{Vector3d(2, 0.125, 0.125)},
-                                     .motion = {motion({0, 0, 0}, {0, 0, 0}, {0, 0, 1})},
-                                     .inertia = 1.5});
+  const BodyId rod = world.add_body(
+      {.shape = Box{Vector3d(2, 0.125, 0.125)}, .motion = {motion({0, 0, 0}, {0, 0, 0}, {0, 0, 1})}, .inertia = 1.5});
   const BodyId ball = world.add_body({.shape = Sphere{0.25}, .motion = {motion({0, 1.5, 0}, {0, 0, 0}, {0, 0, 0})}});
   world.advance_to(3);
   REQUIRE(log.lines.size() == 1);
@@ -55,8 +54,7 @@ TEST_CASE("a rod that turns meets a ball, and both fly on with their energy and 
   const double energy = 0.5 * (of_rod.path.velocity(3).squaredNorm() + of_ball.path.velocity(3).squaredNorm()) +
                         0.5 * 1.5 * of_rod.angular_velocity.squaredNorm();
   CHECK(std::abs(energy - 0.75) < 1e-15);
-  const double spin = 1.5 * of_rod.angular_velocity[2] +
-                      of_rod.path.position(3).cross(of_rod.path.velocity(3))[2] +
+  const double spin = 1.5 * of_rod.angular_velocity[2] + of_rod.path.position(3).cross(of_rod.path.velocity(3))[2] +
                       of_ball.path.position(3).cross(of_ball.path.velocity(3))[2];
   CHECK(std::abs(spin - 1.5) < 1e-14);
 }
@@ -74,9 +72,9 @@ TEST_CASE("turning worlds find the same contacts whichever broad phase they have
     for (int i = 0; i < 30; ++i) {
       const Vector3d place(i % 3 * 2.0 - 2, i / 3 % 3 * 2.0 - 2, i / 9 * 2.0 - 3);
       const auto between = [&] { return random.between(-1, 1); };
-      Turning::Description body{.shape = Box{Vector3d(0.5, 0.5, 0.5)},
-                                .motion = {motion(place, {between(), between(), between()},
-                                                  5 * Vector3d(between(), between(), between()))}};
+      Turning::Description body{
+          .shape = Box{Vector3d(0.5, 0.5, 0.5)},
+          .motion = {motion(place, {between(), between(), between()}, 5 * Vector3d(between(), between(), between()))}};
       if (i % 3 == 0) body.shape = Sphere{0.5};
       if (i % 5 == 0) body.shape = Box{Vector3d(0.75, 0.1, 0.2)}, body.inertia = 0.2;
       world.add_body(body);

@@ -31,8 +31,13 @@ class PairFrame {
   static constexpr double rounding = 0x1p-40;
 
   PairFrame(const RigidMotion& a, const RigidMotion& b, double t)
-      : time(t), turn_a(a.rotation(t)), turn_b(b.rotation(t)), spin_a(a.angular_velocity), spin_b(b.angular_velocity),
-        rate_a(norm(spin_a) * (1 + 0x1p-40)), rate_b(norm(spin_b) * (1 + 0x1p-40)) {
+      : time(t),
+        turn_a(a.rotation(t)),
+        turn_b(b.rotation(t)),
+        spin_a(a.angular_velocity),
+        spin_b(b.angular_velocity),
+        rate_a(norm(spin_a) * (1 + 0x1p-40)),
+        rate_b(norm(spin_b) * (1 + 0x1p-40)) {
     const auto origin_a = a.origin(t);
     const auto origin_b = b.origin(t);
     way.value = origin_b.vector - origin_a.vector;
@@ -94,12 +99,13 @@ struct TurningBounds {
     const double p3 = wa * wa * wa * of_a + wb * wb * wb * of_b;
     third = rate_n > 0 || p3 > 0 ? rate_n * (rate_n * (rate_n * p + 3 * p1) + 3 * p2) + p3 : 0;
     third *= 1 + 0x1p-40;
-    rounding = PairFrame<Degree>::rounding * (norm(frame.way.value) + of_a + of_b + speed * stretch) +
-               frame.way_error + frame.rate_error * stretch;
+    rounding = PairFrame<Degree>::rounding * (norm(frame.way.value) + of_a + of_b + speed * stretch) + frame.way_error +
+               frame.rate_error * stretch;
   }
 };
 
-/// The time that is so much later, rounded down, or t itself if that is not worth while: then exact signs get on faster.
+/// The time that is so much later, rounded down, or t itself if that is not worth while: then exact signs get on
+/// faster.
 inline double after_wait(double t, double wait, double stretch) {
   constexpr double worth = 0x1p-16;  // of the stretch; at 2^-12 and at 2^-20 pairs that graze each other take as long
   return wait > worth * stretch ? std::max(t, next_down(t + wait)) : t;

@@ -17,8 +17,12 @@ class PointRates {
   using RigidMotion = certificates::RigidMotion<Degree>;
 
   PointRates(const RigidMotion& a, const RigidMotion& b, double t)
-      : a_(a.path.position(t)), b_(b.path.position(t)), velocity_a_(a.path.velocity(t)),
-        velocity_b_(b.path.velocity(t)), spin_a_(a.angular_velocity), spin_b_(b.angular_velocity),
+      : a_(a.path.position(t)),
+        b_(b.path.position(t)),
+        velocity_a_(a.path.velocity(t)),
+        velocity_b_(b.path.velocity(t)),
+        spin_a_(a.angular_velocity),
+        spin_b_(b.angular_velocity),
         acceleration_(b.path.acceleration(t) - a.path.acceleration(t)) {}
 
   /// Velocity of the point of b that is at x, less that of the point of a.
@@ -33,7 +37,8 @@ class PointRates {
   }
   /// What roundings can make of a velocity at x: motions that begin after an impulse err by as much.
   double noise(const Eigen::Vector3d& x) const {
-    return 0x1p-46 * (norm(velocity_a_) + norm(velocity_b_) + norm(spin_a_) * norm(x - a_) + norm(spin_b_) * norm(x - b_));
+    return 0x1p-46 *
+           (norm(velocity_a_) + norm(velocity_b_) + norm(spin_a_) * norm(x - a_) + norm(spin_b_) * norm(x - b_));
   }
 
  private:

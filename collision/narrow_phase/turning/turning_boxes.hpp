@@ -30,7 +30,11 @@ class TurningBoxes {
   static constexpr int ways = 30;
 
   TurningBoxes(const RigidMotion& a, const Eigen::Vector3d& half_a, const RigidMotion& b, const Eigen::Vector3d& half_b)
-      : a_(a), b_(b), half_a_(half_a), half_b_(half_b), radius_a_(outer_radius(half_a)),
+      : a_(a),
+        b_(b),
+        half_a_(half_a),
+        half_b_(half_b),
+        radius_a_(outer_radius(half_a)),
         radius_b_(outer_radius(half_b)) {}
 
   /// Whether all conditions of a way may be zero though it separates nothing.
@@ -176,8 +180,8 @@ int TurningBoxes<Degree>::widest(const PairFrame<Degree>& frame, const std::arra
     double width = gap[static_cast<std::size_t>(way)];
     if (way >= 12 && width > 0) {
       const int pair = (way - 12) / 2;
-      const double sine = norm(cross(frame.turn_a(Eigen::Vector3d::Unit(pair / 3)),
-                                     frame.turn_b(Eigen::Vector3d::Unit(pair % 3))));
+      const double sine =
+          norm(cross(frame.turn_a(Eigen::Vector3d::Unit(pair / 3)), frame.turn_b(Eigen::Vector3d::Unit(pair % 3))));
       width = sine > 0x1p-10 ? width / sine : -never;
     }
     if (width > widest) widest = width, best = way;

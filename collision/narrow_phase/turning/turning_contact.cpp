@@ -70,7 +70,7 @@ PlacedShape placed_at(const Body<Degree>& body, double t) {
 
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b) {
-  constexpr double radians = 8;  // 2 and 32 make no difference to speak of
+  constexpr double radians = 8;       // 2 and 32 make no difference to speak of
   constexpr double longest = 0x1p20;  // s, of bodies that hardly turn
   const double rates = norm(a.angular_velocity) + norm(b.angular_velocity);
   return rates > 0 ? std::min(longest, radians / rates) : longest;
@@ -89,8 +89,8 @@ Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double 
   const auto of_a = supporting_feature(placed_a, contact.normal);
   const auto of_b = supporting_feature(placed_b, -contact.normal);
   const Vector3d origin = a.motion.path.position(t);
-  for (const Vector3d& corner : patch_corners(of_a.vertices, of_b.vertices, b.motion.path.position(t) - origin,
-                                              contact.normal)) {
+  for (const Vector3d& corner :
+       patch_corners(of_a.vertices, of_b.vertices, b.motion.path.position(t) - origin, contact.normal)) {
     const Vector3d x = origin + corner;
     if (parting(x) < parting(contact.point) && parting(x) < -rates.noise(x)) contact.point = x;
   }
@@ -98,8 +98,8 @@ Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double 
 }
 
 template <int Degree>
-double TurningContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon,
-                                             ContactMode mode, FoundTouch*) {
+double TurningContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
+                                             FoundTouch*) {
   if (!(t0 <= horizon)) return never;
   if (is_ball(a.shape) && is_ball(b.shape)) {
     return collision::first_contact(ball_of<Degree>(a), ball_of<Degree>(b), t0, horizon, mode);
@@ -130,9 +130,8 @@ double TurningContact<Degree>::apart_until(const Body& a, const Body& b, double 
 template <int Degree>
 bool TurningContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
   if (is_ball(a.shape) && is_ball(b.shape)) return collision::in_contact(ball_of<Degree>(a), ball_of<Degree>(b), t);
-  return with_ways<Degree>(a, b, [&](const auto& pair) {
-    return WaysApart<std::decay_t<decltype(pair)>>(pair).penetrate(t);
-  });
+  return with_ways<Degree>(
+      a, b, [&](const auto& pair) { return WaysApart<std::decay_t<decltype(pair)>>(pair).penetrate(t); });
 }
 
 template <int Degree>
@@ -141,13 +140,12 @@ double TurningContact<Degree>::first_separation(const Body& a, const Body& b, do
   if (is_ball(a.shape) && is_ball(b.shape)) {
     return collision::first_separation(ball_of<Degree>(a), ball_of<Degree>(b), t0, horizon);
   }
-  return with_ways<Degree>(a, b, [&](const auto& pair) {
-    return WaysApart<std::decay_t<decltype(pair)>>(pair).first_parting(t0, horizon);
-  });
+  return with_ways<Degree>(
+      a, b, [&](const auto& pair) { return WaysApart<std::decay_t<decltype(pair)>>(pair).first_parting(t0, horizon); });
 }
 
-#define KDS_INSTANTIATE(degree)                                                   \
-  template struct TurningContact<degree>;                                         \
+#define KDS_INSTANTIATE(degree)                                                \
+  template struct TurningContact<degree>;                                      \
   template double time_to_look_ahead(const certificates::RigidMotion<degree>&, \
                                      const certificates::RigidMotion<degree>&);
 KDS_INSTANTIATE(1) KDS_INSTANTIATE(2)

@@ -7,8 +7,8 @@
 
 namespace kds::collision {
 
-// The functions of narrow_phase.hpp for bodies that turn. What they answer is a function of motions and shapes alone, as
-// there: contact is the first double just after which the two penetrate, by exact signs.
+// The functions of narrow_phase.hpp for bodies that turn. What they answer is a function of motions and shapes alone,
+// as there: contact is the first double just after which the two penetrate, by exact signs.
 //
 // A box is the exact box of its half extents, turned by the exact rotation of its motion: nothing of it is rounded. The
 // rotation in PlacedShape does not count; orientations are those of motions.
@@ -38,8 +38,8 @@ struct TurningContact {
   static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch&);
 };
 
-#define KDS_DECLARE(degree)                                                              \
-  extern template struct TurningContact<degree>;                                         \
+#define KDS_DECLARE(degree)                                                           \
+  extern template struct TurningContact<degree>;                                      \
   extern template double time_to_look_ahead(const certificates::RigidMotion<degree>&, \
                                             const certificates::RigidMotion<degree>&);
 KDS_DECLARE(1) KDS_DECLARE(2)

@@ -15,12 +15,12 @@ namespace kds::collision {
 /// certificates, its conditions: the bodies do not penetrate if all the conditions of some way hold.
 ///
 /// `Pair`: `ways`, their number; `every_condition(way, test)`; `needs_positive(way)`, whether a way all of whose
-/// conditions are zero does not count; `gaps(t, gap)`, which fills in a width for each way and returns an error, so that
-/// a way that is narrower than -error has a condition that is broken at t; `apart_until(t, horizon)`, a proven time;
-/// `time_of_turning()`.
+/// conditions are zero does not count; `gaps(t, gap)`, which fills in a width for each way and returns an error, so
+/// that a way that is narrower than -error has a condition that is broken at t; `apart_until(t, horizon)`, a proven
+/// time; `time_of_turning()`.
 ///
-/// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact is
-/// the first double just after which no way is open.
+/// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
+/// is the first double just after which no way is open.
 ///
 /// Method: a way that is open just after t stays so until the first of its conditions fails. Then another may be open,
 /// just after that time; if none is, they penetrate. Before that, as far as they get, proofs in doubles.

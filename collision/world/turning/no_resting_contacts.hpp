@@ -18,8 +18,8 @@ class RestingContacts;
 template <class Motion>
 class RestingListener;
 
-/// In place of RestingContacts in worlds of bodies that turn: what would come to rest there goes on bouncing, in flights
-/// that are no shorter than WorldOptions::shortest_flight. It answers as a world in which nothing rests.
+/// In place of RestingContacts in worlds of bodies that turn: what would come to rest there goes on bouncing, in
+/// flights that are no shorter than WorldOptions::shortest_flight. It answers as a world in which nothing rests.
 template <class Motion>
 requires(turns<Motion>) class RestingContacts<Motion> {
  public:

@@ -15,8 +15,7 @@ using Eigen::Vector3d;
 
 /// At the point of contact. Roundings count as nothing.
 template <class Motion>
-double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const
-    requires(turns<Motion>) {
+double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>) {
   const PointRates<Motion::degree> rates(bodies_.motion(a), bodies_.motion(b), contact.time);
   const double rate = dot(contact.normal, rates.velocity(contact.point));
   return std::abs(rate) <= rates.noise(contact.point) ? 0 : rate;
@@ -25,8 +24,7 @@ double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contac
 /// What is pressed together flies for a while, and what would stick parts, if ever so slowly: else the two would meet
 /// without end.
 template <class Motion>
-double BasicWorld<Motion>::rebound(double approach, double pressed, double restitution) const
-    requires(turns<Motion>) {
+double BasicWorld<Motion>::rebound(double approach, double pressed, double restitution) const requires(turns<Motion>) {
   constexpr double least = 0x1p-26;  // of the speed of approach
   return std::max({restitution * approach, least * approach, 0.5 * options_.shortest_flight * pressed});
 }

@@ -19,12 +19,12 @@ namespace kds::collision {
 /// The half extents of a box along the axes of the world that holds a body however far it turns, rounded outward.
 ///
 /// A point of the body keeps its height c along the axis n of the turning, and its distance rho from it. So along an
-/// axis of the world it is never farther from the centre than |c n_d| + rho sqrt(1 - n_d^2): these are the bounds of the
-/// body of revolution, which are never beyond those of the bounding ball. A body that does not turn reaches as far as
-/// it does as it is.
+/// axis of the world it is never farther from the centre than |c n_d| + rho sqrt(1 - n_d^2): these are the bounds of
+/// the body of revolution, which are never beyond those of the bounding ball. A body that does not turn reaches as far
+/// as it does as it is.
 ///
-/// Error bound: an axis that is turned is off by 2^-46 of its length, and what is added up by some roundings more: 2^-40
-/// of the bounding radius is charged.
+/// Error bound: an axis that is turned is off by 2^-46 of its length, and what is added up by some roundings more:
+/// 2^-40 of the bounding radius is charged.
 template <int Degree>
 Eigen::Vector3d turning_reach(const PlacedShape& shape, const certificates::RigidMotion<Degree>& motion) {
   const double radius = shape.bounding_radius;

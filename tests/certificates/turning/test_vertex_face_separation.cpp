@@ -1,5 +1,6 @@
 // A vertex and a face of bodies that turn, against the definition in 330 bits.
 #include "certificates/turning/vertex_face_separation.hpp"
+#include "kds/turning/turning_failure_time.hpp"
 #include "tests/certificates/turning/check_random_signs.hpp"
 #include "tests/certificates/turning/check_turning.hpp"
 #include "tests/certificates/turning/turning_scenes.hpp"
@@ -37,9 +38,10 @@ TEST_CASE("a corner that turns goes through the floor where it is as low as its 
   const RigidMotion<1> ground{{{Vector3d(0, 0, 0)}}};
   const VertexFaceSeparation<1> f{rod, ground, Vector3d(1, 0, 0), floor_of_body};
   CHECK(sign_after(f, 0) == 1);
-  const double through = change_of_sign(f, 0, 1);
+  const double through = failure_time(f, 0, 1);
   CHECK(std::abs(through - 0.52359877559829887) < 1e-15);  // pi / 6
   CHECK(sign_at(f, next_down(through)) == 1);
+  CHECK(std::abs(recovery_time(f, 1, 10) - 2.6179938779914944) < 1e-15);  // 5 pi / 6
   CHECK(sign_after(f, 2) == -1);
   CHECK(sign_after(f, 3) == 1);
   CHECK(sign_at(f, 0, 1) == -1);  // it comes down

@@ -1,5 +1,6 @@
 // Balls and boxes that turn: when they meet, against the definition in long doubles.
-#include "collision/narrow_phase/turning/turning_contact.hpp"
+#include "collision/motions.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
 
 #include "kds/arithmetic/lattice.hpp"
 #include "tests/collision_turning/narrow_phase/turning_oracle.hpp"
@@ -16,10 +17,35 @@ namespace {
 
 using namespace kds;
 using namespace kds::collision;
-using kds::tests::Random;
-using kds::tests::TurningOracle;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using kds::tests::Random;
+using kds::tests::TurningOracle;
+
+template <int Degree>
+using Body = MovingShape<certificates::RigidMotion<Degree>>;
+
+/// What is asked of two bodies that turn.
+template <int Degree>
+struct Test {
+  static double first_contact(const Body<Degree>& a, const Body<Degree>& b, double t0, double horizon,
+                              ContactMode mode) {
+    return collision::first_contact(a, b, t0, horizon, mode);
+  }
+  static double apart_until(const Body<Degree>& a, const Body<Degree>& b, double t0, double horizon) {
+    PairMemory memory;
+    return estimated_first_contact(a, b, t0, horizon, ContactMode::transparent, memory).time;
+  }
+  static bool in_contact(const Body<Degree>& a, const Body<Degree>& b, double t) {
+    return collision::in_contact(a, b, t);
+  }
+  static double first_separation(const Body<Degree>& a, const Body<Degree>& b, double t0, double horizon) {
+    return collision::first_separation(a, b, t0, horizon);
+  }
+  static Contact contact_at(const Body<Degree>& a, const Body<Degree>& b, double t) {
+    return collision::contact_at(a, b, t);
+  }
+};
 
 template <int Degree>
 struct Solid {
@@ -27,7 +53,7 @@ struct Solid {
   certificates::RigidMotion<Degree> motion;
   PlacedShape placed = place(shape, Quaterniond::Identity());
 
-  typename TurningContact<Degree>::Body body() const { return {placed, motion}; }
+  Body<Degree> body() const { return {placed, motion}; }
 };
 
 template <int Degree>
@@ -52,7 +78,6 @@ struct Verdict {
 
 template <int Degree>
 Verdict judge(const Solid<Degree>& a, const Solid<Degree>& b, double t0, double horizon, double contact) {
-  using Test = TurningContact<Degree>;
   Verdict verdict;
   const double scale = a.placed.bounding_radius + b.placed.bounding_radius;
   // Of times, the oracle knows neither more than they have bits.
@@ -61,7 +86,7 @@ Verdict judge(const Solid<Degree>& a, const Solid<Degree>& b, double t0, double 
   const double tolerance = 1e-13 * (scale + a.motion.path.position(t0).norm() + b.motion.path.position(t0).norm()) +
                            1e-15 * speed * (std::abs(t0) + std::abs(horizon));
   const double until = std::min(contact, horizon);
-  if (contact == t0) return {false, gap(a, b, t0) > tolerance, !Test::in_contact(a.body(), b.body(), t0)};
+  if (contact == t0) return {false, gap(a, b, t0) > tolerance, !Test<Degree>::in_contact(a.body(), b.body(), t0)};
   const int samples = 400;
   std::vector<double> width;
   for (int i = 0; i <= samples; ++i) width.push_back(gap(a, b, t0 + (until - t0) * i / samples));
@@ -77,12 +102,12 @@ Verdict judge(const Solid<Degree>& a, const Solid<Degree>& b, double t0, double 
     verdict.missed = verdict.missed || gap(a, b, low) < -tolerance;
   }
   if (contact == never) {
-    verdict.unsure = Test::in_contact(a.body(), b.body(), horizon);
+    verdict.unsure = Test<Degree>::in_contact(a.body(), b.body(), horizon);
     return verdict;
   }
   verdict.wrong = std::abs(gap(a, b, contact)) > tolerance && contact > t0;
-  verdict.unsure = !Test::in_contact(a.body(), b.body(), contact) ||
-                   (contact > t0 && Test::in_contact(a.body(), b.body(), next_down(contact)));
+  verdict.unsure = !Test<Degree>::in_contact(a.body(), b.body(), contact) ||
+                   (contact > t0 && Test<Degree>::in_contact(a.body(), b.body(), next_down(contact)));
   return verdict;
 }
 
@@ -139,15 +164,15 @@ TEST_CASE("the end of a rod that turns meets the floor at the time of its sine",
   const Solid<1> floor{Box{Vector3d(4, 4, 1)}, motion_of<1>({0, 0, -1}, {0, 0, 0}, {0, 0, 0})};
   const double length = std::hypot(1.0, 0.0625);
   const double expected = std::asin(0.5 / length) - std::atan2(0.0625, 1.0);
-  const double t = TurningContact<1>::first_contact(rod.body(), floor.body(), 0, 10, ContactMode::transparent);
+  const double t = Test<1>::first_contact(rod.body(), floor.body(), 0, 10, ContactMode::transparent);
   CHECK(std::abs(t - expected) < 1e-15);
-  const Contact contact = TurningContact<1>::contact_at(floor.body(), rod.body(), t);
+  const Contact contact = Test<1>::contact_at(floor.body(), rod.body(), t);
   CHECK((contact.normal - Vector3d::UnitZ()).norm() < 1e-15);
   CHECK(std::abs(contact.point[0] - length * std::cos(t + std::atan2(0.0625, 1.0))) < 1e-14);
   CHECK(std::abs(contact.point[1]) < 1e-15);
   CHECK(contact.feature_a == Feature::face(5));
   CHECK(contact.feature_b.kind == Feature::Kind::edge);
-  const double out = TurningContact<1>::first_separation(rod.body(), floor.body(), t, 10);
+  const double out = Test<1>::first_separation(rod.body(), floor.body(), t, 10);
   CHECK(std::abs(out - (M_PI - expected)) < 1e-14);  // the other way round: at the same height, coming up
 }
 
@@ -156,25 +181,25 @@ TEST_CASE("a ball beside a box that turns is met by its corner, by its edge, by 
   // The edge is sqrt(2) from the axis, and is there at pi / 4.
   const Solid<1> touched{Sphere{0.25}, motion_of<1>({std::sqrt(2.0) + 0.25 - 0x1p-30, 0, 0}, {0, 0, 0}, {0, 0, 0})};
   const Solid<1> beside{Sphere{0.25}, motion_of<1>({std::sqrt(2.0) + 0.25 + 0x1p-30, 0, 0}, {0, 0, 0}, {0, 0, 0})};
-  const double t = TurningContact<1>::first_contact(touched.body(), box.body(), 0, 10, ContactMode::transparent);
+  const double t = Test<1>::first_contact(touched.body(), box.body(), 0, 10, ContactMode::transparent);
   CHECK(std::abs(t - M_PI / 4) < 1e-4);
   CHECK(std::abs(gap(touched, box, t)) < 1e-15);
-  CHECK(TurningContact<1>::first_contact(beside.body(), box.body(), 0, 100, ContactMode::transparent) == never);
+  CHECK(Test<1>::first_contact(beside.body(), box.body(), 0, 100, ContactMode::transparent) == never);
   // A ball that comes down on the face that turns below it: when does not depend on how it turns.
   const Solid<1> falling{Sphere{0.25}, motion_of<1>({0.5, 0.25, 3}, {0, 0, -1}, {3, 4, 5})};
-  CHECK(TurningContact<1>::first_contact(falling.body(), box.body(), 0, 10, ContactMode::transparent) == 1.75);
+  CHECK(Test<1>::first_contact(falling.body(), box.body(), 0, 10, ContactMode::transparent) == 1.75);
 }
 
 TEST_CASE("boxes that slide on each other and turn alike are not in contact", "[turning]") {
   // Face on face, exactly: nothing penetrates, however they turn about the normal.
   const Solid<1> below{Box{Vector3d(1, 2, 3)}, motion_of<1>({0, 0, 0}, {0, 0, 0}, {0, 0, 0.7})};
   const Solid<1> above{Box{Vector3d(2, 1, 1)}, motion_of<1>({0.125, 0, 4}, {0.25, 0, 0}, {0, 0, -11})};
-  CHECK(TurningContact<1>::first_contact(below.body(), above.body(), 0, 50, ContactMode::transparent) == never);
+  CHECK(Test<1>::first_contact(below.body(), above.body(), 0, 50, ContactMode::transparent) == never);
   const Solid<1> alike{Box{Vector3d(2, 1, 1)}, motion_of<1>({0.125, 0, 4}, {0.25, 0, 0}, {0, 0, 0.7})};
-  CHECK(TurningContact<1>::first_contact(below.body(), alike.body(), 0, 50, ContactMode::transparent) == never);
+  CHECK(Test<1>::first_contact(below.body(), alike.body(), 0, 50, ContactMode::transparent) == never);
   const Solid<1> deeper{Box{Vector3d(2, 1, 1)}, motion_of<1>({0.125, 0, next_down(4)}, {0.25, 0, 0}, {0, 0, 0.7})};
-  CHECK(TurningContact<1>::first_contact(below.body(), deeper.body(), 0, 50, ContactMode::transparent) == 0);
-  CHECK(TurningContact<1>::first_contact(below.body(), deeper.body(), 0, 5, ContactMode::resolved) == never);
+  CHECK(Test<1>::first_contact(below.body(), deeper.body(), 0, 50, ContactMode::transparent) == 0);
+  CHECK(Test<1>::first_contact(below.body(), deeper.body(), 0, 5, ContactMode::resolved) == never);
 }
 
 TEST_CASE("fast thin rods meet a thin plate wherever they pass it", "[turning]") {
@@ -186,7 +211,7 @@ TEST_CASE("fast thin rods meet a thin plate wherever they pass it", "[turning]")
     Solid<1> rod{Box{Vector3d(1, 0.01, 0.01)}, motion_of<1>({0, 0, 1.5}, {0, 0, -1}, random_vector(random, rate))};
     rod.motion.orientation = random_orientation(random);
     const Solid<1> plate{Box{Vector3d(3, 3, 0.01)}, motion_of<1>({0, 0, 0}, {0, 0, 0}, {0, 0, 0})};
-    const double t = TurningContact<1>::first_contact(rod.body(), plate.body(), 0, 2, ContactMode::transparent);
+    const double t = Test<1>::first_contact(rod.body(), plate.body(), 0, 2, ContactMode::transparent);
     const Verdict verdict = judge(rod, plate, 0, 2, t);
     CAPTURE(round, rate, t);
     CHECK(t < 2);
@@ -197,7 +222,6 @@ TEST_CASE("fast thin rods meet a thin plate wherever they pass it", "[turning]")
 }
 
 TEMPLATE_TEST_CASE_SIG("bodies that turn meet when the definition says so", "[turning]", ((int Degree), Degree), 1, 2) {
-  using Test = TurningContact<Degree>;
   const std::uint64_t seed = 420 + Degree;
   CAPTURE(Degree, seed);
   Random random(seed);
@@ -205,23 +229,23 @@ TEMPLATE_TEST_CASE_SIG("bodies that turn meet when the definition says so", "[tu
   for (int round = 0; round < 300; ++round) {
     const auto [a, b] = random_pair<Degree>(random);
     CAPTURE(round, kind_name(a.shape), kind_name(b.shape));
-    const double t = Test::first_contact(a.body(), b.body(), 0, 2, ContactMode::transparent);
+    const double t = Test<Degree>::first_contact(a.body(), b.body(), 0, 2, ContactMode::transparent);
     contacts += t < never && t > 0;
     const Verdict verdict = judge(a, b, 0, 2, t);
     CHECK_FALSE(verdict.missed);
     CHECK_FALSE(verdict.wrong);
     CHECK_FALSE(verdict.unsure);
     // The same of the bodies in the other order, from later on, and never before what doubles prove.
-    CHECK(Test::first_contact(b.body(), a.body(), 0, 2, ContactMode::transparent) == t);
+    CHECK(Test<Degree>::first_contact(b.body(), a.body(), 0, 2, ContactMode::transparent) == t);
     const double later = std::min(t, 2.0) * random.unit();
-    CHECK(Test::first_contact(a.body(), b.body(), later, 2, ContactMode::transparent) == t);
-    CHECK(Test::apart_until(a.body(), b.body(), later, 2) <= std::max(t, later));
+    CHECK(Test<Degree>::first_contact(a.body(), b.body(), later, 2, ContactMode::transparent) == t);
+    CHECK(Test<Degree>::apart_until(a.body(), b.body(), later, 2) <= std::max(t, later));
     if (t == never) continue;
-    const double parted = Test::first_separation(a.body(), b.body(), t, 4);
+    const double parted = Test<Degree>::first_separation(a.body(), b.body(), t, 4);
     CHECK(parted > t);
     if (parted == never) continue;
-    CHECK_FALSE(Test::in_contact(a.body(), b.body(), parted));
-    CHECK(Test::in_contact(a.body(), b.body(), next_down(parted)));
+    CHECK_FALSE(Test<Degree>::in_contact(a.body(), b.body(), parted));
+    CHECK(Test<Degree>::in_contact(a.body(), b.body(), next_down(parted)));
     CHECK(gap(a, b, parted) > -1e-11);
     for (int i = 1; i < 20; ++i) CHECK(gap(a, b, t + (parted - t) * i / 20) < 1e-11);
   }

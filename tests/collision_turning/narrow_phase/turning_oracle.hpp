@@ -4,8 +4,8 @@
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/shapes/shape.hpp"
 
-#include <array>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -68,7 +68,9 @@ class TurningOracle {
     return pose;
   }
 
-  static Number half(const collision::Box& box, std::size_t i) { return box.half_extents[static_cast<Eigen::Index>(i)]; }
+  static Number half(const collision::Box& box, std::size_t i) {
+    return box.half_extents[static_cast<Eigen::Index>(i)];
+  }
 
   /// Along the best of the 15 axes: negative where the boxes overlap.
   static Number box_gap(const Pose& a, const collision::Box& box_a, const Pose& b, const collision::Box& box_b) {

@@ -193,6 +193,57 @@ TEST_CASE("what is zero at all times never fails", "[turning_failure_time]") {
   CHECK(failure_time(WrittenSum<1>{}, 0, 1) == never);
 }
 
+TEST_CASE("what cancels but for the least of all doubles fails where that says", "[turning_failure_time]") {
+  WrittenSum<1> f = equal_spins<1>();  // cos^2 + sin^2 - 1, and 2^-1074 cos t
+  add<1>(f, 0, 0, {-1, 0});
+  add<1>(f, 1, 1, {1, 0});
+  add<1>(f, 2, 2, {1, 0});
+  add<1>(f, 1, 0, {0x1p-1074, 0});
+  turning_search_counters = {};
+  const double t = failure_time(f, 0, 100);
+  CHECK(std::abs(t - pi / 2) < 1e-15);
+  CHECK(sign_after(f, t) == -1);
+  CHECK(sign_after(f, next_down(t)) == 1);
+  CHECK(std::abs(recovery_time(f, 2, 100) - 3 * pi / 2) < 1e-15);
+  CHECK(turning_search_counters.enclosed > 0);
+  add<1>(f, 0, 0, {-1, 0x1p-1074});  // t + sin t, from -1
+  add<1>(f, 1, 0, {0, 0});
+  add<1>(f, 2, 0, {0x1p-1074, 0});
+  CHECK(recovery_time(f, -1, 100) == 0);
+  CHECK(failure_time(f, 0, 3) == never);
+  WrittenSum<1> still;
+  add<1>(still, 0, 0, {1, 0});
+  add<1>(still, 0, 1, {-1, 0});
+  add<1>(still, 1, 0, {0x1p-1074, -0x1p-1074});
+  CHECK(failure_time(still, 0, 20) == 1);
+}
+
+TEST_CASE("rates and times of all sizes", "[turning_failure_time]") {
+  for (const double rate : {0x1p-1000, 0x1p-600, 0x1p-30, 0x1p14, 0x1p600, 0x1p1000}) {
+    for (const double size : {0x1p-1000, 1.0, 0x1p1000}) {
+      CAPTURE(rate, size);
+      WrittenSum<1> f;  // cos - 1/2
+      f.spin[0].velocity = {0, rate, 0};
+      add<1>(f, 0, 0, {-0.5 * size, 0});
+      add<1>(f, 1, 0, {size, 0});
+      const double t = failure_time(f, 0, 20 / rate);
+      CHECK(std::abs(t * rate - pi / 3) < 1e-15);
+      CHECK(sign_after(f, t) == -1);
+      CHECK(sign_after(f, next_down(t)) == 1);
+      CHECK(std::abs(recovery_time(f, t, 20 / rate) * rate - 5 * pi / 3) < 2e-15);
+    }
+  }
+  // A turn between two doubles: what is seen of it are its signs at doubles.
+  WrittenSum<1> f = one_spin<1>();
+  f.spin[0].velocity = {0, 0, 1000};
+  add<1>(f, 0, 0, {0.5, 0});
+  add<1>(f, 1, 0, {1, 0});
+  const double now = 0x1p54;
+  const double t = failure_time(f, now, now + 1000);
+  CHECK(refutations_of_failure(f, now, now + 1000, 250) == 0);
+  CHECK(t != never);
+}
+
 TEST_CASE("second harmonics of one spin fail where they should", "[turning_failure_time]") {
   WrittenSum<1> f;  // cos^2 a - 1/4, and one spin for both
   f.spin[0] = f.spin[1] = Spin{{1, 2, 2}, 0.5};

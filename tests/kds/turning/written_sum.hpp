@@ -31,21 +31,25 @@ struct WrittenSum {
     return f;
   }
 
-  /// The value at t, rounded, by the functions of the C library.
-  long double value(long double t) const {
-    std::array<std::array<long double, 3>, 2> factors;
+  /// The value at t, rounded, by the functions of the C library or of another number type.
+  template <class Real>
+  Real value(const Real& t) const {
+    using std::cos, std::sin, std::sqrt;
+    std::array<std::array<Real, 3>, 2> factors;
     for (std::size_t s = 0; s < 2; ++s) {
-      const auto [x, y, z] = spin[s].velocity;
-      const long double rate = std::sqrt(static_cast<long double>(x) * x + static_cast<long double>(y) * y +
-                                         static_cast<long double>(z) * z);
-      const long double angle = rate * (t - spin[s].start);
-      factors[s] = {1, std::cos(angle), rate * std::sin(angle)};
+      Real square = 0;
+      for (const double v : spin[s].velocity) square += Real(v) * Real(v);
+      const Real rate = sqrt(square);
+      const Real angle = rate * (t - Real(spin[s].start));
+      factors[s] = {Real(1), Real(cos(angle)), Real(rate * sin(angle))};
     }
-    long double sum = 0;
+    Real sum = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) {
-        long double part = 0;
-        for (std::size_t k = Degree + 1; k-- > 0;) part = part * (t - p[i][j].start) + p[i][j].position.c[k];
+        Real part = 0;
+        for (std::size_t k = Degree + 1; k-- > 0;) {
+          part = part * (t - Real(p[i][j].start)) + Real(p[i][j].position.c[k]);
+        }
         sum += part * factors[0][i] * factors[1][j];
       }
     }
