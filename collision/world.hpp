@@ -332,6 +332,11 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
 template <int Degree>
 using World = BasicWorld<certificates::PointMotion<Degree>>;
 
+/// A world of bodies that turn, on paths of degree 1 or 2: docs/turning.md says which, and how they respond to contacts.
+/// It is in a library of its own, kds::collision_turning.
+template <int Degree>
+using TurningWorld = BasicWorld<certificates::RigidMotion<Degree>>;
+
 #define KDS_DECLARE(motion) extern template class BasicWorld<motion>;
 KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE

@@ -15,7 +15,7 @@ using namespace kds;
 using namespace kds::collision;
 using certificates::RigidMotion;
 using Eigen::Vector3d;
-using Turning = BasicWorld<RigidMotion<1>>;
+using Turning = TurningWorld<1>;
 
 struct Log : Turning::Listener {
   std::vector<std::string> lines;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/ball_separation.hpp"
+#include "certificates/positive_parabola.hpp"
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/narrow_phase/turning/jets.hpp"
 #include "kds/arithmetic/lattice.hpp"
@@ -109,6 +110,35 @@ struct TurningBounds {
 inline double after_wait(double t, double wait, double stretch) {
   constexpr double worth = 0x1p-16;  // of the stretch; at 2^-12 and at 2^-20 pairs that graze each other take as long
   return wait > worth * stretch ? std::max(t, next_down(t + wait)) : t;
+}
+
+/// How long two bodies of revolution are apart along a direction that stays as it is: each body about its own axis of
+/// turning, so that what it covers along the direction never changes. However fast they turn it costs nothing.
+/// `covered`: by both together. n is at most a rounding longer than 1.
+template <int Degree>
+double revolving_apart_for(const PairFrame<Degree>& frame, const Eigen::Vector3d& n, double covered) {
+  constexpr double rounding = PairFrame<Degree>::rounding;
+  const double gap = dot(n, frame.way.value) - covered - frame.way_error - rounding * (norm(frame.way.value) + covered);
+  const double rate = dot(n, frame.way.rate) - frame.rate_error - rounding * norm(frame.way.rate);
+  const double bend = dot(n, frame.way.bend) - rounding * norm(frame.way.bend);
+  return frame.certain ? certificates::positive_for(gap, rate, 0.5 * bend) : 0;
+}
+
+/// What a body that turns about an axis covers at most on one side of its centre along a direction n of unit length:
+/// points keep their heights and distances about the axis. `half`: the half edges of a box, as they are now.
+inline double revolving_support(const Eigen::Vector3d& n, const Eigen::Vector3d& spin,
+                                const std::array<Eigen::Vector3d, 3>& half) {
+  const double rate = norm(spin);
+  if (!(rate > 0)) return std::abs(dot(n, half[0])) + std::abs(dot(n, half[1])) + std::abs(dot(n, half[2]));
+  const Eigen::Vector3d axis = spin / rate;
+  const double cosine = std::abs(dot(n, axis));
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  double support = 0;
+  for (int corner = 0; corner < 4; ++corner) {  // the opposite ones are as far
+    const Eigen::Vector3d x = half[0] + (corner & 1 ? half[1] : -half[1]) + (corner & 2 ? half[2] : -half[2]);
+    support = std::max(support, std::abs(dot(axis, x)) * cosine + norm(cross(axis, x)) * sine);
+  }
+  return support;
 }
 
 /// When the balls around two bodies meet, `never` if they do not until the horizon; t if they overlap.

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 namespace kds::collision {
@@ -28,8 +29,11 @@ class TurningBallAndBox {
 
   static bool needs_positive(int) { return false; }
 
+  using Conditions = std::uint32_t;
+  static constexpr Conditions all(int) { return ~Conditions{0}; }
+
   template <class Test>
-  bool every_condition(int way, const Test& test) const {
+  bool every_condition(int way, Conditions, const Test& test) const {
     const certificates::detail::BallAndBox<Degree> pair{ball_.path, box_, half_};
     const certificates::BoxSides sides = sides_of(way);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -39,8 +43,12 @@ class TurningBallAndBox {
     return test(certificates::BallBeyondSides<Degree>{pair, radius_, sides});
   }
 
-  double gaps(double t, std::array<double, ways>& gap) const {
-    const PairFrame<Degree> frame(box_, ball_, t);
+  PairFrame<Degree> frame(double t) const { return {box_, ball_, t}; }
+
+  /// They are few.
+  Conditions unsure(const PairFrame<Degree>&, int way, double) const { return all(way); }
+
+  double gaps(const PairFrame<Degree>& frame, std::array<double, ways>& gap) const {
     Eigen::Vector3d x;
     for (int axis = 0; axis < 3; ++axis) {
       x[axis] = dot(frame.turn_a(Eigen::Vector3d::Unit(axis)), frame.way.value);
@@ -63,7 +71,7 @@ class TurningBallAndBox {
   double apart_until(double t, double horizon) const {
     t = balls_apart_until(box_, ball_, radius_of_box_, radius_, t, horizon);
     if (t == never) return never;
-    const PairFrame<Degree> frame(box_, ball_, t);
+    const PairFrame<Degree> frame = this->frame(t);
     // The direction from the nearest point of the box to the centre, in the box, with which it turns.
     Eigen::Vector3d nearest, beyond;
     for (int axis = 0; axis < 3; ++axis) {

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 namespace kds::collision {
@@ -40,14 +41,20 @@ class TurningBoxes {
   /// Whether all conditions of a way may be zero though it separates nothing.
   static bool needs_positive(int way) { return way >= 12; }
 
-  /// Calls test(certificate) for the conditions of a way until it returns false.
+  /// Numbers of conditions of a way, as bits.
+  using Conditions = std::uint32_t;
+  static constexpr Conditions all(int way) { return way < 12 ? 0xff : 0xffff; }
+
+  /// Calls test(certificate) for some conditions of a way, or all, until it returns false. Vertices are numbered by
+  /// their signs, pairs of edges by the number of the first, times four, and that of the second.
   template <class Test>
-  bool every_condition(int way, const Test& test) const {
-    if (way < 6) return every_vertex(a_, half_a_, b_, half_b_, way, test);
-    if (way < 12) return every_vertex(b_, half_b_, a_, half_a_, (way - 6) ^ 1, test);
+  bool every_condition(int way, Conditions which, const Test& test) const {
+    if (way < 6) return every_vertex(a_, half_a_, b_, half_b_, way, which, test);
+    if (way < 12) return every_vertex(b_, half_b_, a_, half_a_, (way - 6) ^ 1, which, test);
     const int pair = (way - 12) / 2;
     for (int k = 0; k < 4; ++k) {
       for (int l = 0; l < 4; ++l) {
+        if (!(which >> (4 * k + l) & 1)) continue;
         // (u x v) . (a - b) >= 0: the product of the edges has to point from b to a.
         const auto u = edge(half_a_, pair / 3, k, way % 2 != 0);
         const auto v = edge(half_b_, pair % 3, l, false);
@@ -57,21 +64,39 @@ class TurningBoxes {
     return true;
   }
 
-  /// How wide the gap is along each way at t, in doubles; not to be told from zero within the bound that is returned.
-  /// Of ways that cross edges it is that times the sine of their angle.
-  double gaps(double t, std::array<double, ways>& gap) const { return gaps(PairFrame<Degree>(a_, b_, t), gap); }
+  /// The pair as it is at t, in doubles.
+  PairFrame<Degree> frame(double t) const { return {a_, b_, t}; }
+
+  /// How wide the gap is along each way, in doubles; not to be told from zero within the bound that is returned. Of
+  /// ways that cross edges it is that times the sine of their angle.
+  double gaps(const PairFrame<Degree>& frame, std::array<double, ways>& gap) const;
+
+  /// The conditions of a way that do not hold for certain, and are positive, for so long from now on. (Most do: they
+  /// are of the vertices and edges on the far side.)
+  Conditions unsure(const PairFrame<Degree>& frame, int way, double stretch) const {
+    if (!frame.certain || !(stretch <= frame.stretch(radius_a_ + radius_b_, stretch))) return all(way);
+    Conditions unsure = 0;
+    every_jet(frame, way, stretch, [&](int number, const Jet& f, double third) {
+      if (!(positive_for(f, third, stretch) >= stretch && f.value > 0)) unsure |= Conditions{1} << number;
+      return true;
+    });
+    return unsure;
+  }
 
   /// A time from t on until which the boxes are apart; t where doubles do not tell, or where it would be hardly later.
   double apart_until(double t, double horizon) const {
     t = balls_apart_until(a_, b_, radius_a_, radius_b_, t, horizon);
     if (t == never) return never;
-    const PairFrame<Degree> frame(a_, b_, t);
+    const PairFrame<Degree> frame = this->frame(t);
     std::array<double, ways> gap;
     const double error = gaps(frame, gap);
     const int way = widest(frame, gap);
     if (!(gap[static_cast<std::size_t>(way)] > error)) return t;
-    const double stretch = frame.stretch(radius_a_ + radius_b_, (horizon - t) * (1 + 0x1p-40));
-    return after_wait(t, open_for(frame, way, stretch), stretch);
+    const double all = (horizon - t) * (1 + 0x1p-40);
+    const double stretch = frame.stretch(radius_a_ + radius_b_, all);
+    const double wait = open_for(frame, way, stretch);
+    if (stretch == all || time_of_turning() == never) return after_wait(t, wait, stretch);
+    return after_wait(t, std::max(wait, revolving_apart_for(frame, way)), stretch);
   }
 
   /// The same pair with its first box smaller by `margin` on each side; none where nothing of it is left.
@@ -115,9 +140,10 @@ class TurningBoxes {
   }
   template <class Test>
   static bool every_vertex(const RigidMotion& of_face, const Eigen::Vector3d& half_face, const RigidMotion& of_vertex,
-                           const Eigen::Vector3d& half_vertex, int number, const Test& test) {
+                           const Eigen::Vector3d& half_vertex, int number, Conditions which, const Test& test) {
     const auto corners = face(half_face, number);
     for (int signs = 0; signs < 8; ++signs) {
+      if (!(which >> signs & 1)) continue;
       if (!test(certificates::VertexFaceSeparation<Degree>{of_vertex, of_face, corner(half_vertex, signs), corners})) {
         return false;
       }
@@ -125,7 +151,9 @@ class TurningBoxes {
     return true;
   }
 
-  double gaps(const PairFrame<Degree>& frame, std::array<double, ways>& gap) const;
+  template <class Visit>
+  void every_jet(const PairFrame<Degree>& frame, int way, double stretch, const Visit& visit) const;
+  double revolving_apart_for(const PairFrame<Degree>& frame, int way) const;
   int widest(const PairFrame<Degree>& frame, const std::array<double, ways>& gap) const;
   double open_for(const PairFrame<Degree>& frame, int way, double stretch) const;
 
@@ -189,16 +217,40 @@ int TurningBoxes<Degree>::widest(const PairFrame<Degree>& frame, const std::arra
   return best;
 }
 
-/// How long a way is surely open: all of its conditions hold.
+/// Along the direction that a way has now, and from centre to centre.
 template <int Degree>
-double TurningBoxes<Degree>::open_for(const PairFrame<Degree>& frame, int way, double stretch) const {
-  std::array<VectorJet, 4> half;  // of the edges that reach towards the other body, or away from it
+double TurningBoxes<Degree>::revolving_apart_for(const PairFrame<Degree>& frame, int way) const {
+  std::array<Eigen::Vector3d, 3> of_a, of_b;
+  for (int k = 0; k < 3; ++k) {
+    of_a[static_cast<std::size_t>(k)] = half_a_[k] * frame.turn_a(Eigen::Vector3d::Unit(k));
+    of_b[static_cast<std::size_t>(k)] = half_b_[k] * frame.turn_b(Eigen::Vector3d::Unit(k));
+  }
+  const auto along = [&](const Eigen::Vector3d& n) {
+    const double covered = revolving_support(n, frame.spin_a, of_a) + revolving_support(n, frame.spin_b, of_b);
+    return collision::revolving_apart_for(frame, n, covered);
+  };
+  const Eigen::Vector3d u = way < 6    ? of_a[static_cast<std::size_t>(way / 2)]
+                            : way < 12 ? of_b[static_cast<std::size_t>((way - 6) / 2)]
+                                       : cross(of_a[static_cast<std::size_t>((way - 12) / 6)],
+                                               of_b[static_cast<std::size_t>((way - 12) / 2 % 3)]);
+  return std::max(along(normalized(frame.way.value)), along((way % 2 != 0 ? 1 : -1) * normalized(u)));
+}
+
+/// Calls visit(number, f, bound of |f'''|) with the function of each condition of a way, less what rounding can make of
+/// it during the stretch, until it returns false. f is n . (way + vertices of b - vertices of a) less what does not
+/// turn.
+template <int Degree>
+template <class Visit>
+void TurningBoxes<Degree>::every_jet(const PairFrame<Degree>& frame, int way, double stretch,
+                                     const Visit& visit) const {
+  std::array<VectorJet, 4>
+      half;  // of edges: a condition adds each of them, or takes it away, by the bits of its number
   std::size_t count = 0;
   double of_a = 0, of_b = 0, rate = 0, offset = 0;
   VectorJet n;
-  const auto add = [&](bool from_a, int axis) {
+  const auto add = [&](bool from_a, int axis, int sign) {
     const double length = (from_a ? half_a_ : half_b_)[axis];
-    half[count++] = length * (from_a ? frame.axis_a(axis) : frame.axis_b(axis));
+    half[count++] = sign * length * (from_a ? frame.axis_a(axis) : frame.axis_b(axis));
     (from_a ? of_a : of_b) += length;
   };
   if (way < 12) {
@@ -207,15 +259,13 @@ double TurningBoxes<Degree>::open_for(const PairFrame<Degree>& frame, int way, d
     n = of_face_a ? frame.axis_a(axis) : frame.axis_b(axis);
     rate = of_face_a ? frame.rate_a : frame.rate_b;
     offset = (of_face_a ? half_a_ : half_b_)[axis];
-    for (int k = 0; k < 3; ++k) add(!of_face_a, k);
+    for (int k = 0; k < 3; ++k) add(!of_face_a, k, of_face_a ? 1 : -1);
   } else {
-    const int pair = (way - 12) / 2;
-    n = cross(frame.axis_a(pair / 3), frame.axis_b(pair % 3));
+    const int i = (way - 12) / 6, j = (way - 12) / 2 % 3;
+    n = cross(frame.axis_a(i), frame.axis_b(j));
     rate = frame.rate_a + frame.rate_b;
-    for (int k = 0; k < 3; ++k) {
-      if (k != pair / 3) add(true, k);
-      if (k != pair % 3) add(false, k);
-    }
+    add(false, (j + 1) % 3, -1), add(false, (j + 2) % 3, -1);
+    add(true, (i + 1) % 3, 1), add(true, (i + 2) % 3, 1);
   }
   if (way % 2 == 0) n = -1.0 * n;
   const TurningBounds bounds(frame, rate, of_a, of_b, stretch);
@@ -224,17 +274,25 @@ double TurningBoxes<Degree>::open_for(const PairFrame<Degree>& frame, int way, d
   std::array<Jet, 4> reach;
   for (std::size_t k = 0; k < count; ++k) {
     reach[k] = dot(n, half[k]);
-    if (reach[k].value < 0) reach[k] = -1.0 * reach[k];
-    base = base - reach[k];  // the vertex, or the pair of edges, that is nearest
+    base = base - reach[k];
   }
-  double wait = stretch;
-  for (unsigned farther = 0; farther < 1u << count && wait > 0; ++farther) {
+  for (int number = 0; number < 1 << count; ++number) {
     Jet f = base;
     for (std::size_t k = 0; k < count; ++k) {
-      if (farther >> k & 1) f = f + 2.0 * reach[k];
+      if (number >> k & 1) f = f + 2.0 * reach[k];
     }
-    wait = std::min(wait, positive_for(f, bounds.third, wait));
+    if (!visit(number, f, bounds.third)) return;
   }
+}
+
+/// How long a way is surely open: all of its conditions hold.
+template <int Degree>
+double TurningBoxes<Degree>::open_for(const PairFrame<Degree>& frame, int way, double stretch) const {
+  double wait = stretch;
+  every_jet(frame, way, stretch, [&](int, const Jet& f, double third) {
+    wait = std::min(wait, positive_for(f, third, wait));
+    return wait > 0;
+  });
   return wait;
 }
 

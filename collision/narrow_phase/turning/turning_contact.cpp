@@ -50,7 +50,7 @@ TranslatingShape<Degree> ball_of(const Body<Degree>& body) {
 template <class Pair, int Degree>
 double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
   std::array<double, Pair::ways> gap;
-  const double error = pair.gaps(t, gap);
+  const double error = pair.gaps(pair.frame(t), gap);
   const double depth = std::max(0.0, -*std::max_element(gap.begin(), gap.end()));
   constexpr double roundings = 0x1p-46;
   const double coordinates = norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) +

@@ -65,12 +65,16 @@ class WaysApart {
 
  private:
   static constexpr int none = -1;
+  /// Of a stretch: what is likely to be all that is needed of it.
+  static constexpr double soon_part = 0x1p-10;
 
-  /// Whether all conditions of a way hold just after t.
-  bool open(int way, double t) const {
-    bool positive = !Pair::needs_positive(way);
-    const bool all = pair_.every_condition(way, [&](const auto& condition) {
-      const int sign = sign_after(condition, t);
+  /// Whether all conditions of a way hold just after the time of the frame.
+  template <class Frame>
+  bool open(int way, const Frame& frame) const {
+    const auto unsure = pair_.unsure(frame, way, 0);
+    bool positive = unsure != Pair::all(way) || !Pair::needs_positive(way);
+    const bool all = pair_.every_condition(way, unsure, [&](const auto& condition) {
+      const int sign = sign_after(condition, frame.time);
       positive = positive || sign > 0;
       return sign >= 0;
     });
@@ -80,30 +84,37 @@ class WaysApart {
   /// One that is open just after t, or `none`; the widest first.
   int open_way(double t) const {
     std::array<double, Pair::ways> gap;
-    const double error = pair_.gaps(t, gap);
+    const auto frame = pair_.frame(t);
+    const double error = pair_.gaps(frame, gap);
     for (;;) {
       const auto widest = std::max_element(gap.begin(), gap.end());
       if (*widest < -error || *widest == -never) return none;
       const int way = static_cast<int>(widest - gap.begin());
-      if (open(way, t)) return way;
+      if (open(way, frame)) return way;
       *widest = -never;
     }
   }
 
-  /// The first double in [t, until] just after which a condition of a way is broken, or `never`.
+  /// The first double in [t, until] just after which a condition of a way is broken, or `never`. Mostly it is soon, and
+  /// then few conditions have to be looked at.
   double closes(int way, double t, double until) const {
-    double first = never;
-    pair_.every_condition(way, [&](const auto& condition) {
-      first = std::min(first, failure_time(condition, t, std::min(first, until)));
-      return true;
-    });
-    return first;
+    const auto frame = pair_.frame(t);
+    const double soon = t + soon_part * (until - t);
+    for (const double end : {soon, until}) {
+      double first = never;
+      pair_.every_condition(way, pair_.unsure(frame, way, (end - t) * (1 + 0x1p-40)), [&](const auto& condition) {
+        first = std::min(first, failure_time(condition, t, std::min(first, end)));
+        return true;
+      });
+      if (first != never) return first;
+    }
+    return never;
   }
 
   /// The first double in [t, until] just after which a way is open. Precondition: none is open just after t.
   double first_opening(double t, double until) const {
     std::array<double, Pair::ways> gap;
-    pair_.gaps(t, gap);
+    pair_.gaps(pair_.frame(t), gap);
     double first = never;
     for (int round = 0; round < Pair::ways; ++round) {  // the widest first, which is mostly the one
       const auto widest = std::max_element(gap.begin(), gap.end());
@@ -119,7 +130,7 @@ class WaysApart {
     if (Pair::needs_positive(way) && separates_nothing(way)) return never;
     for (bool waited = true; waited;) {
       waited = false;
-      pair_.every_condition(way, [&](const auto& condition) {
+      pair_.every_condition(way, Pair::all(way), [&](const auto& condition) {
         if (sign_after(condition, t) >= 0) return true;
         t = recovery_time(condition, t, until);
         waited = true;
@@ -132,7 +143,7 @@ class WaysApart {
 
   /// Whether all of its conditions are zero at all times.
   bool separates_nothing(int way) const {
-    return pair_.every_condition(way, [](const auto& condition) { return vanishes(condition); });
+    return pair_.every_condition(way, Pair::all(way), [](const auto& condition) { return vanishes(condition); });
   }
 
   const Pair& pair_;

@@ -1,0 +1,124 @@
+// Pairs of bodies that turn: time and missed contacts, beside FCL and Bullet.
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "tests/benchmarks/csv_file.hpp"
+#include "tests/benchmarks/thread_time.hpp"
+#include "tests/benchmarks/turning/query.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace kds;
+using namespace kds::collision;
+using Eigen::Vector3d;
+using tests::Random;
+using turning::Query;
+
+Vector3d between(Random& random, double size) {
+  return size * Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+}
+
+/// Boxes that pass each other at a distance of up to their size, and turn by `turn` rad in a second.
+Query random_boxes(Random& random, double turn) {
+  Query query;
+  for (auto [half, motion] : {std::pair(&query.half_a, &query.a), std::pair(&query.half_b, &query.b)}) {
+    *half = Vector3d(random.between(0.2, 1), random.between(0.2, 1), random.between(0.2, 1));
+    const Vector3d velocity = between(random, 2);
+    *motion = {{{between(random, 1) - 0.5 * velocity, velocity}}};
+    motion->path.coefficients[0][0] += motion == &query.a ? -0.8 : 0.8;
+    motion->orientation.coeffs() =
+        Eigen::Vector4d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+    motion->angular_velocity = turn * between(random, 1).normalized();
+  }
+  return query;
+}
+
+/// A rod of 1 : 100 that comes down on a thin plate.
+Query rod_and_plate(Random& random, double turn) {
+  Query query{Vector3d(1, 0.01, 0.01),
+              Vector3d(3, 3, 0.01),
+              {{{Vector3d(0, 0, 1.2), Vector3d(0, 0, -1.5)}}},
+              {{{Vector3d(0, 0, 0), Vector3d(0, 0, 0)}}}};
+  query.a.angular_velocity = turn * between(random, 1).normalized();
+  return query;
+}
+
+double here(const Query& query) {
+  const PlacedShape a = place(Box{query.half_a}, Eigen::Quaterniond::Identity());
+  const PlacedShape b = place(Box{query.half_b}, Eigen::Quaterniond::Identity());
+  const MovingShape<certificates::RigidMotion<1>> of_a{a, query.a}, of_b{b, query.b};
+  return std::min(2.0, first_contact(of_a, of_b, 0, 1, ContactMode::transparent));
+}
+
+struct Row {
+  double microseconds;  ///< median
+  int contacts;
+  int missed;  ///< of the contacts found here
+};
+
+Row run(const std::vector<Query>& queries, const std::vector<double>& truth,
+        const std::function<double(const Query&)>& method) {
+  std::vector<double> times;
+  Row row{0, 0, 0};
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    double best = never;
+    double contact = 0;
+    for (int round = 0; round < 3; ++round) {
+      const double start = benchmarks::thread_seconds();
+      contact = method(queries[i]);
+      best = std::min(best, benchmarks::thread_seconds() - start);
+    }
+    times.push_back(best);
+    row.contacts += contact <= 1;
+    // Later than by a hundredth of the second counts as missed: it is another contact.
+    row.missed += truth[i] <= 1 && contact > truth[i] + 0.01;
+  }
+  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+  row.microseconds = 1e6 * times[times.size() / 2];
+  return row;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string folder = argc > 1 ? argv[1] : ".";
+  const int count = argc > 2 ? std::stoi(argv[2]) : 400;
+  std::vector<std::pair<std::string, std::function<double(const Query&)>>> methods{{"here", here}};
+#ifdef KDS_PEER_FCL
+  methods.emplace_back("FCL", turning::fcl_contact);
+#endif
+#ifdef KDS_PEER_BULLET
+  methods.emplace_back("Bullet", turning::bullet_contact);
+#endif
+  std::FILE* const csv = std::fopen((folder + "/turning.csv").c_str(), "w");
+  if (!csv) return std::perror("turning.csv"), 1;
+  std::fprintf(csv, "scene,turn_rad,method,median_us,contacts,missed\n");
+  using Make = Query (*)(Random&, double);
+  for (const auto& [scene, make] :
+       {std::pair<const char*, Make>{"boxes", random_boxes}, {"rod and plate", rod_and_plate}}) {
+    for (const double turn : {0.01, 0.1, 1.0, 10.0, 100.0, 1000.0}) {
+      Random random(1);
+      std::vector<Query> queries;
+      for (int i = 0; i < count; ++i) queries.push_back(make(random, turn));
+      std::vector<double> truth;
+      for (const Query& query : queries) truth.push_back(here(query));
+      std::printf("%-14s %7g rad", scene, turn);
+      for (const auto& [name, method] : methods) {
+        if (turn > 100 && name != "here") continue;
+        const Row row = run(queries, truth, method);
+        std::printf("   %s %8.2f us, %3d contacts, %3d missed", name.c_str(), row.microseconds, row.contacts,
+                    row.missed);
+        std::fprintf(csv, "%s,%g,%s,%.3f,%d,%d\n", scene, turn, name.c_str(), row.microseconds, row.contacts,
+                     row.missed);
+      }
+      std::printf("\n");
+    }
+  }
+  return std::fclose(csv) == 0 ? 0 : 1;
+}
