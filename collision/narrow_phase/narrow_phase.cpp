@@ -93,6 +93,12 @@ double first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b,
 template <class Motion>
 ContactEstimate certified_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
                                         double horizon, ContactMode mode, FoundTouch* found) {
+  if constexpr (turns<Motion>) {
+    PairMemory memory;
+    const double apart = pair_tests<Motion>(a.shape, b.shape).apart_until(a, b, t0, horizon, memory);
+    if (apart > horizon) return {never, true};
+    if (apart > t0) return {apart, false};
+  }
   const double end = end_of_search(a, b, t0, horizon);
   const double time = first_contact(a, b, t0, end, mode, found);
   return time == never && end < horizon ? ContactEstimate{end, false} : ContactEstimate{time, true};

@@ -64,6 +64,14 @@ class PairFrame {
     return longest;
   }
 
+  /// A bound on how fast n . p changes during the stretch that follows, length/s: n of length 1 at most turns with the
+  /// bodies, and p is the way and vectors of the two of these lengths.
+  double fastest(double of_a, double of_b, double stretch) const {
+    const double speed = norm(way.rate) + rate_error + norm(way.bend) * stretch;
+    const double distance = norm(way.value) + way_error + speed * stretch + of_a + of_b;
+    return (speed + (rate_a + rate_b) * distance + rate_a * of_a + rate_b * of_b) * (1 + 0x1p-30);
+  }
+
   double time;
   certificates::Rotation turn_a, turn_b;
   Eigen::Vector3d spin_a, spin_b;

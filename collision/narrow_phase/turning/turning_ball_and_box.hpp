@@ -28,6 +28,7 @@ class TurningBallAndBox {
       : box_(box), ball_(ball), half_(half), radius_(radius), radius_of_box_(norm(half) * (1 + 0x1p-50)) {}
 
   static bool needs_positive(int) { return false; }
+  static bool separates_nothing(int) { return false; }
 
   using Conditions = std::uint32_t;
   static constexpr Conditions all(int) { return ~Conditions{0}; }
@@ -66,6 +67,11 @@ class TurningBallAndBox {
       gap[static_cast<std::size_t>(way)] = std::min(least, std::sqrt(square) - radius_);
     }
     return error(frame);
+  }
+
+  /// A bound on how fast the widths change.
+  double fastest(const PairFrame<Degree>& frame, double stretch) const {
+    return frame.fastest(certificates::magnitude_sum(half_), 0, stretch);
   }
 
   double apart_until(double t, double horizon) const {

@@ -36,10 +36,14 @@ class TurningBoxes {
         half_a_(half_a),
         half_b_(half_b),
         radius_a_(outer_radius(half_a)),
-        radius_b_(outer_radius(half_b)) {}
+        radius_b_(outer_radius(half_b)),
+        turned_alike_(turned_alike(a, b)) {}
 
   /// Whether all conditions of a way may be zero though it separates nothing.
   static bool needs_positive(int way) { return way >= 12; }
+  /// Whether that is known to be so: of boxes that are turned alike at all times, as those of a lattice are, edges of
+  /// one direction are parallel. (In general it takes exact arithmetic to tell.)
+  bool separates_nothing(int way) const { return turned_alike_ && way >= 12 && (way - 12) / 2 % 4 == 0; }
 
   /// Numbers of conditions of a way, as bits.
   using Conditions = std::uint32_t;
@@ -83,6 +87,11 @@ class TurningBoxes {
     return unsure;
   }
 
+  /// A bound on how fast these widths change in such a time.
+  double fastest(const PairFrame<Degree>& frame, double stretch) const {
+    return frame.fastest(certificates::magnitude_sum(half_a_), certificates::magnitude_sum(half_b_), stretch);
+  }
+
   /// A time from t on until which the boxes are apart; t where doubles do not tell, or where it would be hardly later.
   double apart_until(double t, double horizon) const {
     t = balls_apart_until(a_, b_, radius_a_, radius_b_, t, horizon);
@@ -113,6 +122,11 @@ class TurningBoxes {
 
  private:
   static double outer_radius(const Eigen::Vector3d& half) { return norm(half) * (1 + 0x1p-50); }
+
+  static bool turned_alike(const RigidMotion& a, const RigidMotion& b) {
+    return a.orientation.coeffs() == b.orientation.coeffs() && a.angular_velocity == b.angular_velocity &&
+           (a.spin().still() || a.path.start == b.path.start);
+  }
 
   static Eigen::Vector3d corner(const Eigen::Vector3d& half, int signs) {
     return {signs & 1 ? half[0] : -half[0], signs & 2 ? half[1] : -half[1], signs & 4 ? half[2] : -half[2]};
@@ -161,6 +175,7 @@ class TurningBoxes {
   const RigidMotion& b_;
   Eigen::Vector3d half_a_, half_b_;
   double radius_a_, radius_b_;
+  bool turned_alike_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------

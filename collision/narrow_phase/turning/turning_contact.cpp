@@ -70,7 +70,7 @@ PlacedShape placed_at(const Body<Degree>& body, double t) {
 
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b) {
-  constexpr double radians = 8;       // 2 and 32 make no difference to speak of
+  constexpr double radians = 2;       // 2 and 32 make no difference to speak of
   constexpr double longest = 0x1p20;  // s, of bodies that hardly turn
   const double rates = norm(a.angular_velocity) + norm(b.angular_velocity);
   return rates > 0 ? std::min(longest, radians / rates) : longest;
@@ -112,7 +112,13 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
       const Contact contact = contact_at(a, b, t, {});
       const PointRates<Degree> rates(a.motion, b.motion, t);
       if (dot(contact.normal, rates.velocity(contact.point)) < -rates.noise(contact.point)) return t;
-      // Next when they are deeper in each other by more than roundings, or again after they have parted.
+      // Mostly they have parted at once. Else next when they are deeper in each other by more than roundings, or again
+      // after they have parted.
+      const double soon = std::min(horizon, t + 0x1p-10 * std::min(pair.time_of_turning(), 1.0));
+      if (const double parted = ways.first_parting(t, soon); parted != never) {
+        t = parted;
+        continue;
+      }
       const double deeper = falls_deeper<std::decay_t<decltype(pair)>, Degree>(pair, a, b, t, horizon);
       t = std::min(deeper, ways.first_parting(t, std::min(deeper, horizon)));
       if (t > horizon) return never;

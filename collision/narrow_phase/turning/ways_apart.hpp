@@ -81,11 +81,21 @@ class WaysApart {
     return all && positive;
   }
 
+  /// As those of the pair, but for ways that separate nothing.
+  template <class Frame>
+  double gaps(const Frame& frame, std::array<double, Pair::ways>& gap) const {
+    const double error = pair_.gaps(frame, gap);
+    for (int way = 0; way < Pair::ways; ++way) {
+      if (pair_.separates_nothing(way)) gap[static_cast<std::size_t>(way)] = -never;
+    }
+    return error;
+  }
+
   /// One that is open just after t, or `none`; the widest first.
   int open_way(double t) const {
     std::array<double, Pair::ways> gap;
     const auto frame = pair_.frame(t);
-    const double error = pair_.gaps(frame, gap);
+    const double error = gaps(frame, gap);
     for (;;) {
       const auto widest = std::max_element(gap.begin(), gap.end());
       if (*widest < -error || *widest == -never) return none;
@@ -114,10 +124,14 @@ class WaysApart {
   /// The first double in [t, until] just after which a way is open. Precondition: none is open just after t.
   double first_opening(double t, double until) const {
     std::array<double, Pair::ways> gap;
-    pair_.gaps(pair_.frame(t), gap);
+    const auto frame = pair_.frame(t);
+    const double error = gaps(frame, gap);
+    const double fastest = pair_.fastest(frame, (until - t) * (1 + 0x1p-40));
     double first = never;
     for (int round = 0; round < Pair::ways; ++round) {  // the widest first, which is mostly the one
       const auto widest = std::max_element(gap.begin(), gap.end());
+      const double stretch = (std::min(first, until) - t) * (1 + 0x1p-40);
+      if (*widest == -never || *widest + fastest * stretch < -error) break;  // too narrow to be open by then
       const int way = static_cast<int>(widest - gap.begin());
       *widest = -never;
       first = std::min(first, opens(way, t, std::min(first, until)));
@@ -127,7 +141,6 @@ class WaysApart {
 
   /// The first double in [t, until] just after which all conditions of a way hold, or `never`.
   double opens(int way, double t, double until) const {
-    if (Pair::needs_positive(way) && separates_nothing(way)) return never;
     for (bool waited = true; waited;) {
       waited = false;
       pair_.every_condition(way, Pair::all(way), [&](const auto& condition) {
@@ -138,12 +151,9 @@ class WaysApart {
       });
       if (t == never) return never;
     }
-    return t;
-  }
-
-  /// Whether all of its conditions are zero at all times.
-  bool separates_nothing(int way) const {
-    return pair_.every_condition(way, Pair::all(way), [](const auto& condition) { return vanishes(condition); });
+    // Conditions that are zero just after t are zero at all times.
+    const auto zero = [&](const auto& condition) { return sign_after(condition, t) == 0; };
+    return Pair::needs_positive(way) && pair_.every_condition(way, Pair::all(way), zero) ? never : t;
   }
 
   const Pair& pair_;
