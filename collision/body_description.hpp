@@ -53,8 +53,8 @@ struct BasicBodyDescription {
   std::vector<Motion> motion{};
   double mass = 1;  ///< > 0, unless the body is fixed
   /// Of bodies that turn: the moment of inertia about every axis through the centre, mass * length^2, > 0. 0: that of a
-  /// solid of the shape and mass; then it has to be the same about all axes, as those of balls and cubes are. (A body
-  /// whose moments differ does not turn about a fixed axis when it is free.)
+  /// solid of the shape and mass; then, if the body responds to contacts, it has to be the same about all axes, as those
+  /// of balls and cubes are. (A body whose moments differ does not turn about a fixed axis when it is free.)
   double inertia = 0;
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.

@@ -68,7 +68,9 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
   added.shape = std::move(shape);
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
-  if constexpr (turns<Motion>) added.inverse_inertia = description.fixed ? 0 : 1 / description.inertia;
+  if constexpr (turns<Motion>) {
+    added.inverse_inertia = description.fixed || description.inertia == 0 ? 0 : 1 / description.inertia;
+  }
   added.restitution = description.restitution;
   added.category = description.category;
   added.collides_with = description.collides_with;

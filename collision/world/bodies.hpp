@@ -39,7 +39,7 @@ struct Course {
 
 /// Of bodies that turn.
 struct Turns {
-  double inverse_inertia = 0;  ///< the same about all axes; 0 if no other body changes how it turns
+  double inverse_inertia = 0;  ///< the same about all axes; 0 if nothing changes how it turns
 };
 struct TurnsNot {};
 
@@ -170,8 +170,7 @@ class Bodies {
            (bodies_[b].category & bodies_[a].collides_with) != 0;
   }
 
-  /// Adds one with a motion to begin with. No `shape` is that of a ball that is not turned. Precondition: valid, and of
-  /// bodies that turn, which are not fixed, with an inertia.
+  /// Adds one with a motion to begin with. No `shape` is that of a ball that is not turned. Precondition: valid.
   BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion);
   void remove(BodySlot slot);
   void reserve(std::size_t bodies);

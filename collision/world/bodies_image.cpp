@@ -99,8 +99,7 @@ void Bodies<Motion>::Image::check(double now) const {
     need(body.volume == BoundingVolume::shape || body.volume == BoundingVolume::sphere, "its volume is unknown");
     need(image::is_past(body.burst_start, now), "its meetings are counted from a time after now");
     need(body.force.allFinite(), "its acceleration is not finite");
-    const bool turnable = std::isfinite(body.inverse_inertia) && body.inverse_inertia > 0;
-    need(!turns<Motion> || turnable == (body.inverse_mass > 0), "its inertia is not > 0");
+    need(std::isfinite(body.inverse_inertia) && body.inverse_inertia >= 0, "its inertia is not > 0");
     if constexpr (Motion::degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
   }
   std::vector<char> listed(bodies.size());

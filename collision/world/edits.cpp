@@ -81,7 +81,9 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
   if constexpr (turns<Motion>) {
-    if (!description.fixed && description.inertia == 0) {
+    // Nothing else changes how a body turns.
+    const bool responds = options_.response == Response::elastic && !description.fixed && !description.sensor;
+    if (responds && description.inertia == 0) {
       Description whole = description;
       whole.inertia = inertia_of(description);
       return add_body(whole);

@@ -55,9 +55,13 @@ double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>&
   constexpr double roundings = 0x1p-46;
   const double coordinates = norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) +
                              a.shape.bounding_radius + b.shape.bounding_radius;
-  const auto smaller = pair.smaller((1 + 0x1p-10) * depth + error + roundings * coordinates);
-  const double deeper = smaller ? WaysApart<Pair>(*smaller).first_penetration(t, horizon) : never;
-  return std::max(deeper, next_up(t));
+  // Along some directions they are then less far apart than on the sides that are made smaller.
+  for (double margin = (1 + 0x1p-10) * depth + error + roundings * coordinates;; margin *= 2) {
+    const auto smaller = pair.smaller(margin);
+    if (!smaller) return never;
+    const double deeper = WaysApart<Pair>(*smaller).first_penetration(t, horizon);
+    if (deeper > t) return deeper;
+  }
 }
 
 template <int Degree>
@@ -70,7 +74,7 @@ PlacedShape placed_at(const Body<Degree>& body, double t) {
 
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b) {
-  constexpr double radians = 2;       // 2 and 32 make no difference to speak of
+  constexpr double radians = 0.5;       // 2 and 32 make no difference to speak of
   constexpr double longest = 0x1p20;  // s, of bodies that hardly turn
   const double rates = norm(a.angular_velocity) + norm(b.angular_velocity);
   return rates > 0 ? std::min(longest, radians / rates) : longest;
