@@ -37,9 +37,6 @@ class TurningBoxes {
         radius_a_(outer_radius(half_a)),
         radius_b_(outer_radius(half_b)) {}
 
-  /// Whether all conditions of a way may be zero though it separates nothing.
-  static bool needs_positive(int way) { return way >= 12; }
-
   /// Calls test(certificate) for the conditions of a way until it returns false.
   template <class Test>
   bool every_condition(int way, const Test& test) const {
@@ -72,6 +69,23 @@ class TurningBoxes {
     if (!(gap[static_cast<std::size_t>(way)] > error)) return t;
     const double stretch = frame.stretch(radius_a_ + radius_b_, (horizon - t) * (1 + 0x1p-40));
     return after_wait(t, open_for(frame, way, stretch), stretch);
+  }
+
+  /// How deep the two are in each other at t, in doubles: along the way that is the least blocked.
+  double depth(double t) const;
+
+  /// Whether all conditions of a way are zero at all times: that is whether the edges it crosses, u and v, are
+  /// parallel. Three tell. If (u x v) . (a - b) vanishes for one edge of b and three edges of a, u x v is at right
+  /// angles to two other edges of a, and it is to u.
+  bool separates_nothing(int way) const {
+    if (way < 12) return false;
+    const int pair = (way - 12) / 2;
+    const auto v = edge(half_b_, pair % 3, 0, false);
+    for (int k = 0; k < 3; ++k) {
+      const auto u = edge(half_a_, pair / 3, k, false);
+      if (!vanishes(certificates::EdgeEdgeSeparation<Degree>{a_, b_, u, v})) return false;
+    }
+    return true;
   }
 
   /// The same pair with its first box smaller by `margin` on each side; none where nothing of it is left.
@@ -187,6 +201,25 @@ int TurningBoxes<Degree>::widest(const PairFrame<Degree>& frame, const std::arra
     if (width > widest) widest = width, best = way;
   }
   return best;
+}
+
+/// Of ways that cross edges the gap is that times the sine of their angle: where they are nearly parallel it says
+/// nothing.
+template <int Degree>
+double TurningBoxes<Degree>::depth(double t) const {
+  const PairFrame<Degree> frame(a_, b_, t);
+  std::array<double, ways> gap;
+  gaps(frame, gap);
+  double least = never;
+  for (int way = 0; way < ways; ++way) {
+    double sine = 1;
+    if (way >= 12) {
+      const int pair = (way - 12) / 2;
+      sine = norm(cross(frame.turn_a(Eigen::Vector3d::Unit(pair / 3)), frame.turn_b(Eigen::Vector3d::Unit(pair % 3))));
+    }
+    if (sine > 0x1p-20) least = std::min(least, -gap[static_cast<std::size_t>(way)] / sine);
+  }
+  return std::max(0.0, least);
 }
 
 /// How long a way is surely open: all of its conditions hold.

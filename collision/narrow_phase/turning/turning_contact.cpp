@@ -9,7 +9,6 @@
 #include "collision/vectors.hpp"
 
 #include <algorithm>
-#include <array>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -49,14 +48,19 @@ TranslatingShape<Degree> ball_of(const Body<Degree>& body) {
 /// than what roundings of their coordinates can feign, or `never`: their contact once they are made so much smaller.
 template <class Pair, int Degree>
 double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
-  std::array<double, Pair::ways> gap;
-  const double error = pair.gaps(t, gap);
-  const double depth = std::max(0.0, -*std::max_element(gap.begin(), gap.end()));
   constexpr double roundings = 0x1p-46;
   const double coordinates = norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) +
                              a.shape.bounding_radius + b.shape.bounding_radius;
-  const auto smaller = pair.smaller((1 + 0x1p-10) * depth + error + roundings * coordinates);
-  const double deeper = smaller ? WaysApart<Pair>(*smaller).first_penetration(t, horizon) : never;
+  double deeper = never;
+  // The depth is rounded: more until the smaller pair is apart for certain.
+  for (double margin = (1 + 0x1p-10) * pair.depth(t) + roundings * coordinates;; margin *= 2) {
+    const auto smaller = pair.smaller(margin);
+    if (!smaller) break;
+    const WaysApart<Pair> ways(*smaller);
+    if (ways.penetrate(t)) continue;
+    deeper = ways.first_penetration(t, horizon);
+    break;
+  }
   return std::max(deeper, next_up(t));
 }
 
@@ -97,6 +101,31 @@ Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double 
   return contact;
 }
 
+namespace {
+
+/// Whether two bodies that meet at t approach there, faster than roundings can feign.
+template <int Degree>
+bool approach_at(const Body<Degree>& a, const Body<Degree>& b, double t) {
+  const Contact contact = TurningContact<Degree>::contact_at(a, b, t, {});
+  const PointRates<Degree> rates(a.motion, b.motion, t);
+  return dot(contact.normal, rates.velocity(contact.point)) < -rates.noise(contact.point);
+}
+
+/// The first contact in [t, horizon] of two bodies that penetrate just after t, or `never`. Those that do not approach
+/// are looked at next when they are deeper in each other by more than roundings, or again after they have parted.
+template <class Pair, int Degree>
+double first_approach(const WaysApart<Pair>& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b,
+                      double t, double horizon) {
+  while (t <= horizon && !approach_at<Degree>(a, b, t)) {
+    const double deeper = falls_deeper<Pair, Degree>(pair, a, b, t, horizon);
+    const double parts = ways.first_parting(t, std::min(deeper, horizon));
+    t = parts < deeper ? ways.first_penetration(parts, horizon) : deeper;
+  }
+  return t <= horizon ? t : never;
+}
+
+}  // namespace
+
 template <int Degree>
 double TurningContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                                              FoundTouch*) {
@@ -105,18 +134,20 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
     return collision::first_contact(ball_of<Degree>(a), ball_of<Degree>(b), t0, horizon, mode);
   }
   return with_ways<Degree>(a, b, [&](const auto& pair) {
-    const WaysApart<std::decay_t<decltype(pair)>> ways(pair);
-    for (double t = t0;;) {
-      t = ways.first_penetration(t, horizon);
-      if (t == never || mode == ContactMode::transparent) return t;
-      const Contact contact = contact_at(a, b, t, {});
-      const PointRates<Degree> rates(a.motion, b.motion, t);
-      if (dot(contact.normal, rates.velocity(contact.point)) < -rates.noise(contact.point)) return t;
-      // Next when they are deeper in each other by more than roundings, or again after they have parted.
-      const double deeper = falls_deeper<std::decay_t<decltype(pair)>, Degree>(pair, a, b, t, horizon);
-      t = std::min(deeper, ways.first_parting(t, std::min(deeper, horizon)));
-      if (t > horizon) return never;
+    using Pair = std::decay_t<decltype(pair)>;
+    const WaysApart<Pair> ways(pair);
+    const double first = ways.first_penetration(t0, horizon);
+    if (first == never || mode == ContactMode::transparent) return first;
+    if (first == t0) {
+      // Whether what they overlap by counts is as seen from when these motions began, whenever it is asked.
+      const double begun = std::max(a.motion.start(), b.motion.start());
+      if (begun < t0 && ways.penetrate(next_down(t0))) {
+        const double met = ways.first_penetration(begun, t0);
+        const double t = first_approach<Pair, Degree>(ways, pair, a, b, met, horizon);
+        if (t >= t0) return t;
+      }
     }
+    return first_approach<Pair, Degree>(ways, pair, a, b, first, horizon);
   });
 }
 

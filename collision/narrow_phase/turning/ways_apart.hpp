@@ -14,10 +14,10 @@ namespace kds::collision {
 /// Finds contacts of a pair that has a finite number of *ways* of being apart, each of them a conjunction of turning
 /// certificates, its conditions: the bodies do not penetrate if all the conditions of some way hold.
 ///
-/// `Pair`: `ways`, their number; `every_condition(way, test)`; `needs_positive(way)`, whether a way all of whose
-/// conditions are zero does not count; `gaps(t, gap)`, which fills in a width for each way and returns an error, so
-/// that a way that is narrower than -error has a condition that is broken at t; `apart_until(t, horizon)`, a proven
-/// time; `time_of_turning()`.
+/// `Pair`: `ways`, their number; `every_condition(way, test)`; `separates_nothing(way)`, whether the way does not
+/// count: all of its conditions are zero at all times; `gaps(t, gap)`, which fills in a width for each way and returns
+/// an error, so that a way that is narrower than -error has a condition that is broken at t; `apart_until(t, horizon)`,
+/// a proven time; `time_of_turning()`.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -27,7 +27,7 @@ namespace kds::collision {
 template <class Pair>
 class WaysApart {
  public:
-  explicit WaysApart(const Pair& pair) : pair_(pair) {}
+  explicit WaysApart(const Pair& pair) : pair_(pair) { nothing_.fill(-1); }
 
   /// Whether the two penetrate just after t.
   bool penetrate(double t) const { return open_way(t) == none; }
@@ -68,13 +68,11 @@ class WaysApart {
 
   /// Whether all conditions of a way hold just after t.
   bool open(int way, double t) const {
-    bool positive = !Pair::needs_positive(way);
-    const bool all = pair_.every_condition(way, [&](const auto& condition) {
+    if (nothing_[static_cast<std::size_t>(way)] > 0) return false;
+    return pair_.every_condition(way, [&](const auto& condition) {
       const int sign = sign_after(condition, t);
-      positive = positive || sign > 0;
-      return sign >= 0;
+      return sign > 0 || (sign == 0 && !separates_nothing(way));
     });
-    return all && positive;
   }
 
   /// One that is open just after t, or `none`; the widest first.
@@ -116,7 +114,7 @@ class WaysApart {
 
   /// The first double in [t, until] just after which all conditions of a way hold, or `never`.
   double opens(int way, double t, double until) const {
-    if (Pair::needs_positive(way) && separates_nothing(way)) return never;
+    if (separates_nothing(way)) return never;
     for (bool waited = true; waited;) {
       waited = false;
       pair_.every_condition(way, [&](const auto& condition) {
@@ -130,12 +128,15 @@ class WaysApart {
     return t;
   }
 
-  /// Whether all of its conditions are zero at all times.
+  /// As the pair says, which is asked once: exact zeros cost most.
   bool separates_nothing(int way) const {
-    return pair_.every_condition(way, [](const auto& condition) { return vanishes(condition); });
+    signed char& known = nothing_[static_cast<std::size_t>(way)];
+    if (known < 0) known = pair_.separates_nothing(way) ? 1 : 0;
+    return known != 0;
   }
 
   const Pair& pair_;
+  mutable std::array<signed char, Pair::ways> nothing_;  ///< by way: whether it separates nothing; -1: not known
 };
 
 }  // namespace kds::collision
