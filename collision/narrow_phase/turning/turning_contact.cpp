@@ -51,10 +51,11 @@ double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>&
   constexpr double roundings = 0x1p-46;
   const double coordinates = norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) +
                              a.shape.bounding_radius + b.shape.bounding_radius;
+  // In proportion to the depth it may not be: what sinks a little deeper with each contact would sink ever faster.
+  const double depth = pair.depth(t);
   double deeper = never;
-  // The depth is rounded: more until the smaller pair is apart for certain.
-  for (double margin = (1 + 0x1p-10) * pair.depth(t) + roundings * coordinates;; margin *= 2) {
-    const auto smaller = pair.smaller(margin);
+  for (double more = roundings * coordinates;; more *= 2) {  // until the smaller pair is apart for certain
+    const auto smaller = pair.smaller(depth + more);
     if (!smaller) break;
     const WaysApart<Pair> ways(*smaller);
     if (ways.penetrate(t)) continue;
