@@ -113,8 +113,9 @@ template <int Degree>
   if (!in_range(motion.path)) refuse_motion(motion.path, name + ".path");
   const auto& q = motion.orientation.coeffs();
   std::ostringstream text;
-  if (!(q.cwiseAbs().maxCoeff() >= smallest_size && q.cwiseAbs().maxCoeff() <= largest_magnitude)) {
-    text << name << ".orientation: its greatest component is to be between 2^-205 and 2^205 in magnitude";
+  const bool finite = (q - q).sum() == 0;  // of NaN the greatest component may be another
+  if (!(finite && q.cwiseAbs().maxCoeff() >= smallest_size && q.cwiseAbs().maxCoeff() <= largest_magnitude)) {
+    text << name << ".orientation: must be finite, and its greatest component between 2^-205 and 2^205 in magnitude";
   } else {
     text << name << ".angular_velocity: must be finite, and each component at most 2^200 (1.6e60) rad/s";
   }

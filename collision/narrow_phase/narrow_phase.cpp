@@ -47,10 +47,13 @@ template <class Motion>
 constexpr PairTable<Motion> table = make_table<Motion>();
 
 /// Up to when exact tests look from t0 on. The paths of bodies that turn may come near each other for ever, so that to
-/// look to the end of time would take for ever.
+/// look to the end of time would take for ever. Two balls do not care how they turn.
 template <class Motion>
 double end_of_search(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon) {
-  if constexpr (turns<Motion>) return std::min(horizon, t0 + time_to_look_ahead(a.motion, b.motion));
+  if constexpr (turns<Motion>) {
+    const bool balls = std::holds_alternative<Sphere>(a.shape.shape) && std::holds_alternative<Sphere>(b.shape.shape);
+    if (!balls) return std::min(horizon, t0 + time_to_look_ahead(a.motion, b.motion));
+  }
   return horizon;
 }
 

@@ -253,10 +253,12 @@ bool Pairs<Motion>::certify() {
   }
   FoundTouch found;
   const auto a_moves = bodies_.moving(pair.a), b_moves = bodies_.moving(pair.b);
+  // Of bodies that turn exact tests look for some turns only: each goes on where the last has ended.
+  const double from = turns<Motion> ? contacts_.time(slot) : clock_.now;
   const ContactEstimate next =
       pair.overlapping
-          ? certified_first_separation<Motion>(a_moves, b_moves, clock_.now, clock_.horizon)
-          : certified_first_contact<Motion>(a_moves, b_moves, clock_.now, clock_.horizon, mode(pair.a, pair.b), &found);
+          ? certified_first_separation<Motion>(a_moves, b_moves, from, clock_.horizon)
+          : certified_first_contact<Motion>(a_moves, b_moves, from, clock_.horizon, mode(pair.a, pair.b), &found);
   set_contact(slot, next.time);
   pairs_[slot].estimated = !next.exact;
   remember(slot, found);

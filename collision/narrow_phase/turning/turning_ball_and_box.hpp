@@ -27,8 +27,7 @@ class TurningBallAndBox {
   TurningBallAndBox(const RigidMotion& box, const Eigen::Vector3d& half, const RigidMotion& ball, double radius)
       : box_(box), ball_(ball), half_(half), radius_(radius), radius_of_box_(norm(half) * (1 + 0x1p-50)) {}
 
-  static bool needs_positive(int) { return false; }
-  static bool separates_nothing(int) { return false; }
+  static bool known_to_separate_nothing(int) { return false; }
 
   using Conditions = std::uint32_t;
   static constexpr Conditions all(int) { return ~Conditions{0}; }
@@ -98,6 +97,21 @@ class TurningBallAndBox {
     f.value -= offset * (1 + PairFrame<Degree>::rounding) + bounds.rounding;
     return after_wait(t, positive_for(f, bounds.third, stretch), stretch);
   }
+
+  /// How deep the two are in each other at t, in doubles; `never` where the ball's centre is in the box: no smaller
+  /// ball is out of it.
+  double depth(double t) const {
+    const PairFrame<Degree> frame(box_, ball_, t);
+    double square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = dot(frame.turn_a(Eigen::Vector3d::Unit(axis)), frame.way.value);
+      const double beyond = std::max(0.0, std::abs(x) - half_[axis]);
+      square += beyond * beyond;
+    }
+    return square > 0 ? std::max(0.0, radius_ - std::sqrt(square)) : never;
+  }
+
+  static bool separates_nothing(int) { return false; }
 
   /// The same pair with a smaller ball; none where nothing of it is left.
   std::optional<TurningBallAndBox> smaller(double margin) const {

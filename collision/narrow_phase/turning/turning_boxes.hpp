@@ -39,11 +39,9 @@ class TurningBoxes {
         radius_b_(outer_radius(half_b)),
         turned_alike_(turned_alike(a, b)) {}
 
-  /// Whether all conditions of a way may be zero though it separates nothing.
-  static bool needs_positive(int way) { return way >= 12; }
-  /// Whether that is known to be so: of boxes that are turned alike at all times, as those of a lattice are, edges of
-  /// one direction are parallel. (In general it takes exact arithmetic to tell.)
-  bool separates_nothing(int way) const { return turned_alike_ && way >= 12 && (way - 12) / 2 % 4 == 0; }
+  /// Whether a way certainly separates nothing, told for next to nothing: of boxes that are turned alike at all times,
+  /// as those of a lattice are, edges of one direction are parallel.
+  bool known_to_separate_nothing(int way) const { return turned_alike_ && way >= 12 && (way - 12) / 2 % 4 == 0; }
 
   /// Numbers of conditions of a way, as bits.
   using Conditions = std::uint32_t;
@@ -106,6 +104,23 @@ class TurningBoxes {
     const double wait = open_for(frame, way, stretch);
     if (stretch == all || time_of_turning() == never) return after_wait(t, wait, stretch);
     return after_wait(t, std::max(wait, revolving_apart_for(frame, way)), stretch);
+  }
+
+  /// How deep the two are in each other at t, in doubles: along the way that is the least blocked.
+  double depth(double t) const;
+
+  /// Whether all conditions of a way are zero at all times: that is whether the edges it crosses, u and v, are
+  /// parallel. Three tell. If (u x v) . (a - b) vanishes for one edge of b and three edges of a, u x v is at right
+  /// angles to two other edges of a, and it is to u.
+  bool separates_nothing(int way) const {
+    if (way < 12) return false;
+    const int pair = (way - 12) / 2;
+    const auto v = edge(half_b_, pair % 3, 0, false);
+    for (int k = 0; k < 3; ++k) {
+      const auto u = edge(half_a_, pair / 3, k, false);
+      if (!vanishes(certificates::EdgeEdgeSeparation<Degree>{a_, b_, u, v})) return false;
+    }
+    return true;
   }
 
   /// The same pair with its first box smaller by `margin` on each side; none where nothing of it is left.
@@ -230,6 +245,25 @@ int TurningBoxes<Degree>::widest(const PairFrame<Degree>& frame, const std::arra
     if (width > widest) widest = width, best = way;
   }
   return best;
+}
+
+/// Of ways that cross edges the gap is that times the sine of their angle: where they are nearly parallel it says
+/// nothing.
+template <int Degree>
+double TurningBoxes<Degree>::depth(double t) const {
+  const PairFrame<Degree> frame(a_, b_, t);
+  std::array<double, ways> gap;
+  gaps(frame, gap);
+  double least = never;
+  for (int way = 0; way < ways; ++way) {
+    double sine = 1;
+    if (way >= 12) {
+      const int pair = (way - 12) / 2;
+      sine = norm(cross(frame.turn_a(Eigen::Vector3d::Unit(pair / 3)), frame.turn_b(Eigen::Vector3d::Unit(pair % 3))));
+    }
+    if (sine > 0x1p-20) least = std::min(least, -gap[static_cast<std::size_t>(way)] / sine);
+  }
+  return std::max(0.0, least);
 }
 
 /// Along the direction that a way has now, and from centre to centre.

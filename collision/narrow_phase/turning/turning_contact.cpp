@@ -9,7 +9,6 @@
 #include "collision/vectors.hpp"
 
 #include <algorithm>
-#include <array>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -49,19 +48,21 @@ TranslatingShape<Degree> ball_of(const Body<Degree>& body) {
 /// than what roundings of their coordinates can feign, or `never`: their contact once they are made so much smaller.
 template <class Pair, int Degree>
 double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
-  std::array<double, Pair::ways> gap;
-  const double error = pair.gaps(pair.frame(t), gap);
-  const double depth = std::max(0.0, -*std::max_element(gap.begin(), gap.end()));
   constexpr double roundings = 0x1p-46;
   const double coordinates = norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) +
                              a.shape.bounding_radius + b.shape.bounding_radius;
-  // Along some directions they are then less far apart than on the sides that are made smaller.
-  for (double margin = (1 + 0x1p-10) * depth + error + roundings * coordinates;; margin *= 2) {
-    const auto smaller = pair.smaller(margin);
-    if (!smaller) return never;
-    const double deeper = WaysApart<Pair>(*smaller).first_penetration(t, horizon);
-    if (deeper > t) return deeper;
+  // In proportion to the depth it may not be: what sinks a little deeper with each contact would sink ever faster.
+  const double depth = pair.depth(t);
+  double deeper = never;
+  for (double more = roundings * coordinates;; more *= 2) {  // until the smaller pair is apart for certain
+    const auto smaller = pair.smaller(depth + more);
+    if (!smaller) break;
+    const WaysApart<Pair> ways(*smaller);
+    if (ways.penetrate(t)) continue;
+    deeper = ways.first_penetration(t, horizon);
+    break;
   }
+  return std::max(deeper, next_up(t));
 }
 
 template <int Degree>
@@ -74,7 +75,7 @@ PlacedShape placed_at(const Body<Degree>& body, double t) {
 
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b) {
-  constexpr double radians = 0.5;       // 2 and 32 make no difference to speak of
+  constexpr double radians = 0.5;     // 2 and 32 make no difference to speak of
   constexpr double longest = 0x1p20;  // s, of bodies that hardly turn
   const double rates = norm(a.angular_velocity) + norm(b.angular_velocity);
   return rates > 0 ? std::min(longest, radians / rates) : longest;
@@ -101,6 +102,33 @@ Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double 
   return contact;
 }
 
+namespace {
+
+/// Whether two bodies that meet at t approach there, faster than roundings can feign.
+template <int Degree>
+bool approach_at(const Body<Degree>& a, const Body<Degree>& b, double t) {
+  const Contact contact = TurningContact<Degree>::contact_at(a, b, t, {});
+  const PointRates<Degree> rates(a.motion, b.motion, t);
+  return dot(contact.normal, rates.velocity(contact.point)) < -rates.noise(contact.point);
+}
+
+/// The first contact in [t, horizon] of two bodies that penetrate just after t, or `never`. Those that do not approach
+/// are looked at next when they are deeper in each other by more than roundings, or again after they have parted.
+template <class Pair, int Degree>
+double first_approach(const WaysApart<Pair>& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b,
+                      double t, double horizon) {
+  while (t <= horizon && !approach_at<Degree>(a, b, t)) {
+    // Mostly they have parted at once.
+    double parts = ways.first_parting(t, std::min(horizon, t + 0x1p-10 * std::min(pair.time_of_turning(), 1.0)));
+    const double deeper = falls_deeper<Pair, Degree>(pair, a, b, t, std::min(parts, horizon));
+    if (parts == never) parts = ways.first_parting(t, std::min(deeper, horizon));
+    t = parts < deeper ? ways.first_penetration(parts, horizon) : deeper;
+  }
+  return t <= horizon ? t : never;
+}
+
+}  // namespace
+
 template <int Degree>
 double TurningContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                                              FoundTouch*) {
@@ -109,24 +137,20 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
     return collision::first_contact(ball_of<Degree>(a), ball_of<Degree>(b), t0, horizon, mode);
   }
   return with_ways<Degree>(a, b, [&](const auto& pair) {
-    const WaysApart<std::decay_t<decltype(pair)>> ways(pair);
-    for (double t = t0;;) {
-      t = ways.first_penetration(t, horizon);
-      if (t == never || mode == ContactMode::transparent) return t;
-      const Contact contact = contact_at(a, b, t, {});
-      const PointRates<Degree> rates(a.motion, b.motion, t);
-      if (dot(contact.normal, rates.velocity(contact.point)) < -rates.noise(contact.point)) return t;
-      // Mostly they have parted at once. Else next when they are deeper in each other by more than roundings, or again
-      // after they have parted.
-      const double soon = std::min(horizon, t + 0x1p-10 * std::min(pair.time_of_turning(), 1.0));
-      if (const double parted = ways.first_parting(t, soon); parted != never) {
-        t = parted;
-        continue;
+    using Pair = std::decay_t<decltype(pair)>;
+    const WaysApart<Pair> ways(pair);
+    const double first = ways.first_penetration(t0, horizon);
+    if (first == never || mode == ContactMode::transparent) return first;
+    if (first == t0) {
+      // Whether what they overlap by counts is as seen from when these motions began, whenever it is asked.
+      const double begun = std::max(a.motion.start(), b.motion.start());
+      if (begun < t0 && ways.penetrate(next_down(t0))) {
+        const double met = ways.first_penetration(begun, t0);
+        const double t = first_approach<Pair, Degree>(ways, pair, a, b, met, horizon);
+        if (t >= t0) return t;
       }
-      const double deeper = falls_deeper<std::decay_t<decltype(pair)>, Degree>(pair, a, b, t, horizon);
-      t = std::min(deeper, ways.first_parting(t, std::min(deeper, horizon)));
-      if (t > horizon) return never;
     }
+    return first_approach<Pair, Degree>(ways, pair, a, b, first, horizon);
   });
 }
 

@@ -14,10 +14,12 @@ namespace kds::collision {
 /// Finds contacts of a pair that has a finite number of *ways* of being apart, each of them a conjunction of turning
 /// certificates, its conditions: the bodies do not penetrate if all the conditions of some way hold.
 ///
-/// `Pair`: `ways`, their number; `every_condition(way, test)`; `needs_positive(way)`, whether a way all of whose
-/// conditions are zero does not count; `gaps(t, gap)`, which fills in a width for each way and returns an error, so
-/// that a way that is narrower than -error has a condition that is broken at t; `apart_until(t, horizon)`, a proven
-/// time; `time_of_turning()`.
+/// `Pair`: `ways`, their number; `all(way)`, its conditions, and `every_condition(way, conditions, test)`;
+/// `separates_nothing(way)`, whether the way does not count: all of its conditions are zero at all times, and
+/// `known_to_separate_nothing(way)`, where that is told at once; `frame(t)`, what is known in doubles; `gaps(frame,
+/// gap)`, which fills in a width for each way and returns an error, so that a way that is narrower than -error has a
+/// condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change; `unsure(frame, way,
+/// stretch)`, the conditions that have to be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -27,7 +29,11 @@ namespace kds::collision {
 template <class Pair>
 class WaysApart {
  public:
-  explicit WaysApart(const Pair& pair) : pair_(pair) {}
+  explicit WaysApart(const Pair& pair) : pair_(pair) {
+    for (int way = 0; way < Pair::ways; ++way) {
+      nothing_[static_cast<std::size_t>(way)] = pair.known_to_separate_nothing(way) ? 1 : -1;
+    }
+  }
 
   /// Whether the two penetrate just after t.
   bool penetrate(double t) const { return open_way(t) == none; }
@@ -71,22 +77,19 @@ class WaysApart {
   /// Whether all conditions of a way hold just after the time of the frame.
   template <class Frame>
   bool open(int way, const Frame& frame) const {
-    const auto unsure = pair_.unsure(frame, way, 0);
-    bool positive = unsure != Pair::all(way) || !Pair::needs_positive(way);
-    const bool all = pair_.every_condition(way, unsure, [&](const auto& condition) {
+    if (nothing_[static_cast<std::size_t>(way)] > 0) return false;
+    return pair_.every_condition(way, pair_.unsure(frame, way, 0), [&](const auto& condition) {
       const int sign = sign_after(condition, frame.time);
-      positive = positive || sign > 0;
-      return sign >= 0;
+      return sign > 0 || (sign == 0 && !separates_nothing(way));
     });
-    return all && positive;
   }
 
-  /// As those of the pair, but for ways that separate nothing.
+  /// As those of the pair, but for ways that are known to separate nothing.
   template <class Frame>
   double gaps(const Frame& frame, std::array<double, Pair::ways>& gap) const {
     const double error = pair_.gaps(frame, gap);
     for (int way = 0; way < Pair::ways; ++way) {
-      if (pair_.separates_nothing(way)) gap[static_cast<std::size_t>(way)] = -never;
+      if (nothing_[static_cast<std::size_t>(way)] > 0) gap[static_cast<std::size_t>(way)] = -never;
     }
     return error;
   }
@@ -153,10 +156,18 @@ class WaysApart {
     }
     // Conditions that are zero just after t are zero at all times.
     const auto zero = [&](const auto& condition) { return sign_after(condition, t) == 0; };
-    return Pair::needs_positive(way) && pair_.every_condition(way, Pair::all(way), zero) ? never : t;
+    return pair_.every_condition(way, Pair::all(way), zero) ? never : t;
+  }
+
+  /// As the pair says, which is asked once: exact zeros cost most.
+  bool separates_nothing(int way) const {
+    signed char& known = nothing_[static_cast<std::size_t>(way)];
+    if (known < 0) known = pair_.separates_nothing(way) ? 1 : 0;
+    return known != 0;
   }
 
   const Pair& pair_;
+  mutable std::array<signed char, Pair::ways> nothing_;  ///< by way: whether it separates nothing; -1: not known
 };
 
 }  // namespace kds::collision

@@ -45,7 +45,22 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
   const double approach = -dot(n, rates.velocity(contact.point));
   if (!(approach > 0)) return false;
-  const double pressed = -dot(n, rates.acceleration(contact.point));
+  // A side of a box that turns carries its normal along, so that what slides on it is pressed to it or lifted off.
+  const auto ball = [&](BodySlot slot) { return bodies_.mover(slot).radius > 0; };
+  const Vector3d& point = ball(a)   ? motion_a.path.coefficients[0]
+                          : ball(b) ? motion_b.path.coefficients[0]
+                                    : contact.point;
+  Vector3d normal_turns = Vector3d::Zero();
+  if (contact.feature_a.kind == Feature::Kind::face) {
+    normal_turns = cross(motion_a.angular_velocity, n);
+  } else if (contact.feature_b.kind == Feature::Kind::face) {
+    normal_turns = cross(motion_b.angular_velocity, n);
+  }
+  double pressed = -dot(n, rates.acceleration(point)) - 2 * dot(normal_turns, rates.velocity(point));
+  // And what falls together will be pressed together when one of them lies on something.
+  for (const Motion* motion : {&motion_a, &motion_b}) {
+    pressed = std::max(pressed, std::abs(dot(n, motion->path.acceleration(contact.time))));
+  }
   const double restitution = std::min(bodies_[a].restitution, bodies_[b].restitution);
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
