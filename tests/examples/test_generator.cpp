@@ -82,7 +82,7 @@ TEST_CASE("generator: every kind is as the paper's experiment asks") {
   }
 }
 
-TEST_CASE("generator: spinners are cubes, rods and plates that turn; all others keep their orientation") {
+TEST_CASE("generator: spinners are cubes, rods and plates that turn, and only they do") {
   const TemporaryFolder folder;
   const Scene scene = read(generate_scene({.kind = "spinners", .bodies = 30, .seed = 3}), folder);
   CHECK(scene.turning);
