@@ -122,6 +122,20 @@ std::string box_shape(double radius, Random& random) {
   return text + "}}";
 }
 
+/// Of this bounding radius, and what follows the shape: its moment of inertia, unless it is a cube, whose moments are
+/// equal. 2/9 m r^2 is the mean of the moments of any box.
+std::string spinner_shape(double radius, std::size_t kind) {
+  constexpr double slender = 0.125;  // width of a rod, thickness of a plate
+  const Vector3d half = std::array{Vector3d(1, 1, 1), Vector3d(slender, slender, 1), Vector3d(1, 1, slender)}[kind % 3];
+  std::string text = "{\"box\": {\"half_extents\": ";
+  append_vector(text, half * (radius / half.norm()));
+  text += "}}";
+  if (kind % 3 == 0) return text;
+  text += ", \"inertia\": ";
+  append_number(text, 2 * radius * radius / 9);
+  return text;
+}
+
 std::string sphere_shape(double radius) {
   std::string text = "{\"sphere\": {\"radius\": ";
   append_number(text, radius);
@@ -144,7 +158,7 @@ void check(const GeneratorOptions& options) {
   const auto kinds = generator_kinds();
   if (std::find(kinds.begin(), kinds.end(), options.kind) == kinds.end()) {
     throw std::invalid_argument("--generate: there is no \"" + options.kind +
-                                "\"; use rings, models, spheres or boxes");
+                                "\"; use rings, models, spheres, boxes or spinners");
   }
   constexpr std::size_t most_bodies = 10'000'000;  // about 3 GB of text
   if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
@@ -163,7 +177,7 @@ struct NamedMesh {
 
 }  // namespace
 
-std::vector<std::string_view> generator_kinds() { return {"rings", "models", "spheres", "boxes"}; }
+std::vector<std::string_view> generator_kinds() { return {"rings", "models", "spheres", "boxes", "spinners"}; }
 
 GeneratedScene generate_scene(const GeneratorOptions& options) {
   check(options);
@@ -178,6 +192,8 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     add_mesh("knot", knot_mesh());
     add_mesh("bumpy-torus", bumpy_torus_mesh());
   }
+
+  const bool spins = options.kind == "spinners";
 
   Random random(options.seed);
   std::vector<double> radii(options.bodies);
@@ -227,6 +243,8 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     if (!meshes.empty()) {
       const NamedMesh& mesh = meshes[i % meshes.size()];
       json += mesh_shape(mesh.name, radii[i] / mesh.radius);
+    } else if (spins) {
+      json += spinner_shape(radii[i], i);
     } else {
       json += options.kind == "boxes" ? box_shape(radii[i], random) : sphere_shape(radii[i]);
     }
@@ -240,7 +258,13 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     append_vector(json, at);
     json += ',';
     append_vector(json, velocity);
-    json += i + 1 < options.bodies ? "]}]},\n" : "]}]}\n";
+    json += ']';
+    if (spins) {
+      json += ", \"angular_velocity\": ";
+      const Vector3d axis = random.direction();
+      append_vector(json, axis * random.uniform(0, most_turning));
+    }
+    json += i + 1 < options.bodies ? "}]},\n" : "}]}\n";
   }
   json += "]\n}\n";
   return scene;

@@ -10,6 +10,9 @@
 
 namespace kds_collide {
 
+/// Of spinners, rad/s: about a turn in the run, in which a body goes about as far as its bounding radius.
+inline constexpr double most_turning = 6;
+
 struct GeneratorOptions {
   std::string kind = "rings";  ///< see generator_kinds()
   std::size_t bodies = 1000;   ///< 1 to 10 000 000
@@ -29,13 +32,14 @@ struct GeneratedScene {
 };
 
 /// rings: [Coming06] section 5, tori of 64 triangles. models: [Coming06] Figure 6, closed models of over 6 000
-/// triangles. spheres; boxes.
+/// triangles. spheres; boxes. spinners: cubes, rods and plates that turn.
 std::vector<std::string_view> generator_kinds();
 
 /// The scene of [Coming06] section 5 with any shape: bounding radii uniform in 0.5-1.5, speeds uniform in 0.5-1.5 times
 /// their mean in random directions, random orientations, positions uniform where bounding balls do not overlap, in a
-/// cube with reflecting walls. One seed gives one text, on every compiler and machine.
-/// Throws std::invalid_argument for options out of range, and where no room is left for a body.
+/// cube with reflecting walls. Spinners turn besides, at up to most_turning about axes in random directions. One seed
+/// gives one text, on every compiler and machine. Throws std::invalid_argument for options out of range, and where no
+/// room is left for a body.
 GeneratedScene generate_scene(const GeneratorOptions& options);
 
 }  // namespace kds_collide

@@ -1,5 +1,6 @@
 #include "examples/kds-collide/replay.hpp"
 
+#include "certificates/turning/turned_orientation.hpp"
 #include "examples/kds-collide/number_text.hpp"
 
 #include <nlohmann/json.hpp>
@@ -63,35 +64,63 @@ void append_mesh(std::string& text, const kds::collision::Mesh& mesh) {
 }
 
 /// Coefficients without the zeros at the end: a body at rest needs one, one on a straight path two.
-void append_piece(std::string& text, const MotionPiece& piece, double begin) {
-  std::size_t used = piece.coefficients.size();
-  while (used > 1 && piece.coefficients[used - 1].isZero(0)) --used;
+void append_path(std::string& text, const MotionPiece& piece, double begin) {
+  const auto& coefficients = piece.path.coefficients;
+  std::size_t used = coefficients.size();
+  while (used > 1 && coefficients[used - 1].isZero(0)) --used;
   text += '[';
-  append_number(text, piece.start - begin);
+  append_number(text, piece.start() - begin);
   for (std::size_t i = 0; i < used; ++i) {
     for (int d = 0; d < 3; ++d) {
       text += ',';
-      append_short(text, piece.coefficients[i][d]);
+      append_short(text, coefficients[i][d]);
     }
   }
   text += ']';
+}
+
+/// The angular velocity as it is: an error of it grows with time, and there may be many turns.
+void append_spin(std::string& text, const MotionPiece& piece) {
+  const Eigen::Quaterniond& q = piece.orientation;
+  append_list(text, {q.x(), q.y(), q.z(), q.w()});
+  text.pop_back();
+  for (int d = 0; d < 3; ++d) {
+    text += ',';
+    append_number(text, piece.angular_velocity[d]);
+  }
+  text += ']';
+}
+
+/// Whether any piece is turned otherwise than the body was at first.
+bool turns(const std::vector<MotionPiece>& pieces, const Eigen::Quaterniond& orientation) {
+  return std::any_of(pieces.begin(), pieces.end(), [&](const MotionPiece& piece) {
+    return !piece.angular_velocity.isZero(0) || piece.orientation.coeffs() != orientation.coeffs();
+  });
 }
 
 /// As a part of a body's size, how far from its place it may be drawn: bodies in a heap change their motions thousands
 /// of times, most of them by less.
 constexpr double drawn_within = 0x1p-10;
 
+/// Whether a piece turns as the one before it would go on to, until then.
+bool turns_on(const MotionPiece& before, const MotionPiece& piece, double until) {
+  const Eigen::Quaterniond there =
+      kds::certificates::turned_orientation(before.orientation, before.spin(), piece.start());
+  const double faster = (piece.angular_velocity - before.angular_velocity).norm();
+  return there.angularDistance(piece.orientation) + faster * (until - piece.start()) <= drawn_within;
+}
+
 /// The pieces that are to be drawn. Where the one before leads to the same place, until the next begins, it goes on.
 std::vector<MotionPiece> drawn(const std::vector<MotionPiece>& pieces, double size, double end) {
   std::vector<MotionPiece> result;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const MotionPiece& piece = pieces[i];
-    const double until = i + 1 < pieces.size() ? pieces[i + 1].start : std::max(end, piece.start);
+    const double until = i + 1 < pieces.size() ? pieces[i + 1].start() : std::max(end, piece.start());
     const auto goes_on = [&](double part) {
-      const double time = piece.start + part * (until - piece.start);
-      return (result.back().position(time) - piece.position(time)).norm() <= drawn_within * size;
+      const double time = piece.start() + part * (until - piece.start());
+      return (result.back().path.position(time) - piece.path.position(time)).norm() <= drawn_within * size;
     };
-    if (!result.empty() && goes_on(0) && goes_on(0.5) && goes_on(1)) continue;
+    if (!result.empty() && goes_on(0) && goes_on(0.5) && goes_on(1) && turns_on(result.back(), piece, until)) continue;
     result.push_back(piece);
   }
   return result;
@@ -135,10 +164,10 @@ void ReplayRecorder::on_event(const Event& event) {
 void ReplayRecorder::on_motion(std::uint32_t body, const MotionPiece& piece) {
   auto& pieces = motion_[body];
   // Pieces of a script may come after it.
-  const auto at = std::lower_bound(pieces.begin(), pieces.end(), piece.start,
-                                   [](const MotionPiece& p, double start) { return p.start < start; });
+  const auto at = std::lower_bound(pieces.begin(), pieces.end(), piece.start(),
+                                   [](const MotionPiece& p, double start) { return p.start() < start; });
   // Several changes at one instant: the last one is what happens.
-  if (at != pieces.end() && at->start == piece.start) {
+  if (at != pieces.end() && at->start() == piece.start()) {
     *at = piece;
   } else {
     pieces.insert(at, piece);
@@ -181,9 +210,20 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
     const auto pieces = drawn(motion_[i], size, scene_.end_time);
     for (std::size_t p = 0; p < pieces.size(); ++p) {
       if (p > 0) text += ',';
-      append_piece(text, pieces[p], scene_.begin_time);
+      append_path(text, pieces[p], scene_.begin_time);
     }
-    text += "]}";
+    text += ']';
+    if (scene_.turning && turns(pieces, q)) {
+      text += ",\"spins\":";
+      char separator = '[';
+      for (const MotionPiece& piece : pieces) {
+        text += separator;
+        append_spin(text, piece);
+        separator = ',';
+      }
+      text += ']';
+    }
+    text += '}';
   }
   text += "],\n\"touches\":[";
   for (std::size_t i = 0; i < touches_.size(); ++i) {

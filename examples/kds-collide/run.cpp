@@ -1,6 +1,7 @@
 #include "examples/kds-collide/run.hpp"
 
 #include "collision/world.hpp"
+#include "examples/kds-collide/scene_world.hpp"
 
 #include <sys/resource.h>
 
@@ -38,20 +39,12 @@ BroadPhaseKind choose(const std::string& name) {
   throw std::invalid_argument("--broad-phase: there is no \"" + name + "\"; --broad-phase list names them");
 }
 
-template <int Degree>
-kds::certificates::PointMotion<Degree> to_degree(const MotionPiece& piece) {
-  kds::certificates::PointMotion<Degree> motion;
-  std::copy_n(piece.coefficients.begin(), motion.coefficients.size(), motion.coefficients.begin());
-  motion.start = piece.start;
-  return motion;
-}
-
 /// Hands on what the world tells. Bodies are added in the order of the scene and none is removed: their slots are
 /// their places in it.
-template <int Degree>
-class Teller final : public kds::collision::WorldListener<Degree> {
+template <class Motion>
+class Teller final : public kds::collision::BasicWorldListener<Motion> {
  public:
-  using World = kds::collision::World<Degree>;
+  using World = kds::collision::BasicWorld<Motion>;
   using PairEvent = kds::collision::PairEvent;
   using WallEvent = kds::collision::WallEvent;
 
@@ -98,20 +91,15 @@ class Teller final : public kds::collision::WorldListener<Degree> {
   }
   void tell_motion(const World& world, BodyId id) {
     if (!world.contains(id)) return;
-    const auto& motion = world.motion(id);
-    MotionPiece piece;
-    piece.coefficients.fill(Eigen::Vector3d::Zero());
-    std::copy(motion.coefficients.begin(), motion.coefficients.end(), piece.coefficients.begin());
-    piece.start = motion.start;
-    sink_.on_motion(body_slot(id), piece);
+    sink_.on_motion(body_slot(id), to_piece(world.motion(id)));
   }
 
   EventSink& sink_;
   Response response_;
 };
 
-template <int Degree>
-RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink& sink) {
+template <class Motion>
+RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sink) {
   const BroadPhaseKind broad_phase = choose(options.broad_phase);
   if (broad_phase == BroadPhaseKind::sap && !(options.rate > 0)) {
     throw std::invalid_argument("--rate: must be > 0 for the broad phase \"sap\"");
@@ -134,19 +122,9 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
   const double begin = scene.begin_time;
   const double end = scene.end_time;
   const double setup_start = cpu_seconds();
-  Teller<Degree> teller(sink, scene.response);
-  kds::collision::World<Degree> world(world_options, &teller);
-  for (const SceneBody& body : scene.bodies) {
-    kds::collision::BodyDescription<Degree> description;
-    description.shape = body.shape;
-    description.orientation = body.orientation;
-    description.mass = body.mass;
-    description.fixed = body.fixed;
-    description.sensor = body.sensor;
-    description.restitution = body.restitution;
-    for (const MotionPiece& piece : body.motion) description.motion.push_back(to_degree<Degree>(piece));
-    world.add_body(description);
-  }
+  Teller<Motion> teller(sink, scene.response);
+  kds::collision::BasicWorld<Motion> world(world_options, &teller);
+  for (const SceneBody& body : scene.bodies) world.add_body(describe<Motion>(body, scene.response));
   world.advance_to(begin);
   const double run_start = cpu_seconds();
 
@@ -192,7 +170,14 @@ RunResult run_at_degree(const Scene& scene, const RunOptions& options, EventSink
 }  // namespace
 
 RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
-  return scene.degree() == 2 ? run_at_degree<2>(scene, options, sink) : run_at_degree<1>(scene, options, sink);
+  using kds::certificates::PointMotion;
+  using kds::certificates::RigidMotion;
+  if (scene.turning) {
+    return scene.degree() == 2 ? run_with<RigidMotion<2>>(scene, options, sink)
+                               : run_with<RigidMotion<1>>(scene, options, sink);
+  }
+  return scene.degree() == 2 ? run_with<PointMotion<2>>(scene, options, sink)
+                             : run_with<PointMotion<1>>(scene, options, sink);
 }
 
 }  // namespace kds_collide

@@ -7,7 +7,7 @@ namespace kds_collide {
 int Scene::degree() const {
   for (const SceneBody& body : bodies) {
     for (const MotionPiece& piece : body.motion) {
-      if (!piece.coefficients[2].isZero(0)) return 2;
+      if (!piece.path.coefficients[2].isZero(0)) return 2;
     }
   }
   return 1;

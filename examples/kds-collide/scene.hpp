@@ -1,7 +1,7 @@
 // A scene: bodies, how they move, and the space they move in.
 #pragma once
 
-#include "certificates/point_motion.hpp"
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/world_options.hpp"
@@ -17,14 +17,16 @@
 
 namespace kds_collide {
 
-/// A piece of a body's motion, linear or quadratic. It holds until the next piece's start.
-using MotionPiece = kds::certificates::PointMotion<2>;
+/// A piece of a body's motion: a path, linear or quadratic, and an orientation, which turns only in scenes that say so.
+/// It holds until the next piece's start.
+using MotionPiece = kds::certificates::RigidMotion<2>;
 
 struct SceneBody {
   std::string name;
   kds::collision::Shape shape;
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit; that of the first piece
   double mass = 1;
+  double inertia = 0;               ///< about every axis; 0: that of a solid of the shape
   bool fixed = false;               ///< infinite mass
   bool sensor = false;              ///< only reports
   double restitution = 1;           ///< in [0, 1]; of two bodies the lower counts
@@ -53,6 +55,7 @@ struct Scene {
   double begin_time = 0;
   double end_time = 0;
   Response response = Response::none;
+  bool turning = false;  ///< its bodies turn, or contacts may make them: the scene speaks of it
   std::optional<Domain> domain;
   std::vector<SceneMesh> meshes;
   std::vector<SceneBody> bodies;

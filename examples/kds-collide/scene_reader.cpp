@@ -1,8 +1,11 @@
 #include "examples/kds-collide/scene_reader.hpp"
 
+#include "certificates/turning/turned_orientation.hpp"
+#include "collision/world.hpp"
 #include "examples/kds-collide/json_node.hpp"
 #include "examples/kds-collide/mesh_file.hpp"
 #include "examples/kds-collide/number_text.hpp"
+#include "examples/kds-collide/scene_world.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -12,6 +15,7 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -107,37 +111,55 @@ Eigen::Quaterniond read_orientation(const JsonNode& node) {
   return q.normalized();
 }
 
-MotionPiece read_piece(const JsonNode& node) {
-  node.object({"start", "position"});
-  MotionPiece piece;
-  piece.start = node["start"].number();
+/// `start` and `position` of a piece.
+kds::certificates::PointMotion<2> read_path(const JsonNode& node) {
+  kds::certificates::PointMotion<2> path;
+  path.start = node["start"].number();
   const JsonNode position = node["position"];
   const std::vector<JsonNode> coefficients = position.elements();
   if (coefficients.empty()) position.fail("must have at least one coefficient");
-  if (coefficients.size() > piece.coefficients.size()) {
+  if (coefficients.size() > path.coefficients.size()) {
     position.fail("has " + std::to_string(coefficients.size()) +
                   " coefficients; at most 3 (position, velocity, half the acceleration) are supported");
   }
-  piece.coefficients.fill(Eigen::Vector3d::Zero());
-  for (std::size_t i = 0; i < coefficients.size(); ++i) piece.coefficients[i] = coefficients[i].vector();
-  return piece;
+  path.coefficients.fill(Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < coefficients.size(); ++i) path.coefficients[i] = coefficients[i].vector();
+  return path;
 }
 
-std::vector<MotionPiece> read_motion(const JsonNode& node, Response response) {
+/// A piece goes on with the orientation that the one before has led to, unless it has its own.
+std::vector<MotionPiece> read_motion(const JsonNode& node, const Eigen::Quaterniond& orientation, Response response) {
   const std::vector<JsonNode> pieces = node.elements();
   if (pieces.empty()) node.fail("must have at least one piece");
   std::vector<MotionPiece> motion;
-  for (const JsonNode& piece : pieces) {
-    motion.push_back(read_piece(piece));
-    if (motion.size() > 1 && !(motion[motion.size() - 2].start < motion.back().start)) {
-      piece["start"].fail("must be later than the start of the piece before, " +
-                          number_text(motion[motion.size() - 2].start));
+  for (const JsonNode& each : pieces) {
+    each.object({"start", "position", "orientation", "angular_velocity"});
+    MotionPiece piece{read_path(each), orientation};
+    if (!motion.empty()) {
+      if (!(motion.back().start() < piece.start())) {
+        each["start"].fail("must be later than the start of the piece before, " + number_text(motion.back().start()));
+      }
+      piece.orientation =
+          kds::certificates::turned_orientation(motion.back().orientation, motion.back().spin(), piece.start());
     }
+    if (each.has("orientation")) {
+      if (motion.empty()) each["orientation"].fail("the first piece begins with the \"orientation\" of the body");
+      piece.orientation = read_orientation(each["orientation"]);
+    }
+    if (each.has("angular_velocity")) piece.angular_velocity = each["angular_velocity"].vector();
+    motion.push_back(piece);
   }
   if (motion.size() > 1 && response == Response::elastic) {
     pieces[1].fail("with \"response\": \"elastic\" a body has only one piece of motion");
   }
   return motion;
+}
+
+/// Whether anything is said of how the body turns.
+bool speaks_of_turning(const JsonNode& node) {
+  const std::vector<JsonNode> pieces = node["motion"].elements();
+  const auto turns = [](const JsonNode& piece) { return piece.has("angular_velocity") || piece.has("orientation"); };
+  return node.has("inertia") || std::any_of(pieces.begin(), pieces.end(), turns);
 }
 
 /// Its own, or that of the scene.
@@ -146,16 +168,17 @@ double read_restitution(const JsonNode& node, double of_scene) {
 }
 
 SceneBody read_body(const JsonNode& node, const Scene& scene, double restitution) {
-  node.object({"name", "shape", "orientation", "mass", "fixed", "sensor", "restitution", "motion"});
+  node.object({"name", "shape", "orientation", "mass", "inertia", "fixed", "sensor", "restitution", "motion"});
   SceneBody body;
   body.name = node["name"].string();
   body.shape = read_shape(node["shape"], scene.meshes);
   if (node.has("orientation")) body.orientation = read_orientation(node["orientation"]);
   if (node.has("mass")) body.mass = node["mass"].positive();
+  if (node.has("inertia")) body.inertia = node["inertia"].positive();
   if (node.has("fixed")) body.fixed = node["fixed"].boolean();
   if (node.has("sensor")) body.sensor = node["sensor"].boolean();
   body.restitution = read_restitution(node, restitution);
-  body.motion = read_motion(node["motion"], scene.response);
+  body.motion = read_motion(node["motion"], body.orientation, scene.response);
   return body;
 }
 
@@ -179,7 +202,7 @@ void check_inside_walls(const JsonNode& node, const SceneBody& body, const Domai
   const double radius = kds::collision::place(body.shape, body.orientation).bounding_radius;
   const std::vector<JsonNode> pieces = node["motion"].elements();
   for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const Eigen::Vector3d& at = body.motion[p].coefficients[0];
+    const Eigen::Vector3d& at = body.motion[p].path.coefficients[0];
     for (int d = 0; d < 3; ++d) {
       const bool inside = at[d] - domain.min[d] >= radius && domain.max[d] - at[d] >= radius;
       if (inside) continue;
@@ -194,8 +217,8 @@ void check_inside_walls(const JsonNode& node, const SceneBody& body, const Domai
 void check_range(const JsonNode& node, const SceneBody& body, const Scene& scene) {
   const std::vector<JsonNode> pieces = node["motion"].elements();
   for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const MotionPiece& piece = body.motion[p];
-    const double end = p + 1 < pieces.size() ? std::min(body.motion[p + 1].start, scene.end_time) : scene.end_time;
+    const kds::certificates::PointMotion<2>& piece = body.motion[p].path;
+    const double end = p + 1 < pieces.size() ? std::min(body.motion[p + 1].start(), scene.end_time) : scene.end_time;
     const double elapsed = std::max(0.0, end - piece.start);
     for (int d = 0; d < 3; ++d) {
       const auto& c = piece.coefficients;
@@ -203,6 +226,23 @@ void check_range(const JsonNode& node, const SceneBody& body, const Scene& scene
       if (reach <= largest_number) continue;
       pieces[p]["position"].fail("may reach a magnitude of " + about(reach) + " by t = " + about(end) + "; at most " +
                                  number_text(largest_number) + " is supported");
+    }
+  }
+}
+
+/// Not every body can turn: which one cannot, and why, is for a world to say, which begins with the member that is
+/// wrong.
+void check_turns(const std::vector<JsonNode>& nodes, const Scene& scene) {
+  using World = kds::collision::BasicWorld<MotionPiece>;
+  World world({});
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    try {
+      world.remove_body(world.add_body(describe<MotionPiece>(scene.bodies[i], scene.response)));
+    } catch (const std::invalid_argument& error) {
+      const std::string what = error.what();
+      const std::size_t colon = what.find(": ");
+      if (colon == std::string::npos) nodes[i].fail(what);
+      throw JsonError(nodes[i].path() + '.' + what.substr(0, colon), what.substr(colon + 2));
     }
   }
 }
@@ -230,10 +270,12 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
     scene.bodies.push_back(read_body(node, scene, restitution));
     const auto [entry, is_new] = names.try_emplace(scene.bodies.back().name, node.path());
     if (!is_new) node["name"].fail('"' + entry->first + "\" is the name of " + entry->second + " too");
+    scene.turning = scene.turning || speaks_of_turning(node);
   }
+  if (scene.turning) check_turns(bodies, scene);
 
-  if (!scene.bodies.empty()) scene.begin_time = scene.bodies.front().motion.front().start;
-  for (const SceneBody& body : scene.bodies) scene.begin_time = std::min(scene.begin_time, body.motion.front().start);
+  if (!scene.bodies.empty()) scene.begin_time = scene.bodies.front().motion.front().start();
+  for (const SceneBody& body : scene.bodies) scene.begin_time = std::min(scene.begin_time, body.motion.front().start());
   if (scene.end_time < scene.begin_time) {
     root["end_time"].fail("must be >= " + number_text(scene.begin_time) + ", where the motion begins");
   }

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -38,13 +39,14 @@ TEST_CASE("generator: one seed gives one scene, here as on every machine") {
   const GeneratedScene models = generate_scene({.kind = "models", .bodies = 2, .density = 0.01, .seed = 7});
   CHECK(hash(models.meshes.at(0).text) == 0xa9357f6a7985f644u);
   CHECK(hash(models.meshes.at(1).text) == 0x62e8689fee490e95u);
+  CHECK(hash(generate_scene({.kind = "spinners", .bodies = 50, .seed = 7}).json) == 0x690ec3731fe4a4e4u);
   GeneratorOptions other = options;
   other.seed = 8;
   CHECK(scene.json != generate_scene(other).json);
 }
 
 TEST_CASE("generator: every kind is as the paper's experiment asks") {
-  const auto kind = std::string(GENERATE(as<std::string>(), "rings", "models", "spheres", "boxes"));
+  const auto kind = std::string(GENERATE(as<std::string>(), "rings", "models", "spheres", "boxes", "spinners"));
   const double density = GENERATE(0.01, 0.2);
   INFO(kind << " at density " << density);
   const std::size_t bodies = 60;
@@ -69,15 +71,35 @@ TEST_CASE("generator: every kind is as the paper's experiment asks") {
   }
   CHECK(volume / std::pow(scene.domain->max[0], 3) == Approx(density).epsilon(1e-4));
   for (std::size_t i = 0; i < bodies; ++i) {
-    const MotionPiece& motion = scene.bodies[i].motion.front();
+    const auto& motion = scene.bodies[i].motion.front().path;
     const double speed = motion.coefficients[1].norm() / mean_radius;
     CHECK(speed > 0.499);
     CHECK(speed < 1.501);
     for (std::size_t j = 0; j < i; ++j) {
-      const Eigen::Vector3d apart = motion.coefficients[0] - scene.bodies[j].motion.front().coefficients[0];
+      const Eigen::Vector3d apart = motion.coefficients[0] - scene.bodies[j].motion.front().path.coefficients[0];
       CHECK(apart.norm() > radii[i] + radii[j]);
     }
   }
+}
+
+TEST_CASE("generator: spinners are cubes, rods and plates that turn, and only they do") {
+  const TemporaryFolder folder;
+  const Scene scene = read(generate_scene({.kind = "spinners", .bodies = 30, .seed = 3}), folder);
+  CHECK(scene.turning);
+  double fastest = 0;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const SceneBody& body = scene.bodies[i];
+    const Eigen::Vector3d& half = std::get<kds::collision::Box>(body.shape).half_extents;
+    const bool cube = half[0] == half[1] && half[1] == half[2];
+    CHECK(cube == (i % 3 == 0));
+    CHECK((body.inertia == 0) == cube);
+    if (!cube) CHECK(body.inertia == Approx(2 * half.squaredNorm() / 9));
+    const double rate = body.motion.front().angular_velocity.norm();
+    CHECK(rate < most_turning);
+    fastest = std::max(fastest, rate);
+  }
+  CHECK(fastest > 0.9 * most_turning);
+  CHECK_FALSE(read(generate_scene({.kind = "boxes", .bodies = 3}), folder).turning);
 }
 
 TEST_CASE("generator: meshes are closed, wound outward and of bounding radius 1") {
@@ -121,7 +143,7 @@ TEST_CASE("generator: options out of range are refused") {
       return std::string(e.what());
     }
   };
-  CHECK(error({.kind = "cubes"}) == "--generate: there is no \"cubes\"; use rings, models, spheres or boxes");
+  CHECK(error({.kind = "cubes"}) == "--generate: there is no \"cubes\"; use rings, models, spheres, boxes or spinners");
   CHECK(error({.bodies = 0}) == "--bodies: must be > 0");
   for (const double density : {0.0, 1e-100, 0.9, static_cast<double>(NAN)}) {
     CHECK(error({.density = density}) == "--density: must be from 1e-12 to 0.3");

@@ -16,11 +16,11 @@ Scene scene_of_two() {
   scene.end_time = 12;
   scene.response = Response::elastic;
   for (int i = 0; i < 2; ++i) {
-    SceneBody body{
-        .name = i == 0 ? "a</script>" : "b", .shape = kds::collision::Sphere{0.5}, .motion = {MotionPiece{}}};
-    body.motion[0].coefficients.fill(Eigen::Vector3d::Zero());
-    body.motion[0].coefficients[1] = {1.0 - 2 * i, 0, 0};
-    body.motion[0].start = 10;
+    SceneBody body{.name = i == 0 ? "a</script>" : "b", .shape = kds::collision::Sphere{0.5}};
+    body.motion.emplace_back();
+    body.motion[0].path.coefficients.fill(Eigen::Vector3d::Zero());
+    body.motion[0].path.coefficients[1] = {1.0 - 2 * i, 0, 0};
+    body.motion[0].path.start = 10;
     scene.bodies.push_back(body);
   }
   return scene;
@@ -37,9 +37,9 @@ TEST_CASE("replay: the record holds pieces of motion and contacts, counted from 
   recorder.on_event({12, EventKind::rest, 0, 1, {}, {}, {}, {}});
   recorder.on_event({12.5, EventKind::wake, 0, 1, {}, {}, {}, {}});
   MotionPiece piece = scene.bodies[1].motion[0];
-  piece.start = 11;
+  piece.path.start = 11;
   recorder.on_motion(0, piece);
-  piece.coefficients[2] = {0, 0, -5};
+  piece.path.coefficients[2] = {0, 0, -5};
   recorder.on_motion(0, piece);  // at the same instant: takes the other's place
 
   const std::string text = recorder.to_json("a \"title\"");
@@ -61,11 +61,11 @@ TEST_CASE("replay: changes of motion that nobody could see are left out") {
   ReplayRecorder recorder(scene);
   for (int i = 1; i < 100; ++i) {
     MotionPiece piece = scene.bodies[0].motion[0].restarted(10 + 0.01 * i);
-    piece.coefficients[1][1] = i % 2 == 0 ? 1e-4 : -1e-4;  // it never is 1e-4 from its way
+    piece.path.coefficients[1][1] = i % 2 == 0 ? 1e-4 : -1e-4;  // it never is 1e-4 from its way
     recorder.on_motion(0, piece);
   }
   MotionPiece turned = scene.bodies[0].motion[0].restarted(11.5);
-  turned.coefficients[1][1] = 0.01;  // 5e-3 at the end
+  turned.path.coefficients[1][1] = 0.01;  // 5e-3 at the end
   recorder.on_motion(0, turned);
   const json data = json::parse(recorder.to_json("title"));
   CHECK(data["bodies"][0]["motion"] == json::parse("[[0,0,0,0,1,0,0],[1.5,1.5,0,0,1,0.01,0]]"));
@@ -85,17 +85,56 @@ TEST_CASE("replay: shapes by their names and measures") {
 TEST_CASE("replay: a change of motion stands before the pieces of the script that come after it") {
   Scene scene = scene_of_two();
   MotionPiece piece = scene.bodies[0].motion[0];
-  piece.start = 11.5;
+  piece.path.start = 11.5;
   scene.bodies[0].motion.push_back(piece);
   ReplayRecorder recorder(scene);
-  piece.start = 11;
-  piece.coefficients[1] = {-1, 0, 0};
+  piece.path.start = 11;
+  piece.path.coefficients[1] = {-1, 0, 0};
   recorder.on_motion(0, piece);
-  piece.start = 11.5;
-  piece.coefficients[1] = {3, 0, 0};
+  piece.path.start = 11.5;
+  piece.path.coefficients[1] = {3, 0, 0};
   recorder.on_motion(0, piece);  // the script's piece begins, and is changed at once
   const json data = json::parse(recorder.to_json("a"));
   CHECK(data["bodies"][0]["motion"] == json::parse("[[0,0,0,0,1,0,0],[1,0,0,0,-1,0,0],[1.5,0,0,0,3,0,0]]"));
+}
+
+TEST_CASE("replay: of bodies that turn, and of them alone, the record holds how each piece turns") {
+  Scene scene = scene_of_two();
+  CHECK_FALSE(json::parse(ReplayRecorder(scene).to_json("a"))["bodies"][0].contains("spins"));
+  scene.turning = true;
+  scene.bodies[0].motion[0].angular_velocity = {0, 0, 0.1};
+  ReplayRecorder recorder(scene);
+  MotionPiece piece = scene.bodies[0].motion[0].restarted(11);
+  piece.orientation = {0, 1, 0, 0};
+  piece.angular_velocity = {1, 2, -3};
+  recorder.on_motion(0, piece);
+  const json data = json::parse(recorder.to_json("a"));
+  CHECK(data["bodies"][0]["turn"] == json::parse("[0,0,0,1]"));
+  CHECK(data["bodies"][0]["motion"] == json::parse("[[0,0,0,0,1,0,0],[1,1,0,0,1,0,0]]"));
+  CHECK(data["bodies"][0]["spins"] == json::parse("[[0,0,0,1,0,0,0.1],[1,0,0,0,1,2,-3]]"));
+  CHECK_FALSE(data["bodies"][1].contains("spins"));
+}
+
+TEST_CASE("replay: a piece that goes on turning as the one before is left out, and one that does not is kept") {
+  Scene scene = scene_of_two();
+  scene.turning = true;
+  scene.bodies[0].motion[0].angular_velocity = {0, 0, 100};
+  const auto pieces = [&](const Eigen::Vector3d& turns_by, const Eigen::Quaterniond& turned_by) {
+    ReplayRecorder recorder(scene);
+    MotionPiece piece = scene.bodies[0].motion[0].restarted(11);
+    piece.orientation = turned_by * piece.orientation;
+    piece.angular_velocity += turns_by;
+    recorder.on_motion(0, piece);
+    const json data = json::parse(recorder.to_json("a"));
+    CHECK(data["bodies"][0]["spins"].size() == data["bodies"][0]["motion"].size());
+    return data["bodies"][0]["spins"].size();
+  };
+  const Eigen::Quaterniond none = Eigen::Quaterniond::Identity();
+  CHECK(pieces({0, 0, 0}, none) == 1);
+  CHECK(pieces({0, 0, 1e-4}, none) == 1);
+  CHECK(pieces({0, 0, 1e-2}, none) == 2);
+  CHECK(pieces({0, 0, 0}, Eigen::Quaterniond(1, 1e-4, 0, 0).normalized()) == 1);
+  CHECK(pieces({0, 0, 0}, Eigen::Quaterniond(1, 1e-2, 0, 0).normalized()) == 2);
 }
 
 TEST_CASE("replay: a title that is not UTF-8 is written as well as it can be") {

@@ -3,8 +3,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 using namespace kds_collide;
 
@@ -21,6 +24,25 @@ class CountingSink final : public EventSink {
   int count = 0;
   double last = 0;
 };
+
+/// Keeps what it is told.
+class Record final : public EventSink {
+ public:
+  void on_event(const Event& event) override { events.push_back(event); }
+  void on_motion(std::uint32_t, const MotionPiece& piece) override { pieces.push_back(piece); }
+
+  std::vector<Event> events;
+  std::vector<MotionPiece> pieces;
+};
+
+/// A rod that turns at 1 rad/s, and a ball at 1.5 from its middle.
+Scene rod_and_ball(const std::string& response) {
+  return parse_scene(R"({"scene": 1, "end_time": 3, "response": ")" + response + R"(", "bodies": [
+    {"name": "rod", "shape": {"box": {"half_extents": [2,0.125,0.125]}}, "inertia": 1.5,
+     "motion": [{"start": 0, "position": [[0,0,0]], "angular_velocity": [0,0,1]}]},
+    {"name": "ball", "shape": {"sphere": {"radius": 0.25}}, "motion": [{"start": 0, "position": [[0,1.5,0]]}]}]})",
+                     "scene.json");
+}
 
 Scene one_ball(const std::string& end_time) {
   return parse_scene(R"({"scene": 1, "end_time": )" + end_time + R"(, "bodies": [
@@ -45,4 +67,53 @@ TEST_CASE("run: results are asked for at the rate") {
   run(one_ball("2"), {.rate = 60}, sink);
   CHECK(sink.last == 2);
   CHECK(sink.count == 120);
+}
+
+TEST_CASE("run: a rod that turns meets a ball when the ball is 3/8 from its axis, and leaves it when it is again") {
+  const std::string broad_phase = GENERATE("auto", "grid", "kinetic-sap", "sap", "all-pairs");
+  INFO(broad_phase);
+  Record record;
+  run(rod_and_ball("none"), {.broad_phase = broad_phase, .rate = 60}, record);
+  REQUIRE(record.events.size() == 2);
+  const Event& meeting = record.events[0];
+  CHECK(meeting.kind == EventKind::contact);
+  CHECK(meeting.time == Approx(std::acos(0.25)).epsilon(1e-15));
+  CHECK(meeting.normal.isApprox(Eigen::Vector3d(-std::sqrt(0.9375), 0.25, 0), 1e-14));
+  CHECK(to_string(meeting.feature_a) == "f3");
+  CHECK(record.events[1].kind == EventKind::separation);
+  CHECK(record.events[1].time == Approx(std::acos(-0.25)).epsilon(1e-15));
+  CHECK(record.pieces.empty());
+}
+
+TEST_CASE("run: a contact of bodies that turn changes paths and angular velocities") {
+  Record record;
+  const RunResult result = run(rod_and_ball("elastic"), {}, record);
+  CHECK(result.contacts == 1);
+  REQUIRE(record.pieces.size() == 2);
+  const MotionPiece& rod = record.pieces[0];
+  const MotionPiece& ball = record.pieces[1];
+  CHECK(rod.start() == record.events.at(0).time);
+  const Eigen::AngleAxisd turned(rod.start(), Eigen::Vector3d::UnitZ());
+  CHECK(rod.orientation.angularDistance(Eigen::Quaterniond(turned)) < 1e-15);
+  CHECK(ball.angular_velocity.isZero(0));
+  const double energy = 0.5 * (rod.path.coefficients[1].squaredNorm() + ball.path.coefficients[1].squaredNorm()) +
+                        0.5 * 1.5 * rod.angular_velocity.squaredNorm();
+  CHECK(energy == Approx(0.75).epsilon(1e-15));
+}
+
+TEST_CASE("run: a body that is turned by its script meets what is beside it") {
+  Record record;
+  const Scene scene = parse_scene(R"({"scene": 1, "end_time": 3, "bodies": [
+    {"name": "rod", "shape": {"box": {"half_extents": [2,0.5,0.5]}}, "motion": [
+      {"start": 0, "position": [[0,0,0]]},
+      {"start": 1, "position": [[0,0,0]], "orientation": [0.7071067811865476,0,0,0.7071067811865476]},
+      {"start": 2, "position": [[0,0,0]], "orientation": [1,0,0,0]}]},
+    {"name": "ball", "shape": {"sphere": {"radius": 0.5}}, "motion": [{"start": 0, "position": [[0,2,0]]}]}]})",
+                                  "scene.json");
+  run(scene, {}, record);
+  REQUIRE(record.events.size() == 2);
+  CHECK(record.events[0].kind == EventKind::contact);
+  CHECK(record.events[0].time == 1);
+  CHECK(record.events[1].kind == EventKind::separation);
+  CHECK(record.events[1].time == 2);
 }

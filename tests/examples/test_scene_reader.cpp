@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <string>
 
 using namespace kds_collide;
@@ -31,11 +32,11 @@ TEST_CASE("scene reader: a valid scene is read as it says") {
   CHECK(a.mass == 1);
   CHECK_FALSE(a.fixed);
   REQUIRE(a.motion.size() == 1);
-  CHECK(a.motion[0].coefficients[2] == Eigen::Vector3d(0, 0, -4.9));
+  CHECK(a.motion[0].path.coefficients[2] == Eigen::Vector3d(0, 0, -4.9));
 
   CHECK(std::get<kds::collision::Box>(scene.bodies[1].shape).half_extents == Eigen::Vector3d(1, 2, 3));
   CHECK(scene.bodies[1].mass == 2);
-  CHECK(scene.bodies[1].motion[0].coefficients[2].isZero(0));
+  CHECK(scene.bodies[1].motion[0].path.coefficients[2].isZero(0));
 
   const SceneBody& c = scene.bodies[2];
   CHECK(std::get<kds::collision::MeshShape>(c.shape).scale == 2);
@@ -44,7 +45,59 @@ TEST_CASE("scene reader: a valid scene is read as it says") {
   CHECK(c.orientation.x() == Approx(0.8));
   CHECK(c.fixed);
   REQUIRE(c.motion.size() == 2);
-  CHECK(c.motion[1].start == 0.5);
+  CHECK(c.motion[1].start() == 0.5);
+  CHECK_FALSE(scene.turning);
+}
+
+TEST_CASE("scene reader: pieces that turn go on with the orientation that the one before has led to") {
+  const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "bodies": [
+    {"name": "a", "shape": {"box": {"half_extents": [1,1,1]}}, "orientation": [0,1,0,0], "motion": [
+      {"start": 0, "position": [[0,0,0]], "angular_velocity": [0,0,3.141592653589793]},
+      {"start": 0.5, "position": [[0,0,0]]},
+      {"start": 1, "position": [[0,0,0]]},
+      {"start": 1.5, "position": [[0,0,0]], "orientation": [0,0,1,0], "angular_velocity": [1,2,3]}]}]})",
+                                  "scene.json");
+  CHECK(scene.turning);
+  const auto& motion = scene.bodies.at(0).motion;
+  REQUIRE(motion.size() == 4);
+  CHECK(motion[0].orientation.coeffs() == Eigen::Quaterniond(0, 1, 0, 0).coeffs());
+  CHECK(motion[0].angular_velocity == Eigen::Vector3d(0, 0, 3.141592653589793));
+  // A quarter turn about z, after the half turn about x.
+  const double root = std::sqrt(0.5);
+  CHECK((motion[1].orientation.coeffs() - Eigen::Quaterniond(0, root, root, 0).coeffs()).norm() < 1e-15);
+  CHECK(motion[1].angular_velocity.isZero(0));
+  CHECK(motion[2].orientation.coeffs() == motion[1].orientation.coeffs());
+  CHECK(motion[3].orientation.coeffs() == Eigen::Quaterniond(0, 0, 1, 0).coeffs());
+  CHECK(motion[3].angular_velocity == Eigen::Vector3d(1, 2, 3));
+}
+
+TEST_CASE("scene reader: a scene turns if it speaks of turning") {
+  const auto turns = [](const std::string& of_body, const std::string& of_piece) {
+    return parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic", "bodies": [{"name": "a", )" + of_body +
+                           R"("shape": {"sphere": {"radius": 1}}, "motion": [{)" + of_piece +
+                           R"("start": 0, "position": [[0,0,0]]}]}]})",
+                       "scene.json");
+  };
+  CHECK_FALSE(turns("", "").turning);
+  CHECK_FALSE(turns(R"("orientation": [0,1,0,0], )", "").turning);
+  CHECK(turns("", R"("angular_velocity": [0,0,0], )").turning);
+  const Scene scene = turns(R"("inertia": 3, )", "");
+  CHECK(scene.turning);
+  CHECK(scene.bodies.at(0).inertia == 3);
+}
+
+TEST_CASE("scene reader: where contacts turn nothing, bodies of any moments turn") {
+  const auto read = [](const std::string& response, const std::string& of_body) {
+    parse_scene(R"({"scene": 1, "end_time": 2, "response": ")" + response + R"(", "bodies": [{"name": "a", )" +
+                    of_body + R"("shape": {"box": {"half_extents": [1,2,3]}}, "motion": [
+                      {"start": 0, "position": [[0,0,0]], "angular_velocity": [0,0,1]}]}]})",
+                "scene.json");
+  };
+  CHECK_NOTHROW(read("none", ""));
+  CHECK_NOTHROW(read("elastic", R"("sensor": true, )"));
+  CHECK_NOTHROW(read("elastic", R"("fixed": true, )"));
+  CHECK_NOTHROW(read("elastic", R"("inertia": 1, )"));
+  CHECK_THROWS_WITH(read("elastic", ""), Catch::StartsWith("scene.json: bodies[0].inertia: the moments of this box "));
 }
 
 TEST_CASE("scene reader: a capsule, and one of no length") {

@@ -48,7 +48,8 @@ Scene<Degree> generated(const std::string& name, const std::string& what,
     description.shape = body.shape;
     description.orientation = body.orientation;
     description.motion.emplace_back();
-    for (std::size_t i = 0; i <= Degree; ++i) description.motion[0].coefficients[i] = body.motion[0].coefficients[i];
+    for (std::size_t i = 0; i <= Degree; ++i)
+      description.motion[0].coefficients[i] = body.motion[0].path.coefficients[i];
     scene.bodies.push_back(std::move(description));
   }
   return scene;
