@@ -116,7 +116,7 @@ class WaysApart {
 
   /// The first double in [t, until] just after which all conditions of a way hold, or `never`.
   double opens(int way, double t, double until) const {
-    if (Pair::needs_positive(way) && separates_nothing(way)) return never;
+    if (Pair::needs_positive(way) && separates_nothing(way, t)) return never;
     for (bool waited = true; waited;) {
       waited = false;
       pair_.every_condition(way, [&](const auto& condition) {
@@ -130,9 +130,10 @@ class WaysApart {
     return t;
   }
 
-  /// Whether all of its conditions are zero at all times.
-  bool separates_nothing(int way) const {
-    return pair_.every_condition(way, [](const auto& condition) { return vanishes(condition); });
+  /// Whether all of its conditions are zero at all times. Most are not at t, which costs less to say.
+  bool separates_nothing(int way, double t) const {
+    return pair_.every_condition(
+        way, [&](const auto& condition) { return sign_at(condition, t) == 0 && vanishes(condition); });
   }
 
   const Pair& pair_;
