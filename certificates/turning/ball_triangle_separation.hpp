@@ -27,9 +27,9 @@ namespace detail {
 /// centre of the ball, in the body's coordinates.
 template <int Degree>
 struct BallAndTriangle {
-  const PointMotion<Degree>& ball;               ///< the path of the centre
-  const RigidMotion<Degree>& body;               ///< of the triangle
-  std::array<Eigen::Vector3d, 3> corners;        ///< of the body
+  const PointMotion<Degree>& ball;         ///< the path of the centre
+  const RigidMotion<Degree>& body;         ///< of the triangle
+  std::array<Eigen::Vector3d, 3> corners;  ///< of the body
   TrianglePart part;
 
   /// Products of two turned numbers of the body are terms in its spin, taken twice.
@@ -50,9 +50,9 @@ struct BallAndTriangle {
 
   /// m . d times the scale of the body (Turner): the coefficients of 1, cos a, w sin a.
   template <class Number, int Order>
-  std::array<Polynomial<Order, Number>, 3> beyond(
-      const Turner<Number>& turn, const VectorOf<Polynomial<std::min(Order, Degree), Number>>& way,
-      const VectorOf<Number>& m) const {
+  std::array<Polynomial<Order, Number>, 3> beyond(const Turner<Number>& turn,
+                                                  const VectorOf<Polynomial<std::min(Order, Degree), Number>>& way,
+                                                  const VectorOf<Number>& m) const {
     const TurnedVector<Number> turned = turn(m);
     std::array<Polynomial<Order, Number>, 3> result{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -93,9 +93,8 @@ struct CentreBeyondPart : detail::BallAndTriangle<Degree> {
   VectorOf<Number> direction() const {
     switch (this->part.kind) {
       case TrianglePart::Kind::face:
-        return this->part.number == 0
-                   ? this->template normal<Number>()
-                   : cross(this->template edge<Number>(0, 2), this->template edge<Number>(0, 1));
+        return this->part.number == 0 ? this->template normal<Number>()
+                                      : cross(this->template edge<Number>(0, 2), this->template edge<Number>(0, 1));
       case TrianglePart::Kind::edge:
         return cross(this->template edge<Number>(0, 1), this->template normal<Number>());
       case TrianglePart::Kind::corner:

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <tuple>
 
 namespace kds::collision {
 
@@ -53,14 +54,15 @@ class TurningHulls {
     return frame.way_error + (PairFrame<Degree>::rounding + hull_a_.doubt + hull_b_.doubt) * lengths;
   }
 
+  /// How deep they are in each other counts as nothing, where they do not approach: some times what is known.
+  double roundings(const PairFrame<Degree>& frame) const { return 4 * error(frame); }
+
   /// A time from t on until which they are apart; t where doubles do not tell, or where it would be hardly later.
-  double apart_until(double t, double horizon) const {
-    return apart_until(TurningView<Degree>(a_, b_, t), horizon);
-  }
+  double apart_until(double t, double horizon) const { return apart_until(TurningView<Degree>(a_, b_, t), horizon); }
   double apart_until(const TurningView<Degree>& view, double horizon) const {
     const Seen seen(*this, view);
     const Widest best = widest(seen);
-    if (!(best.gap + slack_ > error(view))) return view.time;
+    if (!(slack_ > 0 ? best.gap + slack_ > 0 : best.gap > error(view))) return view.time;
     const double stretch = view.stretch(hull_a_.radius + hull_b_.radius, (horizon - view.time) * (1 + 0x1p-40));
     const double wait = open_for(view, seen, best.way, stretch);
     if (wait > horizon - view.time) return never;
@@ -117,10 +119,19 @@ class TurningHulls {
     double gap = -never;
     Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< unit, from a to b
   };
-  /// The way along which they are the farthest apart, but for edges that are nearly parallel.
-  Widest widest(const Seen& seen) const {
-    constexpr double least_sine = 0x1p-10;
+  /// The way of the plane along which they are the least deep in each other, if not deeper than a slack; else -1.
+  int shallow_plane(double t, double slack) const {
     Widest best;
+    every_gap(Seen(*this, TurningView<Degree>(a_, b_, t)), [&](const Widest& way) {
+      if (way.way < 2 * faces && way.gap > best.gap) best = way;
+    });
+    return best.gap > -slack ? best.way : -1;
+  }
+
+  /// Calls visit({way, gap, normal}) for all ways but edges that are nearly parallel.
+  template <class Visit>
+  void every_gap(const Seen& seen, const Visit& visit) const {
+    constexpr double least_sine = 0x1p-10;
     for (int k = 0; k < directions; ++k) {
       Eigen::Vector3d n = seen.direction(k);
       if (k >= faces) {
@@ -129,9 +140,16 @@ class TurningHulls {
         n /= sine;
       }
       const auto gaps = seen.along(n);
-      if (gaps[0] > best.gap) best = {2 * k, gaps[0], -n};
-      if (gaps[1] > best.gap) best = {2 * k + 1, gaps[1], n};
+      visit(Widest{2 * k, gaps[0], -n});
+      visit(Widest{2 * k + 1, gaps[1], n});
     }
+  }
+  /// Along which they are the farthest apart.
+  Widest widest(const Seen& seen) const {
+    Widest best;
+    every_gap(seen, [&](const Widest& way) {
+      if (way.gap > best.gap) best = way;
+    });
     return best;
   }
 
@@ -170,7 +188,7 @@ class TurningHulls {
     if (way % 2 == 0) n = -1.0 * n;
     const TurningBounds bounds(view, rate, hull_a_.radius, hull_b_.radius, stretch);
     Jet base = dot(n, view.way);
-    base.value += allowed - bounds.rounding;
+    base.value += slack_ > 0 ? allowed : -bounds.rounding;
     std::array<Jet, std::tuple_size_v<decltype(seen.a)>> of_a;
     for (std::size_t i = 0; i < of_a.size(); ++i) of_a[i] = dot(n, turning(seen.a[i], view.spin_a));
     double wait = stretch;

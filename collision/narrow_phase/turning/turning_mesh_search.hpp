@@ -6,6 +6,7 @@
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <compare>
 #include <cstdint>
 #include <functional>
@@ -62,28 +63,30 @@ class TurningMeshSearch {
     double time;
     Leaves nodes;
     Known known;
+    int tries = 0;  ///< by exact signs, one after the other
     friend auto operator<=>(const Item&, const Item&) = default;
   };
 
   /// The search of one first contact.
   class Front {
    public:
-    Front(const TurningMeshSearch& search, double t0, double horizon)
-        : search_(search), horizon_(horizon), view_(search.motion_a_, search.motion_b_, t0) {
+    Front(const TurningMeshSearch& search, double t0, double horizon, ContactMode mode)
+        : search_(search), horizon_(horizon), mode_(mode), view_(search.motion_a_, search.motion_b_, t0) {
       visit({0, 0});
     }
-    double next(ContactMode mode);
+    double next();
 
    private:
-    void push(double t, Leaves nodes, Known known) {
-      if (t <= horizon_) queue_.push({t, nodes, known});
+    void push(double t, Leaves nodes, Known known, int tries = 0) {
+      if (t <= horizon_) queue_.push({t, nodes, known, tries});
     }
-    void visit(Leaves nodes);
-    void visit_exactly(Leaves nodes);
+    void visit(Leaves nodes, int tries = 0);
+    void visit_exactly(Leaves nodes, int tries);
     bool counts(Leaves nodes) const;
 
     const TurningMeshSearch& search_;
-    double horizon_;
+    double horizon_;  ///< in mode `transparent` no later than a contact that is known
+    ContactMode mode_;
     View view_;  ///< at the time that is looked at
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
   };
@@ -137,24 +140,24 @@ class TurningMeshSearch {
 
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::first_contact(double t0, double horizon, ContactMode mode) const {
-  return Front(*this, t0, horizon).next(mode);
+  return Front(*this, t0, horizon, mode).next();
 }
 
 template <int Degree, class Side>
-double TurningMeshSearch<Degree, Side>::Front::next(ContactMode mode) {
+double TurningMeshSearch<Degree, Side>::Front::next() {
   while (!queue_.empty()) {
     const Item item = queue_.top();
     queue_.pop();
     if (item.time != view_.time) view_ = View(search_.motion_a_, search_.motion_b_, item.time);
     switch (item.known) {
       case Known::apart_until:
-        visit(item.nodes);
+        visit(item.nodes, item.tries);
         break;
       case Known::stuck:
-        visit_exactly(item.nodes);
+        visit_exactly(item.nodes, item.tries);
         break;
       case Known::contact:
-        if (mode == ContactMode::transparent || counts(item.nodes)) return item.time;
+        if (mode_ == ContactMode::transparent || counts(item.nodes)) return item.time;
         push(search_.passed_over(search_.pair(item.nodes), view_, horizon_), item.nodes, Known::apart_until);
     }
   }
@@ -163,7 +166,7 @@ double TurningMeshSearch<Degree, Side>::Front::next(ContactMode mode) {
 
 /// By doubles, from the time of the view on.
 template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit(Leaves nodes) {
+void TurningMeshSearch<Degree, Side>::Front::visit(Leaves nodes, int tries) {
   const double t = view_.time;
   const double limit = (horizon_ - t) * (1 + 0x1p-40);
   const NodeWait apart = nodes_apart(view_, search_.a_.node(nodes.a), search_.b_.node(nodes.b), limit);
@@ -173,23 +176,29 @@ void TurningMeshSearch<Degree, Side>::Front::visit(Leaves nodes) {
   }
   if (search_.are_leaves(nodes)) {
     const double until = search_.pair(nodes).apart_until(view_, horizon_);
-    return push(until, nodes, until > t ? Known::apart_until : Known::stuck);
+    return until > t ? push(until, nodes, Known::apart_until) : push(t, nodes, Known::stuck, tries);
   }
   search_.of_halves(nodes, [&](Leaves halves) { return visit(halves), false; });
 }
 
-/// By exact signs: for a while, or to where other pairs may come first.
+/// By exact signs: for a while, or to where other pairs may come first. What slides on each other has nothing else: the
+/// while grows from try to try.
 template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes) {
+void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tries) {
   constexpr double part_of_turn = 0x1p-6;
+  constexpr int most_tries = 20;
   const double t = view_.time;
   const Pair pair = search_.pair(nodes);
   const double others = queue_.empty() ? never : queue_.top().time;
-  const double step = std::max(next_up(t), t + part_of_turn * pair.time_of_turning());
+  const double step = std::max(next_up(t), t + std::ldexp(part_of_turn, 2 * tries) * pair.time_of_turning());
   const double until = std::min(horizon_, std::max(others, step));
   const double contact = WaysApart<Pair>(pair).first_penetration(t, until);
-  if (contact != never) return push(contact, nodes, Known::contact);
-  if (until < horizon_) push(until, nodes, Known::apart_until);
+  if (contact != never) {
+    push(contact, nodes, Known::contact);
+    if (mode_ == ContactMode::transparent) horizon_ = contact;
+    return;
+  }
+  if (until < horizon_) push(until, nodes, Known::apart_until, std::min(tries + 1, most_tries));
 }
 
 template <int Degree, class Side>
@@ -203,14 +212,19 @@ template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View& view, double horizon) const {
   const double t = view.time;
   const double depth = std::max(0.0, -pair.gap(view));
-  const Pair shallow = pair.with_slack((1 + 0x1p-10) * depth + 4 * pair.error(view));
+  const double slack = (1 + 0x1p-10) * depth + pair.roundings(view);
+  const Pair shallow = pair.with_slack(slack);
   double deeper = t;
   for (double proven = t; deeper < never;) {
-    proven = shallow.apart_until(deeper, horizon);
+    const int plane = pair.shallow_plane(deeper, slack);  // faces that lie on each other may do so for long
+    proven = plane >= 0 ? pair.holds_until(plane, slack, deeper, horizon) : shallow.apart_until(deeper, horizon);
     if (proven == deeper) break;
     deeper = proven;
   }
-  deeper = std::max(deeper, next_up(t));
+  // In so short a time they do not get deeper by more than 2^-40 of their distances, as they do not approach.
+  constexpr double short_time = 0x1p-20;
+  const double sizes = a_.radius(0) + norm(view.way.value);
+  deeper = std::max({deeper, next_up(t), t + short_time * view.stretch(sizes, horizon - t)});
   return std::min(deeper, WaysApart<Pair>(pair).first_parting(t, std::min(deeper, horizon)));
 }
 

@@ -70,8 +70,8 @@ struct NodeWait {
 /// The balls around them, along the line between their centres; or where that does not last, the boxes, along that line
 /// or along an axis of one of them that turns with it.
 ///
-/// Method: along a unit vector n, from a to b, their gap is n . p - sum_k h_k |n . u_k|, with the half edges of both. An
-/// n . u_k = x with its rate x' is at most |x| + s (|e| - |x|) / S + s^2 / 2 max |x''| until S, e = x + S x': a
+/// Method: along a unit vector n, from a to b, their gap is n . p - sum_k h_k |n . u_k|, with the half edges of both.
+/// An n . u_k = x with its rate x' is at most |x| + s (|e| - |x|) / S + s^2 / 2 max |x''| until S, e = x + S x': a
 /// convex function is below its chord. So the gap stays above a cubic.
 template <int Degree>
 NodeWait nodes_apart(const TurningView<Degree>& view, const BodyNode& a, const BodyNode& b, double limit);
@@ -96,9 +96,7 @@ class NodeGap {
   }
 
   double distance() const { return distance_; }
-  double speed() const {
-    return norm(p_.rate) + view_.rate_a * a_.radius + view_.rate_b * b_.radius;
-  }
+  double speed() const { return norm(p_.rate) + view_.rate_a * a_.radius + view_.rate_b * b_.radius; }
 
   /// Of the balls around them.
   double balls_wait(double limit) {
@@ -171,8 +169,8 @@ class NodeGap {
 
   /// `with`: 0, a direction at rest; 1, one that turns with a; 2, with b.
   double wait_along(const Eigen::Vector3d& direction, int with, double limit) const {
-    const Eigen::Vector3d spin = with == 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
-                                           : (with == 1 ? view_.spin_a : view_.spin_b);
+    const Eigen::Vector3d spin =
+        with == 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : (with == 1 ? view_.spin_a : view_.spin_b);
     const double rate = with == 0 ? 0 : (with == 1 ? view_.rate_a : view_.rate_b);
     const double of_a = norm(in_a_) + a_.radius, of_b = norm(in_b_) + b_.radius;
     const double stretch = view_.stretch(of_a + of_b, limit);

@@ -96,32 +96,45 @@ double approach_at(const PointRates<Degree>& rates, const Eigen::Vector3d& norma
 
 }  // namespace detail
 
-/// Of a triangle and a triangle or a box: along the direction in which they are the least deep in each other. The middle
-/// of what they share, or where that does not approach but another does, the corner of it that approaches fastest.
+/// Of a triangle and a triangle or a box: along the direction in which they are the least deep in each other. The
+/// middle of what they share, or where that does not approach but another does, the corner of it that approaches
+/// fastest.
+///
+/// They approach if they do so along all directions in which they are no deeper than roundings: what slides on a face,
+/// in it by a rounding, meets walls below that face from inside, but is not stopped by them.
 template <int Degree, class HullB, class Side>
 TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshSide& a, std::uint32_t leaf_a, const Side& b,
                       std::uint32_t leaf_b, const TurningView<Degree>& view, const PointRates<Degree>& rates,
                       const Eigen::Vector3d& origin) {
-  const typename TurningHulls<Degree, HullB>::Seen seen(pair, view);
+  using Hulls = TurningHulls<Degree, HullB>;
+  const typename Hulls::Seen seen(pair, view);
+  const auto along = [&](const Eigen::Vector3d& normal) {
+    const auto of_a = detail::farthest(a, leaf_a, seen.a, normal);
+    const auto of_b = detail::farthest(b, leaf_b, seen.b, -normal);
+    TurningTouch touch{patch_centre(of_a.points, of_b.points, seen.way, normal), normal, of_a.feature, of_b.feature, 0};
+    touch.approach = detail::approach_at(rates, normal, origin + touch.point);
+    if (touch.approach > 0) return touch;
+    for (const Eigen::Vector3d& x : patch_corners(of_a.points, of_b.points, seen.way, normal)) {
+      const double approach = detail::approach_at(rates, normal, origin + x);
+      if (approach > touch.approach) touch.approach = approach, touch.point = x;
+    }
+    return touch;
+  };
   const auto widest = pair.widest(seen);
-  const auto of_a = detail::farthest(a, leaf_a, seen.a, widest.normal);
-  const auto of_b = detail::farthest(b, leaf_b, seen.b, -widest.normal);
-  TurningTouch touch{patch_centre(of_a.points, of_b.points, seen.way, widest.normal), widest.normal, of_a.feature,
-                     of_b.feature, 0};
-  touch.approach = detail::approach_at(rates, touch.normal, origin + touch.point);
-  if (touch.approach > 0) return touch;
-  for (const Eigen::Vector3d& x : patch_corners(of_a.points, of_b.points, seen.way, widest.normal)) {
-    const double approach = detail::approach_at(rates, touch.normal, origin + x);
-    if (approach > touch.approach) touch.approach = approach, touch.point = x;
-  }
+  TurningTouch touch = along(widest.normal);
+  const double roundings = pair.roundings(view);
+  pair.every_gap(seen, [&](const typename Hulls::Widest& way) {
+    if (way.gap < -roundings || way.way == widest.way || !(touch.approach > 0)) return;
+    touch.approach = std::min(touch.approach, along(way.normal).approach);
+  });
   return touch;
 }
 
 /// Of a triangle and a ball: at the point of the triangle that is nearest to the centre.
 template <int Degree>
 TurningTouch touch_of(const TurningTriangleAndBall<Degree>& pair, const MeshSide& a, std::uint32_t leaf_a,
-                      const BallSide&, std::uint32_t, const TurningView<Degree>& view,
-                      const PointRates<Degree>& rates, const Eigen::Vector3d& origin) {
+                      const BallSide&, std::uint32_t, const TurningView<Degree>& view, const PointRates<Degree>& rates,
+                      const Eigen::Vector3d& origin) {
   const typename TurningTriangleAndBall<Degree>::Seen seen(pair, view);
   const LeafTriangle& triangle = a.triangle(leaf_a);
   int part = 0;

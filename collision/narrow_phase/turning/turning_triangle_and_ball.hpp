@@ -71,9 +71,10 @@ class TurningTriangleAndBall {
     return 4 * frame.way_error + (PairFrame<Degree>::rounding + hull_.doubt) * lengths;
   }
 
-  double apart_until(double t, double horizon) const {
-    return apart_until(TurningView<Degree>(a_, b_, t), horizon);
-  }
+  /// How deep they are in each other counts as nothing, where they do not approach: some times what is known.
+  double roundings(const PairFrame<Degree>& frame) const { return 4 * error(frame); }
+
+  double apart_until(double t, double horizon) const { return apart_until(TurningView<Degree>(a_, b_, t), horizon); }
   double apart_until(const TurningView<Degree>& view, double horizon) const {
     const Seen seen(*this, view);
     const Eigen::Vector3d apart = seen.apart();
@@ -92,6 +93,9 @@ class TurningTriangleAndBall {
     if (slack_) return wait > 0x1p-30 * stretch ? std::max(view.time, next_down(view.time + wait)) : view.time;
     return after_wait(view.time, wait, stretch);
   }
+
+  static int shallow_plane(double, double) { return -1; }
+  static double holds_until(int, double, double t, double) { return t; }
 
   double time_of_turning() const {
     const double rate = norm(a_.angular_velocity);
@@ -155,7 +159,9 @@ Eigen::Vector3d TurningTriangleAndBall<Degree>::Seen::nearest(int* part) const {
     if (!(distance < least)) continue;
     least = distance;
     best = x;
-    found = along <= 0 ? static_cast<int>(k) : along >= length ? static_cast<int>((k + 1) % 3) : static_cast<int>(3 + k);
+    found = along <= 0        ? static_cast<int>(k)
+            : along >= length ? static_cast<int>((k + 1) % 3)
+                              : static_cast<int>(3 + k);
   }
   if (part) *part = found;
   return best;

@@ -6,9 +6,11 @@
 #include "certificates/turning/vertex_face_separation.hpp"
 #include "collision/narrow_phase/turning/turning_hulls.hpp"
 #include "collision/narrow_phase/turning/turning_triangles.hpp"
+#include "kds/turning/turning_failure_time.hpp"
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -35,21 +37,7 @@ class TurningTriangleAndBox : public TurningHulls<Degree, BoxHull> {
     const Corners& p = this->hull_a_.points;
     const auto& corners = this->hull_b_.points;
     const bool forward = way % 2 != 0;
-    if (way < 2) {
-      const Corners face = forward ? p : turned_over(p);
-      for (const Eigen::Vector3d& x : corners) {
-        if (!test(certificates::VertexFaceSeparation<Degree>{this->b_, this->a_, x, face})) return false;
-      }
-      return true;
-    }
-    if (way < 8) {
-      // From a to b along the axis: the triangle is beyond the lower face.
-      const Corners face = box_face(static_cast<std::size_t>(way - 2) / 2, !forward);
-      for (const Eigen::Vector3d& x : p) {
-        if (!test(certificates::VertexFaceSeparation<Degree>{this->a_, this->b_, x, face})) return false;
-      }
-      return true;
-    }
+    if (way < 8) return every_corner(way, 0, test);
     const auto k = static_cast<std::size_t>(way - 8) / 2;
     const std::size_t axis = k % 3;
     const std::array<Eigen::Vector3d, 2> u{p[k / 3], p[(k / 3 + 1) % 3]}, u_back{u[1], u[0]};
@@ -64,6 +52,17 @@ class TurningTriangleAndBox : public TurningHulls<Degree, BoxHull> {
     return true;
   }
 
+  /// The first double in [t, until] just after which a corner is deeper than the slack in the plane of a way < 8, or
+  /// `never`: exactly that of a plane moved by so much, rounded.
+  double holds_until(int way, double slack, double t, double until) const {
+    double first = never;
+    every_corner(way, slack, [&](const auto& condition) {
+      first = std::min(first, failure_time(condition, t, std::min(first, until)));
+      return true;
+    });
+    return first;
+  }
+
   TurningTriangleAndBox with_slack(double slack) const {
     TurningTriangleAndBox pair = *this;
     pair.set_slack(slack);
@@ -71,6 +70,32 @@ class TurningTriangleAndBox : public TurningHulls<Degree, BoxHull> {
   }
 
  private:
+  /// Of the ways of planes, which are moved by `slack` to let more through.
+  template <class Test>
+  bool every_corner(int way, double slack, const Test& test) const {
+    const bool forward = way % 2 != 0;
+    if (way < 2) {
+      Corners face = forward ? this->hull_a_.points : turned_over(this->hull_a_.points);
+      if (slack > 0) {
+        for (Eigen::Vector3d& x : face) x -= (forward ? slack : -slack) * this->hull_a_.normals[0];
+      }
+      for (const Eigen::Vector3d& x : this->hull_b_.points) {
+        if (!test(certificates::VertexFaceSeparation<Degree>{this->b_, this->a_, x, face})) return false;
+      }
+      return true;
+    }
+    // From a to b along the axis: the triangle is beyond the lower face.
+    const auto axis = static_cast<std::size_t>(way - 2) / 2;
+    Corners face = box_face(axis, !forward);
+    if (slack > 0) {
+      for (Eigen::Vector3d& x : face) x += (forward ? slack : -slack) * this->hull_b_.normals[axis];
+    }
+    for (const Eigen::Vector3d& x : this->hull_a_.points) {
+      if (!test(certificates::VertexFaceSeparation<Degree>{this->a_, this->b_, x, face})) return false;
+    }
+    return true;
+  }
+
   /// Three corners of a face, counter-clockwise from outside.
   Corners box_face(std::size_t axis, bool upper) const {
     const std::size_t base = upper ? std::size_t{1} << axis : 0;

@@ -5,9 +5,11 @@
 #include "certificates/turning/normal_along_edge.hpp"
 #include "certificates/turning/vertex_face_separation.hpp"
 #include "collision/narrow_phase/turning/turning_hulls.hpp"
+#include "kds/turning/turning_failure_time.hpp"
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -46,8 +48,7 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     const Corners& p = this->hull_a_.points;
     const Corners& q = this->hull_b_.points;
     const bool forward = way % 2 != 0;
-    if (way < 2) return every_corner(this->a_, forward ? p : turned_over(p), this->b_, q, test);
-    if (way < 4) return every_corner(this->b_, forward ? turned_over(q) : q, this->a_, p, test);
+    if (way < 4) return every_corner(way, p, q, test);
     const auto k = static_cast<std::size_t>(way - 4) / 2;
     const std::array<Eigen::Vector3d, 2> u{p[k / 3], p[(k / 3 + 1) % 3]}, u_back{u[1], u[0]};
     const std::array<Eigen::Vector3d, 2> v{q[k % 3], q[(k % 3 + 1) % 3]}, v_back{v[1], v[0]};
@@ -57,6 +58,22 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
            test(certificates::NormalAlongEdge<Degree>{this->b_, this->a_, q, forward ? u : u_back});
   }
 
+  /// The first double in [t, until] just after which a corner is deeper than the slack in the plane of a way < 4, or
+  /// `never`: exactly that of corners moved by so much, rounded.
+  double holds_until(int way, double slack, double t, double until) const {
+    const double along = way % 2 != 0 ? slack : -slack;
+    Corners p = this->hull_a_.points, q = this->hull_b_.points;
+    for (Eigen::Vector3d& x : p) x -= along * this->hull_a_.normals[0];
+    for (Eigen::Vector3d& x : q) x += along * this->hull_b_.normals[0];
+    double first = never;
+    every_corner(way, way < 2 ? p : this->hull_a_.points, way < 2 ? this->hull_b_.points : q,
+                 [&](const auto& condition) {
+                   first = std::min(first, failure_time(condition, t, std::min(first, until)));
+                   return true;
+                 });
+    return first;
+  }
+
   TurningTriangles with_slack(double slack) const {
     TurningTriangles pair = *this;
     pair.set_slack(slack);
@@ -64,6 +81,13 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
   }
 
  private:
+  /// Of the ways of planes.
+  template <class Test>
+  bool every_corner(int way, const Corners& p, const Corners& q, const Test& test) const {
+    const bool forward = way % 2 != 0;
+    if (way < 2) return every_corner(this->a_, forward ? p : turned_over(p), this->b_, q, test);
+    return every_corner(this->b_, forward ? turned_over(q) : q, this->a_, p, test);
+  }
   template <class Test>
   static bool every_corner(const RigidMotion& of_face, const Corners& face, const RigidMotion& of_corner,
                            const Corners& corners, const Test& test) {
