@@ -7,6 +7,7 @@
 #include "collision/narrow_phase/mesh_contact.hpp"
 #include "collision/narrow_phase/pair_tests.hpp"
 #include "collision/narrow_phase/turning/turning_contact.hpp"
+#include "collision/narrow_phase/turning/turning_mesh_contact.hpp"
 
 #include <algorithm>
 
@@ -31,6 +32,7 @@ constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   PairTable<certificates::RigidMotion<Degree>> table;
   table.template add<Sphere, Sphere>(TurningContact<Degree>{});
   table.template add<Box, Sphere, Box>(TurningContact<Degree>{});
+  table.template add<MeshShape, Sphere, Box, MeshShape>(TurningMeshContact<Degree>{});
   return table;
 }
 

@@ -1,11 +1,14 @@
 // Worlds of bodies that turn.
 #include "collision/world.hpp"
 
+#include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -87,4 +90,55 @@ TEST_CASE("turning worlds find the same contacts whichever broad phase they have
     logs.push_back(log.lines);
   }
   for (const auto& lines : logs) CHECK(lines == logs.front());
+}
+
+TEST_CASE("turning worlds with meshes find the same contacts whichever broad phase they have", "[turning]") {
+  const std::vector<std::shared_ptr<const Mesh>> meshes{samples::torus(6, 4), samples::cuboid(Vector3d(0.5, 0.4, 0.6)),
+                                                        samples::ball_mesh(1)};
+  std::vector<std::vector<std::string>> logs;
+  for (const BroadPhaseKind kind : {BroadPhaseKind::all_pairs, BroadPhaseKind::sap, BroadPhaseKind::kinetic_sap,
+                                    BroadPhaseKind::grid, BroadPhaseKind::automatic}) {
+    Log log;
+    WorldOptions options{.response = Response::elastic, .broad_phase = kind};
+    options.walls = Walls{Vector3d::Constant(-4), Vector3d::Constant(4)};
+    if (kind == BroadPhaseKind::sap) options.rate = 60;
+    Turning world(options, &log);
+    tests::Random random(78);
+    for (std::size_t i = 0; i < 18; ++i) {
+      const Vector3d place(static_cast<double>(i % 3) * 2.4 - 2.4, static_cast<double>(i / 3 % 3) * 2.4 - 2.4,
+                           static_cast<double>(i / 9) * 2.4 - 1.2);
+      const auto between = [&] { return random.between(-1, 1); };
+      Turning::Description body{.shape = MeshShape{meshes[i % 3], 0.9},
+                                .motion = {motion(place, 3 * Vector3d(between(), between(), between()),
+                                                  5 * Vector3d(between(), between(), between()))},
+                                .inertia = 0.3};
+      if (i % 5 == 0) body.shape = Sphere{0.5};
+      if (i % 7 == 0) body.shape = Box{Vector3d(0.75, 0.1, 0.2)};
+      world.add_body(body);
+    }
+    for (double t = 0.5; t <= 2; t += 0.5) {
+      world.advance_to(t);
+      world.audit();
+    }
+    CHECK(log.lines.size() > 10);
+    logs.push_back(log.lines);
+  }
+  for (const auto& lines : logs) CHECK(lines == logs.front());
+}
+
+TEST_CASE("a mesh that turns bounces off a ball, and energy and momenta are kept", "[turning]") {
+  Log log;
+  Turning world({.response = Response::elastic}, &log);
+  const BodyId rod = world.add_body({.shape = MeshShape{samples::cuboid(Vector3d(2, 0.125, 0.125))},
+                                     .motion = {motion({0, 0, 0}, {0, 0, 0}, {0, 0, 1})},
+                                     .inertia = 1.5});
+  const BodyId ball = world.add_body({.shape = Sphere{0.25}, .motion = {motion({0, 1.5, 0}, {0, 0, 0}, {0, 0, 0})}});
+  world.advance_to(3);
+  CHECK(log.lines.size() == 1);
+  const auto& of_rod = world.motion(rod);
+  const auto& of_ball = world.motion(ball);
+  CHECK((of_rod.path.velocity(3) + of_ball.path.velocity(3)).norm() < 1e-15);
+  const double energy = 0.5 * (of_rod.path.velocity(3).squaredNorm() + of_ball.path.velocity(3).squaredNorm()) +
+                        0.5 * 1.5 * of_rod.angular_velocity.squaredNorm();
+  CHECK(std::abs(energy - 0.75) < 1e-15);
 }

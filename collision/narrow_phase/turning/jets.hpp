@@ -49,20 +49,34 @@ inline VectorJet turning(const Eigen::Vector3d& vector, const Eigen::Vector3d& w
   return {vector, rate, cross(w, rate)};
 }
 
+/// A power of two that is not above the cube root of x, and not below half of it. Precondition: x > 0.
+inline double power_below_cube_root(double x) {
+  int exponent = 0;
+  std::frexp(x, &exponent);  // 2^(exponent - 1) <= x < 2^exponent
+  exponent -= 1;
+  return std::ldexp(1.0, exponent >= 0 ? exponent / 3 : -((2 - exponent) / 3));
+}
+
 /// A time s in [0, longest], rounded down, such that value + rate x + bend x^2 / 2 - third x^3 / 6 > 0 for all x in
 /// [0, s]. Near the first root, unless bend is positive, which is not made use of. `third` >= 0.
 ///
 /// Method: without a positive bend the function is concave. Where it is positive at the far end, too, it is so all the
-/// way. Else its chords meet zero before it does, and its tangents after.
+/// way. Else no term takes more than a third of the value until some time, and together they take all of it before 4
+/// times as late; from there chords meet zero before the function does, and tangents after.
 inline double positive_for(const Jet& f, double third, double longest) {
   if (!(f.value > 0)) return 0;
   const double c2 = std::min(f.bend, 0.0) / 2;
   const double c3 = third / 6;
   const auto at = [&](double s) { return f.value + s * (f.rate + s * (c2 - s * c3)); };
   if (at(longest) > 0) return longest;
-  double low = 0, at_low = f.value;
-  double high = longest;
-  for (int round = 0; round < 5 && at_low > 0; ++round) {
+  double low = longest;
+  if (f.rate < 0) low = std::min(low, -f.value / (3 * f.rate));
+  if (c2 < 0) low = std::min(low, std::sqrt(-f.value / (3 * c2)));
+  if (c3 > 0) low = std::min(low, power_below_cube_root(f.value / (3 * c3)));
+  double high = std::min(longest, 4 * low);
+  double at_low = at(low);
+  if (!(at_low > 0)) low = 0, at_low = f.value;  // but for roundings it is
+  for (int round = 0; round < 4 && at_low > 0; ++round) {
     const double at_high = at(high);
     if (!(at_high < 0)) break;
     const double slope = f.rate + high * (2 * c2 - 3 * high * c3);

@@ -1,0 +1,47 @@
+// Contacts of meshes that turn, with meshes, boxes and balls.
+#pragma once
+
+#include "certificates/turning/rigid_motion.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
+
+namespace kds::collision {
+
+/// The tests of a mesh (a) with a mesh, a box or a ball (b) of bodies that turn.
+///
+/// Law. A mesh is its surface, a set of triangles; a ball or a box is solid. Contact is the first double just after
+/// which a triangle of a penetrates b, or a triangle of b, by exact signs (see TurningTriangles, TurningTriangleAndBox,
+/// TurningTriangleAndBall for what penetrates). What touches, or slides in one plane, is not in contact. Two surfaces
+/// that go through each other face on face, with outlines that agree exactly, only touch, at all times.
+///
+/// What is exact of a mesh are its vertices times its scale, each coordinate rounded to a double (scaled_vertex), as
+/// points of the body, turned by the exact rotation of its motion. All parts use these numbers.
+///
+/// Method. Pairs of nodes of the trees wait in a queue, each until the time up to which they are proven to be apart, in
+/// doubles. The pair whose time is the earliest is looked at then: proven again, if that lasts for a while, or else
+/// split. Pairs of triangles are proven apart by doubles, too (TurningHulls), and only where that does not help on, by
+/// exact signs (WaysApart). So the time that is found does not depend on what doubles prove.
+///
+/// Mode `resolved`: a pair of triangles that penetrates counts if it approaches where it touches, faster than roundings
+/// can feign. Else it is passed over until it has parted and meets again, or is deeper in each other by more than
+/// roundings: that is told by doubles, too.
+template <int Degree>
+struct TurningMeshContact {
+  using Motion = certificates::RigidMotion<Degree>;
+  using Body = MovingShape<Motion>;
+
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*);
+  /// A time before which there is no contact; t0 where the balls around the two overlap.
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&);
+  static bool in_contact(const Body& a, const Body& b, double t);
+  static double first_separation(const Body& a, const Body& b, double t0, double horizon);
+
+  /// Of the pair of triangles that approaches fastest among those that penetrate just after t (or, where none does, did
+  /// just before t, or are nearest): along the direction in which they are the least deep in each other, in doubles.
+  static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch&);
+};
+
+#define KDS_DECLARE(degree) extern template struct TurningMeshContact<degree>;
+KDS_DECLARE(1) KDS_DECLARE(2)
+#undef KDS_DECLARE
+
+}  // namespace kds::collision

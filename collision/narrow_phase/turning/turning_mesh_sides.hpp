@@ -1,0 +1,104 @@
+// What a search for contacts of a mesh that turns takes from either side: nodes, and pairs that can be asked.
+#pragma once
+
+#include "collision/narrow_phase/turning/turning_nodes.hpp"
+#include "collision/narrow_phase/turning/turning_triangle_and_ball.hpp"
+#include "collision/narrow_phase/turning/turning_triangle_and_box.hpp"
+#include "collision/narrow_phase/turning/turning_triangles.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "collision/shapes/shape.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace kds::collision {
+
+/// A vertex of a mesh as a point of its body: these doubles are exact from here on.
+inline Eigen::Vector3d scaled_vertex(const MeshShape& shape, std::uint32_t vertex) {
+  const Eigen::Vector3d& x = shape.mesh->vertices()[vertex];
+  return {shape.scale * x[0], shape.scale * x[1], shape.scale * x[2]};
+}
+
+/// A mesh with its tree.
+class MeshSide {
+ public:
+  explicit MeshSide(const MeshShape& shape)
+      : shape_(shape), nodes_(shape.mesh->tree().nodes()), unit_(shape.mesh->tree().unit() * shape.scale) {}
+
+  BodyNode node(std::uint32_t i) const { return body_node(nodes_[i], unit_); }
+  bool is_leaf(std::uint32_t i) const { return nodes_[i].is_leaf(); }
+  std::uint32_t first_child(std::uint32_t i) const { return nodes_[i].first; }
+  double radius(std::uint32_t i) const { return unit_ * static_cast<double>(nodes_[i].radius); }
+
+  const LeafTriangle& triangle(std::uint32_t leaf) const {
+    static_assert(ObbTree::leaf_size == 1);
+    return shape_.mesh->tree().leaf_triangles()[nodes_[leaf].first];
+  }
+  std::array<Eigen::Vector3d, 3> corners(std::uint32_t leaf) const {
+    const auto& vertices = triangle(leaf).vertices;
+    return {scaled_vertex(shape_, vertices[0]), scaled_vertex(shape_, vertices[1]), scaled_vertex(shape_, vertices[2])};
+  }
+
+  template <int Degree>
+  using PairWith = TurningTriangles<Degree>;
+  /// A triangle of another mesh with one of this.
+  template <int Degree>
+  PairWith<Degree> pair(const MeshSide& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
+                        std::uint32_t leaf, const certificates::RigidMotion<Degree>& motion) const {
+    return {motion_a, a.corners(leaf_a), motion, corners(leaf)};
+  }
+
+ private:
+  const MeshShape& shape_;
+  std::span<const ObbNode> nodes_;
+  double unit_;
+};
+
+/// What is one leaf.
+class SolidSide {
+ public:
+  bool is_leaf(std::uint32_t) const { return true; }
+  std::uint32_t first_child(std::uint32_t) const { return 0; }
+  double radius(std::uint32_t) const { return 0; }  // it is not to be split
+};
+
+class BoxSide : public SolidSide {
+ public:
+  explicit BoxSide(const Box& box) : half_(box.half_extents) {}
+
+  BodyNode node(std::uint32_t) const { return box_node(half_); }
+
+  template <int Degree>
+  using PairWith = TurningTriangleAndBox<Degree>;
+  template <int Degree>
+  PairWith<Degree> pair(const MeshSide& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
+                        std::uint32_t, const certificates::RigidMotion<Degree>& motion) const {
+    return {motion_a, a.corners(leaf_a), motion, half_};
+  }
+
+ private:
+  Eigen::Vector3d half_;
+};
+
+class BallSide : public SolidSide {
+ public:
+  explicit BallSide(const Sphere& ball) : radius_(ball.radius) {}
+
+  BodyNode node(std::uint32_t) const { return ball_node(radius_); }
+
+  template <int Degree>
+  using PairWith = TurningTriangleAndBall<Degree>;
+  template <int Degree>
+  PairWith<Degree> pair(const MeshSide& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
+                        std::uint32_t, const certificates::RigidMotion<Degree>& motion) const {
+    return {motion_a, a.corners(leaf_a), motion, radius_};
+  }
+
+ private:
+  double radius_;
+};
+
+}  // namespace kds::collision

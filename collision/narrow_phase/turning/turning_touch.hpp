@@ -1,0 +1,154 @@
+// Where a triangle of a mesh and what it penetrates touch, in doubles.
+#pragma once
+
+#include "collision/narrow_phase/contact_patch.hpp"
+#include "collision/narrow_phase/turning/point_rates.hpp"
+#include "collision/narrow_phase/turning/turning_mesh_sides.hpp"
+#include "collision/shapes/support.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace kds::collision {
+
+/// The place at which two pieces touch, at the time of a view.
+struct TurningTouch {
+  Eigen::Vector3d point;   ///< from the origin of a
+  Eigen::Vector3d normal;  ///< unit, from a to b
+  Feature feature_a, feature_b;
+  double approach;  ///< how much faster they approach there than roundings can feign; not above zero if they do not
+};
+
+namespace detail {
+
+/// The points that are the farthest along a direction, in cyclic order, and what they are.
+struct FarthestPoints {
+  Feature feature;
+  std::vector<Eigen::Vector3d> points;
+};
+
+/// Which of the heights are the greatest: a set of bits. Sines below parallel_sine do not count.
+template <std::size_t Points>
+unsigned highest(const std::array<Eigen::Vector3d, Points>& points, const Eigen::Vector3d& direction) {
+  std::array<double, Points> height;
+  double size = 0;
+  for (std::size_t i = 0; i < Points; ++i) {
+    height[i] = dot(direction, points[i]);
+    size = std::max(size, norm(points[i] - points[0]));
+  }
+  const double top = *std::max_element(height.begin(), height.end());
+  unsigned set = 0;
+  for (std::size_t i = 0; i < Points; ++i) set |= height[i] >= top - parallel_sine * size ? 1u << i : 0u;
+  return set;
+}
+
+inline FarthestPoints farthest(const MeshSide& mesh, std::uint32_t leaf, const std::array<Eigen::Vector3d, 3>& points,
+                               const Eigen::Vector3d& direction) {
+  const LeafTriangle& triangle = mesh.triangle(leaf);
+  const unsigned set = highest(points, direction);
+  FarthestPoints result{Feature::face(triangle.index), {}};
+  std::array<std::uint32_t, 3> vertex{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(set >> i & 1)) continue;
+    result.points.push_back(points[i]);
+    vertex[count++] = triangle.vertices[i];
+  }
+  if (count == 1) result.feature = Feature::vertex(vertex[0]);
+  if (count == 2) result.feature = Feature::edge(vertex[0], vertex[1]);
+  return result;
+}
+
+inline FarthestPoints farthest(const BoxSide&, std::uint32_t, const std::array<Eigen::Vector3d, 8>& points,
+                               const Eigen::Vector3d& direction) {
+  const unsigned set = highest(points, direction);
+  unsigned in_all = 7, in_any = 0;  // bits of the corners' numbers
+  for (unsigned i = 0; i < 8; ++i) {
+    if (set >> i & 1) in_all &= i, in_any |= i;
+  }
+  const unsigned varied = in_any & ~in_all;  // the axes along which the feature stretches
+  FarthestPoints result;
+  if (varied == 0) {
+    result = {Feature::vertex(in_all), {points[in_all]}};
+  } else if ((varied & (varied - 1)) == 0) {
+    result = {Feature::edge(in_all, in_any), {points[in_all], points[in_any]}};
+  } else {
+    unsigned axis = 0;  // of a box that is flat up to roundings the last one that can be
+    for (unsigned d = 0; d < 3; ++d) axis = varied >> d & 1 ? axis : d;
+    const unsigned first = 1u << (axis + 1) % 3, second = 1u << (axis + 2) % 3, base = in_all & 1u << axis;
+    result = {Feature::face(2 * axis + (base != 0 ? 1 : 0)),
+              {points[base], points[base | first], points[base | first | second], points[base | second]}};
+  }
+  return result;
+}
+
+template <int Degree>
+double approach_at(const PointRates<Degree>& rates, const Eigen::Vector3d& normal, const Eigen::Vector3d& x) {
+  return -dot(normal, rates.velocity(x)) - rates.noise(x);
+}
+
+}  // namespace detail
+
+/// Of a triangle and a triangle or a box: along the direction in which they are the least deep in each other. The
+/// middle of what they share, or where that does not approach but another does, the corner of it that approaches
+/// fastest.
+///
+/// They approach if they do so along all directions in which they are no deeper than roundings: what slides on a face,
+/// in it by a rounding, meets walls below that face from inside, but is not stopped by them.
+template <int Degree, class HullB, class Side>
+TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshSide& a, std::uint32_t leaf_a, const Side& b,
+                      std::uint32_t leaf_b, const TurningView<Degree>& view, const PointRates<Degree>& rates,
+                      const Eigen::Vector3d& origin) {
+  using Hulls = TurningHulls<Degree, HullB>;
+  const typename Hulls::Seen seen(pair, view);
+  const auto along = [&](const Eigen::Vector3d& normal) {
+    const auto of_a = detail::farthest(a, leaf_a, seen.a, normal);
+    const auto of_b = detail::farthest(b, leaf_b, seen.b, -normal);
+    TurningTouch touch{patch_centre(of_a.points, of_b.points, seen.way, normal), normal, of_a.feature, of_b.feature, 0};
+    touch.approach = detail::approach_at(rates, normal, origin + touch.point);
+    if (touch.approach > 0) return touch;
+    for (const Eigen::Vector3d& x : patch_corners(of_a.points, of_b.points, seen.way, normal)) {
+      const double approach = detail::approach_at(rates, normal, origin + x);
+      if (approach > touch.approach) touch.approach = approach, touch.point = x;
+    }
+    return touch;
+  };
+  const auto widest = pair.widest(seen);
+  TurningTouch touch = along(widest.normal);
+  const double roundings = pair.roundings(view);
+  pair.every_gap(seen, [&](const typename Hulls::Widest& way) {
+    if (way.gap < -roundings || way.way == widest.way || !(touch.approach > 0)) return;
+    touch.approach = std::min(touch.approach, along(way.normal).approach);
+  });
+  return touch;
+}
+
+/// Of a triangle and a ball: at the point of the triangle that is nearest to the centre.
+template <int Degree>
+TurningTouch touch_of(const TurningTriangleAndBall<Degree>& pair, const MeshSide& a, std::uint32_t leaf_a,
+                      const BallSide&, std::uint32_t, const TurningView<Degree>& view, const PointRates<Degree>& rates,
+                      const Eigen::Vector3d& origin) {
+  const typename TurningTriangleAndBall<Degree>::Seen seen(pair, view);
+  const LeafTriangle& triangle = a.triangle(leaf_a);
+  int part = 0;
+  TurningTouch touch;
+  touch.point = seen.nearest(&part);
+  const Eigen::Vector3d apart = seen.centre - touch.point;
+  const double distance = norm(apart);
+  touch.normal = distance > 0 ? Eigen::Vector3d(apart / distance) : seen.normal;
+  const auto k = static_cast<std::size_t>(part) % 3;
+  touch.feature_a = part < 3   ? Feature::vertex(triangle.vertices[k])
+                    : part < 6 ? Feature::edge(triangle.vertices[k], triangle.vertices[(k + 1) % 3])
+                               : Feature::face(triangle.index);
+  touch.approach = detail::approach_at(rates, touch.normal, origin + touch.point);
+  return touch;
+}
+
+}  // namespace kds::collision
