@@ -124,7 +124,7 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   const double setup_start = cpu_seconds();
   Teller<Motion> teller(sink, scene.response);
   kds::collision::BasicWorld<Motion> world(world_options, &teller);
-  for (const SceneBody& body : scene.bodies) world.add_body(describe<Motion>(body, scene.response));
+  for (const SceneBody& body : scene.bodies) world.add_body(describe<Motion>(body));
   world.advance_to(begin);
   const double run_start = cpu_seconds();
 

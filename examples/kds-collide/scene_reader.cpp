@@ -233,11 +233,10 @@ void check_range(const JsonNode& node, const SceneBody& body, const Scene& scene
 /// Not every body can turn: which one cannot, and why, is for a world to say, which begins with the member that is
 /// wrong.
 void check_turns(const std::vector<JsonNode>& nodes, const Scene& scene) {
-  using World = kds::collision::BasicWorld<MotionPiece>;
-  World world({});
+  kds::collision::BasicWorld<MotionPiece> world({.response = scene.response});
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     try {
-      world.remove_body(world.add_body(describe<MotionPiece>(scene.bodies[i], scene.response)));
+      world.remove_body(world.add_body(describe<MotionPiece>(scene.bodies[i])));
     } catch (const std::invalid_argument& error) {
       const std::string what = error.what();
       const std::size_t colon = what.find(": ");

@@ -37,9 +37,9 @@ MotionPiece to_piece(const Motion& motion) {
   return piece;
 }
 
-/// A body of a scene with this response.
+/// A body of a scene.
 template <class Motion>
-kds::collision::BasicBodyDescription<Motion> describe(const SceneBody& body, Response response) {
+kds::collision::BasicBodyDescription<Motion> describe(const SceneBody& body) {
   kds::collision::BasicBodyDescription<Motion> description;
   description.shape = body.shape;
   description.mass = body.mass;
@@ -49,9 +49,6 @@ kds::collision::BasicBodyDescription<Motion> describe(const SceneBody& body, Res
   for (const MotionPiece& piece : body.motion) description.motion.push_back(to_motion<Motion>(piece));
   if constexpr (kds::collision::turns<Motion>) {
     description.inertia = body.inertia;
-    // Where nothing turns a body but its script, one whose moments differ turns as well as any other.
-    const bool scripted = response == Response::none || body.sensor;
-    if (scripted && body.inertia == 0) description.inertia = 1;
   } else {
     description.orientation = body.orientation;
   }

@@ -100,6 +100,17 @@ TEST_CASE("scene reader: where contacts turn nothing, bodies of any moments turn
   CHECK_THROWS_WITH(read("elastic", ""), Catch::StartsWith("scene.json: bodies[0].inertia: the moments of this box "));
 }
 
+TEST_CASE("scene reader: what cannot turn is refused where it stands") {
+  const auto read = [](const std::string& shape) {
+    parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic", "bodies": [{"name": "a", "shape": )" + shape +
+                    R"(, "motion": [{"start": 0, "position": [[0,0,0]], "angular_velocity": [0,0,0]}]}]})",
+                "scene.json");
+  };
+  CHECK_NOTHROW(read(R"({"box": {"half_extents": [1,1,1]}})"));
+  CHECK_THROWS_WITH(read(R"({"capsule": {"radius": 1, "half_length": 1}})"),
+                    "scene.json: bodies[0].shape: a capsule cannot turn: balls, boxes and meshes can");
+}
+
 TEST_CASE("scene reader: a capsule, and one of no length") {
   const auto read = [](const std::string& numbers) {
     const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "bodies": [{"name": "a", "shape": {"capsule": {)" +

@@ -37,7 +37,7 @@ void check_accepted(const Scene& scene) {
     options.walls = collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
   collision::BasicWorld<Motion> world(options);
-  for (const SceneBody& body : scene.bodies) world.add_body(describe<Motion>(body, scene.response));
+  for (const SceneBody& body : scene.bodies) world.add_body(describe<Motion>(body));
   // Some events, as far as a fuzzer's patience goes: not through 1e60 radians.
   if (collision::turns<Motion>) return;
   for (int i = 0; i < 20 && world.step(scene.end_time); ++i) {
