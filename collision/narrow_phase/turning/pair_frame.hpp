@@ -116,7 +116,7 @@ struct TurningBounds {
 /// The time that is so much later, rounded down, or t itself if that is not worth while: then exact signs get on
 /// faster.
 inline double after_wait(double t, double wait, double stretch) {
-  constexpr double worth = 0x1p-16;  // of the stretch; at 2^-12 and at 2^-20 pairs that graze each other take as long
+  constexpr double worth = 0x1p-16;  // of the stretch
   return wait > worth * stretch ? std::max(t, next_down(t + wait)) : t;
 }
 
