@@ -19,7 +19,7 @@
 namespace kds::collision {
 
 template <int Degree>
-using PathOf = std::array<Eigen::Vector3d, std::size_t{Degree} + 1>;  ///< polynomial of tau
+using PathCoefficients = std::array<Eigen::Vector3d, std::size_t{Degree} + 1>;  ///< polynomial of tau
 
 /// When c[0] + c[1] tau + ... < 0, from 0 to the horizon.
 template <int Degree>
@@ -36,7 +36,7 @@ SpansOf<Degree> spans_below_zero(const std::array<double, std::size_t{Degree} + 
 /// Whether a path comes as near to the origin as `reach` within a window, judged by its chord: which it leaves by no
 /// more than an eighth of the second derivative's bound times length^2.
 template <int Degree>
-bool may_come_near(const PathOf<Degree>& path, const TimeWindow& window, double reach) {
+bool may_come_near(const PathCoefficients<Degree>& path, const TimeWindow& window, double reach) {
   const double length = window.end - window.begin;
   const Eigen::Vector3d begin = place_on(path, window.begin);
   const Eigen::Vector3d along = place_on(path, window.end) - begin;
@@ -77,7 +77,7 @@ bool curve_approaches(const RelativeMotion<Degree>& motion, const ContactGap<Deg
   const auto speeds = smallest_speeds(motion);
   const Eigen::Vector3d place = motion.position(tau);
   const NearestPart nearest = nearest_part(place);
-  PathOf<Degree> y;
+  PathCoefficients<Degree> y;
   std::array<double, std::size_t{Degree} + 1> error;
   double factorial = 1;
   for (std::size_t k = 0; k <= Degree; ++k) {
@@ -138,7 +138,8 @@ void distance_maxima(const RelativeMotion<Degree>& motion, const Eigen::Vector3d
   }
 }
 template <int Degree, class Consider>
-void distance_maxima(const PathOf<Degree>& path, double horizon, double tau, double end, const Consider& consider) {
+void distance_maxima(const PathCoefficients<Degree>& path, double horizon, double tau, double end,
+                     const Consider& consider) {
   if constexpr (Degree == 2) {
     const DistanceQuartic quartic(path, {0, 0, 0});
     const auto points = quartic.turning_points(horizon);
