@@ -44,7 +44,7 @@ class TurningHulls {
 
   /// How wide the gap is along each way. Of ways that cross edges it is that times the sine of their angle: conditions
   /// of a way add up to no more than its gap.
-  double gaps(const TurningView<Degree>& view, std::array<double, ways>& gap) const {
+  double gaps(const TurningView<Degree>& view, std::array<double, std::size_t{ways}>& gap) const {
     gaps(Seen(*this, view), gap);
     return error(view);
   }
@@ -173,7 +173,7 @@ class TurningHulls {
   HullB hull_b_;
 
  private:
-  void gaps(const Seen& seen, std::array<double, ways>& gap) const {
+  void gaps(const Seen& seen, std::array<double, std::size_t{ways}>& gap) const {
     for (int k = 0; k < directions; ++k) {
       const auto both = seen.along(seen.direction(k));
       gap[static_cast<std::size_t>(2 * k)] = both[0];

@@ -15,13 +15,13 @@ using Body = typename TurningMeshContact<Degree>::Body;
 /// Calls ask(search) with the search for the kind of b.
 template <int Degree, class Ask>
 auto with_search(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
-  const MeshSide mesh(std::get<MeshShape>(a.shape.shape));
+  const MeshOfPair mesh(std::get<MeshShape>(a.shape.shape));
   const auto with = [&](const auto& side) {
     return ask(TurningMeshSearch<Degree, std::decay_t<decltype(side)>>(mesh, a.motion, side, b.motion));
   };
-  if (const auto* const other = std::get_if<MeshShape>(&b.shape.shape)) return with(MeshSide(*other));
-  if (const auto* const box = std::get_if<Box>(&b.shape.shape)) return with(BoxSide(*box));
-  return with(BallSide(std::get<Sphere>(b.shape.shape)));
+  if (const auto* const other = std::get_if<MeshShape>(&b.shape.shape)) return with(MeshOfPair(*other));
+  if (const auto* const box = std::get_if<Box>(&b.shape.shape)) return with(BoxOfPair(*box));
+  return with(BallOfPair(std::get<Sphere>(b.shape.shape)));
 }
 
 }  // namespace

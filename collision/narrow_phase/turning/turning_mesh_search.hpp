@@ -15,7 +15,8 @@
 
 namespace kds::collision {
 
-/// A mesh (a) and a MeshSide, BoxSide or BallSide (b), and their motions. See TurningMeshContact for laws and method.
+/// A mesh (a) and a MeshOfPair, BoxOfPair or BallOfPair (b), and their motions. See TurningMeshContact for laws and
+/// method.
 template <int Degree, class Side>
 class TurningMeshSearch {
  public:
@@ -23,7 +24,7 @@ class TurningMeshSearch {
   using Pair = typename Side::template PairWith<Degree>;
   using View = TurningView<Degree>;
 
-  TurningMeshSearch(const MeshSide& a, const RigidMotion& motion_a, const Side& b, const RigidMotion& motion_b)
+  TurningMeshSearch(const MeshOfPair& a, const RigidMotion& motion_a, const Side& b, const RigidMotion& motion_b)
       : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b) {}
 
   double first_contact(double t0, double horizon, ContactMode mode) const;
@@ -130,7 +131,7 @@ class TurningMeshSearch {
   }
   double passed_over(const Pair& pair, const View& view, double horizon) const;
 
-  const MeshSide& a_;
+  const MeshOfPair& a_;
   const Side& b_;
   const RigidMotion& motion_a_;
   const RigidMotion& motion_b_;

@@ -23,9 +23,9 @@ inline Eigen::Vector3d scaled_vertex(const MeshShape& shape, std::uint32_t verte
 }
 
 /// A mesh with its tree.
-class MeshSide {
+class MeshOfPair {
  public:
-  explicit MeshSide(const MeshShape& shape)
+  explicit MeshOfPair(const MeshShape& shape)
       : shape_(shape), nodes_(shape.mesh->tree().nodes()), unit_(shape.mesh->tree().unit() * shape.scale) {}
 
   BodyNode node(std::uint32_t i) const { return body_node(nodes_[i], unit_); }
@@ -46,7 +46,7 @@ class MeshSide {
   using PairWith = TurningTriangles<Degree>;
   /// A triangle of another mesh with one of this.
   template <int Degree>
-  PairWith<Degree> pair(const MeshSide& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
+  PairWith<Degree> pair(const MeshOfPair& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
                         std::uint32_t leaf, const certificates::RigidMotion<Degree>& motion) const {
     return {motion_a, a.corners(leaf_a), motion, corners(leaf)};
   }
@@ -65,16 +65,16 @@ class SolidSide {
   double radius(std::uint32_t) const { return 0; }  // it is not to be split
 };
 
-class BoxSide : public SolidSide {
+class BoxOfPair : public SolidSide {
  public:
-  explicit BoxSide(const Box& box) : half_(box.half_extents) {}
+  explicit BoxOfPair(const Box& box) : half_(box.half_extents) {}
 
   BodyNode node(std::uint32_t) const { return box_node(half_); }
 
   template <int Degree>
   using PairWith = TurningTriangleAndBox<Degree>;
   template <int Degree>
-  PairWith<Degree> pair(const MeshSide& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
+  PairWith<Degree> pair(const MeshOfPair& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
                         std::uint32_t, const certificates::RigidMotion<Degree>& motion) const {
     return {motion_a, a.corners(leaf_a), motion, half_};
   }
@@ -83,16 +83,16 @@ class BoxSide : public SolidSide {
   Eigen::Vector3d half_;
 };
 
-class BallSide : public SolidSide {
+class BallOfPair : public SolidSide {
  public:
-  explicit BallSide(const Sphere& ball) : radius_(ball.radius) {}
+  explicit BallOfPair(const Sphere& ball) : radius_(ball.radius) {}
 
   BodyNode node(std::uint32_t) const { return ball_node(radius_); }
 
   template <int Degree>
   using PairWith = TurningTriangleAndBall<Degree>;
   template <int Degree>
-  PairWith<Degree> pair(const MeshSide& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
+  PairWith<Degree> pair(const MeshOfPair& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
                         std::uint32_t, const certificates::RigidMotion<Degree>& motion) const {
     return {motion_a, a.corners(leaf_a), motion, radius_};
   }

@@ -49,8 +49,8 @@ unsigned highest(const std::array<Eigen::Vector3d, Points>& points, const Eigen:
   return set;
 }
 
-inline FarthestPoints farthest(const MeshSide& mesh, std::uint32_t leaf, const std::array<Eigen::Vector3d, 3>& points,
-                               const Eigen::Vector3d& direction) {
+inline FarthestPoints farthest_points(const MeshOfPair& mesh, std::uint32_t leaf,
+                                      const std::array<Eigen::Vector3d, 3>& points, const Eigen::Vector3d& direction) {
   const LeafTriangle& triangle = mesh.triangle(leaf);
   const unsigned set = highest(points, direction);
   FarthestPoints result{Feature::face(triangle.index), {}};
@@ -66,8 +66,8 @@ inline FarthestPoints farthest(const MeshSide& mesh, std::uint32_t leaf, const s
   return result;
 }
 
-inline FarthestPoints farthest(const BoxSide&, std::uint32_t, const std::array<Eigen::Vector3d, 8>& points,
-                               const Eigen::Vector3d& direction) {
+inline FarthestPoints farthest_points(const BoxOfPair&, std::uint32_t, const std::array<Eigen::Vector3d, 8>& points,
+                                      const Eigen::Vector3d& direction) {
   const unsigned set = highest(points, direction);
   unsigned in_all = 7, in_any = 0;  // bits of the corners' numbers
   for (unsigned i = 0; i < 8; ++i) {
@@ -103,14 +103,14 @@ double approach_at(const PointRates<Degree>& rates, const Eigen::Vector3d& norma
 /// They approach if they do so along all directions in which they are no deeper than roundings: what slides on a face,
 /// in it by a rounding, meets walls below that face from inside, but is not stopped by them.
 template <int Degree, class HullB, class Side>
-TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshSide& a, std::uint32_t leaf_a, const Side& b,
+TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshOfPair& a, std::uint32_t leaf_a, const Side& b,
                       std::uint32_t leaf_b, const TurningView<Degree>& view, const PointRates<Degree>& rates,
                       const Eigen::Vector3d& origin) {
   using Hulls = TurningHulls<Degree, HullB>;
   const typename Hulls::Seen seen(pair, view);
   const auto along = [&](const Eigen::Vector3d& normal) {
-    const auto of_a = detail::farthest(a, leaf_a, seen.a, normal);
-    const auto of_b = detail::farthest(b, leaf_b, seen.b, -normal);
+    const auto of_a = detail::farthest_points(a, leaf_a, seen.a, normal);
+    const auto of_b = detail::farthest_points(b, leaf_b, seen.b, -normal);
     TurningTouch touch{patch_centre(of_a.points, of_b.points, seen.way, normal), normal, of_a.feature, of_b.feature, 0};
     touch.approach = detail::approach_at(rates, normal, origin + touch.point);
     if (touch.approach > 0) return touch;
@@ -132,9 +132,9 @@ TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshSide& a
 
 /// Of a triangle and a ball: at the point of the triangle that is nearest to the centre.
 template <int Degree>
-TurningTouch touch_of(const TurningTriangleAndBall<Degree>& pair, const MeshSide& a, std::uint32_t leaf_a,
-                      const BallSide&, std::uint32_t, const TurningView<Degree>& view, const PointRates<Degree>& rates,
-                      const Eigen::Vector3d& origin) {
+TurningTouch touch_of(const TurningTriangleAndBall<Degree>& pair, const MeshOfPair& a, std::uint32_t leaf_a,
+                      const BallOfPair&, std::uint32_t, const TurningView<Degree>& view,
+                      const PointRates<Degree>& rates, const Eigen::Vector3d& origin) {
   const typename TurningTriangleAndBall<Degree>::Seen seen(pair, view);
   const LeafTriangle& triangle = a.triangle(leaf_a);
   int part = 0;
