@@ -19,24 +19,6 @@ using BoxSides = std::array<int, 3>;
 
 namespace detail {
 
-/// How far the centre of a ball is beyond one side of a box, times the scale of the box (Turner): the coefficients of
-/// 1, cos a, w sin a.
-template <class Number, int Order, int Degree>
-std::array<Polynomial<Order, Number>, 3> beyond_side(const Turner<Number>& turn,
-                                                     const VectorOf<Polynomial<std::min(Order, Degree), Number>>& way,
-                                                     std::size_t axis, int side, double half_extent) {
-  VectorOf<Number> outward{Number(0.0), Number(0.0), Number(0.0)};
-  outward[axis] = Number(static_cast<double>(side));
-  const TurnedVector<Number> normal = turn(outward);
-  std::array<Polynomial<Order, Number>, 3> beyond{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto part = along(normal[i], way);
-    for (std::size_t k = 0; k < part.c.size(); ++k) beyond[i].c[k] = part.c[k];
-  }
-  beyond[0].c[0] = beyond[0].c[0] - turn.scale() * Number(half_extent);
-  return beyond;
-}
-
 /// Spins and path of the pair, of which only the box turns.
 template <int Degree>
 struct BallAndBox {
@@ -50,6 +32,15 @@ struct BallAndBox {
   template <class Number, int Order>
   auto way(double epoch) const {
     return way_between<Number, std::min(Order, Degree)>(box.path, ball, epoch);
+  }
+
+  /// How far the centre of the ball is beyond one side, times the scale of the box.
+  template <class Number, int Order, class Way>
+  TurnedNumber<Number, Order> beyond_side(const Turner<Number>& turn, const Way& way, std::size_t axis,
+                                          int side) const {
+    VectorOf<Number> outward{Number(0.0), Number(0.0), Number(0.0)};
+    outward[axis] = Number(static_cast<double>(side));
+    return seen_along<Order>(turn, way, outward, Number(half_extents[static_cast<Eigen::Index>(axis)]));
   }
 };
 
@@ -65,9 +56,8 @@ struct CentreBeyondSide : detail::BallAndBox<Degree> {
 
   template <class Number, int Order>
   TurningSum<Order, Number> turning_sum(double epoch) const {
-    const auto beyond =
-        detail::beyond_side<Number, Order, Degree>(Turner<Number>(this->box), this->template way<Number, Order>(epoch),
-                                                   axis, side, this->half_extents[static_cast<Eigen::Index>(axis)]);
+    const auto beyond = this->template beyond_side<Number, Order>(
+        Turner<Number>(this->box), this->template way<Number, Order>(epoch), axis, side);
     TurningSum<Order, Number> f{};
     for (std::size_t i = 0; i < 3; ++i) f.p[i][0] = beyond[i];
     return f;
@@ -89,25 +79,11 @@ struct BallBeyondSides : detail::BallAndBox<Degree> {
     TurningSum<Order, Number> f{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (sides[axis] == 0) continue;
-      const auto beyond = detail::beyond_side<Number, Order, Degree>(
-          turn, way, axis, sides[axis], this->half_extents[static_cast<Eigen::Index>(axis)]);
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) add_product(f.p[i][j], beyond[i], beyond[j]);
-      }
+      add_square(f, this->template beyond_side<Number, Order>(turn, way, axis, sides[axis]));
     }
     const Number reach = turn.scale() * Number(radius);
     f.p[0][0].c[0] = f.p[0][0].c[0] - reach * reach;
     return f;
-  }
-
- private:
-  /// Up to the order that is kept.
-  template <int Order, class Number>
-  static void add_product(Polynomial<Order, Number>& sum, const Polynomial<Order, Number>& a,
-                          const Polynomial<Order, Number>& b) {
-    for (std::size_t i = 0; i <= Order; ++i) {
-      for (std::size_t k = 0; k <= i; ++k) sum.c[i] = sum.c[i] + a.c[k] * b.c[i - k];
-    }
   }
 };
 

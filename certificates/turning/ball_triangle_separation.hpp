@@ -48,19 +48,10 @@ struct BallAndTriangle {
     return cross(edge<Number>(0, 1), edge<Number>(0, 2));
   }
 
-  /// m . d times the scale of the body (Turner): the coefficients of 1, cos a, w sin a.
-  template <class Number, int Order>
-  std::array<Polynomial<Order, Number>, 3> beyond(const Turner<Number>& turn,
-                                                  const VectorOf<Polynomial<std::min(Order, Degree), Number>>& way,
-                                                  const VectorOf<Number>& m) const {
-    const TurnedVector<Number> turned = turn(m);
-    std::array<Polynomial<Order, Number>, 3> result{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto sum = along(turned[i], way);
-      for (std::size_t k = 0; k < sum.c.size(); ++k) result[i].c[k] = sum.c[k];
-    }
-    result[0].c[0] = result[0].c[0] - turn.scale() * dot(m, vector_of<Number>(corner(0)));
-    return result;
+  /// m . d times the scale of the body.
+  template <class Number, int Order, class Way>
+  TurnedNumber<Number, Order> beyond(const Turner<Number>& turn, const Way& way, const VectorOf<Number>& m) const {
+    return seen_along<Order>(turn, way, m, dot(m, vector_of<Number>(corner(0))));
   }
 
   template <class Number, int Order>
@@ -117,43 +108,30 @@ struct BallBeyondPart : detail::BallAndTriangle<Degree> {
     const Turner<Number> turn(this->body);
     const auto way = this->template way<Number, Order>(epoch);
     TurningSum<Order, Number> f{};
-    const auto add_square = [&](const VectorOf<Number>& m) {
-      const auto beyond = this->template beyond<Number, Order>(turn, way, m);
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) add_product(f.p[i][j], beyond[i], beyond[j]);
-      }
+    const auto add = [&](const VectorOf<Number>& m) {
+      add_square(f, this->template beyond<Number, Order>(turn, way, m));
     };
     const Number zero(0.0), one(1.0);
     Number length = one;
     if (this->part.kind == TrianglePart::Kind::face) {
       const VectorOf<Number> n = this->template normal<Number>();
-      add_square(n);
+      add(n);
       length = dot(n, n);
     } else if (this->part.kind == TrianglePart::Kind::edge) {
       // The coordinates of d x e are products of d with e x unit vectors.
       const VectorOf<Number> e = this->template edge<Number>(0, 1);
-      add_square({zero, e[2], zero - e[1]});
-      add_square({zero - e[2], zero, e[0]});
-      add_square({e[1], zero - e[0], zero});
+      add({zero, e[2], zero - e[1]});
+      add({zero - e[2], zero, e[0]});
+      add({e[1], zero - e[0], zero});
       length = dot(e, e);
     } else {
-      add_square({one, zero, zero});
-      add_square({zero, one, zero});
-      add_square({zero, zero, one});
+      add({one, zero, zero});
+      add({zero, one, zero});
+      add({zero, zero, one});
     }
     const Number reach = turn.scale() * Number(radius);
     f.p[0][0].c[0] = f.p[0][0].c[0] - reach * reach * length;
     return f;
-  }
-
- private:
-  /// Up to the order that is kept.
-  template <int Order, class Number>
-  static void add_product(Polynomial<Order, Number>& sum, const Polynomial<Order, Number>& a,
-                          const Polynomial<Order, Number>& b) {
-    for (std::size_t i = 0; i <= Order; ++i) {
-      for (std::size_t k = 0; k <= i; ++k) sum.c[i] = sum.c[i] + a.c[k] * b.c[i - k];
-    }
   }
 };
 

@@ -35,6 +35,38 @@ Polynomial<Order, Number> along(const VectorOf<Number>& x, const VectorOf<Polyno
   return sum;
 }
 
+/// A number of one body's spin whose factors may change with time: the coefficients of 1, cos a, w sin a.
+template <class Number, int Order>
+using TurnedNumber = std::array<Polynomial<Order, Number>, 3>;
+
+/// (R(t) m . way - offset) times the scale of the body (Turner).
+template <int Order, class Number, int WayOrder>
+TurnedNumber<Number, Order> seen_along(const Turner<Number>& turn, const VectorOf<Polynomial<WayOrder, Number>>& way,
+                                       const VectorOf<Number>& m, const Number& offset) {
+  static_assert(WayOrder <= Order);
+  const TurnedVector<Number> turned = turn(m);
+  TurnedNumber<Number, Order> result{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto sum = along(turned[i], way);
+    for (std::size_t k = 0; k < sum.c.size(); ++k) result[i].c[k] = sum.c[k];
+  }
+  result[0].c[0] = result[0].c[0] - turn.scale() * offset;
+  return result;
+}
+
+/// Adds the square of a number of one spin, up to the order that is kept, where both spins of the sum are that one.
+template <int Order, class Number>
+void add_square(TurningSum<Order, Number>& f, const TurnedNumber<Number, Order>& a) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      auto& sum = f.p[i][j];
+      for (std::size_t n = 0; n <= Order; ++n) {
+        for (std::size_t k = 0; k <= n; ++k) sum.c[n] = sum.c[n] + a[i].c[k] * a[j].c[n - k];
+      }
+    }
+  }
+}
+
 /// Adds a . b, of vectors that turn with the first and with the second spin.
 template <int Order, class Number>
 void add_product(TurningSum<Order, Number>& f, const TurnedVector<Number>& a, const TurnedVector<Number>& b) {

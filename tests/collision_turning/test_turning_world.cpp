@@ -39,6 +39,27 @@ RigidMotion<1> motion(const Vector3d& position, const Vector3d& velocity, const 
   return result;
 }
 
+/// What an audited run between walls reports, by each broad phase.
+template <class Fill>
+std::vector<std::vector<std::string>> logs_by_broad_phase(double until, const Fill& fill) {
+  std::vector<std::vector<std::string>> logs;
+  for (const BroadPhaseKind kind : {BroadPhaseKind::all_pairs, BroadPhaseKind::sap, BroadPhaseKind::kinetic_sap,
+                                    BroadPhaseKind::grid, BroadPhaseKind::automatic}) {
+    Log log;
+    WorldOptions options{.response = Response::elastic, .broad_phase = kind};
+    options.walls = Walls{Vector3d::Constant(-4), Vector3d::Constant(4)};
+    if (kind == BroadPhaseKind::sap) options.rate = 60;
+    Turning world(options, &log);
+    fill(world);
+    for (double t = 0.5; t <= until; t += 0.5) {
+      world.advance_to(t);
+      world.audit();
+    }
+    logs.push_back(log.lines);
+  }
+  return logs;
+}
+
 }  // namespace
 
 TEST_CASE("a rod that turns meets a ball, and both fly on with their energy and momenta", "[turning]") {
@@ -63,14 +84,7 @@ TEST_CASE("a rod that turns meets a ball, and both fly on with their energy and 
 }
 
 TEST_CASE("turning worlds find the same contacts whichever broad phase they have", "[turning]") {
-  std::vector<std::vector<std::string>> logs;
-  for (const BroadPhaseKind kind : {BroadPhaseKind::all_pairs, BroadPhaseKind::sap, BroadPhaseKind::kinetic_sap,
-                                    BroadPhaseKind::grid, BroadPhaseKind::automatic}) {
-    Log log;
-    WorldOptions options{.response = Response::elastic, .broad_phase = kind};
-    options.walls = Walls{Vector3d::Constant(-4), Vector3d::Constant(4)};
-    if (kind == BroadPhaseKind::sap) options.rate = 60;
-    Turning world(options, &log);
+  const auto fill = [](Turning& world) {
     tests::Random random(77);
     for (int i = 0; i < 30; ++i) {
       const Vector3d place(i % 3 * 2.0 - 2, i / 3 % 3 * 2.0 - 2, i / 9 * 2.0 - 3);
@@ -82,27 +96,16 @@ TEST_CASE("turning worlds find the same contacts whichever broad phase they have
       if (i % 5 == 0) body.shape = Box{Vector3d(0.75, 0.1, 0.2)}, body.inertia = 0.2;
       world.add_body(body);
     }
-    for (double t = 0.5; t <= 3; t += 0.5) {
-      world.advance_to(t);
-      world.audit();
-    }
-    CHECK(log.lines.size() > 30);
-    logs.push_back(log.lines);
-  }
+  };
+  const auto logs = logs_by_broad_phase(3, fill);
+  CHECK(logs.front().size() > 30);
   for (const auto& lines : logs) CHECK(lines == logs.front());
 }
 
 TEST_CASE("turning worlds with meshes find the same contacts whichever broad phase they have", "[turning]") {
   const std::vector<std::shared_ptr<const Mesh>> meshes{samples::torus(6, 4), samples::cuboid(Vector3d(0.5, 0.4, 0.6)),
                                                         samples::ball_mesh(1)};
-  std::vector<std::vector<std::string>> logs;
-  for (const BroadPhaseKind kind : {BroadPhaseKind::all_pairs, BroadPhaseKind::sap, BroadPhaseKind::kinetic_sap,
-                                    BroadPhaseKind::grid, BroadPhaseKind::automatic}) {
-    Log log;
-    WorldOptions options{.response = Response::elastic, .broad_phase = kind};
-    options.walls = Walls{Vector3d::Constant(-4), Vector3d::Constant(4)};
-    if (kind == BroadPhaseKind::sap) options.rate = 60;
-    Turning world(options, &log);
+  const auto fill = [&](Turning& world) {
     tests::Random random(78);
     for (std::size_t i = 0; i < 18; ++i) {
       const Vector3d place(static_cast<double>(i % 3) * 2.4 - 2.4, static_cast<double>(i / 3 % 3) * 2.4 - 2.4,
@@ -116,13 +119,9 @@ TEST_CASE("turning worlds with meshes find the same contacts whichever broad pha
       if (i % 7 == 0) body.shape = Box{Vector3d(0.75, 0.1, 0.2)};
       world.add_body(body);
     }
-    for (double t = 0.5; t <= 2; t += 0.5) {
-      world.advance_to(t);
-      world.audit();
-    }
-    CHECK(log.lines.size() > 10);
-    logs.push_back(log.lines);
-  }
+  };
+  const auto logs = logs_by_broad_phase(2, fill);
+  CHECK(logs.front().size() > 10);
   for (const auto& lines : logs) CHECK(lines == logs.front());
 }
 

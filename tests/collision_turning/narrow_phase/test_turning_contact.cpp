@@ -4,7 +4,7 @@
 
 #include "kds/arithmetic/lattice.hpp"
 #include "tests/collision_turning/narrow_phase/turning_oracle.hpp"
-#include "tests/support/random_numbers.hpp"
+#include "tests/collision_turning/narrow_phase/turning_solids.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -19,7 +19,9 @@ using namespace kds;
 using namespace kds::collision;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using kds::tests::motion_of;
 using kds::tests::Random;
+using kds::tests::random_vector;
 using kds::tests::TurningOracle;
 
 template <int Degree>
@@ -48,21 +50,7 @@ struct Test {
 };
 
 template <int Degree>
-struct Solid {
-  Shape shape;
-  certificates::RigidMotion<Degree> motion;
-  PlacedShape placed = place(shape, Quaterniond::Identity());
-
-  Body<Degree> body() const { return {placed, motion}; }
-};
-
-template <int Degree>
-certificates::RigidMotion<Degree> motion_of(const Vector3d& position, const Vector3d& velocity, const Vector3d& spin,
-                                            double start = 0) {
-  certificates::RigidMotion<Degree> motion{{{position, velocity}, start}};
-  motion.angular_velocity = spin;
-  return motion;
-}
+using Solid = kds::tests::TurningSolid<Degree>;
 
 template <int Degree>
 double gap(const Solid<Degree>& a, const Solid<Degree>& b, double t) {
@@ -120,10 +108,6 @@ Quaterniond random_orientation(Random& random) {
     default:
       return Quaterniond(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
   }
-}
-
-Vector3d random_vector(Random& random, double size) {
-  return size * Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
 }
 
 /// Two bodies that come near each other at a time of about 1; in some, what they have of spins, axes or sizes is alike.

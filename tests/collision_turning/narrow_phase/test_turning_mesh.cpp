@@ -5,7 +5,7 @@
 #include "kds/arithmetic/lattice.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/collision_turning/narrow_phase/turning_mesh_oracle.hpp"
-#include "tests/support/random_numbers.hpp"
+#include "tests/collision_turning/narrow_phase/turning_solids.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -26,30 +26,13 @@ using namespace kds;
 using namespace kds::collision;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using kds::tests::motion_of;
 using kds::tests::Random;
+using kds::tests::random_vector;
 using Oracle = kds::tests::TurningMeshOracle;
 
 template <int Degree>
-struct Solid {
-  Shape shape;
-  certificates::RigidMotion<Degree> motion;
-  PlacedShape placed = place(shape, Quaterniond::Identity());
-
-  MovingShape<certificates::RigidMotion<Degree>> body() const { return {placed, motion}; }
-  const MeshShape& mesh() const { return std::get<MeshShape>(shape); }
-};
-
-template <int Degree>
-certificates::RigidMotion<Degree> motion_of(const Vector3d& position, const Vector3d& velocity, const Vector3d& spin,
-                                            double start = 0) {
-  certificates::RigidMotion<Degree> motion{{{position, velocity}, start}};
-  motion.angular_velocity = spin;
-  return motion;
-}
-
-Vector3d random_vector(Random& random, double size) {
-  return size * Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-}
+using Solid = kds::tests::TurningSolid<Degree>;
 
 template <int Degree>
 certificates::RigidMotion<Degree> random_motion(Random& random, const Vector3d& place, double rate) {
