@@ -1,0 +1,35 @@
+// Bodies that turn, with the shape they have before it is placed: for tests of pairs of them.
+#pragma once
+
+#include "certificates/turning/rigid_motion.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <variant>
+
+namespace kds::tests {
+
+template <int Degree>
+struct TurningSolid {
+  collision::Shape shape;
+  certificates::RigidMotion<Degree> motion;
+  collision::PlacedShape placed = place(shape, Eigen::Quaterniond::Identity());
+
+  collision::MovingShape<certificates::RigidMotion<Degree>> body() const { return {placed, motion}; }
+  const collision::MeshShape& mesh() const { return std::get<collision::MeshShape>(shape); }
+};
+
+template <int Degree>
+certificates::RigidMotion<Degree> motion_of(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
+                                            const Eigen::Vector3d& spin, double start = 0) {
+  certificates::RigidMotion<Degree> motion{{{position, velocity}, start}};
+  motion.angular_velocity = spin;
+  return motion;
+}
+
+/// In the cube of coordinates from -size to size.
+inline Eigen::Vector3d random_vector(Random& random, double size) {
+  return size * Eigen::Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+}
+
+}  // namespace kds::tests
