@@ -32,16 +32,16 @@ struct BallSeparation {
   template <class Number>
   Polynomial<degree, Number> polynomial(double epoch) const {
     const auto r = relative_motion<Number>(a, b, epoch);
-    const Number reach = Number(radius_a) + radius_b;
+    const Number radii = Number(radius_a) + radius_b;
     auto f = square(r[0]) + square(r[1]) + square(r[2]);
-    f.c[0] = f.c[0] - reach * reach;
+    f.c[0] = f.c[0] - radii * radii;
     return f;
   }
 
   Ball<DoubleDouble> extended_value(double t) const {
     if constexpr (PathDegree == 1) return extended_square_gap(a, b, radius_a, radius_b, t);
-    const Ball<DoubleDouble> reach = Ball<DoubleDouble>(radius_a) + radius_b;
-    Ball<DoubleDouble> f = -(reach * reach);
+    const Ball<DoubleDouble> radii = Ball<DoubleDouble>(radius_a) + radius_b;
+    Ball<DoubleDouble> f = -(radii * radii);
     for (int d = 0; d < 3; ++d) {
       const Ball<DoubleDouble> r = extended_difference(b.axis(d), a.axis(d), t);
       f = f + r * r;
@@ -101,7 +101,7 @@ inline Ball<double> bounded(double value, double magnitude) {
   return {value, magnitude < Line::range ? Line::unit * magnitude + Line::lost : never};
 }
 
-/// f' now, where f is the square of the distance less that of the reach.
+/// f' now, where f is the square of the distance less that of the sum of the radii.
 inline Ball<double> rate_of_gap(const RelativeLine<double>& line) {
   return bounded(2 * line.product, 2 * (line.M * line.W));
 }
@@ -109,7 +109,7 @@ inline Ball<double> rate_of_gap(const RelativeLine<double>& line) {
 /// f itself.
 inline Polynomial<2, Ball<double>> square_gap(const RelativeLine<double>& line) {
   Polynomial<2, Ball<double>> f;
-  f.c[0] = bounded(line.square, line.M * line.M + line.reach * line.reach);
+  f.c[0] = bounded(line.square, line.M * line.M + line.radii * line.radii);
   f.c[1] = rate_of_gap(line);
   f.c[2] = bounded(line.speeds, line.W * line.W);
   return f;
@@ -197,8 +197,8 @@ double BallSeparation<PathDegree>::apart_until(double now) const {
   }
   const double distance = apart[0].norm();
   if (!(distance > 0 && distance < never)) return now;
-  const double reach = radius_a + radius_b;
-  const double c0 = distance - reach - rounding * (terms[0] + reach);
+  const double radii = radius_a + radius_b;
+  const double c0 = distance - radii - rounding * (terms[0] + radii);
   const double c1 = apart[0].dot(apart[1]) / distance - rounding * terms[1];
   const double c2 = apart[0].dot(apart[2]) / distance - rounding * terms[2];
   const double wait = positive_for(c0, c1, c2);

@@ -37,9 +37,9 @@ template <class Lanes>
 
 /// See BallsTogether::earliest_approaches(). `known` where the path is a line.
 ///
-/// Along a line f (the square of the distance less that of the reach) is convex: it has its first root where it falls,
-/// at c / (p + sqrt(p^2 - c s)) with c = f now, p half its rate downward and s that of v . v. Bounds in place of c, p
-/// and the discriminant give a lower bound of that, and whether it is a root at all need not be known.
+/// Along a line f (the square of the distance less that of the sum of the radii) is convex: it has its first root where
+/// it falls, at c / (p + sqrt(p^2 - c s)) with c = f now, p half its rate downward and s that of v . v. Bounds in place
+/// of c, p and the discriminant give a lower bound of that, and whether it is a root at all need not be known.
 ///
 /// Without a branch: whether balls approach is what processors cannot foresee. And with nothing that is not inlined
 /// (see four.hpp).
@@ -50,16 +50,16 @@ template <class Lanes, class Bits>
   const Lanes undecided = all<Lanes>(__builtin_nan(""));
   const Lanes no_meeting = all<Lanes>(never);
   const Lanes error = Line::unit * (line.M * line.W) + Line::lost;  // of the product
-  const Lanes size = line.M * line.M + line.reach * line.reach;
+  const Lanes size = line.M * line.M + line.radii * line.radii;
   const Lanes least = line.square - (Line::unit * size + Line::lost);
-  // The discriminant is off by unit W^2 (4 M^2 + 2 reach^2), and by its own rounding.
+  // The discriminant is off by unit W^2 (4 M^2 + 2 radii^2), and by its own rounding.
   const Lanes spare = 8 * Line::unit * (line.W * line.W) * size + Line::lost;
   const Lanes discriminant = line.product * line.product - line.square * line.speeds + spare;
   const Lanes root = least / (square_root(discriminant) - line.product + error);
   const Lanes sum = now + root * (1 - 0x1p-50);
   const Lanes t = sum - 0x1p-52 * magnitude(sum);  // not after what was rounded
 
-  known &= line.M + line.W + line.reach < Line::small;
+  known &= line.M + line.W + line.radii < Line::small;
   const Bits apart = least > 0.0;
   const Bits parts = (line.product > error) | (line.W == 0.0);               // or one stands as seen from the other
   Lanes earliest = t <= horizon ? greater(t, all<Lanes>(now)) : no_meeting;  // t is a NaN where there is no root
@@ -93,12 +93,12 @@ template <class Lanes, int PathDegree>
     BallNumbers<Lanes, PathDegree> a, b;
     read(pairs.a + first, a);
     read(pairs.b + first, b);
-    const Lanes reach = a.radius + b.radius;
-    auto known = reach == reach;
+    const Lanes radii = a.radius + b.radius;
+    auto known = radii == radii;
     if constexpr (PathDegree > 1) {
       for (int d = 0; d < 3; ++d) known &= a.motion.coefficients[2][d] == b.motion.coefficients[2][d];
     }
-    const Lanes found = earliest_approach(RelativeLine<Lanes>(a.motion, b.motion, reach, now), known, now, horizon);
+    const Lanes found = earliest_approach(RelativeLine<Lanes>(a.motion, b.motion, radii, now), known, now, horizon);
     __builtin_memcpy(earliest + first, &found, sizeof found);
   }
 }

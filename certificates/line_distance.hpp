@@ -10,19 +10,19 @@
 
 namespace kds::certificates {
 
-/// |b(t) - a(t)|^2 - (reach_a + reach_b)^2, with a bound on its error; not a number or unbounded where numbers are out
-/// of range.
+/// |b(t) - a(t)|^2 - (radius_a + radius_b)^2, with a bound on its error; not a number or unbounded where numbers are
+/// out of range.
 ///
 /// In double-double, without a bound for each step: two axes at a time, and one bound for all. With u = 2^-53, m the
-/// sum of magnitudes of an axis (positions and what is moved by), M that of all axes, R the reach. Elapsed times, sums
-/// of two and products of two doubles are exact. The low part of a position is a sum of two errors and a product, known
-/// to 6 u^2 m; that of the difference, at most 4 u m, to 13 u^2 m. The square leaves out that of the low part and
-/// rounds what it adds, so that it is known to 59 u^2 m^2, with a low part of at most 9 u m^2; that of the reach to
-/// 6 u^2 R^2. The high parts are added without error; what that leaves (u (M^2 + R^2) thrice) and the low parts in six
-/// roundings, together 44 u^2 M^2 + 14 u^2 R^2. In all that is below 2^-99 (128 u^2) times M^2 + R^2, with room for the
-/// rounding of the bound. Underflow is as nothing against that within the range below.
-inline Ball<DoubleDouble> extended_square_gap(const PointMotion<1>& a, const PointMotion<1>& b, double reach_a,
-                                              double reach_b, double t);
+/// sum of magnitudes of an axis (positions and what is moved by), M that of all axes, R the sum of the radii. Elapsed
+/// times, sums of two and products of two doubles are exact. The low part of a position is a sum of two errors and a
+/// product, known to 6 u^2 m; that of the difference, at most 4 u m, to 13 u^2 m. The square leaves out that of the low
+/// part and rounds what it adds, so that it is known to 59 u^2 m^2, with a low part of at most 9 u m^2; that of the sum
+/// of the radii to 6 u^2 R^2. The high parts are added without error; what that leaves (u (M^2 + R^2) thrice) and the
+/// low parts in six roundings, together 44 u^2 M^2 + 14 u^2 R^2. In all that is below 2^-99 (128 u^2) times M^2 + R^2,
+/// with room for the rounding of the bound. Underflow is as nothing against that within the range below.
+inline Ball<DoubleDouble> extended_square_gap(const PointMotion<1>& a, const PointMotion<1>& b, double radius_a,
+                                              double radius_b, double t);
 
 // ---------------------------------------------------------------------------------------------------------------
 
@@ -51,8 +51,8 @@ struct SquareParts {
 
 }  // namespace detail
 
-inline Ball<DoubleDouble> extended_square_gap(const PointMotion<1>& a, const PointMotion<1>& b, double reach_a,
-                                              double reach_b, double t) {
+inline Ball<DoubleDouble> extended_square_gap(const PointMotion<1>& a, const PointMotion<1>& b, double radius_a,
+                                              double radius_b, double t) {
   const auto& [a0, a1] = a.coefficients;
   const auto& [b0, b1] = b.coefficients;
   const DoubleDouble since_a = two_sum(t, -a.start);
@@ -60,18 +60,18 @@ inline Ball<DoubleDouble> extended_square_gap(const PointMotion<1>& a, const Poi
   const detail::SquareParts xy(Two{a0[0], a0[1]}, Two{a1[0], a1[1]}, since_a, Two{b0[0], b0[1]}, Two{b1[0], b1[1]},
                                since_b);
   const detail::SquareParts z(Two{a0[2], 0}, Two{a1[2], 0}, since_a, Two{b0[2], 0}, Two{b1[2], 0}, since_b);
-  const DoubleDouble reach = two_sum(reach_a, reach_b);
-  const DoubleDouble own = two_product(reach.high, reach.high);
+  const DoubleDouble radii = two_sum(radius_a, radius_b);
+  const DoubleDouble own = two_product(radii.high, radii.high);
 
   const double size = xy.size[0] + xy.size[1] + z.size[0];
-  const double magnitude = size * size + reach.high * reach.high;
+  const double magnitude = size * size + radii.high * radii.high;
   if (!(magnitude > 0x1p-600 && magnitude < 0x1p600)) return {0.0, std::numeric_limits<double>::infinity()};
   const DoubleDouble x_and_y = two_sum(xy.square.high[0], xy.square.high[1]);
   const DoubleDouble all = two_sum(x_and_y.high, z.square.high[0]);
   const DoubleDouble gap = two_sum(all.high, -own.high);
   const double of_squares = xy.square.low[0] + xy.square.low[1] + z.square.low[0];
-  const double of_reach = own.low + 2 * reach.high * reach.low;
-  return {two_sum(gap.high, (of_squares - of_reach) + (x_and_y.low + all.low + gap.low)), 0x1p-99 * magnitude};
+  const double of_radii = own.low + 2 * radii.high * radii.low;
+  return {two_sum(gap.high, (of_squares - of_radii) + (x_and_y.low + all.low + gap.low)), 0x1p-99 * magnitude};
 }
 
 }  // namespace kds::certificates

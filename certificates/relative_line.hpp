@@ -20,14 +20,14 @@ struct MotionNumbers {
 /// Error bounds, with u = 2^-53. A coordinate at `now` is evaluated by Horner's rule with an elapsed time known to u:
 /// at most 6 u of the sum of its terms' magnitudes, and the difference of two adds u; so r is known to 8 u m, where m
 /// is that sum for both bodies. Likewise the rate v to 8 u w. Then r . v is known to (8 + 8 + 4) u m . w, r . r to
-/// (16 + 4) u m . m plus products of errors, v . v likewise, and the square of the reach to 6 u of itself. All are
-/// below 2^-48 (32 u) of the magnitudes, with room for the rounding of the bound; and m . w is at most M W, where M and
-/// W are the sums over the axes. Underflow loses less than 2^-1000.
+/// (16 + 4) u m . m plus products of errors, v . v likewise, and the square of the sum of the radii to 6 u of itself.
+/// All are below 2^-48 (32 u) of the magnitudes, with room for the rounding of the bound; and m . w is at most M W,
+/// where M and W are the sums over the axes. Underflow loses less than 2^-1000.
 template <class Number>
 struct RelativeLine {
-  Number square, product, speeds;  ///< r . r - reach^2, r . v, v . v
+  Number square, product, speeds;  ///< r . r - radii^2, r . v, v . v
   Number M, W;
-  Number reach;
+  Number radii;
   static constexpr double unit = 0x1p-48;
   static constexpr double lost = 0x1p-1000;
   static constexpr double range = 0x1p1000;  ///< beyond, sums of opposite infinities might look like a number
@@ -35,13 +35,13 @@ struct RelativeLine {
 
   template <int PathDegree>
   [[gnu::always_inline]] inline RelativeLine(const MotionNumbers<Number, PathDegree>& a,
-                                             const MotionNumbers<Number, PathDegree>& b, Number reach_of_both,
+                                             const MotionNumbers<Number, PathDegree>& b, Number radii_of_both,
                                              double now)
-      : reach(reach_of_both) {
+      : radii(radii_of_both) {
     const Number since_a = now - a.start;
     const Number since_b = now - b.start;
     const Part x(a, b, 0, since_a, since_b), y(a, b, 1, since_a, since_b), z(a, b, 2, since_a, since_b);
-    square = x.r * x.r + y.r * y.r + z.r * z.r - reach * reach;
+    square = x.r * x.r + y.r * y.r + z.r * z.r - radii * radii;
     product = x.r * x.v + y.r * y.v + z.r * z.v;
     speeds = x.v * x.v + y.v * y.v + z.v * z.v;
     M = x.m + y.m + z.m;

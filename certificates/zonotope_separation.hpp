@@ -96,22 +96,22 @@ struct CellDistance {
   Polynomial<degree, Number> polynomial(double epoch) const {
     const auto x = detail::from_cell<Number>(a, b, generators, cell, epoch);
     const Number radius = Number(radii[0]) + radii[1];
-    const Number reach = radius * radius;
+    const Number radius_square = radius * radius;
     Polynomial<degree, Number> f;
     if (cell.dimension == 0) {
       f = square(x[0]) + square(x[1]) + square(x[2]);
-      f.c[0] = f.c[0] - reach;
+      f.c[0] = f.c[0] - radius_square;
       return f;
     }
     const auto u = detail::numbers<Number>(generators[cell.swept[0]].direction);
     if (cell.dimension == 1) {
       const auto w = detail::cross_product(detail::constants(u), x);
       f = square(w[0]) + square(w[1]) + square(w[2]);
-      f.c[0] = f.c[0] - reach * detail::inner_product(u, u);
+      f.c[0] = f.c[0] - radius_square * detail::inner_product(u, u);
     } else {
       const auto n = detail::cross_product(u, detail::numbers<Number>(generators[cell.swept[1]].direction));
       f = square(detail::inner_product(detail::constants(n), x));
-      f.c[0] = f.c[0] - reach * detail::inner_product(n, n);
+      f.c[0] = f.c[0] - radius_square * detail::inner_product(n, n);
     }
     return f;
   }

@@ -93,7 +93,7 @@ void BasicWorld<Motion>::go_back(double t) {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::reach(double limit) {
+void BasicWorld<Motion>::set_horizon(double limit) {
   if (!(limit > clock_.horizon)) return;
   constexpr double farthest = 1;  // s, of bodies that turn, whose contacts are searched turn by turn
   const double window = turns<Motion> ? std::min(options_.window, farthest) : options_.window;
@@ -239,7 +239,7 @@ bool BasicWorld<Motion>::next_event(double limit, Search search) {
       if (due.task == Task::end_resting) reached = clock_.now;
     } else if (next < limit) {
       // Without a limit a window farther, and where nothing happens in that either, as far as there is time.
-      reach(limit == never && !looked_ahead ? clock_.horizon + options_.window : limit);
+      set_horizon(limit == never && !looked_ahead ? clock_.horizon + options_.window : limit);
       looked_ahead = true;
     } else {
       if (!looks) idle_until_ = std::min({clock_.horizon, due.time, broad_phase_->next_time()});
@@ -273,7 +273,7 @@ void BasicWorld<Motion>::extend_horizon(double now, double horizon) {
   require_idle("World::extend_horizon");
   if (now > callers_now_) advance_to(now);
   idle_until_ = next_time_ = -never;
-  change_or_fail([&] { reach(horizon); });
+  change_or_fail([&] { set_horizon(horizon); });
 }
 
 template <class Motion>

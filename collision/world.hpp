@@ -202,7 +202,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   bool work_left() const { return bodies_.any_waits() || !resting_.solved() || !pairs_.tested() || !reports_.empty(); }
   void make_broad_phase();
   void rebuild_broad_phase();
-  void reach(double limit);
+  void set_horizon(double limit);
   void go_back(double t);
   void start_pieces();
   void report_next();
@@ -332,7 +332,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
 template <int Degree>
 using World = BasicWorld<certificates::PointMotion<Degree>>;
 
-/// A world of bodies that turn, on paths of degree 1 or 2: docs/turning.md says which, and how they respond to contacts.
+/// Bodies that turn, on paths of degree 1 or 2: docs/turning.md says which, and how they respond to contacts.
 /// It is in a library of its own, kds::collision_turning.
 template <int Degree>
 using TurningWorld = BasicWorld<certificates::RigidMotion<Degree>>;

@@ -113,9 +113,9 @@ class AabbTreeRule {
 
   Effect repair(Slot slot, Repair<E>& repair) {
     const Id id = place(slot).id;
-    return renew(id, reach(repair[id], repair.now()), repair) ? Effect::external : Effect::internal;
+    return renew(id, box_until_renewal(repair[id], repair.now()), repair) ? Effect::external : Effect::internal;
   }
-  void insert(Id id, Repair<E>& repair) { renew(id, reach(repair[id], repair.now()), repair); }
+  void insert(Id id, Repair<E>& repair) { renew(id, box_until_renewal(repair[id], repair.now()), repair); }
   void remove(Id id, Repair<E>& repair) {
     tree_.remove(id);
     set_partners(id, {}, repair.now());
@@ -123,7 +123,7 @@ class AabbTreeRule {
   }
   /// It keeps its fat box if that will do for as long as it is to.
   void change(Id id, Repair<E>& repair) {
-    const Box needed = reach(repair[id], repair.now());
+    const Box needed = box_until_renewal(repair[id], repair.now());
     if (!tree_.box(id).contains(needed)) return void(renew(id, needed, repair));
     certify(id, repair);
   }
@@ -169,7 +169,7 @@ class AabbTreeRule {
   }
 
   /// What an element covers from now on, as far as it is looked ahead, and more than the place where it is.
-  Box reach(const E& element, double now) const {
+  Box box_until_renewal(const E& element, double now) const {
     Box box;
     for (std::size_t d = 0; d < Dimension; ++d) {
       const Span low = span_ahead(end(element, d, false), now, options_.ahead);

@@ -62,10 +62,10 @@ double size_of(const PatchPaths<Degree>& paths) {
   Lanes size(0.0);
   Lanes all(0.0);
   for (std::size_t d = 0; d < 3; ++d) {
-    Lanes reach = magnitude(paths.c[0][d]);
-    for (std::size_t i = 1; i <= Degree; ++i) reach = reach + magnitude(paths.c[i][d]);
-    size = greater(reach, size);
-    all = all + reach;
+    Lanes magnitudes = magnitude(paths.c[0][d]);
+    for (std::size_t i = 1; i <= Degree; ++i) magnitudes = magnitudes + magnitude(paths.c[i][d]);
+    size = greater(magnitudes, size);
+    all = all + magnitudes;
   }
   const double sum = sum_of(all);  // NaN or infinite if anything is
   if (!(sum < 0x1p1000)) throw std::invalid_argument("feature contact: a coordinate or a time is not finite");

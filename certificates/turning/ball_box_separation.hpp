@@ -81,8 +81,8 @@ struct BallBeyondSides : detail::BallAndBox<Degree> {
       if (sides[axis] == 0) continue;
       add_square(f, this->template beyond_side<Number, Order>(turn, way, axis, sides[axis]));
     }
-    const Number reach = turn.scale() * Number(radius);
-    f.p[0][0].c[0] = f.p[0][0].c[0] - reach * reach;
+    const Number scaled_radius = turn.scale() * Number(radius);
+    f.p[0][0].c[0] = f.p[0][0].c[0] - scaled_radius * scaled_radius;
     return f;
   }
 };

@@ -129,8 +129,8 @@ struct BallBeyondPart : detail::BallAndTriangle<Degree> {
       add({zero, one, zero});
       add({zero, zero, one});
     }
-    const Number reach = turn.scale() * Number(radius);
-    f.p[0][0].c[0] = f.p[0][0].c[0] - reach * reach * length;
+    const Number scaled_radius = turn.scale() * Number(radius);
+    f.p[0][0].c[0] = f.p[0][0].c[0] - scaled_radius * scaled_radius * length;
     return f;
   }
 };

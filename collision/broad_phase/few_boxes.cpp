@@ -112,10 +112,10 @@ double FewBoxes<Degree>::first_span(double now) const {
   if constexpr (Degree >= 3) {
     double extent = 0;
     for (const auto& [id, box] : bodies_) extent += (box.max.coefficients[0] - box.min.coefficients[0]).maxCoeff();
-    const double reach = tuning_.first_reach * extent / static_cast<double>(bodies_.size());
+    const double travel = tuning_.first_travel * extent / static_cast<double>(bodies_.size());
     double time = greatest_double;
     for (const auto& [id, box] : bodies_) {
-      const double moves = time_to_move(box.min, now, reach);
+      const double moves = time_to_move(box.min, now, travel);
       if (moves > 0) time = std::min(time, moves);
     }
     return time;
@@ -129,9 +129,9 @@ double FewBoxes<Degree>::first_span(double now) const {
     speed += velocity;
     bend += force;
   }
-  const double reach = tuning_.first_reach * size;
-  double span = speed > 0 ? reach / speed : greatest_double;
-  if (bend > 0) span = std::min(span, std::sqrt(reach / bend));
+  const double travel = tuning_.first_travel * size;
+  double span = speed > 0 ? travel / speed : greatest_double;
+  if (bend > 0) span = std::min(span, std::sqrt(travel / bend));
   return span > 0 ? span : greatest_double;
 }
 

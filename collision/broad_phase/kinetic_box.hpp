@@ -43,10 +43,10 @@ inline KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& mo
   for (int d = 0; d < 3; ++d) {
     const double at = motion.coefficients[0][d];
     const Two centre = both(at);
-    const Two reach{low[d], high[d]};
-    const Two sum = centre + reach;
+    const Two extent{low[d], high[d]};
+    const Two sum = centre + extent;
     const Two part = sum - centre;
-    const Two error = (centre - (sum - part)) + (reach - part);
+    const Two error = (centre - (sum - part)) + (extent - part);
     const TwoBits negative = sum < 0;                   // all bits set
     const TwoBits away = (step ^ negative) - negative;  // in magnitude
     const TwoBits moved = bits(sum) + (away & (error * outward > 0));

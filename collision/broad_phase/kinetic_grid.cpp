@@ -87,7 +87,7 @@ void KineticGrid<Degree>::update(BodySlot id, const KineticBox<Degree>& box, dou
     const double expiry = kept_until(id, sweep, present, now);
     if (expiry > now) return set_expiry(id, expiry, now);
   }
-  adapt_reach(id, now);
+  adapt_travel(id, now);
   renew(id, sweep, present, now, listener);
 }
 
@@ -100,7 +100,7 @@ bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
       set_expiry(id, bodies_[id].expiry, time);
       continue;
     }
-    adapt_reach(id, time);
+    adapt_travel(id, time);
     const BoxSweep<Degree> sweep(bodies_[id].box, time);
     if (renew(id, sweep, sweep.begin(), time, listener)) return true;
   }

@@ -15,14 +15,14 @@ namespace kds::collision {
 
 /// Every body has a *fat box* at rest that holds its kinetic box for a while, rounded as much (box_bounds.hpp); the
 /// only certificate of a body is that it is still inside, and pairs are those whose fat boxes overlap (box_grid.hpp).
-/// When its time is up, a body gets a new fat box: what it sweeps until it has moved by a length, its *reach*. So a
+/// When its time is up, a body gets a new fat box: what it sweeps until it has moved by a length, its *travel*. So a
 /// body pays for its neighbours only, not, as in sorted lists, for all whose coordinates it passes; and one at rest
 /// pays nothing.
 ///
-/// The reach adapts, body by body: it grows while few pairs begin and shrinks while many do, which balances the cost of
-/// renewals against that of pairs, at every density, size and speed. A body whose motion changes again and again before
-/// it has left its fat box gets one that reaches to all sides, and farthest ahead, so that it stays in it whatever it
-/// does next. All that changes the cost, never the contacts.
+/// The travel adapts, body by body: it grows while few pairs begin and shrinks while many do, which balances the cost
+/// of renewals against that of pairs, at every density, size and speed. A body whose motion changes again and again
+/// before it has left its fat box gets one that reaches to all sides, and farthest ahead, so that it stays in it
+/// whatever it does next. All that changes the cost, never the contacts.
 ///
 /// The time for which a fat box holds is not a root: a time is chosen, and the box is then what is swept until then,
 /// rounded outward. Nothing of what is scheduled needs to be exact, nor is.
@@ -72,16 +72,16 @@ class KineticGrid final : public BroadPhase<Degree> {
     Body() {}  // not the implicit one, for which all is set to zero first
 
     /// As one that comes.
-    void begin(const KineticBox<Degree>& its_box, double its_reach) {
+    void begin(const KineticBox<Degree>& its_box, double its_travel) {
       box = its_box;
-      reach = its_reach;
+      travel = its_travel;
       expiry = never;
       begun = in_vain = partners = changes = tests = 0;
       jostled = 0;
     }
 
     KineticBox<Degree> box;
-    double reach = 0;            ///< how far it may move in its fat box
+    double travel = 0;           ///< how far it may move in its fat box
     double fattened = 0;         ///< when its fat box was made
     double expiry = never;       ///< until when it holds
     std::uint32_t begun = 0;     ///< pairs since its last renewal
@@ -109,7 +109,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   template <class Sweep>
   static double lifetime(const Body& body, const Sweep& sweep);
   double kept_until(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
-  void adapt_reach(BodySlot id, double now);
+  void adapt_travel(BodySlot id, double now);
   bool renew(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
   void set_expiry(BodySlot id, double expiry, double now);
   void report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener);
@@ -120,7 +120,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   CalendarQueue<> expiry_;  // slots are bodies; none later than the horizon
   std::size_t threads_;
   double horizon_ = never;
-  double first_reach_ = 0;    ///< of a body that comes
+  double first_travel_ = 0;   ///< of a body that comes
   std::uint64_t wishes_ = 0;  ///< for a coarser level, since there was one
   BroadPhaseCounters counters_;
 };

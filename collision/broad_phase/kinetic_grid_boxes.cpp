@@ -11,12 +11,12 @@ namespace {
 
 constexpr double largest = std::numeric_limits<double>::max();
 
-/// At most: such that a box of this reach on both sides still has an extent.
-constexpr double greatest_reach = 0x1p1020;
+/// At most: such that a box of this travel on both sides still has an extent.
+constexpr double greatest_travel = 0x1p1020;
 
-/// At least, over its coordinates: boxes without extent have a reach too, which then adapts.
+/// At least, over its coordinates: boxes without extent have a travel too, which then adapts.
 constexpr double least_part_of_coordinates = 0x1p-40;
-constexpr double least_reach_at_all = 0x1p-500;
+constexpr double least_travel_at_all = 0x1p-500;
 
 /// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not
 /// told. Which sides it moves to nobody can predict.
@@ -35,22 +35,22 @@ double exit_time(const KineticBox<Degree>& box, const BoxBounds& present, const 
 
 }  // namespace
 
-/// Seconds until a box has moved by its reach, `never` if it is at rest; exact for straight paths, up to rounding.
+/// Seconds until a box has moved by its travel, `never` if it is at rest; exact for straight paths, up to rounding.
 template <int Degree>
 template <class Sweep>
 inline double KineticGrid<Degree>::lifetime(const Body& body, const Sweep& sweep) {
-  if constexpr (Degree >= 3) return sweep.time_to_move(body.reach);
+  if constexpr (Degree >= 3) return sweep.time_to_move(body.travel);
   const double speed = sweep.speed();
-  double time = speed > 0 ? std::min(body.reach / speed, largest) : never;
+  double time = speed > 0 ? std::min(body.travel / speed, largest) : never;
   if constexpr (Degree == 2) {
     const KineticBox<Degree>& box = body.box;
     const double bend = box.min.coefficients[2].cwiseAbs().cwiseMax(box.max.coefficients[2].cwiseAbs()).maxCoeff();
-    if (bend > 0) time = std::min(time, std::sqrt(body.reach / bend));
+    if (bend > 0) time = std::min(time, std::sqrt(body.travel / bend));
   }
   return time;
 }
 
-/// `may_begin()`: whether a level coarser than `coarsest` may be begun just for the body's reach.
+/// `may_begin()`: whether a level coarser than `coarsest` may be begun just for the body's travel.
 template <int Degree>
 template <class Sweep, class MayBegin>
 inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const StaticBox& present, double now,
@@ -58,12 +58,12 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
   body.fattened = now;
   const double size = present.extent();
   const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
-  body.reach =
-      std::max({body.reach, tuning_.least_reach * size, least_part_of_coordinates * coordinates, least_reach_at_all});
+  body.travel = std::max(
+      {body.travel, tuning_.least_travel * size, least_part_of_coordinates * coordinates, least_travel_at_all});
   double time = lifetime(body, sweep);
   if (time == never) return {present, never};
   // Where a jostled body will go nobody knows; a margin of more than its size would be mostly in vain.
-  double margin = body.jostled >= tuning_.jostled_at && body.reach <= 0.5 * size ? body.reach : 0;
+  double margin = body.jostled >= tuning_.jostled_at && body.travel <= 0.5 * size ? body.travel : 0;
   Eigen::Array3d ahead = Eigen::Array3d::Zero();  // over the margin
   if (margin > 0) {
     ahead = tuning_.lead / sweep.speed() * body.box.min.coefficients[1].array();
@@ -98,7 +98,7 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
     if (extent - size <= room || room < 0.25 * size || expiry == next_up(now) || may_begin()) {
       return {box, expiry, certificates};
     }
-    body.reach *= 0.75;
+    body.travel *= 0.75;
     time *= 0.75;
     margin *= 0.75;
   }
@@ -131,34 +131,34 @@ std::uint32_t KineticGrid<Degree>::fit(Body& body, StaticBox& box, double now, d
   return fit(BoxSweep<Degree>(body.box, now));
 }
 
-/// The reach of a jostled body is what makes its renewals cost about what pairs and their tests do. Of others, a box
+/// The travel of a jostled body is what makes its renewals cost about what pairs and their tests do. Of others, a box
 /// that has lasted its time: it costs about as much as two pairs, so at one or two pairs a renewal, those begun by
-/// others' renewals included, a longer reach and a shorter one would both cost more (found by measuring, for packings
+/// others' renewals included, a longer travel and a shorter one would both cost more (found by measuring, for packings
 /// from 0.01 to 0.25). One that the body leaves early, since its motion has changed, was too long.
 template <int Degree>
-void KineticGrid<Degree>::adapt_reach(BodySlot id, double now) {
+void KineticGrid<Degree>::adapt_travel(BodySlot id, double now) {
   Body& body = bodies_[id];
   const bool lasted = body.expiry <= now;
   body.begun += body.in_vain / tuning_.found_per_pair;
   if (body.jostled >= tuning_.jostled_at) {
     const std::uint32_t spent = tuning_.tests_per_pair * body.begun + body.tests;
-    if (spent < tuning_.little_spent) body.reach = std::min(tuning_.grow_jostled * body.reach, greatest_reach);
-    if (spent > tuning_.much_spent) body.reach *= tuning_.shrink_jostled;
+    if (spent < tuning_.little_spent) body.travel = std::min(tuning_.grow_jostled * body.travel, greatest_travel);
+    if (spent > tuning_.much_spent) body.travel *= tuning_.shrink_jostled;
   } else if (lasted) {
     switch (body.begun) {
       case 0:
-        body.reach = std::min(tuning_.grow_after_none * body.reach, greatest_reach);
+        body.travel = std::min(tuning_.grow_after_none * body.travel, greatest_travel);
         break;
       case 1:
-        body.reach = std::min(tuning_.grow_after_one * body.reach, greatest_reach);
+        body.travel = std::min(tuning_.grow_after_one * body.travel, greatest_travel);
         break;
       case 2:
         break;
       default:
-        body.reach *= body.begun < tuning_.many ? tuning_.shrink_after_some : tuning_.shrink_after_many;
+        body.travel *= body.begun < tuning_.many ? tuning_.shrink_after_some : tuning_.shrink_after_many;
     }
   } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
-    body.reach *= tuning_.shrink_after_turn;
+    body.travel *= tuning_.shrink_after_turn;
   }
   if (Degree == 1 && body.changes > 0) {
     body.jostled = std::min(body.jostled + 1, tuning_.jostled_most);

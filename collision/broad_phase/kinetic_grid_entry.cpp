@@ -67,12 +67,12 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   fat_boxes_.reserve(end);
   if (fat_boxes_.size() == 0 && !bodies.empty()) {
     const double spacing = typical_spacing(bodies.size(), [&](std::size_t i) { return box_at(*bodies[i].box, now); });
-    first_reach_ = tuning_.first_reach * spacing;
+    first_travel_ = tuning_.first_travel * spacing;
     fat_boxes_.choose_cells(spacing);
     return insert_first(bodies, now, listener);
   }
   for (const Entry& entry : bodies) {
-    bodies_[entry.slot].begin(*entry.box, first_reach_);
+    bodies_[entry.slot].begin(*entry.box, first_travel_);
     const BoxSweep<Degree> sweep(bodies_[entry.slot].box, now);
     renew(entry.slot, sweep, sweep.begin(), now, listener);
   }
@@ -128,7 +128,7 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
     std::uint64_t tries = 0;
     for (std::size_t i = first; i < last; ++i) {
       Body& body = bodies_[bodies[i].slot];
-      body.begin(*bodies[i].box, first_reach_);
+      body.begin(*bodies[i].box, first_travel_);
       tries += fit(body, boxes[i], now, std::numeric_limits<double>::max());
     }
     certificates[part] = tries;
@@ -136,7 +136,7 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
   for (const std::uint64_t tries : certificates) counters_.certificates += tries;
 }
 
-/// Where a level would be used by few, and just for their reach, boxes are cut to fit the next that is used by more.
+/// Where a level would be used by few, and just for their travel, boxes are cut to fit the next that is used by more.
 template <int Degree>
 void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now) {
   double least = boxes[0].extent();

@@ -102,24 +102,24 @@ requires(Degree >= 3) StaticBox swept_point(const certificates::PointMotion<Degr
   return swept;
 }
 
-/// About the seconds in which a point moves by `reach` from where it is at `from`, and not more than a few times that
-/// far; `never` at rest. No term of its Taylor series there comes to more. For deciding how far to look, not what is
-/// there. From the third power on within a factor of two, by exponents alone: so it is the same everywhere.
+/// About the seconds in which a point moves by `distance` from where it is at `from`, and not more than a few times
+/// that far; `never` at rest. No term of its Taylor series there comes to more. For deciding how far to look, not what
+/// is there. From the third power on within a factor of two, by exponents alone: so it is the same everywhere.
 template <int Degree>
-double time_to_move(const certificates::PointMotion<Degree>& motion, double from, double reach) {
+double time_to_move(const certificates::PointMotion<Degree>& motion, double from, double distance) {
   constexpr double largest = std::numeric_limits<double>::max();
   const auto local = motion.restarted(from);
   double time = never;
-  if (!(reach > 0)) return 0;
+  if (!(distance > 0)) return 0;
   for (std::size_t i = 1; i <= Degree; ++i) {
     const double size = local.coefficients[i].cwiseAbs().maxCoeff();
     if (!(size > 0)) continue;
     if (!(size <= largest)) return 0;
     time = std::min(time, largest);
     const int power = static_cast<int>(i);
-    const int ratio = std::ilogb(reach) - std::ilogb(size);
+    const int ratio = std::ilogb(distance) - std::ilogb(size);
     const int exponent = (ratio >= 0 ? ratio : ratio - power + 1) / power;
-    time = std::min(time, i == 1 ? reach / size : (i == 2 ? std::sqrt(reach / size) : std::ldexp(1.0, exponent)));
+    time = std::min(time, i == 1 ? distance / size : (i == 2 ? std::sqrt(distance / size) : std::ldexp(1.0, exponent)));
   }
   return time;
 }
@@ -186,9 +186,10 @@ class BoxSweep {
   double speed() const {
     return std::max(box_.min.velocity(from_).cwiseAbs().maxCoeff(), box_.max.velocity(from_).cwiseAbs().maxCoeff());
   }
-  /// About the seconds until a corner has moved by `reach`: see the function of that name.
-  double time_to_move(double reach) const {
-    return std::min(collision::time_to_move(box_.min, from_, reach), collision::time_to_move(box_.max, from_, reach));
+  /// About the seconds until a corner has moved by `distance`: see the function of that name.
+  double time_to_move(double distance) const {
+    return std::min(collision::time_to_move(box_.min, from_, distance),
+                    collision::time_to_move(box_.max, from_, distance));
   }
 
  private:

@@ -32,8 +32,8 @@ void check(const CellTuning& tuning) {
 
 void check(const GridTuning& tuning) {
   check(tuning.cells);
-  require_positive(tuning.first_reach, "GridTuning.first_reach");
-  require_positive(tuning.least_reach, "GridTuning.least_reach");
+  require_positive(tuning.first_travel, "GridTuning.first_travel");
+  require_positive(tuning.least_travel, "GridTuning.least_travel");
   require_growth(tuning.grow_after_none, "GridTuning.grow_after_none");
   require_growth(tuning.grow_after_one, "GridTuning.grow_after_one");
   require_part(tuning.shrink_after_some, "GridTuning.shrink_after_some");
@@ -52,7 +52,7 @@ void check(const GridTuning& tuning) {
 }
 
 void check(const FewBoxesTuning& tuning) {
-  require_positive(tuning.first_reach, "FewBoxesTuning.first_reach");
+  require_positive(tuning.first_travel, "FewBoxesTuning.first_travel");
   require_cost(tuning.comparisons_per_pair, "FewBoxesTuning.comparisons_per_pair");
   require_cost(tuning.comparisons_per_box, "FewBoxesTuning.comparisons_per_box");
   require(tuning.little <= tuning.much, "FewBoxesTuning.little", "at most FewBoxesTuning.much");

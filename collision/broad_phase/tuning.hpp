@@ -37,15 +37,15 @@ struct CellTuning {
 struct GridTuning {
   CellTuning cells{};
 
-  // How far a body may move in its fat box: its reach.
+  // How far a body may move in its fat box: its travel.
 
   /// Of one that comes, over the spacing of bodies, > 0.
   /// [+6.6, -4.9 %; +4.2, +3.5 %]
-  double first_reach = 0.25;
+  double first_travel = 0.25;
   /// At least, over the body's size, > 0: less has it renewed ever so often among others that touch it anyway.
   /// [0.0, 0.0 %; +0.1, 0.0 %]
-  double least_reach = 0.125;
-  /// A fat box that has lasted its time costs about as much as two pairs, so the next one's reach is multiplied by
+  double least_travel = 0.125;
+  /// A fat box that has lasted its time costs about as much as two pairs, so the next one's travel is multiplied by
   /// these, after no pair has begun, one, from three on, and from `many` on. Those that grow are >= 1, the others in
   /// (0, 1].
   /// [the first two +0.9, 0.0 % and +0.9, -0.7 %; +0.1, +0.4 % and +0.1, -0.1 %]
@@ -66,7 +66,7 @@ struct GridTuning {
   /// [+0.4, +1.3 %; +0.2, +0.3 %; the second, at degree 2: +0.9, +1.4 %; +1.3, +2.0 %]
   double kept_share_straight = 0.15;
   double kept_share_curved = 0.25;
-  /// A coarser level of cells is begun just for the reach of bodies if they are one in so many, > 0.
+  /// A coarser level of cells is begun just for the travel of bodies if they are one in so many, > 0.
   /// [0.0, 0.0 % for equal sizes; degree 2, sizes spread over a factor of 8: -3.0, +4.5 %]
   std::uint64_t share_for_level = 8;
 
@@ -80,7 +80,7 @@ struct GridTuning {
   /// A pair that begins costs as much as so many tests of one, > 0.
   /// [0.0, 0.0 %; +0.7, +0.1 %]
   std::uint32_t tests_per_pair = 8;
-  /// What was spent on pairs and their tests within a box, in tests, below which the reach grows, and above which it
+  /// What was spent on pairs and their tests within a box, in tests, below which the travel grows, and above which it
   /// shrinks.
   /// [0.0, 0.0 % each; +0.1, +0.7 % and +0.2, +0.2 %]
   std::uint32_t little_spent = 40;
@@ -102,7 +102,7 @@ inline constexpr std::size_t most_few_boxes = 64;
 struct FewBoxesTuning {
   /// How far bodies move in the first span, over their size, > 0.
   /// [-1.7, +2.6 %; -1.0, +2.9 %]
-  double first_reach = 2;
+  double first_travel = 2;
   /// A pair costs as much as so many comparisons of boxes, with its test; and a new box, > 0.
   /// [+5.2, +3.7 % and +0.2, +3.7 %; -2.9, +11.3 % and +3.2, -0.9 %]
   std::uint64_t comparisons_per_pair = 16;

@@ -41,12 +41,12 @@ auto BallTouch<Degree>::across_edge(std::size_t i) const -> Path {
   return path;
 }
 
-/// When normal . r - reach < gap.
+/// When normal . r - distance < gap.
 template <int Degree>
-SpansOf<Degree> BallTouch<Degree>::below(const Vector3d& normal, double reach) const {
+SpansOf<Degree> BallTouch<Degree>::below(const Vector3d& normal, double distance) const {
   const auto& r = motion_.coefficients;
   std::array<double, std::size_t{Degree} + 1> c;
-  c[0] = dot(normal, r[0]) - reach - gap_.c[0];
+  c[0] = dot(normal, r[0]) - distance - gap_.c[0];
   for (std::size_t i = 1; i <= Degree; ++i) c[i] = dot(normal, r[i]) - gap_.c[i];
   return spans_below_zero<Degree>(c, horizon_);
 }
@@ -59,9 +59,9 @@ bool BallTouch<Degree>::matters(const Path& path) const {
 
 template <int Degree>
 SpansOf<Degree> BallTouch<Degree>::within(const Path& path) const {
-  std::array<double, std::size_t{Degree} + 1> reach = gap_.c;
-  reach[0] += radius_;
-  return near_spans(path, reach, horizon_);
+  std::array<double, std::size_t{Degree} + 1> distance = gap_.c;
+  distance[0] += radius_;
+  return near_spans(path, distance, horizon_);
 }
 
 template <int Degree>

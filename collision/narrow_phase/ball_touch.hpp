@@ -56,7 +56,7 @@ class BallTouch {
   void add_face(bool sharp);
   void add_edge(std::size_t i);
   void add_vertex(std::size_t i);
-  SpansOf<Degree> below(const Eigen::Vector3d& normal, double reach) const;
+  SpansOf<Degree> below(const Eigen::Vector3d& normal, double distance) const;
   bool matters(const Path& path) const;
   SpansOf<Degree> within(const Path& path) const;
   Path from(std::size_t vertex) const;

@@ -16,13 +16,13 @@ BoxAndBall<Degree>::BoxAndBall(const Body& box, const Body& ball, double now, do
   TimeWindow hull{0, motion_.end()};
   const auto clip = [this](std::size_t d, Place place, TimeWindow& window) {
     const Along p = from_middle(d, place);
-    const double reached = reach(d, place);
-    return motion_.clip(p, 1, reached, window) && motion_.clip(p, -1, reached, window);
+    const double half_width_there = half_width(d, place);
+    return motion_.clip(p, 1, half_width_there, window) && motion_.clip(p, -1, half_width_there, window);
   };
   for (std::size_t d = 0; d < 3; ++d) {
     axes_[d] = box.shape.rotation.col(static_cast<int>(d));
     along_[d] = motion_.along(axes_[d]);
-    motion_.note_parting(along_[d], reach(d, grown));
+    motion_.note_parting(along_[d], half_width(d, grown));
   }
   for (std::size_t d = 0; d < 3; ++d) {
     if (clip(d, grown, hull)) continue;
@@ -113,7 +113,7 @@ bool BoxAndBall<Degree>::Piece::surely_closed(std::size_t i, double t) const {
   if (i < 6) {
     const std::size_t d = i / 2;
     if (around(d)) return true;
-    return motion.surely_closed(pair_->along_[d], side(i), pair_->reach(d, place_[d]), tau);
+    return motion.surely_closed(pair_->along_[d], side(i), pair_->half_width(d, place_[d]), tau);
   }
   double farthest = 0;
   for (std::size_t d = 0; d < 3; ++d) {
@@ -129,8 +129,8 @@ double BoxAndBall<Degree>::Piece::closed_until(std::size_t i, double t) const {
   const std::size_t d = i / 2;
   if (i == 6) return t;
   if (around(d)) return TimeSpans::infinity;
-  const double reach = pair_->reach(d, place_[d]);
-  return pair_->motion_.closed_until(pair_->along_[d], side(i), reach, t);
+  const double half_width = pair_->half_width(d, place_[d]);
+  return pair_->motion_.closed_until(pair_->along_[d], side(i), half_width, t);
 }
 
 #define KDS_INSTANTIATE(degree) template class BoxAndBall<degree>;

@@ -59,7 +59,7 @@ class BoxAndBall {
 
   double half(std::size_t d) const { return half_[static_cast<int>(d)]; }
   /// Half of the width of a place, and its middle.
-  double reach(std::size_t d, Place place) const {
+  double half_width(std::size_t d, Place place) const {
     return place == between ? half(d) : (place == grown ? half(d) + radius_ : radius_);
   }
   double offset(std::size_t d, Place place) const {
@@ -111,7 +111,7 @@ class BoxAndBall<Degree>::Piece {
     const Quick& motion = pair_->motion_;
     if (i == 6) return motion.time_after(distance_opened_by());
     const std::size_t d = i / 2;
-    return motion.time_after(motion.opened_by(pair_->along_[d], side(i), pair_->reach(d, place_[d])));
+    return motion.time_after(motion.opened_by(pair_->along_[d], side(i), pair_->half_width(d, place_[d])));
   }
   double failure_time(std::size_t i, double t, double horizon) const {
     return i == 6 ? kds::failure_time(distance(), t, horizon) : kds::failure_time(plane(i), t, horizon);

@@ -58,7 +58,7 @@ class BoxAndBox {
         window_{0, motion_.end()} {
     for (int k = 0; k < 3 && !motion_.whole(); ++k) {
       const Axis axis = placed(a, b, motion_, box_axis(a.shape, b.shape, k));
-      motion_.note_parting(axis.along, axis.reach);
+      motion_.note_parting(axis.along, axis.half_width);
     }
     every_box_axis(a.shape, b.shape, [&](const Eigen::Vector3d& axis, int k) {
       return !(faces_do && k >= 6 && separated_ > 0) && add(axis, k);
@@ -84,11 +84,11 @@ class BoxAndBox {
   std::size_t size() const { return 2 * size_; }
   bool surely_closed(std::size_t i, double t) const {
     const Axis& axis = axes_[i / 2];
-    return motion_.surely_closed(axis.along, side(i), axis.reach, motion_.tau(t));
+    return motion_.surely_closed(axis.along, side(i), axis.half_width, motion_.tau(t));
   }
   double closed_until(std::size_t i, double t) const {
     const Axis& axis = axes_[i / 2];
-    return motion_.closed_until(axis.along, side(i), axis.reach, t);
+    return motion_.closed_until(axis.along, side(i), axis.half_width, t);
   }
   double failure_time(std::size_t i, double t, double horizon) const {
     return kds::failure_time(certificate(i), t, horizon);
@@ -98,7 +98,7 @@ class BoxAndBox {
   }
   double opened_by(std::size_t i) const {
     const Axis& axis = axes_[i / 2];
-    return motion_.time_after(motion_.opened_by(axis.along, side(i), axis.reach));
+    return motion_.time_after(motion_.opened_by(axis.along, side(i), axis.half_width));
   }
   bool closed(std::size_t i, double t) const { return sign_after(certificate(i), t) < 0; }
 
@@ -106,17 +106,17 @@ class BoxAndBox {
   struct Axis {
     Eigen::Vector3d direction;
     typename QuickMotion<Degree>::Along along;
-    double reach;
+    double half_width;
   };
 
   static Axis placed(const Body& a, const Body& b, const QuickMotion<Degree>& motion, const Eigen::Vector3d& axis) {
-    double reach = 0;
-    for (const auto& half : a.shape.half_axes) reach += std::abs(dot(axis, half));
-    for (const auto& half : b.shape.half_axes) reach += std::abs(dot(axis, half));
-    return {axis, motion.along(axis), reach};
+    double half_width = 0;
+    for (const auto& half : a.shape.half_axes) half_width += std::abs(dot(axis, half));
+    for (const auto& half : b.shape.half_axes) half_width += std::abs(dot(axis, half));
+    return {axis, motion.along(axis), half_width};
   }
   static bool clip(const QuickMotion<Degree>& motion, const Axis& axis, TimeWindow& window) {
-    return motion.clip(axis.along, 1, axis.reach, window) && motion.clip(axis.along, -1, axis.reach, window);
+    return motion.clip(axis.along, 1, axis.half_width, window) && motion.clip(axis.along, -1, axis.half_width, window);
   }
 
   bool add(const Eigen::Vector3d& direction, int number) {
@@ -166,7 +166,7 @@ double BoxAndBox<Degree>::apart_until(const Body& a, const Body& b, double now, 
     QuickMotion<Degree> motion(a.motion, b.motion, now, horizon, a.shape.bounding_radius + b.shape.bounding_radius);
     TimeWindow window{0, motion.end()};
     const Axis axis = placed(a, b, motion, box_axis(a.shape, b.shape, memory.axis));
-    motion.note_parting(axis.along, axis.reach);
+    motion.note_parting(axis.along, axis.half_width);
     const bool near = clip(motion, axis, window);
     if (!near && motion.whole()) return never;
     if (near && window.begin > 0) return motion.time_before(window.begin);

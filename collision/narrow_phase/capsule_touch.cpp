@@ -76,22 +76,22 @@ auto CapsuleTouch<Degree>::from(const Vector3d& at) const -> Path {
   return path;
 }
 
-/// When normal . r - reach < gap, or < 0.
+/// When normal . r - distance < gap, or < 0.
 template <int Degree>
-SpansOf<Degree> CapsuleTouch<Degree>::below(const Vector3d& normal, double reach, bool with_gap) const {
+SpansOf<Degree> CapsuleTouch<Degree>::below(const Vector3d& normal, double distance, bool with_gap) const {
   const auto& r = motion_.coefficients;
   std::array<double, std::size_t{Degree} + 1> c;
   for (std::size_t i = 0; i <= Degree; ++i) c[i] = dot(normal, r[i]) - (with_gap ? gap_.c[i] : 0.0);
-  c[0] -= reach;
+  c[0] -= distance;
   return spans_below_zero<Degree>(c, horizon_);
 }
 
 /// Not farther out than the corners, and some more.
 template <int Degree>
 void CapsuleTouch<Degree>::bound(Piece& piece, const Vector3d& out, Corners corners, double more) const {
-  double reach = -TimeSpans::infinity;
-  for (const Vector3d& each : corners) reach = std::max(reach, dot(out, each));
-  piece.conditions.push_back(below(out, reach + more));
+  double distance = -TimeSpans::infinity;
+  for (const Vector3d& each : corners) distance = std::max(distance, dot(out, each));
+  piece.conditions.push_back(below(out, distance + more));
 }
 
 /// As BallTouch::matters().
@@ -102,9 +102,9 @@ bool CapsuleTouch<Degree>::matters(const Path& path) const {
 
 template <int Degree>
 SpansOf<Degree> CapsuleTouch<Degree>::within(const Path& path) const {
-  std::array<double, std::size_t{Degree} + 1> reach = gap_.c;
-  reach[0] += radius_;
-  return near_spans(path, reach, horizon_);
+  std::array<double, std::size_t{Degree} + 1> distance = gap_.c;
+  distance[0] += radius_;
+  return near_spans(path, distance, horizon_);
 }
 
 /// Pieces that hold at no time of interest are left out.

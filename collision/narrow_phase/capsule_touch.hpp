@@ -66,7 +66,7 @@ class CapsuleTouch {
   void add_line(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   void add_point(const Eigen::Vector3d& at);
   void add(const Piece& piece);
-  SpansOf<Degree> below(const Eigen::Vector3d& normal, double reach, bool with_gap = true) const;
+  SpansOf<Degree> below(const Eigen::Vector3d& normal, double distance, bool with_gap = true) const;
   void bound(Piece& piece, const Eigen::Vector3d& out, Corners corners, double more = 0) const;
   bool matters(const Path& path) const;
   SpansOf<Degree> within(const Path& path) const;

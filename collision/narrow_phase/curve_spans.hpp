@@ -73,32 +73,32 @@ CurveSpans<Most> broken_spans(const C& certificate, double horizon) {
   return spans;
 }
 
-/// |s(tau)|^2 >= g(tau)^2: a point on a path is no nearer to the origin than a reach that grows. About tau = 0.
+/// |s(tau)|^2 >= g(tau)^2: a point on a path is no nearer to the origin than a radius that grows. About tau = 0.
 template <int PathDegree>
 struct FarCurve {
   static constexpr int degree = 2 * PathDegree;
   using Coordinate = kds::Motion<PathDegree>;
 
   FarCurve(const std::array<Eigen::Vector3d, std::size_t{PathDegree} + 1>& path,
-           const std::array<double, std::size_t{PathDegree} + 1>& growing_reach) {
+           const std::array<double, std::size_t{PathDegree} + 1>& growing_radius) {
     for (std::size_t i = 0; i <= PathDegree; ++i) {
       for (std::size_t d = 0; d < 3; ++d) s[d].position.c[i] = path[i][static_cast<Eigen::Index>(d)];
-      reach.position.c[i] = growing_reach[i];
+      radius.position.c[i] = growing_radius[i];
     }
   }
 
   std::array<Coordinate, 3> s;
-  Coordinate reach;
+  Coordinate radius;
 
   template <class Number>
   Polynomial<degree, Number> polynomial(double epoch) const {
     return square(about<Number>(s[0], epoch)) + square(about<Number>(s[1], epoch)) +
-           square(about<Number>(s[2], epoch)) - square(about<Number>(reach, epoch));
+           square(about<Number>(s[2], epoch)) - square(about<Number>(radius, epoch));
   }
 
   Ball<DoubleDouble> extended_value(double t) const {
     const auto value = [t](const Coordinate& x) { return compensated_value(x.position, DoubleDouble(t)); };
-    const Ball<DoubleDouble> g = value(reach);
+    const Ball<DoubleDouble> g = value(radius);
     Ball<DoubleDouble> f = -(g * g);
     for (const Coordinate& x : s) {
       const Ball<DoubleDouble> along = value(x);

@@ -87,7 +87,7 @@ static_assert(quick_margin > farthest_contact);
 /// out 2^40 radii and comes back. Larger predicts more of such contacts, and more slowly.
 inline constexpr double widest_gap = 0x1p-7;
 
-/// By how much the bounding volume of a body has to reach beyond its shape where there are meshes, so that volumes
+/// By how much the bounding volume of a body has to extend beyond its shape where there are meshes, so that volumes
 /// overlap for as long as contact may be reported, and the broad phase makes no difference to contacts: the contact gap
 /// is of a pair, a volume of one body, so each of the two has a share of it.
 ///

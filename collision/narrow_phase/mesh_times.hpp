@@ -22,7 +22,7 @@ namespace kds::collision::detail {
 /// s; contacts that lie farther ahead than 10^60 are none. Keeps polynomials of the time from overflowing.
 inline constexpr double farthest = 0x1p200;
 
-/// The relative motion of a pair, and the times at which its bounding balls are in reach of each other.
+/// The relative motion of a pair, and the times at which its bounding balls are near each other.
 template <int Degree>
 class PairTimes {
  public:
@@ -32,13 +32,13 @@ class PairTimes {
     last_ = last_time();
   }
 
-  /// Calls run(slice) for the parts of the window in which the bounding balls are in reach of each other, in order,
+  /// Calls run(slice) for the parts of the window in which the bounding balls are near each other, in order,
   /// until it returns true. In each the margin is about the same and the path about straight, see `slice_end`.
   template <class Run>
   void slice_by_slice(const TimeWindow& window, const Run& run) const {
-    std::array<double, std::size_t{Degree} + 1> reach = margin_;
-    reach[0] += radii_;
-    const auto spans = near_spans(motion_.coefficients, reach, last_);
+    std::array<double, std::size_t{Degree} + 1> radius = margin_;
+    radius[0] += radii_;
+    const auto spans = near_spans(motion_.coefficients, radius, last_);
     for (std::size_t i = 0; i < stretches(spans); ++i) {
       double begin = std::max(window.begin, spans.begin[i]);
       const double end = std::min({window.end, spans.end[i], last_});
@@ -72,7 +72,7 @@ class PairTimes {
     const double excess = g[0] - std::max(4 * g[0], widest_gap * radii_);
     if constexpr (Degree >= 3) {
       // The gap, which only grows, has grown to that. (Bodies that part without end need no bound of their own: they
-      // have ceased to be in reach of each other.)
+      // have ceased to be near each other.)
       std::array<double, std::size_t{Degree} + 1> room;
       for (std::size_t i = 0; i <= Degree; ++i) room[i] = -g[i];
       room[0] = -excess;
@@ -82,7 +82,7 @@ class PairTimes {
     } else {
       double last = farthest;
       if (g[1] > 0 || g[2] > 0) last = std::min(last, quadratic_roots(excess, g[1], g[2]).rising);
-      // By the triangle inequality: |r2| tau^2 <= |r0| + |r1| tau + reach.
+      // By the triangle inequality: |r2| tau^2 <= |r0| + |r1| tau + radius.
       const auto& r = motion_.coefficients;
       const double c2 = norm(r[2]) - margin_[2];
       if (!(c2 > 0)) return last;

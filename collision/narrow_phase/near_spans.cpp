@@ -15,10 +15,10 @@ TimeSpans near_spans(const std::array<Vector3d, 2>& s, const std::array<double, 
   }
   const double nearest = -half_c1 / c2;
   const Vector3d place = place_on(s, nearest);
-  const double reach = g0 + g1 * nearest;
+  const double radius = g0 + g1 * nearest;
   const double distance = std::sqrt(dot(place, place));
-  if (!(distance < reach)) return {};
-  const double half = std::sqrt((reach - distance) * (reach + distance) / c2);
+  if (!(distance < radius)) return {};
+  const double half = std::sqrt((radius - distance) * (radius + distance) / c2);
   return TimeSpans::between(nearest - half, nearest + half);
 }
 

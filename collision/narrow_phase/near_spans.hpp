@@ -26,7 +26,7 @@ Eigen::Vector3d place_on(const std::array<Eigen::Vector3d, Size>& path, double t
 /// itself.
 TimeSpans near_spans(const std::array<Eigen::Vector3d, 2>& s, const std::array<double, 2>& g, double horizon);
 
-/// The same for a quadratic path and reach, from tau = 0 to the horizon: the sign changes of a quartic, bracketed
+/// The same for a quadratic path and radius, from tau = 0 to the horizon: the sign changes of a quartic, bracketed
 /// between those of its derivatives.
 TimeSpans near_spans(const std::array<Eigen::Vector3d, 3>& s, const std::array<double, 3>& g, double horizon);
 
@@ -45,9 +45,9 @@ class DistanceQuartic {
 
   double value(double tau) const {
     const Eigen::Vector3d place = place_on(s_, tau);
-    const double reach = g_[0] + tau * (g_[1] + tau * g_[2]);
+    const double radius = g_[0] + tau * (g_[1] + tau * g_[2]);
     const double distance = std::sqrt(dot(place, place));
-    return (distance - reach) * (distance + reach);
+    return (distance - radius) * (distance + radius);
   }
 
   double slope(double tau) const {

@@ -16,16 +16,16 @@ constexpr float slowest = 0x1p-100F;
 /// The next float is never below the number.
 float rounded_up(double x) { return static_cast<float>(x * (1 + 0x1p-22)); }
 
-/// Intersects, lane by lane, the times at which |p0 + p1 s| < reach with those so far.
+/// Intersects, lane by lane, the times at which |p0 + p1 s| < half_width with those so far.
 struct Clip {
   Lanes begin;
   Lanes end;
 
-  void add(Lanes p0, Lanes p1, Lanes reach) {
+  void add(Lanes p0, Lanes p1, Lanes half_width) {
     // Without speed the quotients are infinite, with the signs that say "always" or "never"; 0/0 says "always".
     const Lanes inverse = splat(1) / p1;
-    const Lanes x = (-reach - p0) * inverse;
-    const Lanes y = (reach - p0) * inverse;
+    const Lanes x = (-half_width - p0) * inverse;
+    const Lanes y = (half_width - p0) * inverse;
     begin = greater(lesser(x, y), begin);
     end = lesser(greater(x, y), end);
   }
@@ -150,10 +150,10 @@ bool BoxPairTest<Degree>::operator()(const Frame& a, const ObbNode& b, StepWindo
   const Lanes hb_next = next_lanes(hb);
   const Lanes hb_last = last_lanes(hb);
   const auto add_products = [&](std::size_t i, std::size_t j, std::size_t k) {
-    const Lanes reach =
+    const Lanes half_width =
         splat(ha[j]) * size[k] + splat(ha[k]) * size[j] + hb_next * last_lanes(size[i]) + hb_last * next_lanes(size[i]);
     clip.add(splat(r.p0[k]) * turn[j] - splat(r.p0[j]) * turn[k], splat(r.p1[k]) * turn[j] - splat(r.p1[j]) * turn[k],
-             reach + margin);
+             half_width + margin);
   };
   add_products(0, 1, 2);
   add_products(1, 2, 0);
@@ -183,9 +183,9 @@ bool BoxBallTest<Degree>::operator()(const ObbNode& a, StepWindow& window) const
     const float nearest = -squares[1] / squares[0];
     const Lanes place = r.p0 + r.p1 * splat(nearest);
     const float distance = std::sqrt(sums(place * place, Lanes{}, Lanes{})[0]);
-    const float reach = radius_ + unit_ * a.radius + margin_ + r.deviation;
-    if (distance >= reach) return false;
-    const float half = std::sqrt((reach - distance) * (reach + distance) / squares[0]);
+    const float half_width = radius_ + unit_ * a.radius + margin_ + r.deviation;
+    if (distance >= half_width) return false;
+    const float half = std::sqrt((half_width - distance) * (half_width + distance) / squares[0]);
     window.begin = std::max(window.begin, nearest - half);
     window.end = std::min(window.end, nearest + half);
     if (!(window.begin <= window.end)) return false;

@@ -19,13 +19,13 @@ namespace kds::collision {
 /// The motion of b seen from a about `now`, with one bound on the error of everything that is read from it until the
 /// horizon: a filter. What it says for sure is true of the motions as they are; what it does not, exact signs decide.
 ///
-/// A *gap* is side * axis . r(tau) - reach, with |axis| <= 1 up to rounding and a reach of at most three times `size`,
-/// added up of at most nine numbers. tau is the time since now.
+/// A *gap* is side * axis . r(tau) - distance, with |axis| <= 1 up to rounding and a distance of at most three times
+/// `size`, added up of at most nine numbers. tau is the time since now.
 ///
 /// Error bound, with u = 2^-53, M_i a bound on the coordinates of coefficient i, T the last tau and M = M_0 + M_1 T +
 /// M_2 T^2. A coordinate of a coefficient is known to 8 u M_i; its product with an axis, whose 1-norm is below 1.74, to
 /// 20 u M_i. A value at tau adds 7 u M; roots are those of a polynomial with coefficients off by 8 u, which is 14 u M,
-/// at times off by 2 u, 4 u M. The reach is known to 33 u size, and takes part in what is rounded. That is less than
+/// at times off by 2 u, 4 u M. The distance is known to 33 u size, and takes part in what is rounded. That is less than
 /// 60 u (M + 2 size); charged are 128 u, so that a gap that is closed by rounding alone is never taken for one that
 /// stays open, nor the other way round. T is no longer than it takes for the highest term to outgrow the others, after
 /// which boxes part for good (note_parting()); where M would be 2^20 times what it is now the filter ends in any case.
@@ -59,18 +59,18 @@ class QuickMotion {
   double end() const { return end_; }
   bool whole() const { return whole_; }
   /// Looks whether one side of a gap, open at the end, can only open further from there on. That makes it whole.
-  void note_parting(const Along& p, double reach) {
-    whole_ = whole_ || opens_for_good(p, 1, reach) || opens_for_good(p, -1, reach);
+  void note_parting(const Along& p, double distance) {
+    whole_ = whole_ || opens_for_good(p, 1, distance) || opens_for_good(p, -1, distance);
   }
 
   /// Shrinks the window, within [0, end()], to times at which the gap may be closed; false if there are none.
-  bool clip(const Along& p, double side, double reach, TimeWindow& window) const;
-  bool surely_closed(const Along& p, double side, double reach, double tau) const;
+  bool clip(const Along& p, double side, double distance, TimeWindow& window) const;
+  bool surely_closed(const Along& p, double side, double distance, double tau) const;
   /// For a gap that is closed at t: a time before which it surely stays so, t itself, or infinity.
-  double closed_until(const Along& p, double side, double reach, double t) const;
+  double closed_until(const Along& p, double side, double distance, double t) const;
 
   /// For a gap that may be touching now: a tau by which it has surely opened without turning, or infinity.
-  double opened_by(const Along& p, double side, double reach) const;
+  double opened_by(const Along& p, double side, double distance) const;
 
   static double value(const Along& p, double tau) {
     if constexpr (Degree == 1) {
@@ -83,7 +83,7 @@ class QuickMotion {
   }
 
  private:
-  bool opens_for_good(const Along& p, double side, double reach) const;
+  bool opens_for_good(const Along& p, double side, double distance) const;
   void begin_curve(const Path& a, const Path& b, double horizon, double size);
   std::array<double, std::size_t{Degree} + 1> gap(const Along& p, double side, double constant) const;
 
@@ -212,7 +212,7 @@ void QuickMotion<Degree>::begin_curve(const Path& a, const Path& b, double horiz
   bend_error_ = unit * most[2];
 }
 
-/// side * axis . r - reach, without its reach, as a polynomial of the time, with a constant of its own.
+/// side * axis . r - distance, without its distance, as a polynomial of the time, with a constant of its own.
 template <int Degree>
 auto QuickMotion<Degree>::gap(const Along& p, double side, double constant) const -> Along {
   Along gap;
@@ -235,24 +235,24 @@ double QuickMotion<Degree>::time_before(double tau) const {
 }
 
 template <int Degree>
-bool QuickMotion<Degree>::clip(const Along& p, double side, double reach, TimeWindow& window) const {
+bool QuickMotion<Degree>::clip(const Along& p, double side, double distance, TimeWindow& window) const {
   if constexpr (Degree == 1) {
-    return clip_to_negative(side * p[0] - reach - error_, side * p[1], window);
+    return clip_to_negative(side * p[0] - distance - error_, side * p[1], window);
   } else if constexpr (Degree >= 3) {
-    return clip_to_negative(gap(p, side, -reach - error_), window);
+    return clip_to_negative(gap(p, side, -distance - error_), window);
   } else {
-    return clip_to_negative(side * p[0] - reach - error_, side * p[1], side * p[2], window);
+    return clip_to_negative(side * p[0] - distance - error_, side * p[1], side * p[2], window);
   }
 }
 
 template <int Degree>
-bool QuickMotion<Degree>::surely_closed(const Along& p, double side, double reach, double tau) const {
-  return tau <= end_ && side * value(p, tau) - reach < -error_;
+bool QuickMotion<Degree>::surely_closed(const Along& p, double side, double distance, double tau) const {
+  return tau <= end_ && side * value(p, tau) - distance < -error_;
 }
 
 template <int Degree>
-bool QuickMotion<Degree>::opens_for_good(const Along& p, double side, double reach) const {
-  if (!(side * value(p, end_) - reach > 2 * error_)) return false;
+bool QuickMotion<Degree>::opens_for_good(const Along& p, double side, double distance) const {
+  if (!(side * value(p, end_) - distance > 2 * error_)) return false;
   if constexpr (Degree == 1) {
     return side * p[1] > rate_error_;
   } else if constexpr (Degree >= 3) {
@@ -275,8 +275,8 @@ bool QuickMotion<Degree>::opens_for_good(const Along& p, double side, double rea
 
 /// Twice the error is enough; it takes more of it, so that what follows starts from an ordinary place.
 template <int Degree>
-double QuickMotion<Degree>::opened_by(const Along& p, double side, double reach) const {
-  if (side * p[0] - reach > error_) return TimeSpans::infinity;  // does not touch
+double QuickMotion<Degree>::opened_by(const Along& p, double side, double distance) const {
+  if (side * p[0] - distance > error_) return TimeSpans::infinity;  // does not touch
   const double rate = side * p[1];
   const double opened = 64 * error_ / rate;
   if (!(rate > 4 * rate_error_) || !(opened < end_)) return TimeSpans::infinity;
@@ -290,17 +290,17 @@ double QuickMotion<Degree>::opened_by(const Along& p, double side, double reach)
   if constexpr (Degree == 2) {
     if (!(rate + 2 * opened * std::min(side * p[2], 0.0) > 0.5 * rate)) return TimeSpans::infinity;
   }
-  return side * value(p, opened) - reach > 2 * error_ ? opened : TimeSpans::infinity;
+  return side * value(p, opened) - distance > 2 * error_ ? opened : TimeSpans::infinity;
 }
 
 template <int Degree>
-double QuickMotion<Degree>::closed_until(const Along& p, double side, double reach, double t) const {
+double QuickMotion<Degree>::closed_until(const Along& p, double side, double distance, double t) const {
   if constexpr (Degree >= 3) {
     // As far as the gap, with the error on it, is certainly below zero.
     const double from = tau(t);
     const double length = end_ - from;
     if (!(from >= 0 && length >= 0)) return t;
-    auto opposite = taylor_shift<double>(Polynomial<Degree>{gap(p, -side, reach - error_)}, from);
+    auto opposite = taylor_shift<double>(Polynomial<Degree>{gap(p, -side, distance - error_)}, from);
     double factor = 1;
     for (double& c : opposite.c) {
       c *= factor;
@@ -310,7 +310,7 @@ double QuickMotion<Degree>::closed_until(const Along& p, double side, double rea
     if (closed >= 1 && whole_) return TimeSpans::infinity;
     return std::max(t, time_before(from + closed * length * (1 - 0x1p-40)));
   }
-  const double c0 = side * p[0] - reach + error_;
+  const double c0 = side * p[0] - distance + error_;
   TimeSpans closed;
   if constexpr (Degree == 1) {
     closed = negative_spans(c0, side * p[1]);

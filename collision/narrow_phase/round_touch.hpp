@@ -33,25 +33,25 @@ SpansOf<Degree> spans_below_zero(const std::array<double, std::size_t{Degree} + 
   }
 }
 
-/// Whether a path comes as near to the origin as `reach` within a window, judged by its chord: which it leaves by no
+/// Whether a path comes as near to the origin as `distance` within a window, judged by its chord: which it leaves by no
 /// more than an eighth of the second derivative's bound times length^2.
 template <int Degree>
-bool may_come_near(const PathCoefficients<Degree>& path, const TimeWindow& window, double reach) {
+bool may_come_near(const PathCoefficients<Degree>& path, const TimeWindow& window, double distance) {
   const double length = window.end - window.begin;
   const Eigen::Vector3d begin = place_on(path, window.begin);
   const Eigen::Vector3d along = place_on(path, window.end) - begin;
   const double square = dot(along, along);
   const double part = square > 0 ? std::clamp(-dot(begin, along) / square, 0.0, 1.0) : 0.0;
   const Eigen::Vector3d nearest = begin + part * along;
-  if constexpr (Degree == 2) reach += 0.25 * length * length * std::sqrt(dot(path[2], path[2]));
+  if constexpr (Degree == 2) distance += 0.25 * length * length * std::sqrt(dot(path[2], path[2]));
   if constexpr (Degree >= 3) {
     double bend = 0;
     for (std::size_t i = Degree; i >= 2; --i) {
       bend = bend * window.end + static_cast<double>(i * (i - 1)) * std::sqrt(dot(path[i], path[i]));
     }
-    reach += 0.125 * length * length * bend;
+    distance += 0.125 * length * length * bend;
   }
-  return !(dot(nearest, nearest) > reach * reach);
+  return !(dot(nearest, nearest) > distance * distance);
 }
 
 /// The part of a polyhedron that is nearest to a point: a corner (dimension 0), an edge (1) or a face (2).

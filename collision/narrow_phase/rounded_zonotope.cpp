@@ -35,17 +35,17 @@ RoundedZonotope<Degree>::RoundedZonotope(const Body& a, const Body& b, const Rou
       cells_({core_.generators.data(), core_.generators.size()}),
       motion_(a.motion, b.motion, now, horizon, a.shape.bounding_radius + b.shape.bounding_radius),
       hull_{0, 0} {
-  const auto reach_along = [this](const Vector3d& axis) {
-    double reach = 0;
-    for (const auto& each : core_.generators) reach += each.length * std::abs(dot(axis, each.direction));
-    return reach;
+  const auto half_width_along = [this](const Vector3d& axis) {
+    double half_width = 0;
+    for (const auto& each : core_.generators) half_width += each.length * std::abs(dot(axis, each.direction));
+    return half_width;
   };
-  std::array<double, 3> reach;
+  std::array<double, 3> half_width;
   for (int d = 0; d < 3; ++d) {
     const auto k = static_cast<std::size_t>(d);
     coordinates_[k] = motion_.along(Vector3d::Unit(d));
-    reach[k] = reach_along(Vector3d::Unit(d)) + core_.radius;
-    motion_.note_parting(coordinates_[k], reach[k]);
+    half_width[k] = half_width_along(Vector3d::Unit(d)) + core_.radius;
+    motion_.note_parting(coordinates_[k], half_width[k]);
   }
   hull_ = {0, motion_.end()};
   const auto near = [this](const Along& along, double within) {
@@ -55,11 +55,11 @@ RoundedZonotope<Degree>::RoundedZonotope(const Body& a, const Body& b, const Rou
     return !apart_;
   };
   for (std::size_t d = 0; d < 3; ++d) {
-    if (!near(coordinates_[d], reach[d])) return;
+    if (!near(coordinates_[d], half_width[d])) return;
   }
   for (const auto& each : core_.generators) {
     along_.push_back(motion_.along(each.direction));
-    if (!near(along_.back(), reach_along(each.direction) + core_.radius)) return;
+    if (!near(along_.back(), half_width_along(each.direction) + core_.radius)) return;
   }
   for (std::uint8_t i = 0; i < cells_.size(); ++i) {
     for (std::uint8_t j = i + 1; j < cells_.size(); ++j) {
@@ -67,8 +67,8 @@ RoundedZonotope<Degree>::RoundedZonotope(const Body& a, const Body& b, const Rou
       const Vector3d product = accurate_cross(core_.generators[i].direction, core_.generators[j].direction);
       const bool known = norm(product) >= unknown_normal;
       const Vector3d normal = known ? normalized(product) : Vector3d(Vector3d::Zero());
-      faces_.push_back({{i, j}, normal, known, motion_.along(normal), reach_along(normal)});
-      if (known && !near(faces_.back().along, faces_.back().reach + core_.radius)) return;
+      faces_.push_back({{i, j}, normal, known, motion_.along(normal), half_width_along(normal)});
+      if (known && !near(faces_.back().along, faces_.back().half_width + core_.radius)) return;
     }
   }
 }
@@ -84,10 +84,10 @@ template <int Degree>
 RoundedZonotope<Degree>::Piece::Piece(const RoundedZonotope& pair)
     : pair_(&pair), cell_{}, solid_(true), window_(pair.hull_) {
   for (const Face& face : pair.faces_) {
-    sides_.push_back({face.along, face.reach, face.known});
+    sides_.push_back({face.along, face.half_width, face.known});
     if (!face.known || !possible()) continue;
-    const bool near =
-        pair.motion_.clip(face.along, 1, face.reach, window_) && pair.motion_.clip(face.along, -1, face.reach, window_);
+    const bool near = pair.motion_.clip(face.along, 1, face.half_width, window_) &&
+                      pair.motion_.clip(face.along, -1, face.half_width, window_);
     if (!near) window_ = pair.motion_.whole() ? TimeWindow{1, 0} : pair.after_end();
   }
 }
@@ -99,7 +99,8 @@ RoundedZonotope<Degree>::Piece::Piece(const RoundedZonotope& pair, const Cell& c
   const auto near = [&] {
     const Quick& motion = pair.motion_;
     const bool between = std::all_of(sides_.begin(), sides_.end(), [&](const Side& s) {
-      return !s.known || (motion.clip(s.along, 1, s.reach, window_) && motion.clip(s.along, -1, s.reach, window_));
+      return !s.known ||
+             (motion.clip(s.along, 1, s.half_width, window_) && motion.clip(s.along, -1, s.half_width, window_));
     });
     return between && distance_.clip(window_);
   };
@@ -194,14 +195,14 @@ bool RoundedZonotope<Degree>::Piece::surely_closed(std::size_t i, double t) cons
   const double tau = motion.tau(t);
   if (is_distance(i)) return distance_.size() > 0 && distance_.surely_closed(tau);
   const Side& s = sides_[i / 2];
-  return s.known && motion.surely_closed(s.along, side(i), s.reach, tau);
+  return s.known && motion.surely_closed(s.along, side(i), s.half_width, tau);
 }
 
 template <int Degree>
 double RoundedZonotope<Degree>::Piece::closed_until(std::size_t i, double t) const {
   if (is_distance(i) || !sides_[i / 2].known) return t;
   const Side& s = sides_[i / 2];
-  return pair_->motion_.closed_until(s.along, side(i), s.reach, t);
+  return pair_->motion_.closed_until(s.along, side(i), s.half_width, t);
 }
 
 template <int Degree>
@@ -209,7 +210,7 @@ double RoundedZonotope<Degree>::Piece::opened_by(std::size_t i) const {
   const Quick& motion = pair_->motion_;
   if (is_distance(i)) return distance_.size() > 0 ? motion.time_after(distance_.opened_by()) : never;
   const Side& s = sides_[i / 2];
-  return s.known ? motion.time_after(motion.opened_by(s.along, side(i), s.reach)) : never;
+  return s.known ? motion.time_after(motion.opened_by(s.along, side(i), s.half_width)) : never;
 }
 
 #define KDS_INSTANTIATE(degree) template class RoundedZonotope<degree>;

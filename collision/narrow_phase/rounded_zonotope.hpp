@@ -82,7 +82,7 @@ class RoundedZonotope {
     Eigen::Vector3d normal;  ///< unit, up to some roundings
     bool known;              ///< it is that
     Along along;
-    double reach;  ///< of the zonotope
+    double half_width;  ///< of the zonotope
   };
 
   TimeWindow after_end() const { return {motion_.end(), motion_.end()}; }
@@ -134,7 +134,7 @@ class RoundedZonotope<Degree>::Piece {
   /// Two opposite gaps along an axis, as the filter sees them.
   struct Side {
     Along along;
-    double reach;
+    double half_width;
     bool known;
   };
 

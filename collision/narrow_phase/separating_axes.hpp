@@ -39,9 +39,9 @@ struct PlacedBox {
   Eigen::Matrix3d rotation;  ///< columns: normals of its faces
 
   Interval project(const Eigen::Vector3d& axis) const {
-    const double reach =
+    const double half_width =
         std::abs(dot(axis, half_axes[0])) + std::abs(dot(axis, half_axes[1])) + std::abs(dot(axis, half_axes[2]));
-    return {-reach, reach};
+    return {-half_width, half_width};
   }
 };
 
@@ -50,8 +50,8 @@ struct PlacedBall {
   double radius;
 
   Interval project(const Eigen::Vector3d& axis) const {
-    const double reach = radius * std::sqrt(dot(axis, axis));
-    return {-reach, reach};
+    const double half_width = radius * std::sqrt(dot(axis, axis));
+    return {-half_width, half_width};
   }
 };
 
@@ -61,8 +61,8 @@ struct PlacedCapsule {
   double radius;
 
   Interval project(const Eigen::Vector3d& axis) const {
-    const double reach = std::abs(dot(axis, half)) + radius * std::sqrt(dot(axis, axis));
-    return {-reach, reach};
+    const double half_width = std::abs(dot(axis, half)) + radius * std::sqrt(dot(axis, axis));
+    return {-half_width, half_width};
   }
 };
 

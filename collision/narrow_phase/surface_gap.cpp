@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// How far a shape reaches from its centre along a unit vector, either way.
-double reach(const PlacedShape& shape, const Vector3d& along) {
+double half_width(const PlacedShape& shape, const Vector3d& along) {
   const double radius = ball_radius(shape.shape);
   if (radius > 0) return radius;
   const RoundedCore core = rounded_core(shape);
@@ -27,7 +27,7 @@ template <int Degree>
 double gap_along(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Vector3d& normal,
                  double t) {
   const Vector3d apart = b.motion.position(t) - a.motion.position(t);
-  return dot(normal, apart) - reach(a.shape, normal) - reach(b.shape, normal);
+  return dot(normal, apart) - half_width(a.shape, normal) - half_width(b.shape, normal);
 }
 
 template <int Degree>

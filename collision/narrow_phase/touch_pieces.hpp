@@ -34,7 +34,7 @@ class TouchPieces {
     return first;
   }
 
-  /// Since when they have touched at tau: downwards through the pieces that contain the time, as far as they reach.
+  /// Since when they have touched at tau: downwards through the pieces that contain the time, as far as they go.
   double enter(double tau) const {
     double begin = TimeSpans::infinity;
     for (const Piece& piece : pieces_) {

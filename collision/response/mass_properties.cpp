@@ -111,14 +111,14 @@ Integrals integrate(const Mesh& mesh) {
   Integrals sum;
   // A corner of a triangle: with those around it the triangle makes no tetrahedra.
   sum.origin = mesh.vertices()[mesh.triangles()[0][0]];
-  double reach = 0;
+  double largest = 0;
   for (const Mesh::Triangle& triangle : mesh.triangles()) {
     for (const std::uint32_t i : triangle) {
-      reach = std::max(reach, (mesh.vertices()[i] - sum.origin).cwiseAbs().maxCoeff());
+      largest = std::max(largest, (mesh.vertices()[i] - sum.origin).cwiseAbs().maxCoeff());
     }
   }
   int exponent = 0;
-  std::frexp(reach, &exponent);
+  std::frexp(largest, &exponent);
   sum.unit = power_of_two(exponent);
   const double per_unit = power_of_two(-exponent);
   for (const auto& [i, j, k] : mesh.triangles()) {

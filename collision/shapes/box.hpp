@@ -35,10 +35,10 @@ struct ShapeKind<Box> {
   }
 
   static std::array<double, 2> extent(const Box&, const PlacedShape& placed, const Eigen::Vector3d& direction) {
-    double reach = 0;
-    for (const Eigen::Vector3d& half : placed.half_axes) reach += std::abs(dot(direction, half));
-    reach += rotation_margin * placed.bounding_radius * (norm(direction) * (1 + rotation_margin));
-    return {-reach, reach};
+    double half_width = 0;
+    for (const Eigen::Vector3d& half : placed.half_axes) half_width += std::abs(dot(direction, half));
+    half_width += rotation_margin * placed.bounding_radius * (norm(direction) * (1 + rotation_margin));
+    return {-half_width, half_width};
   }
 
   static Eigen::Vector3d measures(const Box& box) { return box.half_extents; }

@@ -21,9 +21,9 @@ void ShapeKind<Capsule>::place(const Capsule& capsule, PlacedShape& placed) {
   require_size(capsule.half_length, "half_length");
   bool exact = is_signed_permutation(placed.rotation);
   for (int d = 0; d < 3; ++d) {
-    const DoubleDouble reach = two_sum(std::abs(capsule.half_length * placed.rotation(d, 2)), capsule.radius);
-    exact = exact && reach.low == 0;
-    placed.high[d] = reach.high;
+    const DoubleDouble half_width = two_sum(std::abs(capsule.half_length * placed.rotation(d, 2)), capsule.radius);
+    exact = exact && half_width.low == 0;
+    placed.high[d] = half_width.high;
   }
   placed.low = -placed.high;
   if (!exact) grow(placed, rotation_margin * norm(placed.high));
@@ -34,9 +34,9 @@ std::array<double, 2> ShapeKind<Capsule>::extent(const Capsule& capsule, const P
                                                  const Eigen::Vector3d& direction) {
   const double length = norm(direction) * (1 + rotation_margin);
   const double along = std::abs(dot(direction, Eigen::Vector3d(placed.rotation.col(2))));
-  const double reach = capsule.half_length * along + capsule.radius * length;
+  const double half_width = capsule.half_length * along + capsule.radius * length;
   const double margin = rotation_margin * placed.bounding_radius * length;
-  return {-reach - margin, reach + margin};
+  return {-half_width - margin, half_width + margin};
 }
 
 SupportingFeature ShapeKind<Capsule>::support(const Capsule& capsule, const PlacedShape& placed,

@@ -146,13 +146,13 @@ class Builder {
     node.centre = lanes(middle / unit_);
     const Vector3d centre = unit_ * coordinates(node.centre);
     const Matrix3d axes = rounded_axes(node);
-    Vector3d reach = Vector3d::Zero();
+    Vector3d widest = Vector3d::Zero();
     for (std::uint32_t i = begin; i < end; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
-        reach = reach.cwiseMax((axes.transpose() * (corner(items_[i], k) - centre)).cwiseAbs());
+        widest = widest.cwiseMax((axes.transpose() * (corner(items_[i], k) - centre)).cwiseAbs());
       }
     }
-    node.half_extents = lanes(reach / unit_ + Vector3d::Constant(growth));
+    node.half_extents = lanes(widest / unit_ + Vector3d::Constant(growth));
     node.radius = static_cast<float>(coordinates(node.half_extents).norm()) + growth;
   }
 

@@ -19,8 +19,8 @@ struct ShapeKind<Sphere> {
   }
 
   static std::array<double, 2> extent(const Sphere& sphere, const PlacedShape&, const Eigen::Vector3d& direction) {
-    const double reach = sphere.radius * (norm(direction) * (1 + rotation_margin));
-    return {-reach, reach};
+    const double half_width = sphere.radius * (norm(direction) * (1 + rotation_margin));
+    return {-half_width, half_width};
   }
 
   static Eigen::Vector3d measures(const Sphere& sphere) { return Eigen::Vector3d::Constant(sphere.radius); }

@@ -1,4 +1,4 @@
-// What bounding volumes reach beyond their bodies, in worlds with meshes.
+// How far bounding volumes are beyond their bodies, in worlds with meshes.
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/world/volumes.hpp"

@@ -118,12 +118,12 @@ void Volumes<Motion>::place_extents(BodySlot slot) {
   extents_.resize(std::max(extents_.size(), (slot + std::size_t{1}) * directions_.size()));
   for (std::size_t i = 0; i < directions_.size(); ++i) {
     const Eigen::Vector3d direction(directions_[i].data());
-    auto& reach = extents_[slot * directions_.size() + i];
+    auto& half_extents = extents_[slot * directions_.size() + i];
     if (is_round(slot)) {
       const double radius = b.bounding_radius * norm(direction) * (1 + 0x1p-48);
-      reach = {-radius, radius};
+      half_extents = {-radius, radius};
     } else {
-      reach = extent(*b.shape, direction);
+      half_extents = extent(*b.shape, direction);
     }
   }
 }
@@ -169,8 +169,8 @@ bool Volumes<Motion>::overlap(BodySlot a, BodySlot b, double t, bool exact) cons
 template <class Motion>
 KineticBox<Motion::degree> Volumes<Motion>::box_or_ball(BodySlot slot) const {
   if (asked(slot)) return box(slot);
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(bodies_[slot].bounding_radius);
-  return box_around<Motion::degree>(bodies_.path(slot), -reach, reach);
+  const Eigen::Vector3d half_extents = Eigen::Vector3d::Constant(bodies_[slot].bounding_radius);
+  return box_around<Motion::degree>(bodies_.path(slot), -half_extents, half_extents);
 }
 
 template <class Motion>

@@ -8,7 +8,7 @@
 #include "collision/motions.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
-#include "collision/world/turning/turning_reach.hpp"
+#include "collision/world/turning/turning_extents.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
 
@@ -92,7 +92,7 @@ class Volumes {
   void place_extents(BodySlot slot);
   KineticSlab<Motion::degree> slab(BodySlot slot, std::size_t i, double now) const;
 
-  // clearance.cpp: what boxes reach beyond bodies, for the contact gap of meshes
+  // clearance.cpp: how far boxes are beyond bodies, for the contact gap of meshes
   std::array<double, std::size_t{Motion::degree} + 1> growth(BodySlot slot) const;
   Box grown(BodySlot slot, Box box) const;
   double clearance_until(BodySlot slot) const;
@@ -109,7 +109,7 @@ class Volumes {
 };
 
 /// Whether the volume is around the bounding sphere, which holds the body however it is turned. If not, it is around
-/// the shape as it is placed, or (boxes) as it turns (turning_reach()).
+/// the shape as it is placed, or (boxes) as it turns (turning_half_extents()).
 template <class Motion>
 inline bool Volumes<Motion>::is_round(BodySlot slot) const {
   return turns<Motion> || !bodies_[slot].shape || bodies_[slot].volume == BoundingVolume::sphere;
@@ -122,15 +122,15 @@ inline KineticBox<Motion::degree> Volumes<Motion>::bare_box(BodySlot slot) const
   const detail::Body<Motion>& b = bodies_[slot];
   if constexpr (turns<Motion>) {
     if (b.shape && b.volume == BoundingVolume::shape) {
-      const Eigen::Vector3d reach = turning_reach(*b.shape, bodies_.motion(slot));
-      return box_around<Motion::degree>(bodies_.path(slot), -reach, reach);
+      const Eigen::Vector3d half_extents = turning_half_extents(*b.shape, bodies_.motion(slot));
+      return box_around<Motion::degree>(bodies_.path(slot), -half_extents, half_extents);
     }
   }
   const bool sphere = is_round(slot);
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(b.bounding_radius);
+  const Eigen::Vector3d half_extents = Eigen::Vector3d::Constant(b.bounding_radius);
   const double rounding = sphere && !options_.report_pairs ? b.bounding_radius : 0;  // of boxes those are told
-  return box_around<Motion::degree>(bodies_.path(slot), sphere ? -reach : b.shape->low, sphere ? reach : b.shape->high,
-                                    rounding);
+  return box_around<Motion::degree>(bodies_.path(slot), sphere ? -half_extents : b.shape->low,
+                                    sphere ? half_extents : b.shape->high, rounding);
 }
 
 #define KDS_DECLARE(motion) extern template class Volumes<motion>;

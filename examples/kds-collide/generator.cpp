@@ -72,8 +72,8 @@ class Placement {
           const auto found = cells_.find(key(x, y, z));
           if (found == cells_.end()) continue;
           for (const Ball& ball : found->second) {
-            const double reach = ball.radius + radius;
-            if ((ball.centre - at).squaredNorm() <= reach * reach) return false;
+            const double radii = ball.radius + radius;
+            if ((ball.centre - at).squaredNorm() <= radii * radii) return false;
           }
         }
       }

@@ -222,9 +222,9 @@ void check_range(const JsonNode& node, const SceneBody& body, const Scene& scene
     const double elapsed = std::max(0.0, end - piece.start);
     for (int d = 0; d < 3; ++d) {
       const auto& c = piece.coefficients;
-      const double reach = std::abs(c[0][d]) + elapsed * (std::abs(c[1][d]) + elapsed * std::abs(c[2][d]));
-      if (reach <= largest_number) continue;
-      pieces[p]["position"].fail("may reach a magnitude of " + about(reach) + " by t = " + about(end) + "; at most " +
+      const double largest = std::abs(c[0][d]) + elapsed * (std::abs(c[1][d]) + elapsed * std::abs(c[2][d]));
+      if (largest <= largest_number) continue;
+      pieces[p]["position"].fail("may reach a magnitude of " + about(largest) + " by t = " + about(end) + "; at most " +
                                  number_text(largest_number) + " is supported");
     }
   }

@@ -205,8 +205,8 @@ int scale_exponent(const Polynomial<Degree, Ball<double>>& p, double end) {
   unrolled<Degree>([&](auto below) {
     constexpr int i = static_cast<int>(below) + 1;
     const int share = met == 1 ? 65536 / std::max(i - 1, 1) : 65536 / i;
-    const int reach = ((constant - exponent_of(p.c[i].middle)) * share) >> 16;
-    scale = std::min(scale, p.c[i].middle < 0 && i > met ? reach : most);
+    const int ratio = ((constant - exponent_of(p.c[i].middle)) * share) >> 16;
+    scale = std::min(scale, p.c[i].middle < 0 && i > met ? ratio : most);
   });
   return scale == most ? 0 : std::max(scale, -most);
 }

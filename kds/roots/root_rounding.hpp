@@ -91,10 +91,10 @@ class RootRounding {
       const Ball<DoubleDouble> value = extended_value(certificate_, t);
       const double inverse = -1 / slope.value;
       const double step = value.middle.high * inverse;
-      const double reach = 4 * std::abs(step) + 4 * spacing(t);
-      const double margin = (slope.error + reach * slope.bend) * inverse;
+      const double span = 4 * std::abs(step) + 4 * spacing(t);
+      const double margin = (slope.error + span * slope.bend) * inverse;
       const double radius = value.radius * Ball<double>::slack * inverse;
-      if (!(margin <= 0.25 && reach * (16 * Degree) <= elapsed && radius <= 0.25 * spacing(t))) return undecided;
+      if (!(margin <= 0.25 && span * (16 * Degree) <= elapsed && radius <= 0.25 * spacing(t))) return undecided;
       const double error = 2 * (std::abs(step) * (margin + 0x1p-51) + radius);
       const DoubleDouble root = two_sum(t, step);
       const double first = first_double_not_before(certificate_, root, error);

@@ -45,18 +45,18 @@ class TurningCrossing {
 
   /// The first double not before a root of f, by one value in double-doubles; no number where that does not tell.
   ///
-  /// `slope` is f' at the guess, 1/s, and `bend` at least |f''|, 1/s^2, up to `reach` from it. Error bound: up to d = 2
-  /// |f / slope| from the guess f' is off by at most q = bend d, and its radius; where that is less than a quarter of
+  /// `slope` is f' at the guess, 1/s, and `bend` at least |f''|, 1/s^2, up to `radius` from it. Error bound: up to d =
+  /// 2 |f / slope| from the guess f' is off by at most q = bend d, and its radius; where that is less than a quarter of
   /// it, f changes its sign within d, for there it changes by more than 3/4 of 2 |f|. So the root is at guess - f / (f'
   /// at a time between): the quotient by the slope is off by 4/3 of q / slope of itself at most, and by 4/3 of the
   /// radius of f, divided by the slope; a rounding of the quotient is charged with four.
-  double next_to_root(double guess, const Ball<double>& slope, double bend, double reach) const {
+  double next_to_root(double guess, const Ball<double>& slope, double bend, double radius) const {
     const Ball<DoubleDouble> at_guess = value(guess);
     const double steepness = std::abs(slope.middle);
     const double quotient = at_guess.middle.high / slope.middle;
     const double d = 2.1 * (std::abs(quotient) + at_guess.radius / steepness);
     const double unsure = (slope.radius + bend * d) * Ball<double>::slack;
-    if (!(unsure <= 0.25 * steepness && d <= reach)) return std::numeric_limits<double>::quiet_NaN();
+    if (!(unsure <= 0.25 * steepness && d <= radius)) return std::numeric_limits<double>::quiet_NaN();
     const double error = std::abs(quotient) * (1.5 * unsure / steepness + 0x1p-51) + 1.5 * at_guess.radius / steepness;
     const DoubleDouble root = two_sum(guess, -quotient);
     const double next = next_up(root.high);

@@ -189,9 +189,9 @@ class TurningSearch {
     const double guess = root(model, 0, s.l, s.r, m, rho);
     if (s.precision < 2) {  // else the model has another factor than f
       const Ball<double> slope = model.derivative(1, (guess - m) / rho);
-      const double reach = std::min(guess - s.l, s.r - guess);
+      const double radius = std::min(guess - s.l, s.r - guess);
       const double t = crossing_.next_to_root(guess, {slope.middle / rho, slope.radius / rho * (1 + 0x1p-40)},
-                                              model.size(2) / rho / rho * (1 + 0x1p-40), reach);
+                                              model.size(2) / rho / rho * (1 + 0x1p-40), radius);
       if (t > s.l && t <= s.r) return t;
     }
     return crossing_(0, s.l, s.r, -1, guess);

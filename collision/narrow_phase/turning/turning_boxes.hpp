@@ -320,15 +320,15 @@ void TurningBoxes<Degree>::every_jet(const PairFrame<Degree>& frame, int way, do
   const TurningBounds bounds(frame, rate, of_a, of_b, stretch);
   Jet base = dot(n, frame.way);
   base.value -= offset + bounds.rounding + PairFrame<Degree>::rounding * offset;
-  std::array<Jet, 4> reach;
+  std::array<Jet, 4> width;
   for (std::size_t k = 0; k < count; ++k) {
-    reach[k] = dot(n, half[k]);
-    base = base - reach[k];
+    width[k] = dot(n, half[k]);
+    base = base - width[k];
   }
   for (int number = 0; number < 1 << count; ++number) {
     Jet f = base;
     for (std::size_t k = 0; k < count; ++k) {
-      if (number >> k & 1) f = f + 2.0 * reach[k];
+      if (number >> k & 1) f = f + 2.0 * width[k];
     }
     if (!visit(number, f, bounds.third)) return;
   }

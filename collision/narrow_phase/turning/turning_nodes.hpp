@@ -147,7 +147,7 @@ class NodeGap {
     const auto consider = [&](Eigen::Vector3d n, int with) {
       double along = dot(n, p_.value);
       if (along < 0) along = -along, n = -n;
-      const double gap = along - reach(n);
+      const double gap = along - half_width(n);
       if (gap > best.gap) best = {gap, n, with};
     };
     if (distance_ > 0) consider(p_.value / distance_, 0);
@@ -158,7 +158,7 @@ class NodeGap {
     return best;
   }
 
-  double reach(const Eigen::Vector3d& n) const {
+  double half_width(const Eigen::Vector3d& n) const {
     double sum = a_.round + b_.round;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<Eigen::Index>(k);

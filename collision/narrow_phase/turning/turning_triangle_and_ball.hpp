@@ -94,10 +94,10 @@ class TurningTriangleAndBall {
     const VectorJet n = turning(apart / distance, view.spin_a);
     const double stretch = view.stretch(hull_.radius + radius_, (horizon - view.time) * (1 + 0x1p-40));
     const TurningBounds bounds(view, view.rate_a, 0, 0, stretch);  // the ball's own spin is nothing to it
-    double reach = -never;
-    for (const Eigen::Vector3d& x : seen.corners) reach = std::max(reach, dot(n.value, x));
+    double farthest = -never;
+    for (const Eigen::Vector3d& x : seen.corners) farthest = std::max(farthest, dot(n.value, x));
     Jet f = dot(n, view.way);
-    f.value -= reach + radius_ + PairFrame<Degree>::rounding * (hull_.radius + radius_) + bounds.rounding;
+    f.value -= farthest + radius_ + PairFrame<Degree>::rounding * (hull_.radius + radius_) + bounds.rounding;
     const double wait = positive_for(f, bounds.third, stretch);
     if (wait > horizon - view.time) return never;
     if (slack_) return wait > 0x1p-30 * stretch ? std::max(view.time, next_down(view.time + wait)) : view.time;

@@ -26,7 +26,7 @@ namespace kds::collision {
 /// Error bound: an axis that is turned is off by 2^-46 of its length, and what is added up by some roundings more:
 /// 2^-40 of the bounding radius is charged.
 template <int Degree>
-Eigen::Vector3d turning_reach(const PlacedShape& shape, const certificates::RigidMotion<Degree>& motion) {
+Eigen::Vector3d turning_half_extents(const PlacedShape& shape, const certificates::RigidMotion<Degree>& motion) {
   const double radius = shape.bounding_radius;
   const auto* const box = std::get_if<Box>(&shape.shape);
   if (!box) return Eigen::Vector3d::Constant(radius);
@@ -36,9 +36,9 @@ Eigen::Vector3d turning_reach(const PlacedShape& shape, const certificates::Rigi
     half[static_cast<std::size_t>(k)] = box->half_extents[k] * turn(Eigen::Vector3d::Unit(k));
   }
   const double rate = norm(motion.angular_velocity);
-  Eigen::Vector3d reach = Eigen::Vector3d::Zero();
+  Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();
   if (motion.spin().still()) {
-    for (const Eigen::Vector3d& h : half) reach += h.cwiseAbs();
+    for (const Eigen::Vector3d& h : half) half_extents += h.cwiseAbs();
   } else {
     const Eigen::Vector3d n = motion.angular_velocity / rate;
     for (int corner = 0; corner < 4; ++corner) {  // the opposite ones are as far
@@ -46,15 +46,16 @@ Eigen::Vector3d turning_reach(const PlacedShape& shape, const certificates::Rigi
       const double height = std::abs(dot(n, x));
       const double distance = norm(cross(n, x));
       for (int d = 0; d < 3; ++d) {
-        reach[d] = std::max(reach[d], height * std::abs(n[d]) + distance * std::sqrt(std::max(0.0, 1 - n[d] * n[d])));
+        half_extents[d] =
+            std::max(half_extents[d], height * std::abs(n[d]) + distance * std::sqrt(std::max(0.0, 1 - n[d] * n[d])));
       }
     }
   }
   for (int d = 0; d < 3; ++d) {
-    const double grown = reach[d] + 0x1p-40 * radius;
-    reach[d] = grown < radius ? grown : radius;  // and where the rate is out of the range of squares
+    const double grown = half_extents[d] + 0x1p-40 * radius;
+    half_extents[d] = grown < radius ? grown : radius;  // and where the rate is out of the range of squares
   }
-  return reach;
+  return half_extents;
 }
 
 }  // namespace kds::collision
