@@ -3,7 +3,9 @@
 
 #include "certificates/conjunction.hpp"
 #include "collision/degrees.hpp"
+#include "kds/arithmetic/lattice.hpp"
 #include "kds/audit.hpp"
+#include "structures/span_ahead.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -15,44 +17,6 @@
 
 namespace kds::collision {
 namespace {
-
-/// Widens [low, high] by where x is from now to the horizon, rounded outward; to all there is where the numbers
-/// overflow.
-///
-/// The terms of the motion are monotone in the time since its start, so an interval for each will do. Roundings: the
-/// times, a product of up to three factors and the sums, 2^-53 of a term each, less than 2^-48 of the terms in all.
-template <int Degree>
-void widen(const Motion<Degree>& x, double now, double horizon, double& low, double& high) {
-  const double from = now - x.start;
-  const double to = horizon - x.start;
-  double least = x.position.c[0];
-  double greatest = least;
-  double size = std::abs(least);
-  double first = 1, last = 1;
-  for (std::size_t i = 1; i <= Degree; ++i) {
-    first *= from;
-    last *= to;
-    const double c = x.position.c[i];
-    if (c == 0) continue;
-    double s = c * first;
-    double e = c * last;
-    if (from < 0 && i % 2 == 0) {  // a power that turns at the start of the motion
-      s = std::max({s, e, 0.0});
-      e = std::min({c * first, c * last, 0.0});
-    }
-    least += std::min(s, e);
-    greatest += std::max(s, e);
-    size += std::max(std::abs(s), std::abs(e));
-  }
-  if (!(size < never)) {
-    low = -never;
-    high = never;
-    return;
-  }
-  const double margin = 0x1p-48 * size + 0x1p-1000;  // the second for underflow
-  low = std::min(low, least - margin);
-  high = std::max(high, greatest + margin);
-}
 
 /// A float not above x; a NaN for a NaN.
 float below(double x) {
@@ -92,12 +56,11 @@ void UnlistedAxes<Degree>::choose(unsigned directions, double now) {
 
 template <int Degree>
 void UnlistedAxes<Degree>::set_hulls(BodySlot id, double now) {
+  const double ahead = next_up(horizon_ - now);
   const auto span = [&](const Motion<Degree>& min, const Motion<Degree>& max) {
-    double low = never;
-    double high = -never;
-    widen(min, now, horizon_, low, high);
-    widen(max, now, horizon_, low, high);
-    return std::array<float, 2>{below(low), -below(-high)};
+    const structures::Span low = structures::span_ahead(min, now, ahead);
+    const structures::Span high = structures::span_ahead(max, now, ahead);
+    return std::array<float, 2>{below(std::min(low.min, high.min)), -below(-std::max(low.max, high.max))};
   };
   for (std::size_t i = 0; i < 2; ++i) {
     const auto [low, high] = span(boxes_[id].min.axis(axes_[i]), boxes_[id].max.axis(axes_[i]));
