@@ -50,7 +50,7 @@ template <class Archive>
 void SortedList<Degree, Listener>::archive(Archive& archive) {
   archive.tag("SortedList of degree " + std::to_string(Degree));
   archive(order_, position_, disturbed_, schedule_, measures_);
-  static_assert(ArchivedBy<Listener, Archive> || !detail::NamesArchive<Listener>,
+  static_assert(ArchivedBy<Listener, Archive> || !kds::detail::NamesArchive<Listener>,
                 "swap listener: `archive` must be `template <class Archive> void archive(Archive&)`");
   if constexpr (ArchivedBy<Listener, Archive>) listener_.archive(archive);
   if constexpr (Archive::loading) {

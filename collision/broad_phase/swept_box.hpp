@@ -1,9 +1,10 @@
 // A box at rest that holds a moving one for a while.
 #pragma once
 
-#include "certificates/features/positive_stretch.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "kds/arithmetic/lattice.hpp"
 #include "kds/simd/two_doubles.hpp"
+#include "structures/span_ahead.hpp"
 
 #include <Eigen/Core>
 
@@ -68,36 +69,14 @@ requires(Degree <= 2) StaticBox swept_point(const certificates::PointMotion<Degr
   return swept;
 }
 
-/// The same of a curve of any degree: it stays between the least and the greatest of its Bernstein coefficients over
-/// the span, which is wider than the curve by less the shorter the span is.
-///
-/// Error bound, with u = 2^-53 and n = 5 the greatest degree in use. The coefficients are those about `from`, times
-/// powers of the span: shift, scaling and change of basis take at most 5 n + 8 roundings (see positive_until()) of
-/// parts whose magnitudes sum to at most S, the sum of |c_i| (|begin| + span)^i. The ends of the span are known to u of
-/// its size, which moves what is swept by another 2 n u S. That is 43 u S; 64 u S is charged. An S of 2^1000 leaves it
-/// all unknown.
+/// The same of a curve of any degree, which span_ahead() bounds: wider than the curve by less the shorter the span is.
 template <int Degree>
 requires(Degree >= 3) StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double from, double to) {
-  static_assert(Degree <= 5, "the bound on the roundings is derived for degrees up to 5");
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const double begin = from - motion.start;
-  const double span = (to - motion.start) - begin;
-  const double farthest = std::abs(begin) + span;
   StaticBox swept;
   for (int d = 0; d < 3; ++d) {
-    const Polynomial<Degree> x = motion.axis(d).position;
-    double size = 0;
-    for (std::size_t i = Degree + 1; i-- > 0;) size = size * farthest + std::abs(x.c[i]);
-    if (!(size < 0x1p1000)) {
-      swept.min[d] = -infinity;
-      swept.max[d] = infinity;
-      continue;
-    }
-    const auto b = certificates::detail::bernstein(taylor_shift<double>(x, begin), span);
-    const auto [low, high] = std::minmax_element(b.begin(), b.end());
-    const double margin = 64 * 0x1p-53 * size;
-    swept.min[d] = *low - margin;
-    swept.max[d] = *high + margin;
+    const structures::Span span = structures::span_ahead(motion.axis(d), from, next_up(to - from));
+    swept.min[d] = span.min;
+    swept.max[d] = span.max;
   }
   return swept;
 }
