@@ -69,7 +69,7 @@ class Simulator {
   /// Processes the next event if it is not later than `limit`; the clock moves to it. If there is none: false, and the
   /// clock stays where it is.
   bool step(double limit = never) {
-    if (limit > horizon_) set_horizon(limit);
+    if (limit > horizon_) look_ahead(limit);
     const auto [time, index] = next();
     if (!(time <= limit) || time == never) return false;
     now_ = time;
@@ -140,7 +140,7 @@ class Simulator {
   }
 
   /// Certifies window by window until an event is known or the horizon covers the limit.
-  void set_horizon(double limit) {
+  void look_ahead(double limit) {
     if (limit == never) return set_horizon(never);
     // The windows grow while nothing happens, so that an idle stretch costs a logarithmic number of them.
     for (double ahead = window_; horizon_ < limit && next_time() == never; ahead *= 2) {
