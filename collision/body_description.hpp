@@ -69,9 +69,9 @@ struct BasicBodyDescription {
   /// future, the body enters then.
   std::vector<Motion> motion{};
   double mass = 1;  ///< > 0, unless the body is fixed
-  /// Of bodies that turn: the moment of inertia about every axis through the centre, > 0, or a tensor that some body has
-  /// (checked_inertia() in response/inertia.hpp). Neither: that of a solid of the shape and mass. If the body responds
-  /// to contacts, the moments of a tensor have to be equal, as those of balls and cubes are (is_spherical()): a body
+  /// Of bodies that turn: the moment about every axis through the centre, > 0, or a tensor that checked_inertia() in
+  /// response/inertia.hpp takes. Neither, or 0: that of a solid of the shape and mass. If contacts move the body,
+  /// the moments of a tensor, given or not, have to be equal (is_spherical()), as those of balls and cubes are: a body
   /// whose moments differ does not turn about a fixed axis when it is free.
   Inertia inertia{};
   bool fixed = false;  ///< infinite mass: no other body changes its motion
@@ -80,9 +80,9 @@ struct BasicBodyDescription {
   /// Of bodies that turn: Coulomb's coefficient, in [0, 2^205]: the tangential part of an impulse is at most so many
   /// times the normal one. Of two bodies the lower counts, so either's 0 makes a contact smooth; walls are smooth.
   double friction = 0;
-  /// Of bodies that turn, in [-1, 1]; of two bodies the lower counts. Where friction suffices, what is restored of the
-  /// slip at a contact, turned round: 1 all (perfectly rough), 0 none (what sticks stays), -1 leaves it (smooth). See
-  /// response/turning_impulse.hpp.
+  /// Of bodies that turn, in [-1, 1]; of two bodies the lower counts. How much of the slip a contact turns round, where
+  /// friction suffices: 1 all (perfectly rough), 0 none (what sticks stays), -1 leaves the slip as it is (smooth). The
+  /// law, and why energy never grows: response/turning_impulse.hpp.
   double tangential_restitution = 0;
   std::uint32_t category = default_category;  ///< bits
   std::uint32_t collides_with = ~0u;  ///< a pair is tested if each one's category shares a bit with the other's mask

@@ -69,7 +69,8 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
   if constexpr (turns<Motion>) {
-    added.inverse_inertia = description.fixed || description.inertia.moment() == 0 ? 0 : 1 / description.inertia.moment();
+    const double moment = description.inertia.moment();
+    added.inverse_inertia = description.fixed || moment == 0 ? 0 : 1 / moment;
     added.friction = description.friction, added.tangential_restitution = description.tangential_restitution;
   }
   added.restitution = description.restitution;

@@ -45,9 +45,8 @@ void validate(const BasicBodyDescription<Motion>& description) {
     }
     if (!(std::abs(description.tangential_restitution) <= 1)) fail("tangential_restitution: must be in [-1, 1]");
   } else {
-    const bool inertia = description.inertia.moment() != 0 || description.inertia.tensor();
     const auto refuse = [&](const char* member) { fail(std::string(member) + ": bodies of this world do not turn"); };
-    if (inertia) refuse("inertia");
+    if (description.inertia.moment() != 0 || description.inertia.tensor()) refuse("inertia");
     if (description.friction != 0) refuse("friction");
     if (description.tangential_restitution != 0) refuse("tangential_restitution");
   }

@@ -151,6 +151,29 @@ TEST_CASE("a ball with spin bounces off a floor as the rough sphere does", "[fri
   CHECK(sticking > 40);
 }
 
+TEST_CASE("a ball thrown onto a floor with backspin ends up rolling", "[friction]") {
+  using Falling = TurningWorld<2>;
+  const double radius = 0.5, speed = 2;
+  for (const double spin : {-20.0, 0.0, 3.0, 30.0}) {
+    CAPTURE(spin);
+    Falling world({.response = Response::elastic});
+    RigidMotion<2> on_floor{{{Vector3d(0, 0, -1)}}}, thrown{{{{0, 0, radius + 0.25}, {speed, 0, 0}, {0, 0, -5}}}};
+    thrown.angular_velocity = {0, spin, 0};
+    world.add_body({.shape = Box{Vector3d(99, 9, 1)}, .motion = {on_floor}, .fixed = true, .friction = 0.5});
+    const BodyId ball =
+        world.add_body({.shape = Sphere{radius}, .motion = {thrown}, .restitution = 0.5, .friction = 0.5});
+    world.advance_to(2);
+    // Whatever friction does, it keeps the angular momentum about points of the floor.
+    const double rolls = (5 * speed + 2 * radius * spin) / 7;
+    const auto& after = world.motion(ball);
+    CHECK(std::abs(after.path.coefficients[1][0] - rolls) < 1e-11);
+    CHECK(std::abs(after.angular_velocity[1] - rolls / radius) < 1e-11);
+    CHECK(std::abs(after.path.coefficients[1][1]) < 1e-11);
+    CHECK(std::abs(after.path.position(2)[2] - radius) < 1e-5);
+    CHECK(world.counters().contacts < 2500);
+  }
+}
+
 TEST_CASE("friction keeps momenta, and never adds energy", "[friction]") {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     CAPTURE(seed);

@@ -110,9 +110,9 @@ TEST_CASE("run: where both have friction, a ball that spins is driven on by the 
      "motion": [{"start": 0, "position": [[0,0,1.5], [0,0,-1]], "angular_velocity": [0,8,0]}]}]})",
                                   "scene.json");
   run(scene, {}, record);
-  REQUIRE(record.pieces.size() == 1);
+  REQUIRE(record.pieces.size() == 2);
   // It slips at 4, more than what friction can stop: 1/4 of the impulse of 2, and the moment is 1/10.
-  const MotionPiece& ball = record.pieces[0];
+  const MotionPiece& ball = record.pieces[1];
   CHECK((ball.path.coefficients[1] - Eigen::Vector3d(0.5, 0, 1)).norm() < 1e-14);
   CHECK((ball.angular_velocity - Eigen::Vector3d(0, 5.5, 0)).norm() < 1e-13);
 }
