@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -29,6 +30,22 @@ inline constexpr std::uint32_t default_category = 1;
 
 /// Of angular velocities, rad/s.
 inline constexpr double largest_rate = 0x1p200;  ///< 1.6e60
+
+/// Of a body about its centre, mass * length^2: one moment, the same about all axes; or a tensor, in the axes of the
+/// shape; or nothing.
+class Inertia {
+ public:
+  Inertia() = default;
+  Inertia(double moment) : moment_(moment) {}
+  Inertia(const Eigen::Matrix3d& tensor) : tensor_(tensor) {}
+
+  double moment() const { return moment_; }  ///< 0 unless it was given
+  const std::optional<Eigen::Matrix3d>& tensor() const { return tensor_; }
+
+ private:
+  double moment_ = 0;
+  std::optional<Eigen::Matrix3d> tensor_;
+};
 
 /// A body to add. Numbers have to be in the range of shape.hpp: sizes and masses from 2^-205 to 2^205 (1.9e-62 to
 /// 5.1e61), coefficients and starts of motions up to 2^205 in magnitude. The edges of a mesh, scaled, are at least
@@ -52,13 +69,21 @@ struct BasicBodyDescription {
   /// future, the body enters then.
   std::vector<Motion> motion{};
   double mass = 1;  ///< > 0, unless the body is fixed
-  /// Of bodies that turn: the moment of inertia about every axis through the centre, mass * length^2, > 0. 0: that of a
-  /// solid of the shape and mass; then, if the body responds to contacts, it has to be the same about all axes, as those
-  /// of balls and cubes are. (A body whose moments differ does not turn about a fixed axis when it is free.)
-  double inertia = 0;
+  /// Of bodies that turn: the moment about every axis through the centre, > 0, or a tensor that checked_inertia() in
+  /// response/inertia.hpp takes. Neither, or 0: that of a solid of the shape and mass. If contacts move the body,
+  /// the moments of a tensor, given or not, have to be equal (is_spherical()), as those of balls and cubes are: a body
+  /// whose moments differ does not turn about a fixed axis when it is free.
+  Inertia inertia{};
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.
   double restitution = 1;
+  /// Of bodies that turn: Coulomb's coefficient, in [0, 2^205]: the tangential part of an impulse is at most so many
+  /// times the normal one. Of two bodies the lower counts, so either's 0 makes a contact smooth; walls are smooth.
+  double friction = 0;
+  /// Of bodies that turn, in [-1, 1]; of two bodies the lower counts. How much of the slip a contact turns round, where
+  /// friction suffices: 1 all (perfectly rough), 0 none (what sticks stays), -1 leaves the slip as it is (smooth). The
+  /// law, and why energy never grows: response/turning_impulse.hpp.
+  double tangential_restitution = 0;
   std::uint32_t category = default_category;  ///< bits
   std::uint32_t collides_with = ~0u;  ///< a pair is tested if each one's category shares a bit with the other's mask
   /// Passes through all bodies and walls, and no other body changes its motion: its contacts and separations are

@@ -15,7 +15,7 @@ namespace kds::collision {
 /// What the engine does about contacts of bodies. Walls reflect bodies in every mode.
 enum class Response {
   none,      ///< reports contacts and separations; bodies pass through each other
-  elastic,   ///< frictionless impulses by the bodies' restitution; motions change at each contact
+  elastic,   ///< impulses by the bodies' restitution and, if they turn, friction; motions change at each contact
   callback,  ///< as elastic, but the listener changes the motions; a pair it leaves approaching passes through
 };
 

@@ -217,7 +217,7 @@ TurningImpulse collide_centrally(RigidVelocity& a, RigidVelocity& b, const Mobil
 TurningImpulse collide(RigidVelocity& a, RigidVelocity& b, const Mobility& of_a, const Mobility& of_b,
                        const ContactArms& arms, const Surfaces& surfaces) {
   if (of_a.inverse_mass == 0 && of_b.inverse_mass == 0) return {};
-  const bool smooth = surfaces.friction == 0 || surfaces.tangential_restitution == -1;
+  const bool smooth = surfaces.smooth();
   if (smooth && passes_centre(a, of_a, arms.a, arms.normal) && passes_centre(b, of_b, arms.b, arms.normal)) {
     return collide_centrally(a, b, of_a, of_b, arms.normal, surfaces.restitution);
   }

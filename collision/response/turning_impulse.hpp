@@ -43,6 +43,8 @@ struct Surfaces {
   double restitution = 1;             ///< e, in [0, 1]: the speed of parting over that of approach
   double friction = 0;                ///< mu >= 0: the tangential impulse over the normal one, at most
   double tangential_restitution = 0;  ///< e_t, in [-1, 1]: -1 smooth, 0 what sticks stays, 1 perfectly rough
+
+  bool smooth() const { return friction == 0 || tangential_restitution == -1; }
 };
 
 struct TurningImpulse {

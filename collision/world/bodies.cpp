@@ -69,7 +69,9 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
   if constexpr (turns<Motion>) {
-    added.inverse_inertia = description.fixed || description.inertia == 0 ? 0 : 1 / description.inertia;
+    const double moment = description.inertia.moment();
+    added.inverse_inertia = description.fixed || moment == 0 ? 0 : 1 / moment;
+    added.friction = description.friction, added.tangential_restitution = description.tangential_restitution;
   }
   added.restitution = description.restitution;
   added.category = description.category;
@@ -139,7 +141,10 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
     to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume, to.sensor = b.sensor;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
-    if constexpr (turns<Motion>) to.inverse_inertia = b.inverse_inertia;
+    if constexpr (turns<Motion>) {
+      to.inverse_inertia = b.inverse_inertia;
+      to.friction = b.friction, to.tangential_restitution = b.tangential_restitution;
+    }
     if constexpr (Motion::degree <= 2) to.force = free_acceleration(slot);
     if constexpr (Motion::degree >= 3) to.given = b.given;
   }
@@ -174,7 +179,10 @@ void Bodies<Motion>::become(const Image& image) {
     move(slot, from.motion);
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
     b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume, b.sensor = from.sensor;
-    if constexpr (turns<Motion>) b.inverse_inertia = from.inverse_inertia;
+    if constexpr (turns<Motion>) {
+      b.inverse_inertia = from.inverse_inertia;
+      b.friction = from.friction, b.tangential_restitution = from.tangential_restitution;
+    }
     sensors_ = sensors_ || b.sensor;
     filters_ = filters_ || b.category != default_category || ~b.collides_with != 0;
     b.meetings = from.meetings, b.burst_start = from.burst_start;

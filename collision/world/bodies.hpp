@@ -40,6 +40,8 @@ struct Course {
 /// Of bodies that turn.
 struct Turns {
   double inverse_inertia = 0;  ///< the same about all axes; 0 if nothing changes how it turns
+  double friction = 0;
+  double tangential_restitution = 0;
 };
 struct TurnsNot {};
 

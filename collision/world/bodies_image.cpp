@@ -66,7 +66,7 @@ void Bodies<Motion>::Image::body(Archive& archive, One& body) const {
   archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category,
           body.collides_with, body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
-  if constexpr (turns<Motion>) archive(body.inverse_inertia);
+  if constexpr (turns<Motion>) archive(body.inverse_inertia, body.friction, body.tangential_restitution);
   if constexpr (Motion::degree >= 3) archive(body.given);
 }
 
@@ -100,6 +100,8 @@ void Bodies<Motion>::Image::check(double now) const {
     need(image::is_past(body.burst_start, now), "its meetings are counted from a time after now");
     need(body.force.allFinite(), "its acceleration is not finite");
     need(std::isfinite(body.inverse_inertia) && body.inverse_inertia >= 0, "its inertia is not > 0");
+    need(body.friction >= 0 && body.friction <= largest_magnitude, "its friction is not in [0, 2^205]");
+    need(std::abs(body.tangential_restitution) <= 1, "its tangential restitution is not in [-1, 1]");
     if constexpr (Motion::degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
   }
   std::vector<char> listed(bodies.size());

@@ -7,6 +7,7 @@
 #include "collision/world.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <new>
 #include <span>
@@ -37,9 +38,17 @@ void validate(const BasicBodyDescription<Motion>& description) {
     if (description.orientation.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
       fail("orientation: a body that turns has that of its motion");
     }
-    if (description.inertia != 0) require_size(description.inertia, "inertia");
-  } else if (description.inertia != 0) {
-    fail("inertia: bodies of this world do not turn");
+    if (description.inertia.moment() != 0) require_size(description.inertia.moment(), "inertia");
+    if (description.inertia.tensor()) require_size(checked_inertia(*description.inertia.tensor())(0, 0), "inertia");
+    if (!(description.friction >= 0 && description.friction <= largest_magnitude)) {
+      fail("friction: must be in [0, 2^205 (5.1e61)]");
+    }
+    if (!(std::abs(description.tangential_restitution) <= 1)) fail("tangential_restitution: must be in [-1, 1]");
+  } else {
+    const auto refuse = [&](const char* member) { fail(std::string(member) + ": bodies of this world do not turn"); };
+    if (description.inertia.moment() != 0 || description.inertia.tensor()) refuse("inertia");
+    if (description.friction != 0) refuse("friction");
+    if (description.tangential_restitution != 0) refuse("tangential_restitution");
   }
   switch (description.volume) {
     case BoundingVolume::shape:
@@ -51,15 +60,18 @@ void validate(const BasicBodyDescription<Motion>& description) {
   if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
 }
 
-/// The moment of inertia of a body that turns freely.
+/// The moment of inertia of a body that turns freely. Precondition: the description is valid.
 template <class Motion>
-double inertia_of(const BasicBodyDescription<Motion>& description) {
+double moment_of(const BasicBodyDescription<Motion>& description) {
+  if (description.inertia.moment() != 0) return description.inertia.moment();
   const Shape& shape = description.shape;
-  const Eigen::Matrix3d inertia = mass_properties(shape, description.mass).inertia;
+  const auto& given = description.inertia.tensor();
+  const Eigen::Matrix3d inertia = given ? checked_inertia(*given) : mass_properties(shape, description.mass).inertia;
   if (is_spherical(inertia)) return inertia(0, 0);
   std::ostringstream text;
-  text << "inertia: the moments of this " << kind_name(shape) << " differ (" << inertia(0, 0) << ", " << inertia(1, 1)
-       << ", " << inertia(2, 2) << "), and only bodies of equal moments turn about a fixed axis when they are free: "
+  text << "inertia: the moments of this " << (given ? "tensor" : kind_name(shape)) << " differ (" << inertia(0, 0)
+       << ", " << inertia(1, 1) << ", " << inertia(2, 2) << (inertia.isDiagonal(0) ? "" : " and entries beside them")
+       << "), and only bodies of equal moments turn about a fixed axis when they are free: "
        << "give one number, or make the body fixed";
   throw std::invalid_argument(text.str());
 }
@@ -83,9 +95,9 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
   if constexpr (turns<Motion>) {
     // Nothing else changes how a body turns.
     const bool responds = options_.response == Response::elastic && !description.fixed && !description.sensor;
-    if (responds && description.inertia == 0) {
+    if (responds && description.inertia.moment() == 0) {
       Description whole = description;
-      whole.inertia = inertia_of(description);
+      whole.inertia = moment_of(description);
       return add_body(whole);
     }
   }

@@ -17,7 +17,7 @@ namespace {
 
 /// Which members the image of a world has; another number for others, so that bytes of another form are refused as
 /// such.
-constexpr int snapshot_form = 4;
+constexpr int snapshot_form = 5;
 
 /// Options that decide events. Broad phase, window, threads and profile may be others.
 template <class Archive>

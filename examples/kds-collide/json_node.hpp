@@ -45,6 +45,7 @@ class JsonNode {
   std::string string() const;  ///< not empty, without control characters
   bool boolean() const;
   std::size_t choice(std::initializer_list<std::string_view> choices) const;  ///< which of them it is
+  bool is_array() const { return value_.is_array(); }
   bool is(int n) const { return value_.is_number() && value_ == n; }
 
  private:

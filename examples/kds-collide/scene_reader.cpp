@@ -3,6 +3,7 @@
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/world.hpp"
 #include "examples/kds-collide/json_node.hpp"
+#include "examples/kds-collide/material_reader.hpp"
 #include "examples/kds-collide/mesh_file.hpp"
 #include "examples/kds-collide/number_text.hpp"
 #include "examples/kds-collide/scene_world.hpp"
@@ -18,6 +19,7 @@
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+#include <variant>
 
 namespace kds_collide {
 namespace {
@@ -162,27 +164,29 @@ bool speaks_of_turning(const JsonNode& node) {
   return node.has("inertia") || std::any_of(pieces.begin(), pieces.end(), turns);
 }
 
-/// Its own, or that of the scene.
-double read_restitution(const JsonNode& node, double of_scene) {
-  return node.has("restitution") ? node["restitution"].fraction() : of_scene;
-}
-
-SceneBody read_body(const JsonNode& node, const Scene& scene, double restitution) {
-  node.object({"name", "shape", "orientation", "mass", "inertia", "fixed", "sensor", "restitution", "motion"});
+SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbers& of_scene) {
+  node.object({"name", "shape", "orientation", "mass", "inertia", "fixed", "sensor", "restitution", "friction",
+               "tangential_restitution", "motion"});
   SceneBody body;
   body.name = node["name"].string();
   body.shape = read_shape(node["shape"], scene.meshes);
   if (node.has("orientation")) body.orientation = read_orientation(node["orientation"]);
   if (node.has("mass")) body.mass = node["mass"].positive();
-  if (node.has("inertia")) body.inertia = node["inertia"].positive();
+  if (node.has("inertia")) {
+    const auto inertia = read_inertia(node["inertia"]);
+    if (const auto* moment = std::get_if<double>(&inertia)) body.inertia = *moment;
+    if (const auto* tensor = std::get_if<Eigen::Matrix3d>(&inertia)) body.inertia_tensor = *tensor;
+  }
   if (node.has("fixed")) body.fixed = node["fixed"].boolean();
   if (node.has("sensor")) body.sensor = node["sensor"].boolean();
-  body.restitution = read_restitution(node, restitution);
+  const SurfaceNumbers surface = read_surface(node, of_scene);
+  body.restitution = surface.restitution, body.friction = surface.friction;
+  body.tangential_restitution = surface.tangential_restitution;
   body.motion = read_motion(node["motion"], body.orientation, scene.response);
   return body;
 }
 
-Domain read_domain(const JsonNode& node, double restitution) {
+Domain read_domain(const JsonNode& node, const SurfaceNumbers& of_scene) {
   node.object({"min", "max", "walls", "restitution"});
   Domain domain;
   domain.min = node["min"].vector();
@@ -193,7 +197,7 @@ Domain read_domain(const JsonNode& node, double restitution) {
     if (!(domain.min[i] < domain.max[i])) ends[d].fail("must be > domain.min[" + std::to_string(d) + "]");
   }
   domain.walls = node["walls"].choice({"open", "reflect"}) == 1 ? Walls::reflect : Walls::open;
-  domain.restitution = read_restitution(node, restitution);
+  domain.restitution = read_surface(node, of_scene).restitution;
   return domain;
 }
 
@@ -247,15 +251,16 @@ void check_turns(const std::vector<JsonNode>& nodes, const Scene& scene) {
 }
 
 Scene read_document(const JsonNode& root, const std::filesystem::path& folder, std::optional<double> until) {
-  root.object({"scene", "end_time", "response", "restitution", "domain", "meshes", "bodies"});
+  root.object({"scene", "end_time", "response", "restitution", "friction", "tangential_restitution", "domain", "meshes",
+               "bodies"});
   if (!root["scene"].is(1)) root["scene"].fail("must be 1, the only format there is");
   Scene scene;
   scene.end_time = root["end_time"].number();
   if (root.has("response")) {
     scene.response = root["response"].choice({"none", "elastic"}) == 1 ? Response::elastic : Response::none;
   }
-  const double restitution = read_restitution(root, 1);
-  if (root.has("domain")) scene.domain = read_domain(root["domain"], restitution);
+  const SurfaceNumbers surface = read_surface(root, {});
+  if (root.has("domain")) scene.domain = read_domain(root["domain"], surface);
   if (root.has("meshes")) {
     for (const auto& [name, node] : root["meshes"].members()) {
       const JsonNode file = node.object({"file"})["file"];
@@ -266,12 +271,16 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
   const std::vector<JsonNode> bodies = root["bodies"].elements();
   std::map<std::string, std::string> names;
   for (const JsonNode& node : bodies) {
-    scene.bodies.push_back(read_body(node, scene, restitution));
+    scene.bodies.push_back(read_body(node, scene, surface));
     const auto [entry, is_new] = names.try_emplace(scene.bodies.back().name, node.path());
     if (!is_new) node["name"].fail('"' + entry->first + "\" is the name of " + entry->second + " too");
     scene.turning = scene.turning || speaks_of_turning(node);
   }
-  if (scene.turning) check_turns(bodies, scene);
+  if (scene.turning) {
+    check_turns(bodies, scene);
+  } else {
+    refuse_friction(root, bodies);
+  }
 
   if (!scene.bodies.empty()) scene.begin_time = scene.bodies.front().motion.front().start();
   for (const SceneBody& body : scene.bodies) scene.begin_time = std::min(scene.begin_time, body.motion.front().start());

@@ -48,7 +48,9 @@ kds::collision::BasicBodyDescription<Motion> describe(const SceneBody& body) {
   description.restitution = body.restitution;
   for (const MotionPiece& piece : body.motion) description.motion.push_back(to_motion<Motion>(piece));
   if constexpr (kds::collision::turns<Motion>) {
-    description.inertia = body.inertia;
+    description.inertia = body.inertia_tensor ? kds::collision::Inertia(*body.inertia_tensor) : body.inertia;
+    description.friction = body.friction;
+    description.tangential_restitution = body.tangential_restitution;
   } else {
     description.orientation = body.orientation;
   }

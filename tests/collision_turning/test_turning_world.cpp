@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,34 @@ TEST_CASE("a rod that turns meets a ball, and both fly on with their energy and 
   const double spin = 1.5 * of_rod.angular_velocity[2] + of_rod.path.position(3).cross(of_rod.path.velocity(3))[2] +
                       of_ball.path.position(3).cross(of_ball.path.velocity(3))[2];
   CHECK(std::abs(spin - 1.5) < 1e-14);
+}
+
+TEST_CASE("a tensor of equal moments is the moment, and others are for what no contact turns", "[turning]") {
+  const auto rod_after = [](const Inertia& inertia) {
+    Turning world({.response = Response::elastic});
+    const BodyId rod = world.add_body({.shape = Box{Vector3d(2, 0.125, 0.125)},
+                                       .motion = {motion({0, 0, 0}, {0, 0, 0}, {0, 0, 1})},
+                                       .inertia = inertia});
+    world.add_body({.shape = Sphere{0.25}, .motion = {motion({0, 1.5, 0}, {0, 0, 0}, {0, 0, 0})}});
+    world.advance_to(3);
+    CHECK(world.counters().contacts == 1);
+    return world.motion(rod);
+  };
+  CHECK(rod_after(Eigen::Matrix3d(1.5 * Eigen::Matrix3d::Identity())) == rod_after(1.5));
+  CHECK_FALSE(rod_after(1.25) == rod_after(1.5));
+  const Turning::Description rod{.shape = Box{Vector3d(1, 2, 3)},
+                                 .motion = {motion({0, 0, 0}, {0, 0, 0}, {0, 0, 1})},
+                                 .inertia = Eigen::Matrix3d(Vector3d(3, 4, 5).asDiagonal())};
+  Turning({.response = Response::none}).add_body(rod);
+  Turning world({.response = Response::elastic});
+  CHECK_THROWS_AS(world.add_body(rod), std::invalid_argument);
+  auto driven = rod;
+  driven.fixed = true;
+  world.add_body(driven);
+  auto ghost = rod;
+  ghost.sensor = true;
+  world.add_body(ghost);
+  CHECK(world.size() == 2);
 }
 
 TEST_CASE("turning worlds find the same contacts whichever broad phase they have", "[turning]") {

@@ -101,6 +101,22 @@ TEST_CASE("run: a contact of bodies that turn changes paths and angular velociti
   CHECK(energy == Approx(0.75).epsilon(1e-15));
 }
 
+TEST_CASE("run: where both have friction, a ball that spins is driven on by the floor") {
+  Record record;
+  const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic", "friction": 0.25, "bodies": [
+    {"name": "floor", "shape": {"box": {"half_extents": [9,9,1]}}, "fixed": true,
+     "motion": [{"start": 0, "position": [[0,0,-1]]}]},
+    {"name": "ball", "shape": {"sphere": {"radius": 0.5}},
+     "motion": [{"start": 0, "position": [[0,0,1.5], [0,0,-1]], "angular_velocity": [0,8,0]}]}]})",
+                                  "scene.json");
+  run(scene, {}, record);
+  REQUIRE(record.pieces.size() == 2);
+  // It slips at 4, more than what friction can stop: 1/4 of the impulse of 2, and the moment is 1/10.
+  const MotionPiece& ball = record.pieces[1];
+  CHECK((ball.path.coefficients[1] - Eigen::Vector3d(0.5, 0, 1)).norm() < 1e-14);
+  CHECK((ball.angular_velocity - Eigen::Vector3d(0, 5.5, 0)).norm() < 1e-13);
+}
+
 TEST_CASE("run: a body that is turned by its script meets what is beside it") {
   Record record;
   const Scene scene = parse_scene(R"({"scene": 1, "end_time": 3, "bodies": [

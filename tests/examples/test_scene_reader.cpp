@@ -100,6 +100,39 @@ TEST_CASE("scene reader: where contacts turn nothing, bodies of any moments turn
   CHECK_THROWS_WITH(read("elastic", ""), Catch::StartsWith("scene.json: bodies[0].inertia: the moments of this box "));
 }
 
+TEST_CASE("scene reader: inertia is one number, three moments or a tensor, of equal moments where contacts turn") {
+  const auto read = [](const std::string& inertia) {
+    return parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic", "bodies": [{"name": "a", "inertia": )" +
+                           inertia + R"(, "shape": {"box": {"half_extents": [1,2,3]}}, "motion": [
+                             {"start": 0, "position": [[0,0,0]]}]}]})",
+                       "scene.json");
+  };
+  CHECK_FALSE(read("1.5").bodies[0].inertia_tensor);
+  const Scene moments = read("[1.5, 1.5, 1.5]");
+  CHECK(moments.bodies[0].inertia_tensor == Eigen::Matrix3d(1.5 * Eigen::Matrix3d::Identity()));
+  const Scene tensor = read("[[1.5, 0, 0], [0, 1.5, 0], [0, 0, 1.5]]");
+  CHECK(tensor.bodies[0].inertia_tensor == moments.bodies[0].inertia_tensor);
+  const std::string where = "scene.json: bodies[0].inertia: ";
+  CHECK_THROWS_WITH(read("[1, 1, 1.5]"), Catch::StartsWith(where + "the moments of this tensor differ (1, 1, 1.5)"));
+  CHECK_THROWS_WITH(read("[1, 1, 3]"), where + "is of no body: its greatest moment exceeds the sum of the two others");
+  CHECK_THROWS_WITH(read("[[1,2,0],[2,1,0],[0,0,1]]"), where + "must be positive definite");
+  CHECK_THROWS_WITH(read("[[1,0.5,0],[0,1,0],[0,0,1]]"), Catch::StartsWith(where + "must be symmetric"));
+}
+
+TEST_CASE("scene reader: friction is the scene's where a body of a scene that turns has none of its own") {
+  const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "friction": 0.5, "tangential_restitution": -0.5,
+    "response": "elastic", "bodies": [
+      {"name": "a", "shape": {"sphere": {"radius": 1}}, "friction": 2, "inertia": 1,
+       "motion": [{"start": 0, "position": [[0,0,0]]}]},
+      {"name": "b", "shape": {"sphere": {"radius": 1}}, "tangential_restitution": 1,
+       "motion": [{"start": 0, "position": [[9,0,0]]}]}]})",
+                                  "scene.json");
+  CHECK(scene.bodies[0].friction == 2);
+  CHECK(scene.bodies[0].tangential_restitution == -0.5);
+  CHECK(scene.bodies[1].friction == 0.5);
+  CHECK(scene.bodies[1].tangential_restitution == 1);
+}
+
 TEST_CASE("scene reader: what cannot turn is refused where it stands") {
   const auto read = [](const std::string& shape) {
     parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic", "bodies": [{"name": "a", "shape": )" + shape +

@@ -67,13 +67,17 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   const auto mobility = [&](BodySlot slot) {
     return Mobility::of_spherical(bodies_[slot].inverse_mass, bodies_[slot].inverse_inertia);
   };
+  // Of two bodies the lower counts, as of restitutions.
+  const Surfaces surfaces{
+      .restitution = rebound(approach, pressed, restitution) / approach,
+      .friction = std::min(bodies_[a].friction, bodies_[b].friction),
+      .tangential_restitution = std::min(bodies_[a].tangential_restitution, bodies_[b].tangential_restitution)};
   // A ball is turned by nothing that acts along its normal.
   const auto arm = [&](BodySlot slot, const Motion& motion) {
-    return bodies_.mover(slot).radius > 0 ? Vector3d(Vector3d::Zero())
-                                          : Vector3d(contact.point - motion.path.coefficients[0]);
+    return surfaces.smooth() && ball(slot) ? Vector3d(Vector3d::Zero())
+                                           : Vector3d(contact.point - motion.path.coefficients[0]);
   };
-  collide(velocity_a, velocity_b, mobility(a), mobility(b), {n, arm(a, motion_a), arm(b, motion_b)},
-          {.restitution = rebound(approach, pressed, restitution) / approach});
+  collide(velocity_a, velocity_b, mobility(a), mobility(b), {n, arm(a, motion_a), arm(b, motion_b)}, surfaces);
   motion_a.path.coefficients[1] = velocity_a.velocity, motion_a.angular_velocity = velocity_a.angular_velocity;
   motion_b.path.coefficients[1] = velocity_b.velocity, motion_b.angular_velocity = velocity_b.angular_velocity;
   for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
