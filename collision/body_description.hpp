@@ -70,9 +70,10 @@ struct BasicBodyDescription {
   std::vector<Motion> motion{};
   double mass = 1;  ///< > 0, unless the body is fixed
   /// Of bodies that turn: the moment about every axis through the centre, > 0, or a tensor that checked_inertia() in
-  /// response/inertia.hpp takes. Neither, or 0: that of a solid of the shape and mass. If contacts move the body,
-  /// the moments of a tensor, given or not, have to be equal (is_spherical()), as those of balls and cubes are: a body
-  /// whose moments differ does not turn about a fixed axis when it is free.
+  /// response/inertia.hpp takes. Neither, or 0: that of a solid of the shape and mass, which must have its centre of
+  /// mass at the origin of the shape, up to inertia_tolerance of its radius. If contacts move the body, the moments of
+  /// a tensor, given or not, have to be equal (is_spherical()), as those of balls and cubes are: a body whose moments
+  /// differ does not turn about a fixed axis when it is free.
   Inertia inertia{};
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.

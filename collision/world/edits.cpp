@@ -66,9 +66,21 @@ double moment_of(const BasicBodyDescription<Motion>& description) {
   if (description.inertia.moment() != 0) return description.inertia.moment();
   const Shape& shape = description.shape;
   const auto& given = description.inertia.tensor();
-  const Eigen::Matrix3d inertia = given ? checked_inertia(*given) : mass_properties(shape, description.mass).inertia;
-  if (is_spherical(inertia)) return inertia(0, 0);
   std::ostringstream text;
+  Eigen::Matrix3d inertia;
+  if (given) {
+    inertia = checked_inertia(*given);
+  } else {
+    const MassProperties solid = mass_properties(shape, description.mass);
+    inertia = solid.inertia;
+    if (!(solid.centre.norm() <= inertia_tolerance * place(shape, Eigen::Quaterniond::Identity()).bounding_radius)) {
+      text << "inertia: the centre of mass of this " << kind_name(shape) << " is at (" << solid.centre[0] << ", "
+           << solid.centre[1] << ", " << solid.centre[2]
+           << "), and free bodies turn about their origin: subtract it from the vertices, or give one number";
+      throw std::invalid_argument(text.str());
+    }
+  }
+  if (is_spherical(inertia)) return inertia(0, 0);
   text << "inertia: the moments of this " << (given ? "tensor" : kind_name(shape)) << " differ (" << inertia(0, 0)
        << ", " << inertia(1, 1) << ", " << inertia(2, 2) << (inertia.isDiagonal(0) ? "" : " and entries beside them")
        << "), and only bodies of equal moments turn about a fixed axis when they are free: "

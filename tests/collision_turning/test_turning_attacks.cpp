@@ -2,6 +2,7 @@
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
 
+#include "tests/collision/sample_meshes.hpp"
 #include "tests/collision_turning/narrow_phase/turning_oracle.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -246,6 +247,17 @@ TEST_CASE("descriptions of bodies that cannot turn are refused, and nothing is a
   refused({.shape = Sphere{1}, .motion = {still}, .inertia = turned}, "differ (1, 1, 1 and entries beside them)");
   refused({.shape = Sphere{1}, .orientation = Quaterniond(0, 1, 0, 0), .motion = {still}}, "orientation");
   refused({.shape = Capsule{}, .motion = {still}}, "shape");
+  // A cube whose corners are off its centre turns about the wrong point, unless its inertia is given as of this point.
+  const auto cube_at = [](double x) {
+    const auto cube = samples::cuboid();
+    std::vector<Vector3d> corners(cube->vertices().begin(), cube->vertices().end());
+    for (Vector3d& corner : corners) corner[0] += x;
+    return MeshShape{std::make_shared<const Mesh>(
+        std::move(corners), std::vector<Mesh::Triangle>(cube->triangles().begin(), cube->triangles().end()))};
+  };
+  refused({.shape = cube_at(0.5), .motion = {still}}, "centre of mass of this mesh is at (0.5, 0, 0)");
+  world.remove_body(world.add_body({.shape = cube_at(0), .motion = {still}}));
+  world.remove_body(world.add_body({.shape = cube_at(0.5), .motion = {still}, .inertia = 1}));
   const BodyId id = world.add_body({.shape = Sphere{1}, .motion = {still}});
   bad = still, bad.orientation = Quaterniond(0, 0, 0, 0);
   CHECK_THROWS_WITH(world.update_motion(id, bad), Catch::Contains("orientation"));

@@ -51,8 +51,8 @@ const std::vector<Change<GridTuning>> other_grids{
     [](GridTuning& t) { t.cells.roominess = 1; },
     [](GridTuning& t) { t.cells.cell_per_spacing = 0.2; },
     [](GridTuning& t) { t.cells.crowded_chain = 0, t.cells.patience = 1; },
-    [](GridTuning& t) { t.first_reach = 4; },
-    [](GridTuning& t) { t.least_reach = 1; },
+    [](GridTuning& t) { t.first_travel = 4; },
+    [](GridTuning& t) { t.least_travel = 1; },
     [](GridTuning& t) { t.grow_after_none = t.grow_after_one = 3; },
     [](GridTuning& t) { t.shrink_after_some = t.shrink_after_many = 0.1, t.many = 4; },
     [](GridTuning& t) { t.shrink_after_turn = 0.1; },
@@ -65,7 +65,7 @@ const std::vector<Change<GridTuning>> other_grids{
 };
 
 const std::vector<Change<FewBoxesTuning>> other_few_boxes{
-    [](FewBoxesTuning& t) { t.first_reach = 0.01; },
+    [](FewBoxesTuning& t) { t.first_travel = 0.01; },
     [](FewBoxesTuning& t) { t.comparisons_per_pair = 200; },
     [](FewBoxesTuning& t) { t.comparisons_per_box = 1; },
     [](FewBoxesTuning& t) { t.little = t.much = t.far_too_much = 1; },
@@ -94,7 +94,7 @@ TEMPLATE_TEST_CASE_SIG("The tuning of broad phases changes what they cost and no
   const auto chosen = run<Degree>(std::make_unique<AdaptiveBroadPhase<Degree>>(), 12);
   AdaptiveTuning adaptive;
   adaptive.most_for_few = 8;
-  adaptive.grid.first_reach = 4;
+  adaptive.grid.first_travel = 4;
   CHECK(run<Degree>(std::make_unique<AdaptiveBroadPhase<Degree>>(1, adaptive), 12) != chosen);
 
   const auto lists = run<Degree>(std::make_unique<KineticSweepAndPrune<Degree>>(0), 12);
@@ -119,7 +119,7 @@ TEST_CASE("A tuning that is out of range is refused by name", "[broad_phase]") {
   require_refused<CellTuning>([](auto& t) { t.cell_per_spacing = nan; }, "CellTuning.cell_per_spacing");
   require_refused<CellTuning>([](auto& t) { t.patience = 0; }, "CellTuning.patience");
   require_refused<GridTuning>([](auto& t) { t.cells.crowded_chain = -1; }, "CellTuning.crowded_chain");
-  require_refused<GridTuning>([](auto& t) { t.first_reach = 0; }, "GridTuning.first_reach");
+  require_refused<GridTuning>([](auto& t) { t.first_travel = 0; }, "GridTuning.first_travel");
   require_refused<GridTuning>([](auto& t) { t.shrink_after_many = 0; }, "GridTuning.shrink_after_many");
   require_refused<GridTuning>([](auto& t) { t.found_per_pair = 0; }, "GridTuning.found_per_pair");
   require_refused<GridTuning>([](auto& t) { t.share_for_level = 0; }, "GridTuning.share_for_level");
