@@ -86,7 +86,8 @@ class Simulator {
       throw std::invalid_argument("Simulator::advance_to: the clock stands at " + std::to_string(now_) +
                                   " and cannot go back to " + std::to_string(t));
     }
-    while (step(t)) {}
+    while (step(t)) {
+    }
     now_ = t;
   }
 

@@ -56,8 +56,8 @@ struct CentreBeyondSide : detail::BallAndBox<Degree> {
 
   template <class Number, int Order>
   TurningSum<Order, Number> turning_sum(double epoch) const {
-    const auto beyond = this->template beyond_side<Number, Order>(
-        Turner<Number>(this->box), this->template way<Number, Order>(epoch), axis, side);
+    const auto beyond = this->template beyond_side<Number, Order>(Turner<Number>(this->box),
+                                                                  this->template way<Number, Order>(epoch), axis, side);
     TurningSum<Order, Number> f{};
     for (std::size_t i = 0; i < 3; ++i) f.p[i][0] = beyond[i];
     return f;

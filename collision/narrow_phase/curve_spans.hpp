@@ -124,10 +124,10 @@ void each_maximum(const C& f, double from, double end, const Visit& visit) {
 
 /// Shrinks the window to times of it that hold all at which c0 + c1 x + c2 x^2 + ... < 0; false if there are none.
 ///
-/// Rounding: with u = 2^-53 and S the sum of |c_i| (end of the window)^i, the coefficients about an end, times powers of
-/// the length, take at most 5 n + 8 roundings (see positive_until()) of parts whose magnitudes sum to at most S. The
-/// ends of the window are known to u of its size, which moves the polynomial by another 2 n u S. Together that is 43 u S
-/// for degrees n up to 5, and less than the 64 u S for which the caller's coefficients have room.
+/// Rounding: with u = 2^-53 and S the sum of |c_i| (end of the window)^i, the coefficients about an end, times powers
+/// of the length, take at most 5 n + 8 roundings (see positive_until()) of parts whose magnitudes sum to at most S. The
+/// ends of the window are known to u of its size, which moves the polynomial by another 2 n u S. Together that is 43 u
+/// S for degrees n up to 5, and less than the 64 u S for which the caller's coefficients have room.
 template <std::size_t Count>
 bool clip_to_negative(const std::array<double, Count>& c, TimeWindow& window) {
   constexpr int degree = static_cast<int>(Count) - 1;

@@ -33,12 +33,12 @@ struct SceneBody {
   kds::collision::Shape shape;
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit; that of the first piece
   double mass = 1;
-  double inertia = 0;               ///< about every axis; 0: that of a solid of the shape
+  double inertia = 0;                               ///< about every axis; 0: that of a solid of the shape
   std::optional<Eigen::Matrix3d> inertia_tensor{};  ///< in place of it, in the axes of the body; checked where it turns
-  bool fixed = false;               ///< infinite mass
-  bool sensor = false;              ///< only reports
-  double restitution = 1;           ///< in [0, 1]; of two bodies the lower counts
-  double friction = 0;              ///< and here; 0 where nothing turns
+  bool fixed = false;                               ///< infinite mass
+  bool sensor = false;                              ///< only reports
+  double restitution = 1;                           ///< in [0, 1]; of two bodies the lower counts
+  double friction = 0;                              ///< and here; 0 where nothing turns
   double tangential_restitution = 0;
   std::vector<MotionPiece> motion;  ///< not empty; starts ascend
 };
