@@ -63,4 +63,18 @@ Polytope::Polytope(std::vector<Vector3d> points)
   bounding_radius_ *= 1 + 0x1p-50;  // three roundings of the norm, upward
 }
 
+Feature Polytope::feature_of(const Feature& of_surface) const {
+  if (of_surface.kind == Feature::Kind::face) return Feature::face(face_of_[of_surface.first]);
+  if (of_surface.kind != Feature::Kind::edge) return of_surface;
+  const std::array<std::uint32_t, 2> ends{of_surface.first, of_surface.second};
+  const auto is_it = [&](const HullEdge& edge) { return edge.ends == ends; };
+  if (std::any_of(structure_.edges.begin(), structure_.edges.end(), is_it)) return of_surface;
+  const auto has_it = [&](const std::vector<std::uint32_t>& face) {
+    return std::find(face.begin(), face.end(), ends[0]) != face.end() &&
+           std::find(face.begin(), face.end(), ends[1]) != face.end();
+  };
+  const auto& faces = structure_.faces;
+  return Feature::face(static_cast<std::uint32_t>(std::find_if(faces.begin(), faces.end(), has_it) - faces.begin()));
+}
+
 }  // namespace kds::collision

@@ -1,6 +1,7 @@
 // Convex hulls of points, immutable and shared by bodies.
 #pragma once
 
+#include "collision/shapes/feature.hpp"
 #include "collision/shapes/hull_structure.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
@@ -36,8 +37,8 @@ class Polytope {
 
   /// The surface, closed, with the same points as vertices, in triangles that are counter-clockwise seen from outside.
   const std::shared_ptr<const Mesh>& surface() const { return surface_; }
-  /// The face that a triangle of the surface is part of.
-  std::uint32_t face_of(std::uint32_t triangle) const { return face_of_[triangle]; }
+  /// A feature of the surface as one of the polytope: an edge between two triangles of a face is in that face.
+  Feature feature_of(const Feature& of_surface) const;
 
   /// Radius of the ball about the origin that holds all corners, rounded up.
   double bounding_radius() const { return bounding_radius_; }
@@ -46,7 +47,7 @@ class Polytope {
   std::vector<Eigen::Vector3d> points_;
   HullStructure structure_;
   std::vector<Eigen::Vector3d> normals_;
-  std::vector<std::uint32_t> face_of_;
+  std::vector<std::uint32_t> face_of_;  ///< by triangles of the surface
   std::shared_ptr<const Mesh> surface_;
   double bounding_radius_ = 0;
 };
