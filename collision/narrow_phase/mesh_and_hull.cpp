@@ -3,6 +3,7 @@
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/rotation.hpp"
+#include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
@@ -73,6 +74,9 @@ template <int Degree>
 Contact MeshHullContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch& found) {
   Contact contact = MeshContact<Degree>::contact_at(a, b, t, found);
   contact.feature_b = polytope(b.shape).feature_of(contact.feature_b);
+  // What touches may be the rim of a triangle beside the face that does.
+  const Feature whole = supporting_feature(b.shape, -contact.normal).feature;
+  if (polytope(b.shape).is_part_of(contact.feature_b, whole)) contact.feature_b = whole;
   return contact;
 }
 

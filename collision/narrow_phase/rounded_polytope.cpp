@@ -38,7 +38,11 @@ Vector3d unit_vector(const PreciseVector& v, double lengths, bool& known) {
   return known ? normalized(rounded) : Vector3d(Vector3d::Zero());
 }
 
+/// Exactly. Where axes are exact, balls know their products to be zero.
 bool parallel(const HullDifference& hulls, const std::array<DifferenceEdge, 2>& edges) {
+  const auto quick = hulls.normal<Ball<double>>(edges);
+  if (std::any_of(quick.begin(), quick.end(), [](const auto& x) { return certain_sign(x) != 0; })) return false;
+  if (std::all_of(quick.begin(), quick.end(), [](const auto& x) { return x.is_zero(); })) return true;
   const auto n = hulls.normal<Exact>(edges);
   return n[0].sign() == 0 && n[1].sign() == 0 && n[2].sign() == 0;
 }

@@ -69,12 +69,16 @@ Feature Polytope::feature_of(const Feature& of_surface) const {
   const std::array<std::uint32_t, 2> ends{of_surface.first, of_surface.second};
   const auto is_it = [&](const HullEdge& edge) { return edge.ends == ends; };
   if (std::any_of(structure_.edges.begin(), structure_.edges.end(), is_it)) return of_surface;
-  const auto has_it = [&](const std::vector<std::uint32_t>& face) {
-    return std::find(face.begin(), face.end(), ends[0]) != face.end() &&
-           std::find(face.begin(), face.end(), ends[1]) != face.end();
-  };
-  const auto& faces = structure_.faces;
-  return Feature::face(static_cast<std::uint32_t>(std::find_if(faces.begin(), faces.end(), has_it) - faces.begin()));
+  std::uint32_t face = 0;
+  while (!is_part_of(of_surface, Feature::face(face))) ++face;
+  return Feature::face(face);
+}
+
+bool Polytope::is_part_of(const Feature& feature, const Feature& face) const {
+  if (face.kind != Feature::Kind::face || feature.kind == Feature::Kind::face) return false;
+  const std::vector<std::uint32_t>& corners = structure_.faces[face.first];
+  const auto has = [&](std::uint32_t i) { return std::find(corners.begin(), corners.end(), i) != corners.end(); };
+  return has(feature.first) && (feature.kind == Feature::Kind::vertex || has(feature.second));
 }
 
 }  // namespace kds::collision

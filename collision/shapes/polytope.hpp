@@ -39,6 +39,8 @@ class Polytope {
   const std::shared_ptr<const Mesh>& surface() const { return surface_; }
   /// A feature of the surface as one of the polytope: an edge between two triangles of a face is in that face.
   Feature feature_of(const Feature& of_surface) const;
+  /// Whether a corner or an edge is one of a face.
+  bool is_part_of(const Feature& feature, const Feature& face) const;
 
   /// Radius of the ball about the origin that holds all corners, rounded up.
   double bounding_radius() const { return bounding_radius_; }
