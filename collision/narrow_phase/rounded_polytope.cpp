@@ -30,6 +30,13 @@ PreciseVector precise_direction(const HullDifference& hulls, const DifferenceEdg
   return body.turn * (edge.of_b ? way * -1.0 : way);
 }
 
+/// The same as a unit vector: known to ten roundings.
+Vector3d unit_direction(const HullDifference& hulls, const DifferenceEdge& edge) {
+  const certificates::TurnedPoints& body = edge.of_b ? hulls.b : hulls.a;
+  const Vector3d way = body.points[edge.to] - body.points[edge.from];
+  return normalized(rotated(body.turn, edge.of_b ? Vector3d(-way) : way));
+}
+
 /// A vector that was made of others, unit up to some roundings; `known`: it is that. `lengths`: the product of the
 /// lengths of what was multiplied, whose cancellation leaves 2^-95 of it.
 Vector3d unit_vector(const PreciseVector& v, double lengths, bool& known) {
@@ -155,20 +162,23 @@ template <int Degree>
 void RoundedPolytope<Degree>::add_planes() {
   const HullStructure& of_a = core_a_.structure();
   const HullStructure& of_b = core_b_.structure();
-  const auto unit = [this](const std::array<DifferenceEdge, 2>& edges) {
-    return normalized(cross(precise_direction(hulls_, edges[0]), precise_direction(hulls_, edges[1])).rounded());
-  };
   for (const std::vector<std::uint32_t>& face : of_a.faces) {
     const auto [p, q, r] = spanning_corners(face);
     const std::array<DifferenceEdge, 2> edges{{{false, p, q}, {false, p, r}}};
-    const Points on_face = one_point(p);
-    if (!add_plane(edges, {on_face, farthest_points(core_b_, places_[1], -unit(edges))})) return;
+    const auto farthest = [&](const Vector3d& n) -> std::array<Points, 2> {
+      const Points on_face = one_point(p);
+      return {on_face, farthest_points(core_b_, places_[1], -n)};
+    };
+    if (!add_plane(edges, farthest)) return;
   }
   for (const std::vector<std::uint32_t>& face : of_b.faces) {  // seen from outside of -B they turn the other way
     const auto [p, q, r] = spanning_corners(face);
     const std::array<DifferenceEdge, 2> edges{{{true, p, r}, {true, p, q}}};
-    const Points of_points = farthest_points(core_a_, places_[0], unit(edges));
-    if (!add_plane(edges, {of_points, one_point(p)})) return;
+    const auto farthest = [&](const Vector3d& n) -> std::array<Points, 2> {
+      const Points of_a = farthest_points(core_a_, places_[0], n);
+      return {of_a, one_point(p)};
+    };
+    if (!add_plane(edges, farthest)) return;
   }
   if (of_b.edges.empty()) return;
   constexpr double maybe_parallel = 0x1p-44;  // the edges are known to 2^-48
@@ -185,26 +195,29 @@ void RoundedPolytope<Degree>::add_planes() {
         const DifferenceEdge u{false, side > 0 ? a0 : a1, side > 0 ? a1 : a0}, v{true, b0, b1};
         if (norm(product) < maybe_parallel && parallel(hulls_, {u, v})) continue;
         // -B: directions and ends of b are turned round. The product of its edge as it is in the difference is n.
-        if (!add_plane({u, v}, {farthest_points(core_a_, places_[0], n), farthest_points(core_b_, places_[1], -n)})) {
-          return;
-        }
+        const auto farthest = [&](const Vector3d&) -> std::array<Points, 2> {
+          const Points of_a_points = farthest_points(core_a_, places_[0], n);
+          return {of_a_points, farthest_points(core_b_, places_[1], -n)};
+        };
+        if (!add_plane({u, v}, farthest)) return;
       }
     }
   }
 }
 
-/// False if b's place is never below it.
+/// False if b's place is never below it. `farthest(normal)`: points of both.
 template <int Degree>
-bool RoundedPolytope<Degree>::add_plane(const std::array<DifferenceEdge, 2>& edges,
-                                        const std::array<Points, 2>& farthest) {
-  Plane plane{edges, farthest, {}, false, {}, 0};
+template <class Farthest>
+bool RoundedPolytope<Degree>::add_plane(const std::array<DifferenceEdge, 2>& edges, const Farthest& farthest) {
+  Plane plane{edges, {}, {}, false, {}, 0};
   const PreciseVector u = precise_direction(hulls_, edges[0]), v = precise_direction(hulls_, edges[1]);
   plane.normal = unit_vector(cross(u, v), norm(u.rounded()) * norm(v.rounded()), plane.known);
+  plane.farthest = farthest(plane.normal);
   double of_a = -never, of_b = -never;
-  for (std::uint32_t k = farthest[0].begin; k < farthest[0].end; ++k) {
+  for (std::uint32_t k = plane.farthest[0].begin; k < plane.farthest[0].end; ++k) {
     of_a = std::max(of_a, dot(plane.normal, places_[0][points_[k]]));
   }
-  for (std::uint32_t k = farthest[1].begin; k < farthest[1].end; ++k) {
+  for (std::uint32_t k = plane.farthest[1].begin; k < plane.farthest[1].end; ++k) {
     of_b = std::max(of_b, -dot(plane.normal, places_[1][points_[k]]));
   }
   plane.height = of_a + of_b;
@@ -257,6 +270,15 @@ bool RoundedPolytope<Degree>::Piece::add_distance() {
     return p;
   };
   if (part_.dimension == 2) {
+    // Most are far off, which a normal says that is known to 2^-38: QuickMotion charges 2^-46 for axes that are known
+    // better.
+    const Vector3d roughly = cross(unit_direction(pair.hulls_, part_.edges[0]), unit_direction(pair.hulls_, part_.edges[1]));
+    if (norm(roughly) > 0x1p-9) {
+      const Vector3d n = normalized(roughly);
+      const Along along = shifted(pair.motion_.along(n), dot(n, at));
+      const double within = pair.radius_ + 0x1p9 * pair.motion_.error();
+      if (!pair.motion_.clip(along, 1, within, window_) || !pair.motion_.clip(along, -1, within, window_)) return false;
+    }
     const PreciseVector u = precise_direction(pair.hulls_, part_.edges[0]);
     const PreciseVector v = precise_direction(pair.hulls_, part_.edges[1]);
     bool known = false;
@@ -265,7 +287,7 @@ bool RoundedPolytope<Degree>::Piece::add_distance() {
     return distance_.clip(window_);
   }
   Vector3d u = Vector3d::Zero();
-  if (part_.dimension == 1) u = normalized(precise_direction(pair.hulls_, part_.edges[0]).rounded());
+  if (part_.dimension == 1) u = unit_direction(pair.hulls_, part_.edges[0]);
   const Along along = shifted(pair.motion_.along(u), dot(u, at));
   for (std::size_t d = 0; d < 3; ++d) {
     const auto i = static_cast<Eigen::Index>(d);

@@ -86,7 +86,8 @@ class RoundedPolytope {
   TimeWindow after_end() const { return {motion_.end(), motion_.end()}; }
   bool near(const Along& along, double side, double within);
   void add_planes();
-  bool add_plane(const std::array<certificates::DifferenceEdge, 2>& edges, const std::array<Points, 2>& farthest);
+  template <class Farthest>
+  bool add_plane(const std::array<certificates::DifferenceEdge, 2>& edges, const Farthest& farthest);
   Points one_point(std::uint32_t i);
   Points farthest_points(const ConvexCore& core, std::span<const Eigen::Vector3d> places, const Eigen::Vector3d& along);
   template <class Visit>

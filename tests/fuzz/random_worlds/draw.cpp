@@ -112,7 +112,7 @@ BodyPlan draw_body(Random& random, const Style& style) {
   if (body.shape == ShapeKind::box && body.size[1] < std::min(body.size[0], body.size[2])) {
     body.shape = ShapeKind::capsule;
   }
-  if (body.shape == ShapeKind::box && body.size[2] < std::min(body.size[0], body.size[1])) {
+  if (body.shape == ShapeKind::box && body.size[2] < 0.5 * std::min(body.size[0], body.size[1])) {
     body.shape = ShapeKind::hull;
   }
   body.mesh = random.below(sample_meshes().size());
