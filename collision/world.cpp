@@ -181,7 +181,7 @@ bool BasicWorld<Motion>::process(Task task) {
       return true;
     case Task::turn_on:
       turn_on();
-      return true;
+      return false;  // The report ends the step.
     case Task::meet_boxes:
       pairs_.process_boxes();
       return false;
@@ -333,7 +333,7 @@ void BasicWorld<Motion>::start_pieces() {
 template <class Motion>
 void BasicWorld<Motion>::turn_on() {
   const auto piece = tumbling_.take_next();
-  set_motion(piece.slot, piece.motion, false);
+  take_up(piece.slot, piece.motion);
 }
 
 template <class Motion>

@@ -67,7 +67,8 @@ class BasicWorldListener {
   /// Two bodies are let through each other until they have separated: no motion keeps them apart (a piston), they meet
   /// without end, or a callback has left them approaching.
   virtual void passes(BasicWorld<Motion>&, const PairEvent&) {}
-  /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
+  /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go; and those of
+  /// bodies that precess, whose next piece begins.
   virtual void moved(BasicWorld<Motion>&, BodyId) {}
 };
 

@@ -47,10 +47,15 @@ void Tumbling<Motion>::remove(BodySlot slot) {
 
 template <class Motion>
 void Tumbling<Motion>::begin(BodySlot slot, const RotationPiece& piece) {
-  of_[slot]->ends = piece.end;
   of_[slot]->ahead = piece.orientation;
   of_[slot]->astray = false;
-  ends_.set(slot, piece.end);
+  set_end(slot, piece.end);
+}
+
+template <class Motion>
+void Tumbling<Motion>::set_end(BodySlot slot, double end) {
+  of_[slot]->ends = bodies_[slot].turns_until = end;
+  ends_.set(slot, end);
 }
 
 template <class Motion>
@@ -137,9 +142,8 @@ void Tumbling<Motion>::follow(BodySlot slot, const RotationPiece& piece, bool wh
   if (whole || piece.end == never) return;
   Body& body = *of_[slot];
   body.astray = true;
-  body.ends = std::max(t + (piece.end - t) / 2, next_up(t));
+  set_end(slot, std::max(t + (piece.end - t) / 2, next_up(t)));
   body.ahead = orientation_at(body.inertia, body.state, body.ends);
-  ends_.set(slot, body.ends);
 }
 
 template <class Motion>
@@ -197,7 +201,7 @@ void Tumbling<Motion>::become(const Image& image) {
   ends_.resize(0);
   ends_.resize(of_.size());
   for (BodySlot slot = 0; slot < of_.size(); ++slot) {
-    if (of_[slot]) ends_.set(slot, of_[slot]->ends);
+    if (of_[slot]) set_end(slot, of_[slot]->ends);
   }
 }
 

@@ -68,7 +68,7 @@ class Tumbling {
  public:
   using Body = detail::Tumbler<Motion>;
 
-  Tumbling(const Bodies<Motion>& bodies, const WorldOptions& options, WorldCounters& counters)
+  Tumbling(Bodies<Motion>& bodies, const WorldOptions& options, WorldCounters& counters)
       : bodies_(bodies), error_(options.orientation_error), counters_(counters) {}
 
   /// A body comes that will precess.
@@ -126,9 +126,10 @@ class Tumbling {
 
  private:
   void begin(BodySlot slot, const RotationPiece& piece);
+  void set_end(BodySlot slot, double end);
   Motion motion_of(const Body& body, const Eigen::Quaterniond& orientation, const RotationPiece& piece, double t) const;
 
-  const Bodies<Motion>& bodies_;
+  Bodies<Motion>& bodies_;  ///< which are told when pieces end
   const double error_;
   WorldCounters& counters_;
   std::vector<std::optional<Body>> of_;  ///< by slot, up to the last that has had one
