@@ -117,6 +117,9 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
         return add_body(whole);
       }
       principal = principal_inertia(tensor);
+      if (!(principal->moments.minCoeff() >= 0x1p-40 * principal->moments.maxCoeff())) {
+        throw std::invalid_argument("inertia: its least moment must be at least 2^-40 (9.1e-13) of the greatest");
+      }
       for (const Motion& piece : description.motion) require_steady_clock(piece, clock_.now, "motion");
     }
   }
