@@ -81,10 +81,10 @@ Eigen::Matrix3d tensor_of(const BasicBodyDescription<Motion>& description) {
 
 /// A body that precesses moves in pieces, and the clock has to tell these from each other.
 template <int Degree>
-void require_steady_clock(const certificates::RigidMotion<Degree>& motion, double now, const char* where) {
+void require_steady_clock(const certificates::RigidMotion<Degree>& motion, double now, const std::string& where) {
   const double t = std::max(std::abs(now), std::abs(motion.start()));
   if (norm(motion.angular_velocity) * (next_up(t) - t) <= longest_turn) return;
-  throw std::invalid_argument(std::string(where) +
+  throw std::invalid_argument(where +
                               ".angular_velocity: the body precesses, and turns by more than a radian between two "
                               "doubles of the clock");
 }
@@ -120,7 +120,9 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
       if (!(principal->moments.minCoeff() >= 0x1p-40 * principal->moments.maxCoeff())) {
         throw std::invalid_argument("inertia: its least moment must be at least 2^-40 (9.1e-13) of the greatest");
       }
-      for (const Motion& piece : description.motion) require_steady_clock(piece, clock_.now, "motion");
+      for (std::size_t i = 0; i < description.motion.size(); ++i) {
+        require_steady_clock(description.motion[i], clock_.now, "motion[" + std::to_string(i) + "]");
+      }
     }
   }
   count_edit();

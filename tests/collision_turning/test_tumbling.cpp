@@ -384,9 +384,9 @@ TEST_CASE("what cannot precess is refused by name", "[turning]") {
   body.motion[0].path.start = 0;
   body.motion[0].angular_velocity = Vector3d(1e20, 1e20, 0);
   world.advance_to(1);
-  CHECK(
-      what(body) ==
-      "motion.angular_velocity: the body precesses, and turns by more than a radian between two doubles of the clock");
+  CHECK(what(body) ==
+        "motion[0].angular_velocity: the body precesses, and turns by more than a radian between two doubles of the "
+        "clock");
   body.motion[0].angular_velocity = Vector3d(1, 1, 0);
   const BodyId id = world.add_body(body);
   CHECK_THROWS_AS(world.update_motion(id, motion({0, 0, 0}, {0, 0, 0}, {1e20, 1e20, 0})), std::invalid_argument);
