@@ -128,8 +128,8 @@ TEST_CASE("run: a door that turns about its hinge meets a ball") {
   REQUIRE(record.events.size() == 1);
   // The ball's centre is at 1.5 cos t from the middle plane of the door.
   CHECK(record.events[0].time == Approx(std::acos(0.3125 / 1.5)).epsilon(1e-14));
-  REQUIRE(record.pieces.size() == 1);
-  CHECK((record.pieces[0].path.coefficients[1] - 2 * 1.5 * std::sin(record.events[0].time) * record.events[0].normal)
+  REQUIRE(record.pieces.size() == 2);
+  CHECK((record.pieces[1].path.coefficients[1] - 2 * 1.5 * std::sin(record.events[0].time) * record.events[0].normal)
             .norm() < 1e-14);
 }
 
