@@ -334,8 +334,8 @@ void BasicWorld<Motion>::report_next() {
     case Reports::Kind::separation:
       ++counters_.separations;
       return tell([&](Listener& listener) { listener.separation(*this, pair); });
-    case Reports::Kind::held:
-      return tell([&](Listener& listener) { listener.held(*this, pair); });
+    case Reports::Kind::rebound_suppressed:
+      return tell([&](Listener& listener) { listener.rebound_suppressed(*this, pair); });
     case Reports::Kind::wakes:
     case Reports::Kind::rests:
       return report_resting(event);

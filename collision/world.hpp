@@ -121,7 +121,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   /// Includes what resting contacts do to the acceleration; to change a motion, begin with free_motion(). The reference
   /// is valid until bodies are added, removed or moved, or the clock advances.
   const Motion& motion(BodyId id) const { return bodies_.motion(bodies_.slot_of(id)); }
-  /// The motion as it would go on without the contacts that hold it: with the acceleration that the caller gave last.
+  /// The motion that the body would have without its resting contacts: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
   PlacedShape shape(BodyId id) const { return bodies_.shape(bodies_.slot_of(id)); }
   double mass(BodyId id) const { return bodies_[bodies_.slot_of(id)].mass; }
@@ -131,7 +131,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   /// Whether a and b are in contact; of two that pass through each other (mode `none`, sensors), else false.
   bool touching(BodyId a, BodyId b) const;
 
-  /// Whether a and b are held together (mode `elastic` alone), or a is held at a wall, numbered as in WallEvent (all
+  /// Whether a and b rest on each other (mode `elastic` only), or a rests at a wall, numbered as in WallEvent (all
   /// modes; std::out_of_range for any other number).
   bool resting(BodyId a, BodyId b) const;
   bool resting_at_wall(BodyId a, int wall) const;
@@ -272,9 +272,9 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void process_wall() requires(!turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
   bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>);
-  bool bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+  bool bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
                       std::uint64_t burst) requires(!turns<Motion>);
-  void hold(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
+  void begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   bool endless(std::uint64_t burst) const;
 
@@ -288,7 +288,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void take_up(BodySlot slot, const Motion& motion) override;
   void changed(BodySlot a, BodySlot b) override { pairs_.changed(a, b); }
   void let_pass(BodySlot a, BodySlot b) override { pairs_.let_pass(a, b); }
-  void tell_held(BodySlot a, BodySlot b) override;
+  void tell_rebound_suppressed(BodySlot a, BodySlot b) override;
   void tell_resting(bool begins, const detail::RestingContact& contact) override;
   void tell_passes(const detail::RestingContact& contact) override;
   Contact contact_of(const detail::RestingContact& contact) const;

@@ -17,8 +17,8 @@ struct WorldCounters {
   std::uint64_t separations = 0;
   std::uint64_t overlaps = 0;
   std::uint64_t wall_contacts = 0;
-  std::uint64_t motion_updates = 0;  ///< by response, walls, scripts and callers
-  std::uint64_t held = 0;            ///< times the Zeno policy acted
+  std::uint64_t motion_updates = 0;       ///< by response, walls, scripts and callers
+  std::uint64_t rebounds_suppressed = 0;  ///< times the Zeno policy acted on a contact
 
   friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
   /// As a kinetic structure's: what has happened, and failure times asked for.

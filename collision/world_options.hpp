@@ -12,28 +12,28 @@
 
 namespace kds::collision {
 
-/// What the engine does about contacts of bodies. Walls reflect bodies in every mode.
+/// How the world responds to contacts of bodies. Walls reflect bodies in every mode.
 enum class Response {
   none,      ///< reports contacts and separations; bodies pass through each other
   elastic,   ///< impulses by the bodies' restitution and, if they turn, friction; motions change at each contact
   callback,  ///< as elastic, but the listener changes the motions; a pair it leaves approaching passes through
 };
 
-/// Bounces that pile up in time (Zeno). A contact, of two bodies in mode `elastic` or with a wall in any mode, is
-/// *held* instead of bounced back from if it
+/// What ends bounces that pile up in time (Zeno). The rebound of a contact, of two bodies in mode `elastic` or with a
+/// wall in any mode, is suppressed, and the contact rests from then on, if it
 /// - has no rebound: restitution 0, or no speed of approach;
 /// - would be back within interval / contacts, pressed by the acceleration that it has (a ball coming to rest), or rise
 ///   by roundings of the coordinates only;
 /// - is of two bodies that have both met others more than `contacts` times within `interval` (fixed bodies and walls do
-///   not count).
-/// What is held loses its relative normal velocity and from then on moves on along the contact, without friction and at
-/// no cost, by least constraint (least_constraint.hpp): forces pass through stacks. It is let go when it is pulled or
-/// pushed away, pushed together anew (which is a contact), loses its support or slides off. Where bodies cannot be
-/// held (between two fixed ones that close in) the pair is let pass until it has separated. So it is, in mode
-/// `callback` too, after ten times as many meetings. Holds are counted and reported, and a run always ends.
+///   not count). Bodies in resting contact lose their relative velocity along the normal and from then on move along
+///   the contact, without friction and at no cost, by least constraint (least_constraint.hpp): forces pass through
+///   stacks. The contact ends when the bodies are pulled or pushed apart, pushed together anew (which is a contact),
+///   lose their support or slide off. Where bodies cannot be kept apart (between two fixed ones that close in) the pair
+///   is let pass until it has separated. The same happens, in mode `callback` too, after ten times as many meetings.
+///   Each time the policy acts is counted and reported, and a run always ends.
 ///
-/// Differs from counting meetings of pairs: a pair is forgotten when its bounding volumes part, which boxes do at each
-/// bounce, and when that is depends on the broad phase.
+/// Meetings are counted by body and not by pair: a pair is forgotten when its bounding volumes part, which may happen
+/// at each bounce and at times that depend on the broad phase.
 struct ZenoPolicy {
   std::uint32_t contacts = 100;  ///< > 0; more makes longer cascades exact and collapses slower
   double interval = 1e-9;        ///< s, >= 0
@@ -69,7 +69,7 @@ struct WorldOptions {
   std::size_t threads = 1;
   ZenoPolicy zeno{};
   /// s, > 0. In worlds of bodies that turn contacts do not come to rest: what is pressed together rebounds fast enough
-  /// to fly for so long at least, so that a run always ends. Of bodies that weigh on each other with the acceleration g
+  /// to fly for so long at least, so that a run always ends. Of bodies that press on each other with the acceleration g
   /// it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1 ms), and costs a contact per flight.
   double shortest_flight = 1e-3;
   /// How often callbacks may add, remove or move bodies within zeno.interval of simulated time; 64 times the number of

@@ -30,8 +30,8 @@ struct Touch {
 /// touches to be independent of each other.
 ///
 /// Rounding: along the axes (all normals are unit vectors of an axis) bodies at rest come out at rest, exactly.
-/// Elsewhere the relative rate is up to some 2^-48 of the largest rate above zero, so that what is held parts,
-/// very slowly, rather than sinks in.
+/// Elsewhere the relative rate is up to some 2^-48 of the largest rate above zero, so that bodies in contact part, very
+/// slowly, rather than sinks in.
 ///
 /// Cost: a linear solve or a few where the guesses push where the solution does, up to some n of them else. Above 64
 /// touches, touches x sweeps; a chain of n equal masses takes about 6 n sweeps. Both are bounded.

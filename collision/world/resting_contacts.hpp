@@ -47,14 +47,14 @@ double velocity_terms(const certificates::PointMotion<Degree>& motion, double t)
   return sum;
 }
 
-/// What resting contacts tell a world.
+/// What a world is told by its resting contacts.
 template <class Motion>
 class RestingListener {
  public:
   virtual void take_up(BodySlot id, const Motion& motion) = 0;  ///< a new motion
-  virtual void changed(BodySlot a, BodySlot b) = 0;             ///< what the two may meet next has to be found anew
+  virtual void changed(BodySlot a, BodySlot b) = 0;             ///< the next contact of the two has to be found anew
   virtual void let_pass(BodySlot a, BodySlot b) = 0;
-  virtual void tell_held(BodySlot a, BodySlot b) = 0;  ///< that the policy has acted on the two
+  virtual void tell_rebound_suppressed(BodySlot a, BodySlot b) = 0;  ///< the Zeno policy has acted on the two
   /// A contact begins or ceases to last.
   virtual void tell_resting(bool begins, const detail::RestingContact& contact) = 0;
   virtual void tell_passes(const detail::RestingContact& contact) = 0;
@@ -93,7 +93,7 @@ class RestingContacts {
   bool empty() const { return contacts_.size() == free_.size(); }
   /// One of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
   Slot find(BodySlot a, BodySlot b, int wall = -1) const { return rests(a) ? find_among(a, b, wall) : none; }
-  /// Whether there is one that keeps the two from coming nearer: in a cluster there are others, where it need not.
+  /// Whether the two have a resting contact that keeps them from coming nearer; in a cluster only those that push do.
   bool holds(BodySlot a, BodySlot b, int wall = -1) const {
     const Slot slot = find(a, b, wall);
     return slot != none && (contacts_[slot].push > 0 || !(clustered(a) || (b != no_body && clustered(b))));
@@ -102,9 +102,9 @@ class RestingContacts {
 
   /// A contact begins to last. Between meshes several may last at once, in a groove, say; one for each normal.
   void add(const Contact& contact);
-  /// All of a body end, since it jumps.
+  /// All contacts of a body end, since it jumps.
   void drop_all(BodySlot id);
-  /// All of a body end, since it goes.
+  /// All contacts of a body end, since it is removed.
   void forget(BodySlot id) {
     drop_all(id);
     if (id < spans_.slots()) spans_.clear(id);
@@ -118,7 +118,7 @@ class RestingContacts {
     if (id < spans_.slots()) spans_.clear(id);
   }
 
-  /// The motion of a body has changed: those that it rests with are to be looked at by solve().
+  /// The motion of a body has changed: solve() is to look at those that rest on it or that it rests on.
   void disturb(BodySlot id) {
     if (!contacts_.empty()) note(id);
   }
@@ -128,8 +128,8 @@ class RestingContacts {
     if (!solved()) solve_all();
   }
 
-  /// Whether the two bodies of a contact surely do not meet until the motion of one changes, or the contact does: a
-  /// plane stays between them.
+  /// Whether a plane is proven to stay between the two bodies of a contact, so that they do not meet until a motion or
+  /// the contact changes.
   bool keeps_apart(Slot contact) const { return contacts_[contact].proven && !gaps_.has_mesh(contacts_[contact]); }
   /// When two bodies that rest on each other may meet elsewhere.
   double next_contact(BodySlot a, BodySlot b);
