@@ -25,12 +25,13 @@ enum class Response {
 /// - would be back within interval / contacts, pressed by the acceleration that it has (a ball coming to rest), or rise
 ///   by roundings of the coordinates only;
 /// - is of two bodies that have both met others more than `contacts` times within `interval` (fixed bodies and walls do
-///   not count). Bodies in resting contact lose their relative velocity along the normal and from then on move along
-///   the contact, without friction and at no cost, by least constraint (least_constraint.hpp): forces pass through
-///   stacks. The contact ends when the bodies are pulled or pushed apart, pushed together anew (which is a contact),
-///   lose their support or slide off. Where bodies cannot be kept apart (between two fixed ones that close in) the pair
-///   is let pass until it has separated. The same happens, in mode `callback` too, after ten times as many meetings.
-///   Each time the policy acts is counted and reported, and a run always ends.
+///   not count).
+/// Bodies in resting contact lose their relative velocity along the normal and from then on move along the contact,
+/// without friction and at no cost, by least constraint (least_constraint.hpp): forces pass through stacks. The contact
+/// ends when the bodies are pulled or pushed apart, pushed together anew (which is a contact), lose their support or
+/// slide off. Where bodies cannot be kept apart (between two fixed ones that close in) the pair is let pass until it
+/// has separated. The same happens, in mode `callback` too, after ten times as many meetings. Each time the policy acts
+/// is counted and reported, and a run always ends.
 ///
 /// Meetings are counted by body and not by pair: a pair is forgotten when its bounding volumes part, which may happen
 /// at each bounce and at times that depend on the broad phase.

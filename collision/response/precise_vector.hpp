@@ -1,4 +1,4 @@
-// Vectors of double-doubles: for what is calculated to some 100 bits and rounded once, at the end.
+// Vectors of double-doubles: for results that are calculated to some 100 bits and rounded once, at the end.
 #pragma once
 
 #include "kds/arithmetic/double_double.hpp"

@@ -111,11 +111,13 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
 
 /// The part of a kinetic structure that its author writes; Kinetic<Rule> makes a structure of it.
 ///
-///     static constexpr const char* name what messages call it using Element what moves certificate(slot, elements)
-///     const the slot's fact: a certificate; std::optional or std::variant of them (with std::monostate) where there
-///     may be none, or several kinds members(slot) const ids of the elements that the slot's certificate is about, as a
-///     range repair(slot, repair) -> Effect repair the state, and mark the slots whose certificates are new insert(id,
-///     repair), remove(id, repair) take up an element; let one go, which is still there
+///     static constexpr const char* name           what messages call it
+///     using Element                               what moves
+///     certificate(slot, elements) const           the slot's fact: a certificate; std::optional or std::variant of
+///                                                 them (with std::monostate) where there may be none, or several kinds
+///     members(slot) const                         ids of the elements that the slot's certificate is about, as a range
+///     repair(slot, repair) -> Effect              repair the state, and mark the slots whose certificates are new
+///     insert(id, repair), remove(id, repair)      take up an element; let one go, which is still there
 ///
 /// and, optionally, what the concepts below describe: change, keeps, build, audit; and archive, so that it can be saved
 /// (ArchivedBy). A member with one of these names that does not fit its concept does not compile: it would never be

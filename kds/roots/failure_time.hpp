@@ -24,28 +24,33 @@ namespace kds {
 /// so all give the same bits, and differ only in cost.
 ///
 /// 1. The certificate knows (AnswersQuickly, certificate_hooks.hpp): its coefficients are doubles, or sums of two,
-/// known without rounding, or nearly. Signs in doubles decide whether it fails within the horizon; a quotient or the
-/// quadratic formula gives the root, and one value there, whose large parts are exact, gives the double. 7 to 15 ns.
-/// line quick_line_failure_time(), failure_time_known_line.hpp parabola quick_parabola_failure_time(),
-/// failure_time_known_parabola.hpp Both also for the difference of two motions with starts of their own
-/// (certificates/order_parabola.hpp), and for two lines side by side (certificates/order_together.hpp).
+///    known without rounding, or nearly. Signs in doubles decide whether it fails within the horizon; a quotient or the
+///    quadratic formula gives the root, and one value there, whose large parts are exact, gives the double. 7 to 15 ns.
+///      line       quick_line_failure_time(), failure_time_known_line.hpp
+///      parabola   quick_parabola_failure_time(), failure_time_known_parabola.hpp
+///    Both also for the difference of two motions with starts of their own (certificates/order_parabola.hpp), and for
+///    two lines side by side (certificates/order_together.hpp).
 /// 2. The formula in doubles with error bounds (Ball<double>) about now decides whether there is a root and roughly
 ///    where; one value of it in double-doubles gives the double (root_rounding.hpp), with one exact sign where the root
-///    may be a double itself. Any certificate. By the degree that the polynomial really has: 1 a quotient,
-///    failure_time_linear.hpp 2 the quadratic formula, failure_time_quadratic.hpp. 30 ns 3 to 8 the rule of Descartes
-///    and Halley's method, first_crossing.hpp and failure_time_isolated.hpp. 120 to 300 ns
+///    may be a double itself. Any certificate. By the degree that the polynomial really has:
+///      1          a quotient, failure_time_linear.hpp
+///      2          the quadratic formula, failure_time_quadratic.hpp. 30 ns
+///      3 to 8     the rule of Descartes and Halley's method, first_crossing.hpp and failure_time_isolated.hpp. 120 to
+///                 300 ns
 /// 3. Exact signs of f and its derivatives on the lattice of doubles (DerivativeIntervals, failure_time_by_signs.hpp):
 ///    certificates that touch zero, or nearly, and clustered roots. Needs no assumptions. 2 to 70 us, the most for
 ///    clustered roots of a high degree; counted by sign_counters.searches.
 ///
 /// What each special form gains: by how much the instruction count of a sorted list that runs for a second, or of a
-/// loop over random polynomials, grows without it (callgrind; forms that gain less than 3 % are left out). known line
-/// +118 % lists of parabolas that share their acceleration its root, if that is a double +133 % lines on a grid known
-/// parabola +71 % lists, +46 % random parabolas either, of two motions' own starts +42 % lists of lines, +37 % of
-/// parabolas, +94 % that share it signs before a start is moved (Order<1>) +16 % lists of lines with starts of their
-/// own two lines side by side +14 % lists of lines with one start; 4 % less with starts of their own quick answers
-/// after a turn +10 to 22 % lists, but for parabolas with starts of their own line, of computed coefficients +7 to 18 %
-/// random lines
+/// loop over random polynomials, grows without it (callgrind; forms that gain less than 3 % are left out).
+///      known line                               +118 % lists of parabolas that share their acceleration
+///      its root, if that is a double            +133 % lines on a grid
+///      known parabola                           +71 % lists, +46 % random parabolas
+///      either, of two motions' own starts       +42 % lists of lines, +37 % of parabolas, +94 % that share it
+///      signs before a start is moved (Order<1>) +16 % lists of lines with starts of their own
+///      two lines side by side                   +14 % lists of lines with one start; 4 % less with starts of their own
+///      quick answers after a turn               +10 to 22 % lists, but for parabolas with starts of their own
+///      line, of computed coefficients           +7 to 18 % random lines
 ///
 /// enclosed_failure_time.hpp gives enclosures and a status, solver.hpp makes the solver of a structure exchangeable.
 template <Certificate C>
