@@ -1,4 +1,4 @@
-// What a world counts.
+// The counters of a world.
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
@@ -21,7 +21,7 @@ struct WorldCounters {
   std::uint64_t rebounds_suppressed = 0;  ///< times the Zeno policy acted on a contact
 
   friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
-  /// As a kinetic structure's: what has happened, and failure times asked for.
+  /// The counters of a kinetic structure: events, and failure times that were computed.
   operator Counters() const {
     return {.events = contacts + separations + overlaps + wall_contacts, .certificates = pair_tests};
   }

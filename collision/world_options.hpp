@@ -55,11 +55,12 @@ struct WorldOptions {
   double window = never;
   Response response = Response::none;
   BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
-  /// Hz, finite and >= 0; frames of the swept boxes, which `sap` alone has: it needs one > 0 with a finite 1 / rate.
+  /// Hz, finite and >= 0; frame rate of the swept AABBs of `sap`, which needs one > 0 with a finite 1 / rate; other
+  /// broad phases ignore it.
   double rate = 0;
-  /// Bounding volumes of kinetic sweep and prune: 6, boxes; 14, 18 or 26, k-DOPs, tighter around what is long, thin or
-  /// round, and more to compute (docs/kdops.md). Other broad phases know boxes alone. Contacts are the same; the pairs
-  /// reported are those whose volumes overlap.
+  /// Bounding volumes of kinetic sweep and prune: 6, boxes; 14, 18 or 26, k-DOPs, tighter around shapes that are long,
+  /// thin or round, and dearer to compute (docs/kdops.md). Other broad phases use boxes. Contacts are the same; the
+  /// pairs reported are those whose volumes overlap.
   int kdop = 6;
   std::optional<Walls> walls{};
   bool report_pairs = false;  ///< tell the listener of bounding volumes that begin and cease to overlap
@@ -69,13 +70,14 @@ struct WorldOptions {
   /// Events and counters do not depend on it.
   std::size_t threads = 1;
   ZenoPolicy zeno{};
-  /// s, > 0. In worlds of bodies that turn contacts do not come to rest: what is pressed together rebounds fast enough
-  /// to fly for so long at least, so that a run always ends. Of bodies that press on each other with the acceleration g
-  /// it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1 ms), and costs a contact per flight.
+  /// s, > 0. In worlds of bodies that turn contacts do not come to rest: bodies that are pressed together rebound fast
+  /// enough to fly for at least this time, so that a run always ends. Of bodies that press on each other with the
+  /// acceleration g it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1 ms), and costs a contact per
+  /// flight.
   double shortest_flight = 1e-3;
   /// How often callbacks may add, remove or move bodies within zeno.interval of simulated time; 64 times the number of
   /// bodies, if that is more. The call that exceeds it throws std::runtime_error: callbacks that go on for ever at one
-  /// time would never let the clock move. Without callbacks a run always ends.
+  /// time would stop the clock. Without callbacks a run always ends.
   std::uint64_t most_edits = 1'000'000;
 };
 
