@@ -151,7 +151,7 @@ class BoxGrid {
   /// The natives or the guests of a level, and bounds for searches of them.
   struct Population {
     std::size_t count = 0;
-    std::int64_t span = 0;  ///< of the largest since it was last empty, in units of the lattice
+    std::int64_t span = 0;                      ///< of the largest since it was last empty, in units of the lattice
     std::array<std::int64_t, 3> low{}, high{};  ///< bounds on the lower corners since then, same units
   };
 

@@ -17,8 +17,8 @@ class PairListener {
   virtual ~PairListener() = default;
   /// A hint: about this many pairs will be reported at once.
   virtual void pairs_to_come(std::size_t) {}
-  /// Whether any pairs need not be reported; and whether a pair may collide. The answer for two bodies stays the same as
-  /// long as both are there.
+  /// Whether any pairs need not be reported; and whether a pair may collide. The answer for two bodies stays the same
+  /// as long as both are there.
   virtual bool filters() const { return false; }
   virtual bool may_collide(BodySlot, BodySlot) const { return true; }
   virtual void pair_began(BodySlot a, BodySlot b, double t) = 0;
