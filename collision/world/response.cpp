@@ -1,4 +1,4 @@
-// What follows from contacts: what is told, and who passes through whom.
+// What follows from contacts: reports, and pairs that are let pass.
 #include "collision/motions.hpp"
 #include "collision/world.hpp"
 

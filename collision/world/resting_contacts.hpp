@@ -64,12 +64,12 @@ class RestingListener {
 };
 
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
-/// docs/resting.md says what the law is.
+/// docs/resting.md states the law.
 ///
 /// A part of World that owns its state and its queue. It reads the bodies, and tells its listener what follows.
 ///
 /// Cost: nothing while nothing rests. O(1) a contact that begins or ends; a change of motion of a body that rests
-/// solves for all that lean on each other with it (least_constraint.hpp).
+/// solves for all bodies of its island (least_constraint.hpp).
 template <class Motion>
 class RestingContacts {
  public:
@@ -91,7 +91,7 @@ class RestingContacts {
 
   /// Whether there are any.
   bool empty() const { return contacts_.size() == free_.size(); }
-  /// One of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
+  /// A contact of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
   Slot find(BodySlot a, BodySlot b, int wall = -1) const { return rests(a) ? find_among(a, b, wall) : none; }
   /// Whether the two have a resting contact that keeps them from coming nearer; in a cluster only those that push do.
   bool holds(BodySlot a, BodySlot b, int wall = -1) const {
@@ -123,7 +123,7 @@ class RestingContacts {
     if (!contacts_.empty()) note(id);
   }
   bool solved() const { return disturbed_.empty(); }
-  /// Gives all that have been disturbed the motions that their contacts leave them.
+  /// Gives all disturbed bodies the motions that their contacts allow.
   void solve() {
     if (!solved()) solve_all();
   }
@@ -179,7 +179,7 @@ class RestingContacts {
     void check(const typename Bodies<Motion>::Image& bodies, double now, const WorldOptions& options) const;
 
    private:
-    /// How far a normal may be from unit length: far above what normalising rounds.
+    /// How far a normal may be from unit length: far above the rounding of a normalisation.
     static constexpr double normal_rounding = 0x1p-40;
   };
   Image image() const;
@@ -189,13 +189,13 @@ class RestingContacts {
   /// Of a body.
   struct Member {
     std::vector<Slot> contacts;
-    std::uint64_t island = 0;  ///< the last it was seen in
+    std::uint64_t island = 0;  ///< the last island in which it was found
     std::uint32_t place = 0;   ///< in that
     bool disturbed = false;
     double span_ends = -never;  ///< s, of the cluster's span; `never`: asleep; -never: in no cluster
     double calm_since = never;  ///< s
-    bool met = false;           ///< another that is not fixed: it may come to rest with it
-    bool carried = false;       ///< degree 3 and above: its motion is what contacts have left of it, or made of it
+    bool met = false;           ///< it has met another that is not fixed, and may come to rest
+    bool carried = false;       ///< degree 3 and above: its motion is one that contacts have changed
   };
   /// Bodies that lean on each other, in the arithmetic of least_constraint.
   struct Island {
