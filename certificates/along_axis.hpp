@@ -48,7 +48,7 @@ struct RelativeCoordinate {
   std::array<bool, std::size_t{Degree} + 1> present;
 };
 
-/// Of c0 + c1 x + c2 x^2 about x = h.
+/// The coefficients of c0 + c1 x + c2 x^2 about x = h.
 template <int Degree>
 void shift(std::array<double, std::size_t{Degree} + 1>& c, std::array<double, std::size_t{Degree} + 1>& magnitude,
            double h) {

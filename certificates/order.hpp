@@ -76,7 +76,7 @@ struct Order {
   /// difference is a line (straight motions, and those that share their accelerations) or a parabola.
   double quick_failure_time(double now, double horizon) const;
 
-  /// Of two pairs together: see order_together.hpp.
+  /// For two pairs together: see order_together.hpp.
   static TwoTimes quick_failure_times(const Order& first, const Order& second, double now, double horizon) {
     if constexpr (Degree == 1) {
       return certificates::quick_failure_times(first.lower, first.upper, second.lower, second.upper, now, horizon);

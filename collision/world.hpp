@@ -285,7 +285,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void process_wall() requires(turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
 
-  // What resting contacts tell (RestingContacts::Listener).
+  // Reports of resting contacts (RestingContacts::Listener).
   void take_up(BodySlot slot, const Motion& motion) override;
   void changed(BodySlot a, BodySlot b) override { pairs_.changed(a, b); }
   void let_pass(BodySlot a, BodySlot b) override { pairs_.let_pass(a, b); }

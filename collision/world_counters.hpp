@@ -8,7 +8,7 @@
 
 namespace kds::collision {
 
-/// What a world has done so far.
+/// The work of a world so far.
 struct WorldCounters {
   BroadPhaseCounters broad_phase;
   std::uint64_t pairs_begun = 0;  ///< pairs handed on by the broad phase

@@ -152,12 +152,12 @@ class SortedList {
     const auto slot = static_cast<Slot>(left);
     if (left + 1 == order_.size()) return schedule_.clear(slot);
     schedule_.certify(slot, pair(left), now);
-    if (now == disturbed_) settle_tie(slot, now);
+    if (now == disturbed_) schedule_tie(slot, now);
   }
 
   /// Two that stay equal, in the wrong order: no certificate fails then. It happens only by changes that are made
   /// before all events of their time have been processed.
-  void settle_tie(Slot left, double now) {
+  void schedule_tie(Slot left, double now) {
     if (schedule_.contains(left) || in_order(order_[left], order_[left + 1], now)) return;
     schedule_.set(left, now);
   }

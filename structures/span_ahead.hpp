@@ -1,4 +1,4 @@
-// What a moving value covers in the time to come.
+// The interval that a moving value covers in the time ahead.
 #pragma once
 
 #include "kds/arithmetic/ball.hpp"

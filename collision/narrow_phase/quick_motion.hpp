@@ -214,7 +214,7 @@ void QuickMotion<Degree>::begin_curve(const Path& a, const Path& b, double horiz
   bend_error_ = unit * most[2];
 }
 
-/// side * axis . r - distance, without its distance, as a polynomial of the time, with a constant of its own.
+/// side * axis . r - distance, without its distance, as a polynomial of the time, with another constant.
 template <int Degree>
 auto QuickMotion<Degree>::gap(const Along& p, double side, double constant) const -> Along {
   Along gap;

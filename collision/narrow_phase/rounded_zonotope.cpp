@@ -129,7 +129,7 @@ void RoundedZonotope<Degree>::Piece::add_cell() {
     const Along along = shifted(pair_->along_[cell_.swept[0]], dot(u, centre));
     const double square = squared_norm(u);
     sides_.push_back({along, first.length * square, true});
-    // What is left across the line.
+    // The part across the line.
     for (std::size_t d = 0; d < 3; ++d) {
       const auto at = static_cast<Eigen::Index>(d);
       Along y = shifted(pair_->coordinates_[d], centre[at]);

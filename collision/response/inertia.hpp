@@ -38,7 +38,8 @@ Eigen::Matrix3d turned_tensor(const Eigen::Matrix3d& tensor, const Eigen::Matrix
 
 namespace detail {
 
-/// Of a symmetric matrix, by the signs of its leading minors: up to an eigenvalue of 2^-96 of the greatest entry.
+/// Whether a symmetric matrix is positive definite, by the signs of its leading minors: up to an eigenvalue of 2^-96 of
+/// the greatest entry.
 bool positive_definite(const Eigen::Matrix3d& m);
 
 }  // namespace detail

@@ -91,8 +91,8 @@ void require_closed(const Mesh& mesh) {
   }
 }
 
-/// Of the solid, with lengths in `unit`, a power of two, counted from `origin`: 6 times the volume, 24 times the
-/// integral of x, 120 times that of x x^T. In this unit no coordinate is beyond 1.
+/// Integrals over the solid, with lengths in `unit`, a power of two, counted from `origin`: 6 times the volume, 24
+/// times the integral of x, 120 times that of x x^T. In this unit no coordinate is beyond 1.
 struct Integrals {
   Vector3d origin;
   double unit = 1;

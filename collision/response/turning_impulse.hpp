@@ -20,9 +20,9 @@ struct Mobility {
   bool spherical = true;  ///< whether inverse_inertia is left out
 
   static Mobility fixed() { return {}; }
-  /// Of a body whose moments are equal (is_spherical()).
+  /// The mobility of a body whose moments are equal (is_spherical()).
   static Mobility of_spherical(double inverse_mass, double inverse_moment) { return {inverse_mass, inverse_moment}; }
-  /// Of any body: turned_tensor(inverse_inertia(inertia), rotation).
+  /// The mobility of any body: turned_tensor(inverse_inertia(inertia), rotation).
   static Mobility of(double inverse_mass, const Eigen::Matrix3d& inverse_inertia) {
     return {inverse_mass, 0, inverse_inertia, false};
   }

@@ -47,7 +47,7 @@ double velocity_terms(const certificates::PointMotion<Degree>& motion, double t)
   return sum;
 }
 
-/// What a world is told by its resting contacts.
+/// The listener of resting contacts: their world.
 template <class Motion>
 class RestingListener {
  public:
@@ -186,7 +186,7 @@ class RestingContacts {
   void become(const Image& image);
 
  private:
-  /// Of a body.
+  /// The state of a body.
   struct Member {
     std::vector<Slot> contacts;
     std::uint64_t island = 0;  ///< the last island in which it was found

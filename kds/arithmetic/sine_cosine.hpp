@@ -35,7 +35,7 @@ inline constexpr double greatest_angle = 0x1p40;
 template <class Number>
 SineCosine<Number> sine_cosine(const Ball<DoubleDouble>& angle);
 
-/// Of rate * time, rad; the product of two doubles is exact as a double-double.
+/// Sine and cosine of rate * time, rad; the product of two doubles is exact as a double-double.
 template <class Number>
 SineCosine<Number> sine_cosine(double rate, double time);
 
@@ -130,7 +130,7 @@ double series(const std::array<DoubleDouble, 13>& c, double z) {
   return h;
 }
 
-/// Of a reduced angle r, in doubles.
+/// Sine and cosine of a reduced angle r, in doubles.
 ///
 /// Error bound, with u = 2^-53 and z = r^2 < 0.618. Each coefficient of the series is at most 1/12 of the one before,
 /// and signs alternate, so that each partial result of Horner's rule lies between 0 and the coefficient c_m that it

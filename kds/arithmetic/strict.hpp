@@ -1,4 +1,4 @@
-// What every exact sign rests on: that + - * / and sqrt of doubles are rounded once, to the nearest double.
+// Checks the assumption of all exact signs: + - * / and sqrt of doubles are rounded once, to the nearest double.
 #pragma once
 
 #include <cfloat>

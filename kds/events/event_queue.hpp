@@ -1,4 +1,4 @@
-// What an event queue is: numbered slots, each with at most one time, and the least of them.
+// The concept of an event queue: numbered slots, each with at most one time, and the least of them.
 #pragma once
 
 #include <concepts>

@@ -64,7 +64,7 @@ class PlaceQueue {
   /// Number of events; counts them.
   std::size_t size() const;
 
-  /// Of events of one time the one with the least rank(place) goes first, then the first place. Ranks of places that
+  /// Among events of one time the one with the least rank(place) goes first, then the first place. Ranks of places that
   /// have not changed must not have changed either.
   template <class Rank>
   void settle(Rank&& rank);

@@ -33,7 +33,7 @@ class PlaceSchedule : public Schedule<PlaceQueue> {
     queue_.set_three(middle, times.first, failure_time_after_turn(turned, now, horizon()), times.second);
   }
 
-  /// Of two new certificates.
+  /// Certifies two new certificates.
   template <Certificate C>
   void certify_two(Slot first, const C& a, Slot second, const C& b, double now) {
     counters_.certificates += 2;

@@ -120,7 +120,7 @@ class Schedule {
     return true;
   }
 
-  /// What failed() and certify() have counted.
+  /// The counts of failed() and certify().
   const Counters& counters() const { return counters_; }
   const Queue& queue() const { return queue_; }
 

@@ -164,7 +164,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
     return false;
   }
 
-  // What is different with sampled elements: kinetic_samples.hpp.
+  // With sampled elements: kinetic_samples.hpp.
   template <class C>
   void certify_samples(Slot slot, const C& certificate);
   template <class C>

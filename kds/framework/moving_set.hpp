@@ -34,7 +34,7 @@ bool finite(const E& element) {
 }
 }  // namespace detail
 
-/// What moves: a Motion, a path in the plane or in space, a sampled position with a bound on its speed.
+/// A moving element: a Motion, a path in the plane or in space, a sampled position with a bound on its speed.
 template <class E>
 concept MovingElement = std::default_initializable<E> && std::copyable<E> && requires(const E& element) {
   { detail::finite(element) } -> std::convertible_to<bool>;

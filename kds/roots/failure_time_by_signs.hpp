@@ -22,7 +22,7 @@ namespace kds::detail {
 /// its sign is dropped. In the end, the first double just after which f < 0 is one where f turns between two cells, or
 /// the end of a cell.
 ///
-/// Without a horizon the last stretch reaches to infinity, where the leading coefficient tells the sign, which is
+/// Without a horizon the last stretch extends to infinity, where the leading coefficient gives the sign, which is
 /// cheaper than the sign at the largest double; but only as long as no higher derivative turns beyond all doubles.
 ///
 /// Cost: O(degree^2) searches of a few values in double-double each: 2 us for a parabola, up to 70 us for clustered

@@ -39,8 +39,8 @@ double quick_parabola_failure_time(const Parabola<shifted>& p, double now, doubl
 
 namespace detail {
 
-/// The first `bits` significant bits of a number, 1 <= bits <= 53. What is cut off is below 2^(1 - bits) of it.
-/// Products of numbers of 53 bits together are exact while nothing underflows.
+/// The first `bits` significant bits of a number, 1 <= bits <= 53. The rest is below 2^(1 - bits) of it. Products of
+/// numbers of 53 bits together are exact while nothing underflows.
 template <int bits>
 double leading_bits(double x) {
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & ~((std::uint64_t{1} << (53 - bits)) - 1));
