@@ -18,7 +18,7 @@ inline double excess_of_unit(const Eigen::Vector3d& v) {
 
 /// Changes b's velocity relative to a by `change` along the normal and keeps the sum of momenta: for an elastic impulse
 /// `change` is minus twice their relative normal velocity. Works for accelerations as well. A fixed body has inverse
-/// mass 0; at most one is fixed. Precondition: the normal is a unit vector but for rounding.
+/// mass 0; at most one is fixed. Precondition: the normal is a unit vector up to rounding.
 ///
 /// Energy must not drift faster than random rounding makes it, in proportion to the square root of the number of
 /// contacts. Two errors would be the same at each contact and add up, by as much as 1e-16 of the pair's energy each.

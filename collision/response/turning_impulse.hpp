@@ -34,7 +34,7 @@ struct Mobility {
 /// Where two bodies touch. The arms lead from either's centre of mass to the point of contact. They should end at one
 /// point: their distance there, times the impulse, is an error of the angular momentum.
 struct ContactArms {
-  Eigen::Vector3d normal;  ///< from a to b, of length 1 but for rounding
+  Eigen::Vector3d normal;  ///< from a to b, of length 1 up to rounding
   Eigen::Vector3d a, b;    ///< units of length
 };
 

@@ -204,7 +204,7 @@ void RestingContacts<Motion>::extend_horizon() {
 }
 
 /// Each contact is of two bodies that are there (or one and a wall), is listed with them and no others, and lasts:
-/// along its normal the two have no relative velocity but for rounding, as drop_broken() measures it, and accelerations
+/// along its normal the two have no relative velocity up to rounding, as drop_broken() measures it, and accelerations
 /// that cancel. The times at which contacts end lie ahead.
 template <class Motion>
 void RestingContacts<Motion>::audit(double t, bool walls) const {
@@ -253,7 +253,7 @@ void RestingContacts<Motion>::audit(double t, bool walls) const {
     if (!at_wall) b = bodies_.path(contact.b).velocity(t);
     double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), contact.solved});
     if constexpr (Motion::degree >=
-                  2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
+                  2) {  // Accelerations cancel along the normal, up to rounding, and act since the start.
       for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b}) {
         largest += 2 * bodies_.free_term(id, 2, t).cwiseAbs().maxCoeff() * (1 + t - bodies_.path(id).start);
       }

@@ -44,13 +44,14 @@ template <class Motion>
 void RestingContacts<Motion>::solve_fixed(BodySlot id) {
   const Motion before = bodies_.motion(id).restarted(clock_.now);
   Motion motion = before;
-  const std::vector<Slot> holds = of_[id].contacts;  // some may be dropped
-  const bool at_wall = std::any_of(holds.begin(), holds.end(), [&](Slot slot) { return contacts_[slot].wall >= 0; });
+  const std::vector<Slot> contacts = of_[id].contacts;  // some may be dropped
+  const auto is_wall = [&](Slot slot) { return contacts_[slot].wall >= 0; };
+  const bool at_wall = std::any_of(contacts.begin(), contacts.end(), is_wall);
   const bool given_anew = at_wall || (Motion::degree >= 3 && of_[id].carried);  // or a wall has let it go
   for (std::size_t i = 2; i <= Motion::degree && given_anew; ++i)
     motion.coefficients[i] = bodies_.free_term(id, i, clock_.now);
   of_[id].carried = false;
-  for (const Slot slot : holds) {
+  for (const Slot slot : contacts) {
     Contact& contact = contacts_[slot];
     if (contact.wall < 0) {
       disturb(contact.a == id ? contact.b : contact.a);

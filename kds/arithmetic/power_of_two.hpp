@@ -1,4 +1,4 @@
-// Powers of two as doubles, for scales: multiplying by one is exact but for overflow and underflow.
+// Powers of two as doubles, for scales: multiplying by one is exact except for overflow and underflow.
 #pragma once
 
 #include <bit>

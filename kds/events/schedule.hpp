@@ -125,7 +125,7 @@ class Schedule {
   const Queue& queue() const { return queue_; }
 
   /// Saves or loads the times of the slots, the horizon and the counters; see save() in snapshot.hpp. Queues are
-  /// functions of their times, so that one may be loaded into another. A queue of places is to be settled afterwards.
+  /// functions of their times, so that one may be loaded into another. Call settle() of a queue of places afterwards.
   template <class Archive>
   void archive(Archive& archive) {
     std::vector<double> times;

@@ -49,7 +49,7 @@ namespace kds {
 ///      either, of two motions' own starts       +42 % lists of lines, +37 % of parabolas, +94 % that share it
 ///      signs before a start is moved (Order<1>) +16 % lists of lines with starts of their own
 ///      two lines side by side                   +14 % lists of lines with one start; 4 % less with starts of their own
-///      quick answers after a turn               +10 to 22 % lists, but for parabolas with starts of their own
+///      quick answers after a turn               +10 to 22 % lists, except parabolas with starts of their own
 ///      line, of computed coefficients           +7 to 18 % random lines
 ///
 /// enclosed_failure_time.hpp gives enclosures and a status, solver.hpp makes the solver of a structure exchangeable.

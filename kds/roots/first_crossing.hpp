@@ -131,7 +131,7 @@ struct BernsteinPiece {
 
   /// A guess of the root where the polygon falls.
   ProjectivePoint fall_point() const {
-    // As in crossing(), but for one division less: the numbers w and v may be multiplied by anything.
+    // As in crossing(), with one division less: the numbers w and v may be multiplied by anything.
     const std::size_t i = fall();
     const double step = std::max(b[i - 1], 0.0) + error;
     const double whole = step + std::max(-b[i], 0.0) + error;
@@ -225,7 +225,7 @@ class CrossingSearch {
     double radius = 0;
     double sum = 0;  // not a number if anything is not
     unrolled<Degree + 1>([&](auto i) {
-      // Multiplications by powers of two are exact but for underflow, which is charged below.
+      // Multiplications by powers of two are exact except for underflow, which is charged below.
       const double weight = std::get<i>(factor) * power;
       b[i] = p.c[i].middle * weight;
       const double r = p.c[i].radius * weight;
