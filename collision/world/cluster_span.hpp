@@ -214,7 +214,7 @@ class RestingContacts<Motion>::Span {
     return time;
   }
 
-  /// Velocity and half acceleration of b relative to a.
+  /// How far b moves relative to a in a time.
   Vector3d displacement(const Touch& touch, double time) const {
     return (velocities[touch.b] - velocities[touch.a]) * time + (halves[touch.b] - halves[touch.a]) * (time * time);
   }
