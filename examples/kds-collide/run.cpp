@@ -56,7 +56,7 @@ class Teller final : public kds::collision::BasicWorldListener<Motion> {
   }
   void separation(World&, const PairEvent& event) override { tell(EventKind::separation, event); }
   void overlap(World&, const PairEvent& event) override { tell(EventKind::overlap, event); }
-  void held(World& world, const PairEvent& event) override { tell_motions(world, event); }
+  void rebound_suppressed(World& world, const PairEvent& event) override { tell_motions(world, event); }
   void moved(World& world, BodyId id) override { tell_motion(world, id); }
 
   void wall(World& world, const WallEvent& event) override {
@@ -169,7 +169,7 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   result.motion_updates = counters.motion_updates;
   result.rotation_pieces = counters.rotation_pieces;
   result.orientation_resets = counters.orientation_resets;
-  result.held = counters.held;
+  result.held = counters.rebounds_suppressed;
   result.peak_memory_bytes = peak_memory();
   result.profile = world.work_profile();
   return result;
