@@ -127,10 +127,10 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   const Motion& motion(BodyId id) const { return bodies_.motion(bodies_.slot_of(id)); }
   /// The motion that the body would have without its resting contacts: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
-  /// How a body that precesses is turned at now(), and its angular momentum: its motion goes on in pieces of constant
-  /// angular velocity, which are off that by up to WorldOptions::orientation_error (world/turning/tumbling.hpp). Of
-  /// other bodies that turn freely: their motion's. Throws std::invalid_argument for a body whose turning nothing
-  /// changes.
+  /// The orientation, angular velocity and angular momentum at now() of a body that turns freely. Those of a body that
+  /// precesses are exact up to roundings, while its motion() consists of pieces with a constant angular velocity, whose
+  /// orientation differs by up to WorldOptions::orientation_error. Throws std::invalid_argument for a body whose
+  /// turning is not changed by contacts.
   FreeTurning free_turning(BodyId id) const requires(turns<Motion>);
   PlacedShape shape(BodyId id) const { return bodies_.shape(bodies_.slot_of(id)); }
   double mass(BodyId id) const { return bodies_[bodies_.slot_of(id)].mass; }
