@@ -49,18 +49,20 @@ void archive_members(Archive& archive, Tumbler<Motion>& body) {
 /// The bodies of a world that precess: how they would turn by themselves, and the pieces of constant angular velocity
 /// that stand for that.
 ///
-/// A body has an angular momentum, which only contacts and callers change, and an orientation that follows from it by
-/// Euler's equations (free_rotation.hpp). Its motion is a sequence of pieces, each of which begins and ends in that
-/// orientation, and is off by at most WorldOptions::orientation_error in between (rotation_piece.hpp). Contacts are
-/// those of the pieces. What a contact does to the body is calculated with its free rotation, so that energy and
-/// momenta are kept; and its next piece begins where it is, but leads back to the free rotation.
+/// A body has an angular momentum, which is changed by contacts and callers only, and an orientation that follows from
+/// it by Euler's equations (free_rotation.hpp): its free rotation. Its motion is a sequence of pieces. Each begins and
+/// ends with the orientation of the free rotation, and differs from it by at most WorldOptions::orientation_error in
+/// between (rotation_piece.hpp). Contact times are those of the pieces. Impulses are calculated with the free rotation,
+/// so that energy and momenta are conserved. The piece after a contact begins with the orientation that the motion has,
+/// and leads back to the free rotation.
 ///
 /// Laws:
 /// 1. The angular momentum is the same, to the bit, from one contact to the next.
-/// 2. The motion is off the free rotation by at most the option until the first contact, and by at most twice that
-///    ever: a body that contacts have not let turn back for so long is taken to be turned as it moves (counted as
-///    orientation_resets), which changes its energy by what the difference makes.
-/// 3. States and pieces are functions of what contacts and callers have done, and of nothing else.
+/// 2. The motion differs from the free rotation by at most the option until the first contact, and always by at most
+///    twice the option. If a sequence of contacts keeps a body from turning back so that it would differ by more, the
+///    free rotation is set to the orientation of the motion, which changes the energy by that difference times the
+///    torque of Euler's equations. These resets are counted (orientation_resets).
+/// 3. States and pieces depend on contacts and on calls of the user only, not on windows, broad phases or snapshots.
 ///
 /// Cost: nothing for other bodies; 2 us a piece and O(log n), beside the tests of its pairs.
 template <class Motion>
@@ -76,11 +78,11 @@ class Tumbling {
   void remove(BodySlot slot);
   bool has(BodySlot slot) const { return slot < of_.size() && of_[slot]; }
 
-  /// A motion is given to a body at t: the piece with which it begins. Its angular momentum follows from the angular
-  /// velocity; unless that is the one that the body has already, to the bit, and it does not jump: then the angular
-  /// momentum stays as it was. Precondition: the motion has started.
+  /// A body is given a motion at t; returns the first piece. The angular momentum follows from the angular velocity,
+  /// except where that is bit for bit the one that the body has already and the body does not jump: then the angular
+  /// momentum stays as it is. Precondition: the motion has started.
   Motion take_up(BodySlot slot, const Motion& given, double t);
-  /// Its centre moves otherwise from now on.
+  /// The path of its centre has changed.
   void set_path(BodySlot slot, const PathOf<Motion>& path) { of_[slot]->path = path; }
 
   /// When the next piece begins.
@@ -92,16 +94,16 @@ class Tumbling {
   /// The piece of the first body of which one begins at next_time(), by slot.
   Piece take_next();
 
-  /// Of a body that has met something at t, being turned as it moves: brings its free rotation up to that time. What
-  /// follows concerns this instant: the angular velocity, and the inverse tensor of inertia in the axes of the world.
+  /// A body with this orientation has a contact at t: advances its free rotation to t. The next three functions are
+  /// about that time: angular velocity, and inverse tensor of inertia in the axes of the world; an impulse.
   void meet(BodySlot slot, const Eigen::Quaterniond& as_it_moves, double t);
   Eigen::Vector3d angular_velocity(BodySlot slot) const;
   Eigen::Matrix3d inverse_inertia(BodySlot slot) const;
   void push(BodySlot slot, const Eigen::Vector3d& angular_impulse) { of_[slot]->state.momentum += angular_impulse; }
 
-  /// The piece that leads a body from where it is back to its free rotation.
+  /// The piece that leads from this orientation back to the free rotation.
   RotationPiece way_back(BodySlot slot, const Eigen::Quaterniond& as_it_moves, double t) const;
-  /// It takes that up, or, if it cannot turn back as fast, part of it, for half as long.
+  /// The body takes up that piece, or if it cannot turn back as fast a part of that turn, for half the time.
   void follow(BodySlot slot, const RotationPiece& piece, bool whole, double t);
 
   /// Its free rotation at t.

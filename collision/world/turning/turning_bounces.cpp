@@ -47,7 +47,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   const Vector3d& n = contact.normal;
   const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
   const double approach = -dot(n, rates.velocity(contact.point));
-  if (!(approach > 0)) {  // It is the pieces of their motions that do, and not they.
+  if (!(approach > 0)) {  // The pieces of their motions approach, their free rotations do not.
     turn_back(a, b, motion_a, motion_b, contact);
     for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
       if (tumbling_.has(slot)) set_motion(slot, motion, false);
@@ -108,7 +108,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   return false;
 }
 
-/// The motion of a body just before a contact; of one that precesses, as it turns by itself at this instant.
+/// The motion of a body just before a contact, for one that precesses with the angular velocity of its free rotation.
 template <class Motion>
 Motion BasicWorld<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
   Motion motion = bodies_.motion(slot).restarted(t);
@@ -118,9 +118,9 @@ Motion BasicWorld<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) 
   return motion;
 }
 
-/// Gives those of two bodies that precess, and move just after a contact as these motions say, the pieces that lead
-/// them back to how they are turned by themselves. That may take what parts into each other: then only as much of the
-/// way as leaves the two half the speed at which they part.
+/// Two bodies move like this just after a contact: those that precess get the pieces that lead back to their free
+/// rotations. As the additional turn may close the gap again, only such a part of it is used that the two bodies part
+/// with half of their speed at least.
 template <class Motion>
 void BasicWorld<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                                    const Contact& contact) requires(turns<Motion>) {
