@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How far a shape reaches from its centre along a unit vector.
-double reach(const PlacedShape& shape, const Vector3d& along) {
+/// How far a shape extends from its centre along a unit vector.
+double extent_along(const PlacedShape& shape, const Vector3d& along) {
   const double radius = ball_radius(shape.shape);
   if (radius > 0) return radius;
   if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
@@ -38,7 +38,7 @@ template <int Degree>
 double gap_along(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Vector3d& normal,
                  double t) {
   const Vector3d apart = b.motion.position(t) - a.motion.position(t);
-  return dot(normal, apart) - reach(a.shape, normal) - reach(b.shape, -normal);
+  return dot(normal, apart) - extent_along(a.shape, normal) - extent_along(b.shape, -normal);
 }
 
 template <int Degree>
