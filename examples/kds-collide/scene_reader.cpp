@@ -6,6 +6,7 @@
 #include "examples/kds-collide/material_reader.hpp"
 #include "examples/kds-collide/mesh_file.hpp"
 #include "examples/kds-collide/number_text.hpp"
+#include "examples/kds-collide/pivot.hpp"
 #include "examples/kds-collide/scene_world.hpp"
 
 #include <algorithm>
@@ -135,7 +136,7 @@ std::vector<MotionPiece> read_motion(const JsonNode& node, const Eigen::Quaterni
   if (pieces.empty()) node.fail("must have at least one piece");
   std::vector<MotionPiece> motion;
   for (const JsonNode& each : pieces) {
-    each.object({"start", "position", "orientation", "angular_velocity"});
+    each.object({"start", "position", "orientation", "angular_velocity", "pivot"});
     MotionPiece piece{read_path(each), orientation};
     if (!motion.empty()) {
       if (!(motion.back().start() < piece.start())) {
@@ -160,7 +161,9 @@ std::vector<MotionPiece> read_motion(const JsonNode& node, const Eigen::Quaterni
 /// Whether anything is said of how the body turns.
 bool speaks_of_turning(const JsonNode& node) {
   const std::vector<JsonNode> pieces = node["motion"].elements();
-  const auto turns = [](const JsonNode& piece) { return piece.has("angular_velocity") || piece.has("orientation"); };
+  const auto turns = [](const JsonNode& piece) {
+    return piece.has("angular_velocity") || piece.has("orientation") || piece.has("pivot");
+  };
   return node.has("inertia") || std::any_of(pieces.begin(), pieces.end(), turns);
 }
 
@@ -183,6 +186,13 @@ SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbe
   body.restitution = surface.restitution, body.friction = surface.friction;
   body.tangential_restitution = surface.tangential_restitution;
   body.motion = read_motion(node["motion"], body.orientation, scene.response);
+  if (const auto pivot = read_pivot(node["motion"])) {
+    const JsonNode at = node["motion"].elements().front()["pivot"];
+    if (scene.response == Response::elastic && !body.fixed && !body.sensor) {
+      at.fail("a body that contacts move turns about its centre of mass: make it fixed, or a sensor");
+    }
+    body.shape = about_pivot(body.shape, *pivot, at);
+  }
   return body;
 }
 
@@ -245,7 +255,9 @@ void check_turns(const std::vector<JsonNode>& nodes, const Scene& scene) {
       const std::string what = error.what();
       const std::size_t colon = what.find(": ");
       if (colon == std::string::npos) nodes[i].fail(what);
-      throw JsonError(nodes[i].path() + '.' + what.substr(0, colon), what.substr(colon + 2));
+      std::string member = what.substr(0, colon);
+      if (member == "mass_properties") member = "shape";  // which is no solid
+      throw JsonError(nodes[i].path() + '.' + member, what.substr(colon + 2));
     }
   }
 }
@@ -275,6 +287,12 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
     const auto [entry, is_new] = names.try_emplace(scene.bodies.back().name, node.path());
     if (!is_new) node["name"].fail('"' + entry->first + "\" is the name of " + entry->second + " too");
     scene.turning = scene.turning || speaks_of_turning(node);
+  }
+  for (const SceneBody& body : scene.bodies) {  // made by pivots
+    const auto mesh = mesh_of(body.shape);
+    const auto is_it = [&](const SceneMesh& known) { return known.mesh == mesh; };
+    if (!mesh || std::any_of(scene.meshes.begin(), scene.meshes.end(), is_it)) continue;
+    scene.meshes.push_back({body.name, "", mesh});
   }
   if (scene.turning) {
     check_turns(bodies, scene);
