@@ -1,7 +1,7 @@
 #include "collision/narrow_phase/rounded_polytope.hpp"
 
 #include "collision/narrow_phase/zonotope_cells.hpp"
-#include "collision/response/precise_vector.hpp"
+#include "collision/precise_vector.hpp"
 #include "collision/shapes/rotation.hpp"
 #include "collision/vectors.hpp"
 
@@ -97,8 +97,7 @@ bool may_support(const SeenEdge& edge, const Vector3d& n) {
 /// Error bounds: QuickMotion has room for axes that are off by some roundings and for the heights of points, sums of
 /// six products; see RoundedZonotope.
 template <int Degree>
-RoundedPolytope<Degree>::RoundedPolytope(const Body& a, const Body& b, double now, double horizon,
-                                         bool all_planes)
+RoundedPolytope<Degree>::RoundedPolytope(const Body& a, const Body& b, double now, double horizon, bool all_planes)
     : a_(a),
       b_(b),
       core_a_(a.shape.shape),
@@ -272,7 +271,8 @@ bool RoundedPolytope<Degree>::Piece::add_distance() {
   if (part_.dimension == 2) {
     // Most are far off, which a normal says that is known to 2^-38: QuickMotion charges 2^-46 for axes that are known
     // better.
-    const Vector3d roughly = cross(unit_direction(pair.hulls_, part_.edges[0]), unit_direction(pair.hulls_, part_.edges[1]));
+    const Vector3d roughly =
+        cross(unit_direction(pair.hulls_, part_.edges[0]), unit_direction(pair.hulls_, part_.edges[1]));
     if (norm(roughly) > 0x1p-9) {
       const Vector3d n = normalized(roughly);
       const Along along = shifted(pair.motion_.along(n), dot(n, at));
@@ -354,8 +354,8 @@ auto RoundedPolytope<Degree>::Piece::with_gap(std::size_t i, const Ask& ask) con
         a, b, pair.hulls_, plane.edges, {points(plane.farthest[0]), points(plane.farthest[1])}});
   }
   if (is_distance(i)) {
-    return ask(certificates::PartDistance<Degree>{
-        a, b, pair.hulls_, part_, {pair.core_a_.radius(), pair.core_b_.radius()}});
+    return ask(
+        certificates::PartDistance<Degree>{a, b, pair.hulls_, part_, {pair.core_a_.radius(), pair.core_b_.radius()}});
   }
   return ask(certificates::BeyondSide<Degree>{a, b, pair.hulls_, sides_[i].side});
 }

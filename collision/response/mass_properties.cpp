@@ -1,7 +1,7 @@
 #include "collision/response/mass_properties.hpp"
 
+#include "collision/precise_vector.hpp"
 #include "collision/response/inertia.hpp"
-#include "collision/response/precise_vector.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "kds/arithmetic/power_of_two.hpp"
@@ -183,7 +183,8 @@ MassProperties of_surface(const char* kind, const Mesh& mesh, double scale, doub
   }
   Matrix3d certain = result.inertia;
   certain.diagonal().array() -= least_share * result.inertia.diagonal().maxCoeff();
-  if (!detail::positive_definite(certain)) refuse(kind, "is too thin: its least moment of inertia is lost in roundings");
+  if (!detail::positive_definite(certain))
+    refuse(kind, "is too thin: its least moment of inertia is lost in roundings");
   checked_inertia(result.inertia);
   return result;
 }

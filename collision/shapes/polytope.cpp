@@ -1,6 +1,6 @@
 #include "collision/shapes/polytope.hpp"
 
-#include "collision/response/precise_vector.hpp"
+#include "collision/precise_vector.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
@@ -18,7 +18,8 @@ std::vector<Vector3d> checked(std::vector<Vector3d> points) {
     if (!points[i].allFinite()) throw InvalidHull(name + "must be finite", i);
     if (points[i].cwiseAbs().maxCoeff() > Mesh::largest_coordinate) throw InvalidHull(name + "is beyond 2^100", i);
   }
-  if (points.size() < 4) throw InvalidHull("has " + std::to_string(points.size()) + " points; a solid takes at least 4");
+  if (points.size() < 4)
+    throw InvalidHull("has " + std::to_string(points.size()) + " points; a solid takes at least 4");
   return points;
 }
 
