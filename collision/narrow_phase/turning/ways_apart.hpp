@@ -17,12 +17,13 @@ namespace kds::collision {
 /// Finds contacts of a pair that has a finite number of *ways* of being apart, each of them a conjunction of turning
 /// certificates, its conditions: the bodies do not penetrate if all the conditions of some way hold.
 ///
-/// `Pair`: `ways`, their number, a constant or a member; `all(way)`, its conditions, and `every_condition(way, conditions, test)`;
-/// `separates_nothing(way)`, whether the way does not count: all of its conditions are zero at all times, and
-/// `known_to_separate_nothing(way)`, where that is told at once; `frame(t)`, what is known in doubles; `gaps(frame,
-/// gap)`, which fills in a width for each way and returns an error, so that a way that is narrower than -error has a
-/// condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change; `unsure(frame, way,
-/// stretch)`, the conditions that have to be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`.
+/// `Pair`: `ways`, their number, a constant or a member; `all(way)`, its conditions, and `every_condition(way,
+/// conditions, test)`; `separates_nothing(way)`, whether the way does not count: all of its conditions are zero at all
+/// times, and `known_to_separate_nothing(way)`, where that is told at once; `frame(t)`, what is known in doubles;
+/// `gaps(frame, gap)`, which fills in a width for each way and returns an error, so that a way that is narrower than
+/// -error has a condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change;
+/// `unsure(frame, way, stretch)`, the conditions that have to be looked at; `apart_until(t, horizon)`, a proven time;
+/// `time_of_turning()`.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.

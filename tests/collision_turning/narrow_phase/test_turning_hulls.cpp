@@ -101,7 +101,8 @@ std::array<Solid<Degree>, 2> random_pair(Random& random, double rate) {
   Solid<Degree> b{random_other(random), motion(random_vector(random, 0.8))};
   if (random.one_in(6)) b.motion.angular_velocity = a.motion.angular_velocity;
   if (random.one_in(6)) b.motion.orientation = a.motion.orientation;
-  if (random.one_in(8)) b.motion.path.start = a.motion.path.start, b.motion.angular_velocity = a.motion.angular_velocity;
+  if (random.one_in(8))
+    b.motion.path.start = a.motion.path.start, b.motion.angular_velocity = a.motion.angular_velocity;
   return {a, b};
 }
 
