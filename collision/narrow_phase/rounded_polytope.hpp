@@ -39,7 +39,8 @@ namespace kds::collision {
 /// The shapes are those that the matrices of their rotations make of the points given, taken as exact, and so are all
 /// signs. A filter in doubles decides most, as in RoundedZonotope.
 ///
-/// Cost: a rotated box against a box as hulls 25 us for the first contact; as the product of the edges of both.
+/// Cost: about as the product of the edges of both: two hulls of 8, 20, 40 corners take 17, 66, 210 us for the first
+/// contact, and 4 to 15 us to tell until when they do not meet (hulls_apart_until()).
 template <int Degree>
 class RoundedPolytope {
  public:
