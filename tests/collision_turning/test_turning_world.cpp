@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+namespace test_turning_world {
 namespace {
 
 using namespace kds;
@@ -170,3 +171,5 @@ TEST_CASE("a mesh that turns bounces off a ball, and energy and momenta are kept
                         0.5 * 1.5 * of_rod.angular_velocity.squaredNorm();
   CHECK(std::abs(energy - 0.75) < 1e-15);
 }
+
+}  // namespace test_turning_world

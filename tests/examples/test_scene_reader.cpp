@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string>
 
+namespace test_scene_reader {
+
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 using kds_collide::tests::tetrahedron;
@@ -191,3 +193,5 @@ TEST_CASE("scene reader: the run begins with the earliest motion, and its degree
   CHECK(scene.begin_time == 1e9);
   CHECK(scene.degree() == 1);
 }
+
+}  // namespace test_scene_reader

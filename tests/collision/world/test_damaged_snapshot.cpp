@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_damaged_snapshot {
 namespace {
 
 using namespace tests;
@@ -188,4 +188,4 @@ TEST_CASE("damaged: scripts and bodies still to come", "[world][snapshot][damage
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_damaged_snapshot
