@@ -136,6 +136,16 @@ std::string spinner_shape(double radius, std::size_t kind) {
   return text;
 }
 
+/// Of this bounding radius, slender, with widths in random proportions: no two moments are equal.
+std::string slender_shape(double radius, bool rod, Random& random) {
+  const double thickness = random.uniform(0.08, 0.16);
+  const double width = rod ? random.uniform(0.08, 0.16) : random.uniform(0.6, 1);
+  const Vector3d half(thickness, width, 1);
+  std::string text = "{\"box\": {\"half_extents\": ";
+  append_vector(text, half * (radius / half.norm()));
+  return text + "}}";
+}
+
 std::string sphere_shape(double radius) {
   std::string text = "{\"sphere\": {\"radius\": ";
   append_number(text, radius);
@@ -158,7 +168,7 @@ void check(const GeneratorOptions& options) {
   const auto kinds = generator_kinds();
   if (std::find(kinds.begin(), kinds.end(), options.kind) == kinds.end()) {
     throw std::invalid_argument("--generate: there is no \"" + options.kind +
-                                "\"; use rings, models, spheres, boxes or spinners");
+                                "\"; use rings, models, spheres, boxes, spinners, spinning-rings, rods or plates");
   }
   constexpr std::size_t most_bodies = 10'000'000;  // about 3 GB of text
   if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
@@ -177,7 +187,9 @@ struct NamedMesh {
 
 }  // namespace
 
-std::vector<std::string_view> generator_kinds() { return {"rings", "models", "spheres", "boxes", "spinners"}; }
+std::vector<std::string_view> generator_kinds() {
+  return {"rings", "models", "spheres", "boxes", "spinners", "spinning-rings", "rods", "plates"};
+}
 
 GeneratedScene generate_scene(const GeneratorOptions& options) {
   check(options);
@@ -187,13 +199,14 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     meshes.push_back({name, bounding_radius(mesh)});
     scene.meshes.push_back({name + ".obj", to_obj(mesh)});
   };
-  if (options.kind == "rings") add_mesh("ring", ring_mesh());
+  if (options.kind == "rings" || options.kind == "spinning-rings") add_mesh("ring", ring_mesh());
   if (options.kind == "models") {
     add_mesh("knot", knot_mesh());
     add_mesh("bumpy-torus", bumpy_torus_mesh());
   }
 
-  const bool spins = options.kind == "spinners";
+  const bool rods = options.kind == "rods", plates = options.kind == "plates";
+  const bool spins = rods || plates || options.kind == "spinners" || options.kind == "spinning-rings";
 
   Random random(options.seed);
   std::vector<double> radii(options.bodies);
@@ -243,6 +256,8 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     if (!meshes.empty()) {
       const NamedMesh& mesh = meshes[i % meshes.size()];
       json += mesh_shape(mesh.name, radii[i] / mesh.radius);
+    } else if (rods || plates) {
+      json += slender_shape(radii[i], rods, random);
     } else if (spins) {
       json += spinner_shape(radii[i], i);
     } else {
