@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_hull_contact {
 namespace {
 
 using namespace kds;
@@ -111,8 +112,10 @@ void check_pairs(std::uint32_t seed, int pairs) {
   Random random(seed);
   int meetings = 0;
   for (int i = 0; i < pairs; ++i) {
-    const Vector3d beside = random.one_in(3) ? Vector3d(random_vector(random, 2).array().round()) : random_vector(random, 2);
-    const Solid<Degree> a{place(random_hull(random), random_orientation(random)), random_path<Degree>(random, {0, 0, 0})};
+    const Vector3d beside =
+        random.one_in(3) ? Vector3d(random_vector(random, 2).array().round()) : random_vector(random, 2);
+    const Solid<Degree> a{place(random_hull(random), random_orientation(random)),
+                          random_path<Degree>(random, {0, 0, 0})};
     const Solid<Degree> b{place(random_solid(random), random_orientation(random)), random_path<Degree>(random, beside)};
     INFO("seed " << seed << ", pair " << i << ", with a " << kind_name(b.shape.shape));
     const double horizon = 4;
@@ -202,15 +205,17 @@ TEST_CASE("hulls that touch or slide on each other do not penetrate", "[narrow-p
     const PointMotion<1> path{{from, velocity}, 0};
     return first_contact<PointMotion<1>>({a, still}, {other, path}, 0, 100, ContactMode::transparent);
   };
-  CHECK(first(a, {2, 5, 0}, {0, -1, 0}) == never);             // face along face
-  CHECK(first(a, {next_down(2.0), 5, 0}, {0, -1, 0}) == 3);    // and by a unit in the last place
-  CHECK(first(a, {2, 2, 5}, {0, 0, -1}) == never);             // edge along edge
-  CHECK(first(b, {2, 5, 0}, {0, -1, 0}) == never);             // corner along a face
+  CHECK(first(a, {2, 5, 0}, {0, -1, 0}) == never);           // face along face
+  CHECK(first(a, {next_down(2.0), 5, 0}, {0, -1, 0}) == 3);  // and by a unit in the last place
+  CHECK(first(a, {2, 2, 5}, {0, 0, -1}) == never);           // edge along edge
+  CHECK(first(b, {2, 5, 0}, {0, -1, 0}) == never);           // corner along a face
   CHECK(first(b, {2, 1.5, 5}, {0, 0, -1}) == never);
-  CHECK(first(b, {1.5, 1.5, 5}, {0, 0, -1}) == never);         // edge along edge, not parallel: 45 degrees
+  CHECK(first(b, {1.5, 1.5, 5}, {0, 0, -1}) == never);  // edge along edge, not parallel: 45 degrees
   CHECK(first(b, {1.5, next_down(1.5), 5}, {0, 0, -1}) != never);
   CHECK(first(ball, {2, 5, 0}, {0, -1, 0}) == never);
   CHECK(first(ball, {next_down(2.0), 5, 0}, {0, -1, 0}) != never);
   CHECK(first(ball, {0, 5, 0}, {0, -1, 0}) == 3);
   CHECK(first(b, {0, 5, 0}, {0, -1, 0}) == 3);
 }
+
+}  // namespace test_hull_contact

@@ -1,5 +1,5 @@
-// Convex hulls in worlds: they bounce, lie, lean on what is round, meet meshes, and are saved, the same with every broad
-// phase.
+// Convex hulls in worlds: they bounce, lie, lean on what is round, meet meshes, and are saved, the same with every
+// broad phase.
 #include "collision/shapes/convex_hull.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/world/resting_scenes.hpp"
@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_hulls {
 namespace {
 
 using namespace tests;
@@ -39,8 +39,8 @@ Vector3d place_of(const World<2>& world, BodyId id) { return world.motion(id).po
 TEST_CASE("hulls bounce: normal and features are those of what they hit", "[world][hull]") {
   const auto scene = [](World<2>& world) {
     world.add_body(floor_box());
-    world.add_body(falling(convex_hull(octahedron), {0, 0, 2.25}));                        // on its tip
-    world.add_body(falling(convex_hull(box_corners({0.5, 0.5, 1})), {9, 0, 2.25}));        // on a face
+    world.add_body(falling(convex_hull(octahedron), {0, 0, 2.25}));                                      // on its tip
+    world.add_body(falling(convex_hull(box_corners({0.5, 0.5, 1})), {9, 0, 2.25}));                      // on a face
     world.add_body(falling(convex_hull({{1, 0, 0}, {-1, 0, 0}, {0, 1, 1}, {0, -1, 1}}), {0, 9, 1.25}));  // on an edge
     world.advance_to(1);
   };
@@ -66,7 +66,8 @@ TEST_CASE("a heap of hulls goes the way of the same heap of boxes", "[world][hul
     return [shape](World<2>& world) {
       world.add_body(floor_box());
       for (int i = 0; i < 4; ++i) {
-        world.add_body(bouncy(falling(shape(Vector3d(0.5, 0.5, 0.25)), {0.25 * (i % 2), 0.125 * (i % 3), 1 + 1.5 * i}), 0.25));
+        world.add_body(
+            bouncy(falling(shape(Vector3d(0.5, 0.5, 0.25)), {0.25 * (i % 2), 0.125 * (i % 3), 1 + 1.5 * i}), 0.25));
       }
       world.add_body(bouncy(falling(Sphere{0.5}, {0.25, 0.25, 8}), 0.25));
       world.advance_to(5);
@@ -87,9 +88,8 @@ TEST_CASE("a heap of hulls goes the way of the same heap of boxes", "[world][hul
 }
 
 TEST_CASE("hulls come to lie on a mesh, and balls and capsules on hulls", "[world][hull]") {
-  const auto plate = std::make_shared<const Mesh>(
-      std::vector<Vector3d>{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}},
-      std::vector<Mesh::Triangle>{{0, 1, 2}, {0, 2, 3}});
+  const auto plate = std::make_shared<const Mesh>(std::vector<Vector3d>{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}},
+                                                  std::vector<Mesh::Triangle>{{0, 1, 2}, {0, 2, 3}});
   const auto scene = [&](World<2>& world) {
     world.add_body(fixed_body<2>(MeshShape{plate, 1}, motion<2>({0, 0, 0})));
     world.add_body(fixed_body<2>(convex_hull(box_corners({3, 3, 0.5})), motion<2>({20, 0, -0.5})));
@@ -127,7 +127,8 @@ TEST_CASE("hulls are saved and go on as they would have", "[world][hull][snapsho
   const auto fill = [](World<2>& world) {
     world.add_body(floor_box());
     world.add_body(falling(convex_hull(octahedron), {0, 0, 2}));
-    world.add_body(falling(convex_hull(octahedron), {0.125, 0, 5}, Eigen::Quaterniond(0.9, 0.1, 0.3, -0.3).normalized()));
+    world.add_body(
+        falling(convex_hull(octahedron), {0.125, 0, 5}, Eigen::Quaterniond(0.9, 0.1, 0.3, -0.3).normalized()));
   };
   EventLog<2> log, again;
   World<2> world(elastic(), &log);
@@ -147,4 +148,4 @@ TEST_CASE("hulls are saved and go on as they would have", "[world][hull][snapsho
   CHECK(std::get<ConvexHull>(other.shape(2).shape).polytope->structure().faces.size() == 8);
 }
 
-}  // namespace kds::collision
+}  // namespace kds::collision::test_hulls

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_turning_hulls {
 namespace {
 
 using namespace kds;
@@ -101,7 +102,8 @@ std::array<Solid<Degree>, 2> random_pair(Random& random, double rate) {
   Solid<Degree> b{random_other(random), motion(random_vector(random, 0.8))};
   if (random.one_in(6)) b.motion.angular_velocity = a.motion.angular_velocity;
   if (random.one_in(6)) b.motion.orientation = a.motion.orientation;
-  if (random.one_in(8)) b.motion.path.start = a.motion.path.start, b.motion.angular_velocity = a.motion.angular_velocity;
+  if (random.one_in(8))
+    b.motion.path.start = a.motion.path.start, b.motion.angular_velocity = a.motion.angular_velocity;
   return {a, b};
 }
 
@@ -217,3 +219,5 @@ TEST_CASE("turning hulls: grazing, by gaps of any size", "[narrow-phase][turning
   const Solid<1> nearer{wall, motion_of<1>({-0x1p-50, 0, 0}, {0, 0, 0}, {-2, 0, 0})};
   CHECK(first(spinning, nearer, 0, 10) == 0);
 }
+
+}  // namespace test_turning_hulls
