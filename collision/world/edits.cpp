@@ -35,7 +35,7 @@ void validate(const BasicBodyDescription<Motion>& description) {
   }
   if (!description.fixed) require_size(description.mass, "mass");
   if (!can_move_by<Motion>(description.shape)) {
-    fail(std::string("shape: a ") + kind_name(description.shape) + " cannot turn: balls, boxes and meshes can");
+    fail(std::string("shape: a ") + kind_name(description.shape) + " cannot turn: balls, boxes, hulls and meshes can");
   }
   if constexpr (turns<Motion>) {
     if (description.orientation.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
@@ -288,7 +288,7 @@ void BasicWorld<Motion>::take_out(BodySlot slot) {
   bodies_.remove(slot);
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -298,7 +298,7 @@ void Pairs<Motion>::process_boxes(Slot slot, double t) {
   test_boxes(slot);
 }
 
-#define KDS_INSTANTIATE(motion) template class Pairs<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Pairs<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -105,7 +105,7 @@ class Placement {
   std::unordered_map<std::int64_t, std::vector<Ball>> cells_;
 };
 
-void append_vector(std::string& text, const Vector3d& v) {
+void append_array(std::string& text, const Vector3d& v) {
   for (int d = 0; d < 3; ++d) {
     text += d == 0 ? '[' : ',';
     append_number(text, v[d]);
@@ -118,7 +118,7 @@ std::string box_shape(double radius, Random& random) {
   Vector3d half;
   for (int d = 0; d < 3; ++d) half[d] = random.uniform(0.5, 1);
   std::string text = "{\"box\": {\"half_extents\": ";
-  append_vector(text, half * (radius / half.norm()));
+  append_array(text, half * (radius / half.norm()));
   return text + "}}";
 }
 
@@ -128,7 +128,7 @@ std::string spinner_shape(double radius, std::size_t kind) {
   constexpr double slender = 0.125;  // width of a rod, thickness of a plate
   const Vector3d half = std::array{Vector3d(1, 1, 1), Vector3d(slender, slender, 1), Vector3d(1, 1, slender)}[kind % 3];
   std::string text = "{\"box\": {\"half_extents\": ";
-  append_vector(text, half * (radius / half.norm()));
+  append_array(text, half * (radius / half.norm()));
   text += "}}";
   if (kind % 3 == 0) return text;
   text += ", \"inertia\": ";
@@ -226,7 +226,7 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
   json = "{\n\"scene\": 1,\n\"end_time\": ";
   append_number(json, options.end_time);
   json += ",\n\"response\": \"elastic\",\n\"domain\": {\"min\": [0,0,0], \"max\": ";
-  append_vector(json, Vector3d::Constant(side));
+  append_array(json, Vector3d::Constant(side));
   json += ", \"walls\": \"reflect\"},\n\"meshes\": {";
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     json += (i == 0 ? "\"" : ", \"") + meshes[i].name + "\": {\"file\": \"" + meshes[i].name + ".obj\"}";
@@ -270,14 +270,14 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     }
     json.back() = ']';
     json += ", \"motion\": [{\"start\": 0, \"position\": [";
-    append_vector(json, at);
+    append_array(json, at);
     json += ',';
-    append_vector(json, velocity);
+    append_array(json, velocity);
     json += ']';
     if (spins) {
       json += ", \"angular_velocity\": ";
       const Vector3d axis = random.direction();
-      append_vector(json, axis * random.uniform(0, most_turning));
+      append_array(json, axis * random.uniform(0, most_turning));
     }
     json += i + 1 < options.bodies ? "}]},\n" : "}]}\n";
   }

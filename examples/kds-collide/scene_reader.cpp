@@ -1,6 +1,7 @@
 #include "examples/kds-collide/scene_reader.hpp"
 
 #include "certificates/turning/turned_orientation.hpp"
+#include "collision/shapes/convex_hull.hpp"
 #include "collision/world.hpp"
 #include "examples/kds-collide/json_node.hpp"
 #include "examples/kds-collide/material_reader.hpp"
@@ -67,6 +68,27 @@ Shape read_capsule(const JsonNode& node, const Meshes&) {
   return kds::collision::Capsule{capsule["radius"].positive(), capsule["half_length"].length()};
 }
 
+Shape read_hull(const JsonNode& node, const Meshes&) {
+  const JsonNode points = node["hull"].object({"points"})["points"];
+  const std::vector<JsonNode> places = points.elements();
+  std::vector<Eigen::Vector3d> corners;
+  for (const JsonNode& place : places) corners.push_back(place.vector());
+  try {
+    const Shape hull = kds::collision::convex_hull(std::move(corners));
+    kds::collision::place(hull, Eigen::Quaterniond::Identity());
+    return hull;
+  } catch (const kds::collision::InvalidHull& error) {
+    if (error.point()) {
+      const std::string what = error.what();  // "point 4: ..."
+      places[*error.point()].fail(what.substr(what.find(": ") + 2));
+    }
+    points.fail(error.what());
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();  // "hull: ..."
+    points.fail(what.substr(what.find(": ") + 2));
+  }
+}
+
 Shape read_mesh_shape(const JsonNode& node, const Meshes& meshes) {
   const std::string name = node["mesh"].string();
   const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const SceneMesh& m) { return m.name == name; });
@@ -87,12 +109,12 @@ struct ShapeReader {
   const char* key;
   Shape (*read)(const JsonNode& node, const Meshes& meshes);
 };
-constexpr const char* one_shape = "must have exactly one of \"sphere\", \"box\", \"mesh\" and \"capsule\"";
+constexpr const char* one_shape = "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\" and \"hull\"";
 constexpr ShapeReader shape_readers[] = {
-    {"sphere", read_sphere}, {"box", read_box}, {"mesh", read_mesh_shape}, {"capsule", read_capsule}};
+    {"sphere", read_sphere}, {"box", read_box}, {"mesh", read_mesh_shape}, {"capsule", read_capsule}, {"hull", read_hull}};
 
 Shape read_shape(const JsonNode& node, const Meshes& meshes) {
-  node.object({"sphere", "box", "mesh", "capsule", "scale"});
+  node.object({"sphere", "box", "mesh", "capsule", "hull", "scale"});
   const ShapeReader* found = nullptr;
   for (const ShapeReader& each : shape_readers) {
     if (!node.has(each.key)) continue;

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+namespace test_tumbling {
 namespace {
 
 using namespace kds;
@@ -411,3 +412,5 @@ TEST_CASE("what cannot precess is refused by name", "[turning]") {
   CHECK_THROWS_AS(Turning<1>({.orientation_error = 0.2}), std::invalid_argument);
   CHECK_THROWS_AS(Turning<1>({.orientation_error = std::nan("")}), std::invalid_argument);
 }
+
+}  // namespace test_tumbling

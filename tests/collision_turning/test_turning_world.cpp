@@ -1,6 +1,7 @@
 // Worlds of bodies that turn.
 #include "collision/world.hpp"
 
+#include "collision/shapes/convex_hull.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -11,8 +12,10 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+namespace test_turning_world {
 namespace {
 
 using namespace kds;
@@ -160,6 +163,49 @@ TEST_CASE("turning worlds with meshes find the same contacts whichever broad pha
   for (const auto& lines : logs) CHECK(lines == logs.front());
 }
 
+TEST_CASE("turning worlds with hulls find the same contacts whichever broad phase they have", "[turning][hull]") {
+  const Shape octahedron =
+      convex_hull({{0.7, 0, 0}, {-0.7, 0, 0}, {0, 0.7, 0}, {0, -0.7, 0}, {0, 0, 0.7}, {0, 0, -0.7}});
+  const Shape wedge = convex_hull({{0.6, 0, 0}, {-0.6, 0, 0}, {0, 0.6, 0.4}, {0, -0.6, 0.4}, {0, 0, -0.2}});
+  const auto ring = samples::torus(6, 4);
+  const auto fill = [&](Turning& world) {
+    tests::Random random(79);
+    for (std::size_t i = 0; i < 24; ++i) {
+      const Vector3d place(static_cast<double>(i % 3) * 2.4 - 2.4, static_cast<double>(i / 3 % 3) * 2.4 - 2.4,
+                           static_cast<double>(i / 9) * 2.4 - 2.4);
+      const auto between = [&] { return random.between(-1, 1); };
+      Turning::Description body{.shape = i % 2 == 0 ? octahedron : wedge,
+                                .motion = {motion(place, 3 * Vector3d(between(), between(), between()),
+                                                  5 * Vector3d(between(), between(), between()))}};
+      if (i % 2 != 0) body.inertia = 0.3;  // that of an octahedron is the same about all axes
+      if (i % 5 == 0) body.shape = Sphere{0.5};
+      if (i % 7 == 0) body.shape = Box{Vector3d(0.5, 0.5, 0.5)};
+      if (i % 11 == 3) body.shape = MeshShape{ring, 0.5}, body.inertia = 0.3;
+      world.add_body(body);
+    }
+  };
+  const auto logs = logs_by_broad_phase(2, fill);
+  CHECK(logs.front().size() > 15);
+  for (const auto& lines : logs) CHECK(lines == logs.front());
+}
+
+TEST_CASE("a cube that is a hull bounces as the box does", "[turning][hull]") {
+  std::vector<Vector3d> corners;
+  for (int k = 0; k < 8; ++k) corners.emplace_back(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5);
+  const auto contacts_of = [](const Shape& cube) {
+    Log log;
+    Turning world({.response = Response::elastic}, &log);
+    world.add_body({.shape = cube, .motion = {motion({0, 0, 0}, {0, 0, 0}, {1, 2, 3})}});
+    world.add_body({.shape = Sphere{0.25}, .motion = {motion({0.25, 3, 0.125}, {0, -1, 0}, {0, 0, 0})}});
+    world.advance_to(5);
+    return std::pair(log.lines.size(), world.motion(0).angular_velocity);
+  };
+  const auto of_box = contacts_of(Box{Vector3d(0.5, 0.5, 0.5)}), of_hull = contacts_of(convex_hull(corners));
+  CHECK(of_box.first == 1);
+  CHECK(of_hull.first == 1);
+  CHECK((of_box.second - of_hull.second).norm() < 1e-12);
+}
+
 TEST_CASE("a mesh that turns bounces off a ball, and energy and momenta are kept", "[turning]") {
   Log log;
   Turning world({.response = Response::elastic}, &log);
@@ -176,3 +222,5 @@ TEST_CASE("a mesh that turns bounces off a ball, and energy and momenta are kept
                         0.5 * 1.5 * of_rod.angular_velocity.squaredNorm();
   CHECK(std::abs(energy - 0.75) < 1e-15);
 }
+
+}  // namespace test_turning_world

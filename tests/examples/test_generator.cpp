@@ -11,6 +11,8 @@
 #include <numbers>
 #include <string>
 
+namespace test_generator {
+
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 
@@ -168,3 +170,5 @@ TEST_CASE("generator: options out of range are refused") {
     CHECK(error({.density = density}) == "--density: must be from 1e-12 to 0.3");
   }
 }
+
+}  // namespace test_generator

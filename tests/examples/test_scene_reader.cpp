@@ -1,6 +1,8 @@
 #include "collision/response/mass_properties.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "examples/kds-collide/scene_reader.hpp"
+
+#include "collision/shapes/polytope.hpp"
 #include "tests/examples/sample_scene.hpp"
 #include "tests/examples/temporary_folder.hpp"
 
@@ -8,6 +10,8 @@
 
 #include <cmath>
 #include <string>
+
+namespace test_scene_reader {
 
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
@@ -188,7 +192,17 @@ TEST_CASE("scene reader: what cannot turn is refused where it stands") {
   };
   CHECK_NOTHROW(read(R"({"box": {"half_extents": [1,1,1]}})"));
   CHECK_THROWS_WITH(read(R"({"capsule": {"radius": 1, "half_length": 1}})"),
-                    "scene.json: bodies[0].shape: a capsule cannot turn: balls, boxes and meshes can");
+                    "scene.json: bodies[0].shape: a capsule cannot turn: balls, boxes, hulls and meshes can");
+}
+
+TEST_CASE("scene reader: a hull of points, some of which are inside") {
+  const Scene scene = parse_scene(
+      R"({"scene": 1, "end_time": 2, "bodies": [{"name": "a", "shape": {"hull": {"points":
+          [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[0.25,0.25,0.25],[0.5,0,0]]}}, "motion": [{"start": 0, "position": [[0,0,0]]}]}]})",
+      "scene.json");
+  const auto& polytope = *std::get<kds::collision::ConvexHull>(scene.bodies[0].shape).polytope;
+  CHECK(polytope.points().size() == 6);
+  CHECK(polytope.structure().corners == std::vector<std::uint32_t>{0, 1, 2, 3});
 }
 
 TEST_CASE("scene reader: a capsule, and one of no length") {
@@ -238,3 +252,5 @@ TEST_CASE("scene reader: the run begins with the earliest motion, and its degree
   CHECK(scene.begin_time == 1e9);
   CHECK(scene.degree() == 1);
 }
+
+}  // namespace test_scene_reader
