@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/turning/shared_failures.hpp"
 #include "collision/narrow_phase/turning/turning_touch.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 
@@ -98,6 +99,7 @@ class TurningMeshSearch {
     double horizon_;  ///< in mode `transparent` no later than a contact that is known
     ContactMode mode_;
     View view_;  ///< at the time that is looked at, or not long before
+    SharedFailures failures_;
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
   };
 
@@ -219,7 +221,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tri
   const double others = queue_.empty() ? never : queue_.top().time;
   const double step = std::max(next_up(t), t + std::ldexp(part_of_turn, 2 * tries) * pair.time_of_turning());
   const double until = std::min(horizon_, std::max(others, step));
-  const double contact = WaysApart<Pair>(pair).first_penetration(t, until);
+  const double contact = WaysApart<Pair, SharedFailures&>(pair, failures_).first_penetration(t, until);
   if (contact != never) {
     push(contact, nodes, Known::contact);
     if (mode_ == ContactMode::transparent) horizon_ = contact;
