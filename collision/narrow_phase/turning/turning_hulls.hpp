@@ -165,6 +165,7 @@ class TurningHulls {
   }
 
  protected:
+  double slack() const { return slack_; }
   void set_slack(double slack) { slack_ = slack; }
 
   const RigidMotion& a_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/turning/jets.hpp"
+#include "collision/narrow_phase/turning/three_vectors.hpp"
 #include "collision/narrow_phase/turning/turning_view.hpp"
 #include "collision/shapes/obb_tree.hpp"
 #include "kds/simd/four_doubles.hpp"
@@ -19,7 +20,7 @@ namespace kds::collision {
 /// A box, or a ball, about a place in a body.
 struct BodyNode {
   Eigen::Vector3d centre;
-  std::array<FourDoubles, 3> axes;  ///< row d: coordinate d of the directions of the three edges; off 1 by 2^-22 at most
+  ThreeVectors axes;  ///< the directions of the three edges; their lengths are off 1 by 2^-22 at most
   FourDoubles half;                 ///< along the axes; the fourth lane is 0, here and there
   double round;                     ///< by which the box is grown on all sides
   double radius;                    ///< of the ball about the centre around it all
@@ -112,22 +113,6 @@ bool nodes_apart_by(double margin, const NodesView<Degree>& view, const BodyNode
 // ---------------------------------------------------------------------------------------------------------------------
 
 namespace detail {
-
-/// Three vectors side by side: row d holds their coordinates d.
-using ThreeVectors = std::array<FourDoubles, 3>;
-
-inline ThreeVectors turned(const Eigen::Matrix3d& m, const ThreeVectors& v) {
-  ThreeVectors result;
-  for (std::size_t d = 0; d < 3; ++d) {
-    const auto i = static_cast<Eigen::Index>(d);
-    result[d] = FourDoubles(m(i, 0)) * v[0] + FourDoubles(m(i, 1)) * v[1] + FourDoubles(m(i, 2)) * v[2];
-  }
-  return result;
-}
-inline FourDoubles dots(const Eigen::Vector3d& x, const ThreeVectors& v) {
-  return FourDoubles(x[0]) * v[0] + FourDoubles(x[1]) * v[1] + FourDoubles(x[2]) * v[2];
-}
-inline Eigen::Vector3d vector(const ThreeVectors& v, std::size_t i) { return {v[0][i], v[1][i], v[2][i]}; }
 
 /// The gap of two nodes along a direction, as it goes on.
 template <int Degree>

@@ -4,6 +4,7 @@
 #include "certificates/turning/edge_edge_separation.hpp"
 #include "certificates/turning/normal_along_edge.hpp"
 #include "certificates/turning/vertex_face_separation.hpp"
+#include "collision/narrow_phase/turning/triangle_gap.hpp"
 #include "collision/narrow_phase/turning/turning_hulls.hpp"
 #include "kds/turning/turning_failure_time.hpp"
 
@@ -61,6 +62,18 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     return (!(which & 1) || test(EdgeEdgeSeparation<Degree>{this->a_, this->b_, forward ? u_back : u, v})) &&
            (!(which & 2) || test(NormalAlongEdge<Degree>{this->a_, this->b_, p, forward ? v : v_back})) &&
            (!(which & 4) || test(NormalAlongEdge<Degree>{this->b_, this->a_, q, forward ? u : u_back}));
+  }
+
+  /// A time from t on until which they are apart; t where doubles do not tell, or where it would be hardly later.
+  double apart_until(double t, double horizon) const { return apart_until(this->frame(t), horizon); }
+  double apart_until(const TurningView<Degree>& view, double horizon) const {
+    if (this->slack() > 0) return Base::apart_until(view, horizon);
+    const TriangleGap<Degree> gap(view, this->hull_a_, this->hull_b_);
+    if (!(gap.width() > this->error(view))) return view.time;
+    const double stretch =
+        view.stretch(this->hull_a_.radius + this->hull_b_.radius, (horizon - view.time) * (1 + 0x1p-40));
+    const double wait = gap.open_for(stretch);
+    return wait > horizon - view.time ? never : after_wait(view.time, wait, stretch);
   }
 
   /// The conditions of a way that do not hold for certain, and are positive, for so long from now on.
