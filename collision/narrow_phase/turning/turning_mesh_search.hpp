@@ -164,7 +164,7 @@ double TurningMeshSearch<Degree, Side>::first_contact(double t0, double horizon,
 /// was good for.
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::Front::next() {
-  constexpr double part = 0.125;
+  constexpr double part = 0.25;
   while (!queue_.empty()) {
     const Item item = queue_.top();
     queue_.pop();

@@ -125,7 +125,7 @@ class NodeGap {
   }
 
   NodeWait wait() {
-    constexpr double worth = 0.25;  // of their sizes
+    constexpr double worth = 0x1p-4;  // of their sizes
     const double balls = distance_ - (a_.radius + b_.radius) - view_.rounding;
     const Eigen::Vector3d by_a = cross(view_.spin_a, in_a_), by_b = cross(view_.spin_b, in_b_);
     rate_ = view_.way.rate + by_b - by_a;
