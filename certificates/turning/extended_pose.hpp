@@ -48,8 +48,8 @@ class ExtendedPose {
   ExtendedPose(const RigidMotion<Degree>& motion, double t)
       : q_(motion.orientation.vec()), w_(motion.orientation.w()), spin_(motion.angular_velocity) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const DoubleDouble square = (two_product(w_, w_) + two_product(q_[0], q_[0])) +
-                                (two_product(q_[1], q_[1]) + two_product(q_[2], q_[2]));
+    const DoubleDouble square =
+        (two_product(w_, w_) + two_product(q_[0], q_[0])) + (two_product(q_[1], q_[1]) + two_product(q_[2], q_[2]));
     upright_ = q_[0] == 0 && q_[1] == 0 && q_[2] == 0;
     factor_ = DoubleDouble(2.0) / square;
     scale_ = square;

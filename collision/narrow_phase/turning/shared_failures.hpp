@@ -17,8 +17,8 @@ namespace kds::collision {
 /// Remembers failure times. Where two edges of meshes meet the two triangles on either side of each do, too, and with a
 /// vertex all that are around it: of all these pairs one certificate says when.
 ///
-/// Law: answers are those of kds::failure_time and kds::sign_after. A certificate that first fails at T, seen from t, is
-/// positive just after each double from t on, and negative just after T.
+/// Law: answers are those of kds::failure_time and kds::sign_after. A certificate that first fails at T, seen from t,
+/// is positive just after each double from t on, and negative just after T.
 class SharedFailures {
  public:
   template <class C>

@@ -99,7 +99,8 @@ class TriangleGap {
       const FourDoubles back = lesser(on_a, other_a) - greater(on_b, over_b) - between;
       for (std::size_t j = 0; j < 3; ++j) {
         const double gap = std::max(forward[j], back[j]);
-        if (!(square[j] > least_square) || (width_ > 0 && !(gap > 0 && gap * gap > width_ * width_ * square[j]))) continue;
+        if (!(square[j] > least_square) || (width_ > 0 && !(gap > 0 && gap * gap > width_ * width_ * square[j])))
+          continue;
         note(gap / std::sqrt(square[j]), static_cast<int>(2 + 3 * i + j), forward[j] >= back[j] ? 1 : -1);
       }
     }

@@ -21,9 +21,9 @@ namespace kds::collision {
 struct BodyNode {
   Eigen::Vector3d centre;
   ThreeVectors axes;  ///< the directions of the three edges; their lengths are off 1 by 2^-22 at most
-  FourDoubles half;                 ///< along the axes; the fourth lane is 0, here and there
-  double round;                     ///< by which the box is grown on all sides
-  double radius;                    ///< of the ball about the centre around it all
+  FourDoubles half;   ///< along the axes; the fourth lane is 0, here and there
+  double round;       ///< by which the box is grown on all sides
+  double radius;      ///< of the ball about the centre around it all
 };
 
 /// A node of the tree of a mesh, in units of length. It holds the triangles below it, with their corners scaled and
@@ -206,7 +206,8 @@ class NodeGap {
     }
     const double stretch = view_.longest_turning;
     Jet f{dot(n, p_) - view_.rounding - a_.round - b_.round, dot(n, rate), dot(n, bend)};
-    const auto take = [&](const FourDoubles& half, const ThreeVectors& axes, const Eigen::Vector3d& spin, double rates) {
+    const auto take = [&](const FourDoubles& half, const ThreeVectors& axes, const Eigen::Vector3d& spin,
+                          double rates) {
       const FourDoubles x = dots(n, axes);
       const FourDoubles end = x + FourDoubles(stretch) * dots(cross(n, spin), axes);
       const double now = sum_of(half * magnitude(x));

@@ -150,7 +150,8 @@ auto TurningTriangles<Degree>::unsure(const TurningView<Degree>& view, int way, 
     const Jet face = of_a ? dot(n, view.way) - dot(n, turning(seen.a[0], view.spin_a))
                           : dot(n, view.way) + dot(n, turning(seen.b[0], view.spin_b));
     for (std::size_t i = 0; i < 3; ++i) {
-      const Jet f = of_a ? face + dot(n, turning(seen.b[i], view.spin_b)) : face - dot(n, turning(seen.a[i], view.spin_a));
+      const Jet f =
+          of_a ? face + dot(n, turning(seen.b[i], view.spin_b)) : face - dot(n, turning(seen.a[i], view.spin_a));
       note(static_cast<int>(i), f, less, bounds.third);
     }
     return unsure;

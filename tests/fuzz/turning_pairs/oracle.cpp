@@ -184,7 +184,7 @@ class Pair {
 
   void consider(const Vector& direction) {
     const Number size = length(direction);
-    if (!(size > 1e-9L)) return;
+    if (!(size > 0)) return;  // of edges that are nearly parallel it is off by more, and as good a proof
     Vector n = sum({0, 0, 0}, direction, 1 / size);
     Number low_a = infinity, high_a = -infinity, low_b = infinity, high_b = -infinity;
     for (const Vector& x : seen_a_.points) low_a = std::min(low_a, dot(n, x)), high_a = std::max(high_a, dot(n, x));
