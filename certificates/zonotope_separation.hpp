@@ -14,23 +14,23 @@
 
 namespace kds::certificates {
 
-/// The segment from -length * direction to length * direction: the product as it is, without a rounding. Of a length >
-/// 0 and a direction that is not zero.
+/// The segment from -length * direction to length * direction: the exact product, without a rounding. Preconditions:
+/// length > 0, and the direction is not zero.
 struct Generator {
   Eigen::Vector3d direction;
   double length;
 };
 
-/// A zonotope is the sum of so many segments at most: of a box and a segment.
+/// The greatest number of segments: the sum of a box and a segment has four.
 inline constexpr std::size_t most_generators = 4;
 using Generators = std::span<const Generator>;
 
-/// A cell of a zonotope: a vertex, a segment or a parallelogram, in which each generator is at one of its ends, but up
-/// to two, which sweep it.
+/// A cell of a zonotope: a vertex, a segment or a parallelogram, in which each generator is at one of its ends, except
+/// up to two that sweep it.
 struct ZonotopeCell {
-  std::array<std::int8_t, most_generators> end{};  ///< -1 or 1; 0 of those that sweep
-  std::array<std::uint8_t, 2> swept{};             ///< which these are
-  std::uint8_t dimension = 0;                      ///< how many
+  std::array<std::int8_t, most_generators> end{};  ///< -1 or 1; 0 for those that sweep the cell
+  std::array<std::uint8_t, 2> swept{};             ///< the generators that sweep it
+  std::uint8_t dimension = 0;                      ///< how many sweep it
 };
 
 namespace detail {
@@ -76,13 +76,37 @@ Triple<Polynomial<Degree, Number>> from_cell(const PointMotion<Degree>& a, const
   return x;
 }
 
+/// How far x is from the origin, the line through it along one direction or the plane of two, by the dimension: the
+/// square of that, less that of a radius, times the square of the direction or of the product of the two.
+///
+/// With r the radius, u and v the directions: x^2 - r^2; (u x x)^2 - r^2 u^2; or, with n = u x v, (n . x)^2 - r^2 n^2.
+template <int Degree, class Number, class Direction>
+Polynomial<2 * Degree, Number> distance_beyond(const Triple<Polynomial<Degree, Number>>& x, int dimension,
+                                               const Direction& direction, const Number& radius) {
+  const Number radius_square = radius * radius;
+  Polynomial<2 * Degree, Number> f;
+  if (dimension == 0) {
+    f = square(x[0]) + square(x[1]) + square(x[2]);
+    f.c[0] = f.c[0] - radius_square;
+    return f;
+  }
+  const Triple<Number> u = direction(0);
+  if (dimension == 1) {
+    const auto w = cross_product(constants(u), x);
+    f = square(w[0]) + square(w[1]) + square(w[2]);
+    f.c[0] = f.c[0] - radius_square * inner_product(u, u);
+  } else {
+    const auto n = cross_product(u, direction(1));
+    f = square(inner_product(constants(n), x));
+    f.c[0] = f.c[0] - radius_square * inner_product(n, n);
+  }
+  return f;
+}
+
 }  // namespace detail
 
 /// The point b - a is not nearer than the sum of two radii to the point, line or plane that a cell spans. Degree 2 for
 /// linear, 4 for quadratic paths.
-///
-/// With r the sum, x from the cell's centre, u and v the directions that sweep it: x^2 >= r^2; (u x x)^2 >= r^2 u^2;
-/// or, with n = u x v, (n . x)^2 >= r^2 n^2.
 template <int PathDegree>
 struct CellDistance {
   static constexpr int degree = 2 * PathDegree;
@@ -95,30 +119,13 @@ struct CellDistance {
   template <class Number>
   Polynomial<degree, Number> polynomial(double epoch) const {
     const auto x = detail::from_cell<Number>(a, b, generators, cell, epoch);
-    const Number radius = Number(radii[0]) + radii[1];
-    const Number radius_square = radius * radius;
-    Polynomial<degree, Number> f;
-    if (cell.dimension == 0) {
-      f = square(x[0]) + square(x[1]) + square(x[2]);
-      f.c[0] = f.c[0] - radius_square;
-      return f;
-    }
-    const auto u = detail::numbers<Number>(generators[cell.swept[0]].direction);
-    if (cell.dimension == 1) {
-      const auto w = detail::cross_product(detail::constants(u), x);
-      f = square(w[0]) + square(w[1]) + square(w[2]);
-      f.c[0] = f.c[0] - radius_square * detail::inner_product(u, u);
-    } else {
-      const auto n = detail::cross_product(u, detail::numbers<Number>(generators[cell.swept[1]].direction));
-      f = square(detail::inner_product(detail::constants(n), x));
-      f.c[0] = f.c[0] - radius_square * detail::inner_product(n, n);
-    }
-    return f;
+    const auto direction = [&](std::size_t k) { return detail::numbers<Number>(generators[cell.swept[k]].direction); };
+    return detail::distance_beyond(x, cell.dimension, direction, Number(radii[0]) + radii[1]);
   }
 };
 
-/// The point b - a is beyond one end of the segment that a cell is, or of one of the two that sweep it, as seen along
-/// that end: across the other one and in the plane of both.
+/// The point b - a is beyond one end of the segment that a cell is, or of one of the two that sweep it, measured along
+/// the direction that is perpendicular to the other one in the plane of both.
 ///
 /// With x from the cell's centre and l the length of the generator u: side u . x >= l u^2; or with m = (u x v) x v,
 /// whose product with u is -(u x v)^2, side m . x >= l (u x v)^2.
@@ -129,7 +136,7 @@ struct CellSide {
   const PointMotion<PathDegree>& b;
   Generators generators;
   ZonotopeCell cell;
-  std::size_t along;  ///< which of those that sweep the cell
+  std::size_t along;  ///< index in `swept`
   double side;        ///< +1 or -1
 
   template <class Number>

@@ -1,4 +1,4 @@
-// What a query about a mesh works on: the mesh, the other shape of each kind, and the features by which they touch.
+// The data of a query about a mesh: the mesh, the other shape of each kind, and the features by which they touch.
 #pragma once
 
 #include "collision/narrow_phase/ball_touch.hpp"
@@ -9,6 +9,7 @@
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/shapes/feature.hpp"
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "collision/shapes/shape.hpp"
 
 #include <Eigen/Core>
@@ -23,10 +24,11 @@ namespace kds::collision::detail {
 
 // ---- The kinds of b ------------------------------------------------------------------------------------------------
 
-/// A mesh in the orientation and scale of its body.
+/// A mesh, or the surface of a hull, in the orientation and scale of its body.
 struct PlacedMesh {
-  explicit PlacedMesh(const PlacedShape& shape)
-      : PlacedMesh(*std::get<MeshShape>(shape.shape).mesh, shape.rotation, std::get<MeshShape>(shape.shape).scale) {}
+  explicit PlacedMesh(const PlacedShape& shape) : PlacedMesh(surface_of(shape.shape), shape.rotation) {}
+  PlacedMesh(const MeshShape& shape, const Eigen::Matrix3d& rotation)
+      : PlacedMesh(*shape.mesh, rotation, shape.scale) {}
   PlacedMesh(const Mesh& m, const Eigen::Matrix3d& rotation, double s)
       : mesh(m), scale(s), pose{m.tree().nodes(), s * m.tree().unit(), rotation} {}
 
@@ -84,7 +86,7 @@ struct BoxPartner {
   TreePose pose;
 };
 
-/// A capsule: for the tree it is the box around it.
+/// A capsule: the tree uses the box around it.
 struct CapsulePartner {
   explicit CapsulePartner(const PlacedShape& shape) : CapsulePartner(shape, std::get<Capsule>(shape.shape)) {}
   CapsulePartner(const CapsulePartner&) = delete;  // pose refers to node
@@ -122,7 +124,7 @@ struct BallPartner {
   PlacedBall part;
 };
 
-/// What stands for each kind of shape.
+/// The partner type of each kind of shape.
 template <class Alternative>
 struct PartnerOfKind;
 template <>
@@ -133,6 +135,8 @@ template <>
 struct PartnerOfKind<Capsule> : std::type_identity<CapsulePartner> {};
 template <>
 struct PartnerOfKind<MeshShape> : std::type_identity<PlacedMesh> {};
+template <>
+struct PartnerOfKind<ConvexHull> : std::type_identity<PlacedMesh> {};
 template <class Alternative>
 using PartnerOf = typename PartnerOfKind<Alternative>::type;
 

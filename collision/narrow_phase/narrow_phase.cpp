@@ -4,6 +4,8 @@
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/capsule_contact.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
+#include "collision/narrow_phase/hull_contact.hpp"
+#include "collision/narrow_phase/mesh_and_hull.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
 #include "collision/narrow_phase/pair_tests.hpp"
 #include "collision/narrow_phase/turning/turning_contact.hpp"
@@ -22,7 +24,9 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   table.template add<Box, Sphere>(BoxBallContact<Degree>{});
   table.template add<Box, Box>(BoxesContact<Degree>{});
   table.template add<Capsule, Sphere, Box, Capsule>(CapsuleContact<Degree>{});
+  table.template add<ConvexHull, Sphere, Box, Capsule, ConvexHull>(HullContact<Degree>{});
   table.template add<MeshShape, Sphere, Box, Capsule, MeshShape>(MeshContact<Degree>{});
+  table.template add<MeshShape, ConvexHull>(MeshHullContact<Degree>{});
   return table;
 }
 
@@ -32,7 +36,8 @@ constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   PairTable<certificates::RigidMotion<Degree>> table;
   table.template add<Sphere, Sphere>(TurningContact<Degree>{});
   table.template add<Box, Sphere, Box>(TurningContact<Degree>{});
-  table.template add<MeshShape, Sphere, Box, MeshShape>(TurningMeshContact<Degree>{});
+  table.template add<ConvexHull, Sphere, Box, ConvexHull>(TurningContact<Degree>{});
+  table.template add<MeshShape, Sphere, Box, ConvexHull, MeshShape>(TurningMeshContact<Degree>{});
   return table;
 }
 

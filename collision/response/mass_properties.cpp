@@ -1,8 +1,9 @@
 #include "collision/response/mass_properties.hpp"
 
+#include "collision/precise_vector.hpp"
 #include "collision/response/inertia.hpp"
-#include "collision/response/precise_vector.hpp"
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "kds/arithmetic/power_of_two.hpp"
 
 #include <algorithm>
@@ -22,9 +23,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-[[noreturn]] void refuse_mesh(const std::string& what) {
-  throw std::invalid_argument("mass_properties: the mesh " + what);
+[[noreturn]] void refuse(const char* kind, const std::string& what) {
+  throw std::invalid_argument(std::string("mass_properties: the ") + kind + ' ' + what);
 }
+[[noreturn]] void refuse_mesh(const std::string& what) { refuse("mesh", what); }
 
 /// For each vertex the first one at its place.
 std::vector<std::uint32_t> first_at_place(std::span<const Vector3d> vertices) {
@@ -65,8 +67,8 @@ struct Side {
               " both run along " + edge + " that way");
 }
 
-/// Each edge is run along as often in one direction as in the other. Then the solid does not depend on the point from
-/// which it is made of tetrahedra.
+/// Checks that triangles run along each edge as often in one direction as in the other. Then the integrals do not
+/// depend on the common corner of the tetrahedra.
 void require_closed(const Mesh& mesh) {
   const std::vector<std::uint32_t> first = first_at_place(mesh.vertices());
   std::vector<Side> sides;
@@ -91,15 +93,15 @@ void require_closed(const Mesh& mesh) {
   }
 }
 
-/// Of the solid, with lengths in `unit`, a power of two, counted from `origin`: 6 times the volume, 24 times the
-/// integral of x, 120 times that of x x^T. In this unit no coordinate is beyond 1.
+/// Integrals over the solid, with lengths in `unit`, a power of two, counted from `origin`: 6 times the volume, 24
+/// times the integral of x, 120 times that of x x^T. In this unit no coordinate is beyond 1.
 struct Integrals {
   Vector3d origin;
   double unit = 1;
   DoubleDouble volume{};
   PreciseVector first{};
   PreciseVector squares{}, products{};  // of x x, y y, z z; of y z, z x, x y
-  double magnitude = 0;                 // sum of what the volumes of the tetrahedra can be at most
+  double magnitude = 0;                 // sum of bounds on the magnitudes of the tetrahedra's volumes
 
   /// 6 times the volume, off the exact one by at most this. A determinant is 6 products of 3 exact differences, each
   /// sum and product rounded by 2^-102 of itself; so are the n sums. The other integrals, with their factors of 6 / 24
@@ -109,7 +111,7 @@ struct Integrals {
 
 Integrals integrate(const Mesh& mesh) {
   Integrals sum;
-  // A corner of a triangle: with those around it the triangle makes no tetrahedra.
+  // A corner of a triangle: the triangles around it make tetrahedra without volume, which are left out.
   sum.origin = mesh.vertices()[mesh.triangles()[0][0]];
   double largest = 0;
   for (const Mesh::Triangle& triangle : mesh.triangles()) {
@@ -155,23 +157,22 @@ constexpr double largest_error = 0x1p-56;
 /// s^2.
 constexpr double least_share = 0x1p-44;
 
-MassProperties of_mesh(const MeshShape& shape, double mass) {
-  const Mesh& mesh = *shape.mesh;
-  require_closed(mesh);
+/// Of a closed surface: `kind`, in messages.
+MassProperties of_surface(const char* kind, const Mesh& mesh, double scale, double mass) {
   const Integrals sum = integrate(mesh);
   const double least = sum.error(mesh.triangles().size()) / largest_error;
-  if (sum.volume.high < -least) refuse_mesh("is inside out: its triangles turn clockwise seen from outside");
-  if (!(sum.volume.high > least)) refuse_mesh("has no volume beyond rounding");
+  if (sum.volume.high < -least) refuse(kind, "is inside out: its triangles turn clockwise seen from outside");
+  if (!(sum.volume.high > least)) refuse(kind, "has no volume beyond rounding");
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   PreciseVector centre, mean_square;
   for (std::size_t d = 0; d < 3; ++d) {
     centre[d] = sum.first[d] / (sum.volume * 4.0);
-    const DoubleDouble place = (centre[d] * sum.unit + sum.origin[static_cast<Eigen::Index>(d)]) * shape.scale;
+    const DoubleDouble place = (centre[d] * sum.unit + sum.origin[static_cast<Eigen::Index>(d)]) * scale;
     result.centre[static_cast<Eigen::Index>(d)] = place.high;
   }
   const DoubleDouble twenty = sum.volume * 20.0;
   for (std::size_t d = 0; d < 3; ++d) mean_square[d] = sum.squares[d] / twenty - centre[d] * centre[d];
-  const double length = shape.scale * sum.unit;
+  const double length = scale * sum.unit;
   const double whole = mass * length * length;
   for (std::size_t d = 0; d < 3; ++d) {
     const std::size_t e = (d + 1) % 3, f = (d + 2) % 3;
@@ -182,7 +183,8 @@ MassProperties of_mesh(const MeshShape& shape, double mass) {
   }
   Matrix3d certain = result.inertia;
   certain.diagonal().array() -= least_share * result.inertia.diagonal().maxCoeff();
-  if (!detail::positive_definite(certain)) refuse_mesh("is too thin: its least moment of inertia is lost in roundings");
+  if (!detail::positive_definite(certain))
+    refuse(kind, "is too thin: its least moment of inertia is lost in roundings");
   checked_inertia(result.inertia);
   return result;
 }
@@ -212,7 +214,14 @@ MassProperties of(const Capsule& capsule, double mass) {
   return solid(mass, Vector3d(across, across, along));
 }
 
-MassProperties of(const MeshShape& shape, double mass) { return of_mesh(shape, mass); }
+MassProperties of(const MeshShape& shape, double mass) {
+  require_closed(*shape.mesh);
+  return of_surface("mesh", *shape.mesh, shape.scale, mass);
+}
+
+MassProperties of(const ConvexHull& hull, double mass) {
+  return of_surface("hull", *hull.polytope->surface(), 1, mass);
+}
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include "collision/world/contact_gaps.hpp"
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/cluster_rules.hpp"
 #include "kds/arithmetic/lattice.hpp"
@@ -18,14 +19,14 @@ bool is_round(const PlacedShape& shape) {
   return std::holds_alternative<Sphere>(shape.shape) || std::holds_alternative<Capsule>(shape.shape);
 }
 
-/// b, moved.
+/// b, displaced.
 template <int Degree>
 certificates::PointMotion<Degree> moved(certificates::PointMotion<Degree> motion, const Vector3d& by) {
   motion.coefficients[0] += by;
   return motion;
 }
 
-/// As a part of their size, how much nearer a mesh is moved to find what is nearest.
+/// By how much a mesh is moved nearer to find the nearest places, as a part of their size.
 constexpr double nearest_part = 0x1p-26;
 
 }  // namespace
@@ -59,6 +60,10 @@ bool ContactGaps<Motion>::turns(const Contact& contact) const {
   if (!a_round && !b_round) return false;
   const PlacedShape& other = a_round ? b : a;
   if (collision::has_mesh(other.shape)) return true;
+  if (std::holds_alternative<ConvexHull>(other.shape)) {
+    const Vector3d towards = a_round ? Vector3d(-contact.normal) : contact.normal;
+    return supporting_feature(other, towards).feature.kind != Feature::Kind::face;
+  }
   return std::none_of(other.half_axes.begin(), other.half_axes.end(), [&](const Vector3d& axis) {
     return std::abs(dot(contact.normal, axis)) >= norm(axis) * (1 - 0x1p-40);
   });
@@ -136,7 +141,7 @@ bool ContactGaps<Motion>::renew(Contact& contact) const {
   const bool round = is_round(a.shape) || is_round(b.shape);
   const bool mesh = has_mesh(contact);
   if (round && !mesh) return true;
-  // Faces may have slid off each other. What is nearest is found first, then what is near.
+  // Faces may have slid off each other. First the nearest places are found, then those that are near.
   for (const double part : {nearest_part, cluster::room_of_many}) {
     const Vector3d nearer = -(contact.gap + part * size(contact)) * contact.normal;
     const auto motion = moved(b.motion, nearer);

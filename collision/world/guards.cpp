@@ -1,4 +1,4 @@
-// What may be asked of a world at which moment, and what is left of it when something throws.
+// Which functions of a world may be called when, and its state after an exception.
 #include "collision/motions.hpp"
 #include "collision/world.hpp"
 
@@ -8,7 +8,7 @@
 
 namespace kds::collision {
 
-/// Keeps the first reason: what is thrown later follows from it.
+/// Keeps the first reason: later exceptions follow from it.
 template <class Motion>
 void BasicWorld<Motion>::note_failure() {
   if (!failure_) failure_ = std::current_exception();
@@ -29,7 +29,7 @@ void BasicWorld<Motion>::refuse(const char* function) const {
   throw std::logic_error(called + "the world can no longer be used, since a change was interrupted half-way: " + why);
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

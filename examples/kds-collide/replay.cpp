@@ -1,6 +1,7 @@
 #include "examples/kds-collide/replay.hpp"
 
 #include "certificates/turning/turned_orientation.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "examples/kds-collide/number_text.hpp"
 
 #include <nlohmann/json.hpp>
@@ -8,8 +9,10 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace kds_collide {
@@ -126,9 +129,15 @@ std::vector<MotionPiece> drawn(const std::vector<MotionPiece>& pieces, double si
   return result;
 }
 
+/// The triangles of a shape that has some: a mesh, or the surface of a hull.
+std::shared_ptr<const kds::collision::Mesh> triangles_of(const kds::collision::Shape& shape) {
+  const auto* const hull = std::get_if<kds::collision::ConvexHull>(&shape);
+  return hull ? hull->polytope->surface() : mesh_of(shape);
+}
+
 void append_shape(std::string& text, const kds::collision::Shape& shape,
                   const std::map<const kds::collision::Mesh*, std::size_t>& mesh_numbers) {
-  if (const auto mesh = mesh_of(shape)) {
+  if (const auto mesh = triangles_of(shape)) {
     append_number(text, mesh_numbers.at(mesh.get()));
   } else {
     text += '"';
@@ -190,10 +199,14 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
   }
   text += ",\n\"meshes\":[";
   std::map<const kds::collision::Mesh*, std::size_t> mesh_numbers;
-  for (const SceneMesh& mesh : scene_.meshes) {
-    if (!mesh_numbers.empty()) text += ",\n";
-    mesh_numbers.try_emplace(mesh.mesh.get(), mesh_numbers.size());
-    append_mesh(text, *mesh.mesh);
+  const auto add_mesh = [&](const kds::collision::Mesh& mesh) {
+    if (!mesh_numbers.try_emplace(&mesh, mesh_numbers.size()).second) return;
+    if (mesh_numbers.size() > 1) text += ",\n";
+    append_mesh(text, mesh);
+  };
+  for (const SceneMesh& mesh : scene_.meshes) add_mesh(*mesh.mesh);
+  for (const SceneBody& body : scene_.bodies) {
+    if (const auto mesh = triangles_of(body.shape)) add_mesh(*mesh);
   }
   text += "],\n\"bodies\":[\n";
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {

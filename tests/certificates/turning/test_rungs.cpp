@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdint>
 
+namespace test_rungs {
 namespace {
 
 using namespace kds;
@@ -114,3 +115,5 @@ TEST_CASE("each rung holds the truth", "[turning]") {
   CHECK(near.extended.share > 0.0001);
   CHECK(any.extended.radius < 0x1p-60);
 }
+
+}  // namespace test_rungs

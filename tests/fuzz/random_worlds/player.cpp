@@ -1,5 +1,6 @@
 #include "tests/fuzz/random_worlds/player.hpp"
 
+#include "collision/shapes/convex_hull.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/fuzz/random_worlds/meshes.hpp"
 
@@ -74,7 +75,7 @@ void Player<Degree>::note_state() {
     if (there.size() > most_compared) continue;
     for (std::size_t j = i + 1; j < there.size(); ++j) {
       const BodyId b = there[j];
-      const char* const how = world_->touching(a, b) ? " touch " : world_->resting(a, b) ? " held " : nullptr;
+      const char* const how = world_->touching(a, b) ? " touch " : world_->resting(a, b) ? " resting " : nullptr;
       if (how) text += how + std::to_string(a) + '-' + std::to_string(b);
     }
   }
@@ -127,6 +128,9 @@ BodyDescription<Degree> Player<Degree>::description(const BodyPlan& plan) {
       break;
     case ShapeKind::capsule:
       result.shape = collision::Capsule{size[0], size[1]};
+      break;
+    case ShapeKind::hull:
+      result.shape = collision::convex_hull(cut_box(size));
       break;
     case ShapeKind::mesh:
       result.shape = collision::MeshShape{sample_meshes()[plan.mesh], size[0]};
