@@ -96,10 +96,11 @@ struct DifferencePlane {
       }
       return most;
     };
-    const Number of_a =
-        greatest(farthest[0], [&](std::uint32_t i) { return inner_product(n, hulls.a.template operator()<Number>(i)); });
-    const Number of_b = greatest(
-        farthest[1], [&](std::uint32_t i) { return Number(0.0) - inner_product(n, hulls.b.template operator()<Number>(i)); });
+    const Number of_a = greatest(
+        farthest[0], [&](std::uint32_t i) { return inner_product(n, hulls.a.template operator()<Number>(i)); });
+    const Number of_b = greatest(farthest[1], [&](std::uint32_t i) {
+      return Number(0.0) - inner_product(n, hulls.b.template operator()<Number>(i));
+    });
     Polynomial<degree, Number> f = inner_product(constants(n), relative_motion<Number>(a, b, epoch));
     f.c[0] = f.c[0] - (of_a + of_b);
     return f;
@@ -133,8 +134,8 @@ struct PartDistance {
   }
 };
 
-/// A side of a part: m . x >= 0 with x = b - a as seen from a point. For a side of a segment m is the edge; for one of a
-/// face, which lies to the left of the edge seen from where its normal n points to, m = edge x n.
+/// A side of a part: m . x >= 0 with x = b - a as seen from a point. For a side of a segment m is the edge; for one of
+/// a face, which lies to the left of the edge seen from where its normal n points to, m = edge x n.
 struct DifferenceSide {
   std::array<std::uint32_t, 2> point;
   DifferenceEdge edge;
@@ -160,8 +161,7 @@ struct BeyondSide {
   template <class Number>
   Polynomial<degree, Number> polynomial(double epoch) const {
     using namespace detail;
-    return inner_product(constants(side.template outward<Number>(hulls)),
-                         hulls.from<Number>(side.point, a, b, epoch));
+    return inner_product(constants(side.template outward<Number>(hulls)), hulls.from<Number>(side.point, a, b, epoch));
   }
 };
 

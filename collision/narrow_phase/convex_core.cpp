@@ -23,8 +23,7 @@ const HullStructure& structure_of_box() {
   return structure;
 }
 const HullStructure& structure_of_segment() {
-  static const HullStructure structure{
-      {0, 1}, {{{0, 1}, {HullStructure::no_face, HullStructure::no_face}}}, {}};
+  static const HullStructure structure{{0, 1}, {{{0, 1}, {HullStructure::no_face, HullStructure::no_face}}}, {}};
   return structure;
 }
 const HullStructure& structure_of_point() {

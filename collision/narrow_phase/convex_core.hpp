@@ -12,9 +12,9 @@
 
 namespace kds::collision {
 
-/// The hull of points in the coordinates of a body, and all that is nearer to it than a radius: of a ball its centre, of
-/// a capsule the ends of its segment, of a box its corners (bit d of the index set: at the upper end of axis d), of a
-/// hull its points. None of these numbers is rounded.
+/// The hull of points in the coordinates of a body, and all that is nearer to it than a radius: of a ball its centre,
+/// of a capsule the ends of its segment, of a box its corners (bit d of the index set: at the upper end of axis d), of
+/// a hull its points. None of these numbers is rounded.
 class ConvexCore {
  public:
   /// Precondition: the shape is no mesh. Refers to it.

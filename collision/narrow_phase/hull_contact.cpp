@@ -82,8 +82,8 @@ double hulls_apart_until(const TranslatingShape<Degree>& a, const TranslatingSha
     if (!(squared_norm(way) > 0)) return t;
     const Vector3d normal = normalized(Vector3d(-way));
     const QuickMotion<Degree> motion(a.motion, b.motion, t, horizon, a.shape.bounding_radius + b.shape.bounding_radius);
-    const double height = dot(normal, of_a.farthest(normal)) - dot(normal, of_b.farthest(-normal)) +
-                          (of_a.radius() + of_b.radius());
+    const double height =
+        dot(normal, of_a.farthest(normal)) - dot(normal, of_b.farthest(-normal)) + (of_a.radius() + of_b.radius());
     TimeWindow window{0, motion.end()};
     const bool meets = motion.clip(motion.along(normal), 1, height, window);
     if (!meets && motion.whole()) return never;

@@ -33,8 +33,8 @@ struct HullContact : PiecewiseContact<Degree, RoundedPolytope<Degree>, hull_cont
   }
 };
 
-#define KDS_DECLARE(degree)                                                                                           \
-  extern template Contact hull_contact(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double);     \
+#define KDS_DECLARE(degree)                                                                                          \
+  extern template Contact hull_contact(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double);    \
   extern template double hulls_apart_until(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double, \
                                            double);
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)

@@ -39,8 +39,8 @@ bool holds_a_corner(const TranslatingShape<Degree>& hull, const TranslatingShape
 }  // namespace
 
 template <int Degree>
-double MeshHullContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon,
-                                              ContactMode mode, FoundTouch* found) {
+double MeshHullContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
+                                              FoundTouch* found) {
   if (!(t0 <= horizon)) return never;
   if (mode == ContactMode::transparent && in_contact(a, b, t0)) return t0;
   return MeshContact<Degree>::first_contact(a, b, t0, horizon, mode, found);

@@ -45,8 +45,8 @@ bool can_move_by(const Shape& shape);
 /// Spheres, boxes and capsules: the first double just after which they penetrate, by exact signs, of shapes as their
 /// rounded axes describe them. (Two boxes with edges that are parallel but for an angle below 2^-40 may be found early,
 /// by at most that part of their size: box_and_box.hpp.) Meshes: never late, early by at most the margin of
-/// mesh_contact.hpp; but of bodies that turn by exact signs, too (turning_mesh_contact.hpp). The answer depends on the two shapes and motions alone, and on t0 only in that earlier contacts
-/// are passed over.
+/// mesh_contact.hpp; but of bodies that turn by exact signs, too (turning_mesh_contact.hpp). The answer depends on the
+/// two shapes and motions alone, and on t0 only in that earlier contacts are passed over.
 ///
 /// Of bodies that turn the horizon is finite, here and below.
 ///

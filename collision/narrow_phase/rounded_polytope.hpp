@@ -26,15 +26,15 @@ namespace kds::collision {
 ///
 /// Bodies do not rotate, so the difference of the two cores (ConvexCore) is a polytope that stays as it is, grown by
 /// the radius of b. They penetrate while the place of b as seen from a is inside. That is a union of convex *pieces*:
-/// the difference itself, which is what is inside of all its planes; and if there is a radius, for each corner, edge and
-/// face of its surface the places that are between its sides and nearer than the radius to the point, line or plane that
-/// it spans.
+/// the difference itself, which is what is inside of all its planes; and if there is a radius, for each corner, edge
+/// and face of its surface the places that are between its sides and nearer than the radius to the point, line or plane
+/// that it spans.
 ///
 /// The planes of the difference are those of the faces of either, and those that an edge of each span, where they touch
 /// the difference. Which do need not be known exactly: a plane that touches it elsewhere, or only nearly should have
-/// been one of its faces, changes nothing, since its height is the greatest of all points. So all are taken that doubles
-/// cannot exclude, and edges that are exactly parallel are left out. For the parts of the surface it is the same: they
-/// are those that a corner, edge or face of a makes with an end, or with the segment, of b. Some are inside.
+/// been one of its faces, changes nothing, since its height is the greatest of all points. So all are taken that
+/// doubles cannot exclude, and edges that are exactly parallel are left out. For the parts of the surface it is the
+/// same: they are those that a corner, edge or face of a makes with an end, or with the segment, of b. Some are inside.
 ///
 /// The shapes are those that the matrices of their rotations make of the points given, taken as exact, and so are all
 /// signs. A filter in doubles decides most, as in RoundedZonotope.
@@ -214,7 +214,9 @@ void RoundedPolytope<Degree>::every_part(const Visit& visit) const {
       const auto [i, k] = edge_a.ends;
       const DifferenceEdge u{false, i, k}, u_back{false, k, i};
       const std::array<DifferenceEdge, 2> normal{u, v};
-      sides = {{{i, j}, u, true, normal}, {{k, j}, v, true, normal}, {{i, l}, u_back, true, normal},
+      sides = {{{i, j}, u, true, normal},
+               {{k, j}, v, true, normal},
+               {{i, l}, u_back, true, normal},
                {{i, j}, v_back, true, normal}};
       if (!visit(DifferencePart{2, {i, j}, normal}, sides)) return;
     }
@@ -227,9 +229,8 @@ void RoundedPolytope<Degree>::every_piece(const Visit& visit) const {
   if (apart_) return;
   const auto pass = [&](const Piece& piece) { return !piece.possible() || visit(piece); };
   if (!pass(Piece(*this)) || !(radius_ > 0)) return;
-  every_part([&](const certificates::DifferencePart& part, const auto& sides) {
-    return pass(Piece(*this, part, sides));
-  });
+  every_part(
+      [&](const certificates::DifferencePart& part, const auto& sides) { return pass(Piece(*this, part, sides)); });
 }
 
 template <int Degree>

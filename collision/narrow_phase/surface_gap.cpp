@@ -50,7 +50,8 @@ SurfaceGap surface_gap(const TranslatingShape<Degree>& a, const TranslatingShape
     const double distance = norm(apart);
     if (distance > 0) return {distance - radius_a - radius_b, apart / distance};
   }
-  const bool hull = std::holds_alternative<ConvexHull>(a.shape.shape) || std::holds_alternative<ConvexHull>(b.shape.shape);
+  const bool hull =
+      std::holds_alternative<ConvexHull>(a.shape.shape) || std::holds_alternative<ConvexHull>(b.shape.shape);
   const Vector3d normal = hull ? contact_at(a, b, t).normal : rounded_contact(a, b, t).normal;
   return {gap_along(a, b, normal, t), normal};
 }

@@ -34,9 +34,7 @@ std::array<double, 2> ShapeKind<ConvexHull>::extent(const ConvexHull& hull, cons
 SupportingFeature ShapeKind<ConvexHull>::support(const ConvexHull& hull, const PlacedShape& placed,
                                                  const Vector3d& direction) {
   const HullStructure& structure = hull.polytope->structure();
-  const auto place = [&](std::uint32_t i) {
-    return placed_vertex(placed.rotation, 1, hull.polytope->points()[i]);
-  };
+  const auto place = [&](std::uint32_t i) { return placed_vertex(placed.rotation, 1, hull.polytope->points()[i]); };
   std::uint32_t top = structure.corners.front();
   Vector3d farthest = place(top);
   for (const std::uint32_t i : structure.corners) {

@@ -78,7 +78,8 @@ class GrowingHull {
     if (b >= n) throw InvalidHull("has no volume: all points are one");
     const Index c = first_of([&](Index i) { return !collinear(points_[0], points_[b], points_[i]); });
     if (c >= n) throw InvalidHull("has no volume: all points lie in a line");
-    const Index d = first_of([&](Index i) { return side_of_plane(points_[0], points_[b], points_[c], points_[i]) != 0; });
+    const Index d =
+        first_of([&](Index i) { return side_of_plane(points_[0], points_[b], points_[c], points_[i]) != 0; });
     if (d >= n) throw InvalidHull("has no volume: all points lie in a plane");
     return {0, b, c, d};
   }
@@ -101,7 +102,8 @@ class GrowingHull {
         const std::size_t beyond = t.neighbours[k];
         if (!triangles_[beyond].there) continue;
         const auto& far = triangles_[beyond].corners;
-        const auto place = static_cast<std::size_t>(std::find(far.begin(), far.end(), t.corners[(k + 1) % 3]) - far.begin());
+        const auto place =
+            static_cast<std::size_t>(std::find(far.begin(), far.end(), t.corners[(k + 1) % 3]) - far.begin());
         rim.push_back({t.corners[k], t.corners[(k + 1) % 3], beyond, place});
       }
     }

@@ -14,7 +14,8 @@
 
 namespace kds::collision {
 
-/// Points that have no hull that can be used. The message names what is wrong; `point` the one that is wrong, if one is.
+/// Points that have no hull that can be used. The message names what is wrong; `point` the one that is wrong, if one
+/// is.
 class InvalidHull : public std::invalid_argument {
  public:
   explicit InvalidHull(const std::string& what, std::optional<std::size_t> point = {})
@@ -58,7 +59,8 @@ struct HullStructure {
 /// Cost: n times the number of triangles; 1 000 points on a ball take 20 ms.
 HullStructure structure_of_hull(std::span<const Eigen::Vector3d> points);
 
-/// Whether the plane of a, b, c, counter-clockwise seen from outside, has d inside (-1), outside (1) or in it (0). Exact.
+/// Whether the plane of a, b, c, counter-clockwise seen from outside, has d inside (-1), outside (1) or in it (0).
+/// Exact.
 int side_of_plane(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                   const Eigen::Vector3d& d);
 

@@ -20,8 +20,8 @@ namespace kds::collision {
 /// A convex polytope, the hull of points in units of length, relative to the model's origin, which is the centre of the
 /// bodies that use it; it may be anywhere.
 ///
-/// Its corners and edges are named by the indices of the points, its faces by their places in structure().faces. Corners
-/// that are in one plane only up to roundings make several faces.
+/// Its corners and edges are named by the indices of the points, its faces by their places in structure().faces.
+/// Corners that are in one plane only up to roundings make several faces.
 class Polytope {
  public:
   /// Throws InvalidHull: naming the point, if a coordinate is not finite or beyond 2^100; if there are fewer than four

@@ -48,14 +48,15 @@ struct Capsule {
   double half_length;
 };
 
-/// A solid polytope, the convex hull of points, shared by any number of bodies: made by convex_hull() (convex_hull.hpp).
+/// A solid polytope, the convex hull of points, shared by any number of bodies: made by convex_hull()
+/// (convex_hull.hpp).
 struct ConvexHull {
   std::shared_ptr<const Polytope> polytope;
 };
 
 /// Each kind says in a file of its own what the functions below have to know of it: sphere.hpp, box.hpp,
-/// mesh_shape.hpp, capsule.hpp, convex_hull.hpp. To add one: a struct, its place in this list, its file, and its row in the table of pair tests
-/// (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
+/// mesh_shape.hpp, capsule.hpp, convex_hull.hpp. To add one: a struct, its place in this list, its file, and its row in
+/// the table of pair tests (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
 using Shape = std::variant<Sphere, Box, MeshShape, Capsule, ConvexHull>;
 
 /// "sphere", "box", "mesh", "capsule", "hull".

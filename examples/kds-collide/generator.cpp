@@ -142,7 +142,7 @@ std::string slender_shape(double radius, bool rod, Random& random) {
   const double width = rod ? random.uniform(0.08, 0.16) : random.uniform(0.6, 1);
   const Vector3d half(thickness, width, 1);
   std::string text = "{\"box\": {\"half_extents\": ";
-  append_vector(text, half * (radius / half.norm()));
+  append_array(text, half * (radius / half.norm()));
   return text + "}}";
 }
 

@@ -110,8 +110,11 @@ struct ShapeReader {
   Shape (*read)(const JsonNode& node, const Meshes& meshes);
 };
 constexpr const char* one_shape = "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\" and \"hull\"";
-constexpr ShapeReader shape_readers[] = {
-    {"sphere", read_sphere}, {"box", read_box}, {"mesh", read_mesh_shape}, {"capsule", read_capsule}, {"hull", read_hull}};
+constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},
+                                         {"box", read_box},
+                                         {"mesh", read_mesh_shape},
+                                         {"capsule", read_capsule},
+                                         {"hull", read_hull}};
 
 Shape read_shape(const JsonNode& node, const Meshes& meshes) {
   node.object({"sphere", "box", "mesh", "capsule", "hull", "scale"});

@@ -17,8 +17,8 @@
 
 namespace kds::collision {
 
-/// A convex core in the coordinates of its body, with what is calculated of it once. A copy of its points, so that it may
-/// be another, smaller one.
+/// A convex core in the coordinates of its body, with what is calculated of it once. A copy of its points, so that it
+/// may be another, smaller one.
 struct TurningPolytope {
   explicit TurningPolytope(const ConvexCore& core) : structure(&core.structure()) {
     points.assign(core.points().begin(), core.points().end());
@@ -30,7 +30,8 @@ struct TurningPolytope {
     radius = 0;
     for (const std::uint32_t i : structure->corners) radius = std::max(radius, norm(points[i]) * (1 + 0x1p-50));
     edges.clear(), normals.clear();
-    for (const HullEdge& edge : structure->edges) edges.push_back(normalized(points[edge.ends[1]] - points[edge.ends[0]]));
+    for (const HullEdge& edge : structure->edges)
+      edges.push_back(normalized(points[edge.ends[1]] - points[edge.ends[0]]));
     for (const std::vector<std::uint32_t>& face : structure->faces) {
       const auto [a, b, c] = spanning_corners(face);
       normals.push_back(unit_normal(points[a], points[b], points[c]));
@@ -59,7 +60,8 @@ struct SeenPolytope {
     for (std::size_t k = 0; k < 3; ++k) columns[k] = turn(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(k)));
     const auto turned = [&](const std::vector<Eigen::Vector3d>& of_body, std::vector<Eigen::Vector3d>& in_world) {
       in_world.reserve(of_body.size());
-      for (const Eigen::Vector3d& x : of_body) in_world.push_back(x[0] * columns[0] + x[1] * columns[1] + x[2] * columns[2]);
+      for (const Eigen::Vector3d& x : of_body)
+        in_world.push_back(x[0] * columns[0] + x[1] * columns[1] + x[2] * columns[2]);
     };
     turned(polytope.points, points);
     turned(polytope.edges, edges);

@@ -19,10 +19,10 @@
 
 namespace kds::collision {
 
-/// A convex core (a) and a ball (b) are apart while the centre is no nearer to the core than the radius: to the plane of
-/// a face, or to the line of an edge where the centre is on the far side of it from both faces, or to a corner from
-/// which all edges lead away. Where one of these *ways* holds, the half space, the wedge or the cone that holds the core
-/// is no nearer; and whichever part of it is the nearest, its way holds if they are apart. (Compare
+/// A convex core (a) and a ball (b) are apart while the centre is no nearer to the core than the radius: to the plane
+/// of a face, or to the line of an edge where the centre is on the far side of it from both faces, or to a corner from
+/// which all edges lead away. Where one of these *ways* holds, the half space, the wedge or the cone that holds the
+/// core is no nearer; and whichever part of it is the nearest, its way holds if they are apart. (Compare
 /// TurningTriangleAndBall.)
 template <int Degree>
 class TurningBallAndPolytope {
@@ -95,8 +95,7 @@ class TurningBallAndPolytope {
   }
   double error(const PairFrame<Degree>& frame) const {
     if (!frame.certain) return never;
-    return 4 * frame.way_error +
-           PairFrame<Degree>::rounding * (norm(frame.way.value) + polytope_.radius + radius_);
+    return 4 * frame.way_error + PairFrame<Degree>::rounding * (norm(frame.way.value) + polytope_.radius + radius_);
   }
   std::uint32_t other_end(std::uint32_t edge, std::uint32_t end) const {
     const auto& ends = polytope_.structure->edges[edge].ends;
@@ -175,8 +174,8 @@ double TurningBallAndPolytope<Degree>::gaps(const Frame& frame, std::vector<doub
     const Eigen::Vector3d& u = frame.a.edges[e];
     double width = norm(cross(u, d)) - radius_;
     if (edge.faces[0] != HullStructure::no_face) {
-      width = std::min({width, dot(cross(u, frame.a.normals[edge.faces[0]]), d),
-                        dot(cross(frame.a.normals[edge.faces[1]], u), d)});
+      width = std::min(
+          {width, dot(cross(u, frame.a.normals[edge.faces[0]]), d), dot(cross(frame.a.normals[edge.faces[1]], u), d)});
     }
     gap[way++] = width;
   }

@@ -32,8 +32,8 @@ namespace kds::collision {
 /// then is. All these are turning certificates. Edges that are parallel at all times separate nothing: all conditions
 /// are zero then, and only then.
 ///
-/// The number of ways is that of the faces and twice the product of the edges: doubles tell for some ten operations that
-/// one is blocked.
+/// The number of ways is that of the faces and twice the product of the edges: doubles tell for some ten operations
+/// that one is blocked.
 template <int Degree>
 class TurningPolytopes {
  public:
@@ -76,8 +76,8 @@ class TurningPolytopes {
   template <class Test>
   bool every_condition(int way, const Conditions& which, const Test& test) const;
 
-  /// How far the corners are beyond a face; for edges the least of how far they are beyond each other, times the sine of
-  /// their angle, and of how far their faces are below the plane.
+  /// How far the corners are beyond a face; for edges the least of how far they are beyond each other, times the sine
+  /// of their angle, and of how far their faces are below the plane.
   double gaps(const Frame& frame, std::vector<double>& gap) const;
 
   /// A bound on how fast these change.
@@ -193,8 +193,7 @@ bool TurningPolytopes<Degree>::every_condition(int way, const Conditions& which,
   const auto& faces_at_v = polytope_b_.structure->edges[pair.of_b].faces;
   using certificates::NormalAlongEdge;
   // An edge from a to b: the product has to point from b to a for EdgeEdgeSeparation.
-  return (!matters(0) ||
-          test(certificates::EdgeEdgeSeparation<Degree>{a_, b_, pair.forward ? u_back : u, v})) &&
+  return (!matters(0) || test(certificates::EdgeEdgeSeparation<Degree>{a_, b_, pair.forward ? u_back : u, v})) &&
          (!matters(1) ||
           test(NormalAlongEdge<Degree>{a_, b_, polytope_a_.face(faces_at_u[0]), pair.forward ? v : v_back})) &&
          (!matters(2) ||
@@ -279,7 +278,8 @@ double TurningPolytopes<Degree>::apart_until(double t, double horizon) const {
   if (wait < stretch) wait = std::max(wait, wait_along(frame, n, false, stretch));
   if (stretch < all && time_of_turning() != never) {
     for (const Eigen::Vector3d& along : {n, normalized(frame.way.value)}) {
-      const double covered = frame.a.revolving_reach(along, frame.spin_a) + frame.b.revolving_reach(-along, frame.spin_b);
+      const double covered =
+          frame.a.revolving_reach(along, frame.spin_a) + frame.b.revolving_reach(-along, frame.spin_b);
       wait = std::max(wait, revolving_apart_for(frame, along, covered));
     }
   }

@@ -76,7 +76,8 @@ void print_body(const Scenario& scenario, std::size_t number_of_body) {
   }
   if (body.shape == ShapeKind::hull) {
     std::printf("  d.shape = convex_hull({");
-    for (const Eigen::Vector3d& corner : cut_box(body.size)) std::printf("p.length * Vector3d%s, ", vector(corner).c_str());
+    for (const Eigen::Vector3d& corner : cut_box(body.size))
+      std::printf("p.length * Vector3d%s, ", vector(corner).c_str());
     std::printf("});\n");
   }
   if (body.shape == ShapeKind::mesh) {
