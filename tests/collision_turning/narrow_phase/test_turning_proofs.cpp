@@ -44,11 +44,11 @@ std::array<Vector3d, 3> random_triangle(Random& random) {
 
 }  // namespace
 
-TEST_CASE("nodes are apart for as long as is proven, and mostly near each other then", "[turning]") {
+TEST_CASE("nodes are apart for as long as is proven", "[turning]") {
   const std::uint64_t seed = 560;
   CAPTURE(seed);
   Random random(seed);
-  int proven = 0, ended = 0, sharp = 0;
+  int proven = 0, ended = 0;
   for (int round = 0; round < 1500; ++round) {
     const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 3));
     const auto half = [&] { return Vector3d(random.between(0, 1), random.between(0, 1), random.between(0, 1)); };
@@ -70,11 +70,9 @@ TEST_CASE("nodes are apart for as long as is proven, and mostly near each other 
     const double until = std::min(horizon, t + apart.wait);
     for (int i = 0; i <= 20; ++i) CHECK(gap(t + (until - t) * i / 20) > 0);
     ended += until < horizon;
-    sharp += until < horizon && gap(until) < 0.5 * gap(t);
   }
   CHECK(proven > 500);
   CHECK(ended > 100);
-  CHECK(2 * sharp > ended);
 }
 
 TEST_CASE("triangles are apart for as long as is proven, and conditions that are sure hold", "[turning]") {
