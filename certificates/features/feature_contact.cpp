@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 // All of a query in one function saves a sixth of its time. Sanitizers would make more of that than a compiler can
 // take.
@@ -50,18 +51,24 @@ class Search {
   template <class Paths>
   Search(const Paths& paths, const ContactTolerance& tolerance, double t0, double t1)
       : paths_(paths()), t0_(t0), t1_(t1) {
+    if (!(tolerance.thickness >= 0 && tolerance.thickness < std::numeric_limits<double>::infinity())) {
+      throw std::invalid_argument("feature contact: the thickness must be finite and >= 0");
+    }
     if (paths_.size > 0 && !(paths_.size > least_size && paths_.size < greatest_size)) rescale();
-    margin_ = axis_margin(paths_);
+    thickness_ = tolerance.thickness * scale_;
+    // Features are never farther apart than twice their size: a greater thickness is as good, and does not overflow.
+    if (scale_ != 1 && thickness_ > 4 * paths_.size) thickness_ = 4 * paths_.size;
+    margin_ = axis_margin(paths_, thickness_);
     tolerance_ = std::max(std::min(tolerance.absolute * scale_, tolerance.relative * paths_.size),
-                          std::max(least_tolerance * paths_.size, 8 * margin_));
+                          std::max(least_tolerance * (paths_.size + thickness_), 8 * margin_));
     // The points of the patch meant are within sqrt(3) paths.error of those computed, up to a few roundings.
-    const double inner = tolerance_ - 5 * margin_;
+    const double inner = thickness_ + tolerance_ - 5 * margin_;
     inner2_ = inner * inner;
   }
 
   KDS_FLATTEN FeatureContact run() {
     result_.tolerance = tolerance_ * unscale_;
-    if (boxes_apart(paths_, margin_)) return result_;
+    if (boxes_apart(paths_, margin_ + thickness_)) return result_;
     double s = 0;
     for (;; ++result_.steps) {
       const PlacedPatch<kind> patch(paths_.at(s));
@@ -82,9 +89,9 @@ class Search {
 
  private:
   double free_until(const PlacedPatch<kind>& patch, const PatchPoint& point, double s) {
-    double until = separated_until(paths_, margin_, point.position, s);
+    double until = separated_until(paths_, margin_, thickness_, point.position, s);
     if (until >= 1) return until;
-    if (!turning_) turning_.emplace(paths_);
+    if (!turning_) turning_.emplace(paths_, thickness_);
     const int steps = result_.steps;
     until = std::max(until,
                      steps < plane_steps ? turning_->separated_by_plane_until(s) : turning_->separated_until(point, s));
@@ -93,7 +100,9 @@ class Search {
           std::max(until, turning_->separated_turning_on(normalized(axis_), axis_time_, normalized(point.position), s));
     }
     if (!(until > s)) {
-      for (const auto& axis : patch.careful_axes()) until = std::max(until, separated_until(paths_, margin_, axis, s));
+      for (const auto& axis : patch.careful_axes()) {
+        until = std::max(until, separated_until(paths_, margin_, thickness_, axis, s));
+      }
     }
     return until;
   }
@@ -107,7 +116,7 @@ class Search {
       return true;
     }
     describe(patch, w, p, s, FeatureContactStatus::undecided);
-    if (point.part == PatchPart::interior) {
+    if (point.part == PatchPart::interior && thickness_ == 0) {
       if (const auto end = Crossing<kind, Degree>(paths_, *turning_, patch, s).until(w)) {
         result_.status = FeatureContactStatus::contact;
         result_.latest = std::min(clock(*end, 1), t1_);
@@ -168,6 +177,7 @@ class Search {
   double t1_;
   double scale_ = 1;  // a power of two
   double unscale_ = 1;
+  double thickness_;
   double margin_;
   double tolerance_;
   double inner2_;
@@ -183,10 +193,9 @@ FeatureContact search(const std::array<const PointMotion<Degree>*, 4>& points, d
   return Search<kind, Degree>(paths, tolerance, t0, t1).run();
 }
 
-template <Patch kind>
-FeatureContact search(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
-                      const ContactTolerance& tolerance) {
-  return Search<kind, 1>([&] { return patch_paths<kind>(begin, end); }, tolerance, 0, 1).run();
+template <Patch kind, int Degree>
+FeatureContact search(const ControlPoints<Degree>& control, double t0, double t1, const ContactTolerance& tolerance) {
+  return Search<kind, Degree>([&] { return patch_paths<kind, Degree>(control); }, tolerance, t0, t1).run();
 }
 
 }  // namespace
@@ -205,24 +214,37 @@ FeatureContact edge_edge_contact(const PointMotion<Degree>& a, const PointMotion
   return search<Patch::parallelogram, Degree>({&a, &b, &c, &d}, t0, t1, tolerance);
 }
 
+template <int Degree>
+FeatureContact vertex_face_contact(const ControlPoints<Degree>& control, double t0, double t1,
+                                   const ContactTolerance& tolerance) {
+  return search<Patch::triangle, Degree>(control, t0, t1, tolerance);
+}
+
+template <int Degree>
+FeatureContact edge_edge_contact(const ControlPoints<Degree>& control, double t0, double t1,
+                                 const ContactTolerance& tolerance) {
+  return search<Patch::parallelogram, Degree>(control, t0, t1, tolerance);
+}
+
 FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin,
                                    const std::array<Eigen::Vector3d, 4>& end, const ContactTolerance& tolerance) {
-  return search<Patch::triangle>(begin, end, tolerance);
+  return vertex_face_contact<1>({begin, end}, 0, 1, tolerance);
 }
 
 FeatureContact edge_edge_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
                                  const ContactTolerance& tolerance) {
-  return search<Patch::parallelogram>(begin, end, tolerance);
+  return edge_edge_contact<1>({begin, end}, 0, 1, tolerance);
 }
 
-template FeatureContact vertex_face_contact(const PointMotion<1>&, const PointMotion<1>&, const PointMotion<1>&,
-                                            const PointMotion<1>&, double, double, const ContactTolerance&);
-template FeatureContact vertex_face_contact(const PointMotion<2>&, const PointMotion<2>&, const PointMotion<2>&,
-                                            const PointMotion<2>&, double, double, const ContactTolerance&);
-template FeatureContact edge_edge_contact(const PointMotion<1>&, const PointMotion<1>&, const PointMotion<1>&,
-                                          const PointMotion<1>&, double, double, const ContactTolerance&);
-template FeatureContact edge_edge_contact(const PointMotion<2>&, const PointMotion<2>&, const PointMotion<2>&,
-                                          const PointMotion<2>&, double, double, const ContactTolerance&);
+#define KDS_INSTANTIATE(name, degree)                                                                              \
+  template FeatureContact name(const PointMotion<degree>&, const PointMotion<degree>&, const PointMotion<degree>&, \
+                               const PointMotion<degree>&, double, double, const ContactTolerance&);               \
+  template FeatureContact name<degree>(const ControlPoints<degree>&, double, double, const ContactTolerance&);
+KDS_INSTANTIATE(vertex_face_contact, 1)
+KDS_INSTANTIATE(vertex_face_contact, 2)
+KDS_INSTANTIATE(edge_edge_contact, 1)
+KDS_INSTANTIATE(edge_edge_contact, 2)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::certificates
 
