@@ -49,8 +49,10 @@ class Search {
  public:
   /// `paths` makes the paths, in their place.
   template <class Paths>
-  Search(const Paths& paths, const ContactTolerance& tolerance, double t0, double t1)
-      : paths_(paths()), t0_(t0), t1_(t1) {
+  Search(const Paths& paths, const ContactTolerance& tolerance, double t0, double t1, double from)
+      : paths_(paths()), t0_(t0), t1_(t1), from_(from) {
+    // Three roundings, downward: never after the time meant.
+    if (from > t0) begin_ = std::min((from - t0) / (t1 - t0) * (1 - 0x1p-50), 1.0);
     if (!(tolerance.thickness >= 0 && tolerance.thickness < std::numeric_limits<double>::infinity())) {
       throw std::invalid_argument("feature contact: the thickness must be finite and >= 0");
     }
@@ -69,7 +71,7 @@ class Search {
   KDS_FLATTEN FeatureContact run() {
     result_.tolerance = tolerance_ * unscale_;
     if (boxes_apart(paths_, margin_ + thickness_)) return result_;
-    double s = 0;
+    double s = begin_;
     for (;; ++result_.steps) {
       const PlacedPatch<kind> patch(paths_.at(s));
       const PatchPoint point = patch.closest();
@@ -111,7 +113,7 @@ class Search {
     const auto w = patch.weights(point);
     const Eigen::Vector3d p = patch.position(w);
     if (squared_norm(p) > inner2_) return false;
-    if (s == 0) {
+    if (s == begin_) {
       describe(patch, w, p, s, FeatureContactStatus::at_start);
       return true;
     }
@@ -128,7 +130,7 @@ class Search {
   void describe(const PlacedPatch<kind>& patch, const std::array<double, 4>& w, const Eigen::Vector3d& p, double s,
                 FeatureContactStatus status) {
     result_.status = status;
-    result_.time = s > 0 ? std::max(clock(s, -1), t0_) : t0_;
+    result_.time = s > begin_ ? std::max(clock(s, -1), from_) : from_;
     // While the clock is rounded (see clock()) a corner moves on: by sqrt(3) 2 size a unit of s at most.
     const double rounding = s > 0 ? 0x1p-50 * (std::abs(result_.time) / (t1_ - t0_) + s) : 0;
     const double distance = norm(p);
@@ -175,6 +177,8 @@ class Search {
   std::optional<TurningAxis<kind, Degree>> turning_;  // once a fixed axis has failed: before any s > 0
   double t0_;
   double t1_;
+  double from_;
+  double begin_ = 0;  // s at that time
   double scale_ = 1;  // a power of two
   double unscale_ = 1;
   double thickness_;
@@ -190,12 +194,13 @@ template <Patch kind, int Degree>
 FeatureContact search(const std::array<const PointMotion<Degree>*, 4>& points, double t0, double t1,
                       const ContactTolerance& tolerance) {
   const auto paths = [&] { return patch_paths<kind, Degree>(points, t0, t1); };
-  return Search<kind, Degree>(paths, tolerance, t0, t1).run();
+  return Search<kind, Degree>(paths, tolerance, t0, t1, t0).run();
 }
 
 template <Patch kind, int Degree>
-FeatureContact search(const ControlPoints<Degree>& control, double t0, double t1, const ContactTolerance& tolerance) {
-  return Search<kind, Degree>([&] { return patch_paths<kind, Degree>(control); }, tolerance, t0, t1).run();
+FeatureContact search(const ControlPoints<Degree>& control, double t0, double t1, double from,
+                      const ContactTolerance& tolerance) {
+  return Search<kind, Degree>([&] { return patch_paths<kind, Degree>(control); }, tolerance, t0, t1, from).run();
 }
 
 }  // namespace
@@ -215,31 +220,31 @@ FeatureContact edge_edge_contact(const PointMotion<Degree>& a, const PointMotion
 }
 
 template <int Degree>
-FeatureContact vertex_face_contact(const ControlPoints<Degree>& control, double t0, double t1,
+FeatureContact vertex_face_contact(const ControlPoints<Degree>& control, double t0, double t1, double from,
                                    const ContactTolerance& tolerance) {
-  return search<Patch::triangle, Degree>(control, t0, t1, tolerance);
+  return search<Patch::triangle, Degree>(control, t0, t1, from, tolerance);
 }
 
 template <int Degree>
-FeatureContact edge_edge_contact(const ControlPoints<Degree>& control, double t0, double t1,
+FeatureContact edge_edge_contact(const ControlPoints<Degree>& control, double t0, double t1, double from,
                                  const ContactTolerance& tolerance) {
-  return search<Patch::parallelogram, Degree>(control, t0, t1, tolerance);
+  return search<Patch::parallelogram, Degree>(control, t0, t1, from, tolerance);
 }
 
 FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin,
                                    const std::array<Eigen::Vector3d, 4>& end, const ContactTolerance& tolerance) {
-  return vertex_face_contact<1>({begin, end}, 0, 1, tolerance);
+  return vertex_face_contact<1>({begin, end}, 0, 1, 0, tolerance);
 }
 
 FeatureContact edge_edge_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
                                  const ContactTolerance& tolerance) {
-  return edge_edge_contact<1>({begin, end}, 0, 1, tolerance);
+  return edge_edge_contact<1>({begin, end}, 0, 1, 0, tolerance);
 }
 
 #define KDS_INSTANTIATE(name, degree)                                                                              \
   template FeatureContact name(const PointMotion<degree>&, const PointMotion<degree>&, const PointMotion<degree>&, \
                                const PointMotion<degree>&, double, double, const ContactTolerance&);               \
-  template FeatureContact name<degree>(const ControlPoints<degree>&, double, double, const ContactTolerance&);
+  template FeatureContact name<degree>(const ControlPoints<degree>&, double, double, double, const ContactTolerance&);
 KDS_INSTANTIATE(vertex_face_contact, 1)
 KDS_INSTANTIATE(vertex_face_contact, 2)
 KDS_INSTANTIATE(edge_edge_contact, 1)

@@ -84,12 +84,13 @@ FeatureContact edge_edge_contact(const PointMotion<Degree>& a, const PointMotion
 template <int Degree>
 using ControlPoints = std::array<std::array<Eigen::Vector3d, 4>, std::size_t{Degree} + 1>;
 
-/// The same of paths by control points, which are exact: stretches that follow on each other meet exactly.
+/// The same of paths by control points, which are exact: stretches that follow on each other meet exactly. The first
+/// contact in [from, t1]; precondition: t0 <= from <= t1.
 template <int Degree>
-FeatureContact vertex_face_contact(const ControlPoints<Degree>& control, double t0, double t1,
+FeatureContact vertex_face_contact(const ControlPoints<Degree>& control, double t0, double t1, double from,
                                    const ContactTolerance& tolerance = {});
 template <int Degree>
-FeatureContact edge_edge_contact(const ControlPoints<Degree>& control, double t0, double t1,
+FeatureContact edge_edge_contact(const ControlPoints<Degree>& control, double t0, double t1, double from,
                                  const ContactTolerance& tolerance = {});
 
 /// Four points on straight paths, from begin[k] at time 0 to end[k] at time 1, both exact: the form of the published
@@ -103,7 +104,8 @@ FeatureContact edge_edge_contact(const std::array<Eigen::Vector3d, 4>& begin, co
   extern template FeatureContact name(const PointMotion<degree>&, const PointMotion<degree>&,                 \
                                       const PointMotion<degree>&, const PointMotion<degree>&, double, double, \
                                       const ContactTolerance&);                                               \
-  extern template FeatureContact name<degree>(const ControlPoints<degree>&, double, double, const ContactTolerance&);
+  extern template FeatureContact name<degree>(const ControlPoints<degree>&, double, double, double,           \
+                                              const ContactTolerance&);
 KDS_DECLARE(vertex_face_contact, 1)
 KDS_DECLARE(vertex_face_contact, 2)
 KDS_DECLARE(edge_edge_contact, 1)

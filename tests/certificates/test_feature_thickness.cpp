@@ -94,12 +94,12 @@ struct Tally {
 
 template <int Degree>
 void check(Features kind, const ControlPoints<Degree>& control, const ContactTolerance& tolerance, double t0, double t1,
-           const std::string& where, Tally& tally) {
+           double from, const std::string& where, Tally& tally) {
   const auto paths = exact_paths<Degree>(control, t0, t1);
-  const auto truth = first_touch(kind, paths, tolerance.thickness, t0, t1);
+  const auto truth = first_touch(kind, paths, tolerance.thickness, from, t1);
   const FeatureContact r = kind == Features::vertex_face
-                               ? certificates::vertex_face_contact<Degree>(control, t0, t1, tolerance)
-                               : certificates::edge_edge_contact<Degree>(control, t0, t1, tolerance);
+                               ? certificates::vertex_face_contact<Degree>(control, t0, t1, from, tolerance)
+                               : certificates::edge_edge_contact<Degree>(control, t0, t1, from, tolerance);
   ++tally.queries;
   tally.touching += truth.has_value();
   tally.reported += bool(r);
@@ -110,7 +110,7 @@ void check(Features kind, const ControlPoints<Degree>& control, const ContactTol
     if (truth) complain("missed");
     return;
   }
-  if (!(r.time >= t0 && r.time <= t1)) return complain("outside the interval");
+  if (!(r.time >= from && r.time <= t1)) return complain("outside the interval");
   if (truth && truth->compare(oracle::rational(r.time)) < 0) complain("late");
   const auto distance = squared_distance(kind, places(paths, oracle::rational(r.time)));
   if (distance > oracle::square(oracle::rational(r.distance))) complain("farther apart than it says");
@@ -142,7 +142,8 @@ TEMPLATE_TEST_CASE_SIG("features with a thickness: nothing missed, nothing late,
         const double t0 = random.one_in(2) ? 0 : 0.125;
         const double t1 = random.one_in(2) ? 1 : 1.5;
         const ContactTolerance tolerance{.thickness = std::pow(10, random.between(-6, 0)) * scale};
-        check<Degree>(kind, control, tolerance, t0, t1, name(encounter), tally);
+        const double from = random.one_in(3) ? random.between(t0, t1) : t0;
+        check<Degree>(kind, control, tolerance, t0, t1, from, name(encounter), tally);
       }
     }
   }
@@ -174,8 +175,8 @@ TEMPLATE_TEST_CASE_SIG("features by control points: the same without a thickness
       const auto paths = exact_paths<Degree>(control, t0, t1);
       const auto truth = ExactFeatures(kind, paths).first_touch(t0, t1);
       const FeatureContact r = kind == Features::vertex_face
-                                   ? certificates::vertex_face_contact<Degree>(control, t0, t1)
-                                   : certificates::edge_edge_contact<Degree>(control, t0, t1);
+                                   ? certificates::vertex_face_contact<Degree>(control, t0, t1, t0)
+                                   : certificates::edge_edge_contact<Degree>(control, t0, t1, t0);
       touching += truth.has_value();
       const std::string what = complaint(kind, r, paths, t0, t1, {}, truth);
       if (!what.empty()) ++complaints[what];
