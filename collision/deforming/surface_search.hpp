@@ -275,6 +275,7 @@ void SurfaceSearch<Degree>::test_crossings(const Surface& of_edges, const Surfac
     if (!(x.owned_edges >> k & 1)) continue;
     const std::uint32_t v = x.vertices[k];
     const std::uint32_t w = x.vertices[(k + 1) % 3];
+    if (itself_ && (v == a || v == b || v == c || w == a || w == b || w == c)) continue;
     const Eigen::Vector3d p = at(of_edges, v), q = at(of_edges, w);
     const Eigen::Vector3d at_a = at(of_faces, a), at_b = at(of_faces, b), at_c = at(of_faces, c);
     if (!goes_through(p, q, at_a, at_b, at_c)) continue;
