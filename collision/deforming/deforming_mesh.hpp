@@ -3,7 +3,7 @@
 
 #include "certificates/point_motion.hpp"
 #include "collision/deforming/moving_surface.hpp"
-#include "collision/deforming/surface_tree.hpp"
+#include "collision/shapes/surface_tree.hpp"
 
 #include <Eigen/Core>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "certificates/point_motion.hpp"
-#include "collision/deforming/surface_tree.hpp"
+#include "collision/shapes/surface_tree.hpp"
 
 #include <Eigen/Core>
 

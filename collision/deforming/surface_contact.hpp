@@ -20,6 +20,7 @@ struct SurfaceQuery {
   /// Of the size of a pair of features (ContactTolerance::relative, which says what is possible and what it costs):
   /// they may be reported while they are so much farther apart than their radii.
   double tolerance = 1e-7;
+  double absolute_tolerance = std::numeric_limits<double>::infinity();  ///< units of length; the lesser counts
   /// Whether an overlap at `from` that is not one of features is looked for: an edge through a face, or parts inside a
   /// solid. A caller who knows that there is none, as after a step without contacts, saves the time.
   bool overlaps = true;

@@ -1,4 +1,4 @@
-#include "collision/deforming/surface_tree.hpp"
+#include "collision/shapes/surface_tree.hpp"
 
 #include "kds/audit.hpp"
 
