@@ -214,6 +214,10 @@ MassProperties of(const Capsule& capsule, double mass) {
 
 MassProperties of(const MeshShape& shape, double mass) { return of_mesh(shape, mass); }
 
+MassProperties of(const BendingMesh&, double) {
+  throw std::invalid_argument("shape: a mesh that bends has no mass properties of its own");
+}
+
 }  // namespace
 
 MassProperties mass_properties(const Shape& shape, double mass) {

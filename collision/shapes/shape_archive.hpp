@@ -1,6 +1,7 @@
 // Placed shapes in snapshots.
 #pragma once
 
+#include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/box.hpp"
 #include "collision/shapes/capsule.hpp"
 #include "collision/shapes/mesh_shape.hpp"
@@ -28,9 +29,7 @@ void archive_shape(Archive& archive, PlacedShape& placed, std::uint32_t& mesh,
   if constexpr (Archive::loading) {
     constexpr std::size_t kinds = std::variant_size_v<Shape>;
     if (kind >= kinds) throw std::runtime_error("snapshot: a shape is of an unknown kind");
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      ((kind == I ? void(placed.shape.emplace<I>()) : void()), ...);
-    }
+    [&]<std::size_t... I>(std::index_sequence<I...>) { ((kind == I ? void(placed.shape.emplace<I>()) : void()), ...); }
     (std::make_index_sequence<kinds>{});
   }
   std::visit(
