@@ -14,15 +14,15 @@
 
 namespace kds::certificates {
 
-/// axis . (b(t) - a(t)) as a polynomial in (t - epoch): what relative_motion<Ball<double>> and the products with the axis
-/// give, for a third of the cost, with one error bound a coefficient in place of one an operation. A
-/// coefficient that is known to vanish whatever the roundings has the radius 0.
+/// axis . (b(t) - a(t)) as a polynomial in (t - epoch): what relative_motion<Ball<double>> and the products with the
+/// axis give, at a third of the cost, with one error bound for each coefficient instead of one for each operation. A
+/// coefficient that is zero whatever the roundings has the radius 0.
 ///
 /// Error bound, with u = 2^-53. The elapsed times are known to u; a coordinate of a path is a sum of at most three
 /// products, known to 6 u of the sum of their magnitudes, m; the difference of two adds u. The product with the axis
-/// and the sum over the coordinates add 3 u: 10 u of sum |axis[d]| m[d] in all, of which 16 u is charged for what the
-/// bound loses to its own roundings. Underflow takes less than 2^-1000.
-/// Paths of degree 3 and above take the way of relative_motion() itself.
+/// and the sum over the coordinates add 3 u: 10 u of sum |axis[d]| m[d] in all, for which 16 u is charged, since the
+/// bound itself is rounded. Underflow takes less than 2^-1000. Paths of degree 3 and above use relative_motion()
+/// itself.
 template <int Degree>
 Polynomial<Degree, Ball<double>> along_axis(const PointMotion<Degree>& a, const PointMotion<Degree>& b,
                                             const Eigen::Vector3d& axis, double epoch);
@@ -48,7 +48,7 @@ struct RelativeCoordinate {
   std::array<bool, std::size_t{Degree} + 1> present;
 };
 
-/// Of c0 + c1 x + c2 x^2 about x = h.
+/// The coefficients of c0 + c1 x + c2 x^2 about x = h.
 template <int Degree>
 void shift(std::array<double, std::size_t{Degree} + 1>& c, std::array<double, std::size_t{Degree} + 1>& magnitude,
            double h) {

@@ -49,16 +49,16 @@ struct BallSeparation {
     return f;
   }
 
-  /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows balls one of which moves along
-  /// a line as seen from the other: straight paths, and those that share their acceleration.
+  /// What failure_time() gives, bit for bit, or a NaN where that needs the general methods. It answers for balls whose
+  /// relative motion is along a line: straight paths, and those that share their acceleration.
   double quick_failure_time(double now, double horizon) const;
 
   /// The first double t in [now, horizon] just after which the balls penetrate and approach, or `never`.
   double first_approach(double now, double horizon) const;
 
-  /// A time up to which a plane stays between the balls, so that they are apart: the earlier the nearer they pass each
-  /// other. No later than now where rounding may have them touch, and where a path is of degree 3 and above. For paths
-  /// that quick_failure_time() does not know it costs a fifth of first_approach(), or less.
+  /// A time up to which a plane stays between the balls, so that they are apart; the nearer they pass each other, the
+  /// earlier it is. Not later than now where they may touch up to rounding, and where a path is of degree 3 and above.
+  /// For paths that quick_failure_time() does not answer for it costs a fifth of first_approach(), or less.
   double apart_until(double now) const;
 
   /// Whether the path of b as seen from a is a line.
@@ -67,7 +67,7 @@ struct BallSeparation {
       return true;
     } else {
       bool line = a.coefficients[2] == b.coefficients[2];
-      for (std::size_t i = 3; i <= PathDegree; ++i) {  // What they share goes, if both count from one start.
+      for (std::size_t i = 3; i <= PathDegree; ++i) {  // Terms that both share cancel, if both have one start.
         line = line && a.coefficients[i] == b.coefficients[i] && (a.start == b.start || a.coefficients[i].isZero(0));
       }
       return line;
@@ -84,8 +84,7 @@ struct BallSeparation {
 
 namespace detail {
 
-/// Up to degree 2: of two balls of which one moves along a line as seen from the other, higher coefficients are zero or
-/// cancel.
+/// Up to degree 2: if the relative motion of two balls is along a line, higher coefficients are zero or cancel.
 template <int PathDegree>
 MotionNumbers<double, std::min(PathDegree, 2)> numbers_of(const PointMotion<PathDegree>& motion) {
   MotionNumbers<double, std::min(PathDegree, 2)> numbers;
@@ -101,7 +100,7 @@ inline Ball<double> bounded(double value, double magnitude) {
   return {value, magnitude < Line::range ? Line::unit * magnitude + Line::lost : never};
 }
 
-/// f' now, where f is the square of the distance less that of the sum of the radii.
+/// f' now, where f is the square of the distance minus that of the sum of the radii.
 inline Ball<double> rate_of_gap(const RelativeLine<double>& line) {
   return bounded(2 * line.product, 2 * (line.M * line.W));
 }
@@ -167,8 +166,8 @@ double BallSeparation<PathDegree>::first_approach(double now, double horizon) co
 }
 
 /// Along the unit vector n from centre to centre the gap is a polynomial c0 + c1 s + c2 s^2, and no greater than what
-/// is between the balls. Of its coefficients `rounding` times the terms that they are made of is taken away, which is
-/// eight times what is lost in computing them; the length of n, too, differs from 1 by no more than that.
+/// is between the balls. Each coefficient is reduced by `rounding` times the sum of its terms' magnitudes, which is
+/// eight times the rounding error in computing it; the length of n, too, differs from 1 by no more than that.
 template <int PathDegree>
 double BallSeparation<PathDegree>::apart_until(double now) const {
   if constexpr (PathDegree > 2) return now;

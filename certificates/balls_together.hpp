@@ -17,15 +17,15 @@ struct alignas(64) MovingBall {
   PointMotion<PathDegree> motion;
   double radius = no_radius;  ///< length
 
-  /// Of what is no ball: nothing is told of it.
+  /// The radius of a shape that is not a ball: the answer for it is a NaN.
   static constexpr double no_radius = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Four pairs of balls, which must stay where they are. Most pairs whose motions change are asked for more often than
-/// they meet, so a lower bound is what is wanted of them first. Known are the paths that
-/// BallSeparation::quick_failure_time() knows.
+/// Four pairs of balls. The balls are referred to, and must stay in place. Pairs are tested more often than they meet,
+/// since motions change before; so a lower bound is wanted first. It answers for the paths that
+/// BallSeparation::quick_failure_time() answers for.
 ///
-/// Of paths of degree 3 and above it tells nothing: their pairs are tested one by one.
+/// For paths of degree 3 and above the answer is a NaN: their pairs are tested one by one.
 ///
 /// Computed in registers of four doubles where the processor has them (found out when a program runs), else of two,
 /// with the same results bit by bit. Cost: some 50 or 90 instructions a pair.
@@ -42,9 +42,9 @@ class BallsTogether {
 
   /// Writes four numbers to `earliest`. Precondition: all four places have been put.
   ///
-  /// Of each place a time not before `now` and not after BallSeparation::first_approach(now, horizon); `never` where
-  /// they surely do not meet and are apart now, `-never` where they surely do not meet, but may be together now; a NaN
-  /// where it takes more care.
+  /// For each place a time not before `now` and not after BallSeparation::first_approach(now, horizon); `never` where
+  /// they certainly do not meet and are apart now, `-never` where they certainly do not meet, but may penetrate now; a
+  /// NaN where doubles do not decide.
   void earliest_approaches(double now, double horizon, double* earliest) const {
     if constexpr (PathDegree <= 2) {
       detail::find_approaches<PathDegree>(pairs_, now, horizon, earliest);

@@ -18,10 +18,10 @@ bool all_broken(double t, std::span<const C>... certificates) {
 /// The first double t in [now, horizon] just after which every certificate of all the spans is broken, or `never`.
 /// Preconditions: now is finite; there is a certificate.
 ///
-/// This is how contacts of convex shapes are found: shapes penetrate when no axis separates them any more. Whichever
-/// certificate still holds is a witness that nothing happens before it fails; so jump to its failure time and look
-/// again. Each jump passes a root, so there are at most (number of certificates) x (degree) of them. The answer does
-/// not depend on the order in which the certificates are looked at.
+/// This is how contacts of convex shapes are found: shapes penetrate when no axis separates them any more. While any
+/// certificate holds there is no contact; so the search jumps to its failure time and looks again. Each jump passes a
+/// root, so there are at most (number of certificates) x (degree) of them. The answer does not depend on the order in
+/// which the certificates are looked at.
 template <Certificate... C>
 double first_all_broken(double now, double horizon, std::span<const C>... certificates) {
   double t = now;

@@ -33,7 +33,7 @@ struct DistanceOrder {
     return apart(c, d, 0) + apart(c, d, 1) - (apart(a, b, 0) + apart(a, b, 1));
   }
 
-  /// Cheap and sufficient: it is the same pair twice.
+  /// Cheap and sufficient: both pairs are the same.
   bool vanishes() const requires(!requires { Path::sampled; }) { return (a == c && b == d) || (a == d && b == c); }
 };
 

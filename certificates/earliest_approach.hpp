@@ -15,7 +15,7 @@ struct FourPairs {
   const std::byte* b[4];
 };
 
-/// Some double of a ball, counted from 0.
+/// A double of a ball, by its place from 0.
 [[gnu::always_inline]] inline double number_of(const std::byte* ball, int i) {
   double x;
   __builtin_memcpy(&x, ball + i * static_cast<int>(sizeof x), sizeof x);
@@ -37,12 +37,12 @@ template <class Lanes>
 
 /// See BallsTogether::earliest_approaches(). `known` where the path is a line.
 ///
-/// Along a line f (the square of the distance less that of the sum of the radii) is convex: it has its first root where
-/// it falls, at c / (p + sqrt(p^2 - c s)) with c = f now, p half its rate downward and s that of v . v. Bounds in place
-/// of c, p and the discriminant give a lower bound of that, and whether it is a root at all need not be known.
+/// Along a line f (the square of the distance less that of the sum of the radii) is convex: its first root is where it
+/// falls, at c / (p + sqrt(p^2 - c s)) with c = f now, p = -f' / 2 now and s = v . v. Bounds in place of c, p and the
+/// discriminant give a lower bound of the root, whether or not there is one.
 ///
-/// Without a branch: whether balls approach is what processors cannot foresee. And with nothing that is not inlined
-/// (see four.hpp).
+/// Without a branch, since processors cannot predict whether balls approach; and all functions that it calls are
+/// inlined (see kds/simd/four_wide.hpp).
 template <class Lanes, class Bits>
 [[gnu::always_inline]] inline Lanes earliest_approach(const RelativeLine<Lanes>& line, Bits known, double now,
                                                       double horizon) {
@@ -57,11 +57,11 @@ template <class Lanes, class Bits>
   const Lanes discriminant = line.product * line.product - line.square * line.speeds + spare;
   const Lanes root = least / (square_root(discriminant) - line.product + error);
   const Lanes sum = now + root * (1 - 0x1p-50);
-  const Lanes t = sum - 0x1p-52 * magnitude(sum);  // not after what was rounded
+  const Lanes t = sum - 0x1p-52 * magnitude(sum);  // a lower bound in spite of rounding
 
   known &= line.M + line.W + line.radii < Line::small;
   const Bits apart = least > 0.0;
-  const Bits parts = (line.product > error) | (line.W == 0.0);               // or one stands as seen from the other
+  const Bits parts = (line.product > error) | (line.W == 0.0);               // or they move alike
   Lanes earliest = t <= horizon ? greater(t, all<Lanes>(now)) : no_meeting;  // t is a NaN where there is no root
   const Bits comes = apart & (line.product < -error);
   earliest = comes ? earliest : undecided;
@@ -103,7 +103,7 @@ template <class Lanes, int PathDegree>
   }
 }
 
-/// In registers of four doubles where the build and the processor have them, else as the next.
+/// In registers of four doubles where the build and the processor have them, else of two.
 template <int PathDegree>
 void find_approaches(const FourPairs& pairs, double now, double horizon, double* earliest);
 

@@ -1,4 +1,5 @@
-// Compiled for processors with AVX2, whatever the rest is compiled for: see kds/simd/four_wide.hpp for what that asks.
+// Compiled for processors with AVX2, whatever the rest is compiled for: see kds/simd/four_wide.hpp for the rules of
+// such a file.
 #include "certificates/earliest_approach.hpp"
 
 #ifdef __AVX2__

@@ -11,7 +11,7 @@ namespace kds::certificates {
 ///
 /// Minus the determinant of the rows (x, y, x^2 + y^2), x and y being a - d, b - d, c - d. Degree 4 for linear, 8 for
 /// quadratic paths. Laws: even permutations of a, b, c, d leave it as it is, odd ones change its sign; so the edge
-/// between triangles a, b, c and b, a, d has one certificate, from whichever side it is looked at. Paper: [Guibas85].
+/// between triangles a, b, c and b, a, d has the same certificate seen from either side. Paper: [Guibas85].
 template <class Path>
 struct InCircle {
   static constexpr int degree = 4 * Path::degree;
@@ -29,7 +29,7 @@ struct InCircle {
     return value([&](const Path& p, int axis) { return extended_difference(p.axis(axis), d.axis(axis), t); });
   }
 
-  /// Cheap and sufficient: two of the four are one.
+  /// Cheap and sufficient: two of the four are the same point.
   bool vanishes() const requires(!requires { Path::sampled; }) {
     return a == b || a == c || a == d || b == c || b == d || c == d;
   }

@@ -1,4 +1,4 @@
-// Two values in order, whatever kind of values they are.
+// Two values in order, for values of any kind.
 #pragma once
 
 #include "certificates/order.hpp"

@@ -10,7 +10,7 @@
 
 namespace kds::certificates {
 
-/// |b(t) - a(t)|^2 - (radius_a + radius_b)^2, with a bound on its error; not a number or unbounded where numbers are
+/// |b(t) - a(t)|^2 - (radius_a + radius_b)^2, with a bound on its error; a NaN or an infinite bound where numbers are
 /// out of range.
 ///
 /// In double-double, without a bound for each step: two axes at a time, and one bound for all. With u = 2^-53, m the
@@ -18,9 +18,10 @@ namespace kds::certificates {
 /// times, sums of two and products of two doubles are exact. The low part of a position is a sum of two errors and a
 /// product, known to 6 u^2 m; that of the difference, at most 4 u m, to 13 u^2 m. The square leaves out that of the low
 /// part and rounds what it adds, so that it is known to 59 u^2 m^2, with a low part of at most 9 u m^2; that of the sum
-/// of the radii to 6 u^2 R^2. The high parts are added without error; what that leaves (u (M^2 + R^2) thrice) and the
-/// low parts in six roundings, together 44 u^2 M^2 + 14 u^2 R^2. In all that is below 2^-99 (128 u^2) times M^2 + R^2,
-/// with room for the rounding of the bound. Underflow is as nothing against that within the range below.
+/// of the radii to 6 u^2 R^2. The high parts are added without error; the three remainders (at most u (M^2 + R^2) each)
+/// and the low parts are added with six roundings, together 44 u^2 M^2 + 14 u^2 R^2. In all that is below 2^-99 (128
+/// u^2) times M^2 + R^2, with room for the rounding of the bound. Within the range below underflow is negligible
+/// against that.
 inline Ball<DoubleDouble> extended_square_gap(const PointMotion<1>& a, const PointMotion<1>& b, double radius_a,
                                               double radius_b, double t);
 

@@ -44,12 +44,12 @@ struct Order {
     double margin;
   };
 
-  /// x(t) in doubles: two values whose difference exceeds the sum of their margins are in the order that they seem to
-  /// be.
+  /// x(t) in doubles: if two values differ by more than the sum of their margins, their order in doubles is the exact
+  /// one.
   ///
   /// Error bound: each term goes through at most 3 n + 1 roundings (the time since the start counts n times, Horner's
   /// rule 2 n, a difference of two values once), n the degree; 32 are charged, of the sum of all terms' magnitudes.
-  /// Underflow is nothing to 2^-1000, and an overflow fails every comparison.
+  /// Underflow is negligible against 2^-1000, and an overflow fails every comparison.
   static RoughValue rough_value(const Motion<Degree>& x, double t) {
     static_assert(Degree <= 8);
     const double elapsed = t - x.start;
@@ -72,11 +72,11 @@ struct Order {
     return gap > margin ? 1 : (-gap > margin ? -1 : 0);
   }
 
-  /// What failure_time() gives, bit for bit, or a NaN where it takes more care. It knows pairs that differ by a line
-  /// (straight motions, and those that share their accelerations) or a parabola.
+  /// What failure_time() gives, bit for bit, or a NaN where that needs the general methods. It answers for pairs whose
+  /// difference is a line (straight motions, and those that share their accelerations) or a parabola.
   double quick_failure_time(double now, double horizon) const;
 
-  /// Of two pairs together: see order_together.hpp.
+  /// For two pairs together: see order_together.hpp.
   static TwoTimes quick_failure_times(const Order& first, const Order& second, double now, double horizon) {
     if constexpr (Degree == 1) {
       return certificates::quick_failure_times(first.lower, first.upper, second.lower, second.upper, now, horizon);
@@ -125,8 +125,8 @@ double Order<Degree>::quick_failure_time(double now, double horizon) const {
   }
 }
 
-/// A line that is positive and does not fall stays so. Values that were in the other order before, as most that swap,
-/// differ by one that rises.
+/// A line that is positive and does not fall stays positive. Values that were in the other order before, as most are
+/// after a swap, differ by a line that rises.
 ///
 /// Error bound of the rate with starts of their own, in units of 2^-53 of the sum of the magnitudes: the time between
 /// the starts, the run, which is that times 2 a, and the two sums are rounded once each. 8 are charged for these 4.
@@ -149,14 +149,14 @@ double Order<Degree>::quick_failure_time_after_turn(double now, double horizon) 
   }
 }
 
-/// In doubles: on which side of zero now, and at the horizon? Where that is certain no line needs to be moved to the
-/// start of the other. What is left falls within the horizon, nearly always: first_double_after_line() says when.
+/// First the signs at now and at the horizon, in doubles: where these decide, no line has to be moved to the start of
+/// the other. The rest nearly always falls through zero within the horizon: first_double_after_line() says when.
 ///
 /// Error bound, with u = 2^-53. A run c1 (now - start) goes through two roundings, then the sum and the difference of
 /// the two positions through one each: 4.1 u of all magnitudes. Charged are 8 u, which leaves room for the rounding of
-/// `surely` and of the sum of the magnitudes. Underflow is nothing to a gap of 2^-1000; an overflow leaves an infinity
-/// or a NaN, which fails the tests. `fall` is a difference of doubles, so its sign is exact; it, its product and the
-/// time left are rounded by u each, for which the last factor is more than enough.
+/// `surely` and of the sum of the magnitudes. Underflow is negligible against a gap of 2^-1000; an overflow leaves an
+/// infinity or a NaN, which fails the tests. `fall` is a difference of doubles, so its sign is exact; it, its product
+/// and the time left are rounded by u each, for which the last factor is more than enough.
 template <int Degree>
 double Order<Degree>::quick_straight_failure_time(double now, double horizon) const requires(Degree == 1) {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();

@@ -70,7 +70,7 @@ template <int Degree>
   return p;
 }
 
-/// Spread, with u = 2^-53 and m the sum of the magnitudes of all that is added up, which is |g_late| + |g_early| +
+/// Spread, with u = 2^-53 and m the sum of the magnitudes of all summands, which is |g_late| + |g_early| +
 /// |h| (|r| + |b|) for g and |r_late| + |r_early| + 2 |b| for r. Their low parts, in units of u, are
 ///     b: 2 |b|      mean: |r| + 3 |b|      way: 5 |h| (|r| + |b|)      and so g: 7 m, r: 4 m,
 /// as every high part is rounded once, the sums and products of two doubles are exact, and h.low is u |h| at most. The

@@ -11,13 +11,13 @@
 
 namespace kds::certificates {
 
-/// What failure_time() gives for two pairs in order, bit for bit, or a NaN where it takes more care: for both, unless
-/// the motions of each pair have a common start. Precondition: now <= horizon.
+/// What failure_time() gives for two pairs in order, bit for bit, or a NaN where that needs the general methods; a NaN
+/// for both, unless the motions of each pair have a common start. Precondition: now <= horizon.
 ///
-/// Two lanes do what Order::quick_failure_time() does for one pair, but always to the end: whether values will meet is
-/// what processors cannot foresee. Bounds on errors are derived in failure_time_known_line.hpp, but for that of the
-/// gap, with u = 2^-53: gap, fall and the time since the start are rounded by u each, so their run is known to 3 u, and
-/// the sum to 4 u (|gap| + |run|). Charged are 8 u, as in Order.
+/// Two lanes do what Order::quick_failure_time() does for one pair, but without early exits, since processors cannot
+/// predict whether values will meet. Error bounds are derived in failure_time_known_line.hpp, except that of the gap,
+/// with u = 2^-53: gap, fall and the time since the start are rounded by u each, so their run is known to 3 u, and the
+/// sum to 4 u (|gap| + |run|). Charged are 8 u, as in Order.
 TwoTimes quick_failure_times(const Motion<1>& lower_1, const Motion<1>& upper_1, const Motion<1>& lower_2,
                              const Motion<1>& upper_2, double now, double horizon);
 
@@ -25,7 +25,7 @@ TwoTimes quick_failure_times(const Motion<1>& lower_1, const Motion<1>& upper_1,
 
 namespace detail {
 
-/// See first_double_after_line(); NaN where it does not tell.
+/// See first_double_after_line(); a NaN where that does not decide.
 [[gnu::always_inline]] inline Two first_doubles_after_lines(TwoDoubleDoubles g, TwoDoubleDoubles r, Two epoch) {
   constexpr std::int64_t first_26_bits = ~((std::int64_t{1} << 27) - 1);
   constexpr std::int64_t exponent = 0x7ff0000000000000;

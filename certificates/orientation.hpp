@@ -29,7 +29,7 @@ struct Orientation {
     return to(b, 0) * to(c, 1) - to(b, 1) * to(c, 0);
   }
 
-  /// Cheap and sufficient: two of the three are one.
+  /// Cheap and sufficient: two of the three are the same point.
   bool vanishes() const requires(!requires { Path::sampled; }) { return a == b || b == c || c == a; }
 };
 

@@ -1,4 +1,4 @@
-// Certificates of points of the plane whose failure times the library has compiled.
+// Certificates of points of the plane whose failure times are compiled into the library.
 #pragma once
 
 #include "certificates/direction_order.hpp"

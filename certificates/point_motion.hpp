@@ -13,8 +13,8 @@
 
 namespace kds::certificates {
 
-/// The coefficients of a motion: an array of vectors, of which those that are left out are zero when the first ones are
-/// given. If none is given they are unset, as vectors of Eigen are: so arrays of motions cost nothing to make.
+/// The coefficients of a motion: an array of vectors. If only the first ones are given, the others are zero; if none is
+/// given, all are uninitialised, as vectors of Eigen are, so that arrays of motions cost nothing to make.
 template <int Degree>
 struct PointCoefficients : std::array<Eigen::Vector3d, std::size_t{Degree} + 1> {
   using Vector = Eigen::Vector3d;
@@ -40,7 +40,7 @@ struct PointCoefficients : std::array<Eigen::Vector3d, std::size_t{Degree} + 1> 
 
 }  // namespace kds::certificates
 
-/// As of the array that they are: for structured bindings.
+/// Element access, for structured bindings.
 template <int Degree>
 struct std::tuple_size<kds::certificates::PointCoefficients<Degree>>
     : std::tuple_size<std::array<Eigen::Vector3d, std::size_t{Degree} + 1>> {};
@@ -53,7 +53,7 @@ namespace kds::certificates {
 
 namespace detail {
 
-/// Of a piece of a trajectory, s. Throws std::invalid_argument where it is not one.
+/// The length of a piece of a trajectory, s. Throws std::invalid_argument if it is not positive and finite.
 inline double duration_of_piece(const char* function, double t0, double t1) {
   const double duration = t1 - t0;
   if (duration > 0 && std::isfinite(duration) && std::isfinite(t0)) return duration;
@@ -77,14 +77,14 @@ struct PointMotion {
   PointCoefficients<Degree> coefficients;  ///< length, length/s, length/s^2 ...; zero from the first left out on
   double start = 0;                        ///< s
 
-  /// Through a position (length) at time t (s) with a velocity (length/s) that stays.
+  /// Through a position (length) at time t (s) with a constant velocity (length/s).
   static PointMotion line(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
                           double t = 0) requires(Degree >= 1) {
     return {{position, velocity}, t};
   }
 
-  /// Through a position (length) at time t (s) with a velocity (length/s) and an acceleration (length/s^2), all of it:
-  /// the coefficient is half of that.
+  /// Through a position (length) at time t (s) with a velocity (length/s) and a constant acceleration (length/s^2), of
+  /// which the coefficient is half.
   static PointMotion parabola(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
                               const Eigen::Vector3d& acceleration, double t = 0) requires(Degree >= 2) {
     return {{position, velocity, 0.5 * acceleration}, t};
@@ -93,10 +93,11 @@ struct PointMotion {
   /// From place p0 with velocity v0 at time t0 to place p1 with velocity v1 at t1, the only cubic that does
   /// (Hermite's): a piece of a trajectory that is given by places and velocities.
   ///
-  /// Precondition: t0 < t1, all finite (else std::invalid_argument). It starts at t0, as given, and goes on after t1.
-  /// There it is off p1 by less than 2^-48 (|p0| + |p1| + T (|v0| + |v1|)) in each coordinate, T = t1 - t0, and off v1
-  /// by less than three times that over T: some 20 roundings of the terms of its coefficients, which are up to three
-  /// times those sums, and of Horner's rule. Where the next piece begins so little aside, a world takes it for no jump.
+  /// Precondition: t0 < t1, all finite (else std::invalid_argument). It starts at t0, exactly as given, and goes on
+  /// after t1. There it is off p1 by less than 2^-48 (|p0| + |p1| + T (|v0| + |v1|)) in each coordinate, T = t1 - t0,
+  /// and off v1 by less than three times that over T: some 20 roundings of the terms of its coefficients, which are up
+  /// to three times those sums, and of Horner's rule. A world does not take so small a gap to the next piece for a
+  /// jump.
   static PointMotion cubic(const Eigen::Vector3d& p0, const Eigen::Vector3d& v0, const Eigen::Vector3d& p1,
                            const Eigen::Vector3d& v1, double t0, double t1) requires(Degree >= 3) {
     const double duration = detail::duration_of_piece("PointMotion::cubic", t0, t1);
@@ -110,8 +111,8 @@ struct PointMotion {
     return motion;
   }
 
-  /// The same with accelerations a0 and a1 (all of them) too: Hermite's quintic. Pieces that share places, velocities
-  /// and accelerations make a path of which even those do not jump.
+  /// The same with accelerations a0 and a1 (not halves) too: Hermite's quintic. Pieces that share places, velocities
+  /// and accelerations make a path whose acceleration is continuous.
   ///
   /// Off p1 by less than 2^-45 (|p0| + |p1| + T (|v0| + |v1|) + T^2 (|a0| + |a1|)), off v1 by less than five times that
   /// over T, off a1 by less than twenty times that over T^2.
@@ -119,7 +120,7 @@ struct PointMotion {
                              const Eigen::Vector3d& p1, const Eigen::Vector3d& v1, const Eigen::Vector3d& a1, double t0,
                              double t1) requires(Degree >= 5) {
     const double duration = detail::duration_of_piece("PointMotion::quintic", t0, t1);
-    // What is left of the way, the velocity and the acceleration when a parabola has had its share, times T^k.
+    // Position, velocity and acceleration at t1 minus those of the parabola through the data at t0, times T^k.
     const Eigen::Vector3d bend = a0 * duration * duration;
     const Eigen::Vector3d way = p1 - p0 - v0 * duration - 0.5 * bend;
     const Eigen::Vector3d rate = (v1 - v0) * duration - bend;
@@ -189,7 +190,7 @@ struct PointMotion {
     return result;
   }
 
-  /// Without a branch for each number: the difference of one with itself is zero unless it is infinite or none.
+  /// Without a branch for each number: the difference of a number with itself is zero unless it is infinite or a NaN.
   bool finite() const {
     double zero = start - start;
     for (const auto& c : coefficients) zero += (c - c).sum();
@@ -201,7 +202,7 @@ struct PointMotion {
   }
 };
 
-/// The path of the centre of a body that moves like this: the motion itself. Other motions have another.
+/// The path of the centre of a body with this motion: the motion itself. Other types of motion define their own.
 template <int Degree>
 const PointMotion<Degree>& path_of(const PointMotion<Degree>& motion) {
   return motion;

@@ -10,8 +10,8 @@ namespace kds::certificates {
 /// An s, rounded down, such that c0 + c1 x + c2 x^2 > 0 for all x in [0, s); near the first root, `never` if there is
 /// none, 0 unless c0 > 0.
 ///
-/// Rounding: what is added to the discriminant, or taken from it, is eight times what it is computed with, so that a
-/// double root is found early; the quotient is taken off by far more than it rounds.
+/// Rounding: the discriminant is changed by eight times its rounding error, to the safe side, so that a double root is
+/// found early; the quotient is reduced by far more than its rounding error.
 inline double positive_for(double c0, double c1, double c2) {
   if (!(c0 > 0)) return 0;
   if (c1 >= 0 && c2 >= 0) return never;
@@ -27,7 +27,7 @@ inline double positive_for(double c0, double c1, double c2) {
     s = 2 * c0 / (std::sqrt(discriminant) - c1);
   }
   s *= 1 - 0x1p-40;
-  return s >= 0 ? s : 0;  // not a NaN, of what is too large
+  return s >= 0 ? s : 0;  // 0 for a NaN, which numbers that are too large leave
 }
 
 }  // namespace kds::certificates

@@ -1,4 +1,4 @@
-// The path of one ball as seen from another, where that is a line.
+// The motion of one ball relative to another, where that is a line.
 #pragma once
 
 #include "kds/arithmetic/double_double.hpp"
@@ -14,8 +14,8 @@ struct MotionNumbers {
   Number start;
 };
 
-/// The path of b as seen from a, about now, if that is a line: r + v (t - now). Of one pair, in doubles, or of several,
-/// lane by lane.
+/// The motion of b relative to a, about now, if that is a line: r + v (t - now). Of one pair, in doubles, or of
+/// several, lane by lane.
 ///
 /// Error bounds, with u = 2^-53. A coordinate at `now` is evaluated by Horner's rule with an elapsed time known to u:
 /// at most 6 u of the sum of its terms' magnitudes, and the difference of two adds u; so r is known to 8 u m, where m

@@ -1,5 +1,6 @@
-// Products, sums and lengths of vectors in one fixed order. Eigen's own order follows the vector instructions that it
-// is told to use, and with it the last bit: whatever reaches an event must not depend on that (docs/testing.md).
+// Products, sums and lengths of vectors in one fixed order. Eigen's own order depends on the vector instructions that
+// it is compiled for, and with it the last bit: a number that events depend on must not vary like that
+// (docs/testing.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +17,7 @@ inline Eigen::Vector3d cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
 }
 inline double squared_norm(const Eigen::Vector3d& v) { return dot(v, v); }
 inline double norm(const Eigen::Vector3d& v) { return std::sqrt(squared_norm(v)); }
-/// Zero stays zero, and so does what is so short that its square is lost.
+/// Zero stays zero, and so does a vector so short that its square underflows.
 inline Eigen::Vector3d normalized(const Eigen::Vector3d& v) {
   const double length = norm(v);
   return length > 0 ? Eigen::Vector3d(v / length) : v;

@@ -14,23 +14,23 @@
 
 namespace kds::certificates {
 
-/// The segment from -length * direction to length * direction: the product as it is, without a rounding. Of a length >
-/// 0 and a direction that is not zero.
+/// The segment from -length * direction to length * direction: the exact product, without a rounding. Preconditions:
+/// length > 0, and the direction is not zero.
 struct Generator {
   Eigen::Vector3d direction;
   double length;
 };
 
-/// A zonotope is the sum of so many segments at most: of a box and a segment.
+/// The greatest number of segments: the sum of a box and a segment has four.
 inline constexpr std::size_t most_generators = 4;
 using Generators = std::span<const Generator>;
 
-/// A cell of a zonotope: a vertex, a segment or a parallelogram, in which each generator is at one of its ends, but up
-/// to two, which sweep it.
+/// A cell of a zonotope: a vertex, a segment or a parallelogram, in which each generator is at one of its ends, except
+/// up to two that sweep it.
 struct ZonotopeCell {
-  std::array<std::int8_t, most_generators> end{};  ///< -1 or 1; 0 of those that sweep
-  std::array<std::uint8_t, 2> swept{};             ///< which these are
-  std::uint8_t dimension = 0;                      ///< how many
+  std::array<std::int8_t, most_generators> end{};  ///< -1 or 1; 0 for those that sweep the cell
+  std::array<std::uint8_t, 2> swept{};             ///< the generators that sweep it
+  std::uint8_t dimension = 0;                      ///< how many sweep it
 };
 
 namespace detail {
@@ -117,8 +117,8 @@ struct CellDistance {
   }
 };
 
-/// The point b - a is beyond one end of the segment that a cell is, or of one of the two that sweep it, as seen along
-/// that end: across the other one and in the plane of both.
+/// The point b - a is beyond one end of the segment that a cell is, or of one of the two that sweep it, measured along
+/// the direction that is perpendicular to the other one in the plane of both.
 ///
 /// With x from the cell's centre and l the length of the generator u: side u . x >= l u^2; or with m = (u x v) x v,
 /// whose product with u is -(u x v)^2, side m . x >= l (u x v)^2.
@@ -129,7 +129,7 @@ struct CellSide {
   const PointMotion<PathDegree>& b;
   Generators generators;
   ZonotopeCell cell;
-  std::size_t along;  ///< which of those that sweep the cell
+  std::size_t along;  ///< index in `swept`
   double side;        ///< +1 or -1
 
   template <class Number>

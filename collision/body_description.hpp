@@ -1,4 +1,4 @@
-// What a body is when it is added to a world.
+// The description of a body that is added to a world.
 #pragma once
 
 #include "certificates/turning/rigid_motion.hpp"
@@ -25,14 +25,14 @@ enum class BoundingVolume : std::uint8_t {
   sphere,  ///< the box around the bounding sphere: right for a shape in any orientation
 };
 
-/// The category of bodies that are given none.
+/// The category of bodies for which none is given.
 inline constexpr std::uint32_t default_category = 1;
 
-/// Of angular velocities, rad/s.
+/// Greatest magnitude of the components of an angular velocity, rad/s.
 inline constexpr double largest_rate = 0x1p200;  ///< 1.6e60
 
-/// Of a body about its centre, mass * length^2: one moment, the same about all axes; or a tensor, in the axes of the
-/// shape; or nothing.
+/// Inertia of a body about its centre, mass * length^2: one moment, the same about all axes; or a tensor, in the axes
+/// of the shape; or not given.
 class Inertia {
  public:
   Inertia() = default;
@@ -53,40 +53,40 @@ class Inertia {
 template <class BodyMotionType>
 struct BasicBodyDescription {
   using Motion = BodyMotionType;
-  /// Returns a box that holds the body from time t until the box's valid_until. It must be finite and valid_until later
-  /// than t, else the call that asked for it, step() or update_motion(), throws std::invalid_argument. It may look at
-  /// the world but must not change it: to add, remove or move bodies, to run, save or load the world from within it
-  /// throws std::logic_error. After a bad box, or whatever else comes out of the function, the world can no longer be
-  /// used: all that would run, change, check or save it throws std::logic_error and says why. It can still be looked
-  /// at, and destroyed.
+  /// Returns a box that contains the body from time t until the box's valid_until. It must be finite and valid_until
+  /// later than t, otherwise the call that needs the box, step() or update_motion(), throws std::invalid_argument. It
+  /// may look at the world but must not change it: to add, remove or move bodies, to run, save or load the world from
+  /// within it throws std::logic_error. After a bad box, or an exception from the function, the world cannot be used
+  /// further: all functions that would run, change, check or save it throw std::logic_error and say why. It can still
+  /// be queried, and destroyed.
   using BoxFunction = std::function<KineticBox<Motion::degree>(double t, const Motion& motion)>;
 
   Shape shape;
-  /// Unit to 1e-6; the body keeps it. Of bodies that turn it has to be left as it is: their motions say how they are
-  /// turned.
+  /// A unit quaternion up to 1e-6: the body's orientation, which it keeps. For bodies that turn it must not be given:
+  /// their motions contain the orientation.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   /// One or more pieces, each starting later than the one before. The first may start in the past; if it starts in the
   /// future, the body enters then.
   std::vector<Motion> motion{};
   double mass = 1;  ///< > 0, unless the body is fixed
-  /// Of bodies that turn: the moment about every axis through the centre, > 0, or a tensor that checked_inertia() in
-  /// response/inertia.hpp takes. Neither, or 0: that of a solid of the shape and mass, which must have its centre of
-  /// mass at the origin of the shape, up to inertia_tolerance of its radius. If contacts move the body, the moments of
-  /// a tensor, given or not, have to be equal (is_spherical()), as those of balls and cubes are: a body whose moments
-  /// differ does not turn about a fixed axis when it is free.
+  /// For bodies that turn: the moment about every axis through the centre, > 0, or a tensor that checked_inertia() in
+  /// response/inertia.hpp accepts. If neither is given, or 0: that of a solid with the shape and mass, whose centre of
+  /// mass must be at the origin of the shape, up to inertia_tolerance of its radius. If contacts move the body, the
+  /// moments of a tensor, given or not, have to be equal (is_spherical()), as those of balls and cubes are: a body
+  /// whose moments differ does not turn about a fixed axis when it is free.
   Inertia inertia{};
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.
   double restitution = 1;
-  /// Of bodies that turn: Coulomb's coefficient, in [0, 2^205]: the tangential part of an impulse is at most so many
-  /// times the normal one. Of two bodies the lower counts, so either's 0 makes a contact smooth; walls are smooth.
+  /// For bodies that turn: Coulomb's coefficient, in [0, 2^205]: the tangential part of an impulse is at most this many
+  /// times the normal one. Of two bodies the lower counts, so a 0 of either makes the contact smooth; walls are smooth.
   double friction = 0;
-  /// Of bodies that turn, in [-1, 1]; of two bodies the lower counts. How much of the slip a contact turns round, where
-  /// friction suffices: 1 all (perfectly rough), 0 none (what sticks stays), -1 leaves the slip as it is (smooth). The
-  /// law, and why energy never grows: response/turning_impulse.hpp.
+  /// For bodies that turn, in [-1, 1]; of two bodies the lower counts. The part of the slip velocity that a contact
+  /// reverses, where friction suffices: 1 all (perfectly rough), 0 none (the bodies stick), -1 leaves the slip as it is
+  /// (smooth). The law, and why energy never grows: response/turning_impulse.hpp.
   double tangential_restitution = 0;
   std::uint32_t category = default_category;  ///< bits
-  std::uint32_t collides_with = ~0u;  ///< a pair is tested if each one's category shares a bit with the other's mask
+  std::uint32_t collides_with = ~0u;  ///< mask; a pair is tested if each one's category shares a bit with the other's
   /// Passes through all bodies and walls, and no other body changes its motion: its contacts and separations are
   /// reported as in mode `none`, whatever the response of the world.
   bool sensor = false;
@@ -139,7 +139,7 @@ template <int Degree>
   if (!in_range(motion.path)) refuse_motion(motion.path, name + ".path");
   const auto& q = motion.orientation.coeffs();
   std::ostringstream text;
-  const bool finite = (q - q).sum() == 0;  // of NaN the greatest component may be another
+  const bool finite = (q - q).sum() == 0;  // max may ignore a NaN, the sum does not
   if (!(finite && q.cwiseAbs().maxCoeff() >= smallest_size && q.cwiseAbs().maxCoeff() <= largest_magnitude)) {
     text << name << ".orientation: must be finite, and its greatest component between 2^-205 and 2^205 in magnitude";
   } else {

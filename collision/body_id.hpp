@@ -1,4 +1,4 @@
-// The names of bodies: ids, which callers hold, and slots, by which the inside of a world knows them.
+// The names of bodies: ids, which callers use, and slots, which the parts of a world use.
 #pragma once
 
 #include <bit>
@@ -6,8 +6,8 @@
 
 namespace kds::collision {
 
-/// Where a body is kept: the number by which broad phases, pairs and queues know it. When the body has been removed,
-/// another may get its slot.
+/// The place of a body in arrays: the number by which broad phases, pairs and queues refer to it. When the body has
+/// been removed, another may get its slot.
 using BodySlot = std::uint32_t;
 
 /// The slot of no body.
@@ -17,8 +17,9 @@ inline constexpr BodySlot no_body = ~BodySlot{0};
 /// generation is how many bodies were removed from that slot before it. So bodies are 0, 1, 2, ... as long as none has
 /// been removed.
 ///
-/// It is a plain number, for callers to store and count as they like, so the compiler does not tell ids from slots. A
-/// world turns the one into the other at its border only, by `Bodies::id_of` and `Bodies::slot_of`.
+/// It is a plain number, which callers may store and count as they like, so the compiler does not distinguish ids from
+/// slots. A world converts between the two only in its public functions and reports, by `Bodies::id_of` and
+/// `Bodies::slot_of`.
 using BodyId = std::uint64_t;
 
 inline constexpr int slot_bits = 32;
@@ -27,7 +28,7 @@ constexpr BodyId body_id(std::uint32_t generation, BodySlot slot) { return BodyI
 constexpr BodySlot body_slot(BodyId id) { return static_cast<BodySlot>(id); }
 constexpr std::uint32_t body_generation(BodyId id) { return static_cast<std::uint32_t>(id >> slot_bits); }
 
-/// Ids in the order in which events of one time are told: by slot, and of one slot by generation.
+/// The order of ids in which events of one time are reported: by slot, and within one slot by generation.
 constexpr std::uint64_t body_rank(BodyId id) { return std::rotl(id, slot_bits); }
 
 }  // namespace kds::collision

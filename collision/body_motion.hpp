@@ -1,4 +1,4 @@
-// How bodies move: what a world asks of a motion.
+// How bodies move: what a world needs of a type of motion.
 #pragma once
 
 #include "certificates/point_motion.hpp"
@@ -12,15 +12,16 @@ namespace detail {
 struct AnyArchive {};  ///< stands for archives in a concept
 }  // namespace detail
 
-/// A motion that the bodies of a world may have: a path of the centre, which is a polynomial, and whatever else moves.
+/// A motion that the bodies of a world may have: the path of the centre, which is a polynomial, and anything else that
+/// moves.
 ///
 /// 1. path_of(motion), found where the motion is declared, is the path of the centre: the point about which shapes are
-///    placed. Its start is that of the whole motion, and all that the motion says holds from then on. The path of a
-///    PointMotion is the motion itself.
-/// 2. finite(): all numbers are, and they mean a motion.
-/// 3. restarted(t) starts at t and goes on as this one does, up to the rounding of its numbers; its path is the path of
-///    this one restarted, bit for bit.
-/// 4. Two that are equal are the same at all times, bit for bit.
+///    placed. Its start is that of the whole motion, which is valid from then on. The path of a PointMotion is the
+///    motion itself.
+/// 2. finite(): all numbers are finite, and they describe a motion.
+/// 3. restarted(t) starts at t and continues this one, up to the rounding of its numbers; its path is the path of this
+///    one restarted, bit for bit.
+/// 4. Two motions that compare equal have the same values at all times, bit for bit.
 /// 5. archive_members() writes and reads all numbers (kds/framework/snapshot.hpp).
 template <class Motion>
 concept BodyMotion = std::default_initializable<Motion> && std::copyable<Motion> &&
@@ -37,8 +38,8 @@ concept BodyMotion = std::default_initializable<Motion> && std::copyable<Motion>
 template <class Motion>
 using PathOf = certificates::PointMotion<Motion::degree>;
 
-/// Whether bodies that move like this may turn. Those of a PointMotion keep their orientation, and the motion is the
-/// path.
+/// Whether bodies with this type of motion may turn. Those of a PointMotion keep their orientation, and the motion is
+/// the path.
 template <class Motion>
 inline constexpr bool turns = !std::is_same_v<Motion, PathOf<Motion>>;
 

@@ -1,9 +1,9 @@
-// Which degrees of paths the engine is compiled for.
+// The degrees of paths that the library is compiled for.
 //
 // A world is a template of the motion of its bodies (motions.hpp); broad phases, kinetic boxes and the tests of paths
 // are templates of the degree of a path. All are compiled once: for straight paths and parabolas in the library
-// kds::collision, for cubics, quartics and quintics (splines) in kds::collision_splines, from the same files. Whoever
-// links only the first pays nothing for the others.
+// kds::collision, for cubics, quartics and quintics (splines) in kds::collision_splines, from the same files. A program
+// that links only the first has no cost from the others.
 #pragma once
 
 /// KDS_FOR_EACH_DEGREE(instantiate), in a .cpp: instantiate(degree) for the degrees of the library that is compiled.

@@ -1,8 +1,8 @@
-// Which motions the engine is compiled for.
+// The types of motion that the library is compiled for.
 //
-// A world and its parts are templates of how bodies move (body_motion.hpp), compiled once for each of these; what is
-// about paths alone is a template of their degree (degrees.hpp). Those of bodies that turn are in a library of their
-// own, kds::collision_turning, from the same files: whoever does not link it pays nothing for them.
+// A world and its parts are templates of the type of motion (body_motion.hpp), compiled once for each of these; code
+// that needs only paths is a template of their degree (degrees.hpp). Those for bodies that turn are in a separate
+// library, kds::collision_turning, from the same files: a program that does not link it has no cost from them.
 #pragma once
 
 #include "certificates/point_motion.hpp"

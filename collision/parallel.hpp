@@ -9,8 +9,8 @@
 
 namespace kds::collision {
 
-/// How many threads to use for this many items, at most `most` (0: as many as the machine has). Each has more work than
-/// it costs to start it.
+/// How many threads to use for this many items, at most `most` (0: as many as the machine has): so many that the work
+/// of each is worth starting it.
 inline std::size_t threads_for(std::size_t items, std::size_t most) {
   constexpr std::size_t items_per_thread = 4096;  // some 0.1 us each; to begin and end a thread takes some 50 us
   if (most == 1 || items < 2 * items_per_thread) return 1;
@@ -19,8 +19,8 @@ inline std::size_t threads_for(std::size_t items, std::size_t most) {
 }
 
 /// Cuts [0, items) into `threads` parts of equal size, in order, and calls work(part, begin, end) for parts 0, 1 ...,
-/// each in a thread of its own; the last part is this thread's. No part may depend on what another one changes. Returns
-/// when all are done; if some threw, throws what the lowest of them threw.
+/// each in a thread of its own; this thread does the last part. No part may depend on what another one changes. Returns
+/// when all are done; if some threw, throws the exception of the lowest of them.
 template <class Work>
 void in_parts(std::size_t items, std::size_t threads, const Work& work) {
   if (threads <= 1) return work(std::size_t{0}, std::size_t{0}, items);

@@ -10,21 +10,21 @@ namespace kds::collision {
 
 /// Kinds of work ([Coming06] Figure 8).
 enum class Work : std::size_t {
-  update,  ///< recomputing bounding volumes, telling the structures of new motions
+  update,  ///< recomputing bounding volumes, giving new motions to the structures
   sort,    ///< swaps and sorting
   prune,   ///< keeping the set of active pairs
   test,    ///< dynamic intersection tests
   other,   ///< response, callbacks, the clock
 };
 
-/// CPU seconds, by kind of work, of the thread that calls change_to(). Each instant is charged to one kind, the
-/// innermost that is being done, when the work changes. Reading the clock costs some 0.3 us.
+/// CPU seconds, by kind of work, of the thread that calls change_to(). Each instant is charged to one kind, that of the
+/// innermost work; time is added up when the kind changes. Reading the clock costs some 0.3 us.
 class Profile {
  public:
   /// Up to the last change of work.
   double seconds(Work work) const { return seconds_[static_cast<std::size_t>(work)]; }
 
-  /// Begins other work and says what was being done.
+  /// Begins another kind of work and returns the previous one.
   Work change_to(Work work) {
     const double now = cpu_seconds();
     seconds_[static_cast<std::size_t>(current_)] += now - since_;

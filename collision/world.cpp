@@ -1,4 +1,4 @@
-// The clock of the world: which event is next, and what the callers of the engine see.
+// The clock of the world: which event is next, and the functions that callers use.
 #include "collision/world.hpp"
 
 #include "collision/motions.hpp"
@@ -19,7 +19,7 @@
 namespace kds::collision {
 namespace {
 
-/// The same options.
+/// Returns the options, or throws.
 const WorldOptions& validated(const WorldOptions& options) {
   require_strict_arithmetic("World");
   validate(options);
@@ -63,7 +63,7 @@ void BasicWorld<Motion>::make_broad_phase() {
   pairs_.expect_exact(broad_phase_->exact());
 }
 
-/// A broad phase of the bodies as they are now; pairs are listed as it finds them.
+/// Makes a broad phase for the bodies as they are now; pairs are listed as it finds them.
 template <class Motion>
 void BasicWorld<Motion>::rebuild_broad_phase() {
   make_broad_phase();
@@ -82,8 +82,8 @@ void BasicWorld<Motion>::rebuild_broad_phase() {
   pairs_.list_anew(found.pairs);
 }
 
-/// A search for an event without a limit has found none, and gone beyond all times: the clock is put back to where it
-/// was. Nothing has happened since but that bounding volumes have met and parted.
+/// A search for an event without a limit has found none, and gone beyond all times: the clock is put back. In
+/// between, bounding volumes have met and parted, and nothing else has happened.
 template <class Motion>
 void BasicWorld<Motion>::go_back(double t) {
   if (clock_.now == t) return;
@@ -95,7 +95,7 @@ void BasicWorld<Motion>::go_back(double t) {
 template <class Motion>
 void BasicWorld<Motion>::set_horizon(double limit) {
   if (!(limit > clock_.horizon)) return;
-  constexpr double farthest = 1;  // s, of bodies that turn, whose contacts are searched turn by turn
+  constexpr double farthest = 1;  // s, for bodies that turn, whose contacts are searched turn by turn
   const double window = turns<Motion> ? std::min(options_.window, farthest) : options_.window;
   clock_.horizon = std::max(limit, clock_.horizon + window);
   broad_phase_->extend_horizon(clock_.now, clock_.horizon);
@@ -120,7 +120,7 @@ bool BasicWorld<Motion>::step(double limit) {
   if (turns<Motion> && limit == never) {
     throw std::invalid_argument("World::step: bodies that turn may come near each other for ever, so it needs a limit");
   }
-  if (limit < clock_.now) {  // Up to there nothing happens, as next_time() has found.
+  if (limit < clock_.now) {  // next_time() has found that nothing happens until then.
     callers_now_ = std::max(callers_now_, limit);
     return false;
   }
@@ -128,10 +128,10 @@ bool BasicWorld<Motion>::step(double limit) {
   return guarded_event(limit, Search::makes);
 }
 
-/// The clock follows what has been done, even where a listener throws.
+/// The clock follows the events that have been processed, even if a listener throws.
 template <class Motion>
 bool BasicWorld<Motion>::guarded_event(double limit, Search search) {
-  const kds::detail::RaisedFlag stepping(stepping_);  // Callbacks are called from here alone.
+  const kds::detail::RaisedFlag stepping(stepping_);  // Callbacks are called only from here.
   try {
     const bool found = next_event(limit, search);
     if (search == Search::makes) callers_now_ = clock_.now;
@@ -158,7 +158,7 @@ inline typename BasicWorld<Motion>::Due BasicWorld<Motion>::next_due() const {
   return first;
 }
 
-/// Where the time of a task is no more than a bound, its part finds the exact time: true if so.
+/// If the time of a task is only a bound, its part finds the exact time; true if it was a bound.
 template <class Motion>
 bool BasicWorld<Motion>::certify(Task task) {
   return (task == Task::meet_or_separate && pairs_.certify()) || (task == Task::meet_wall && walls_.certify());
@@ -170,7 +170,7 @@ bool BasicWorld<Motion>::happens(Task task) const {
   return task != Task::renew_volume || volumes_.from_caller(volumes_.next_body());
 }
 
-/// Does what is due. True if it ends a step.
+/// Does a task that is due. True if it ends a step.
 template <class Motion>
 bool BasicWorld<Motion>::process(Task task) {
   switch (task) {
@@ -203,19 +203,19 @@ bool BasicWorld<Motion>::next_event(double limit, Search search) {
   const bool looks = search == Search::looks;
   idle_until_ = -never;
   bool looked_ahead = false;
-  double reached = callers_now_;  // the clock, should nothing come
+  double reached = callers_now_;  // the clock if no event follows
   for (;;) {
     if (bodies_.any_waits()) enter_new_bodies();
     if (!resting_.solved()) resting_.solve();
     if (!pairs_.tested()) pairs_.test();
     const Due due = next_due();
-    // What is pending is of this instant, all of which has to be known before any of it is told.
+    // Pending work is of this instant: all that happens at it has to be known before any of it is reported.
     const bool reports = !reports_.empty();
-    // Nothing is known beyond the horizon: look that far, then farther.
+    // Events beyond the horizon are not known: process up to it, then extend it.
     const double next = std::min({reports ? clock_.now : limit, clock_.horizon, due.time});
     const bool is_due = due.time == next && next < never;
     if (is_due && certify(due.task)) continue;
-    // A piece that starts now is the motion at t+, so the broad phase may not run past it under the old one.
+    // A piece that starts now is the motion at t+, so it starts before the broad phase runs past this time.
     const bool piece = is_due && due.task == Task::start_pieces;
     const double until = next == never ? broad_phase_->next_time() : piece ? next_down(next) : next;
     if (until == never) {
@@ -238,7 +238,7 @@ bool BasicWorld<Motion>::next_event(double limit, Search search) {
       if (process(due.task)) return true;
       if (due.task == Task::end_resting) reached = clock_.now;
     } else if (next < limit) {
-      // Without a limit a window farther, and where nothing happens in that either, as far as there is time.
+      // Without a limit: one window farther, and if nothing happens in that either, for all time.
       set_horizon(limit == never && !looked_ahead ? clock_.horizon + options_.window : limit);
       looked_ahead = true;
     } else {
@@ -248,7 +248,7 @@ bool BasicWorld<Motion>::next_event(double limit, Search search) {
   }
 }
 
-/// What is found is kept in queues and lists, as all that is known of the time to come.
+/// The result stays in queues and lists, like all that is known of later times.
 template <class Motion>
 double BasicWorld<Motion>::next_time() const {
   require_idle("World::next_time");
@@ -299,7 +299,7 @@ bool BasicWorld<Motion>::advance_for(double budget_seconds, double t) {
   return true;
 }
 
-/// All that are due at once: bodies that jump together are not apart in between.
+/// Starts all pieces that are due in one go: bodies that jump together are not apart in between.
 template <class Motion>
 void BasicWorld<Motion>::start_pieces() {
   const auto pieces = scripts_.take_next();
@@ -334,8 +334,8 @@ void BasicWorld<Motion>::report_next() {
     case Reports::Kind::separation:
       ++counters_.separations;
       return tell([&](Listener& listener) { listener.separation(*this, pair); });
-    case Reports::Kind::held:
-      return tell([&](Listener& listener) { listener.held(*this, pair); });
+    case Reports::Kind::rebound_suppressed:
+      return tell([&](Listener& listener) { listener.rebound_suppressed(*this, pair); });
     case Reports::Kind::wakes:
     case Reports::Kind::rests:
       return report_resting(event);
@@ -363,7 +363,7 @@ void BasicWorld<Motion>::report_resting(const Reports::Report& event) {
   tell([&](Listener& listener) { begins ? listener.rests(*this, pair) : listener.wakes(*this, pair); });
 }
 
-/// Callers have changed something: what was known of the time until the next event is not. Edits by callbacks are
+/// Callers have changed something, so the time until the next event has to be searched again. Edits by callbacks are
 /// counted, so that a run ends.
 template <class Motion>
 void BasicWorld<Motion>::count_edit() {

@@ -28,26 +28,26 @@
 
 namespace kds::collision {
 
-/// Runs bodies through time and reports their contacts at exact times. How they move is a type (body_motion.hpp): most
-/// worlds are a World<Degree>, below, whose bodies keep their orientation.
+/// Moves bodies through time and reports their contacts at exact times. The type of motion is a template parameter
+/// (body_motion.hpp): most worlds are a World<Degree>, below, whose bodies keep their orientation.
 ///
 /// [Coming06] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
 /// broad phase, bounding volumes that have to be renewed, walls, resting contacts that end, contacts and separations by
-/// (a, b). Which broad phase finds them makes no difference: WorldListener says in what order they are reported.
+/// (a, b). The broad phase makes no difference: WorldListener states the order of reports.
 ///
 /// It is made of parts (world/), which docs/design.md lists.
 ///
-/// Adding, removing and moving bodies calls no listener: what follows from it is reported by the next step, at now().
+/// Adding, removing and moving bodies calls no listener: the consequences are reported by the next step, at now().
 ///
-/// What a call refuses it refuses before anything is changed, and what a listener throws comes out of the step when its
-/// event has been made: the world goes on after both. But where something interrupts a change half-way (a box function
-/// that throws, want of memory) the world can no longer be used: it can be looked at and destroyed, and all that would
-/// run, change, check or save it throws std::logic_error and says why.
+/// A call that refuses its arguments changes nothing, and an exception of a listener comes out of the step after its
+/// event has been processed: the world can be used after both. But if something interrupts a change half-way (a box
+/// function that throws, memory exhausted), the world cannot be used further: it can be queried and destroyed, and all
+/// functions that would run, change, check or save it throw std::logic_error and say why.
 ///
-/// Degree 1 (straight paths) never pays for degree 2, nor either for degrees 3 to 5 (splines), which are in a library
-/// of their own, kds::collision_splines (docs/splines.md). Lengths and masses are in units of the caller's own, times
-/// in seconds. An id of no body, or of one that was removed, throws std::out_of_range, naming it and saying which (of
-/// resting() and touching(), either id).
+/// Degree 1 (straight paths) has no cost from degree 2, nor either from degrees 3 to 5 (splines), which are in a
+/// separate library, kds::collision_splines (docs/splines.md). Lengths and masses are in units of the caller's choice,
+/// times in seconds. An id that was never given, or whose body was removed, throws std::out_of_range, which names the
+/// id and says which of the two it is (in resting() and touching(), for either id).
 template <class BodyMotionType>
 class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   static_assert(BodyMotion<BodyMotionType>, "World: bodies move as body_motion.hpp says");
@@ -60,9 +60,9 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   using Description = BasicBodyDescription<Motion>;
   using Listener = BasicWorldListener<Motion>;
 
-  /// Throws std::invalid_argument, naming the option, for one that is out of range or does not go with the others, and
-  /// std::runtime_error where arithmetic is not that of kds/arithmetic/strict.hpp.
-  /// The listener, if there is one, must outlive the world.
+  /// Throws std::invalid_argument, naming the option, for an option that is out of range or does not fit the others,
+  /// and std::runtime_error where arithmetic is not that of kds/arithmetic/strict.hpp. The listener, if there is one,
+  /// must outlive the world.
   explicit BasicWorld(const WorldOptions& options, Listener* listener = nullptr);
   ~BasicWorld();
   BasicWorld(const BasicWorld&) = delete;
@@ -70,7 +70,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
 
   /// Adds a body and returns its id, which no other body of this world ever gets: 0, 1, 2, ... as long as none has been
   /// removed (body_id.hpp). Throws std::invalid_argument, naming the member that is wrong; then nothing is added.
-  /// Adding many between two steps costs least.
+  /// Cheapest when many are added between two steps.
   BodyId add_body(const Description& description);
 
   /// Makes room for this many bodies in all. Never needed, but saves time and memory where many are added. Throws
@@ -81,18 +81,18 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void remove_body(BodyId id);
 
   /// Replaces the motion from now() on, and discards the pieces still to come. A body that was to enter later enters
-  /// now. In the modes that resolve contacts a body that jumps enters anew: what it meets there is an overlap. In mode
-  /// `none`, and of sensors, a jump begins and ends contacts. Throws std::invalid_argument for a motion that is not
-  /// finite or starts after now().
+  /// now. In the modes that resolve contacts a body that jumps enters anew: a contact there is reported as an overlap.
+  /// In mode `none`, and of sensors, a jump begins and ends contacts. Throws std::invalid_argument for a motion that is
+  /// not finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
 
   /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,
   /// std::logic_error if called from within a callback, and std::runtime_error as WorldOptions::most_edits says.
   void advance_to(double t);
 
-  /// Processes the next event not later than `limit`, if there is one. False if not; then the clock is at `limit`
-  /// if that is finite, and else stays at the last event. Throws as advance_to(), but not for the past; `sap`, whose
-  /// frames never end, needs a limit.
+  /// Processes the next event not later than `limit`, if there is one. False if there is none; then the clock is at
+  /// `limit` if that is finite, otherwise it stays at the last event. Throws as advance_to() does, except for a time in
+  /// the past; `sap`, whose frames never end, needs a limit.
   bool step(double limit = never);
 
   /// Processes events up to t until this much time of the wall clock has passed, but at least one; true if t was
@@ -100,16 +100,16 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   bool advance_for(double budget_seconds, double t);
 
   // A world is a KineticStructure: it runs in a Simulator beside others, one clock for all (docs/framework.md). Before
-  // it is changed it has to be advanced to that clock, where nothing is due.
+  // it is changed it has to be advanced to that clock, if nothing is due there.
 
-  /// When the next event happens, `never` if there is none within the horizon. now(), if bodies have come or changed
-  /// there, and it is still to be seen what follows. Nothing that can be observed changes: the search is kept for the
-  /// step to come, and made again if the world is changed before that time, at the cost of entry for all bodies. Throws
-  /// as step() does.
+  /// The time of the next event, `never` if there is none within the horizon; now() if bodies have been added or
+  /// changed there, and the consequences are not known yet. Nothing that can be observed changes: the result of the
+  /// search is kept for the next step, and the search is repeated if the world is changed before that time, at the cost
+  /// of adding all bodies. Throws as step() does.
   double next_time() const;
   /// Processes what is due at next_time(). Throws as step() does.
   void process();
-  /// Knows what happens until then. Throws std::logic_error as step() does.
+  /// Predicts events up to the horizon. Throws std::logic_error as step() does.
   void extend_horizon(double now, double horizon);
   /// As audit(), at a time from now() on before which nothing is due.
   void audit(double t) const;
@@ -118,20 +118,21 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   std::size_t size() const { return bodies_.size(); }
   bool contains(BodyId id) const { return bodies_.contains(id); }
 
-  /// Includes what resting contacts do to the acceleration; to change a motion, begin with free_motion(). The reference
-  /// is valid until bodies are added, removed or moved, or the clock advances.
+  /// Includes the accelerations by resting contacts; to change a motion, begin with free_motion(). The reference is
+  /// valid until bodies are added, removed or moved, or the clock advances.
   const Motion& motion(BodyId id) const { return bodies_.motion(bodies_.slot_of(id)); }
-  /// The motion as it would go on without the contacts that hold it: with the acceleration that the caller gave last.
+  /// The motion that the body would have without its resting contacts: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
   PlacedShape shape(BodyId id) const { return bodies_.shape(bodies_.slot_of(id)); }
   double mass(BodyId id) const { return bodies_[bodies_.slot_of(id)].mass; }
   bool sensor(BodyId id) const { return bodies_[bodies_.slot_of(id)].sensor; }
   bool fixed(BodyId id) const { return bodies_.fixed(bodies_.slot_of(id)); }
 
-  /// Whether a and b are in contact; of two that pass through each other (mode `none`, sensors), else false.
+  /// Whether a and b are in contact; only for bodies that pass through each other (mode `none`, sensors), otherwise
+  /// false.
   bool touching(BodyId a, BodyId b) const;
 
-  /// Whether a and b are held together (mode `elastic` alone), or a is held at a wall, numbered as in WallEvent (all
+  /// Whether a and b rest on each other (mode `elastic` only), or a rests at a wall, numbered as in WallEvent (all
   /// modes; std::out_of_range for any other number).
   bool resting(BodyId a, BodyId b) const;
   bool resting_at_wall(BodyId a, int wall) const;
@@ -142,12 +143,12 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   /// All zero unless WorldOptions.profile is set.
   const Profile& work_profile() const { return profile_; }
 
-  // What is near, as far as bounding volumes say. Volumes and boxes are closed, so what touches meets, and volumes are
-  // rounded outward, by less than 2^-48 of the coordinates and of the way since their motions began. Bodies that
-  // collide with nothing are named too, and those that are to enter at now(), but not those that enter later. Answers
-  // do not depend on the broad phase; they cost what BroadPhase says, and O(n) where some body does not collide with
-  // all others or next_time() has looked ahead. Callbacks may ask, and so may several threads while nobody calls
-  // anything else. `visit` is called when all is known, and may change the world.
+  // Queries: bodies that are near, judged by their bounding volumes. Volumes and boxes are closed, so those that touch
+  // meet, and volumes are rounded outward, by less than 2^-48 of the coordinates and of the distance moved since their
+  // motions began. Bodies that collide with nothing are visited too, and those that are to enter at now(), but not
+  // those that enter later. Answers do not depend on the broad phase; the cost is in BroadPhase, and O(n) if some body
+  // does not collide with all others or next_time() has looked ahead. Callbacks may make queries, and so may several
+  // threads while none calls anything else. `visit` is called when the answer is complete, and may change the world.
   // These throw std::invalid_argument for a box or a time that is out of range, and std::logic_error in box functions
   // and where the world can no longer be used.
 
@@ -155,18 +156,18 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   /// Ends may be infinite.
   void visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max, BodyVisitor visit) const;
 
-  /// The same for each body whose bounding box may meet a moving box at some time from now() to `until`, if all goes on
-  /// as it does at now(): compared are the boxes that the two sweep.
+  /// The same for each body whose bounding box may meet a moving box at some time from now() to `until`, with the
+  /// motions of now(): the swept AABBs of the two are compared.
   void visit_swept(const KineticBox<Motion::degree>& box, double until, BodyVisitor visit) const;
 
   /// Checks the broad phase against the motions, exactly, and the pairs against brute force, in O(n^2); throws
-  /// AuditFailure. Just after bodies were added or moved, while the next step has work left at now(), only the broad
+  /// AuditFailure. Just after bodies were added or moved, while work at now() is left to the next step, only the broad
   /// phase is checked.
   void audit() const { audit(now()); }
 
-  /// Saves or loads all that decides the events to come: see save() and restore() in kds/framework/snapshot.hpp. A
-  /// world that is loaded, with the same options (but see docs/framework.md), makes the same contacts at the same
-  /// times, bit for bit. Throws std::invalid_argument for a body with a box function, std::logic_error in a callback.
+  /// Saves or loads all that decides later events: see save() and restore() in kds/framework/snapshot.hpp. A world that
+  /// is loaded, with the same options (but see docs/framework.md), has the same contacts at the same times, bit for
+  /// bit. Throws std::invalid_argument for a body with a box function, std::logic_error in a callback.
   template <class Archive>
   void archive(Archive& archive);
 
@@ -178,7 +179,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   using Begin = typename Pairs<Motion>::Begin;
 
   // world.cpp: the clock
-  /// What the parts of the world do, in the order in which it is done where it is due at one time.
+  /// The tasks of the parts of the world, in the order in which they are done if they are due at one time.
   enum class Task {
     start_pieces,     ///< scripts_
     meet_boxes,       ///< pairs_
@@ -195,7 +196,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   bool certify(Task task);
   bool happens(Task task) const;
   bool process(Task task);
-  /// Whether the search for the next event makes it, or stops before it.
+  /// Whether the search for the next event processes it, or stops before it.
   enum class Search { makes, looks };
   bool next_event(double limit, Search search = Search::makes);
   bool guarded_event(double limit, Search search);
@@ -209,26 +210,26 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void report_resting(const Reports::Report& event);
   void count_edit();
 
-  // world/guards.cpp: what may be called when, and what is left when something throws
+  // world/guards.cpp: what may be called when, and the state after an exception
   [[noreturn]] void refuse(const char* function) const;
   void require_whole(const char* function) const {
     if (failure_) [[unlikely]]
       refuse(function);
   }
-  /// For what changes bodies. Callbacks may.
+  /// For functions that change bodies, which callbacks may call.
   void require_editable(const char* function) {
     if (failure_ || volumes_.calling()) [[unlikely]]
       refuse(function);
     if (!stepping_ && clock_.now > callers_now_) [[unlikely]]
       change_or_fail([&] { go_back(callers_now_); });
   }
-  /// For what runs, saves or loads the world.
+  /// For functions that run, save or load the world.
   void require_idle(const char* function) const {
     if (failure_ || volumes_.calling() || stepping_) [[unlikely]]
       refuse(function);
   }
   void note_failure();
-  /// Makes a change. What throws in the middle of it leaves the world in pieces.
+  /// Makes a change. An exception in the middle of it leaves the world broken.
   template <class Change>
   auto change_or_fail(const Change& change) {
     try {
@@ -238,16 +239,16 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
       throw;
     }
   }
-  /// Calls the listener: in a step, when the world is whole. What it throws leaves it so.
+  /// Calls the listener: in a step, when the world is consistent, which it still is if the listener throws.
   template <class Call>
   void tell(const Call& call) {
     telling_ = true;
     call(*listener_);
     telling_ = false;
-    require_whole("World::step");  // The listener may have caught what interrupted a change that it made.
+    require_whole("World::step");  // The listener may have caught the exception of a change that it made.
   }
 
-  // world/edits.cpp: bodies that come, move otherwise, and go
+  // world/edits.cpp: bodies that are added, moved and removed
   BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape);
   void make_room_for_meshes();
   void enter_new_bodies();
@@ -272,9 +273,9 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void process_wall() requires(!turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
   bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>);
-  bool bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+  bool bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
                       std::uint64_t burst) requires(!turns<Motion>);
-  void hold(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
+  void begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   bool endless(std::uint64_t burst) const;
 
@@ -284,16 +285,16 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void process_wall() requires(turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
 
-  // What resting contacts tell (RestingContacts::Listener).
+  // Reports of resting contacts (RestingContacts::Listener).
   void take_up(BodySlot slot, const Motion& motion) override;
   void changed(BodySlot a, BodySlot b) override { pairs_.changed(a, b); }
   void let_pass(BodySlot a, BodySlot b) override { pairs_.let_pass(a, b); }
-  void tell_held(BodySlot a, BodySlot b) override;
+  void tell_rebound_suppressed(BodySlot a, BodySlot b) override;
   void tell_resting(bool begins, const detail::RestingContact& contact) override;
   void tell_passes(const detail::RestingContact& contact) override;
   Contact contact_of(const detail::RestingContact& contact) const;
 
-  // world/near.cpp: what is near
+  // world/near.cpp: queries
   template <class Ask, class Meets>
   void answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const;
 
@@ -321,19 +322,19 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   std::unique_ptr<BroadPhase<Motion::degree>> broad_phase_;
   EditLimit edits_;
   double callers_now_;          ///< the clock as callers know it
-  double idle_until_ = -never;  ///< before it there is nothing to do; an edit resets it
-  double next_time_ = -never;   ///< as next_time() has found it; -never if it has not been asked for
+  double idle_until_ = -never;  ///< nothing is due before it; an edit resets it
+  double next_time_ = -never;   ///< the result of next_time(); -never if there is none
   bool stepping_ = false;
   bool telling_ = false;        ///< a listener is being told, or has thrown
-  std::exception_ptr failure_;  ///< what has left the world in pieces
+  std::exception_ptr failure_;  ///< the exception that has left the world broken
 };
 
 /// A world of bodies that keep their orientation, on paths of a degree.
 template <int Degree>
 using World = BasicWorld<certificates::PointMotion<Degree>>;
 
-/// Bodies that turn, on paths of degree 1 or 2: docs/turning.md says which, and how they respond to contacts.
-/// It is in a library of its own, kds::collision_turning.
+/// Bodies that turn, on paths of degree 1 or 2: docs/turning.md says which, and how they respond to contacts. In a
+/// separate library, kds::collision_turning.
 template <int Degree>
 using TurningWorld = BasicWorld<certificates::RigidMotion<Degree>>;
 

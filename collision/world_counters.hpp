@@ -1,4 +1,4 @@
-// What a world counts.
+// The counters of a world.
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
@@ -8,7 +8,7 @@
 
 namespace kds::collision {
 
-/// What a world has done so far.
+/// The work of a world so far.
 struct WorldCounters {
   BroadPhaseCounters broad_phase;
   std::uint64_t pairs_begun = 0;  ///< pairs handed on by the broad phase
@@ -17,11 +17,11 @@ struct WorldCounters {
   std::uint64_t separations = 0;
   std::uint64_t overlaps = 0;
   std::uint64_t wall_contacts = 0;
-  std::uint64_t motion_updates = 0;  ///< by response, walls, scripts and callers
-  std::uint64_t held = 0;            ///< times the Zeno policy acted
+  std::uint64_t motion_updates = 0;       ///< by response, walls, scripts and callers
+  std::uint64_t rebounds_suppressed = 0;  ///< times the Zeno policy acted on a contact
 
   friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
-  /// As a kinetic structure's: what has happened, and failure times asked for.
+  /// The counters of a kinetic structure: events, and failure times that were computed.
   operator Counters() const {
     return {.events = contacts + separations + overlaps + wall_contacts, .certificates = pair_tests};
   }

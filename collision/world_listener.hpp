@@ -1,4 +1,4 @@
-// What a world tells.
+// How a world reports its events.
 #pragma once
 
 #include "certificates/point_motion.hpp"
@@ -7,7 +7,7 @@
 
 namespace kds::collision {
 
-/// Something of two bodies, a in the lower slot: contact, overlap, separation, or being held.
+/// An event of two bodies, a in the lower slot: a contact, an overlap, a separation, the start or end of rest ...
 struct PairEvent {
   BodyId a;
   BodyId b;
@@ -27,19 +27,19 @@ class BasicWorld;
 /// Told of events in order of time, and of those at one time in an order that does not depend on the broad phase:
 /// bodies come by their slots, and those that were in one slot by their generations (body_rank). What follows from an
 /// event, or from what callers do, comes before the next event, in this order:
-/// 1. `held`, `wakes`, `passes`, `rests`, each by (a, b), then `moved`, by body; contacts that begin and cease to rest
-///    at one instant have done neither;
-/// 2. `pair_began` and `pair_ended`, by (a, b); volumes that part and meet again at one instant have done neither;
+/// 1. `rebound_suppressed`, `wakes`, `passes`, `rests`, each by (a, b), then `moved`, by body; resting contacts that
+///    begin and end at one instant are not reported;
+/// 2. `pair_began` and `pair_ended`, by (a, b); volumes that part and meet again at one instant are not reported;
 /// 3. separations of bodies that have been removed, by (a, b);
 /// 4. overlaps, by (a, b).
 /// Events at one time are in this order: pairs that begin and end as the bodies move on, by (a, b), with all of the
 /// above; walls, by body; contacts and separations, by (a, b).
 ///
 /// Every callback may change motions, add and remove bodies, the ones concerned included; the world is consistent when
-/// it is called, and what is still to be told of the instant is told of the world as it is then. To
-/// advance, save or load the world from within a callback throws std::logic_error. WorldOptions::most_edits limits the
-/// changes. What a callback throws comes out of the step, and the run may go on: the clock stands at the event, which
-/// has been made, and only what else was to be told of that event is not.
+/// it is called, and later reports of the same instant are made of the world as it is then. To advance, save or load
+/// the world from within a callback throws std::logic_error. WorldOptions::most_edits limits the changes. What a
+/// callback throws comes out of the step, and the run may go on: the clock stands at the event, which has been
+/// processed; only the remaining reports of that event are lost.
 template <class Motion>
 class BasicWorldListener {
  public:
@@ -48,26 +48,26 @@ class BasicWorldListener {
   virtual void contact(BasicWorld<Motion>&, const PairEvent&) {}
   /// Penetration ends: in mode `none`, and of sensors in every mode.
   virtual void separation(BasicWorld<Motion>&, const PairEvent&) {}
-  /// In contact when one of the two enters the world or, where contacts are resolved, jumps. (In mode `none`, and for
-  /// sensors, a jump into contact is a contact.)
+  /// The two are in contact when one of them enters the world or, in the modes that resolve contacts, jumps. (In mode
+  /// `none`, and for sensors, a jump into contact is a contact.)
   virtual void overlap(BasicWorld<Motion>&, const PairEvent&) {}
   virtual void wall(BasicWorld<Motion>&, const WallEvent&) {}  ///< motions are as after response
   /// With WorldOptions.report_pairs: the bounding volumes of two bodies, the first in the lower slot, begin and cease
   /// to overlap at a time in s.
   virtual void pair_began(BasicWorld<Motion>&, BodyId, BodyId, double) {}
   virtual void pair_ended(BasicWorld<Motion>&, BodyId, BodyId, double) {}
-  virtual void held(BasicWorld<Motion>&, const PairEvent&) {}          ///< the Zeno policy has acted on a pair
-  virtual void held_at_wall(BasicWorld<Motion>&, const WallEvent&) {}  ///< or on a body and a wall
-  /// Two bodies, or a body and a wall, begin to lie or slide on each other (docs/resting.md), and cease to: by parting,
-  /// by something that strikes them, or since one of them jumps or is removed. The contact is as it is then.
+  virtual void rebound_suppressed(BasicWorld<Motion>&, const PairEvent&) {}  ///< the Zeno policy has acted on a pair
+  virtual void rebound_suppressed_at_wall(BasicWorld<Motion>&, const WallEvent&) {}  ///< or on a body and a wall
+  /// Two bodies, or a body and a wall, begin to rest on each other (docs/resting.md: they lie or slide), and cease to:
+  /// they part, something strikes them, or one of them jumps or is removed. The contact is that of this moment.
   virtual void rests(BasicWorld<Motion>&, const PairEvent&) {}
   virtual void rests_at_wall(BasicWorld<Motion>&, const WallEvent&) {}
   virtual void wakes(BasicWorld<Motion>&, const PairEvent&) {}
   virtual void wakes_at_wall(BasicWorld<Motion>&, const WallEvent&) {}
-  /// Two bodies are let through each other until they have separated: no motion keeps them apart (a piston), they meet
-  /// without end, or a callback has left them approaching.
+  /// Two bodies pass through each other until they have separated: no motion keeps them apart (a piston), their
+  /// meetings do not end, or a callback has left them approaching.
   virtual void passes(BasicWorld<Motion>&, const PairEvent&) {}
-  /// Motions of bodies other than those of the event have changed: held ones, pushed through or let go.
+  /// The motion of a body has changed that is not one of the event's: resting contacts pass on what happens to others.
   virtual void moved(BasicWorld<Motion>&, BodyId) {}
 };
 

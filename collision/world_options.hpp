@@ -12,28 +12,29 @@
 
 namespace kds::collision {
 
-/// What the engine does about contacts of bodies. Walls reflect bodies in every mode.
+/// How the world responds to contacts of bodies. Walls reflect bodies in every mode.
 enum class Response {
   none,      ///< reports contacts and separations; bodies pass through each other
   elastic,   ///< impulses by the bodies' restitution and, if they turn, friction; motions change at each contact
   callback,  ///< as elastic, but the listener changes the motions; a pair it leaves approaching passes through
 };
 
-/// Bounces that pile up in time (Zeno). A contact, of two bodies in mode `elastic` or with a wall in any mode, is
-/// *held* instead of bounced back from if it
+/// What ends bounces that pile up in time (Zeno). The rebound of a contact, of two bodies in mode `elastic` or with a
+/// wall in any mode, is suppressed, and the contact rests from then on, if it
 /// - has no rebound: restitution 0, or no speed of approach;
 /// - would be back within interval / contacts, pressed by the acceleration that it has (a ball coming to rest), or rise
 ///   by roundings of the coordinates only;
 /// - is of two bodies that have both met others more than `contacts` times within `interval` (fixed bodies and walls do
 ///   not count).
-/// What is held loses its relative normal velocity and from then on moves on along the contact, without friction and at
-/// no cost, by least constraint (least_constraint.hpp): forces pass through stacks. It is let go when it is pulled or
-/// pushed away, pushed together anew (which is a contact), loses its support or slides off. Where bodies cannot be
-/// held (between two fixed ones that close in) the pair is let pass until it has separated. So it is, in mode
-/// `callback` too, after ten times as many meetings. Holds are counted and reported, and a run always ends.
+/// Bodies in resting contact lose their relative velocity along the normal and from then on move along the contact,
+/// without friction and at no cost, by least constraint (least_constraint.hpp): forces pass through stacks. The contact
+/// ends when the bodies are pulled or pushed apart, pushed together anew (which is a contact), lose their support or
+/// slide off. Where bodies cannot be kept apart (between two fixed ones that close in) the pair is let pass until it
+/// has separated. The same happens, in mode `callback` too, after ten times as many meetings. Each time the policy acts
+/// is counted and reported, and a run always ends.
 ///
-/// Differs from counting meetings of pairs: a pair is forgotten when its bounding volumes part, which boxes do at each
-/// bounce, and when that is depends on the broad phase.
+/// Meetings are counted by body and not by pair: a pair is forgotten when its bounding volumes part, which may happen
+/// at each bounce and at times that depend on the broad phase.
 struct ZenoPolicy {
   std::uint32_t contacts = 100;  ///< > 0; more makes longer cascades exact and collapses slower
   double interval = 1e-9;        ///< s, >= 0
@@ -54,11 +55,12 @@ struct WorldOptions {
   double window = never;
   Response response = Response::none;
   BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
-  /// Hz, finite and >= 0; frames of the swept boxes, which `sap` alone has: it needs one > 0 with a finite 1 / rate.
+  /// Hz, finite and >= 0; frame rate of the swept AABBs of `sap`, which needs one > 0 with a finite 1 / rate; other
+  /// broad phases ignore it.
   double rate = 0;
-  /// Bounding volumes of kinetic sweep and prune: 6, boxes; 14, 18 or 26, k-DOPs, tighter around what is long, thin or
-  /// round, and more to compute (docs/kdops.md). Other broad phases know boxes alone. Contacts are the same; the pairs
-  /// reported are those whose volumes overlap.
+  /// Bounding volumes of kinetic sweep and prune: 6, boxes; 14, 18 or 26, k-DOPs, tighter around shapes that are long,
+  /// thin or round, and dearer to compute (docs/kdops.md). Other broad phases use boxes. Contacts are the same; the
+  /// pairs reported are those whose volumes overlap.
   int kdop = 6;
   std::optional<Walls> walls{};
   bool report_pairs = false;  ///< tell the listener of bounding volumes that begin and cease to overlap
@@ -68,13 +70,14 @@ struct WorldOptions {
   /// Events and counters do not depend on it.
   std::size_t threads = 1;
   ZenoPolicy zeno{};
-  /// s, > 0. In worlds of bodies that turn contacts do not come to rest: what is pressed together rebounds fast enough
-  /// to fly for so long at least, so that a run always ends. Of bodies that weigh on each other with the acceleration g
-  /// it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1 ms), and costs a contact per flight.
+  /// s, > 0. In worlds of bodies that turn contacts do not come to rest: bodies that are pressed together rebound fast
+  /// enough to fly for at least this time, so that a run always ends. Of bodies that press on each other with the
+  /// acceleration g it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1 ms), and costs a contact per
+  /// flight.
   double shortest_flight = 1e-3;
   /// How often callbacks may add, remove or move bodies within zeno.interval of simulated time; 64 times the number of
   /// bodies, if that is more. The call that exceeds it throws std::runtime_error: callbacks that go on for ever at one
-  /// time would never let the clock move. Without callbacks a run always ends.
+  /// time would stop the clock. Without callbacks a run always ends.
   std::uint64_t most_edits = 1'000'000;
 };
 

@@ -14,9 +14,9 @@ using certificates::Order;
 int main(int argc, char** argv) {
   // A motion is a polynomial in the time since its own start, here at 0: height, speed, half the acceleration.
   const Motion<2> a{{{1, 5, -2}}, 0};  // 1 + 5 t - 2 t^2: thrown upwards
-  const Motion<2> b{{{3, 0, 0}}, 0};   // 3: stays where it is
+  const Motion<2> b{{{3, 0, 0}}, 0};   // 3: at rest
   // The same path as a's, written about another start: at t = 1 it is at 4 and has a speed of 1. (Why another start? A
-  // clock may stand at a billion; t is never put into a polynomial as such, only the little that is past its start.)
+  // clock may stand at a billion; but only the small time since the start is put into the polynomial, never t itself.)
   const Motion<2> same_as_a{{{4, 1, -2}}, 1};
   for (const double t : {0.0, 1.0, 2.0}) {
     std::cout << "t = " << t << ": a at " << a(t) << ", b at " << b(t) << ", a once more " << same_as_a(t) << '\n';
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   const double down = recovery_time(a_below_b, up);
   std::cout << "a and b meet at t = " << up << " and t = " << down << '\n';
 
-  // What the page needs: who moves, what is known at first, what happens then.
+  // The page needs the elements, the state at the beginning, and the events.
   course::Page page(course::View::line, "01 Moving points",
                     "Two motions: polynomials in time. Along this axis a parabola is thrown up past a value at rest. "
                     "Drag the time, or press play.", 0, 3);

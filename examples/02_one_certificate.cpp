@@ -11,7 +11,7 @@
 
 using namespace kds;
 
-/// A ball stays below a ceiling: f(t) = ceiling - ball(t) >= 0. This is all there is to write. The same formula is
+/// A ball stays below a ceiling: f(t) = ceiling - ball(t) >= 0. Nothing else has to be written. The same formula is
 /// evaluated in doubles with an error bound and, where that does not decide, exactly.
 struct BelowCeiling {
   static constexpr int degree = 2;
@@ -34,8 +34,8 @@ int main(int argc, char** argv) {
     std::cout << "sign just after t = " << t << ": " << sign_after(below, t) << '\n';
   }
 
-  // The failure time is a double, though the root is none: it is the first one just after which f is negative. On the
-  // double before it f is not negative yet. Both signs are exact, so there is nothing to tune.
+  // The failure time is a double, though the root is not: it is the first double just after which f is negative. At the
+  // double before it f is not negative yet. Both signs are exact, so there is no tolerance to tune.
   const double fails = failure_time(below, 0);
   std::cout << "fails at t = " << fails << ", the double just after the root\n"
             << "sign there " << sign_after(below, fails) << ", one double earlier "

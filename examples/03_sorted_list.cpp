@@ -10,7 +10,7 @@
 #include <string>
 
 using namespace kds;
-using List = examples::ListRule<Motion<2>>;  // what its author wrote: 40 lines
+using List = examples::ListRule<Motion<2>>;  // the rule that its author writes: 40 lines
 
 int main(int argc, char** argv) {
   course::Page page(course::View::line, "03 The sorted list",
@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
                     "nothing happens in between.", 0, 8);
   page.legend.event = "a swap";
 
-  // Who moves. A set of elements has no clock; edits say when they are made, here at 0.
+  // The elements. A set of elements has no clock; edits are given their time, here 0.
   MovingSet<Motion<2>> values;
   const Motion<2> motions[] = {
       {{{1, 0.2, 0.09}}, 0}, {{{2.5, 1.9, -0.24}}, 0}, {{{4, -0.4, 0.11}}, 0}, {{{5.2, -1.7, 0.14}}, 0},
@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
     page.moves(id, motion, 0);
   }
 
-  // What is known at a time, for the page.
+  // The state at a time, for the page.
   const auto known = [&](const List& list, double now) {
     return course::State{.text = "Order: " + page.names(list.order),
                          .order = list.order,
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
     ++swaps;
   };
 
-  // The structure takes up what is in the set; the simulator is the clock.
+  // The structure takes up the elements of the set; the simulator is the clock.
   Kinetic<List, decltype(swapped)> list(values, 0, {}, swapped);
   Simulator simulator(0, list);
   std::cout << "t = 0: " << page.names(list.rule().order) << '\n';

@@ -1,6 +1,6 @@
-// You learn: to let something move that the library does not know, and motion in pieces.
-// How to run: build/dev/examples/04_your_own_motion, then open the page that it names
-// What you see: after 8 bounces and 15 swaps the highest ball is c
+// You learn: to use your own type of moving element, and motion in pieces. How to run:
+// build/dev/examples/04_your_own_motion, then open the page that it names What you see: after 8 bounces and 15 swaps
+// the highest ball is c
 #include "examples/course/facts.hpp"
 #include "examples/list_in_forty_lines.hpp"
 #include "kds/framework/kinetic.hpp"
@@ -22,11 +22,11 @@ struct Bouncer {
   double start = 0;
 
   Motion<2> motion() const { return {{{height, speed, -gravity / 2}}, start}; }
-  bool finite() const { return is_finite(motion()); }  // asked of every element before it is taken up
+  bool finite() const { return is_finite(motion()); }  // checked for every element before it is taken up
 };
 
-/// What the certificate of a sorted list asks of an element: upper - lower as a polynomial in (t - epoch), in any
-/// number type. That is the whole interface: any element that has it can be sorted.
+/// The certificate of a sorted list needs this of an element: upper - lower as a polynomial in (t - epoch), in any
+/// number type. It is the whole interface: any element that has it can be sorted.
 template <class Number>
 Polynomial<2, Number> difference_about(const Bouncer& upper, const Bouncer& lower, double epoch) {
   return difference_about<Number>(upper.motion(), lower.motion(), epoch);
@@ -50,8 +50,8 @@ int main(int argc, char** argv) {
     page.element(id, std::string(1, static_cast<char>('a' + id)));
     page.moves(id, ball.motion(), 0);
     for (;;) {
-      // Planned in rounded numbers: where pieces meet is the planner's affair. What is exact are the events of the plan
-      // as it stands.
+      // The plan is made in rounded numbers, so pieces meet up to rounding. The events of the motions as planned are
+      // exact.
       const double landing = std::sqrt(ball.speed * ball.speed + 2 * Bouncer::gravity * ball.height);
       const double seam = ball.start + (ball.speed + landing) / Bouncer::gravity;
       if (seam >= 10) break;
@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
   Kinetic<List, decltype(swapped)> list(balls, 0, {}, swapped);
   Simulator simulator(0, plan, list);
   page.starts(known(list.rule(), 0));
-  // A bounce changes no order by itself, but certificates: that is what the page is told of here.
+  // A bounce changes no order, but it changes certificates, which the page is given here.
   std::vector<std::size_t> planned{plan.planned(0), plan.planned(1), plan.planned(2)};
   while (simulator.step(10)) {
     for (Id id = 0; id < 3; ++id) {

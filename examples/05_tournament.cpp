@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
   std::string tops;
   const auto moved = [&](const HeapRule& heap, const KineticEvent& event) {
     const Id up = heap.heap()[(event.slot - 1) / 2], down = heap.heap()[event.slot];
-    const bool top = event.effect == Effect::external;  // what the heap is kept for has changed, not only its proof
+    const bool top = event.effect == Effect::external;  // the greatest value has changed, not only its proof
     if (top) tops += ", " + page.name(up);
     page.event(event.time, page.name(up) + (top ? " is the highest now" : " goes above " + page.name(down)), {up, down},
                known(heap, event.time));
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
 
   bool agree = true;
   while (simulator.step(10)) {
-    // Both have events at the same time where the top changes: they are compared when that time is over.
+    // Where the top changes both have events at the same time: they are compared after all events of that time.
     if (simulator.next_time() > simulator.now()) agree = agree && heap.rule().top() == tournament.winner();
   }
   simulator.audit();

@@ -17,7 +17,7 @@ using namespace kds;
 using Path = certificates::PlaneMotion<2>;
 using Hull = structures::ConvexHullRule<Path>;
 
-/// Who is in one list and not in the other.
+/// The elements that are in one list and not in the other.
 std::vector<Id> without(const std::vector<Id>& ids, const std::vector<Id>& others) {
   std::vector<Id> rest;
   for (const Id id : ids) {

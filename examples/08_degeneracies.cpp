@@ -1,6 +1,6 @@
-// You learn: what happens where others need a tolerance: touches, three at one point, equal for ever, four on a circle.
-// How to run: build/dev/examples/08_degeneracies, then open the page that it names
-// What you see: 3 events at t = 4, none at t = 2, none between the equal ones
+// You learn: how degenerate cases work without a tolerance: touches, three at one point, equal for ever, four on a
+// circle. How to run: build/dev/examples/08_degeneracies, then open the page that it names What you see: 3 events at t
+// = 4, none at t = 2, none between the equal ones
 #include "examples/course/facts.hpp"
 #include "examples/list_in_forty_lines.hpp"
 #include "kds/framework/kinetic.hpp"
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
                     "f and g are equal for ever and stand in the order of their numbers.", 0, 8);
   page.legend.event = "a swap";
   const Motion<2> motions[] = {
-      {{{1, 0, 0}}, 0},             // a stays
+      {{{1, 0, 0}}, 0},             // a is at rest
       {{{2, -1, 0.25}}, 0},         // b: (t - 2)^2 / 4 above a, touches it at t = 2
       {{{8, -1, 0}}, 0},            // c, d, e: all at 4 when t = 4
       {{{4, 0, 0}}, 0},
@@ -71,8 +71,8 @@ int main(int argc, char** argv) {
   std::cout << events[4] << " events at t = 4, " << (events[2] == 0 ? "none" : "some") << " at t = 2, "
             << (of_equals == 0 ? "none" : "some") << " between the equal ones\n";
 
-  // The corners of a square that grows are on one circle for ever: either diagonal is right, and it is kept. If one
-  // corner runs ahead from t = 1 on it comes to lie outside the circle of the others; before, it is inside.
+  // The corners of a growing square stay on one circle: either diagonal is right, so there is no flip. If one corner is
+  // faster from t = 1 on, it comes to lie outside the circle of the others; before, it is inside.
   const Path corner{{Polynomial<2>{{1, 1, 0}}, Polynomial<2>{{1, 1, 0}}}, 0};
   const auto turned = [](const Path& path, double x, double y) {
     Path result = path;

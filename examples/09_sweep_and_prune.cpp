@@ -1,6 +1,6 @@
-// You learn: kinetic sweep and prune with boxes of your own: it tells which pairs overlap, from when until when.
-// How to run: build/dev/examples/09_sweep_and_prune, then open the page that it names
-// What you see: 10 pairs have overlapped; 117 swaps
+// You learn: kinetic sweep and prune with boxes of your own: which pairs overlap, from when until when. How to run:
+// build/dev/examples/09_sweep_and_prune, then open the page that it names What you see: 10 pairs have overlapped; 117
+// swaps
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "examples/course/arcs.hpp"
 #include "examples/course/page.hpp"
@@ -16,7 +16,7 @@ using namespace kds;
 using namespace kds::collision;
 using Path = certificates::PointMotion<2>;
 
-/// Hears of pairs, and tells the page.
+/// Receives pairs, and passes them on to the page.
 class Teller final : public PairListener {
  public:
   Teller(course::Page& page, const std::vector<KineticBox<2>>& boxes) : page_(page), boxes_(boxes) {}
@@ -30,7 +30,7 @@ class Teller final : public PairListener {
     pairs_.erase({a, b});
     tell(a, b, t, " cease to overlap");
   }
-  /// From here on pairs are events; those before overlap from the start.
+  /// From here on pairs are events; pairs reported before overlap from the start.
   void start() {
     page_.starts(known(0));
     started_ = true;
@@ -45,7 +45,8 @@ class Teller final : public PairListener {
             .edges = {pairs_.begin(), pairs_.end()},
             .certificates = certificates(t)};
   }
-  /// Until when each pair overlaps: two boxes do as long as no side of one is beyond the other's opposite side.
+  /// The time until which each pair overlaps: two boxes do as long as no side of one is beyond the other's opposite
+  /// side.
   std::vector<course::Held> certificates(double t) const {
     std::vector<course::Held> all;
     for (const auto& [a, b] : pairs_) {

@@ -18,7 +18,7 @@ using Path = certificates::PointMotion<2>;
 
 const Vector3d gravity(0, -1, 0);
 
-/// Is told of contacts while the world runs. Motions are already those after the bounce.
+/// Receives contacts while the world runs. Motions are already those after the bounce.
 class Teller final : public WorldListener<2> {
  public:
   explicit Teller(course::Page& page) : page_(page) {}
@@ -34,7 +34,8 @@ class Teller final : public WorldListener<2> {
     tell(world, event.contact.time, page_.name(id) + " hits the " + walls[event.wall] + " wall", {id});
   }
 
-  /// What the page shows beside: until when each pair is apart and each ball inside, if nothing happens before.
+  /// The certificates that the page lists: until when each pair is apart and each ball inside, if nothing happens
+  /// before.
   course::State known(const World<2>& world, double now) const {
     course::State state{.text = std::to_string(contacts) + " contacts so far"};
     for (Id a = 0; a < world.size(); ++a) {

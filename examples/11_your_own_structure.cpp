@@ -15,7 +15,7 @@ using namespace kds;
 // The question: which of the moving values are in the band from low to high?
 //
 // Step 1: which facts prove the answer? For each value and each border, on which side it is. A fact is a certificate: a
-// polynomial that is >= 0 while it holds. This one is about one value and a border that stays where it is.
+// polynomial that is >= 0 while it holds. This one is about one value and a border at rest.
 struct Side {
   static constexpr int degree = 2;
   const Motion<2>& x;
@@ -39,21 +39,21 @@ struct BandRule {
 
   bool inside(Id id) const { return above[id][0] && !above[id][1]; }
 
-  // Step 3: say what a slot's certificate is now, and whom it is about.
+  // Step 3: give the certificate of a slot now, and the elements that it is about.
   Side certificate(Slot slot, const MovingSet<Element>& x) const {
     return {x[slot / 2], borders[slot % 2], above[slot / 2][slot % 2]};
   }
   std::array<Id, 1> members(Slot slot) const { return {slot / 2}; }
 
-  // Step 4: when it fails, put the state right. Its slot is certified anew without being asked for; others that change
-  // would be marked with repair.certify(slot), or repair.retire(slot) if they are given up. Why does that end? A repair
-  // removes the contradiction between one sign and one bit, and makes no other.
+  // Step 4: when it fails, repair the state. Its slot is certified anew automatically; others that change would be
+  // marked with repair.certify(slot), or repair.retire(slot) if they are given up. Why do repairs end? Each removes the
+  // contradiction between one sign and one bit, and makes no other.
   Effect repair(Slot slot, Repair<Element>&) {
     above[slot / 2][slot % 2] = !above[slot / 2][slot % 2];
-    return Effect::external;  // what the structure is kept for has changed, and not only its proof
+    return Effect::external;  // the answer has changed, and not only its proof
   }
 
-  // Step 5: take up an element, let one go. Signs are exact, and those of the instant after now.
+  // Step 5: insert an element, remove one. Signs are exact, and those of the instant after now.
   void insert(Id id, Repair<Element>& repair) {
     if (above.size() <= id) above.resize(id + std::size_t{1});
     for (const Slot border : {0u, 1u}) {
@@ -67,7 +67,7 @@ struct BandRule {
   }
 };
 
-/// For the page alone: what it calls a certificate.
+/// For the page only: the name of a certificate.
 template <class Name>
 std::string fact(const Side& side, const Name& name) {
   return name(side.x) + (side.above ? " is above " : " is below ") + (side.border == 3 ? "low" : "high");

@@ -25,7 +25,7 @@ Path centre(const World& world, BodyId id) {
   return {{motion.axis(0).position, motion.axis(1).position}, motion.start};
 }
 
-/// Gives the centres of balls that have bounced their new paths.
+/// Gives new paths to the centres of balls that have bounced.
 struct Follower final : collision::WorldListener<1> {
   MovingSet<Path> centres;
   std::vector<double> contacts;  ///< when

@@ -1,6 +1,6 @@
-// You learn: to bound moving points: all of them by a k-DOP, each by a fat box in a tree that tells who is near whom.
-// How to run: build/dev/examples/bounding_volumes
-// What you see: the 14-DOP has changed its extreme points 12 times; it reaches from z = 0.0608 to 2.3808
+// You learn: to bound moving points: all of them by a k-DOP, each by a fat box in a tree that reports which are near.
+// How to run: build/dev/examples/bounding_volumes What you see: the 14-DOP has changed its extreme points 12 times; it
+// extends from z = 0.0608 to 2.3808
 #include "certificates/point_motion.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
@@ -14,7 +14,7 @@ using namespace kds;
 using Path = certificates::PointMotion<2>;
 using Dop = structures::ExtentsRule<Path, 3>;
 
-/// Hears of the fat boxes that overlap.
+/// Receives the pairs of fat boxes that overlap.
 struct Neighbours {
   int* began;
   void pair_began(Id, Id, double) { ++*began; }
@@ -23,7 +23,7 @@ struct Neighbours {
 using Tree = structures::AabbTreeRule<Path, 3, Neighbours>;
 
 int main() {
-  // Thirty points, thrown up from a circle, each a little later on its way than the last.
+  // Thirty points, thrown up from a circle, each a little later than the one before.
   MovingSet<Path> points;
   for (int i = 0; i < 30; ++i) {
     const double angle = 0.7 * i;
@@ -42,10 +42,10 @@ int main() {
   simulator.audit();  // both, against the motions, with exact signs
 
   const auto [low, high] = dop.rule().extent(2, points, simulator.now());
-  std::cout << "the 14-DOP has changed its extreme points " << changes << " times; it reaches from z = " << low
+  std::cout << "the 14-DOP has changed its extreme points " << changes << " times; it extends from z = " << low
             << " to " << high << '\n';
 
-  // Who is above z = 1 now? Exactly, not just by fat boxes.
+  // Which points are above z = 1 now? Exactly, not just by fat boxes.
   const structures::TreeBox<3> above{{-never, -never, 1}, {never, never, never}};
   std::cout << tree.rule().query(above, points, simulator.now()).size() << " points are above z = 1; fat boxes met "
             << began << " times\n";

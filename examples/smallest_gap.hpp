@@ -26,14 +26,14 @@ struct Narrower {
   bool vanishes() const { return a == c && b == d; }
 };
 
-/// What a page of the course calls it.
+/// Its name on a page of the course.
 template <class Name>
 std::string fact(const Narrower& gaps, const Name& name) {
   return "gap " + name(gaps.a) + name(gaps.b) + " \u2264 gap " + name(gaps.c) + name(gaps.d);
 }
 
-/// Keeps two neighbours that are closest: the list knows who are neighbours, a tournament of their gaps who wins. Even
-/// slots are the list's, odd ones the matches; a gap takes part by the lower of its two.
+/// Maintains the two closest neighbours: the list gives neighbours, a tournament of their gaps the smallest one. Even
+/// slots are the list's, odd ones the matches; a gap is identified by the lower of its two values.
 class SmallestGapRule {
  public:
   using Element = Motion<2>;
@@ -56,7 +56,7 @@ class SmallestGapRule {
     return [&repair](std::size_t match) { repair.certify(static_cast<Slot>(2 * match + 1)); };
   }
 
-  /// Has the list do something, then the gaps that it has marked play again: those are the ones that are others now.
+  /// Calls the list, then plays the matches of the gaps that it has marked again: these have changed.
   template <class Do>
   void within(Repair<Element>& repair, const Do& work) {
     repair.nested(0, 2, [&] { return work(), 0; });

@@ -1,6 +1,5 @@
-// You learn: to ask when a vertex meets a face whose points each move on their own.
-// How to run: build/dev/examples/vertex_meets_face
-// What you see: they meet at s = 0.5 within 1e-06 of each other
+// You learn: to find when a vertex meets a face whose points each move on their own. How to run:
+// build/dev/examples/vertex_meets_face What you see: they meet at s = 0.5 within 1e-06 of each other
 #include "certificates/features/feature_contact.hpp"
 
 #include <array>
@@ -16,7 +15,7 @@ int main() {
 
   const auto contact = kds::certificates::vertex_face_contact(begin, end);
   if (!contact) return std::cout << "they do not meet\n", 0;
-  // The time is never late: what is left between the two then is `distance` at most.
+  // The time is never late: at it the two are within `distance` of each other.
   std::cout << "they meet at s = " << std::round(contact.time * 1e5) / 1e5 << " within "
             << std::ceil(contact.distance * 1e6) / 1e6 << " of each other\n";
 }

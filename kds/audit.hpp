@@ -6,8 +6,9 @@
 
 namespace kds {
 
-/// A structure's state contradicts its motions. The message names the structure and the slot. Exact signs make this
-/// a programming error in the structure or a motion changed behind its back, never rounding.
+/// A structure's state contradicts its motions. The message names the structure and the slot. Since signs are exact,
+/// the cause is never rounding: it is an error in the structure's code, or a motion that was changed without telling
+/// the structure.
 class AuditFailure : public std::logic_error {
  public:
   explicit AuditFailure(const std::string& what) : std::logic_error(what) {}

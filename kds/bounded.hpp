@@ -42,9 +42,8 @@ Uncertain<0, 1, Number> difference_about(const Bounded& a, const Bounded& b, dou
 }
 
 /// A value that was at `position` and had `velocity` at time `start`, and has not accelerated by more than
-/// `acceleration` since: it lies in position + velocity (t - start) +- acceleration (t - start)^2 / 2. What is not
-/// known grows with the square of the time, so that smooth motions need far fewer samples than with a bound on the
-/// speed.
+/// `acceleration` since: it lies in position + velocity (t - start) +- acceleration (t - start)^2 / 2. The uncertainty
+/// grows with the square of the time, so smooth motions need far fewer samples than with a bound on the speed.
 struct BoundedAcceleration {
   static constexpr int degree = 2;
   static constexpr bool sampled = true;

@@ -33,7 +33,7 @@ namespace kds {
 /// and polynomial(e') are the same function of t, for all finite e. Certificates that hold references, as most of
 /// certificates/ do, must not outlive the motions.
 ///
-/// What a certificate may know of itself beyond that, to spare work, is in certificate_hooks.hpp.
+/// Optional members by which a certificate saves work are in certificate_hooks.hpp.
 template <class C>
 concept Certificate = requires(const C& certificate, double epoch) {
   { C::degree } -> std::convertible_to<int>;
@@ -56,19 +56,19 @@ Polynomial<0, Number> constant(double value) {
 struct SignCounters {
   std::uint64_t extended = 0;  ///< signs that asked for double-doubles
   std::uint64_t exact = 0;     ///< signs that asked for exact arithmetic
-  std::uint64_t searches = 0;  ///< failure times that were found by signs alone, the quick methods being at a loss
+  std::uint64_t searches = 0;  ///< failure times found by exact signs alone, since the quick methods did not decide
 };
 inline thread_local SignCounters sign_counters;
 
 /// Sign of f (or its derivative number `derivative`) at t+, the instant after t: the sign of the first of f(t),
 /// f'(t), f''(t)... that is not zero, and 0 only if all vanish. Exact. Precondition: t is finite, 0 <= derivative.
 ///
-/// The ladder: doubles with an error bound, double-doubles with an error bound, exact integers. f is written about t
-/// itself, so its coefficients are its derivatives up to positive factors.
+/// Three rungs: doubles with an error bound, double-doubles with an error bound, exact integers. f is written as a
+/// polynomial about t, so its coefficients are its derivatives at t up to positive factors.
 template <Certificate C>
 int sign_after(const C& certificate, double t, int derivative = 0);
 
-/// A certificate whose polynomial is given by doubles about an epoch of its own, taken as exact.
+/// A certificate that is a polynomial about its own epoch, whose coefficients are doubles and taken as exact.
 template <int Degree>
 struct PolynomialCertificate {
   static constexpr int degree = Degree;
@@ -83,7 +83,7 @@ struct PolynomialCertificate {
   }
   bool vanishes() const { return value.position == Polynomial<Degree>{}; }
 
-  /// Knows lines and parabolas.
+  /// Answers for lines and parabolas.
   double quick_failure_time(double now, double horizon) const {
     if constexpr (Degree == 1 || Degree == 2) {
       const Parabola<false> p = parabola();
@@ -92,7 +92,7 @@ struct PolynomialCertificate {
     }
     return std::numeric_limits<double>::quiet_NaN();
   }
-  /// Knows parabolas.
+  /// Answers for parabolas.
   double quick_failure_time_after_turn(double now, double horizon) const {
     if constexpr (Degree == 2) return quick_parabola_failure_time<true>(parabola(), now, horizon);
     return std::numeric_limits<double>::quiet_NaN();
@@ -119,7 +119,7 @@ requires(C::degree >= 1) struct DerivativeCertificate {
 
 namespace detail {
 
-/// Whether the certificate knows at once that f is zero throughout.
+/// Whether a hook says that f is zero throughout.
 template <class C>
 bool known_to_vanish(const C& certificate) {
   static_assert(RightHooks<C>::checked);

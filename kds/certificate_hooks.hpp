@@ -1,4 +1,4 @@
-// What a certificate may know of itself beyond its formula: the optional parts, each a concept with its laws.
+// The optional members of a certificate, by which it saves work: each a concept with its laws.
 #pragma once
 
 #include "kds/arithmetic/ball.hpp"
@@ -10,29 +10,29 @@
 
 namespace kds {
 
-// A certificate is complete without any of these: they spare work, and change no result. A hook says that it does not
-// know with a NaN, with an infinite radius or with `false`; so one that is for some template arguments only says that
-// for the others, and is not switched off by a requires-clause. A member of one of these names that is not exactly
-// what the concept asks for (other parameters, not const, another result, private) does not compile: it would never be
-// called, and nothing but the time that is lost would tell. What hooks answer is compared with the formula on a sample
-// of calls where KDS_CHECK_QUICK_ANSWERS is defined (hook_checks.hpp).
+// A certificate is complete without any of these: they save work, and change no result. A hook that cannot answer
+// returns a NaN, an infinite radius or `false`; so one that is meant for some template arguments only returns that for
+// the others, and is not switched off by a requires-clause. A member with one of these names that is not exactly what
+// the concept asks for (other parameters, not const, another result, private) does not compile: it would never be
+// called, and only a loss of speed would show it. What hooks answer is compared with the formula on a sample of calls
+// where KDS_CHECK_QUICK_ANSWERS is defined (hook_checks.hpp).
 
-/// `bool vanishes() const`: cheap, and true only if f is zero throughout. Things that move together are spared the
-/// exact rung.
+/// `bool vanishes() const`: cheap, and true only if f is zero throughout. So the exact rung is not needed for things
+/// that move together.
 template <class C>
 concept TellsIfItVanishes = requires {
   static_cast<bool (C::*)() const>(&C::vanishes);
 };
 
-/// `Ball<DoubleDouble> extended_value(double t) const`: a ball that holds f(t), got for less than polynomial(t) takes.
-/// It is f(t) that places a root among the doubles. With an infinite radius it is not used.
+/// `Ball<DoubleDouble> extended_value(double t) const`: a ball that contains f(t), computed at less cost than
+/// polynomial(t). Used to place a root among the doubles; ignored if its radius is infinite.
 template <class C>
 concept GivesExtendedValue = requires {
   static_cast<Ball<DoubleDouble> (C::*)(double) const>(&C::extended_value);
 };
 
 /// `double quick_failure_time(double now, double horizon) const`: what failure_time() gives, bit for bit, or a NaN
-/// where it takes more care. It is asked first, with now <= horizon.
+/// where that needs the general methods. It is called first, with now <= horizon.
 template <class C>
 concept AnswersQuickly = requires {
   static_cast<double (C::*)(double, double) const>(&C::quick_failure_time);
@@ -51,15 +51,15 @@ struct TwoTimes {
 };
 
 /// `static TwoTimes quick_failure_times(const C& first, const C& second, double now, double horizon)`: of two
-/// certificates together, for less than one after the other takes; each as quick_failure_time() says.
+/// certificates together, at less cost than one after the other; each as quick_failure_time() says.
 template <class C>
 concept AnswersQuicklyForTwo = requires(const C& certificate, double t) {
   { C::quick_failure_times(certificate, certificate, t, t) } -> std::same_as<TwoTimes>;
 };
 
-/// `static constexpr bool antisymmetric = true`: f is given by the members `lower` and `upper`, references, alone, and
-/// is -f for the two the other way round. So when it has failed, that of the two exchanged is known to be positive, and
-/// its next failure is found for less (failure_time_after_turn()).
+/// `static constexpr bool antisymmetric = true`: f is determined by the members `lower` and `upper`, which are
+/// references, and changes its sign when they are exchanged. So when it has failed, the certificate with the two
+/// exchanged is known to be positive, and its next failure is found at less cost (failure_time_after_turn()).
 template <class C>
 concept Antisymmetric = requires {
   requires std::same_as<decltype(C::antisymmetric), const bool>;
@@ -84,7 +84,7 @@ concept SaysNotAntisymmetric = requires {
   requires !C::antisymmetric;
 };
 
-/// To be named wherever a hook is asked for: compiles if all that the certificate has are as they must be.
+/// To be named wherever a hook is used: compiles only if all hooks that the certificate has are as their concepts ask.
 template <class C>
 struct RightHooks {
   static_assert(TellsIfItVanishes<C> || !NamesVanishes<C>, "certificate: `vanishes` must be `bool vanishes() const`");

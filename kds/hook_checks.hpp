@@ -1,4 +1,4 @@
-// A sample of what certificates answer quickly, compared with what their formula gives: for the builds of tests.
+// Compares a sample of the quick answers of certificates with what their formula gives: for test builds.
 #pragma once
 
 #include "kds/arithmetic/ball.hpp"
@@ -14,7 +14,7 @@
 // With KDS_CHECK_QUICK_ANSWERS defined, which the preset `dev` does, in all files of a program: of the answers of each
 // hook of each kind of certificate (certificate_hooks.hpp) the first and then every 1024th is computed by the general
 // way too, in each thread. Where they differ std::logic_error names the certificate. Neither events nor sign_counters
-// change. Without it nothing of this is compiled.
+// change. Without the macro nothing of this is compiled.
 namespace kds::detail {
 
 #ifdef KDS_CHECK_QUICK_ANSWERS
@@ -25,7 +25,7 @@ inline constexpr bool checks_quick_answers = false;
 
 enum class Hook { vanishes, extended_value, quick_failure_time, quick_failure_time_after_turn, quick_failure_times };
 
-/// How many answers there are for one that is checked. The general way costs a hundred times as much, at most.
+/// One answer in so many is checked. The general way costs up to a hundred times as much as a quick answer.
 inline constexpr std::uint32_t answers_per_check = 1024;
 
 /// Whether this answer is one of those that are checked.
@@ -38,7 +38,7 @@ bool is_to_be_checked() {
   return false;
 }
 
-/// As compilers write it.
+/// The type's name as the compiler writes it.
 template <class C>
 std::string name_of_type() {
   const std::string_view function = __PRETTY_FUNCTION__;  // ... [with C = name; ...] or ... [C = name]

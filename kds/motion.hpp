@@ -18,7 +18,7 @@ namespace kds {
 ///
 /// Law (epochs): a motion is never evaluated with a large absolute t, so a clock at 1e9 is as good as one at 0. The
 /// coefficients and the start are taken as exact; c2 is half the acceleration. Degrees above 10 are refused at compile
-/// time by what evaluates motions in double-double (compensated_value()), and so by most certificates.
+/// time by compensated_value(), which evaluates motions in double-double, and so by most certificates.
 template <int Degree>
 struct Motion {
   static constexpr int degree = Degree;
@@ -68,10 +68,11 @@ namespace detail {
 /// numbers: the errors e_i of the coefficients go through the same shift as the coefficients, by |shift|.
 ///
 /// Error bound, with u = 2^-53 and n the degree. Repeated synthetic division gives c'_j as a sum of binomial(i, j) c_i
-/// shift^(i-j); each share goes through at most 2 n roundings where its index falls and n where it stays, and the shift
-/// itself is known to 2 u, which counts another 2 n: at most 5 n u |c_i|, besides the radius r_i that it came with. So
-/// e_i = r_i + 5.1 n u |c_i| does. Underflow loses 2^-1075 a step, for which each e_i has 2^-1010. What nothing is
-/// added to keeps its radius: it may be exact.
+/// shift^(i-j); each summand goes through at most 2 n roundings where its index falls and n where it stays, and the
+/// shift itself is known to 2 u, which counts as another 2 n: at most 5 n u |c_i|, besides the radius r_i of the
+/// coefficient. So e_i = r_i + 5.1 n u |c_i| suffices. Underflow loses at most 2^-1075 a step, for which each e_i has
+/// 2^-1010. A coefficient keeps its radius, which may be 0, if all higher ones are exactly zero, since nothing is added
+/// to it.
 template <int Degree, class Scalar>
 Polynomial<Degree, Ball<double>> shifted_balls(const Polynomial<Degree, Scalar>& p, double shift) {
   std::array<double, std::size_t{Degree} + 1> c;
@@ -95,7 +96,8 @@ Polynomial<Degree, Ball<double>> shifted_balls(const Polynomial<Degree, Scalar>&
     });
   });
   Polynomial<Degree, Ball<double>> result;
-  // The last summand is nothing to a finite number, and makes the radius infinite where the number overflows.
+  // The last summand is negligible for a finite number, and makes the radius infinite or NaN where the number
+  // overflows.
   unrolled<Degree + 1>([&](auto i) { result.c[i] = {c[i], kept[i] < 0 ? e[i] + 0x1p-80 * std::abs(c[i]) : kept[i]}; });
   return result;
 }
@@ -137,8 +139,8 @@ Polynomial<Degree, Number> about(const Motion<Degree>& motion, double epoch) {
   return taylor_shift<Number>(motion.position, difference<Number>(epoch, motion.start));
 }
 
-/// a - b as a polynomial in (t - epoch), in the arithmetic of Number. Motions with a common start, which many have,
-/// are subtracted first and shifted once.
+/// a - b as a polynomial in (t - epoch), in the arithmetic of Number. Motions with a common start, the usual case, are
+/// subtracted first and shifted once.
 template <class Number, int Degree>
 Polynomial<Degree, Number> difference_about(const Motion<Degree>& a, const Motion<Degree>& b, double epoch) {
   if (a.start != b.start) return about<Number>(a, epoch) - about<Number>(b, epoch);
@@ -147,7 +149,7 @@ Polynomial<Degree, Number> difference_about(const Motion<Degree>& a, const Motio
   return taylor_shift<Number>(relative, difference<Number>(epoch, a.start));
 }
 
-/// a - b at t alone, in double-doubles: what difference_about() has as its first coefficient, for less.
+/// a - b at t, in double-doubles: the first coefficient of difference_about(), at less cost.
 template <int Degree>
 Ball<DoubleDouble> extended_difference(const Motion<Degree>& a, const Motion<Degree>& b, double t) {
   if (a.start != b.start) {

@@ -18,8 +18,8 @@ namespace kds {
 /// Plans for the elements of a set: from `start` on the element has this motion. To the simulator it is one more
 /// structure, whose events are the seams between pieces; an edit by hand leaves the plan as it is, a removal drops it.
 ///
-/// As with every edit, events of the seam's time come before it (see MovingSet). Whether pieces meet at a seam is the
-/// planner's affair: a jump is legal.
+/// As with every edit, events of the seam's time come before it (see MovingSet). Pieces need not meet at a seam: a jump
+/// is legal.
 ///
 /// Cost: O(1) queue operations a seam, a move of the element's later pieces, and what the structures have to do for an
 /// edit.
@@ -61,7 +61,7 @@ class Pieces final : private MovingSet<E>::Observer {
     return queue_.top().time;
   }
 
-  /// Makes the change of motion due at next_time(), unless the listener of an event of that time removes the element.
+  /// Makes the change of motion due at next_time(), unless a listener of an event of that time removes the element.
   /// Precondition: there is one.
   void process() {
     const double time = queue_.top().time;

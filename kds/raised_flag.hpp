@@ -1,11 +1,11 @@
-// A flag that is up for the length of a scope.
+// A flag that is set for the length of a scope.
 #pragma once
 
 #include <utility>
 
 namespace kds::detail {
 
-/// Raises a flag, and puts it back as it was at the end of the scope, also if something throws.
+/// Sets a flag, and restores its value at the end of the scope, also if something throws.
 class RaisedFlag {
  public:
   explicit RaisedFlag(bool& flag) : flag_(flag), before_(std::exchange(flag, true)) {}

@@ -56,10 +56,10 @@ class Simulator {
   /// Time of the next event within the horizon, `never` if there is none.
   double next_time() const { return next().first; }
 
-  /// Keeps only events up to `window` seconds ahead. Whenever the clock is asked beyond, the structures certify again
-  /// for another window. Infinite (the default) predicts everything; a step() without a limit does so too, and from
-  /// then on. Throws std::invalid_argument for a window that is not > 0. Cost: a failure time for each certificate that
-  /// the change concerns.
+  /// Keeps only events up to `window` seconds ahead. Whenever the clock goes beyond, the structures certify again for
+  /// another window. Infinite (the default) predicts everything; a step() without a limit does so too, and from then
+  /// on. Throws std::invalid_argument for a window that is not > 0. Cost: a failure time for each certificate that the
+  /// change concerns.
   void set_window(double window) {
     if (!(window > 0)) throw std::invalid_argument("Simulator::set_window: the window must be > 0");
     window_ = window;

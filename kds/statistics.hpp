@@ -1,4 +1,4 @@
-// What a run did, counted.
+// Counters of a run.
 #pragma once
 
 #include <cstdint>

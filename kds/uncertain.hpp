@@ -1,4 +1,4 @@
-// Functions of time that are known up to a radius that grows: the arithmetic of samples, and what may be concluded.
+// Functions of time that are known up to a radius that grows: the arithmetic of samples, and the signs that follow.
 #pragma once
 
 #include "kds/certificate.hpp"
@@ -13,8 +13,8 @@
 namespace kds {
 
 /// A function of time that lies within radius(t) of middle(t), from `since` on: what the formula of a certificate gives
-/// when it is fed with samples (Bounded, BoundedAcceleration) in place of motions. Middle and radius are polynomials in
-/// (t - epoch).
+/// when its arguments are samples (Bounded, BoundedAcceleration) in place of motions. Middle and radius are polynomials
+/// in (t - epoch).
 ///
 /// Laws: (1) the coefficients of `radius` about `since`, the time of the latest sample, are not negative, so that it
 /// grows from then on. (2) Sums add radii; for a product |xy - ab| <= |a| s + |b| r + r s with |x - a| <= r, |y - b| <=
@@ -77,7 +77,7 @@ Uncertain<M, R, Number> operator-(const Uncertain<M, R, Number>& a, const Polyno
   return {a.middle - b, a.radius, a.epoch, a.since};
 }
 
-/// A certificate whose formula was fed with sampled values: it gives an Uncertain in place of a polynomial.
+/// A certificate whose arguments are sampled values: it gives an Uncertain in place of a polynomial.
 template <class C>
 concept UncertainCertificate = requires(const C& certificate, double epoch) {
   { C::degree } -> std::convertible_to<int>;
@@ -86,7 +86,7 @@ concept UncertainCertificate = requires(const C& certificate, double epoch) {
 };
 
 /// Holds while an uncertain certificate cannot have failed, whatever its elements did since they were sampled: middle -
-/// radius >= 0. So its failure time is never late; how early it is, is what the bounds cost.
+/// radius >= 0. So its failure time is never late; the looser the bounds, the earlier it is.
 template <UncertainCertificate C>
 struct Conservative {
   static constexpr int degree = C::degree;
@@ -99,7 +99,7 @@ struct Conservative {
   }
 };
 
-/// The same fact about the samples as they stand, or go on straight.
+/// The same fact about the samples themselves, at rest or moving on at their velocities.
 template <UncertainCertificate C>
 struct OfSamples {
   static constexpr int degree = decltype(std::declval<const C&>().template polynomial<Exact>(0.0).middle)::degree;

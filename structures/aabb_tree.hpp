@@ -20,8 +20,8 @@
 
 namespace kds::structures {
 
-/// A box whose least and greatest corner move, each as it likes: a path each. Precondition: as long as it is in a
-/// structure, min stays at or below max on each axis. That is not checked.
+/// A box whose least and greatest corner move on paths of their own. Precondition: as long as it is in a structure, min
+/// stays at or below max on each axis. That is not checked.
 template <class Path>
 struct MovingBox {
   static constexpr int degree = Path::degree;
@@ -37,15 +37,16 @@ struct MovingBox {
   }
 };
 
-/// How much larger than its element a fat box is. More means fewer events and more pairs.
+/// How much larger a fat box is than its element. More means fewer events and more pairs.
 struct AabbTreeOptions {
   double slack = 0;  ///< length, on each side, >= 0
-  double ahead = 0;  ///< s, >= 0: the box holds what the element covers in so much time
+  double ahead = 0;  ///< s, >= 0: the box contains all that the element covers in this time
 };
 
-/// Hears nothing of pairs.
+/// A listener that does nothing.
 struct NoPairListener {
-  /// The fat boxes of a and b, a < b, overlap from t on. Neither elements nor structure may be edited from here.
+  /// The fat boxes of a and b, a < b, overlap from t on. Neither the elements nor the structure may be edited from
+  /// within this call.
   void pair_began(Id /*a*/, Id /*b*/, double /*t*/) {}
   void pair_ended(Id /*a*/, Id /*b*/, double /*t*/) {}
 };
@@ -53,20 +54,20 @@ struct NoPairListener {
 /// Keeps a bounding-volume tree over moving elements, and the pairs whose boxes in it overlap.
 ///
 /// An element, a point or a MovingBox (whose paths have axis(d), or are values where Dimension is 1), is in a *fat box*
-/// that stands still and is a little larger. The certificates say that it is still inside, two an axis; when one fails
-/// the element gets a new fat box about where it is then. The tree and the pairs are of fat boxes, so nothing else ever
-/// changes. Papers: [Bergen97] for trees of boxes that move, [Weller06] for kinetic ones. Differs from that: there the
-/// boxes of a tree of constant shape move with their elements, and a certificate says which element reaches farthest in
-/// a node, which suits deforming meshes, whose neighbours stay neighbours; fat boxes at rest suit elements that go each
-/// its way, and an event concerns one of them.
+/// at rest that is a little larger. The certificates state that it is still inside, two for each axis; when one fails
+/// the element gets a new fat box around its place then. The tree and the pairs are of fat boxes, so nothing else
+/// changes. Papers: [Bergen97] for trees of boxes that move, [Weller06] for kinetic ones. Differs from the latter:
+/// there the boxes of a tree of constant shape move with their elements, and a certificate states which element is the
+/// extreme one of a node. That suits deforming meshes, whose neighbours stay neighbours; fat boxes at rest suit
+/// elements that move independently, and an event concerns one of them.
 ///
-/// Cost: an event the new box's way through the tree and 2 Dimension certificates; with `ahead` > 0 an element has at
-/// most one event in so much time, whatever its speed, with `slack` one in slack / speed. 2 Dimension n certificates
+/// Cost: an event, an update of one path in the tree and 2 Dimension certificates; with `ahead` > 0 an element has at
+/// most one event in that time, whatever its speed, with `slack` one in slack / speed. 2 Dimension n certificates
 /// (compact), 2 Dimension an element (local). External events are those that change the pairs.
 ///
-/// Law: pairs hold all whose elements overlap (`meet()`), and more, those whose fat boxes do. What touches overlaps.
-/// Reports alternate for each pair, beginning with pair_began, at the times at which fat boxes change; those of one
-/// change come ends first, each by the other's id. Loading a snapshot reports nothing.
+/// Law: the pairs are those whose fat boxes overlap, and so include all whose elements do (`meet()`). Boxes that touch
+/// overlap. Reports alternate for each pair, beginning with pair_began, at the times at which fat boxes change; for one
+/// change the ends come first, and each are in the order of the other's id. Loading a snapshot reports nothing.
 template <MovingElement E, std::size_t Dimension, class PairListener = NoPairListener>
 class AabbTreeRule {
  public:
@@ -92,8 +93,8 @@ class AabbTreeRule {
   bool paired(Id a, Id b) const {
     return a < partners_.size() && std::binary_search(partners_[a].begin(), partners_[a].end(), b);
   }
-  /// Ids of the elements that this one is paired with, ascending. Precondition: the element is there. The reference
-  /// holds until the next insertion, and shows later pairs.
+  /// Ids of the elements that this one is paired with, ascending. Precondition: the element is there. The reference is
+  /// valid until the next insertion, and shows later pairs.
   const std::vector<Id>& partners(Id id) const { return partners_[id]; }
   /// All pairs, ascending, the lower id first. O(n + pairs).
   std::vector<std::array<Id, 2>> pairs() const;
@@ -121,7 +122,7 @@ class AabbTreeRule {
     set_partners(id, {}, repair.now());
     for (Slot i = 0; i < sides; ++i) repair.retire(id * sides + i);
   }
-  /// It keeps its fat box if that will do for as long as it is to.
+  /// The element keeps its fat box if that contains it for as long as a new one would have to.
   void change(Id id, Repair<E>& repair) {
     const Box needed = box_until_renewal(repair[id], repair.now());
     if (!tree_.box(id).contains(needed)) return void(renew(id, needed, repair));
@@ -168,7 +169,7 @@ class AabbTreeRule {
                                 : std::nullopt;
   }
 
-  /// What an element covers from now on, as far as it is looked ahead, and more than the place where it is.
+  /// A box with what the element covers from now until `ahead` later, and strictly around its present place.
   Box box_until_renewal(const E& element, double now) const {
     Box box;
     for (std::size_t d = 0; d < Dimension; ++d) {

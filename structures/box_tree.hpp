@@ -1,4 +1,4 @@
-// A bounding-volume tree of boxes that come, go and change, as a bare tree: which boxes overlap with this one?
+// A bounding-volume tree of boxes that are inserted, removed and changed: which boxes overlap with this one?
 #pragma once
 
 #include "kds/audit.hpp"
@@ -15,15 +15,16 @@
 
 namespace kds::structures {
 
-/// A binary tree with a box a leaf, known by the caller's ids; an inner node holds the hull of its two. Knows no time.
+/// A binary tree with a box in each leaf, known by the caller's id; the box of an inner node is the hull of its two
+/// children's. It knows nothing of time.
 ///
 /// A box is inserted where it adds least to the surfaces of the nodes [Goldsmith87], going down from the root; on the
-/// way back, a node and its nephew change places where that makes a box smaller [Kensler08]. Where surfaces do not tell
-/// (boxes that are one, or infinite) it goes to the side with fewer leaves. A box that changes but stays within its
-/// parent's is changed where it is; any other is inserted anew.
+/// way back, a node and its nephew change places where that makes a box smaller [Kensler08]. Where surfaces do not
+/// decide (equal boxes, or infinite ones) it goes to the side with fewer leaves. A box that changes but stays within
+/// its parent's is changed where it is; any other is inserted anew.
 ///
-/// Cost: insertion, removal and change O(depth), which is O(log n) but for such as nested boxes; visit()
-/// that and what it finds, in scenes where boxes overlap with few others; 2 n - 1 nodes.
+/// Cost: insertion, removal and change O(depth), which is O(log n) except for nested boxes and the like; visit()
+/// O(depth + boxes found), in scenes where boxes overlap with few others; 2 n - 1 nodes.
 template <std::size_t Dimension>
 class BoxTree {
  public:
@@ -42,14 +43,14 @@ class BoxTree {
   void change(Id id, Box box);
 
   /// Calls found(id) for all boxes that overlap with this one, in no particular order. The tree must not be changed
-  /// from there.
+  /// from within the call.
   template <class Found>
   void visit(const Box& box, Found&& found) const;
 
-  /// Of the longest way down, in steps: 0 for one box or none. O(n depth).
+  /// The number of steps from the root to the deepest leaf: 0 for one box or none. O(n depth).
   std::size_t depth() const;
-  /// Sum of the surfaces of inner nodes, that of the root being 1: what a visit costs. 0 for fewer than two boxes; a
-  /// NaN where the root's surface is zero or infinite. O(n).
+  /// Sum of the surfaces of inner nodes, that of the root being 1: a measure of the cost of a visit. 0 for fewer than
+  /// two boxes; a NaN where the root's surface is zero or infinite. O(n).
   double relative_surface() const;
 
   /// Throws AuditFailure unless every node is the hull of its two, and is where it is said to be.
@@ -80,11 +81,11 @@ class BoxTree {
 
   Place take_node();
   Place best_sibling(const Box& box) const;
-  /// Puts `other` below the parent of `place` in its stead, or at the top.
+  /// Puts `other` in the place of `place` below its parent, or at the top.
   void replace(Place place, Place other);
   void update(Place place);
   void rotate(Place place);
-  /// Puts boxes right from here on upward.
+  /// Updates boxes from here up to the root.
   void refit(Place place);
 
   std::vector<Node> nodes_;
@@ -165,8 +166,8 @@ typename BoxTree<Dimension>::Place BoxTree<Dimension>::take_node() {
   return place;
 }
 
-/// The node with which a new box is to share a parent. To stop at a node adds a node of the hull's surface; to go on
-/// makes this node larger by what the box adds to it, and costs at least what it adds to the child.
+/// The node with which a new box is to share a parent. Stopping at a node adds a node with the surface of the hull;
+/// going on enlarges this node by what the box adds to it, and costs at least what the box adds to the child.
 template <std::size_t Dimension>
 typename BoxTree<Dimension>::Place BoxTree<Dimension>::best_sibling(const Box& box) const {
   Place place = root_;
@@ -207,7 +208,8 @@ void BoxTree<Dimension>::update(Place place) {
   node.leaves = left.leaves + right.leaves;
 }
 
-/// [Kensler08]: of the four exchanges of a child with a child of the other, makes the one that saves most, if one does.
+/// [Kensler08]: of the four exchanges of a child with a child of its sibling, makes the one that saves the most
+/// surface, if one saves any.
 template <std::size_t Dimension>
 void BoxTree<Dimension>::rotate(Place place) {
   double most = 0;

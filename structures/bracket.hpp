@@ -1,4 +1,4 @@
-// A binary tournament, as a bare tree: who has won which match.
+// A binary tournament: the winner of each match in a complete binary tree.
 #pragma once
 
 #include "kds/audit.hpp"
@@ -15,8 +15,8 @@
 namespace kds::structures {
 
 /// A complete binary tree in heap order: matches 1 .. capacity - 1, entrant i at capacity + i. The winner of match 1
-/// has won the tournament. Knows no time: who wins a match is asked of beats(i, j), whether entrant i goes before j,
-/// with i < j, so that ties can go to the lower. Each match that is played again is given to played(match).
+/// has won the tournament. It knows nothing of time: beats(i, j), called with i < j so that ties can go to the lower,
+/// says whether entrant i wins against j. played(match) is called for each match that is played again.
 class Bracket {
  public:
   using Entrant = std::uint32_t;
@@ -38,7 +38,7 @@ class Bracket {
     return match >= 1 && match < capacity() && winner(2 * match) != nobody && winner(2 * match + 1) != nobody;
   }
 
-  /// Makes room for entrants below n, and plays everything if that makes the tree another.
+  /// Makes room for entrants below n, and plays all matches if the tree has to grow.
   template <class Beats, class Played>
   void reserve(std::size_t n, const Beats& beats, const Played& played) {
     if (n <= capacity()) return;
@@ -49,7 +49,7 @@ class Bracket {
     for (std::size_t match = capacity - 1; match >= 1; --match) play(match, beats, played);
   }
 
-  /// Lets one in or out, or plays the matches of one who is another than before. O(log n). Precondition: below
+  /// Lets one entrant in or out, or plays the matches of one that has changed. O(log n). Precondition: below
   /// capacity().
   template <class Beats, class Played>
   void set(Entrant entrant, bool present, const Beats& beats, const Played& played) {
@@ -57,7 +57,7 @@ class Bracket {
     climb((capacity() + entrant) / 2, entrant, beats, played);
   }
 
-  /// Plays a match, and those above as long as their winners are others than before, or `changed`.
+  /// Plays a match, and those above as long as their winners have changed, or are `changed`.
   template <class Beats, class Played>
   void climb(std::size_t match, Entrant changed, const Beats& beats, const Played& played) {
     for (; match >= 1; match /= 2) {
@@ -67,8 +67,8 @@ class Bracket {
     }
   }
 
-  /// Lets several in or out at once, or has them play again: before that, none of them is asked about. Makes room where
-  /// there is none. O(k log n), or O(n) where the tree becomes another.
+  /// Lets several in or out at once, or has them play again: beats() is called only when all are in place. Makes room
+  /// if there is none. O(k log n), or O(n) if the tree grows.
   template <class Present, class Beats, class Played>
   void update(const std::vector<Entrant>& entrants, const Present& present, const Beats& beats, const Played& played) {
     if (entrants.empty()) return;
@@ -84,7 +84,7 @@ class Bracket {
       for (std::size_t match = room - 1; match >= 1; --match) play(match, beats, played);
       return;
     }
-    // Matches in falling order: each is played when what is below it has been.
+    // Matches in descending order: each is played after those below it.
     std::vector<std::size_t> matches;
     for (const Entrant entrant : entrants) matches.push_back((room + entrant) / 2);
     std::make_heap(matches.begin(), matches.end());

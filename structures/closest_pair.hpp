@@ -29,7 +29,7 @@ namespace kds::structures {
 /// triangulation and 3 n matches (compact); locality is that of the triangulation, times log n. External events are
 /// changes of the pair.
 ///
-/// Points that are one for good are a closest pair. Of three points and more that are all on one line for good nothing
+/// Points that stay in one place together are a closest pair. While three or more points all stay on one line nothing
 /// is known (DelaunayRule::flat()).
 template <class Path>
 class ClosestPairRule {
@@ -37,9 +37,9 @@ class ClosestPairRule {
   using Element = Path;
   static constexpr const char* name = "ClosestPair";
 
-  /// The pair, the lower id first; none if there are fewer than two points, or if there are three or more, all on one
-  /// line for good. Of several pairs that are equally close for good it is any. O(1), but O(n) while points share a
-  /// vertex or the triangulation is flat().
+  /// The pair, the lower id first; none if there are fewer than two points, or if there are three or more that all stay
+  /// on one line. If several pairs stay equally close it is any of them. O(1), but O(n) while points share a vertex or
+  /// the triangulation is flat().
   std::optional<std::array<Id, 2>> pair() const;
   const DelaunayRule<Path>& delaunay() const { return delaunay_; }
 
@@ -108,7 +108,7 @@ class ClosestPairRule {
  private:
   using Edge = TriangleMesh::Edge;
 
-  /// Edges take part by the lesser of their half-edges.
+  /// Each edge takes part as the lesser of its half-edges.
   bool is_entrant(Edge h) const {
     const TriangleMesh& mesh = delaunay_.mesh();
     return h / 3 < mesh.end_triangle() && mesh.in_use(h / 3) && h < mesh.twin(h) && mesh.origin(h) != nobody &&
@@ -130,7 +130,7 @@ class ClosestPairRule {
     return [&repair](std::size_t match) { repair.certify(static_cast<Slot>(2 * match + 1)); };
   }
 
-  /// Has the triangulation do something, and the edges that it has marked play again.
+  /// Calls the triangulation, then plays the matches of the edges that it has marked again.
   template <class Do>
   void within(Repair<Path>& repair, Do&& work) {
     repair.nested(0, 2, [&] { return work(), 0; });

@@ -5,7 +5,7 @@
 
 namespace kds::structures {
 
-/// The convex hull of moving points, with the points that lie on its edges for good.
+/// The convex hull of moving points, including points that stay on its edges.
 ///
 /// Proved by any triangulation of the points whose triangles have positive area and whose outline is convex: a
 /// deformable tiling as in [Agarwal02]. Differs: the hull of [Basch99] section 4 is proved by a hierarchy of merged

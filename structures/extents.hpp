@@ -30,15 +30,15 @@ inline std::vector<std::array<double, 3>> kdop_directions(int k) {
   return directions;
 }
 
-/// Keeps, for each of m directions, the foremost and the hindmost of moving points: the extents that bound the set.
+/// Maintains, for each of m directions, the foremost and the hindmost of moving points: the extents that bound the set.
 ///
 /// A binary tournament for each end of each direction. When a match's certificate fails it is played again, and so are
-/// those above it as long as the winner is another. Papers: [Basch99] section 3.2; for k-DOPs that move [Coming08].
+/// those above it as long as the winner changes. Papers: [Basch99] section 3.2; for k-DOPs that move [Coming08].
 ///
 /// Cost for m directions: a change O(m log n), an event O(log n) certificates (responsive); an element plays in at most
 /// 2 m log2 n matches (local); 2 m (n - 1) certificates (compact). External events are changes of an extreme point.
 ///
-/// Ties: among points equally far for good the lowest id is the extreme one.
+/// Ties: among points that stay equally far the one with the lowest id is the extreme one.
 template <class Path, std::size_t Dimension>
 class ExtentsRule {
  public:

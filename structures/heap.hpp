@@ -15,7 +15,7 @@
 
 namespace kds::structures {
 
-/// Keeps a binary heap of moving values: no element is greater than its parent.
+/// Maintains a binary heap of moving values: no element is greater than its parent.
 ///
 /// One certificate for each element but the top; when it fails, parent and child change places. Papers: [Basch99]
 /// section 3.1, [daFonseca03] for the number of events.
@@ -24,7 +24,7 @@ namespace kds::structures {
 /// n - 1 certificates (compact); insertion, removal and a new motion O(log n). n values that move on lines make at most
 /// O(n log n) events [daFonseca03], of which at most n - 1 change the top.
 ///
-/// Of values that are equal for ever any may be on top.
+/// If values stay equal any of them may be on top.
 template <Ranking Rank>
 class HeapRule {
  public:

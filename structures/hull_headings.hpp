@@ -1,4 +1,4 @@
-// That the hull of a triangulation goes round once, and the certificates that prove it.
+// Certificates that prove that the hull of a triangulation goes round only once.
 #pragma once
 
 #include "structures/plane_predicates.hpp"
@@ -11,12 +11,13 @@
 
 namespace kds::structures {
 
-/// Remembers of each edge of the hull whither it leads, counter-clockwise: to the right or to the left; up or down if
-/// it is upright for good. A closed polygon that turns left at each of its vertices is convex if and only if one
-/// stretch of its edges leads forward (right, or up) and one back: else it goes round more than once, like a pentagram.
+/// Stores the heading of each edge of the hull, counter-clockwise: to the right or to the left; up or down if it stays
+/// vertical. A closed polygon that turns left at each of its vertices is convex if and only if its edges form one
+/// stretch that leads forward (right, or up) and one that leads back: otherwise it goes round more than once, like a
+/// pentagram.
 class HullHeadings {
  public:
-  /// Looks at the edge of the hull of an infinite triangle. O(1).
+  /// Updates the heading of an infinite triangle's hull edge. O(1).
   template <class Path>
   void find(const TriangleMesh& mesh, std::uint32_t t, const PlanePredicates<Path>& is) {
     if (heading_.size() <= t) heading_.resize(mesh.end_triangle(), Heading::none);
@@ -29,7 +30,7 @@ class HullHeadings {
     }
   }
 
-  /// That the edge goes on to lead where it does.
+  /// The certificate that the edge keeps its heading.
   template <class Path>
   certificates::DirectionOrder<Path, 2> certificate(const TriangleMesh& mesh, std::uint32_t t,
                                                     const MovingSet<Path>& x) const {
@@ -39,7 +40,7 @@ class HullHeadings {
     return {x[forward ? from : to], x[forward ? to : from], upright ? along_y : along_x};
   }
 
-  /// By what is remembered. O(points of the hull), no arithmetic.
+  /// Decided by the stored headings. O(points of the hull), no arithmetic.
   bool go_round_once(const TriangleMesh& mesh) const {
     int changes = 0;
     const TriangleMesh::Edge first = mesh.from(TriangleMesh::infinite);

@@ -14,8 +14,8 @@ namespace kds::structures {
 /// Edits a mesh that is the Delaunay triangulation of its vertices, or any triangulation of them.
 ///
 /// Predicates: orientation(a, b, c) > 0 if a, b, c turn counter-clockwise; in_circle(a, b, c, d) < 0 if d is inside the
-/// circle through a, b, c; same(a, b) if two are one point. The signs are exact and those of one instant; 0 is for what
-/// is degenerate for good. Papers: [Lawson77] flips, [Guibas85] insertion, [Devillers02] walking.
+/// circle through a, b, c; same(a, b) if the two stay one point. The signs are exact and those of one instant; 0 means
+/// that the points stay degenerate. Papers: [Lawson77] flips, [Guibas85] insertion, [Devillers02] walking.
 ///
 /// Law: triangles have positive area; a vertex on an edge of the hull is a vertex of the hull.
 ///
@@ -47,8 +47,8 @@ class Lawson {
     return false;
   }
 
-  /// Inserts a vertex, looking for its place from the triangle `near`, and gives `nobody`. Where the mesh has a vertex
-  /// that is one with it for good, gives that and inserts nothing. Precondition: the mesh is not empty.
+  /// Inserts a vertex, looking for its place from the triangle `near`, and returns `nobody`. If the mesh has a vertex
+  /// that stays the same point, returns that and inserts nothing. Precondition: the mesh is not empty.
   Id insert(Id vertex, std::uint32_t near) {
     const std::uint32_t place = locate(vertex, near);
     for (Edge h = 3 * place; h < 3 * place + 3; ++h) {
@@ -63,8 +63,8 @@ class Lawson {
     return nobody;
   }
 
-  /// Removes a vertex; false, with the mesh in pieces, where it would have to be built anew: hardly anything would
-  /// remain, or all that remains is on one line.
+  /// Removes a vertex; false, with an invalid mesh, if it has to be built anew: fewer than three vertices would remain,
+  /// or all that remain are on one line.
   bool remove(Id vertex) {
     while (mesh_.valence(vertex) > 3) {
       Edge victim = TriangleMesh::none;
@@ -74,7 +74,7 @@ class Lawson {
         if (ear) victim = h;
         return ear;
       });
-      if (victim == TriangleMesh::none) {  // A vertex of the hull: what is behind it comes to light.
+      if (victim == TriangleMesh::none) {  // A vertex of the hull: vertices behind it become part of the hull.
         for_each_edge(vertex, [&](Edge h) {
           if (mesh_.apex(h) == infinite && !mesh_.connected(mesh_.apex(mesh_.twin(h)), infinite)) victim = h;
           return victim != TriangleMesh::none;
@@ -89,7 +89,7 @@ class Lawson {
     bool solid = false;
     for (std::uint32_t t = 0; t < mesh_.end_triangle() && !solid; ++t) solid = mesh_.in_use(t) && mesh_.finite(t);
     if (!solid) return false;
-    std::vector<Edge> edges;  // Those of all the triangles that now are where the vertex was.
+    std::vector<Edge> edges;  // The edges of all triangles that cover the place of the vertex now.
     for (const std::uint32_t t : touched_) {
       if (mesh_.in_use(t)) edges.insert(edges.end(), {3 * t, 3 * t + 1, 3 * t + 2});
     }
@@ -110,7 +110,7 @@ class Lawson {
     return good;
   }
 
-  /// Flips what is not legal around a vertex, which fits.
+  /// Flips edges around a vertex that are not legal. Precondition: the vertex fits.
   void legalise_around(Id vertex) {
     std::vector<Edge> edges;
     for_each_edge(vertex, [&](Edge h) {
@@ -122,8 +122,8 @@ class Lawson {
     legalise(std::move(edges));
   }
 
-  /// Sign of what has to hold at an edge: that it is Delaunay, or, at the hull, that what lies inside does so and that
-  /// the hull turns left. Where the apex of a hull edge is on the edge for good it is 0.
+  /// Sign of the certificate of an edge: that it is Delaunay, or, at the hull, that the points inside lie inside and
+  /// that the hull turns left. It is 0 if the apex of a hull edge stays on the edge.
   int edge(Edge h) const {
     const auto [a, b, c, d] = corners(h);
     if (a == infinite) return is_.orientation(c, b, d);
@@ -195,7 +195,8 @@ class Lawson {
     if (!mesh_.finite(t)) t = mesh_.twin(finite_edge(t)) / 3;
     std::uint32_t dice = point + 1;
     for (std::size_t step = 0; step < patience; ++step) {
-      dice = dice * 1664525u + 1013904223u;  // A walk that always begins with the same edge may go round in circles.
+      // A random first edge: a walk that always begins with the same one may go round in circles.
+      dice = dice * 1664525u + 1013904223u;
       const Edge beyond = edge_before(t, point, dice >> 30);
       if (beyond == TriangleMesh::none) return t;
       t = mesh_.twin(beyond) / 3;

@@ -1,4 +1,4 @@
-// What is asked of points in the plane at an instant, answered by the exact signs of certificates.
+// Predicates of points in the plane at an instant, decided by the exact signs of certificates.
 #pragma once
 
 #include "certificates/plane_certificates.hpp"
@@ -12,13 +12,12 @@ namespace kds::structures {
 inline constexpr std::array<double, 2> along_x{1, 0};
 inline constexpr std::array<double, 2> along_y{0, 1};
 
-/// Signs at now+; those of sampled points are of their samples. A sign is 0 only if what it asks is degenerate for
-/// good.
+/// Signs at now+; those of sampled points are of their samples. A sign is 0 only if the points stay degenerate.
 template <class Path>
 struct PlanePredicates {
   const MovingSet<Path>& x;
   double now;
-  Id changing = nobody;        ///< one that is asked about as if it
+  Id changing = nobody;        ///< this one is treated as if it
   const Path* next = nullptr;  ///< had this motion
 
   /// > 0 if a, b, c turn counter-clockwise.

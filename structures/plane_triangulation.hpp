@@ -1,4 +1,4 @@
-// Kinetic triangulations of moving points in the plane: what Delaunay triangulation and convex hull have in common.
+// Kinetic triangulations of moving points in the plane: the common part of Delaunay triangulation and convex hull.
 #pragma once
 
 #include "kds/audit.hpp"
@@ -16,22 +16,22 @@
 
 namespace kds::structures {
 
-/// What a triangulation proves besides being one.
+/// The property that a triangulation proves in addition.
 enum class Criterion { delaunay, hull };
 
-/// Keeps a triangulation of moving points, in which the hull is convex and, if asked for, every edge is Delaunay.
+/// Maintains a triangulation of moving points whose hull is convex and, if asked for, whose edges are all Delaunay.
 ///
 /// The proof. Each triangle has positive area (Orientation); the hull turns left at each of its vertices (Orientation);
-/// and it goes round once: of its edges, each of which is known to lead to the right or to the left (DirectionOrder),
-/// one stretch leads to the right and one to the left. Then the angles add up so that the triangles around each vertex
-/// go round once too, and so do not overlap anywhere (see docs/framework.md). Each edge is locally Delaunay (InCircle),
-/// so all are [Lawson77]. Without the going round, points that change places within one spacing of the clock could
-/// leave triangles in two layers, every edge of which is Delaunay.
+/// and it goes round once: each of its edges is certified to lead to the right or to the left (DirectionOrder), and
+/// they form one stretch to the right and one to the left. Then the angles add up so that the triangles around each
+/// vertex go round once too, and so do not overlap anywhere (see docs/framework.md). Each edge is locally Delaunay
+/// (InCircle), so all are [Lawson77]. Without that condition, points that change places within one spacing of the clock
+/// could leave two layers of triangles whose edges are all Delaunay.
 ///
-/// Repair: an edge whose certificate fails is flipped. Where flips cannot put right what exact signs find (points that
-/// run through each other within one spacing) the triangulation is built anew at that instant; rebuilds() counts it.
+/// Repair: an edge whose certificate fails is flipped. Where flips cannot repair it (points that pass through each
+/// other within one spacing of the clock) the triangulation is built anew at that instant; rebuilds() counts this.
 ///
-/// Points that are one for good share a vertex. While all points are on one line for good there is no triangle, and
+/// Points that stay in one place together share a vertex. While all points stay on one line there is no triangle, and
 /// nothing is known of them: flat().
 template <class Path, Criterion What>
 class PlaneTriangulationRule {
@@ -45,7 +45,7 @@ class PlaneTriangulationRule {
   const TriangleMesh& mesh() const { return mesh_; }
   /// Whether all points are on one line, or fewer than three.
   bool flat() const { return mesh_.empty(); }
-  /// The vertex that stands for a point: itself, or one that it is one with for good.
+  /// The vertex that represents a point: itself, or one that stays in the same place.
   Id vertex(Id id) const { return id < same_as_.size() && same_as_[id] != nobody ? same_as_[id] : id; }
   /// Whether some points share a vertex.
   bool has_shared_vertices() const { return hidden_ > 0; }
@@ -102,8 +102,8 @@ class PlaneTriangulationRule {
 
   TriangleMesh mesh_;
   HullHeadings headings_;
-  std::vector<Id> same_as_;   ///< of a point that has no vertex of its own
-  std::uint64_t hidden_ = 0;  ///< how many these are
+  std::vector<Id> same_as_;   ///< by point: the vertex that it shares, if it has none of its own
+  std::uint64_t hidden_ = 0;  ///< how many share one
   std::uint32_t near_ = 0;    ///< a triangle to begin walks with
   double busy_at_ = -never;   ///< time of the last event, and how many there have been at that time
   std::uint64_t repairs_ = 0;
@@ -121,7 +121,7 @@ std::vector<Id> PlaneTriangulationRule<Path, What>::hull() const {
   Edge h = first;
   do {
     ids.push_back(mesh_.target(h));
-    h = mesh_.clockwise(h);  // about infinity, so counter-clockwise about the points
+    h = mesh_.clockwise(h);  // clockwise around infinity is counter-clockwise around the points
   } while (h != first);
   std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end()), ids.end());
   return ids;
@@ -133,7 +133,7 @@ auto PlaneTriangulationRule<Path, What>::certificate(Slot slot, const MovingSet<
   if (t >= mesh_.end_triangle() || !mesh_.in_use(t)) return {};
   if (slot % 4 == 3) {
     if (!mesh_.finite(t)) return headings_.certificate(mesh_, t, x);
-    if (has_infinite_neighbour(t)) return {};  // It is the apex of an edge of the hull.
+    if (has_infinite_neighbour(t)) return {};  // The area is certified as that of the apex of a hull edge.
     return Orientation{x[mesh_.origin(3 * t)], x[mesh_.origin(3 * t + 1)], x[mesh_.origin(3 * t + 2)]};
   }
   const Edge h = 3 * t + slot % 4;
@@ -165,7 +165,7 @@ Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Repair<Path>& repai
   Lawson<Predicates> lawson(mesh_, is, touched_);
   const std::uint32_t t = slot / 4;
   const Edge h = 3 * t + (slot % 4 == 3 ? 0 : slot % 4);
-  // Signs of one instant make flips end. Points that have run through each other may make them go on for ever.
+  // Flips end if all signs are those of one valid state. After points have passed through each other they may not end.
   bool repaired = ++repairs_ <= 64 + 4 * mesh_.size();
   const bool turned = !mesh_.finite(t) && slot % 4 == 3;
   if (repaired && turned) {
@@ -186,7 +186,8 @@ Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Repair<Path>& repai
   return Effect::external;
 }
 
-/// What all edges of the hull are now: more of them may have turned at this time. False if it does not go round once.
+/// Updates the headings of all hull edges: more of them may have turned at this time. False if the hull does not go
+/// round once.
 template <class Path, Criterion What>
 bool PlaneTriangulationRule<Path, What>::look_round(const Predicates& is, Repair<Path>& repair) {
   for (std::uint32_t t = 0; t < mesh_.end_triangle(); ++t) {

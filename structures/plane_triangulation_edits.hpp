@@ -1,4 +1,5 @@
-// How points come into a kinetic triangulation of the plane, leave it, and take up other motions; and how it is built.
+// How points are inserted into a kinetic triangulation of the plane, removed and given new motions; and how it is
+// built.
 #pragma once
 
 #include "structures/plane_triangulation.hpp"
@@ -89,7 +90,7 @@ void PlaneTriangulationRule<Path, What>::rebuild(Id without, Repair<Path>& repai
   same_as_.assign(repair.elements().end_id(), nobody);
   std::vector<Id> ids = repair.elements().ids();
   std::erase(ids, without);
-  // In an order that has nothing to do with where the points are, and is the same on every machine.
+  // In an order that is independent of the points' places, and the same on every machine.
   const auto shuffled = [](Id id) { return (id + 1) * std::uint64_t{0x9e3779b97f4a7c15u} >> 20; };
   std::sort(ids.begin(), ids.end(), [&](Id a, Id b) { return shuffled(a) < shuffled(b); });
   const Predicates is{repair.elements(), repair.now()};

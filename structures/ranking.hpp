@@ -1,4 +1,4 @@
-// By what the elements of a structure are compared.
+// Orders by which the elements of a structure are compared.
 #pragma once
 
 #include "certificates/direction_order.hpp"
@@ -11,7 +11,7 @@
 
 namespace kds::structures {
 
-/// Gives the certificate that one element is not greater than another.
+/// Makes the certificate that one element is not greater than another.
 ///
 /// Semantic law: the certificate's function is a difference, rank(b) - rank(a), so that the order is transitive.
 template <class R>

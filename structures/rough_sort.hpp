@@ -1,4 +1,4 @@
-// Sorting values that are known roughly: by buckets, in linear time where they are spread evenly.
+// Sorting rounded values by buckets, in linear time where they are spread evenly.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace kds::structures {
 
-/// A value, and which entry has it.
+/// A value, and the entry that it belongs to.
 struct RoughPlace {
   double value;
   std::uint32_t entry;
@@ -16,9 +16,9 @@ struct RoughPlace {
 
 /// Sorts by value; equal ones come in any order. Precondition: the sum of the magnitudes is finite.
 ///
-/// Buckets as many as values, each sorted by itself. Which bucket is monotone in the value even as it is rounded: a
-/// subtraction and a multiplication by a positive number. Cost: O(n) where values are spread evenly, O(n log n)
-/// otherwise.
+/// There are as many buckets as values, and each is sorted by itself. The number of the bucket is monotone in the value
+/// even after rounding: a subtraction and a multiplication by a positive number. Cost: O(n) where values are spread
+/// evenly, O(n log n) otherwise.
 inline void sort_roughly(std::vector<RoughPlace>& places) {
   const auto before = [](const RoughPlace& a, const RoughPlace& b) { return a.value < b.value; };
   constexpr std::size_t few = 64;

@@ -1,5 +1,5 @@
-// Kinetic sorted list: moving values kept in order. What it is, and its events; sorted_list_edits.hpp has its edits,
-// sorted_list_audit.hpp how it checks itself, is measured and saved.
+// Kinetic sorted list: moving values kept in order. This file has the class and its events; sorted_list_edits.hpp has
+// edits, sorted_list_audit.hpp audits, measures and snapshots.
 #pragma once
 
 #include "certificates/order.hpp"
@@ -21,16 +21,16 @@
 
 namespace kds::structures {
 
-/// What a kinetic sorted list tells about its swaps, and how it breaks eternal ties. This one is told nothing.
+/// Receives the swaps of a kinetic sorted list, and breaks the ties of values that stay equal. This one ignores swaps.
 struct NoSwapListener {
-  /// `left` and `right` have just come into this order at time t. The list must not be changed from here.
+  /// `left` and `right` have just come into this order at time t. The list must not be changed from within this call.
   void swapped(std::uint32_t /*left*/, std::uint32_t /*right*/, double /*t*/) {}
 
-  /// Values that are equal for good stand in ascending rank, then in ascending id.
+  /// Values that stay equal stand in ascending rank, then in ascending id.
   static std::uint32_t rank(std::uint32_t /*id*/) { return 0; }
 };
 
-/// Who hears of swaps. Law: rank(id) is always the same. With archive(archive) it is saved with the list.
+/// The listener of a sorted list. Law: rank(id) is always the same. With archive(archive) it is saved with the list.
 template <class L>
 concept SwapListener = requires(L& listener, const L& observed, std::uint32_t id) {
   listener.swapped(id, id, 0.0);
@@ -107,7 +107,7 @@ class SortedList {
   /// Time of the next swap, `never` if there is none within the horizon.
   double next_time() const { return schedule_.next_time(); }
 
-  /// Makes the swap due at next_time(). Precondition: there is one.
+  /// Processes the swap due at next_time(). Precondition: there is one.
   void process();
 
   /// See KineticStructure.
@@ -127,7 +127,7 @@ class SortedList {
 
   const PlaceQueue& queue() const { return schedule_.queue(); }
 
-  /// Saves or loads all that the list knows, and its listener if that has archive(). See save() in snapshot.hpp.
+  /// Saves or loads the whole state of the list, and its listener if that has archive(). See save() in snapshot.hpp.
   template <class Archive>
   void archive(Archive& archive);
 
@@ -152,12 +152,12 @@ class SortedList {
     const auto slot = static_cast<Slot>(left);
     if (left + 1 == order_.size()) return schedule_.clear(slot);
     schedule_.certify(slot, pair(left), now);
-    if (now == disturbed_) settle_tie(slot, now);
+    if (now == disturbed_) schedule_tie(slot, now);
   }
 
-  /// Equal for good and in the wrong order: that is no failure of a certificate, and comes only from changes made
-  /// before all events of their time were processed.
-  void settle_tie(Slot left, double now) {
+  /// Two that stay equal, in the wrong order: no certificate fails then. It happens only by changes that are made
+  /// before all events of their time have been processed.
+  void schedule_tie(Slot left, double now) {
     if (schedule_.contains(left) || in_order(order_[left], order_[left + 1], now)) return;
     schedule_.set(left, now);
   }
@@ -165,7 +165,7 @@ class SortedList {
   /// To be called at the end of each change of the schedule.
   void settle() {
     schedule_.settle([this](Slot place) { return order_[place].id; });
-    // The two pairs around it will be needed too. In large lists they are not in the nearest cache.
+    // Fetches the two pairs around it, which will be needed too: in large lists they are not in the nearest cache.
     const std::size_t place = schedule_.queue().candidate();
     if (place + 2 >= order_.size() || place == 0) return;
     __builtin_prefetch(&order_[place - 1]);
@@ -224,7 +224,7 @@ class SortedList {
   std::vector<std::uint32_t> position_;  // of an id in order_, or `absent`
   PlaceSchedule schedule_;               // slot i: the pair of places i and i + 1
   Listener listener_;
-  Measures measures_;          // what pairs and counters do not tell: touched, most_touched, most_held
+  Measures measures_;          // those that do not follow from pairs and counters: touched, most_touched, most_held
   double disturbed_ = -never;  // the last time at which the list was changed amidst its events
 };
 
@@ -237,12 +237,12 @@ void SortedList<Degree, Listener>::process() {
   schedule_.failed(slot, pair(left), time);
   exchange(left);
   listener_.swapped(order_[left].id, order_[left + 1].id, time);
-  // Certified anew: the pair itself, whose sign has just turned, and the two pairs around it.
+  // New certificates: the pair itself, whose sign has just turned, and the two pairs around it.
   const std::uint64_t touched = 1u + (left > 0) + (left + 2 < order_.size());
   if (touched == 3 && time != disturbed_) {
     schedule_.certify_three(slot, pair(left - 1), pair(left), pair(left + 1), time);
   } else {
-    if (time == disturbed_) {  // It may have been a tie.
+    if (time == disturbed_) {  // The two may stay equal.
       certify(left, time);
     } else {
       schedule_.certify_turned(slot, pair(left), time);

@@ -13,8 +13,8 @@ namespace kds::structures {
 
 /// The proof of the state: every pair of neighbours is in order at t+, or a swap of it is due; the failure time of each
 /// pair within the horizon is in the slot of its left element's place, and nothing else is scheduled; and position_ is
-/// the inverse of order_. At the time of a change amidst events, a pair that is equal for good may stand in the wrong
-/// order until its event, which is due at once.
+/// the inverse of order_. At the time of a change amidst events, a pair that stays equal may stand in the wrong order
+/// until its event, which is due at once.
 template <int Degree, SwapListener Listener>
 void SortedList<Degree, Listener>::audit(double now) const {
   const auto fail = [](std::size_t i, const char* what) {
@@ -28,7 +28,7 @@ void SortedList<Degree, Listener>::audit(double now) const {
       const bool ordered = in_order(order_[i], order_[i + 1], now);
       if (!ordered && !(schedule_.time(slot) <= now)) fail(i, "greater than its right neighbour");
       t = failure_time(pair(i), now, schedule_.horizon());
-      if (!ordered && now == disturbed_) t = now;  // a tie to be settled, perhaps
+      if (!ordered && now == disturbed_) t = now;  // perhaps two that stay equal, whose swap is due
     }
     if (schedule_.contains(slot) != (t != never)) fail(i, "an event is missing or stands without cause");
     if (schedule_.contains(slot) && schedule_.time(slot) != t) fail(i, "the scheduled swap has the wrong time");
@@ -44,7 +44,7 @@ Measures SortedList<Degree, Listener>::measures() const {
   return result;
 }
 
-/// What is loaded is checked for all that the list relies on, but not for being in order: audit() does that.
+/// Loading checks all that the list relies on except that it is in order: audit() does that.
 template <int Degree, SwapListener Listener>
 template <class Archive>
 void SortedList<Degree, Listener>::archive(Archive& archive) {

@@ -1,4 +1,4 @@
-// How elements come into a kinetic sorted list, leave it, and take up other motions.
+// How elements are inserted into a kinetic sorted list, removed and given new motions.
 #pragma once
 
 #include "structures/rough_sort.hpp"
@@ -14,13 +14,13 @@
 
 namespace kds::structures {
 
-// What an edit finds and must leave: order_ holds the elements in order at t+, position_ the place of each id, and slot
-// i of schedule_ the failure time of the pair of places i and i + 1, none for the last place. An edit certifies the
-// pairs whose elements it has changed or brought together, which are three at most, and then settles the queue.
+// Before and after an edit: order_ has the elements in order at t+, position_ the place of each id, and slot i of
+// schedule_ the failure time of the pair of places i and i + 1, none for the last place. An edit certifies the pairs
+// whose elements it has changed or brought together, which are three at most, and then settles the queue.
 //
-// It may come when swaps of this very instant are still due (from the callback of another structure, say). The order is
-// then that of a moment before, but for what the edit moves, and pairs that are equal for good may come to stand in the
-// wrong order, of which no certificate tells: expect_disorder() notes the time, and certify() then looks for such
+// An edit may be made while swaps of this instant are still due (from a callback of another structure, say). The order
+// is then that of the moment before, except for the element that the edit moves, and pairs that stay equal may be put
+// in the wrong order, which no certificate shows: expect_disorder() notes the time, and certify() then looks for such
 // pairs.
 
 template <int Degree, SwapListener Listener>
@@ -48,8 +48,8 @@ void SortedList<Degree, Listener>::assign(std::span<const Entry> entries, double
   count_held();
 }
 
-/// Fills order_. Values in doubles, computed once each, decide where neighbours differ by more than their margins; what
-/// they leave to be told are runs, of one each as a rule.
+/// Fills order_. Values in doubles, computed once each, decide where neighbours differ by more than their margins;
+/// exact signs sort the runs of elements that are left, which mostly have one element.
 template <int Degree, SwapListener Listener>
 void SortedList<Degree, Listener>::sort(std::span<const Entry> entries, double now) {
   std::vector<RoughPlace> places(entries.size());
@@ -70,7 +70,7 @@ void SortedList<Degree, Listener>::sort(std::span<const Entry> entries, double n
       return a.entry != b.entry && in_order(entries[a.entry], entries[b.entry], now);
     });
   }
-  // Memory that is there is used again, unless it holds the very entries.
+  // The vector's memory is used again, unless it is where the entries are.
   const std::less<const Entry*> before;
   std::vector<Entry> own;
   if (!before(entries.data(), order_.data()) && before(entries.data(), order_.data() + order_.size())) {
@@ -158,7 +158,7 @@ template <int Degree, SwapListener Listener>
 void SortedList<Degree, Listener>::turn_round(double now, double horizon) {
   for (Entry& entry : order_) entry.motion = reversed(entry.motion);
   schedule_.set_horizon(horizon);
-  disturbed_ = now;  // It may have been amidst the events of a time.
+  disturbed_ = now;  // The edit may have been made amidst the events of this time.
   certify_all(now);
   settle();
 }

@@ -1,4 +1,4 @@
-// What a moving value covers in the time to come.
+// The interval that a moving value covers in the time ahead.
 #pragma once
 
 #include "kds/arithmetic/ball.hpp"
@@ -20,7 +20,8 @@ struct Span {
 
 namespace detail {
 
-/// Adds the terms of a polynomial in the time from now on, over [0, ahead]: each is monotone, so its ends will do.
+/// Adds the terms of a polynomial in the time from now on, over [0, ahead]: each is monotone, so its values at the ends
+/// suffice.
 template <int Degree>
 void add_terms(const Polynomial<Degree, Ball<double>>& f, double ahead, Span& span, double& size) {
   span.min += f.c[0].middle - f.c[0].radius;
@@ -39,8 +40,8 @@ void add_terms(const Polynomial<Degree, Ball<double>>& f, double ahead, Span& sp
 
 }  // namespace detail
 
-/// An interval whose inside holds the value from now until `ahead` seconds later, a sampled one whatever it does;
-/// [-infinity, infinity] where the numbers overflow. Precondition: now is finite, ahead >= 0.
+/// An interval whose inside contains the value from now until `ahead` seconds later, and a sampled value however it
+/// moves; [-infinity, infinity] where the numbers overflow. Precondition: now is finite, ahead >= 0.
 ///
 /// Roundings: n - 1 of a power, one of the product, n + 2 of the sums, 2^-53 of a term each; 2^-48 of all terms covers
 /// degrees to 12, and leaves the ends strictly outside; 2^-1000 is for underflow.

@@ -18,19 +18,19 @@
 
 namespace kds::structures {
 
-/// Keeps the greatest of moving values, as the winner of a binary tournament.
+/// Maintains the greatest of moving values, as the winner of a binary tournament.
 ///
-/// Each match holds one certificate, "the loser is not greater than the winner"; when it fails the match is replayed
-/// and so are those above it, up to the first that the old winner had not won. Paper: [Basch99] section 3.2.
+/// Each match has one certificate, "the loser is not greater than the winner"; when it fails the match is replayed and
+/// so are those above it, up to the first that the old winner had not won. Paper: [Basch99] section 3.2.
 ///
 /// Cost: O(log n) certificates an event or a change; an element plays in at most log2 n matches (local), n - 1
 /// certificates in all (compact). Depth and memory are those of the greatest id that there has been, so ids should be
 /// small; an insertion for which the tree must grow (to twice the size or more) plays all matches.
 ///
-/// It keeps its values itself and is not made of a rule: as one an event takes 33 % more instructions on lines and 18 %
-/// more on parabolas (256 values; the same events), since repairs are marked and certificates asked for by slot.
+/// It owns its values and is not made of a rule: made of one, an event takes 33 % more instructions on lines and 18 %
+/// more on parabolas (256 values; the same events), since slots are marked and their certificates made one by one.
 ///
-/// Ties: among values that are equal for good the one with the lower id wins.
+/// Ties: among values that stay equal the one with the lower id wins.
 ///
 /// `now` is always the clock, in seconds: finite, and not before the last change or event. That is not checked.
 template <int Degree, EventQueue Queue = DefaultEventQueue, FailureTimeSolver Solver = CertifiedSolver>
@@ -80,7 +80,7 @@ class Tournament {
   /// Time of the next event within the horizon, `never` if there is none.
   double next_time() const { return schedule_.next_time(); }
 
-  /// Makes the event due at next_time(). Precondition: there is one.
+  /// Processes the event due at next_time(). Precondition: there is one.
   void process() {
     const auto [time, slot] = schedule_.next();
     if (!schedule_.failed(slot, match(slot), time)) return;
@@ -123,10 +123,10 @@ class Tournament {
 
   const Counters& counters() const { return schedule_.counters(); }
 
-  /// An event is external if the greatest becomes another. Certificates an event and an element: log2 n at most.
+  /// An event is external if the greatest changes. Certificates an event and an element: log2 n at most.
   Measures measures() const;
 
-  /// Saves or loads all that the tournament knows. See save() in snapshot.hpp.
+  /// Saves or loads the whole state of the tournament. See save() in snapshot.hpp.
   template <class Archive>
   void archive(Archive& archive) {
     archive.tag("Tournament of degree " + std::to_string(Degree));
@@ -135,7 +135,7 @@ class Tournament {
   }
 
  private:
-  /// What has been loaded.
+  /// Checks what has been loaded.
   template <class Archive>
   void check(const Archive& archive) const {
     archive.require(capacity_ == 0 || (capacity_ >= 2 && std::has_single_bit(capacity_)),
@@ -172,7 +172,7 @@ class Tournament {
     return winner_[node] == left ? winner_of(2 * node + 1) : left;
   }
 
-  /// Returns whether another than before has won.
+  /// Returns whether the winner has changed.
   bool play(std::size_t node, double now) {
     const bool changed = decide(node, now);
     certify(node, now);
@@ -234,7 +234,7 @@ class Tournament {
   std::vector<std::optional<Motion<Degree>>> entrants_;
   std::vector<Id> winner_;
   Schedule<Queue, Solver> schedule_;
-  Measures measures_;  // what size and counters do not tell
+  Measures measures_;  // those that do not follow from size and counters
   std::size_t capacity_ = 0;
   std::size_t size_ = 0;
 };
@@ -274,7 +274,7 @@ void Tournament<Degree, Queue, Solver>::audit(double now) const {
       t = failure_time(match(node), now, schedule_.horizon());
       if (t <= now && !(schedule_.contains(slot) && schedule_.time(slot) <= now)) fail(node, "the loser is greater");
     }
-    if constexpr (!Solver::certified) continue;  // It may be wrong about times.
+    if constexpr (!Solver::certified) continue;  // Its times may be wrong.
     if (schedule_.contains(slot) != (t != never)) fail(node, "an event is missing or without cause");
     if (schedule_.contains(slot) && schedule_.time(slot) != t) fail(node, "the scheduled event has the wrong time");
   }

@@ -15,7 +15,7 @@ namespace kds::structures {
 
 /// Half-edges in an array. Half-edge h = 3 t + i leads from corner i of triangle t to the next, its triangle on the
 /// left; the third corner is its apex. The vertex `infinite` makes a triangle with each edge of the convex hull, so
-/// that every half-edge has a twin and a hull is nothing special. Knows no coordinates. Paper: [Guibas85], with
+/// that every half-edge has a twin and the hull is no special case. It has no coordinates. Paper: [Guibas85], with
 /// triangles in place of quad-edges.
 ///
 /// Cost: O(1) for everything but valence(), connected() and rename(), which are linear in the valence, and audit().
@@ -43,7 +43,7 @@ class TriangleMesh {
   /// A half-edge from a vertex. Precondition: contains(vertex).
   Edge from(Id vertex) const { return vertex == infinite ? at_infinity_ : from_[vertex]; }
 
-  /// Numbers of triangles are below this; some may be in_use() no more.
+  /// Numbers of triangles are below this; not all of them need be in_use().
   std::uint32_t end_triangle() const { return static_cast<std::uint32_t>(twin_.size() / 3); }
   bool in_use(std::uint32_t triangle) const { return twin_[3 * std::size_t{triangle}] != none; }
   bool finite(std::uint32_t triangle) const {
@@ -89,8 +89,8 @@ class TriangleMesh {
     join(4, 11), join(5, 7), join(8, 10);
   }
 
-  /// Puts a vertex into a triangle, and gives the half-edge opposite to it in each of the three triangles that are then
-  /// around it. Precondition: !contains(vertex).
+  /// Puts a vertex into a triangle, and returns the half-edge opposite to it in each of the three triangles around it.
+  /// Precondition: !contains(vertex).
   std::array<Edge, 3> split(std::uint32_t triangle, Id vertex) {
     const Edge h = 3 * triangle;
     const std::array<Id, 3> corner{origin_[h], origin_[h + 1], origin_[h + 2]};
@@ -99,7 +99,7 @@ class TriangleMesh {
     const Edge second = create({corner[1], corner[2], vertex});
     const Edge third = create({corner[2], corner[0], vertex});
     set_origin(h + 2, vertex);
-    set_origin(second, corner[1]);  // from() of the corners may have pointed to what has moved
+    set_origin(second, corner[1]);  // from() of the corners may have been half-edges that have moved
     set_origin(third, corner[2]);
     join(second, second_outside);
     join(third, third_outside);
@@ -107,7 +107,7 @@ class TriangleMesh {
     return {h, second, third};
   }
 
-  /// Takes out a vertex with three edges: one triangle remains, whose number this gives.
+  /// Takes out a vertex with three edges, and returns the number of the one triangle that remains.
   std::uint32_t merge(Id vertex) {
     const Edge first = from(vertex);
     const Edge second = clockwise(first);

@@ -8,7 +8,7 @@
 namespace kds::collision {
 namespace {
 
-/// For pairs that are known already.
+/// For pairs that have been reported already.
 class NoListener final : public PairListener {
  public:
   explicit NoListener(const PairListener& told) : told_(told) {}
@@ -23,7 +23,7 @@ class NoListener final : public PairListener {
 
 }  // namespace
 
-/// The pairs that one has and the other has not.
+/// Reports the pairs that one has and the other has not.
 template <int Degree>
 template <class From, class To>
 void AdaptiveBroadPhase<Degree>::report_changes(std::span<const Entry> bodies, const From& from, const To& to,

@@ -1,4 +1,4 @@
-// The default: a broad phase that chooses, and may change its mind.
+// The default broad phase: it chooses between two by the number of bodies, and may change during a run.
 #pragma once
 
 #include "collision/broad_phase/few_boxes.hpp"
@@ -11,12 +11,12 @@
 
 namespace kds::collision {
 
-/// A few boxes compared each with all others; the kinetic grid from 65 bodies on, until there are no more than 32. A
-/// change reports just the pairs that one has and the other has not, so no contact is lost.
+/// A few boxes are compared each with all others; from 65 bodies on it is the kinetic grid, until there are no more
+/// than 32. When it changes it reports the pairs that one has and the other has not, so no contact is lost.
 ///
 /// These two are enough: of random scenes of 4 to 64 balls of all sizes, speeds, densities and rates hardly any was
-/// cheaper in the grid, with sorted lists or by all pairs, and of those of more the grid is the cheapest in nearly all
-/// that were measured (docs/speed.md).
+/// cheaper in the grid, with sorted lists or by all pairs; with more balls the grid is the cheapest in nearly all
+/// scenes that were measured (docs/speed.md).
 template <int Degree>
 class AdaptiveBroadPhase final : public BroadPhase<Degree> {
  public:
@@ -56,11 +56,11 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
                              PairListener& listener);
 
   AdaptiveTuning tuning_;
-  FewBoxes<Degree> few_;                       ///< holds all bodies while there is no grid
-  std::unique_ptr<KineticGrid<Degree>> grid_;  ///< else holds them
+  FewBoxes<Degree> few_;                       ///< has all bodies while there is no grid
+  std::unique_ptr<KineticGrid<Degree>> grid_;  ///< otherwise has them
   std::size_t threads_;
   double horizon_ = never;
-  BroadPhaseCounters done_;  ///< by grids that have been given up
+  BroadPhaseCounters done_;  ///< work of grids that have been given up
 };
 
 #define KDS_DECLARE(degree) extern template class AdaptiveBroadPhase<degree>;

@@ -1,4 +1,4 @@
-// No pruning at all: the baseline that tests every pair once and keeps the result.
+// No pruning: the baseline that tests every pair once and keeps the result.
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
@@ -22,7 +22,7 @@ class AllPairs final : public BroadPhase<Degree> {
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override {
     const std::size_t before = bodies_.size();
     for (const Entry& body : bodies) bodies_.push_back(body.slot);
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {  // in order, where the bodies are
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {  // in the order of the bodies in memory
       for (std::size_t j = std::max(i + 1, before); j < bodies_.size(); ++j) {
         listener.pair_began(std::min(bodies_[i], bodies_[j]), std::max(bodies_[i], bodies_[j]), now);
       }
@@ -38,7 +38,7 @@ class AllPairs final : public BroadPhase<Degree> {
   bool advance(double, PairListener&) override { return false; }
   double next_time() const override { return never; }
   void extend_horizon(double, double) override {}
-  /// It knows no boxes, and names all bodies. O(n).
+  /// It has no boxes, and visits all bodies. O(n).
   void visit_overlapping(const StaticBox&, double, SlotVisitor visit) const override {
     for (const BodySlot id : bodies_) visit(id);
   }

@@ -1,4 +1,4 @@
-// Who is told of the bodies that a question names.
+// Visitors of the bodies that a query finds.
 #pragma once
 
 #include "collision/body_id.hpp"
@@ -9,7 +9,7 @@
 
 namespace kds::collision {
 
-/// Any function object that takes the name of a body. It is referred to, not copied: for arguments of functions alone.
+/// Any function object that takes an id or a slot. It is referred to, not copied: for function arguments only.
 template <class Name>
 class Visitor {
  public:
@@ -26,7 +26,7 @@ class Visitor {
   void (*call_)(void* object, Name body);
 };
 
-using BodyVisitor = Visitor<BodyId>;    ///< what a world calls
-using SlotVisitor = Visitor<BodySlot>;  ///< what a broad phase calls
+using BodyVisitor = Visitor<BodyId>;    ///< called by a world
+using SlotVisitor = Visitor<BodySlot>;  ///< called by a broad phase
 
 }  // namespace kds::collision

@@ -1,4 +1,4 @@
-// Boxes with rounded edges, as numbers that a grid compares.
+// Boxes with rounded edges, in the form that a grid compares.
 #pragma once
 
 #include "collision/broad_phase/swept_box.hpp"
@@ -28,22 +28,22 @@ struct BoxBounds {
   double extent() const { return std::max({-zx[1] - xy[0], -yz[0] - xy[1], -yz[1] - zx[0]}); }
 };
 
-/// A radius as a box keeps it: less by so much that the roundings of a comparison never have two boxes apart that are
-/// not. (Less is safe: what is in a box rounded by a radius is in the same box rounded by a smaller one. A gap along
-/// one axis alone is compared without an error, since to round is monotone; where a second axis adds to it, by more
-/// than 2^-40 of the square, what radii are less by is more than the roundings.)
+/// A radius as a box stores it: reduced so far that the roundings of a comparison never make two boxes disjoint that
+/// overlap. (Reducing is safe: a box rounded by a radius lies in the same box rounded by a smaller one. A gap along a
+/// single axis is compared without an error, since rounding is monotone; where a second axis adds to it, by more than
+/// 2^-40 of the square, the reduction exceeds the roundings.)
 inline float kept_rounding(double radius) {
   return radius > 0x1p-100 ? static_cast<float>(std::min(radius, 0x1p100) * (1 - 0x1p-20)) : 0;  // a normal number
 }
 
-/// Tells for two boxes at a time, lane by lane and without a branch, whether they overlap another one.
+/// Tests two boxes at a time, lane by lane and without a branch, for overlap with another one.
 ///
-/// Rounded by a radius, a box is what is within that radius of the smaller box that a ball's centre has if the ball is
-/// in it. So two overlap if the gap between the smaller ones is at most the sum R of the radii: where max(0, s + R)
-/// over the axes, for separations s of the boxes as they are, is a vector of length R at most. Of dense balls in fat
-/// boxes a fifth of the pairs that overlap as boxes do not.
+/// A box rounded by a radius is the set of points within that radius of a smaller box, that of the centres of balls of
+/// this radius that lie in the box. So two overlap if the gap between the smaller boxes is at most the sum R of the
+/// radii: if the vector with the components max(0, s + R), for the separations s of the unrounded boxes along the axes,
+/// has length R at most. With dense balls in fat boxes this excludes a fifth of the pairs that overlap as boxes.
 ///
-/// Boxes that overlap here do so as they are; with radii 0 also the other way round.
+/// Boxes that overlap rounded also overlap unrounded; with radii 0 the converse is true too.
 class BoxOverlaps {
  public:
   BoxOverlaps(const BoxBounds& a, float rounding_a, const BoxBounds& b, float rounding_b)
@@ -51,7 +51,7 @@ class BoxOverlaps {
         minus_max_{Two{a.zx[1], b.zx[1]}, Two{a.yz[0], b.yz[0]}, Two{a.yz[1], b.yz[1]}},
         rounding_{rounding_a, rounding_b} {}
 
-  /// Bit 0 if the first box does, bit 1 if the second.
+  /// Bit 0 if the first box overlaps, bit 1 if the second does.
   unsigned with(const BoxBounds& other, float rounding) const {
     const Two radius = rounding_ + both(rounding);
     const Two x = greater(both(other.xy[0]) + minus_max_[0], both(other.zx[1]) + min_[0]);

@@ -1,4 +1,4 @@
-// Boxes that come, move and go.
+// Boxes that are inserted, moved and removed.
 #include "collision/broad_phase/box_grid.hpp"
 
 #include "collision/broad_phase/box_grid_ends.hpp"
@@ -30,14 +30,14 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding
 
 /// Cells of two levels may share a bucket, so a box may be found twice, or find itself.
 void BoxGrid::begin_search(Id id) {
-  if (++search_ == 0) {  // all numbers have been used
+  if (++search_ == 0) {  // the counter has wrapped round
     for (Item& other : items_) other.reported = 0;
     search_ = 1;
   }
   items_[id].reported = search_;
 }
 
-/// False if it has been reported in this search.
+/// False if the box has been reported in this search already.
 bool BoxGrid::report_once(Id id) { return std::exchange(items_[id].reported, search_) != search_; }
 
 void BoxGrid::enter(Id id, Changes& changes) {
@@ -68,7 +68,8 @@ void BoxGrid::enter(Id id, Changes& changes) {
   tidy();
 }
 
-/// Counts boxes in, many at once: their ends are compared as they are, and the extremes rounded, which is monotone.
+/// Extends the bounds by many boxes at once: the least and greatest ends are found first and rounded then; rounding is
+/// monotone.
 struct BoxGrid::Census {
   void add(const BoxBounds& box, const Ends& ends) {
     ++count;
@@ -94,7 +95,7 @@ struct BoxGrid::Census {
   Two high_xy{-beyond, -beyond}, high_zx{-beyond, -beyond};
 };
 
-/// The boxes and cells of some ahead are fetched meanwhile: they lie anywhere in memory.
+/// The boxes and cells of later ones are prefetched meanwhile: they are scattered in memory.
 void BoxGrid::enter_all(std::span<const Id> ids) {
   if (ids.size() > natives_.room()) natives_.restart(ids.size());
   struct Ready {
@@ -154,11 +155,12 @@ void BoxGrid::remove(Id id, Changes& changes) {
   items_[id].level = absent;
 }
 
-/// Replaces a box by one of its level: if they are near each other, one search finds what overlaps either.
+/// Replaces a box by one of the same level: if they are near each other, one search finds all boxes that overlap
+/// either.
 void BoxGrid::move(Id id, const Item& to, Changes& changes) {
   const Item from = items_[id];
   auto level = find_level(to.level);
-  constexpr double near = 2 * units_per_cell;  // in units of the lattice; searches are then small at all levels
+  constexpr double near = 2 * units_per_cell;  // units of the lattice: then searches are small at all levels
   if (from.bounds.joined(to.bounds).extent() * level->scale > near) return put_anew(id, to, changes);
   const Ends own_before(from.bounds, level->scale);
   const Ends own_after(to.bounds, level->scale);
@@ -188,7 +190,7 @@ void BoxGrid::move(Id id, const Item& to, Changes& changes) {
   tidy();
 }
 
-/// Takes a box out and puts it in anew; what overlaps both before and after has not changed.
+/// Takes a box out and inserts it again; boxes that overlap both before and after are not changes.
 void BoxGrid::put_anew(Id id, const Item& to, Changes& changes) {
   const auto ended = static_cast<std::ptrdiff_t>(changes.ended.size());
   const auto began = static_cast<std::ptrdiff_t>(changes.began.size());

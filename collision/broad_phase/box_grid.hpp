@@ -1,4 +1,4 @@
-// Boxes at rest, and which of them overlap: a hierarchical hash grid.
+// A hierarchical hash grid of boxes at rest: which of them overlap.
 #pragma once
 
 #include "collision/broad_phase/box_bounds.hpp"
@@ -21,21 +21,22 @@
 
 namespace kds::collision {
 
-/// Keeps boxes by number and tells, when one comes, goes or is replaced, with which others its overlap has changed.
+/// Stores boxes by number and reports, when one is inserted, removed or replaced, with which others its overlap has
+/// changed.
 ///
-/// A level of the grid has cubic cells, of sides that double from level to level; the smallest hold a few boxes on
-/// average, since to look into empty cells is dearer than to look at some boxes in vain. A box is a *native* of the
+/// A level of the grid has cubic cells, of sides that double from level to level; the smallest contain a few boxes on
+/// average, since looking into empty cells costs more than comparing some boxes in vain. A box is a *native* of the
 /// level whose cells are just larger, and a *guest* of all coarser levels in use; in each it is in one cell, that of
-/// its lower corner, so to move it rarely changes more than one entry. A search looks into the cells where a box that
-/// overlaps may have its corner. So two boxes of any sizes meet in cells of the larger one's level; space has no
-/// bounds, and a small box does not look at other small ones through the cells of a large one. Cells are found by
-/// hashing; different cells that share a key cost time, and nothing else, since what is found in a cell is only a hint.
+/// its lower corner, so to move it rarely changes more than one entry. A search looks into the cells that may contain
+/// the corner of an overlapping box. So two boxes of any sizes meet in cells of the larger one's level; space is
+/// unbounded, and a small box is not compared with other small ones through the cells of a large one. Cells are found
+/// by hashing; different cells with the same key only cost time, since every box found in a cell is compared.
 ///
-/// A cell keeps the ends of its boxes on a lattice of a 32nd of its side. To round to it is monotone, so where ends
-/// overlap they do on the lattice; most boxes that do not are left out without a look at them.
+/// A cell stores the ends of its boxes on a lattice of a 32nd of its side. Rounding to it is monotone, so boxes that
+/// overlap do so on the lattice; most that do not are excluded without reading the boxes themselves.
 ///
-/// Sources: [Ericson05] section 7.2 for hierarchical grids, [Teschner03] for hashing cells. Differs: guests have lists
-/// of their own; ends on a lattice are in the cells.
+/// Sources: [Ericson05] section 7.2 for hierarchical grids, [Teschner03] for hashing cells. Differs: guests have
+/// separate lists; ends on a lattice are stored in the cells.
 ///
 /// Cost: O(1) a change at bounded density, for each level in use from the box's own; a first native of a level makes
 /// all smaller boxes its guests, O(n). Memory O(n).
@@ -43,7 +44,7 @@ class BoxGrid {
  public:
   using Id = std::uint32_t;
 
-  /// Few changes have more, and need memory of their own.
+  /// Changes with more, which are few, allocate memory.
   using Ids = boost::container::small_vector<Id, 16>;
 
   /// Boxes with which overlap began and ended.
@@ -69,7 +70,7 @@ class BoxGrid {
     if (!contains(id)) return {};
     return items_[id].bounds.box();
   }
-  /// The same as numbers to compare. Precondition: contains(id).
+  /// The box in the form that is compared. Precondition: contains(id).
   const BoxBounds& bounds(Id id) const { return items_[id].bounds; }
   /// One past the greatest number that there has been.
   Id end() const { return static_cast<Id>(items_.size()); }
@@ -83,23 +84,23 @@ class BoxGrid {
     if (end > natives_.room()) restart(end);
   }
 
-  /// Chooses the smallest cells, for boxes so far apart. Precondition: empty. Later the grid chooses by itself.
+  /// Chooses the smallest cells by the spacing of boxes. Precondition: empty. Later the grid chooses by itself.
   void choose_cells(double spacing);
 
-  /// Side of the smallest cells there may be.
+  /// Side of the smallest cells that may be used.
   double least_cell() const { return cell_side(finest_); }
 
-  /// Puts a box in, or in place of the one of that number, with edges rounded by a radius (box_bounds.hpp). Appends to
+  /// Inserts a box, or replaces the one of that number, with edges rounded by a radius (box_bounds.hpp). Appends to
   /// `changes`.
   void put(Id id, const StaticBox& box, Changes& changes, double rounding = 0);
 
   /// Whether two boxes overlap. Precondition: both are here.
   bool overlap(Id a, Id b) const { return overlaps_with(items_[a]).with(items_[b].bounds, items_[b].rounding) != 0; }
 
-  /// To put many into an empty grid in whatever order suits the cache: first all are announced, then each one enters.
-  /// Nothing else may be asked in between. Precondition: id below the end reserved; none has entered.
+  /// For inserting many into an empty grid in an order that suits the cache: first all are announced, then each one
+  /// enters. No other function may be called in between. Precondition: id below the end reserved; none has entered.
   void announce(Id id, const StaticBox& box, double rounding = 0) {
-    if (size_ == 0) levels_.clear();  // of boxes that have gone
+    if (size_ == 0) levels_.clear();  // those of boxes that have been removed
     Item& item = items_[id];
     item.bounds = BoxBounds(box);
     item.rounding = kept_rounding(rounding);
@@ -107,20 +108,20 @@ class BoxGrid {
     if (levels_.empty() || levels_.back().exponent != item.level) use_level(item.level);
     ++size_;
   }
-  /// Appends to `changes` those that have entered before. Precondition: announced.
+  /// Appends to `changes` the overlaps with boxes that have entered before. Precondition: announced.
   void enter(Id id, Changes& changes);
-  /// In place of enter() for all that have been announced, where it is known what they overlap. Best in the order of
-  /// places, x fastest.
+  /// Instead of enter() for all that have been announced, if their overlaps are known. Fastest in the order of places,
+  /// x fastest.
   void enter_all(std::span<const Id> ids);
 
   /// Precondition: contains(id). Appends to `changes`.
   void remove(Id id, Changes& changes);
 
-  /// Appends the boxes that overlap this one, as they are and not rounded, each once, in no particular order. Changes
+  /// Appends the boxes that overlap this one, without rounded edges, each once, in no particular order. Changes
   /// nothing. Precondition: all that have been announced have entered.
   ///
-  /// Cost: on each level in use, a look into the cells where a box that overlaps may have its corner; O(n) in all if
-  /// they are more than there are boxes.
+  /// Cost: on each level in use, the cells that may contain the corner of an overlapping box; O(n) in all if these are
+  /// more than there are boxes.
   void find_overlapping(const StaticBox& box, Ids& found) const;
 
   /// Greatest extent of a box of the level next finer than that of a box of this extent; 0 if there is none.
@@ -135,23 +136,23 @@ class BoxGrid {
  private:
   using Exponent = std::int16_t;
   static constexpr Exponent absent = std::numeric_limits<Exponent>::min();
-  static constexpr int least = -1000;  ///< exponent: the scale of such cells is a number
-  static constexpr int most = 1023;    ///< all space is a few cells of this exponent
+  static constexpr int least = -1000;  ///< exponent; the scale of such cells does not overflow
+  static constexpr int most = 1023;    ///< exponent; all space is a few cells of this size
 
-  /// What a search reads of every box that it finds: one cache line.
+  /// The data of a box that a search reads: one cache line.
   struct alignas(64) Item {
     BoxBounds bounds;
     float rounding = 0;
     std::uint32_t reported = 0;  ///< the last search that has reported it
     Exponent level = absent;
-    bool entered = false;  ///< is in the cells; not yet if it has been announced
+    bool entered = false;  ///< is in the cells; false while it is only announced
   };
 
-  /// The natives or the guests of a level, and what bounds the search for them.
+  /// The natives or the guests of a level, and bounds for searches of them.
   struct Population {
     std::size_t count = 0;
-    std::int64_t span = 0;  ///< of the largest there has been since there was none, in units of the lattice
-    std::array<std::int64_t, 3> low{}, high{};  ///< of the lower corners since then, in the same
+    std::int64_t span = 0;                      ///< of the largest since it was last empty, in units of the lattice
+    std::array<std::int64_t, 3> low{}, high{};  ///< bounds on the lower corners since then, same units
   };
 
   struct Level {
@@ -160,7 +161,7 @@ class BoxGrid {
     std::uint64_t family;  ///< of its cells
     Population natives{};
     Population guests{};
-    std::size_t idle = 0;  ///< registrations of guests since the last native went
+    std::size_t idle = 0;  ///< registrations of guests since the last native was removed
   };
 
   static BoxOverlaps overlaps_with(const Item& item) {
@@ -176,7 +177,7 @@ class BoxGrid {
     if (!(extent < 0x1p1023)) return most;
     const double room = room_per_extent_ * extent;
     int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(room) >> 52) - 1022;  // of a mantissa below 1
-    if (exponent == -1022) std::frexp(room, &exponent);                                // not a normal number
+    if (exponent == -1022) std::frexp(room, &exponent);                                // a subnormal number
     return static_cast<Exponent>(std::clamp<int>(exponent, finest_, most));
   }
   std::vector<Level>::iterator find_level(Exponent exponent);
@@ -213,7 +214,7 @@ class BoxGrid {
   double unit_ = 1;            ///< side of a cell of exponent 0, in [1, 2)
   double room_per_extent_;     ///< roominess in such cells
   Exponent finest_ = least;    ///< no box is native of a finer level
-  std::int64_t crowding_ = 0;  ///< buckets that searches have walked on chains, less some a cell
+  std::int64_t crowding_ = 0;  ///< buckets on chains that searches have visited, minus an allowance for each cell
   bool idle_ = false;          ///< some level has had too much idle work
 };
 

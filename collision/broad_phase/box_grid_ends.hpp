@@ -1,4 +1,4 @@
-// Boxes of a grid as integers, which its cells keep. Included by the sources of BoxGrid alone.
+// Boxes of a grid as integers, as its cells store them. Included only by the sources of BoxGrid.
 #pragma once
 
 #include "collision/broad_phase/box_grid.hpp"
@@ -10,20 +10,19 @@
 
 namespace kds::collision {
 
-/// Units of the lattice in a cell, as a power of two. Finer ones leave fewer boxes that overlap on the lattice alone;
-/// but ends of a few cells have to fit a byte.
+/// Units of the lattice in a cell, a power of two. With finer units fewer boxes overlap only on the lattice; but ends
+/// of a few cells have to fit a byte.
 inline constexpr int lattice_bits = 5;
 inline constexpr std::int64_t units_per_cell = 1 << lattice_bits;
 
-/// Byte i of CellTable::Ends. What is out of range is as much out of range on both sides of a comparison.
+/// Byte i of CellTable::Ends. Values out of range are cut off in the same way on both sides of a comparison.
 inline CellTable::Ends lattice_byte(std::size_t i, std::int64_t value) {
   const std::int64_t bounded = std::clamp(value, -CellTable::limit, CellTable::limit);
   return static_cast<CellTable::Ends>(static_cast<std::uint8_t>(bounded)) << 8 * i;
 }
 
-/// Bytes 6 and 7: the row, modulo 16 and 8, and its complement; here what a coordinate has in them. The one or the
-/// other exceeds that of another row, so the rows of a search, of which there are fewer, are not mistaken for each
-/// other.
+/// Bytes 6 and 7: the row, modulo 16 and 8, and its complement; this is the part of one coordinate. One of the two
+/// exceeds that of any other row, so the rows of a search, of which there are fewer, are not mistaken for each other.
 inline CellTable::Ends row_mark(std::size_t d, std::int64_t cell) {
   if (d == 0) return 0;
   const CellTable::Ends bits = d == 1 ? 0x0F : 0x70;
@@ -49,7 +48,7 @@ struct BoxGrid::Ends {
     }
   }
 
-  /// Monotone, and as far below zero as above.
+  /// Monotone, with the same limit below zero as above.
   static std::int64_t on_lattice(double x) { return std::llrint(clamped(both(x))[0]); }
   static Two clamped(Two x) {
     constexpr Two farthest{0x1p61, 0x1p61};
@@ -57,7 +56,7 @@ struct BoxGrid::Ends {
   }
   static std::int64_t cell_of(std::int64_t x) { return x >> lattice_bits; }
 
-  /// The cell a box is in.
+  /// The cell that a box is in.
   std::int64_t cell(std::size_t d) const { return cell_of(values[d]); }
   bool same_cell(const Ends& other) const {
     return (((values[0] ^ other.values[0]) | (values[1] ^ other.values[1]) | (values[2] ^ other.values[2])) >>
@@ -76,9 +75,9 @@ struct BoxGrid::Ends {
     return result;
   }
 
-  /// Counted from the box's own cell: of natives and guests, none of which is larger than a cell, all fit a byte.
+  /// Counted from the box's own cell: no native or guest is larger than a cell, so the ends fit a byte.
   CellTable::Ends in_cell() const {
-    // Three bytes at once, modulo 256, as far as that goes.
+    // Three bytes at once, modulo 256.
     const auto bytes = [&](std::size_t i) {
       const auto byte = [&](std::size_t j) { return CellTable::Ends{static_cast<std::uint8_t>(values[j])}; };
       return byte(i) | byte(i + 1) << 8 | byte(i + 2) << 16;
@@ -92,7 +91,7 @@ struct BoxGrid::Ends {
     return (low & within) | sum << 24 | row_marks(cell(1), cell(2));
   }
 
-  /// What boxes in cells of this coordinate may not exceed if they overlap.
+  /// The limits that the ends of boxes in cells of this coordinate do not exceed if they overlap.
   CellTable::Ends limits(std::size_t d, std::int64_t cell) const {
     const std::int64_t corner = cell << lattice_bits;
     return lattice_byte(d, -values[d + 3] - corner) | lattice_byte(d + 3, corner - values[d]);

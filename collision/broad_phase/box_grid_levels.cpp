@@ -18,7 +18,7 @@ void BoxGrid::choose_cells(double spacing) {
   unit_ = 1;
   finest_ = least;
   const double side = tuning_.cell_per_spacing * spacing;
-  if (side > 0x1p-900 && side < 0x1p900) {  // of others, boxes alone decide
+  if (side > 0x1p-900 && side < 0x1p900) {  // otherwise the boxes inserted decide
     finest_ = static_cast<Exponent>(std::ilogb(side));
     unit_ = side / power_of_two(finest_);
   }
@@ -34,7 +34,7 @@ std::vector<BoxGrid::Level>::iterator BoxGrid::find_level(Exponent exponent) {
                           [](const Level& level, Exponent e) { return level.exponent < e; });
 }
 
-/// Finds or makes it; one that is new has no guests yet.
+/// Finds or makes the level; a new one has no guests yet.
 BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
   const auto place = find_level(exponent);
   if (place != levels_.end() && place->exponent == exponent) return *place;
@@ -42,20 +42,20 @@ BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
   return *levels_.insert(place, Level{exponent, power_of_two(lattice_bits - exponent) / unit_, families_});
 }
 
-/// What has cost more for nothing than to build it anew is built anew.
+/// Rebuilds the levels when the wasted work exceeds the cost of rebuilding.
 void BoxGrid::tidy() {
   if (idle_) drop_idle_level();
   if (crowding_ > tuning_.patience * static_cast<std::int64_t>(size_)) refine();
 }
 
-/// Levels come and go with the sizes of boxes; one without natives is given up.
+/// Levels are added and removed with the sizes of boxes; one without natives is given up.
 void BoxGrid::drop_idle_level() {
   idle_ = false;
   std::erase_if(levels_, [&](const Level& level) { return level.natives.count == 0 && level.idle > size_; });
   restart_guests();
 }
 
-/// Puts all into new cells of the levels that fit them now, with room for so many.
+/// Puts all boxes into new cells of the levels that fit them now, with room for this many.
 void BoxGrid::restart(std::size_t room) {
   levels_.clear();
   natives_.restart(room);
@@ -69,7 +69,7 @@ void BoxGrid::restart(std::size_t room) {
   restart_guests();
 }
 
-/// More boxes, which may be elsewhere, call for other cells.
+/// More boxes, which may be elsewhere, may need other cells.
 void BoxGrid::grow() {
   std::vector<Id> present;
   for (Id id = 0; id < items_.size(); ++id) {
@@ -79,7 +79,7 @@ void BoxGrid::grow() {
   restart(2 * natives_.size());
 }
 
-/// Makes the smallest cells smaller if most boxes fit, as where boxes have gathered.
+/// Makes the smallest cells smaller if most boxes fit into them: for boxes that have gathered in one place.
 void BoxGrid::refine() {
   crowding_ = 0;
   std::size_t fitting = 0;

@@ -1,4 +1,4 @@
-// What overlaps a box that is not in the grid.
+// The boxes that overlap one that is not in the grid.
 #include "collision/broad_phase/box_grid_ends.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace kds::collision {
 void BoxGrid::find_overlapping(const StaticBox& box, Ids& found) const {
   for (const Level& level : levels_) {
     if (search_in(level, box, found)) continue;
-    // All boxes of this level, and in passing those of coarser ones.
+    // All boxes of this level, and with them those of coarser ones.
     for (Id id = 0; id < items_.size(); ++id) {
       const Item& item = items_[id];
       if (item.level >= level.exponent && item.bounds.box().overlaps(box)) found.push_back(id);
@@ -18,10 +18,10 @@ void BoxGrid::find_overlapping(const StaticBox& box, Ids& found) const {
   }
 }
 
-/// Looks into the cells of a level; false, and nothing is found, if they are more than there are boxes.
+/// Searches the cells of a level; false, without a search, if they are more than there are boxes.
 ///
-/// A box that overlaps is found in the one cell where its corner is. It may be found through other cells too, of other
-/// levels, or farther away than the marks of rows tell apart; so it counts only where it belongs.
+/// An overlapping box is found in the cell that contains its corner. It may be found through other cells too, of other
+/// levels, or so far away that the marks of rows repeat; so it counts only in its own cell.
 bool BoxGrid::search_in(const Level& level, const StaticBox& box, Ids& found) const {
   const Population& natives = level.natives;
   if (natives.count == 0) return true;
@@ -35,7 +35,7 @@ bool BoxGrid::search_in(const Level& level, const StaticBox& box, Ids& found) co
     cells *= static_cast<double>(high[d] - low[d] + 1);
   }
   constexpr auto longest = static_cast<std::int64_t>(CellTable::Block::longest);
-  // (In a table of fewer buckets, cells of one row share them.)
+  // (If the table has fewer buckets, cells of one row share them.)
   if (cells > static_cast<double>(items_.size()) || natives_.room() < CellTable::Block::longest) return false;
   CellTable::Block block;
   block.family = level.family;

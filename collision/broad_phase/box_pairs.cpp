@@ -10,16 +10,16 @@
 namespace kds::collision {
 namespace {
 
-/// At most so many cells a box. More have fewer boxes to compare, and take time themselves.
+/// The most cells for each box. With more cells fewer boxes are compared, but the cells themselves take time.
 constexpr double cells_per_box = 4;
 
 /// Cells are at least this much larger than boxes: more than the roundings of coordinates in cells.
 constexpr double room = 1 + 0x1p-20;
 
-/// Comparisons of a box within its cell, on average, above which a finer division is called for.
+/// With more comparisons of a box within its cell than this, on average, the division is refined.
 constexpr std::size_t crowd = 4;
 
-/// So many boxes are compared all with all in less time than they take to enter the cells one by one.
+/// For so few boxes comparing all with all takes less time than entering them into cells.
 constexpr std::size_t small = 256;
 
 }  // namespace
@@ -50,7 +50,7 @@ bool BoxPairs::choose_cells(std::span<const StaticBox> boxes) {
   return true;
 }
 
-/// By counting; in a cell in the order of numbers.
+/// Counting sort; within a cell in the order of numbers.
 bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
   const std::size_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
   std::vector<Index> cells(boxes.size());
@@ -69,7 +69,7 @@ bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
   for (const Index cell : cells) comparisons += begin_[cell]++;
   if (comparisons > crowd * boxes.size() && boxes.size() > small) return false;
   Index end = 0;
-  for (Index& cell : begin_) cell = end += cell;  // first the ends, which then go down to the beginnings
+  for (Index& cell : begin_) cell = end += cell;  // first the ends, which are then counted down to the beginnings
   order_.resize(boxes.size());
   for (std::size_t i = boxes.size(); i-- > 0;) order_[--begin_[cells[i]]] = static_cast<Index>(i);
   cell_.resize(boxes.size());
@@ -94,7 +94,7 @@ bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
 void BoxPairs::search(std::span<const StaticBox> boxes, std::size_t first_row, std::size_t last_row,
                       std::vector<Pair>& found) const {
   const std::size_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
-  const Rough* const rough = rough_.data();  // lest they be looked up each time
+  const Rough* const rough = rough_.data();  // so that they are not loaded each time
   const Index* const cell = cell_.data();
   for (std::size_t row = first_row; row < last_row; ++row) {
     const std::size_t y = row % ny;

@@ -1,4 +1,4 @@
-// All pairs of boxes that overlap, where many come at once.
+// All pairs of boxes that overlap, for many boxes at once.
 #pragma once
 
 #include "collision/broad_phase/swept_box.hpp"
@@ -13,8 +13,8 @@
 namespace kds::collision {
 
 /// Finds the pairs among many boxes of sizes that are not too different, by sorting them into cells that are larger
-/// than the largest of them: what a box overlaps begins in its own cell or in one of the 26 around it, and of each two
-/// cells one looks into the other. In memory the cells of a row follow each other, so a box looks at five stretches.
+/// than the largest of them: boxes that overlap a box begin in its own cell or in one of the 26 around it, and each two
+/// cells are compared once. The cells of a row are adjacent in memory, so a box is compared with five stretches.
 ///
 /// Cost: O(n) for n boxes of bounded density, some 300 instructions a box; memory 44 bytes a box. Which pairs there
 /// are, and their order, does not depend on the number of threads.
@@ -27,8 +27,8 @@ class BoxPairs {
     Index a, b;  ///< in no order
   };
 
-  /// Finds them. False, and no pairs, if that would not pay: no boxes, boxes without bounds, or many that are of too
-  /// different sizes or too crowded. `threads`: how many at most; 0 is as many as the machine has.
+  /// Finds them. False, without pairs, if the method does not suit: no boxes, unbounded boxes, or many of too different
+  /// sizes or too crowded. `threads`: how many at most; 0 is as many as the machine has.
   bool find(std::span<const StaticBox> boxes, std::size_t threads = 1);
 
   /// In spatial order.
@@ -37,9 +37,9 @@ class BoxPairs {
   std::span<const Index> order() const { return order_; }
 
  private:
-  /// A box in single precision, rounded by a monotone rule: boxes that overlap do so here too.
+  /// A box in single precision, rounded monotonically: boxes that overlap do so here too.
   struct Rough {
-    Rough() {}  // not the implicit one, for which all is set to zero first
+    Rough() {}  // the implicit one would set all to zero first
 
     FourFloats low, high;
   };

@@ -1,4 +1,4 @@
-// What every broad phase promises.
+// The interface and the laws of every broad phase.
 #pragma once
 
 #include "collision/broad_phase/body_visitor.hpp"
@@ -15,9 +15,9 @@ namespace kds::collision {
 class PairListener {
  public:
   virtual ~PairListener() = default;
-  /// A hint: about so many pairs will be reported at once.
+  /// A hint: about this many pairs will be reported at once.
   virtual void pairs_to_come(std::size_t) {}
-  /// Whether there are pairs that need not be reported; and which may be. The answer for two bodies stays the same for
+  /// Whether any pairs need not be reported; and whether a pair may collide. The answer for two bodies stays the same
   /// as long as both are there.
   virtual bool filters() const { return false; }
   virtual bool may_collide(BodySlot, BodySlot) const { return true; }
@@ -42,21 +42,21 @@ struct BroadPhaseCounters {
 
 /// Reports, at the right times and in order, which pairs of bodies have to be tested.
 ///
-/// It knows a body by its slot, a small number that the owner of the bodies chooses, and may choose again for another
-/// when the body has been removed, also at once.
+/// A body is identified by its slot, a small number that the owner of the bodies chooses, and may choose again for
+/// another body at once when the body has been removed.
 ///
 /// Semantic laws: (1) a pair is reported as begun no later than the instant its bounding volumes overlap (kinetic
-/// boxes, rounded as they say where `exact()` is false, or k-DOPs, see WorldOptions.kdop), and as ended not before they
-/// cease to; (2) where `exact()` is true, at exactly those instants; (3) reports alternate for each pair, beginning
-/// with pair_began, and removing a body ends its pairs; (4) a broad phase never reports a time before the last it was
-/// given. Pairs that may not collide may be left out, begin and end: those that are cost no more than to be found
-/// again and again. Swapping one broad phase for another changes neither contacts nor their times.
+/// boxes, with edges rounded by their `rounding` where `exact()` is false, or k-DOPs, see WorldOptions.kdop), and as
+/// ended not before they cease to; (2) where `exact()` is true, at exactly those instants; (3) reports alternate for
+/// each pair, beginning with pair_began, and removing a body ends its pairs; (4) a broad phase never reports a time
+/// before the last it was given. Both reports of pairs that may not collide may be left out: such pairs then cost only
+/// their repeated search. Exchanging one broad phase for another changes neither contacts nor their times.
 ///
-/// (5) A question (visit_overlapping, visit_swept) names each body whose bounding volume meets the box in question
-/// then: none is missed, and none is named twice. Volumes and boxes are closed, so what touches meets; volumes are
-/// kinetic boxes as they are, not rounded, and k-DOPs. Others that are near may be named too, and which these are
-/// depends on the broad phase. Questions change nothing that is ever read: several threads may ask at a time, while
-/// nobody calls anything else.
+/// (5) A query (visit_overlapping, visit_swept) visits each body whose bounding volume meets the box in question then:
+/// none is missed, and none is visited twice. Volumes and boxes are closed, so those that touch meet; volumes are
+/// kinetic boxes, without rounded edges, and k-DOPs. Other bodies that are near may be visited too, and which these are
+/// depends on the broad phase. Queries do not change the state: several threads may make them at a time, while none
+/// calls anything else.
 template <int Degree>
 class BroadPhase {
  public:
@@ -70,16 +70,17 @@ class BroadPhase {
   /// Whether pairs are exactly those whose bounding volumes overlap.
   virtual bool exact() const = 0;
 
-  /// As in broad_phase_kind.hpp, or `few-boxes`: the default's for a few bodies.
+  /// A name of broad_phase_kind.hpp, or `few-boxes`: the default's method for a few bodies.
   virtual std::string_view name() const = 0;
 
   /// Adds bodies; cheapest when all come in one call. Pairs that overlap are reported. Preconditions, here and below:
-  /// `now` is not before the last time given, what is added is not there yet, and what is removed or updated is.
+  /// `now` is not before the last time given, a body that is added is not there yet, and one that is removed or updated
+  /// is.
   virtual void insert(std::span<const Entry> bodies, double now, PairListener& listener) = 0;
   /// Takes a body out. Its pairs end, and are reported.
   virtual void remove(BodySlot body, double now, PairListener& listener) = 0;
 
-  /// Gives a body another box, which may be elsewhere (a jump). Pairs that begin and end are reported.
+  /// Gives a body another box, also at another place (a jump). Pairs that begin and end are reported.
   virtual void update(BodySlot body, const KineticBox<Degree>& box, double now, PairListener& listener) = 0;
 
   /// Processes events not later than `limit` and returns true right after the first that reported a pair; false when
@@ -89,16 +90,16 @@ class BroadPhase {
   /// Time of the next event, `never` if none is known.
   virtual double next_time() const = 0;
 
-  /// Events later than this need not be known yet.
+  /// Sets the horizon: events later than this need not be known yet.
   virtual void extend_horizon(double now, double horizon) = 0;
 
   /// Calls visit(slot) for the bodies that may meet a box at rest now, in no particular order. Preconditions of this
   /// and the next: no end is a NaN; `now` or `from` is not before the last time given, nothing is due before it, and it
-  /// is not beyond the horizon. Nothing is called from within `visit` but questions.
+  /// is not beyond the horizon. Only queries may be called from within `visit`.
   virtual void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const = 0;
 
-  /// The same for a box that moves, at some time in [from, until], while bodies go on as they do: with the boxes they
-  /// have, whatever `valid_until` says. Precondition: from <= until, both finite.
+  /// The same for a box that moves, at some time in [from, until], with the present motions of the bodies: with their
+  /// present boxes, whatever `valid_until` is. Precondition: from <= until, both finite.
   virtual void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const = 0;
 
   /// Checks the state against the motions; throws AuditFailure.

@@ -1,4 +1,4 @@
-// The broad phases there are, by name.
+// The broad phases, by name.
 #pragma once
 
 #include <array>
@@ -6,12 +6,12 @@
 
 namespace kds::collision {
 
-/// How a broad phase is chosen. Which it is changes the cost, never contacts or their times.
+/// Selects a broad phase. The choice changes the cost, never contacts or their times.
 enum class BroadPhaseKind {
   automatic,    ///< the one that suits the number of bodies
   grid,         ///< kinetic grid: event-driven, each body in a fat box
   kinetic_sap,  ///< kinetic sweep and prune: event-driven, exact
-  sap,          ///< sweep and prune over arrays with swept boxes, frame by frame
+  sap,          ///< sweep and prune over arrays with swept AABBs, frame by frame
   all_pairs,    ///< no pruning: every pair tested once and its result kept
 };
 

@@ -48,8 +48,8 @@ inline std::uint64_t CellTable::Bucket::within(Ends limits) const {
   return simd::target::within_limits(ends.data(), limits);
 }
 
-/// Which numbers of a bucket count nobody can predict; so they are gathered as bits, and taken from those of many
-/// buckets in one loop.
+/// Branches on which numbers of a bucket match would be mispredicted; so matches are gathered as bits, and those of
+/// many buckets are read in one loop.
 class CellTable::Gathering {
  public:
   explicit Gathering(Found& found) : found_(found) {}
@@ -59,7 +59,8 @@ class CellTable::Gathering {
   void look(const Bucket& bucket, Ends limits) {
     bits_ = bits_ >> most | bucket.within(limits) << (64 - most);
     buckets_[count_++] = &bucket;
-    // Once in sixteen times. Where the compiler knows, it keeps what the search needs in registers (a seventh less).
+    // Once in sixteen times. If the compiler is told, it keeps the search's variables in registers (a seventh fewer
+    // instructions).
     if (count_ == buckets_.size()) [[unlikely]]
       take();
   }
@@ -127,7 +128,7 @@ bool CellTable::remove(std::size_t place, Ends ends, std::uint32_t number) {
   const auto [bucket, i] = where(place, ends, number);
   if (!bucket) return false;
   --size_;
-  // The last one takes its place.
+  // The last number takes the place of the one removed.
   Bucket& first = buckets_[place];
   Bucket& last = first.next == none ? first : chained_[first.next];
   const std::size_t end = --last.count;

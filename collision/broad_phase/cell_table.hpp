@@ -11,12 +11,12 @@
 
 namespace kds::collision {
 
-/// Keeps for each cell an unordered list of numbers, each with eight small integers, its *ends*. A search asks for
-/// those of which none exceeds the same of eight *limits*, and compares four numbers at once.
+/// Stores for each cell an unordered list of numbers, each with eight small integers, its *ends*. A search finds those
+/// whose ends all are at most the corresponding one of eight *limits*, and compares four numbers at once.
 ///
-/// Cells are in buckets of one cache line, hashed row by row: neighbours along x are neighbours in memory. Nothing
-/// tells apart the cells that share a bucket but the ends, if so they are made; what a search gives is a hint. What
-/// does not fit a bucket is in further ones, chained to it.
+/// Cells are in buckets of one cache line, hashed row by row: neighbours along x are neighbours in memory. Only the
+/// ends, if they are chosen so, distinguish cells that share a bucket; so a search may find numbers of other cells.
+/// Numbers that do not fit a bucket are in further ones, chained to it.
 ///
 /// Cost: O(1) and O(numbers in the bucket) for each function.
 ///
@@ -27,7 +27,7 @@ class CellTable {
   using Ends = std::uint64_t;
   static constexpr std::int64_t limit = 126;
 
-  /// Where a row begins. Cells are counted from there.
+  /// The place where a row begins. Cells are counted from there.
   std::size_t row(std::uint64_t family, std::int64_t y, std::int64_t z) const {
     return static_cast<std::size_t>(mixed(family, y, z) >> shift_);
   }
@@ -37,27 +37,27 @@ class CellTable {
     return (row + static_cast<std::size_t>(x)) & (buckets_.size() - 1);
   }
 
-  /// Empties the table, and makes room for so many numbers. Places are others from then on.
+  /// Empties the table, and makes room for this many numbers. Places change.
   void restart(std::size_t numbers);
 
   std::size_t size() const { return size_; }
   /// More numbers than this would be faster to find after a restart.
   std::size_t room() const { return buckets_.size(); }
 
-  /// Begins to fetch into the cache what add() will need.
+  /// Prefetches into the cache the memory that add() will need.
   void fetch(std::size_t place) const { __builtin_prefetch(&buckets_[place], 1); }
 
   void add(std::size_t place, Ends ends, std::uint32_t number);
 
-  /// Gives a number that has these ends others; false if it is not there. (Without its ends it might be taken for the
-  /// same number in another cell of the bucket.)
+  /// Changes the ends of a number that has these ends; false if it is not there. (Without the old ends it might be
+  /// confused with the same number in another cell of the bucket.)
   bool replace(std::size_t place, Ends from, Ends to, std::uint32_t number);
 
-  /// Removes one such number of these ends; false if there is none.
+  /// Removes a number with these ends; false if there is none.
   bool remove(std::size_t place, Ends ends, std::uint32_t number);
 
-  /// What a search finds. Made for a search and forgotten after it: it allocates only for what is more than usual, and
-  /// writes nothing before it is used.
+  /// The numbers that a search finds. Made for one search: it allocates only if they are unusually many, and is not
+  /// initialised before it is used.
   class Found {
    public:
     Found() {}  // not the implicit one, for which all might be set to zero first
@@ -70,7 +70,7 @@ class CellTable {
    private:
     friend CellTable;
 
-    /// To be written to from there on; the end is told afterwards.
+    /// Results are written from there on; the end is set afterwards.
     std::uint32_t* room_for(std::size_t count) {
       if (size_ + count > room_) grow(count);
       return numbers_ + size_;
@@ -78,7 +78,7 @@ class CellTable {
     void end_at(const std::uint32_t* end) { size_ = static_cast<std::size_t>(end - numbers_); }
     void grow(std::size_t count);
 
-    /// Searches of a kinetic grid find some dozens; 64 more than there are have to fit.
+    /// Searches of a kinetic grid find some dozens; there has to be room for 64 more than are found.
     static constexpr std::size_t usual = 256;
     std::array<std::uint32_t, usual> few_;
     std::vector<std::uint32_t> many_;
@@ -103,7 +103,7 @@ class CellTable {
   std::size_t find(const Block& block, Found& found) const;
 
  private:
-  /// Steps from row to row, before all but the highest bits are dropped.
+  /// The hash step from row to row, of which only the highest bits are used.
   static constexpr std::uint64_t along_y = 0x9E3779B97F4A7C15;
   static constexpr std::uint64_t along_z = 0xC2B2AE3D27D4EB4F;
   static std::uint64_t mixed(std::uint64_t family, std::int64_t y, std::int64_t z) {
@@ -118,7 +118,7 @@ class CellTable {
     std::array<Ends, most> ends{vacant, vacant, vacant, vacant};
     std::array<std::uint32_t, most> numbers{};
     std::uint32_t next = none;
-    std::uint32_t count = 0;  ///< of a cell's buckets all are full but for the second, or the only one
+    std::uint32_t count = 0;  ///< of a cell's buckets all are full except the second, or the only one
 
     /// Bit i if number i is within the limits.
     std::uint64_t within(Ends limits) const;

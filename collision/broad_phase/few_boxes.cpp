@@ -17,7 +17,7 @@ namespace {
 
 constexpr double greatest_double = std::numeric_limits<double>::max();
 
-/// The first so many bits.
+/// The first `count` bits.
 constexpr std::uint64_t first_places(std::size_t count) { return count == 64 ? ~0ull : (1ull << count) - 1; }
 
 }  // namespace
@@ -31,7 +31,7 @@ std::size_t FewBoxes<Degree>::place_of(BodySlot id) const {
 
 template <int Degree>
 StaticBox FewBoxes<Degree>::swept(const KineticBox<Degree>& box, double now) const {
-  // No body moves on from where it is if the clock stands at the end of the span.
+  // Nothing moves if the clock stands at the end of the span.
   const double until = std::max(now, until_);
   if (!(until <= greatest_double)) {
     const auto still = [](const certificates::PointMotion<Degree>& end) {
@@ -83,7 +83,7 @@ auto FewBoxes<Degree>::overlaps(const StaticBox& box, std::size_t count) const -
   return static_cast<Row>(row[0] | row[1]) & first_places(count);
 }
 
-/// Reports what has changed among the first `count` bodies, and keeps it.
+/// Reports the changes among the first `count` bodies, and stores the pairs.
 template <int Degree>
 void FewBoxes<Degree>::change(std::size_t place, Row row, std::size_t count, double now, PairListener& listener) {
   row &= others_[place];
@@ -105,7 +105,7 @@ void FewBoxes<Degree>::change(std::size_t place, Row row, std::size_t count, dou
   }
 }
 
-/// Seconds in which those bodies that move do so by about their size.
+/// Seconds in which the moving bodies move by about their size.
 template <int Degree>
 double FewBoxes<Degree>::first_span(double now) const {
   double size = 0, speed = 0, bend = 0;
@@ -135,13 +135,13 @@ double FewBoxes<Degree>::first_span(double now) const {
   return span > 0 ? span : greatest_double;
 }
 
-/// New boxes for all, in comparisons.
+/// The cost of new boxes for all, in comparisons.
 template <int Degree>
 std::uint64_t FewBoxes<Degree>::cost_of_span() const {
   return (bodies_.size() / 2 + tuning_.comparisons_per_box) * bodies_.size();
 }
 
-/// `latest`: when it has to end.
+/// `latest`: the span ends then at the latest.
 template <int Degree>
 void FewBoxes<Degree>::begin_span(double now, double latest) {
   until_ = std::min(latest, std::max(now + span_, next_up(now)));
@@ -149,7 +149,7 @@ void FewBoxes<Degree>::begin_span(double now, double latest) {
   ++counters_.certificates;
 }
 
-/// Notes with whom a body that comes may collide. Rows say so too of places that are not in use.
+/// Notes with which others a new body may collide. Rows have bits for unused places too.
 template <int Degree>
 void FewBoxes<Degree>::meet(std::size_t place, const PairListener& listener) {
   others_[place] = ~Row{0};
@@ -167,7 +167,8 @@ void FewBoxes<Degree>::insert(std::span<const Entry> bodies, double now, PairLis
   if (before + bodies.size() > most) throw std::length_error("FewBoxes: more than 64 bodies");
   bodies_.reserve(before + bodies.size());
   for (const Entry& body : bodies) bodies_.push_back({body.slot, *body.box});
-  // Many a run is not longer than the first horizon. What holds for longer than the span holds for the span.
+  // Many runs are not longer than the first horizon. Boxes that are valid for longer than the span are valid for the
+  // span.
   span_ = before == 0 ? first_span(now) : std::min(span_, first_span(now));
   begin_span(now, before == 0 ? horizon_ : until_);
   for (std::size_t place = before; place < bodies_.size(); ++place) {
@@ -184,7 +185,7 @@ void FewBoxes<Degree>::remove(BodySlot id, double now, PairListener& listener) {
   const std::size_t place = place_of(id);
   change(place, 0, bodies_.size(), now, listener);
   const std::size_t last = bodies_.size() - 1;
-  if (place != last) {  // the last takes its place
+  if (place != last) {  // the last one takes the place of the one removed
     const StaticBox moved = box(last);
     for (Row rest = partners_[last]; rest != 0; rest &= rest - 1) {
       Row& row = partners_[static_cast<std::size_t>(std::countr_zero(rest))];
@@ -267,7 +268,7 @@ void FewBoxes<Degree>::audit(double now) const {
   if (next_time() <= now) return;  // due
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const StaticBox present = box_at(bodies_[i].box, now);
-    // The margins of rounding differ from those of the whole span.
+    // The rounding margins differ from those of the whole span.
     const double slack = 0x1p-45 * std::max(present.min.abs().maxCoeff(), present.max.abs().maxCoeff());
     StaticBox inner = present;
     inner.min += slack;

@@ -16,20 +16,20 @@
 namespace kds::collision {
 
 /// For some dozen bodies: pairs are those whose boxes, swept over one *span* of time for all, overlap; when it is over,
-/// all get new ones. To compare a box with all others costs less than to find the few it might overlap, and there is
-/// nothing to set up.
+/// all get new ones. Comparing a box with all others costs less than searching the few that it might overlap, and there
+/// is nothing to set up.
 ///
-/// The span ends at the horizon, if that is near. Else it is what balances the cost of new boxes and that of pairs: the
-/// next is longer if pairs, by their tests, cost less than new boxes for all do, and shorter if more. All that changes
-/// the cost, never the contacts.
-/// Cost: O(n) a motion change and O(n^2) a span, both with a small constant: two boxes are compared at a time, without
-/// a branch. No queue, and no allocation once the bodies are there.
+/// The span ends at the horizon, if that is near. Otherwise its length balances the cost of new boxes and that of
+/// pairs: the next span is longer if pairs, with their tests, cost less than new boxes for all, and shorter if they
+/// cost more. Its length changes the cost, never the contacts. Cost: O(n) a motion change and O(n^2) a span, both with
+/// a small constant: two boxes are compared at a time, without a branch. No queue, and no allocation once the bodies
+/// are there.
 template <int Degree>
 class FewBoxes final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  /// The most bodies there may be: those that a body is paired with are bits of one number.
+  /// The most bodies: the partners of a body are the bits of one number.
   static constexpr std::size_t most = most_few_boxes;
 
   explicit FewBoxes(const FewBoxesTuning& tuning = {}) : tuning_(tuning) { check(tuning); }
@@ -45,7 +45,7 @@ class FewBoxes final : public BroadPhase<Degree> {
   void extend_horizon(double, double horizon) override { horizon_ = horizon; }
   /// O(n): the swept boxes are compared, two at a time.
   void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const override;
-  /// The same within the span, else O(n) new ones.
+  /// The same within the span; beyond it, O(n) new boxes.
   void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override { return counters_; }
@@ -86,10 +86,10 @@ class FewBoxes final : public BroadPhase<Degree> {
 
   FewBoxesTuning tuning_;
   std::vector<Body> bodies_;
-  std::array<Row, most> partners_{};                        ///< of each body
-  std::array<Row, most> others_{};                          ///< with which each may collide
+  std::array<Row, most> partners_{};                        ///< the partners of each body
+  std::array<Row, most> others_{};                          ///< the bodies with which each may collide
   std::array<std::array<Two, most / 2>, 3> min_{}, max_{};  ///< ends of swept boxes, by axis and place
-  double until_ = -never;                                   ///< for how long these hold
+  double until_ = -never;                                   ///< until when these are valid
   double horizon_ = never;
   double span_ = 0;          ///< s; 0 for none yet
   std::uint64_t spent_ = 0;  ///< pairs that began or had to be tested, in this span

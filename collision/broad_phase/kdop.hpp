@@ -1,4 +1,4 @@
-// Kinetic k-DOPs: what bodies cover along more directions than the axes.
+// Kinetic k-DOPs: the extents of bodies along more directions than the axes.
 #pragma once
 
 #include "collision/broad_phase/kinetic_box.hpp"
@@ -28,18 +28,18 @@ struct KineticSlab {
 /// Three numbers -1, 0 or 1, not all zero: what structures::kdop_directions() gives. Products with them are exact.
 using KdopDirection = std::array<double, 3>;
 
-/// The directions beyond the axes in which bodies are bounded, and who says what a body covers along them.
+/// The directions beyond the axes in which bodies are bounded, and the function that gives a body's extent along them.
 template <int Degree>
 struct Kdops {
   std::vector<KdopDirection> directions;
-  /// The slab of a body along directions[i]: must hold it from now on, until the body's box is changed.
+  /// The slab of a body along directions[i]: must contain it from now on, until the body's box is changed.
   std::function<KineticSlab<Degree>(BodySlot id, std::size_t i, double now)> slab;
 };
 
 namespace detail {
 
-/// x + y + z, rounded down: the greatest double not above the sum, but for cancellation that leaves less than 2^-50 of
-/// the terms, where it may be lower by so much. The sign of a rounded sum of two doubles is exact.
+/// x + y + z, rounded down: the greatest double not above the sum, except that it may be lower by 2^-50 of the terms if
+/// cancellation leaves less than that. The sign of a rounded sum of two doubles is exact.
 inline double sum_below(double x, double y, double z) {
   const DoubleDouble first = two_sum(x, y);
   const DoubleDouble second = two_sum(first.high, z);
@@ -61,7 +61,7 @@ double along_above(const KdopDirection& direction, const Vector& c) {
 
 }  // namespace detail
 
-/// What a box covers along a direction, from and to, rounded outward; all there is where sums might overflow.
+/// The extent of a box along a direction, from and to, rounded outward; infinite where sums might overflow.
 inline std::array<double, 2> span_along(const KdopDirection& direction, const StaticBox& box) {
   constexpr double largest_summed = 0x1p1000;
   Eigen::Vector3d least, most;
@@ -74,7 +74,7 @@ inline std::array<double, 2> span_along(const KdopDirection& direction, const St
   return {detail::along_below(direction, least), detail::along_above(direction, most)};
 }
 
-/// Where a slab is at a time, from and to, rounded outward.
+/// The ends of a slab at a time, from and to, rounded outward.
 template <int Degree>
 std::array<double, 2> slab_at(const KineticSlab<Degree>& slab, double t) {
   const Ball<double> low = about<Ball<double>>(slab.min, t).c[0];
@@ -82,11 +82,11 @@ std::array<double, 2> slab_at(const KineticSlab<Degree>& slab, double t) {
   return {next_down(low.middle - low.radius), next_up(high.middle + high.radius)};
 }
 
-/// The slab along a direction of what covers [low, high] about a moving centre. Precondition: the motion has started
-/// by now.
+/// The slab along a direction of a body that covers [low, high] about a moving centre. Precondition: the motion has
+/// started by now.
 ///
-/// Each coefficient is rounded outward, which is outward as a whole since the time from the start on is not negative:
-/// the ends drift apart by less than 2^-52 of the speed, if at all.
+/// Each coefficient is rounded outward, and so is the whole since the time from the start is not negative: the ends
+/// drift apart by less than 2^-52 of the speed.
 template <int Degree>
 KineticSlab<Degree> slab_around(const certificates::PointMotion<Degree>& motion, double low, double high,
                                 const KdopDirection& direction) {
@@ -101,7 +101,7 @@ KineticSlab<Degree> slab_around(const certificates::PointMotion<Degree>& motion,
   return slab;
 }
 
-/// The slab along a direction of a kinetic box, rounded outward: right from now on, whenever its motions start.
+/// The slab along a direction of a kinetic box, rounded outward: valid from now on, whenever its motions start.
 template <int Degree>
 KineticSlab<Degree> slab_around(const KineticBox<Degree>& box, const KdopDirection& direction, double now) {
   Polynomial<Degree, Ball<double>> low{}, high{};

@@ -15,22 +15,22 @@ namespace kds::collision {
 
 /// An axis-aligned box with a motion for each corner: it may grow and shrink ([Coming06] section 5.2).
 ///
-/// It must contain its body until `valid_until`; then the owner of the body makes a new one.
+/// It must contain its body until `valid_until`, when the owner of the body makes a new one.
 template <int Degree>
 struct KineticBox {
   certificates::PointMotion<Degree> min;
   certificates::PointMotion<Degree> max;
   double valid_until = never;  ///< s
-  /// What the box contains lies within this distance of a point that is at least as far from each of its sides: the
-  /// radius of a ball, else 0. Broad phases may round the edges of the box by it.
+  /// The body lies within this distance of a point that is at least as far from each side of the box: for a ball its
+  /// radius, otherwise 0. Broad phases may round the edges of the box by it.
   double rounding = 0;
 };
 
 /// The box that moves with `motion` and spans [low, high] about it, rounded outward: its real ends are never inside
 /// the exact sums.
 ///
-/// Both ends at once, and without a branch, since nobody can predict how a sum rounds: where the rounding error points
-/// outward, the next double. A rounded sum is never zero.
+/// Both ends at once, and without a branch, since processors cannot predict how a sum rounds: the next double where the
+/// exact sum is farther outward. A sum that is rounded is never zero.
 template <int Degree>
 inline KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& motion, const Eigen::Vector3d& low,
                                      const Eigen::Vector3d& high, double rounding = 0) {
@@ -57,7 +57,7 @@ inline KineticBox<Degree> box_around(const certificates::PointMotion<Degree>& mo
   return box;
 }
 
-/// The six facts that say where two boxes overlap, as coordinates in order: a.min <= b.max and b.min <= a.max, axis by
+/// The six certificates by which two boxes overlap, as coordinates in order: a.min <= b.max and b.min <= a.max, axis by
 /// axis. All broken in the opposite sense means overlap.
 template <int Degree>
 class BoxOverlap {

@@ -7,7 +7,7 @@
 #include <string>
 
 namespace kds::collision {
-/// In the order of bodies, whatever cells they were found in.
+/// Sorts changes in the order of bodies, independent of the cells in which they were found.
 template <int Degree>
 void KineticGrid<Degree>::report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener) {
   if (changes.empty()) return;
@@ -38,7 +38,7 @@ void KineticGrid<Degree>::report_pair(BodySlot a, BodySlot b, double now, PairLi
   listener.pair_began(std::min(a, b), std::max(a, b), now);
 }
 
-/// An earlier entry stays: most are replaced again before they are due.
+/// An earlier entry stays in the queue: most boxes are replaced again before it is due.
 template <int Degree>
 void KineticGrid<Degree>::set_expiry(BodySlot id, double expiry, double now) {
   bodies_[id].expiry = expiry;
@@ -80,7 +80,7 @@ void KineticGrid<Degree>::update(BodySlot id, const KineticBox<Degree>& box, dou
   body.box = box;
   ++body.changes;
   body.tests += body.partners;
-  // The old fat box will often do for a while.
+  // The old fat box often remains valid for a while.
   const BoxSweep<Degree> sweep(body.box, now);
   const StaticBox present = sweep.begin();
   if (!less_rounded) {
@@ -114,7 +114,7 @@ void KineticGrid<Degree>::visit_overlapping(const StaticBox& box, double, SlotVi
   for (const BodySlot id : found) visit(id);
 }
 
-/// A fat box that holds until then says where its body may be; of the others, their motions do.
+/// If a fat box is valid until then it bounds its body; for the others their motions are swept.
 template <int Degree>
 void KineticGrid<Degree>::visit_swept(const KineticBox<Degree>& box, double from, double until,
                                       SlotVisitor visit) const {
@@ -138,7 +138,7 @@ void KineticGrid<Degree>::audit(double now) const {
     if (!fat_boxes_.contains(id)) continue;
     if (bodies_[id].expiry <= now) continue;  // due
     const StaticBox present = box_at(bodies_[id].box, now);
-    // The margins of rounding differ from those of the whole span.
+    // The rounding margins differ from those of the whole span.
     const double slack = 0x1p-45 * std::max(present.min.abs().maxCoeff(), present.max.abs().maxCoeff());
     StaticBox inner = present;
     inner.min += slack;

@@ -13,26 +13,26 @@
 
 namespace kds::collision {
 
-/// Every body has a *fat box* at rest that holds its kinetic box for a while, rounded as much (box_bounds.hpp); the
-/// only certificate of a body is that it is still inside, and pairs are those whose fat boxes overlap (box_grid.hpp).
-/// When its time is up, a body gets a new fat box: what it sweeps until it has moved by a length, its *travel*. So a
-/// body pays for its neighbours only, not, as in sorted lists, for all whose coordinates it passes; and one at rest
-/// pays nothing.
+/// Every body has a *fat box* at rest that contains its kinetic box for a while, with edges rounded by the same radius
+/// (box_bounds.hpp); the only certificate of a body is that it is still inside, and pairs are those whose fat boxes
+/// overlap (box_grid.hpp). When that ends, a body gets a new fat box: the box that it sweeps until it has moved by a
+/// length, its *travel*. So a body has costs for its neighbours only, and not, as in sorted lists, for all whose
+/// coordinates it passes; a body at rest costs nothing.
 ///
 /// The travel adapts, body by body: it grows while few pairs begin and shrinks while many do, which balances the cost
 /// of renewals against that of pairs, at every density, size and speed. A body whose motion changes again and again
-/// before it has left its fat box gets one that reaches to all sides, and farthest ahead, so that it stays in it
-/// whatever it does next. All that changes the cost, never the contacts.
+/// before it has left its fat box gets one with a margin on all sides, the largest one ahead, so that it stays inside
+/// after most changes. The travel changes the cost, never the contacts.
 ///
-/// The time for which a fat box holds is not a root: a time is chosen, and the box is then what is swept until then,
-/// rounded outward. Nothing of what is scheduled needs to be exact, nor is.
-/// Cost: O(1) a renewal or motion change, for bodies of bounded density, and a queue operation; nothing in between.
+/// The time at which a fat box ends is not a root: a time is chosen, and the box is then the swept AABB until that
+/// time, rounded outward. So scheduled times need not be exact. Cost: O(1) a renewal or motion change, for bodies of
+/// bounded density, and a queue operation; nothing in between.
 template <int Degree>
 class KineticGrid final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
-  /// `threads`: how many share the work where many bodies come at once; 0 is as many as the machine has.
+  /// `threads`: how many share the work when many bodies are added at once; 0 is as many as the machine has.
   explicit KineticGrid(std::size_t threads = 1, const GridTuning& tuning = {})
       : tuning_(tuning), fat_boxes_(tuning.cells), threads_(threads) {
     check(tuning);
@@ -46,10 +46,10 @@ class KineticGrid final : public BroadPhase<Degree> {
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return expiry_.empty() ? never : expiry_.top().time; }
   void extend_horizon(double now, double horizon) override;
-  /// Looks into the cells that the box meets, level by level (BoxGrid::find_overlapping).
+  /// Searches the cells that the box meets, level by level (BoxGrid::find_overlapping).
   void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const override;
-  /// The same for what the box sweeps, and a look at each body whose fat box expires before `until`; at all bodies if
-  /// that is beyond the horizon.
+  /// The same for the swept AABB, and each body whose fat box expires before `until` is tested; all bodies if that is
+  /// beyond the horizon.
   void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override { return counters_; }
@@ -69,9 +69,9 @@ class KineticGrid final : public BroadPhase<Degree> {
 
  private:
   struct Body {
-    Body() {}  // not the implicit one, for which all is set to zero first
+    Body() {}  // the implicit one would set all to zero first
 
-    /// As one that comes.
+    /// Resets it to the state of a new body.
     void begin(const KineticBox<Degree>& its_box, double its_travel) {
       box = its_box;
       travel = its_travel;
@@ -83,13 +83,13 @@ class KineticGrid final : public BroadPhase<Degree> {
     KineticBox<Degree> box;
     double travel = 0;           ///< how far it may move in its fat box
     double fattened = 0;         ///< when its fat box was made
-    double expiry = never;       ///< until when it holds
+    double expiry = never;       ///< until when it is valid
     std::uint32_t begun = 0;     ///< pairs since its last renewal
-    std::uint32_t in_vain = 0;   ///< pairs found since then that may not collide
-    std::uint32_t partners = 0;  ///< bodies it makes pairs with
+    std::uint32_t in_vain = 0;   ///< pairs found since then whose bodies may not collide
+    std::uint32_t partners = 0;  ///< bodies with which it forms pairs
     std::uint32_t changes = 0;   ///< of its motion since its last renewal
     std::uint32_t tests = 0;     ///< of its pairs for these
-    int jostled = 0;             ///< boxes in which its motion changed less those in which it did not, bounded
+    int jostled = 0;             ///< boxes in which its motion changed minus those in which it did not, bounded
   };
   struct FatBox {
     StaticBox box;
@@ -117,11 +117,11 @@ class KineticGrid final : public BroadPhase<Degree> {
   GridTuning tuning_;
   std::vector<Body> bodies_;  // by id
   BoxGrid fat_boxes_;
-  CalendarQueue<> expiry_;  // slots are bodies; none later than the horizon
+  CalendarQueue<> expiry_;  // slots are bodies; no time is later than the horizon
   std::size_t threads_;
   double horizon_ = never;
-  double first_travel_ = 0;   ///< of a body that comes
-  std::uint64_t wishes_ = 0;  ///< for a coarser level, since there was one
+  double first_travel_ = 0;   ///< of a new body
+  std::uint64_t wishes_ = 0;  ///< how often a coarser level was wanted since the last was begun
   BroadPhaseCounters counters_;
 };
 

@@ -1,4 +1,4 @@
-// The fat boxes of a kinetic grid: how far each reaches, and how long it holds.
+// The fat boxes of a kinetic grid: how large each is, and how long it is valid.
 #include "collision/broad_phase/kinetic_grid.hpp"
 #include "collision/degrees.hpp"
 
@@ -11,15 +11,15 @@ namespace {
 
 constexpr double largest = std::numeric_limits<double>::max();
 
-/// At most: such that a box of this travel on both sides still has an extent.
+/// The most: a box with this travel on both sides still has a finite extent.
 constexpr double greatest_travel = 0x1p1020;
 
-/// At least, over its coordinates: boxes without extent have a travel too, which then adapts.
+/// The least, over its coordinates: boxes without extent have a travel too, which then adapts.
 constexpr double least_part_of_coordinates = 0x1p-40;
 constexpr double least_travel_at_all = 0x1p-500;
 
-/// Seconds until a box on a straight path leaves a fat one that holds it now, or a little less; 0 where that is not
-/// told. Which sides it moves to nobody can predict.
+/// Seconds until a box on a straight path leaves a fat one that contains it now, or a little less; 0 if that is not
+/// certain. Without branches, since processors cannot predict to which sides it moves.
 template <int Degree>
 double exit_time(const KineticBox<Degree>& box, const BoxBounds& present, const BoxBounds& fat) {
   if constexpr (Degree > 1) return 0;
@@ -62,7 +62,7 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
       {body.travel, tuning_.least_travel * size, least_part_of_coordinates * coordinates, least_travel_at_all});
   double time = lifetime(body, sweep);
   if (time == never) return {present, never};
-  // Where a jostled body will go nobody knows; a margin of more than its size would be mostly in vain.
+  // A jostled body may go anywhere next; a margin larger than its size would mostly be in vain.
   double margin = body.jostled >= tuning_.jostled_at && body.travel <= 0.5 * size ? body.travel : 0;
   Eigen::Array3d ahead = Eigen::Array3d::Zero();  // over the margin
   if (margin > 0) {
@@ -76,14 +76,14 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
     return StaticBox{box.min.min(present.min + (shift - margin)), box.max.max(present.max + (shift + margin))};
   };
   for (std::uint32_t certificates = 0;;) {
-    // Where the clock is coarse, a box lasts until its next tick at least.
+    // At a large clock, where doubles are sparse, a box lasts until the next one at least.
     double expiry = std::max(now + time, next_up(now));
     if (expiry > largest) return {whole_space(), never, certificates};
     StaticBox box = swept(expiry);
     double extent = box.extent();
     if (!(extent <= largest)) return {whole_space(), never, certificates};
     ++certificates;
-    // One that is just too large for a level is better cut than in the next.
+    // Cutting a box that is just too large for a level costs less than putting it into the next.
     const double room_below = fat_boxes_.room_below(extent);
     if (extent < 1.5 * room_below && size < 0.75 * room_below) {
       const double cut = 0.999 * (room_below - size) / (extent - size);
@@ -93,7 +93,7 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
       box = swept(expiry);
       extent = box.extent();
     }
-    // A coarser level costs all bodies something, so it takes many to begin one; until then boxes are cut to fit.
+    // A coarser level has a cost for all bodies, so it is begun only if many want it; until then boxes are cut to fit.
     const double room = coarsest - size;
     if (extent - size <= room || room < 0.25 * size || expiry == next_up(now) || may_begin()) {
       return {box, expiry, certificates};
@@ -116,7 +116,7 @@ auto KineticGrid<Degree>::fat_box(BodySlot id, const BoxSweep<Degree>& sweep, co
   return fat;
 }
 
-/// Gives a body a fat box that fits into a level, unless the body does not. Returns the tries it took.
+/// Gives a body a fat box that fits a level, unless the body itself does not. Returns the number of tries.
 template <int Degree>
 std::uint32_t KineticGrid<Degree>::fit(Body& body, StaticBox& box, double now, double coarsest) const {
   const auto fit = [&](const auto& sweep) __attribute__((always_inline)) {
@@ -131,10 +131,11 @@ std::uint32_t KineticGrid<Degree>::fit(Body& body, StaticBox& box, double now, d
   return fit(BoxSweep<Degree>(body.box, now));
 }
 
-/// The travel of a jostled body is what makes its renewals cost about what pairs and their tests do. Of others, a box
-/// that has lasted its time: it costs about as much as two pairs, so at one or two pairs a renewal, those begun by
-/// others' renewals included, a longer travel and a shorter one would both cost more (found by measuring, for packings
-/// from 0.01 to 0.25). One that the body leaves early, since its motion has changed, was too long.
+/// The travel of a jostled body is chosen so that its renewals cost about as much as its pairs and their tests. For
+/// other bodies it depends on how the last box ended. A renewal costs about as much as two pairs, so if a box that has
+/// lasted its time had one or two pairs, including those begun by others' renewals, a longer travel and a shorter one
+/// would both cost more (measured, for packings from 0.01 to 0.25). A travel whose box the body left early, since its
+/// motion changed, was too long.
 template <int Degree>
 void KineticGrid<Degree>::adapt_travel(BodySlot id, double now) {
   Body& body = bodies_[id];
@@ -170,7 +171,8 @@ void KineticGrid<Degree>::adapt_travel(BodySlot id, double now) {
   body.tests = 0;
 }
 
-/// Until when the fat box that a body has holds a new motion, if that is long enough for it to be kept; else `now`.
+/// Until when the present fat box of a body contains a new motion, if that is long enough to keep the box; otherwise
+/// `now`.
 template <int Degree>
 double KineticGrid<Degree>::kept_until(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present,
                                        double now) {

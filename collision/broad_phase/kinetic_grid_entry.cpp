@@ -1,4 +1,4 @@
-// How bodies come into the kinetic grid.
+// How bodies are added to the kinetic grid.
 #include "collision/broad_phase/box_pairs.hpp"
 #include "collision/broad_phase/kinetic_grid.hpp"
 #include "collision/broad_phase/typical_spacing.hpp"
@@ -19,8 +19,8 @@ namespace {
 /// Fewer bodies fit into the cache in any order.
 constexpr std::size_t few = 4096;
 
-/// The order in which to put in many bodies that come at once: by blocks of space, along [Morton66]'s curve, so that
-/// what a body meets, and the cells it is in, have just been used and are in the cache.
+/// The order in which many bodies are added at once: by blocks of space, along [Morton66]'s curve, so that a body's
+/// neighbours and cells have just been used and are in the cache.
 template <int Degree>
 std::vector<BodySlot> spatial_order(std::span<const typename BroadPhase<Degree>::Entry> bodies, double now) {
   constexpr std::size_t bodies_per_block = 8;
@@ -78,7 +78,7 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   }
 }
 
-/// All that come together into an empty grid: first the boxes of all, then pairs.
+/// Adds many bodies to an empty grid: first all boxes, then pairs.
 template <int Degree>
 void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now, PairListener& listener) {
   const auto made = std::make_unique_for_overwrite<StaticBox[]>(bodies.size());
@@ -119,7 +119,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   }
 }
 
-/// The boxes of many, as if each were alone: they do not depend on each other.
+/// The boxes of many bodies: they do not depend on each other.
 template <int Degree>
 void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<StaticBox> boxes, std::size_t threads,
                                      double now) {
@@ -136,7 +136,7 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
   for (const std::uint64_t tries : certificates) counters_.certificates += tries;
 }
 
-/// Where a level would be used by few, and just for their travel, boxes are cut to fit the next that is used by more.
+/// If only a few would use a level, and just for their travel, their boxes are cut to fit the next level that more use.
 template <int Degree>
 void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now) {
   double least = boxes[0].extent();

@@ -44,7 +44,7 @@ bool KineticSweepAndPrune<Degree>::overlap_where_listed(BodySlot a, BodySlot b) 
   return true;
 }
 
-/// A minimum and a maximum have swapped; perhaps their bodies overlap on the other axes.
+/// A minimum and a maximum have swapped: updates the pair, if the bodies overlap on the other axes.
 template <int Degree>
 void KineticSweepAndPrune<Degree>::intervals_changed(std::size_t axis, std::uint32_t left, std::uint32_t right,
                                                      double t) {
@@ -64,7 +64,8 @@ void KineticSweepAndPrune<Degree>::intervals_changed(std::size_t axis, std::uint
     if (all_listed()) changes_.push_back({a, b, false});
     return;
   }
-  // It matters if they overlap on the other axes. (Intervals that are not inverted need no look at this one.)
+  // The swap counts if they overlap on the other axes. (For intervals that are not inverted this axis need not be
+  // checked.)
   if ((all_listed() || inverted_ > 0 || axis != sweep_axis_) && overlap_on(lists_.all[axis], a, b) != met) return;
   for (const std::size_t d : lists_.used) {
     if (d != axis && !overlap_on(lists_.all[d], a, b)) return;
@@ -73,7 +74,7 @@ void KineticSweepAndPrune<Degree>::intervals_changed(std::size_t axis, std::uint
   changes_.push_back({a, b, met});
 }
 
-/// The bodies that overlap with one which has just come, sorted. Where there is no list its pairs are made known.
+/// The bodies that overlap a new one, sorted. Its pairs are added to the axes without a list.
 template <int Degree>
 std::vector<BodySlot> KineticSweepAndPrune<Degree>::partners_now(BodySlot id, double now) {
   std::vector<BodySlot> partners;
@@ -91,7 +92,7 @@ void KineticSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double 
   simulator_.set_clock(now);
   box_updates_ += bodies.size();
   if (size() == 0) {
-    unlisted_.choose(0, now);  // it has nothing to do before it is known what is listed
+    unlisted_.choose(0, now);  // idle until the listed axes have been chosen
     for (const Entry& body : bodies) set_volume(body.slot, *body.box, now);
     const unsigned listed = best_axes(bodies, now);
     unlisted_.choose(all_axes_ & ~listed, now);
@@ -165,13 +166,13 @@ void KineticSweepAndPrune<Degree>::update(BodySlot id, const KineticBox<Degree>&
   for (; old != before.end(); ++old) listener.pair_ended(std::min(id, *old), std::max(id, *old), now);
 }
 
-/// Where all directions have lists.
+/// The case that all directions have lists.
 template <int Degree>
 void KineticSweepAndPrune<Degree>::update_listed_pairs(BodySlot id, double now, PairListener& listener) {
   changes_.clear();
   updating_ = true;
   // The state before each partner's first change is read off at the end: a pair has changed if it was met by an odd
-  // number of swaps on some axis, so partners are collected with the old answer taken when first seen.
+  // number of swaps on some axis, so partners are collected, each with the old answer at its first swap.
   struct Seen {
     BodySlot a, b;
     unsigned apart_changes;  // bit d for direction d
@@ -207,7 +208,7 @@ void KineticSweepAndPrune<Degree>::update_listed_pairs(BodySlot id, double now, 
 template <int Degree>
 bool KineticSweepAndPrune<Degree>::advance(double limit, PairListener& listener) {
   for (;;) {
-    // Lists come first, up to the next event where there are none, which what is looked at may bring nearer.
+    // Lists are processed first, up to the next event of axes without lists, which new pairs may bring nearer.
     const double until = std::min({limit, unlisted_.next_time(), std::numeric_limits<double>::max()});
     looked_ = false;
     while (!looked_) {

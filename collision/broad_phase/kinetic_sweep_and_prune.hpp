@@ -1,4 +1,4 @@
-// Kinetic sweep and prune: the broad phase this library is about.
+// Kinetic sweep and prune: the broad phase of [Coming06], exact.
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
@@ -16,26 +16,27 @@
 namespace kds::collision {
 
 /// Kinetic sorted lists of interval ends, one for each listed axis; a swap of a minimum with a maximum begins or ends
-/// an overlap there, and whether the other lists overlap is read from positions: no table of pairs is kept. The axes
-/// without a list have a certificate for each pair that overlaps on the listed ones and comes near on the others
-/// (UnlistedAxes).
+/// an overlap there, and positions in the other lists show whether the bodies overlap there: no table of pairs is kept.
+/// The axes without a list have a certificate for each pair that overlaps on the listed ones and comes near on the
+/// others (UnlistedAxes).
 ///
-/// Paper: [Coming06] sections 4.1-4.3. Differs: by default one list. A body passes the coordinates of all others, near
-/// or far, on each listed axis, so swaps are what it costs, and one list has a third of them; of the pairs that meet on
-/// one axis few come near on the others. The axis is the one with the fewest pairs and swaps to expect from sizes and
-/// speeds; it is chosen again when the horizon is moved or the bodies have doubled. A few boxes, not
-/// k-DOPs, get three lists, which is a matter of microseconds then (SweepTuning). Times of pairs are the same, bit for
-/// bit, whatever is listed. Of changes at one time lists come first, in the order of axes, then pairs by (a, b) on the
-/// other axes; so a pair may overlap for no time at all (begin on one axis and end on another at once) on listed axes
-/// alone.
+/// Paper: [Coming06] sections 4.1-4.3. Differs: by default one list. On each listed axis a body passes the coordinates
+/// of all others, near or far, so most of the cost is swaps, and one list has a third of them; of the pairs that meet
+/// on one axis few come near on the others. The axis is the one with the fewest expected pairs and swaps, estimated
+/// from sizes and speeds; it is chosen again when the horizon is moved or the number of bodies has doubled. A few
+/// boxes, not k-DOPs, get three lists, which costs microseconds then (SweepTuning). Times of pairs are the same, bit
+/// for bit, whichever axes are listed. Changes at one time are in this order: lists, in the order of axes, then pairs
+/// by (a, b) on the other axes; so a pair may begin on one axis and end on another at the same time, but only on listed
+/// axes.
 ///
 /// Cost: O(log n) or less a swap (the queue's), no cost between events; a motion change the swaps of its jump and a
 /// look at the pairs that overlap on the first listed axis; insertion and removal O(n) moves of memory besides that.
 ///
-/// Ends that are equal for good (boxes that touch and move together) do not overlap.
+/// Intervals whose ends stay equal (boxes that touch and move together) do not overlap.
 ///
 /// Bounding volumes may be k-DOPs (Kdops): intervals in further directions, with lists or without like those on the
-/// axes; what overlaps does so in all. The list may then be in any direction. Papers: [Klosowski98], [Coming08].
+/// axes; bodies overlap if they do so in all directions. The list may then be in any direction. Papers: [Klosowski98],
+/// [Coming08].
 template <int Degree>
 class KineticSweepAndPrune final : public BroadPhase<Degree> {
  public:
@@ -53,11 +54,11 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return simulator_.next_time(); }
   void extend_horizon(double now, double horizon) override;
-  /// O(log n) comparisons find the stretch of the first list that the box covers; then a look at each body that has an
-  /// end in it, and, going left from it, at as many ends as it takes to meet those that are open there (all where all
-  /// directions have lists). O(n) while an event is due now.
+  /// O(log n) comparisons find the stretch of the first list that the box covers; then each body with an end in it is
+  /// tested, and, going left from it, as many ends as it takes to find all intervals that are open there (all ends if
+  /// all directions have lists). O(n) while an event is due now.
   void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const override;
-  /// O(n): lists say where ends are, not where they will be.
+  /// O(n): lists have the order of ends now, not that of later times.
   void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const override;
   void audit(double now) const override;
   BroadPhaseCounters counters() const override;
@@ -66,25 +67,25 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   unsigned listed_axes() const { return listed_; }
 
  private:
-  /// Learns of the swaps in one direction.
+  /// The listener of the swaps in one direction.
   struct AxisListener {
     KineticSweepAndPrune* owner;
     std::size_t axis;  ///< or other direction
 
     void swapped(std::uint32_t left, std::uint32_t right, double t) { owner->ends_swapped(axis, left, right, t); }
-    // Maxima before minima: intervals that touch for good are apart.
+    // Maxima before minima: intervals that stay in touch are apart.
     static std::uint32_t rank(std::uint32_t id) { return ~id & 1; }
   };
   using List = structures::SortedList<Degree, AxisListener>;
 
-  /// The lists, as one structure. Of events at one time that of the first comes first.
+  /// The lists, as one structure. Events at one time are in the order of the lists.
   class Lists {
    public:
     std::vector<List> all;          ///< by direction; empty where there is none
-    std::vector<std::size_t> used;  ///< which are not
+    std::vector<std::size_t> used;  ///< the directions that have one
 
     void use(std::vector<std::size_t> directions) { used = std::move(directions); }
-    /// Whose event is next; any, if there is no event.
+    /// The list whose event is next; any, if there is no event.
     std::size_t first() const {
       std::size_t first = used.front();
       for (std::size_t i = 1; i < used.size(); ++i) {
@@ -129,7 +130,7 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   void ends_swapped(std::size_t axis, std::uint32_t left, std::uint32_t right, double t);
   void intervals_changed(std::size_t axis, std::uint32_t left, std::uint32_t right, double t);
 
-  // kinetic_sweep_and_prune_axes.cpp: which axes have lists, and who overlaps on them
+  // kinetic_sweep_and_prune_axes.cpp: which axes have lists, and which bodies overlap on them
   unsigned best_axes(std::span<const Entry> bodies, double now) const;
   void build_lists(std::span<const Entry> bodies, unsigned listed, double now);
   void choose_again(double now);
@@ -156,11 +157,11 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
   std::size_t chosen_at_ = 0;   // bodies when the axes were chosen
   double horizon_ = never;
 
-  /// What lists and pairs report while they move. During a motion change swaps are only collected, as the axes change
-  /// in turn.
+  /// The changes that lists and pairs report. During a motion change swaps are only collected, since the axes change
+  /// one after the other.
   std::vector<PairChange> changes_;
   bool updating_ = false;
-  bool looked_ = false;  ///< at a pair, since advance() has asked for the next event where there is no list
+  bool looked_ = false;  ///< a pair was tested since advance() has last read the next event of axes without a list
 
   // Of the sweep list, kept only where some axis has no list: how many intervals are open just after each place, and
   // how many have their maximum before their minimum.
@@ -176,9 +177,9 @@ class KineticSweepAndPrune final : public BroadPhase<Degree> {
 
 // ---------------------------------------------------------------------------------------------------------------
 
-/// An end's id is twice its body's, plus one for a maximum: two ends of a kind never matter. Of the others most belong
-/// to bodies far from each other in some other direction. Which are of a kind nobody can foresee, so both are looked at
-/// before there is a branch, which is hardly ever taken.
+/// An end's id is twice its body's, plus one for a maximum: swaps of two minima or two maxima never count. Most other
+/// swaps are of bodies that are far apart in some other direction. Processors cannot predict which case it is, so both
+/// conditions are computed before the only branch, which is hardly ever taken.
 template <int Degree>
 inline void KineticSweepAndPrune<Degree>::ends_swapped(std::size_t axis, std::uint32_t left, std::uint32_t right,
                                                        double t) {

@@ -1,4 +1,4 @@
-// Which directions have lists, and who overlaps on them.
+// Which directions have lists, and which bodies overlap on them.
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "collision/degrees.hpp"
 
@@ -10,9 +10,10 @@
 
 namespace kds::collision {
 
-/// What a list is expected to cost: the pairs that overlap on its axis, which is about (lengths of all intervals) /
-/// (length of the whole), and their changes, (speeds) x (time to come) / (length of the whole). Without a horizon, the
-/// time to come is what bodies take to cross their own sizes. A new axis must promise that much less.
+/// The expected cost of a list: the pairs that overlap on its axis, about (lengths of all intervals) / (length of the
+/// whole), and their changes, (speeds) x (time ahead) / (length of the whole). Without a horizon, the time ahead is the
+/// time in which bodies move by their own sizes. A list is given up for another axis only if the cost is this much
+/// lower.
 template <int Degree>
 unsigned KineticSweepAndPrune<Degree>::best_axes(std::span<const Entry> bodies, double now) const {
   const std::size_t directions = lists_.all.size();
@@ -72,8 +73,8 @@ void KineticSweepAndPrune<Degree>::build_lists(std::span<const Entry> bodies, un
   count_open();
 }
 
-/// Changes the lists, if that pays, in the midst of a run. What overlaps stays the same, so nothing is reported; that
-/// holds where no event is due.
+/// Changes the lists during a run, if that pays. Overlaps stay the same, so nothing is reported. Precondition: no event
+/// is due.
 template <int Degree>
 void KineticSweepAndPrune<Degree>::choose_again(double now) {
   if (tuning_.listed == ListedAxes::all || next_time() <= now) return;
@@ -140,7 +141,7 @@ auto KineticSweepAndPrune<Degree>::pairs_on_lists() const -> std::vector<BodyPai
         }
         place[id] = static_cast<std::uint32_t>(open.size());
         open.push_back({hull, id});
-      } else if (place[id] < open.size() && open[place[id]].id == id) {  // else it has not begun: it is inverted
+      } else if (place[id] < open.size() && open[place[id]].id == id) {  // otherwise it has not begun: it is inverted
         place[open.back().id] = place[id];
         open[place[id]] = open.back();
         open.pop_back();
@@ -152,7 +153,7 @@ auto KineticSweepAndPrune<Degree>::pairs_on_lists() const -> std::vector<BodyPai
 }
 
 /// Appends the bodies that overlap with this one where there are lists. They have an end between its ends, or are open
-/// where it begins; those are found going left, until as many have been seen as are open.
+/// where it begins; the latter are found going left, until as many have been seen as are open.
 template <int Degree>
 void KineticSweepAndPrune<Degree>::partners_on_lists(BodySlot id, std::vector<BodySlot>& partners) const {
   const List& list = sweep_list();
@@ -167,7 +168,7 @@ void KineticSweepAndPrune<Degree>::partners_on_lists(BodySlot id, std::vector<Bo
     if (is_min(end) || other_end < first || other_end > last) add(end / 2);
   }
   std::int32_t open = first > 0 && inverted_ == 0 && !all_listed() ? open_[first - 1] : 0;
-  const bool all = inverted_ > 0 || all_listed();  // then there is no telling how many
+  const bool all = inverted_ > 0 || all_listed();  // then their number is not known
   for (std::size_t i = first; i-- > 0 && (all || open > 0);) {
     const std::uint32_t end = ends[i].id;
     if (!is_min(end)) continue;

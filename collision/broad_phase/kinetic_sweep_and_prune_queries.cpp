@@ -1,4 +1,4 @@
-// What kinetic sweep and prune answers.
+// The queries of kinetic sweep and prune.
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/degrees.hpp"
@@ -42,7 +42,8 @@ void KineticSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, doubl
   const auto d = static_cast<Eigen::Index>(sweep_axis_);
   const std::array<double, 2> span =
       sweep_axis_ < 3 ? std::array{box.min[d], box.max[d]} : span_along(kdops_.directions[sweep_axis_ - 3], box);
-  // The list is in the order just after now, and what touches now may have parted then: so the next numbers outside.
+  // The list is in the order just after now, when intervals that touch now may have parted: so the next doubles
+  // outward.
   constexpr double largest = std::numeric_limits<double>::max();
   const std::size_t first = ends_below(next_down(std::clamp(span[0], -largest, largest)), now);
   const std::size_t last = ends_below(next_up(std::clamp(span[1], -largest, largest)), now);
@@ -52,7 +53,7 @@ void KineticSweepAndPrune<Degree>::visit_overlapping(const StaticBox& box, doubl
     if (is_min(end) || other < first || other >= last) look(end / 2);
   }
   // Those that are open on both sides of the stretch.
-  const bool all = inverted_ > 0 || all_listed();  // then there is no telling how many
+  const bool all = inverted_ > 0 || all_listed();  // then their number is not known
   std::int32_t open = first > 0 && !all ? open_[first - 1] : 0;
   for (std::size_t i = first; i-- > 0 && (all || open > 0);) {
     const std::uint32_t end = ends[i].id;
@@ -68,7 +69,7 @@ void KineticSweepAndPrune<Degree>::visit_swept(const KineticBox<Degree>& box, do
                                                SlotVisitor visit) const {
   const StaticBox swept = bounded_swept_box(box, from, until);
   using Hull = typename UnlistedAxes<Degree>::Hull;
-  const bool hulls = !all_listed() && until <= horizon_;  // those of bodies reach to the horizon
+  const bool hulls = !all_listed() && until <= horizon_;  // the hulls of bodies are valid until the horizon
   const Hull hull = hulls ? unlisted_.hull_of(swept) : Hull::everywhere();
   for (const auto& end : sweep_list().entries()) {
     const BodySlot id = end.id / 2;

@@ -1,4 +1,4 @@
-// A box at rest that holds a moving one for a while.
+// Swept AABBs: boxes at rest that contain a moving one for a while.
 #pragma once
 
 #include "collision/broad_phase/kinetic_box.hpp"
@@ -14,7 +14,7 @@
 
 namespace kds::collision {
 
-/// An axis-aligned box that stays where it is. Boxes that touch overlap.
+/// An axis-aligned box at rest. Boxes that touch overlap.
 struct StaticBox {
   Eigen::Array3d min;
   Eigen::Array3d max;
@@ -24,7 +24,7 @@ struct StaticBox {
   double extent() const { return (max - min).maxCoeff(); }
 };
 
-/// Holds all boxes of finite numbers.
+/// Contains all boxes with finite ends.
 inline StaticBox whole_space() {
   constexpr double largest = std::numeric_limits<double>::max();
   return {Eigen::Array3d::Constant(-largest), Eigen::Array3d::Constant(largest)};
@@ -34,7 +34,7 @@ inline StaticBox whole_space() {
 /// both finite. Ends may overflow to infinity.
 ///
 /// Horner's rule over |elapsed| errs by at most 2 Degree + 1 roundings of the sum of the magnitudes of its terms, and
-/// the elapsed time by one more a factor; 8 units in the last place of that sum cover degrees 1 and 2.
+/// the elapsed time by one more for each factor; 8 units in the last place of that sum cover degrees 1 and 2.
 template <int Degree>
 requires(Degree <= 2) StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double from, double to) {
   using Eigen::Array3d;
@@ -69,7 +69,7 @@ requires(Degree <= 2) StaticBox swept_point(const certificates::PointMotion<Degr
   return swept;
 }
 
-/// The same of a curve of any degree, which span_ahead() bounds: wider than the curve by less the shorter the span is.
+/// The same for a curve of any degree, bounded by span_ahead(): the shorter the span, the tighter the bound.
 template <int Degree>
 requires(Degree >= 3) StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double from, double to) {
   StaticBox swept;
@@ -81,9 +81,10 @@ requires(Degree >= 3) StaticBox swept_point(const certificates::PointMotion<Degr
   return swept;
 }
 
-/// About the seconds in which a point moves by `distance` from where it is at `from`, and not more than a few times
-/// that far; `never` at rest. No term of its Taylor series there comes to more. For deciding how far to look, not what
-/// is there. From the third power on within a factor of two, by exponents alone: so it is the same everywhere.
+/// About the seconds in which a point moves by `distance` from its place at `from`, and never by more than a few times
+/// that; `never` at rest. Until then no term of its Taylor series there exceeds the distance. It decides how far ahead
+/// to search, not what is found. From the third power on it is right within a factor of two, by exponents alone: so it
+/// is the same on every system.
 template <int Degree>
 double time_to_move(const certificates::PointMotion<Degree>& motion, double from, double distance) {
   constexpr double largest = std::numeric_limits<double>::max();
@@ -124,7 +125,7 @@ struct AlikeEnds {
   struct Span {
     Two min, max;
   };
-  /// On the way from where it has moved to `elapsed` already to where it will have moved to then.
+  /// The extent on the way between the displacements `moved`, after `elapsed`, and `then`.
   Span until(Two then) const {
     const Two first = lesser(then, moved);
     const Two last = greater(then, moved);
@@ -148,20 +149,20 @@ StaticBox swept_by_corners(const KineticBox<Degree>& box, double from, double to
 
 }  // namespace detail
 
-/// What a kinetic box sweeps from an instant on, also one whose ends have passed each other. Refers to the box.
+/// The box that a kinetic box sweeps from an instant on, also one whose ends have passed each other. Refers to the box.
 ///
-/// Corners that move alike share what they move by; the sums then have one rounding more, and the same margin covers
-/// them.
+/// For corners that move alike the displacement is computed once; the sums then have one rounding more, which the same
+/// margin covers.
 template <int Degree>
 class BoxSweep {
  public:
   BoxSweep(const KineticBox<Degree>& box, double from) : box_(box), from_(from) {}
 
-  /// A box that holds it over [from, to].
+  /// A box that contains it over [from, to].
   StaticBox until(double to) const { return detail::swept_by_corners(box_, from_, to); }
   /// until(from).
   StaticBox begin() const { return until(from_); }
-  /// The greatest of its velocities at first, by magnitude.
+  /// The greatest magnitude of its velocities at the beginning.
   double speed() const {
     return std::max(box_.min.velocity(from_).cwiseAbs().maxCoeff(), box_.max.velocity(from_).cwiseAbs().maxCoeff());
   }
@@ -176,7 +177,7 @@ class BoxSweep {
   double from_;
 };
 
-/// The same of one whose corners move alike, straight on.
+/// The same for a box whose corners move alike, on straight paths.
 class AlikeSweep {
  public:
   AlikeSweep(const KineticBox<1>& box, double from)
@@ -197,7 +198,7 @@ class AlikeSweep {
   }
 
  private:
-  /// Arrays of three would be computed one by one.
+  /// Written out, since compilers compute arrays of three one number at a time.
   static Two xy(const Eigen::Vector3d& v) { return Two{v[0], v[1]}; }
   static Two zz(const Eigen::Vector3d& v) { return both(v[2]); }
   static StaticBox joined(const detail::AlikeEnds::Span& xy, const detail::AlikeEnds::Span& zz) {
@@ -235,7 +236,7 @@ StaticBox swept_box(const KineticBox<Degree>& box, double from, double to) {
   return BoxSweep<Degree>(box, from).until(to);
 }
 
-/// The same, whole_space() if it has no bounds, or these are not numbers.
+/// The same; whole_space() if it is unbounded, or a bound is a NaN.
 template <int Degree>
 StaticBox bounded_swept_box(const KineticBox<Degree>& box, double from, double to) {
   constexpr double largest = std::numeric_limits<double>::max();

@@ -97,7 +97,7 @@ bool SweptSweepAndPrune<Degree>::advance(double limit, PairListener& listener) {
 template <int Degree>
 void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
   Reports reports{listener, now};
-  if (frame_end_ <= now) {  // the others' boxes reach no farther
+  if (frame_end_ <= now) {  // the others' boxes are not valid beyond this
     frames_ = static_cast<std::uint64_t>(std::floor((now - start_) * rate_));
     frame(now, reports);
   }
@@ -123,7 +123,7 @@ void SweptSweepAndPrune<Degree>::insert(std::span<const Entry> bodies, double no
       places_[axis][ends_[axis][i].id] = static_cast<std::uint32_t>(i);
     }
   }
-  // One sweep along x finds all overlaps; those known already are passed over.
+  // One sweep along x finds all overlaps; known ones are skipped.
   std::vector<BodySlot> open;
   std::vector<std::pair<BodySlot, BodySlot>> found;
   for (const End& end : ends_[0]) {

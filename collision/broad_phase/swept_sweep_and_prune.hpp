@@ -1,4 +1,4 @@
-// Sweep and prune over arrays with swept boxes: the frame-based baseline.
+// Sweep and prune over arrays with swept AABBs: the frame-based baseline.
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
@@ -13,8 +13,8 @@
 
 namespace kds::collision {
 
-/// At each frame every body gets the box it sweeps until the next, the sorted arrays of interval ends are put in order
-/// again by insertion sort, and exchanges of a minimum with a maximum add or drop pairs.
+/// At each frame every body gets its swept AABB until the next, the arrays of interval ends are sorted again by
+/// insertion sort, and exchanges of a minimum with a maximum add or drop pairs.
 ///
 /// Paper: [Cohen95] for sweep and prune, [Coming06] section 5 for its use with swept volumes. Pairs are those whose
 /// swept boxes overlap: a superset of those whose kinetic boxes do. A motion change in mid-frame sweeps the body anew.
@@ -35,7 +35,7 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return frame_end_; }
   void extend_horizon(double, double) override {}
-  /// O(n): a sorted array says which intervals begin or end near a place, not which are open there.
+  /// O(n): a sorted array shows which intervals begin or end near a place, not which are open there.
   void visit_overlapping(const StaticBox& box, double now, SlotVisitor visit) const override;
   /// O(n), with new swept boxes beyond the frame.
   void visit_swept(const KineticBox<Degree>& box, double from, double until, SlotVisitor visit) const override;
@@ -48,7 +48,7 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
     double value;
     std::uint32_t id;
   };
-  /// To whom changes are told, at what time, and whether any has been.
+  /// The listener of changes, their time, and whether there were any.
   struct Reports {
     PairListener& listener;
     double now;
@@ -83,7 +83,7 @@ class SweptSweepAndPrune final : public BroadPhase<Degree> {
   std::vector<StaticBox> swept_;           // by body
   std::vector<BodySlot> bodies_;
   std::array<std::vector<End>, 3> ends_;
-  std::array<std::vector<std::uint32_t>, 3> places_;  // of ends, by end id; right between frames
+  std::array<std::vector<std::uint32_t>, 3> places_;  // of ends, by end id; up to date between frames
   std::unordered_set<std::uint64_t> pairs_;
   BroadPhaseCounters counters_;
 };

@@ -1,4 +1,4 @@
-// What the broad phases choose by numbers that were found by measuring.
+// The tuning of the broad phases: numbers that were found by measuring.
 #pragma once
 
 #include <cstddef>
@@ -6,29 +6,29 @@
 
 namespace kds::collision {
 
-// All of it changes what a run costs, never its contacts or their times (tests/collision/broad_phase/test_tuning.cpp).
-// Constructors throw std::invalid_argument, naming the member, for what is out of range.
+// Tuning changes the cost of a run, never its contacts or their times (tests/collision/broad_phase/test_tuning.cpp).
+// Constructors throw std::invalid_argument, naming the member, for a number that is out of range.
 //
-// Most minima are flat. How flat stands in brackets: by how much half the value and double the value change the
-// instructions of a whole run, of factors half and double their distance from 1. Runs are of balls of equal size in a
-// box, at degree 1, unless something else is said: for a grid 1 000 balls that fill a twentieth of the box, then 1 000
-// that fill a quarter; for few boxes 48 balls of the same two densities.
+// Most minima are flat. Brackets say how flat: by how much half the value and double the value change the number of
+// instructions of a whole run; for factors, half and double their distance from 1. Runs are of balls of equal size in a
+// box, at degree 1, unless stated otherwise: for a grid 1 000 balls that fill a twentieth of the box, then 1 000 that
+// fill a quarter; for few boxes 48 balls of the same two densities.
 
 /// Cells of a box grid.
 struct CellTuning {
-  /// Cells are at least this much larger than the boxes in them, >= 1. Larger ones are fewer to look into, and hold
-  /// more.
+  /// Cells are at least this much larger than the boxes in them, >= 1. With larger ones a search visits fewer cells,
+  /// with more boxes in each.
   /// [+0.2, -1.3 %; +0.3, -1.7 %; degree 2, sizes spread over a factor of 8: -1.8, +10.0 %]
   double roominess = 1.4;
-  /// Side of the smallest cells over the spacing of boxes, > 0. Larger ones hold more boxes, smaller ones are more to
-  /// look into.
+  /// Side of the smallest cells over the spacing of boxes, > 0. Larger cells contain more boxes, of smaller ones more
+  /// are visited.
   /// [+29.2, +1.7 %; +0.2, +0.9 %]
   double cell_per_spacing = 2;
-  /// Buckets that a search walks on chains, for each cell it looks into, from which on smaller cells would do, >= 0:
-  /// where boxes have gathered.
+  /// If a search visits more chained buckets for each cell than this, smaller cells would be better, >= 0: boxes have
+  /// gathered.
   /// [no difference where bodies are spread evenly]
   std::int64_t crowded_chain = 4;
-  /// So many such buckets too many, for each box, call for smaller cells, > 0: they are worth building anew.
+  /// After so many excess buckets, for each box, rebuilding with smaller cells pays, > 0.
   /// [no difference where bodies are spread evenly]
   std::int64_t patience = 16;
 };
@@ -39,15 +39,16 @@ struct GridTuning {
 
   // How far a body may move in its fat box: its travel.
 
-  /// Of one that comes, over the spacing of bodies, > 0.
+  /// The travel of a new body, over the spacing of bodies, > 0.
   /// [+6.6, -4.9 %; +4.2, +3.5 %]
   double first_travel = 0.25;
-  /// At least, over the body's size, > 0: less has it renewed ever so often among others that touch it anyway.
+  /// The least travel, over the body's size, > 0: with less it would be renewed very often among bodies that touch it
+  /// anyway.
   /// [0.0, 0.0 %; +0.1, 0.0 %]
   double least_travel = 0.125;
-  /// A fat box that has lasted its time costs about as much as two pairs, so the next one's travel is multiplied by
-  /// these, after no pair has begun, one, from three on, and from `many` on. Those that grow are >= 1, the others in
-  /// (0, 1].
+  /// A fat box costs about as much as two pairs. If it has lasted its time, the next travel is multiplied by one of
+  /// these: if no pair began in it, if one did, from three on, and from `many` on. The first two are >= 1, the others
+  /// in (0, 1].
   /// [the first two +0.9, 0.0 % and +0.9, -0.7 %; +0.1, +0.4 % and +0.1, -0.1 %]
   /// [the third -0.5, +1.9 %; -0.3, +1.2 %; the fourth 0.0, 0.0 % both; `many` +1.1, 0.0 %; +1.0, -0.1 %]
   double grow_after_none = 1.4;
@@ -55,47 +56,48 @@ struct GridTuning {
   double shrink_after_some = 0.8;
   double shrink_after_many = 0.5;
   std::uint32_t many = 8;
-  /// And by this, in (0, 1], if the body's motion has had it leave before half the time was over.
+  /// The factor of the travel, in (0, 1], if a change of motion made the body leave its box before half the time was
+  /// over.
   /// [-0.7, +2.4 %; -0.1, +1.9 %]
   double shrink_after_turn = 0.8;
-  /// So many pairs found that may not collide count as one that begins, > 0. [Not measured: it matters where pairs are
-  /// filtered.]
+  /// This many pairs found whose bodies may not collide count as one that begins, > 0.
+  /// [Not measured: it matters where pairs are filtered.]
   std::uint32_t found_per_pair = 4;
   /// After a change of motion the old fat box is kept if it lasts this share of a new one's lifetime, in (0, 1]: on
   /// straight paths, and on others.
   /// [+0.4, +1.3 %; +0.2, +0.3 %; the second, at degree 2: +0.9, +1.4 %; +1.3, +2.0 %]
   double kept_share_straight = 0.15;
   double kept_share_curved = 0.25;
-  /// A coarser level of cells is begun just for the travel of bodies if they are one in so many, > 0.
+  /// A coarser level of cells is begun just for the travel of bodies if at least one body in so many wants it, > 0.
   /// [0.0, 0.0 % for equal sizes; degree 2, sizes spread over a factor of 8: -3.0, +4.5 %]
   std::uint64_t share_for_level = 8;
 
-  // Bodies whose motion changes in most of their boxes are *jostled*: their boxes reach to all sides.
+  // Bodies whose motion changes in most of their boxes are *jostled*: their boxes have a margin on all sides.
 
-  /// Boxes in which it has changed, less twice those in which it has not, from which on a body is jostled, > 0; and the
-  /// most that are counted.
+  /// The number of boxes in which it has changed, minus twice those in which it has not, from which on a body is
+  /// jostled, > 0; and the greatest such number.
   /// [-0.3, -0.1 % and +0.1, 0.0 %; -1.3, +3.7 % and +0.3, 0.0 %]
   int jostled_at = 3;
   int jostled_most = 6;
-  /// A pair that begins costs as much as so many tests of one, > 0.
+  /// A pair that begins costs as much as this many tests of one, > 0.
   /// [0.0, 0.0 %; +0.7, +0.1 %]
   std::uint32_t tests_per_pair = 8;
-  /// What was spent on pairs and their tests within a box, in tests, below which the travel grows, and above which it
+  /// The cost of pairs and their tests within a box, in tests, below which the travel grows, and above which it
   /// shrinks.
   /// [0.0, 0.0 % each; +0.1, +0.7 % and +0.2, +0.2 %]
   std::uint32_t little_spent = 40;
   std::uint32_t much_spent = 60;
-  /// By what it does.
+  /// The factors by which it grows and shrinks.
   /// [+0.1, +0.2 % and 0.0, 0.0 %; 0.0, +0.2 % and +0.2, -0.2 %]
   double grow_jostled = 1.1;
   double shrink_jostled = 0.9;
-  /// It gets so much of its margin more ahead, and less behind, in [0, 1): it goes on as it does until it is struck,
-  /// and a little after that.
+  /// The share of the margin that is moved from behind the body to ahead of it, in [0, 1): it continues its motion
+  /// until it is struck, and a little after that.
   /// [at the greater density half +1.3 %, one and a half times +0.4 %]
   double lead = 0.6;
 };
 
-/// Those that a body may be paired with, among few boxes, are the bits of one number.
+/// The most bodies of FewBoxes, where the partners of a body are the bits of one number.
 inline constexpr std::size_t most_few_boxes = 64;
 
 /// The spans of time of few boxes.
@@ -103,19 +105,19 @@ struct FewBoxesTuning {
   /// How far bodies move in the first span, over their size, > 0.
   /// [-1.7, +2.6 %; -1.0, +2.9 %]
   double first_travel = 2;
-  /// A pair costs as much as so many comparisons of boxes, with its test; and a new box, > 0.
+  /// A pair with its test costs as much as this many comparisons of boxes, > 0; and so does a new box.
   /// [+5.2, +3.7 % and +0.2, +3.7 %; -2.9, +11.3 % and +3.2, -0.9 %]
   std::uint64_t comparisons_per_pair = 16;
   std::uint64_t comparisons_per_box = 12;
-  /// What pairs may cost in a span, over what new boxes for all do: less than `little` makes the next longer, more than
-  /// `much` shorter. Some pairs are there whatever the span, so `much` is more than 1. Far more ends the span at once:
-  /// its length was told from other motions. little <= much <= far_too_much.
+  /// The cost of pairs in a span over that of new boxes for all: below `little` the next span is longer, above `much`
+  /// it is shorter. Some pairs exist however short the span is, so `much` is more than 1. Above `far_too_much` the span
+  /// ends at once: its length was found for other motions. little <= much <= far_too_much.
   /// [-1.4, +0.1 %, +1.0, -0.2 % and 0.0, -0.7 %; +1.2, -1.3 %, +6.4, -2.7 % and +1.4, -0.3 %]
   std::uint64_t little = 1;
   std::uint64_t much = 3;
   std::uint64_t far_too_much = 12;
-  /// By what the span is multiplied then, the first two >= 1, the last in (0, 1]; by `grow_where_idle` where
-  /// `idle_part` times the cost of pairs is still less than that of new boxes.
+  /// The factors of the span then, the first two >= 1, the last in (0, 1]; `grow_where_idle` if `idle_part` times the
+  /// cost of pairs is still less than that of new boxes.
   /// [-1.0, +1.5 %, 0.0, 0.0 % and -0.3, +0.5 %; +0.6, +0.6 %; `idle_part` +3.2, 0.0 %]
   double grow = 1.5;
   double grow_where_idle = 4;
@@ -123,12 +125,12 @@ struct FewBoxesTuning {
   std::uint64_t idle_part = 8;
 };
 
-/// Which of the two the default is.
+/// When the default changes between its two methods.
 struct AdaptiveTuning {
   FewBoxesTuning few{};
   GridTuning grid{};
-  /// Up to so many bodies are compared each with all others, at most most_few_boxes; more are in the grid, until there
-  /// are no more than half as many. Fewer would do where bodies are dense, and cost where they are not.
+  /// Up to this many bodies are compared each with all others, at most most_few_boxes; more are in the grid, until
+  /// there are no more than half as many. A smaller number is better for dense bodies, and worse for sparse ones.
   /// [half, for 48 balls: +19.3 %; -13.8 %]
   std::size_t most_for_few = most_few_boxes;
 };
@@ -139,12 +141,12 @@ enum class ListedAxes { automatic, one, two, all };
 /// The lists of kinetic sweep and prune.
 struct SweepTuning {
   ListedAxes listed = ListedAxes::automatic;
-  /// Fewer boxes than this, not k-DOPs, have three lists if `listed` is automatic: times of pairs are then found by
-  /// their swaps alone.
+  /// If `listed` is automatic, fewer boxes than this, not k-DOPs, have three lists: times of pairs are then found by
+  /// swaps only.
   /// [Not flat: which is cheaper depends on the density. Half, for 48 bodies of the two densities: -28.3 %; +48.3 %;
   /// double, for 100: +74.3 %; -15.5 %]
   std::size_t few_bodies = 64;
-  /// Lists are given up for others that promise to cost less than this part of them, in (0, 1].
+  /// Lists are given up for others whose expected cost is less than this part of theirs, in (0, 1].
   /// [no difference where bodies are spread evenly]
   double change_below = 2.0 / 3;
 };

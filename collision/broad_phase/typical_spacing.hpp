@@ -1,4 +1,4 @@
-// How far apart boxes are.
+// The typical distance between boxes.
 #pragma once
 
 #include "collision/broad_phase/swept_box.hpp"
@@ -11,9 +11,9 @@
 
 namespace kds::collision {
 
-/// Distance between neighbours if boxes are spread evenly over the box that holds the middle half of their corners on
-/// each axis, at least as wide as most of them are; told from some of them. What is far out or large, up to a quarter
-/// of them, makes no difference. Precondition: count > 0. box_of(i), i < count, gives a StaticBox.
+/// Distance between neighbours if boxes were spread evenly over the box that contains the middle half of their corners
+/// on each axis, at least as wide as most of them; estimated from a sample. Up to a quarter of them may be far out or
+/// large without changing the result. Precondition: count > 0. box_of(i), i < count, gives a StaticBox.
 ///
 /// Cost: O(1), and three selections among a few hundred numbers.
 template <class BoxOf>

@@ -25,7 +25,7 @@ float below(double x) {
   if (x < -0x1p127) return -infinity;
   const auto rounded = static_cast<float>(x);
   if (!(static_cast<double>(rounded) > x)) return rounded;
-  // The next below: floats of one sign are in the order of their bits.
+  // The next float below: floats of one sign are in the order of their bits.
   if (rounded == 0) return -std::numeric_limits<float>::denorm_min();
   const auto bits = std::bit_cast<std::uint32_t>(rounded);
   return std::bit_cast<float>(rounded > 0 ? bits - 1 : bits + 1);
@@ -121,7 +121,7 @@ typename UnlistedAxes<Degree>::PairSlot UnlistedAxes<Degree>::find(BodySlot a, B
   return no_pair;
 }
 
-/// Time of the pair's next change, `never` if it has none before the horizon; now if it is in the wrong state.
+/// Time of the pair's next change, `never` if it has none before the horizon; now if its state is out of date.
 template <int Degree>
 double UnlistedAxes<Degree>::next_change(const Pair& pair, double now) const {
   const Sides sides(*this, pair.a, pair.b);

@@ -25,23 +25,24 @@ struct PairChange {
 };
 
 /// Keeps, for the pairs of boxes that overlap on all axes with a list, the exact times at which they begin and cease to
-/// overlap on the others: one certificate a pair in place of the swaps of a list.
+/// overlap on the others: one certificate for each pair instead of the swaps of a list.
 ///
-/// Most pairs need none. Of each body there is the hull of its box from now to the horizon, rounded outward; pairs
-/// whose hulls are apart on one of these axes stay apart. The next filter takes two straight paths in doubles, with
-/// bounds on the errors. What is left gets first_all_broken() or first_any_holds() over the sides of its boxes: the
-/// same doubles at which lists of these axes would swap.
+/// Most pairs need none. For each body the hull of its box from now to the horizon is stored, rounded outward; pairs
+/// whose hulls are apart on one of these axes stay apart. The next filter is for straight paths, in doubles with error
+/// bounds. For the remaining pairs first_all_broken() or first_any_holds() over the sides of the boxes gives the same
+/// doubles at which lists of these axes would swap.
 ///
-/// Directions are numbered: 0 to 2 are the axes, those of k-DOPs follow. A pair is apart while it is so in one of them.
+/// Directions are numbered: 0 to 2 are the axes, those of k-DOPs follow. A pair is apart while it is apart in one of
+/// them.
 ///
-/// State is that of t+, so no pair is ever reported for no time at all. Events of one time come by (a, b).
+/// The state is that at t+, so no pair begins and ends at the same time. Events of one time are in the order of (a, b).
 ///
 /// Cost: a few operations for a pair that meets on the listed axes; where its hulls overlap, two to four failure times
 /// and one event for each beginning and end.
 template <int Degree>
 class UnlistedAxes {
  public:
-  /// What a box covers from some time to the horizon, rounded outward to floats, which are half as much to fetch.
+  /// The hull of a box from some time to the horizon, rounded outward to floats, which take half the memory.
   struct Hull {
     FourFloats ends{0, 0, 0, 0};  ///< low on two axes, then high
 
@@ -76,30 +77,30 @@ class UnlistedAxes {
     return upper ? slab(id, direction).max : slab(id, direction).min;
   }
 
-  /// The greatest id so far, and one.
+  /// One more than the greatest id so far.
   std::size_t bodies() const { return boxes_.size(); }
 
-  /// A box as one to compare with those of bodies. It meets them all where all axes have a list.
+  /// A box in the form that is compared with those of bodies. If all axes have a list it meets them all.
   Hull hull_of(const StaticBox& box) const;
 
-  /// Whether the pair may overlap here before the horizon: the first filter alone.
+  /// Whether the pair may overlap on these axes before the horizon: only the first filter.
   bool near(BodySlot a, BodySlot b) const { return hulls_meet(a, b) && (more_.empty() || near_on_more(a, b)); }
 
   const Hull& hull(BodySlot id) const { return hulls_[id]; }
-  /// Near on the first two directions, without a branch.
+  /// Whether their hulls meet in the first two directions, without a branch.
   bool hulls_meet(BodySlot a, BodySlot b) const { return hulls_[a].meets(hulls_[b]); }
 
   /// The boxes of a pair have met on all axes with a list; a < b. Returns whether they overlap on these axes too.
   bool met(BodySlot a, BodySlot b, double now) { return near(a, b) && add(a, b, now); }
 
-  /// They have parted on an axis with a list. Returns whether they have overlapped on these until now. (Pairs that are
-  /// known are near.)
+  /// They have parted on an axis with a list. Returns whether they have overlapped on these axes until now. (Only pairs
+  /// whose hulls meet are stored.)
   bool parted(BodySlot a, BodySlot b) { return near(a, b) && drop(a, b); }
 
-  /// Looks again at a pair that overlaps on the listed axes, as the horizon is later.
+  /// Tests a pair that overlaps on the listed axes again, since the horizon is later.
   void look_farther(BodySlot a, BodySlot b, double now);
 
-  /// Forgets all pairs of a body; those it has overlapped with are appended to `partners`.
+  /// Removes all pairs of a body; the bodies that it has overlapped are appended to `partners`.
   void forget_pairs(BodySlot id, std::vector<BodySlot>& partners);
 
   /// Whether a pair overlaps on these axes. Precondition: it does on the others.
@@ -133,11 +134,11 @@ class UnlistedAxes {
     }
   };
   class Sides;
-  static constexpr std::size_t most_directions = 13;  ///< of a 26-DOP, the most there is
+  static constexpr std::size_t most_directions = 13;  ///< of a 26-DOP, the largest
 
   using Apart = certificates::Order<Degree>;
 
-  /// Of k-DOPs: the slab of a body in any direction, the axes too.
+  /// For k-DOPs: the slab of a body in any direction, including the axes.
   const KineticSlab<Degree>& slab(BodySlot id, std::size_t direction) const {
     return slabs_[id * directions_ + direction];
   }

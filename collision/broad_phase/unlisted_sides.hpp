@@ -1,4 +1,4 @@
-// What keeps two bodies apart in the directions without a list: a part of unlisted_axes.cpp.
+// The certificates that keep two bodies apart in the directions without a list: a part of unlisted_axes.cpp.
 #pragma once
 
 #include "collision/broad_phase/unlisted_axes.hpp"
@@ -13,7 +13,7 @@
 
 namespace kds::collision {
 
-/// The facts that keep two bodies apart in the directions without a list. One at a time.
+/// The certificates that keep two bodies apart in the directions without a list; for one pair at a time.
 template <int Degree>
 class UnlistedAxes<Degree>::Sides {
  public:
@@ -37,9 +37,9 @@ class UnlistedAxes<Degree>::Sides {
 
   /// Whether the boxes certainly do not overlap from now to the horizon: straight paths in doubles.
   ///
-  /// A side is gap + rate (t - now); the errors of gap are within 2^-50 of the terms it is made of (see
-  /// Order::line()), the rate is a difference of doubles with an exact sign. A side is broken after `begin` seconds, or
-  /// until `end`: each is rounded the safe way by more than the quotient's and the rate's 2^-53.
+  /// A side is gap + rate (t - now); the errors of gap are within 2^-50 of the terms it is made of (see Order::line()),
+  /// the rate is a difference of doubles with an exact sign. A side is broken after `begin` seconds, or until `end`:
+  /// each is rounded to the safe side by more than the errors of the quotient and the rate, 2^-53 each.
   bool stay_apart(double now, double horizon) const {
     if constexpr (Degree == 1) {
       double begin = 0;
@@ -57,7 +57,7 @@ class UnlistedAxes<Degree>::Sides {
   }
 
  private:
-  /// Leaves of [begin, end] the seconds from now for which a side may be broken; true if it never will be.
+  /// Reduces [begin, end] to the seconds from now for which a side may be broken; true if it never will be.
   static bool narrow(const Apart& side, double now, double& begin, double& end) {
     const double run_lower = side.lower.position.c[1] * (now - side.lower.start);
     const double run_upper = side.upper.position.c[1] * (now - side.upper.start);

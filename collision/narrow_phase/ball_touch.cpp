@@ -32,7 +32,7 @@ auto BallTouch<Degree>::from(std::size_t vertex) const -> Path {
   return path;
 }
 
-/// What is left of the motion when that along the edge is taken out.
+/// The motion across the edge: without its part along the edge.
 template <int Degree>
 auto BallTouch<Degree>::across_edge(std::size_t i) const -> Path {
   const Vector3d along = unit(triangle_.edge(i));
@@ -77,7 +77,7 @@ void BallTouch<Degree>::add_face(bool sharp) {
     piece.conditions.push_back(
         below(out, std::max(dot(out, triangle_.vertices[i]), dot(out, triangle_.vertices[(i + 1) % 3]))));
   }
-  // Across each corner: away from the middle between the directions of its edges.
+  // Across each corner: opposite to the mean of the directions of its edges.
   const auto along = [this](std::size_t i) { return unit(triangle_.edge(i)); };
   for (std::size_t i = 0; sharp && i < 3; ++i) {
     const Vector3d out = unit(along((i + 2) % 3) - along(i));
@@ -92,7 +92,7 @@ void BallTouch<Degree>::add_edge(std::size_t i) {
   Piece piece;
   piece.conditions.push_back(below(along, dot(along, triangle_.vertices[(i + 1) % 3])));
   piece.conditions.push_back(below(-along, -dot(along, triangle_.vertices[i])));
-  // The costly condition last, and only if it counts.
+  // The expensive condition last, and only if the others hold.
   if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
   const Path path = across_edge(i);
   if (!matters(path)) return;
@@ -134,8 +134,9 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
       return {place - at.point, at.dimension, direction};
     });
   } else if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
-    // Second derivative of the distance: bending towards the surface beats leaving its round. What is round is the part
-    // of the triangle that the ball comes to: it may be about to pass from an edge to the face.
+    // Second derivative of the distance: the path's bend towards the surface exceeds the surface's own curvature. The
+    // curvature is that of the part of the triangle that the ball comes to: it may be about to pass from an edge to the
+    // face.
     Vector3d sideways = velocity - rate * normal;
     NearestPoint ahead = nearest;
     if (nearest.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {

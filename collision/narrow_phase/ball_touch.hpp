@@ -21,23 +21,23 @@ namespace kds::collision {
 
 /// When a ball touches a triangle: their distance is below radius + contact gap. The set of such places of the ball's
 /// centre is the union of seven convex pieces: a prism over the face, three cylinders about the edges, three balls
-/// about the vertices. Each side of the prism lies a gap farther out, so that a corner of half the angle theta does by
-/// a gap / sin(theta); where there may be sharp ones, sides across the corners cut them off. So in no piece the ball is
+/// about the vertices. Each side of the prism lies a gap farther out, so that a corner of half the angle theta lies a
+/// gap / sin(theta) farther out; where corners may be sharp, sides across them cut them off. So in no piece the ball is
 /// more than 8.1 gaps away from the triangle. Same members as ConvexTouch; closed forms for linear motion, for
 /// quadratic motion quartics whose sign changes are bracketed between those of their derivatives, beyond that exact
 /// signs (curve_spans.hpp).
 ///
-/// Squared distances are never expanded about tau = 0 to decide a sign, only evaluated from the place of the centre at
+/// To decide a sign, squared distances are never expanded about tau = 0, but evaluated from the place of the centre at
 /// tau, or exactly: so their error is that of the distance, which the contact gap covers, however small the ball.
 template <int Degree>
 class BallTouch {
  public:
   using Path = std::array<Eigen::Vector3d, std::size_t{Degree} + 1>;  ///< polynomial of tau
 
-  /// Motion of the ball seen from the triangle's body. `horizon`: no contact after it; a function of the bodies and
-  /// motion alone, or answers would not be. Parts of the triangle that the ball is not near within the window of
-  /// interest are left out: what is said about times outside is not to be used. `sharp`: whether the triangle may have
-  /// a sharp corner (Mesh::sharp).
+  /// Motion of the ball relative to the triangle's body. `horizon`: no contact after it; it must be a function of the
+  /// bodies and motion alone, since the answers depend on it. Parts of the triangle that the ball is not near within
+  /// the window of interest are left out: answers for times outside must not be used. `sharp`: whether the triangle may
+  /// have a sharp corner (Mesh::sharp).
   BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball, const RelativeMotion<Degree>& motion,
             const ContactGap<Degree>& gap, bool sharp, double horizon, const TimeWindow& interest);
 
@@ -49,7 +49,7 @@ class BallTouch {
   double turning(double tau, double end) const;
 
  private:
-  /// A slab or cylinder and its ends has eight conditions at most.
+  /// A slab or a cylinder with its ends has eight conditions at most.
   using Pieces = TouchPieces<Degree, 7, 8>;
   using Piece = typename Pieces::Piece;
 

@@ -39,7 +39,7 @@ BoxAndBall<Degree>::BoxAndBall(const Body& box, const Body& ball, double now, do
   }
 }
 
-/// Looks at the distance from the edge or vertex; false if the centre is not in the piece by a time.
+/// Applies the distance from the edge or vertex; false if the centre is not in the piece by a time.
 ///
 /// Error bound: coordinates y are known to the filter's error e, which has room for the roundings of shifting them; of
 /// size Y, their squares are off by 2 Y e + e^2 and a few roundings of Y^2.
@@ -75,7 +75,7 @@ bool BoxAndBall<Degree>::Piece::cut(double until) {
 
 /// As QuickMotion::opened_by(), for f = sum y^2 - r^2. f is known to E = sum (2 |y| e + e^2) and f' = 2 sum y y' to
 /// four times less than it is; in the short time until f has grown by more than 47 E its second derivative, below
-/// `bend`, takes away no more than a quarter of that.
+/// `bend`, reduces that by no more than a quarter.
 template <int Degree>
 double BoxAndBall<Degree>::Piece::distance_opened_by() const {
   const double e = pair_->motion_.error();

@@ -22,13 +22,13 @@ namespace kds::collision {
 
 /// A box and a ball from `now` to the horizon. They penetrate while the ball's centre is inside the box grown by the
 /// radius, which is a union of convex *pieces*: three slabs, the box grown along one axis; twelve cylinders about the
-/// edges; eight balls about the vertices. So a piece says for each axis of the box where the centre is: between the
-/// faces, between them grown, or around one of them.
+/// edges; eight balls about the vertices. So a piece states for each axis of the box where the centre is: between the
+/// faces, between the grown faces, or around one of them.
 ///
-/// When the centre may be there is found once for each axis and place, by quadratics in doubles; a piece then takes the
-/// greatest of three beginnings and the least of three ends, which mostly leaves nothing. What is left of edges and
-/// vertices is cut by Bernstein coefficients of the squared distance, of twice the degree of the paths. Exact signs
-/// have the last word, of the pieces that may be the first.
+/// The times at which the centre may be there are found once for each axis and place, by quadratics in doubles; a piece
+/// then takes the greatest of three beginnings and the least of three ends, which mostly leaves an empty interval. For
+/// edges and vertices it is reduced further by Bernstein coefficients of the squared distance, of twice the degree of
+/// the paths. Exact signs decide among the pieces that may be the first.
 ///
 /// Cost: 0.1 us where they do not meet, 1 us (straight paths) to 1.5 us (parabolas) where they do.
 template <int Degree>
@@ -42,13 +42,13 @@ class BoxAndBall {
 
   BoxAndBall(const Body& box, const Body& ball, double now, double horizon);
 
-  /// Calls visit(piece) for the pieces in which the centre may be between `now` and the horizon, in no order, until it
-  /// returns false.
+  /// Calls visit(piece) for the pieces in which the centre may be between `now` and the horizon, in no particular
+  /// order, until it returns false.
   template <class Visit>
   void every_piece(const Visit& visit) const;
 
-  /// The same, the earliest first as far as is known, and only those in which it may be by a time: the horizon first,
-  /// then what visit(piece) returns.
+  /// The same, the earliest first as far as is known, and only those in which it may be by a time: at first the
+  /// horizon, then the time that visit(piece) returns.
   template <class Visit>
   void earliest_pieces(double horizon, const Visit& visit) const;
 
@@ -72,7 +72,7 @@ class BoxAndBall {
     return p;
   }
 
-  /// Where nothing is known any more.
+  /// The end of the filter's validity.
   TimeWindow after_end() const { return {motion_.end(), motion_.end()}; }
 
   const Body& box_;

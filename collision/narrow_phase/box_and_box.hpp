@@ -42,15 +42,15 @@ void every_box_axis(const PlacedShape& a, const PlacedShape& b, const Visit& vis
 
 /// The gaps of two boxes on both sides of every axis, from `now` to the horizon: they penetrate while all are closed.
 ///
-/// A gap that stays open all the time ends the search for more of them; it is the usual case, and costs some ten
-/// operations an axis tried.
+/// A gap that stays open all the time ends the search; this is the usual case, and costs some ten operations for each
+/// axis tried.
 template <int Degree>
 class BoxAndBox {
  public:
   using Body = TranslatingShape<Degree>;
 
-  /// With `faces_do` products of edges are looked at only where no face keeps the boxes apart now: the pair is for
-  /// apart_until() alone.
+  /// With `faces_do` products of edges are tested only if no face separates the boxes now: the object is then for
+  /// apart_until() only.
   BoxAndBox(const Body& a, const Body& b, double now, double horizon, bool faces_do = false)
       : a_(a),
         b_(b),
@@ -66,7 +66,8 @@ class BoxAndBox {
   }
 
   /// A time not before now before which they do not penetrate, or `never`: until then one axis separates them, and
-  /// `memory` says which. That one is tried first, and alone if it separates them now; else the best of all is taken.
+  /// `memory` says which. That one is tried first, and is the only one if it separates them now; otherwise the best of
+  /// all is taken.
   static double apart_until(const Body& a, const Body& b, double now, double horizon, PairMemory& memory);
 
   /// The first double t in [now, horizon] just after which they penetrate, or `never`. `from`: where to begin.
@@ -135,7 +136,7 @@ class BoxAndBox {
       apart_ = true;
       return false;
     }
-    // Apart for as long as is known: what comes after is for exact signs.
+    // Apart as long as the filter is valid: later times are decided by exact signs.
     window_ = {motion_.end(), motion_.end()};
     return true;
   }
@@ -152,7 +153,7 @@ class BoxAndBox {
   QuickMotion<Degree> motion_;
   TimeWindow window_;
   bool apart_ = false;
-  int separating_ = 0;  ///< number of the axis that separates them longest alone, as far as is known
+  int separating_ = 0;  ///< number of the axis that separates them longest by itself, as far as is known
   double separated_ = 0;
   std::size_t size_ = 0;
   std::array<Axis, 15> axes_;

@@ -20,7 +20,8 @@ using certificates::Generator;
 using certificates::ZonotopeCell;
 using Eigen::Vector3d;
 
-/// The point of a cell nearest to x, but for parallelograms that x is not over: their sides have it.
+/// The point of a cell nearest to x, except for parallelograms beside which x is: the nearest point is on their sides,
+/// which are cells too.
 bool nearest_of_cell(const ZonotopeCells& cells, const ZonotopeCell& cell, const Vector3d& x, Vector3d& nearest) {
   const Vector3d centre = cells.centre(cell);
   const auto swept = [&](std::size_t k) -> const Generator& { return cells.generators()[cell.swept[k]]; };
@@ -42,8 +43,8 @@ bool nearest_of_cell(const ZonotopeCells& cells, const ZonotopeCell& cell, const
   return true;
 }
 
-/// Out of the nearest face of a zonotope that holds x, or none if it does not. One that is flat holds the points of its
-/// plane or line: of them too the way out is across it.
+/// The direction out of the nearest face of a zonotope that contains x, or none if it does not. A flat zonotope
+/// contains the points of its plane or line, for which the way out is across it.
 Vector3d way_out(const ZonotopeCells& cells, const Vector3d& x, bool& holds) {
   double deepest = -never;
   Vector3d out = Vector3d::UnitX();
@@ -61,7 +62,7 @@ Vector3d way_out(const ZonotopeCells& cells, const Vector3d& x, bool& holds) {
       if (norm(product) >= unknown_normal) look(product);
     }
   }
-  if (deepest == -never) {  // All in a line: any direction across it.
+  if (deepest == -never) {  // All generators are parallel: any direction across them.
     int smallest = 0;
     const Vector3d& u = cells.generators()[0].direction;
     u.cwiseAbs().minCoeff(&smallest);

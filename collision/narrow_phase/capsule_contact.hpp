@@ -10,7 +10,7 @@ namespace kds::collision {
 
 /// How two shapes that have a rounded_core() touch, in doubles: the normal leads from the nearest point of the zonotope
 /// that is the difference of their cores to the place of b; where the cores overlap, out of its nearest face. The point
-/// is in the middle of what both turn towards each other, as for boxes.
+/// is in the middle of the features that face each other, as for boxes.
 template <int Degree>
 Contact rounded_contact(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t);
 
@@ -20,7 +20,7 @@ struct CapsuleContact : PiecewiseContact<Degree, RoundedZonotope<Degree>, rounde
   using Piecewise = PiecewiseContact<Degree, RoundedZonotope<Degree>, rounded_contact<Degree>>;
   using Body = TranslatingShape<Degree>;
 
-  /// What one direction tells will do: the pieces, a dozen times as much work, are for those that are near already.
+  /// One separating direction suffices: the pieces, a dozen times as much work, are for pairs that are near already.
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory) {
     if (!(t0 <= horizon)) return never;
     const double until = RoundedZonotope<Degree>(a, b, t0, horizon).apart_until();

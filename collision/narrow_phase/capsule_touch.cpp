@@ -22,7 +22,7 @@ Vector3d unit_or_zero(const Vector3d& v) {
   return scaled / std::sqrt(dot(scaled, scaled));
 }
 
-/// What is left of v across a unit vector.
+/// The part of v across a unit vector.
 Vector3d across(const Vector3d& v, const Vector3d& along) { return v - dot(along, v) * along; }
 
 /// The directions of the parallelogram of an edge and a segment: that of the longer one, across it within the
@@ -86,7 +86,7 @@ SpansOf<Degree> CapsuleTouch<Degree>::below(const Vector3d& normal, double dista
   return spans_below_zero<Degree>(c, horizon_);
 }
 
-/// Not farther out than the corners, and some more.
+/// Slightly more than the distance of the farthest corner.
 template <int Degree>
 void CapsuleTouch<Degree>::bound(Piece& piece, const Vector3d& out, Corners corners, double more) const {
   double distance = -TimeSpans::infinity;
@@ -107,7 +107,7 @@ SpansOf<Degree> CapsuleTouch<Degree>::within(const Path& path) const {
   return near_spans(path, distance, horizon_);
 }
 
-/// Pieces that hold at no time of interest are left out.
+/// Pieces whose conditions hold at no time of interest are left out.
 template <int Degree>
 void CapsuleTouch<Degree>::add(const Piece& piece) {
   if (first_inside_all(piece.spans(), interest_.begin) <= interest_.end) pieces_.add(piece);
@@ -176,7 +176,7 @@ void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& end) 
   Piece piece;
   piece.conditions.push_back(below(along, dot(along, end)));
   piece.conditions.push_back(below(-along, -dot(along, begin)));
-  // The costly condition last, and only if it counts.
+  // The expensive condition last, and only if the others hold.
   if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
   Path path = from(begin);
   for (Vector3d& c : path) c = across(c, along);
@@ -200,7 +200,7 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
   const Vector3d velocity = motion_.velocity(tau);
   const auto speeds = smallest_speeds(motion_);
   const Vector3d face = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
-  // How deep the segment goes through the triangle, by the faces of their prism.
+  // How deep the segment penetrates the triangle, by the faces of their prism.
   TouchDirection deepest{face, -TimeSpans::infinity, false};
   const auto look = [&](const Vector3d& normal) {
     const double high = triangle_.project(normal).high + std::abs(dot(normal, half_));
@@ -230,8 +230,8 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
       return {to.apart, to.dimension, direction};
     });
   } else if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
-    // Second derivative of the distance: bending towards the surface beats leaving its round. What is round is the part
-    // that the capsule comes to.
+    // Second derivative of the distance: the path's bend towards the surface exceeds the surface's own curvature, which
+    // is that of the part that the capsule comes to.
     Vector3d sideways = across(velocity, normal);
     SegmentWay ahead = way;
     if (way.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {

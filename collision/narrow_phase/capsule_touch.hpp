@@ -17,23 +17,23 @@
 
 namespace kds::collision {
 
-/// When a capsule touches a triangle: their distance is below radius + contact gap. Bodies do not rotate, so that is
-/// when the centre of the capsule is so near to a prism, the sum of the triangle and the capsule's segment. The set of
-/// such places is the union of 21 convex pieces: slabs over two triangles and three parallelograms, cylinders about
-/// nine edges, balls about six corners, and the inside of the prism, where the segment goes through the triangle. Same
-/// members as BallTouch, whose remarks hold here too.
+/// When a capsule touches a triangle: their distance is below radius + contact gap. Bodies do not rotate, so this is
+/// equivalent to the centre of the capsule being that near to a prism, the sum of the triangle and the capsule's
+/// segment. The set of such places is the union of 21 convex pieces: slabs over two triangles and three parallelograms,
+/// cylinders about nine edges, balls about six corners, and the inside of the prism, where the segment goes through the
+/// triangle. Same members as BallTouch, whose comments apply here too.
 ///
 /// Margins. The sides of a slab lie a gap farther out each, and so do those across its corners (each corner of a
 /// parallelogram, the sharp ones of a triangle): seen along a slab, no place in it is more than sqrt(2) gaps from the
 /// parallelogram, 8.1 from the triangle; see BallTouch. The inside of the prism, half a radius within its faces, has no
-/// margin: what is nearer to a face is in another piece. It is left out where the prism is no thicker than that.
+/// margin: places nearer to a face are in another piece. It is left out if the prism is no thicker than that.
 ///
 /// An edge e and the segment s may be parallel, or nearly so. The slab of the two stands in a frame of the longer one
 /// of them, L: a direction across both, from their product, made orthogonal to L; and one across that and L. The
 /// product is known to 2^-53 of itself (accurate_cross), but e itself to a rounding of the corners alone, which tilts
 /// the frame about L by 3 x 2^-53 of the size of the triangle over the width of the parallelogram: so no corner of it
-/// is out of the plane by more than 3 roundings, and places over its rim that the tilt takes off are nearer to an edge
-/// than that and the radius. ContactGap has 8 roundings for axes that are not quite across their edges. Where the
+/// is out of the plane by more than 3 roundings, and places over its rim that the tilt excludes are nearer to an edge
+/// than that plus the radius. ContactGap has 8 roundings for axes that are not quite across their edges. Where the
 /// product vanishes the parallelogram is an edge, and any direction across does.
 template <int Degree>
 class CapsuleTouch {

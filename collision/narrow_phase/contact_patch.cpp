@@ -20,8 +20,8 @@ Vector3d mean(std::span<const Vector3d> points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// From where to where on the first of two parallel segments, from 0 to 1, the second is beside it; none of segments
-/// that are not parallel.
+/// The interval of the first of two parallel segments, from 0 to 1, that the second is beside; none if they are not
+/// parallel.
 std::optional<std::pair<double, double>> shared_stretch(const Vector3d& p0, const Vector3d& p1, const Vector3d& q0,
                                                         const Vector3d& q1) {
   const Vector3d u = p1 - p0;
@@ -34,7 +34,7 @@ std::optional<std::pair<double, double>> shared_stretch(const Vector3d& p0, cons
   return std::pair(std::max(0.0, std::min(q_start, q_stop)), std::min(1.0, std::max(q_start, q_stop)));
 }
 
-/// Halfway between the closest points of two segments; of parallel ones, in the middle of what they share.
+/// Halfway between the closest points of two segments; for parallel ones, in the middle of their common stretch.
 Vector3d between_segments(const Vector3d& p0, const Vector3d& p1, const Vector3d& q0, const Vector3d& q1) {
   const Vector3d u = p1 - p0;
   const Vector3d v = q1 - q0;
@@ -78,8 +78,8 @@ std::vector<Vector3d> moved_by(std::span<const Vector3d> points, const Vector3d&
   return moved;
 }
 
-/// What a segment or polygon shares with a polygon, seen along the normal. All of the polygon where that is nothing:
-/// rounding has just parted them.
+/// The intersection of a segment or polygon with a polygon, seen along the normal. If it is empty, since rounding has
+/// just separated them, all of the polygon.
 std::vector<Vector3d> shared(std::vector<Vector3d> cut, std::vector<Vector3d> window, const Vector3d& normal) {
   if (window.size() == 2) std::swap(cut, window);
   const auto [first, second] = tangents(normal);

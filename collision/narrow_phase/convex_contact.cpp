@@ -72,7 +72,7 @@ Contact box_ball_contact(const TranslatingShape<Degree>& a, const TranslatingSha
   if (squared_norm(normal) > 0) {
     for (int d = 0; d < 3; ++d) touched[d] = normal[d] > 0 ? 1 : (normal[d] < 0 ? -1 : 0);
     normal = normalized(normal);
-  } else {  // The centre is inside: out through the nearest face.
+  } else {  // The centre is inside: the normal leads out through the nearest face.
     int axis = 0;
     (h - x.cwiseAbs()).minCoeff(&axis);
     touched[axis] = x[axis] < 0 ? -1 : 1;
@@ -95,7 +95,7 @@ double BallsContact<Degree>::first_contact(const Body& a, const Body& b, double 
   return mode == ContactMode::transparent ? failure_time(apart, t0, horizon) : apart.first_approach(t0, horizon);
 }
 
-/// The exact time costs hardly more.
+/// No cheaper bound: the exact time costs hardly more.
 template <int Degree>
 double BallsContact<Degree>::apart_until(const Body&, const Body&, double t0, double, PairMemory&) {
   return t0;

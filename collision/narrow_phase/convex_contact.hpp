@@ -10,11 +10,10 @@ namespace kds::collision {
 
 // The tests (see pair_tests.hpp) of balls and boxes.
 //
-// Method: the set of relative positions in which two convex shapes penetrate is a union of convex *pieces* (one for
-// two spheres or two boxes; slabs, edge cylinders and vertex balls for a box and a sphere), and each piece is a
-// conjunction of polynomial certificates that are all broken inside it. The first contact is the least of the
-// pieces' first times, each found by jumping from one failure time to the next. A filter in doubles decides most of
-// it (quick_motion.hpp).
+// Method: the set of relative positions in which two convex shapes penetrate is a union of convex *pieces* (one for two
+// spheres or two boxes; slabs, edge cylinders and vertex balls for a box and a sphere), and each piece is a conjunction
+// of polynomial certificates that are all broken inside it. The first contact is the least of the pieces' first times,
+// each found by jumping from one failure time to the next. A filter in doubles decides most cases (quick_motion.hpp).
 // Paper: [Eberly01] for the separating axes; [Basch99] for certificates that witness disjointness.
 
 /// Two balls.

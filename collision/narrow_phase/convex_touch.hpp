@@ -19,14 +19,14 @@
 
 namespace kds::collision {
 
-/// How two things touch at a time.
+/// How two shapes touch at a time.
 struct TouchDirection {
   Eigen::Vector3d normal;  ///< unit, from a to b
   double separation;       ///< along the normal; < 0: penetration
   bool approaching;
 };
 
-/// Speeds along an axis up to [0] + tau [1] are rounding: zero.
+/// Speeds along an axis up to [0] + tau [1] are rounding errors and count as zero.
 template <int Degree>
 std::array<double, 2> smallest_speeds(const RelativeMotion<Degree>& motion) requires(Degree <= 2) {
   constexpr double rounding = 8 * 0x1p-53;
@@ -37,8 +37,8 @@ std::array<double, 2> smallest_speeds(const RelativeMotion<Degree>& motion) requ
   }
 }
 
-/// The same for degree n = 3 to 5, and for all derivatives: up to those of this polynomial they are rounding. A
-/// coefficient along an axis takes 4 of them, Horner's rule for its derivatives 2 n + 1.
+/// The same for degree n = 3 to 5, and for all derivatives: up to the derivatives of this polynomial they are rounding
+/// errors. A coefficient along an axis takes 4 of them, Horner's rule for its derivatives 2 n + 1.
 template <int Degree>
 std::array<double, std::size_t{Degree} + 1> smallest_speeds(const RelativeMotion<Degree>& motion) {
   constexpr double rounding = 16 * 0x1p-53;
@@ -48,12 +48,12 @@ std::array<double, std::size_t{Degree} + 1> smallest_speeds(const RelativeMotion
 }
 
 /// When a triangle and another convex shape touch: while all the conditions "their gap along this direction is below
-/// the contact gap" hold, each of them a polynomial of the time. Everything it says is a closed form of the shapes and
-/// the motion alone.
+/// the contact gap" hold, each of them a polynomial of the time. All answers are closed forms of the shapes and the
+/// motion alone.
 template <int Degree, class B>
 class ConvexTouch {
  public:
-  /// `sharp`: whether both may have sharp corners, see every_kdop_direction; those of a box are none.
+  /// `sharp`: whether both may have sharp corners, see every_kdop_direction; a box has none.
   ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap,
               bool sharp)
       : a_(a), b_(b), motion_(motion), gap_(gap) {
@@ -80,8 +80,8 @@ class ConvexTouch {
     if constexpr (Degree == 1) near_[size_++] = TimeSpans::between(enter_, leave_);
   }
 
-  /// The same where only what happens within a window is of interest, for less. Precondition: if the two touch in the
-  /// window, they do not before it, or what happens at its begin alone is asked.
+  /// The same at less cost if only times within a window are of interest. Precondition: if the two touch in the window,
+  /// they do not touch before it, or only the begin of the window is asked about.
   ConvexTouch(const PlacedTriangle& a, const B& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap,
               bool sharp, const TimeWindow& interest) requires(Degree == 1)
       : a_(a), b_(b), motion_(motion), gap_(gap) {
@@ -103,7 +103,7 @@ class ConvexTouch {
   /// Whether, at tau, they approach along the direction of least overlap.
   bool approaching(double tau) const {
     if constexpr (Degree == 1) {
-      // That is the direction along which they have just come within the gap.
+      // This is the direction along which they have just come within the gap.
       if (tau == near_[0].begin[0] && entry_speed_ > smallest_speeds(motion_)[0]) return true;
     }
     return direction(tau).approaching;
@@ -111,9 +111,9 @@ class ConvexTouch {
 
   /// The direction, from a to b, along which they overlap least just after tau.
   ///
-  /// Of directions that tie within rounding one that falls is taken if none rises: then they approach. (A rising one
-  /// will be the greatest and they part along it.) Faces in one plane tie with both directions of their normal, and do
-  /// not say on which side the bodies are: the centres do.
+  /// Among directions that are equal within rounding a falling one is taken if none rises: then they approach. (A
+  /// rising one will be the greatest, and they part along it.) For faces in one plane both directions of their normal
+  /// are equal, and do not show on which side the bodies are: the centres decide.
   TouchDirection direction(double tau) const {
     const Conditions conditions(*this);
     const auto speeds = smallest_speeds(motion_);
@@ -141,7 +141,8 @@ class ConvexTouch {
   }
 
   /// The first time after tau, before `end`, at which bodies that move apart turn towards each other: where a
-  /// separation that is the greatest of all has its maximum, or `end`. Elsewhere the greatest separation rises on.
+  /// separation that is the greatest of all has its maximum, or `end`. At other times the greatest separation goes on
+  /// rising.
   double turning(double tau, double end) const {
     if constexpr (Degree >= 3) {
       const Conditions conditions(*this);
@@ -174,7 +175,7 @@ class ConvexTouch {
  private:
   /// Two sides of 17 axes.
   static constexpr std::size_t capacity = 34;
-  /// And of the directions of k-DOPs, which say when the two touch, and not in which direction.
+  /// And of the directions of k-DOPs, which decide when the two touch, but not in which direction.
   static constexpr bool with_kdops = std::is_same_v<B, PlacedTriangle>;
   static constexpr std::size_t capacity_near = capacity + (with_kdops ? 26 : 0);
   /// Separations nearer than gap / tie are equal: 16 roundings, where two computations of one separation differ by 8.
@@ -194,7 +195,7 @@ class ConvexTouch {
       }
     }
 
-    /// 1 if it rises just after tau, -1 if it falls, 0 if it does neither but for rounding.
+    /// 1 if it rises just after tau, -1 if it falls, 0 if it does neither up to rounding.
     template <class Speeds>
     int trend(double tau, const Speeds& speeds) const {
       const auto sign = [](double x, double rounding) { return x > rounding ? 1 : (x < -rounding ? -1 : 0); };
@@ -238,7 +239,7 @@ class ConvexTouch {
     visit(opposite);
   }
 
-  /// Degree 3 and above: of conditions one that never holds is enough.
+  /// Degree 3 and above: one condition that never holds ends the search.
   void add_curves(bool sharp) {
     constexpr std::size_t most = std::size_t{Degree} + 1;
     const auto add_sides = [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {
@@ -255,7 +256,7 @@ class ConvexTouch {
     if (every_axis(a_, b_, add_sides) && with_kdops && sharp) every_kdop_direction(a_, b_, add_sides);
   }
 
-  /// Degree 1: the two are near from enter_ to leave_. `decides`: whether they may be said to touch along the normal.
+  /// Degree 1: the two are near from enter_ to leave_. `decides`: whether they may touch along the normal.
   void add(const Condition& condition, bool decides) {
     const double c0 = condition.separation[0] - gap_.c[0];
     const double c1 = condition.separation[1] - gap_.c[1];
@@ -272,9 +273,9 @@ class ConvexTouch {
     }
   }
 
-  /// Adds the conditions that may change within the window; false if one surely never holds there. What a condition
-  /// does is mostly told by its sign at both ends, on the axis as it is, without square root or quotient, and with
-  /// `quick_margin` gaps to spare (as in may_touch). The window shrinks with what is known.
+  /// Adds the conditions that may change within the window; false if one certainly never holds there. Mostly this is
+  /// decided by the condition's sign at both ends, on the axis without normalising it (no square root or quotient),
+  /// with a margin of `quick_margin` gaps (as in may_touch). Each condition may shrink the window.
   bool add_within(TimeWindow window, bool sharp) {
     bool decides = true;
     const auto add_axis = [&](const Eigen::Vector3d& axis, const Interval& of_a, const Interval& of_b) {

@@ -18,8 +18,8 @@
 
 namespace kds::collision {
 
-/// As TimeSpans, with as many stretches as a polynomial of degree 2 Most - 1 may be negative on: from each on which it
-/// is, but the first and the last, it takes two roots to the next.
+/// As TimeSpans, with up to `Most` stretches: as many as those on which a polynomial of degree 2 Most - 1 may be
+/// negative.
 template <std::size_t Most>
 struct CurveSpans {
   static constexpr double infinity = TimeSpans::infinity;
@@ -51,14 +51,14 @@ struct CurveSpans {
   }
 };
 
-/// When a motion of a degree may be near something: of straight and quadratic ones in closed forms, of others exactly.
+/// The times at which a motion may be near something: by closed forms for straight and quadratic motions, exactly for
+/// others.
 template <int Degree>
 using SpansOf = std::conditional_t<(Degree <= 2), TimeSpans, CurveSpans<std::size_t{Degree} + 1>>;
 
 /// When a certificate is broken, from tau = 0 to the horizon: from each first double just after which it is negative to
-/// the next just after which it is positive. What holds at 0 has begun at -infinity, what holds at the horizon ends at
-/// infinity. A function of the polynomial alone, without any error of its own: only what its coefficients went through
-/// counts.
+/// the next just after which it is positive. A stretch that contains 0 begins at -infinity, one that contains the
+/// horizon ends at infinity. It is an exact function of the polynomial: the only errors are those of its coefficients.
 template <std::size_t Most, Certificate C>
 CurveSpans<Most> broken_spans(const C& certificate, double horizon) {
   static_assert(C::degree < static_cast<int>(2 * Most));
@@ -122,12 +122,13 @@ void each_maximum(const C& f, double from, double end, const Visit& visit) {
   }
 }
 
-/// Shrinks the window to times of it that hold all at which c0 + c1 x + c2 x^2 + ... < 0; false if there are none.
+/// Shrinks the window to a part that contains all its times at which c0 + c1 x + c2 x^2 + ... < 0; false if there are
+/// none.
 ///
 /// Rounding: with u = 2^-53 and S the sum of |c_i| (end of the window)^i, the coefficients about an end, times powers
 /// of the length, take at most 5 n + 8 roundings (see positive_until()) of parts whose magnitudes sum to at most S. The
 /// ends of the window are known to u of its size, which moves the polynomial by another 2 n u S. Together that is 43 u
-/// S for degrees n up to 5, and less than the 64 u S for which the caller's coefficients have room.
+/// S for degrees n up to 5, and less than the 64 u S that the margin of the caller's coefficients allows for.
 template <std::size_t Count>
 bool clip_to_negative(const std::array<double, Count>& c, TimeWindow& window) {
   constexpr int degree = static_cast<int>(Count) - 1;

@@ -1,4 +1,4 @@
-// When gaps are all closed: exact signs where a filter in doubles does not know.
+// When gaps are all closed: exact signs where a filter in doubles does not decide.
 #pragma once
 
 #include "kds/roots/failure_time.hpp"
@@ -8,14 +8,14 @@
 
 namespace kds::collision {
 
-/// A set of certificates that hold while a gap is open, with a filter that knows most of their signs for little.
+/// A set of certificates that hold while a gap is open, with a filter that decides most of their signs cheaply.
 ///
-/// `surely_closed(i, t)`: certificate i is broken just after t; false says nothing. `closed_until(i, t)`: if it is
-/// broken just after t, a time not before t up to which it stays so, or `never` if it stays so for good.
-/// `opened_by(i)`: if it may touch at the start, a time by which it has surely opened and only opened, or `never`.
+/// `surely_closed(i, t)`: certificate i is broken just after t; false means undecided. `closed_until(i, t)`: if it is
+/// broken just after t, a time not before t up to which it stays broken, or `never` if it always does. `opened_by(i)`:
+/// if it may touch at the start, a time by which it has certainly opened without closing in between, or `never`.
 /// `failure_time(i, t, horizon)`, `recovery_time(i, t, horizon)`, `closed(i, t)`: exact.
 ///
-/// The answers below are those of certificates/conjunction.hpp, bit for bit, whatever the filter knows.
+/// The answers below are those of certificates/conjunction.hpp, bit for bit, whatever the filter decides.
 template <class Gaps>
 bool all_closed(const Gaps& gaps, double t) {
   for (std::size_t i = 0; i < gaps.size(); ++i) {
@@ -44,9 +44,9 @@ double first_all_closed(const Gaps& gaps, double now, double horizon) {
   return t;
 }
 
-/// If all gaps are surely closed just after the start but one, which may touch there and only opens, a time by which it
-/// has opened while the others stayed closed; else the start. So gaps that are all closed at the start, by rounding if
-/// at all, cease to be so once until that time, when that one opens, and are not all closed again.
+/// If just after the start all gaps are certainly closed except one, which may touch there and only opens: a time by
+/// which it has opened while the others have stayed closed; otherwise the start. If all gaps are closed at the start,
+/// which then is by rounding, that state ends once before this time, when the one opens, and does not return.
 template <class Gaps>
 double opened_after_touch(const Gaps& gaps, double start) {
   std::size_t touching = gaps.size();
@@ -65,7 +65,7 @@ double opened_after_touch(const Gaps& gaps, double start) {
 }
 
 /// The first double t in [now, horizon] just after which some gap is open, or `never`. The one that is expected to open
-/// first is asked first; most others then need not be.
+/// first is tested first; most others then need no test.
 template <class Gaps>
 double first_any_open(const Gaps& gaps, double now, double horizon) {
   std::size_t earliest = gaps.size();

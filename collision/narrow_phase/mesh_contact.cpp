@@ -27,7 +27,7 @@ template <int Degree>
 MeshPair<Degree>::MeshPair(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion)
     : a_(a), b_(b), motion_(motion), gap_(contact_gap(motion, a.bounding_radius + b.bounding_radius)) {}
 
-/// Calls the question with the Query for the kind of b and the degree that the motion has.
+/// Calls `question` with the Query for the kind of b and the degree of the motion.
 template <int Degree>
 template <class Question>
 auto MeshPair<Degree>::ask(const Question& question) const {
@@ -88,8 +88,9 @@ namespace {
 
 /// The first double t with t - epoch >= tau, or infinity. Precondition: tau > 0, finite.
 ///
-/// The difference is rounded: near 0 it is the same for very many t, if the epoch is not. So t is looked for by halves,
-/// between a time whose exact difference is below the double before tau, and one whose is above tau.
+/// The difference is rounded: if the epoch is not near 0, many t near 0 have the same difference. So t is found by
+/// bisection, between a time whose exact difference is below the double before tau, and one whose difference is above
+/// tau.
 double clock_time(double epoch, double tau) {
   if (epoch + tau == infinity) return infinity;
   double before = next_down(epoch + next_down(tau));
@@ -108,7 +109,7 @@ struct ClockedPair {
 
   ClockedPair(const Body& a, const Body& b) : motion(relative_to(a.motion, b.motion)), pair(a.shape, b.shape, motion) {}
 
-  /// Before the epoch one of the bodies has not begun to move so: nothing is asked about that.
+  /// Before the epoch one of the two motions has not begun: times before it are not searched.
   double tau(double t) const { return std::max(t - motion.epoch, 0.0); }
   double clock(double tau_found, double t0, double horizon) const {
     if (tau_found == infinity) return infinity;

@@ -19,7 +19,7 @@ struct MeshTouch {
   double tau;  ///< s, from the motion's epoch
   std::uint32_t triangle_a;
   std::uint32_t triangle_b;  ///< 0 unless b is a mesh
-  /// Found by first_contact: no other pair of triangles that touches just after tau has touched before it.
+  /// Found by first_contact: no other pair of triangles that touches just after tau has touched before this one.
   bool foremost = false;
 };
 
@@ -31,18 +31,18 @@ struct MeshTouchPlace {
   Feature feature_b;
 };
 
-/// A mesh (a) and any other shape (b), and the motion of b seen from a. Times are tau >= 0, from the motion's epoch.
+/// A mesh (a) and any other shape (b), and the motion of b relative to a. Times are tau >= 0, from the motion's epoch.
 ///
-/// A mesh is its surface: a body wholly inside another touches nothing. Other shapes are solid.
+/// A mesh is a surface: a body wholly inside it does not touch it. Other shapes are solid.
 ///
 /// Laws. (1) Never late, never missed: contact is reported while surfaces are nearer than the contact gap (see
 /// ContactGap for its size and derivation), and so no vertex or edge slips between two triangles that share an edge.
-/// (Predictions end where the gap has grown to 2^-7 of the shapes: see `widest_gap` in mesh_margins.hpp.)
-/// (2) Early by the gap and the rounding of the tests, at most 53/64 of it, measured along each separating axis
-/// (docs/accuracy.md: 1.03 gaps were seen). (3) The times are closed forms of the shapes and
-/// the motion polynomial: they do not depend on the window asked about, on the order of the walk through the trees or
-/// on who asks. (4) Contact holds from its beginning until just before its end: at the time that first_free_time
-/// returns there is none. (5) Among contacts at the same time the one of the lowest triangle of a, then of b, wins.
+/// (Predictions end where the gap has grown to 2^-7 of the shapes: see `widest_gap` in mesh_margins.hpp.) (2) Early by
+/// the gap and the rounding of the tests, at most 53/64 of it, measured along each separating axis (docs/accuracy.md:
+/// 1.03 gaps were seen). (3) The times are closed forms of the shapes and the motion polynomial: they do not depend on
+/// the window that is searched, or on the order of the walk through the trees. (4) Contact holds from its beginning
+/// until just before its end: at the time that first_free_time returns there is none. (5) Among contacts at the same
+/// time the one of the lowest triangle of a, then of b, wins.
 ///
 /// Paper: [Gottschalk96] for the trees, [Eberly01] for dynamic separating axes. Cost: O(log n) box tests for a contact
 /// of two convex parts, more as more of the surfaces run close to each other.
@@ -53,8 +53,8 @@ class MeshPair {
   MeshPair(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion);
 
   /// The first contact in [tau0, tau1]. Mode `transparent`: tau0 itself if they touch there. Mode `resolved`: a pair of
-  /// triangles that touches at tau0 counts only if it approaches along its axis of least penetration, else when it
-  /// turns to approach, or touches anew.
+  /// triangles that touches at tau0 counts only if it approaches along its axis of least penetration; otherwise from
+  /// when it turns to approach, or touches anew.
   std::optional<MeshTouch> first_contact(double tau0, double tau1, ContactMode mode) const;
 
   /// A time in [tau0, tau1] before which even the boxes around the shapes do not touch, or `never`.
@@ -67,8 +67,8 @@ class MeshPair {
   double first_free_time(double tau, double limit) const;
 
   /// How they touch at tau. Of several touching pairs of triangles: one that approaches, the earliest to touch, the
-  /// lowest. At a time when they have just ceased to touch: the pair that was last. `known`: what first_contact has
-  /// found, if tau is that time, rounded to the clock; the answer is the same, for less.
+  /// lowest. At a time when they have just ceased to touch: the pair that was last. `known`: the result of
+  /// first_contact, if tau is its time, rounded to the clock; the answer is the same, at less cost.
   MeshTouchPlace where(double tau, const MeshTouch* known = nullptr) const;
 
  private:

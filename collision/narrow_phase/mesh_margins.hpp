@@ -1,4 +1,4 @@
-// The margins of mesh contact: how near counts as contact, and what has to allow for that.
+// The margins of mesh contact: how near counts as contact, and how much larger volumes and boxes have to be for that.
 #pragma once
 
 #include "certificates/point_motion.hpp"
@@ -31,12 +31,12 @@ namespace kds::collision {
 /// coefficients are off by 6, and rounding tau moves it by 2. That is 53 at most; 64 leaves room, and makes the time in
 /// which two parallel faces pass each other last at least 11 roundings of tau, so that it never falls between two
 /// doubles. `clock`: the time of a contact, epoch + tau, is rounded to a double by less than one spacing (2^-52
-/// |epoch|); within four spacings two bodies must not pass each other unseen nor, after an impulse at the rounded time,
-/// find themselves on the wrong side.
+/// |epoch|); within four spacings two bodies must neither pass each other undetected nor, after an impulse at the
+/// rounded time, be on the wrong sides of each other.
 ///
 /// Paths of degree n >= 3 have further terms |r_i| tau^i in the bracket. Their conditions are solved exactly
-/// (curve_spans.hpp), which saves the 6 of the roots, and taking off the gap adds 1; the clock's rounding of tau moves
-/// them by 2 n; places by Horner's rule, which decide ties of directions alone, are good to 2 n + 1. That is 18 + 8 + 4
+/// (curve_spans.hpp), which saves the 6 of the roots, and subtracting the gap adds 1; the clock's rounding of tau moves
+/// them by 2 n; places by Horner's rule, which only decide ties of directions, are good to 2 n + 1. That is 18 + 8 + 4
 /// + 4 + 8 + 1 + 2 n = 53 for n = 5; 128 is charged, so that ties (a quarter of it) have room too.
 template <int Degree>
 struct ContactGap {
@@ -74,22 +74,23 @@ ContactGap<Degree> contact_gap(const RelativeMotion<Degree>& motion, double radi
 
 /// Contact is reported while shapes are no farther than this many contact gaps apart: 1 + 53/64 gaps along each
 /// separating axis (see ContactGap), and between corners that face each other up to 11.4 times as far, if one of them
-/// is blunt (every_kdop_direction). Of corners of 60 degrees or more it is 5.2 gaps; most contacts are not of corners.
+/// is blunt (every_kdop_direction). For corners of 60 degrees or more it is 5.2 gaps; most contacts are not between
+/// corners.
 inline constexpr double farthest_contact = 21;
 
-/// Gaps by which boxes and quick tests are widened, see BoxPairTest: so they hold every contact, with room for what is
-/// rounded in doubles.
+/// Gaps by which boxes and quick tests are widened, see BoxPairTest: so they include every contact, with a margin for
+/// rounding in doubles.
 inline constexpr double quick_margin = 24;
 static_assert(quick_margin > farthest_contact);
 
-/// No contacts are predicted for times at which the contact gap has grown to this part of the radii, and fourfold. A
-/// straight path gets there only if its speed is nothing but rounding (bodies that move alike), a curved one if it goes
-/// out 2^40 radii and comes back. Larger predicts more of such contacts, and more slowly.
+/// No contacts are predicted for times at which the contact gap has grown to this part of the radii, and fourfold. On a
+/// straight path that happens only if its speed is a rounding error (bodies that move alike), on a curved one if it
+/// goes out 2^40 radii and comes back. A larger value predicts more of such contacts, and more slowly.
 inline constexpr double widest_gap = 0x1p-7;
 
-/// By how much the bounding volume of a body has to extend beyond its shape where there are meshes, so that volumes
-/// overlap for as long as contact may be reported, and the broad phase makes no difference to contacts: the contact gap
-/// is of a pair, a volume of one body, so each of the two has a share of it.
+/// By how much the bounding volume of a body has to extend beyond its shape in a world with meshes, so that volumes
+/// overlap as long as contact may be reported, and contacts do not depend on the broad phase: the contact gap belongs
+/// to a pair, a volume to one body, so each of the two has a share of it.
 ///
 /// The share of a body with path p0 + v tau + a tau^2 from its start s on, and of radius R, is the polynomial
 ///     share(tau) = `roundings` (R + |p0| + |v| tau + |a| tau^2) + `clock` (|s| + tau) (|v| + 2 |a| tau)
@@ -109,8 +110,8 @@ inline constexpr double widest_gap = 0x1p-7;
 /// relative coefficients is at most (5.1 n + 4) u of the sums (detail::shifted_balls() in kds/motion.hpp), 30 u for
 /// n = 5: with the 128 u of ContactGap that is 158 u, and 21 times as much 3318 u; 4096 is charged.
 ///
-/// A volume is grown by a constant for as long as that will do: so its corners move alike, and it is not renewed. After
-/// that its ends move apart as the share grows, which holds for ever: one renewal a motion, if any.
+/// A volume is grown by a constant as long as that is enough: so its corners move alike, and it is not renewed. After
+/// that its ends move apart as the share grows, which is always enough: at most one renewal for each motion.
 template <int Degree>
 class MeshClearance {
  public:
@@ -142,10 +143,10 @@ class MeshClearance {
     if (holds_until_ < never) holds_until_ = next_down(holds_until_);
   }
 
-  /// Not less than the share until `holds_until()`, on the clock; `never` if it holds for ever.
+  /// Not less than the share until `holds_until()`, on the clock; that is `never` if it always is.
   double constant() const { return constant_; }
   double holds_until() const { return holds_until_; }
-  /// Whether the constant is the part of the radius that boxes of meshes are grown by anyway.
+  /// Whether the constant is the part of the radius by which boxes of meshes are grown anyway.
   bool is_least() const { return constant_ == least_; }
 
   /// Not less than the share, and than the constant, from the motion's start on.
@@ -162,7 +163,7 @@ class MeshClearance {
   double lasts() const {
     const double room = constant_ - share_[0];
     if constexpr (Degree >= 3) {
-      // By halves, from a time that is long enough for anything.
+      // By bisection, from a time that is long enough for anything.
       const auto drift = [this](double time) {
         double sum = 0;
         for (std::size_t i = Degree; i > 0; --i) sum = (sum + share_[i]) * time;

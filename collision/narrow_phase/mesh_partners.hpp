@@ -1,4 +1,4 @@
-// What a query about a mesh works on: the mesh, the other shape of each kind, and the features by which they touch.
+// The data of a query about a mesh: the mesh, the other shape of each kind, and the features by which they touch.
 #pragma once
 
 #include "collision/narrow_phase/ball_touch.hpp"
@@ -84,7 +84,7 @@ struct BoxPartner {
   TreePose pose;
 };
 
-/// A capsule: for the tree it is the box around it.
+/// A capsule: the tree uses the box around it.
 struct CapsulePartner {
   explicit CapsulePartner(const PlacedShape& shape) : CapsulePartner(shape, std::get<Capsule>(shape.shape)) {}
   CapsulePartner(const CapsulePartner&) = delete;  // pose refers to node
@@ -122,7 +122,7 @@ struct BallPartner {
   PlacedBall part;
 };
 
-/// What stands for each kind of shape.
+/// The partner type of each kind of shape.
 template <class Alternative>
 struct PartnerOfKind;
 template <>

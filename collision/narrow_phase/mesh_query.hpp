@@ -1,4 +1,4 @@
-// What can be asked about a mesh and one other moving shape, for each kind of shape.
+// The queries about a mesh and one other moving shape, for each kind of shape.
 #pragma once
 
 #include "collision/narrow_phase/ball_touch.hpp"
@@ -34,7 +34,7 @@ class Query : private PairTimes<Degree> {
   using Part = typename Partner::Part;
   static constexpr bool with_ball = std::is_same_v<Part, PlacedBall>;
   using Touching = typename Partner::template Touching<Degree>;
-  /// Times are those of convex pieces, of which those are made that matter within a window.
+  /// Times are those of convex pieces, of which only those that matter within a window are made.
   static constexpr bool in_pieces = !std::is_same_v<Touching, ConvexTouch<Degree, Part>>;
 
   Query(const PlacedShape& a, const PlacedShape& b, const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap)
@@ -42,7 +42,7 @@ class Query : private PairTimes<Degree> {
 
   std::optional<MeshTouch> first_contact(double tau0, double tau1, ContactMode mode) const {
     std::optional<MeshTouch> best;
-    double passed_over = -TimeSpans::infinity;  // until then triangles touch that were passed over
+    double passed_over = -TimeSpans::infinity;  // until then triangles that were passed over touch
     bool sliced = false;
     slice_by_slice({tau0, tau1}, [&](const TimeSlice& slice) {
       EarliestFirst goal;
@@ -51,10 +51,10 @@ class Query : private PairTimes<Degree> {
            [&](std::uint32_t i, const PlacedTriangle& triangle, std::uint32_t j, const Part& part, TimeWindow window) {
              const bool lower = best && std::tuple(i, j) < std::tuple(best->triangle_a, best->triangle_b);
              if (best && (best->tau < window.begin || (best->tau == window.begin && !lower))) return;
-             // Before the window nothing touches, unless in an earlier slice.
+             // Nothing touches before the window, except in an earlier slice.
              if (sliced) window.begin = tau0;
              const double tau = first_time(triangle, part, window, tau0, mode, passed_over);
-             // The window reaches a little past the best hit.
+             // The window ends a little after the best hit.
              if (tau == TimeSpans::infinity || (best && (tau > best->tau || (tau == best->tau && !lower)))) return;
              best = MeshTouch{tau, i, j};
              goal.best = std::min(goal.best, in_steps(slice, tau));
@@ -101,7 +101,8 @@ class Query : private PairTimes<Degree> {
     if (known) {
       if (const auto place = where_foremost(tau, *known)) return *place;
     }
-    // Ranked: touches and approaches, touches, is near; then by when it began (near: by how near), then by triangle.
+    // Order: touches and approaches, touches, is near; then by the time at which it began (if near: by the distance),
+    // then by triangle.
     using Rank = std::tuple<int, double, std::uint32_t, std::uint32_t>;
     std::optional<Rank> best;
     TouchDirection direction{};
@@ -155,7 +156,7 @@ class Query : private PairTimes<Degree> {
     return a_.mesh.sharp();
   }
 
-  /// Good for times in the window.
+  /// Valid for times in the window.
   Touching touching_of(const PlacedTriangle& triangle, const Part& part, const TimeWindow& window) const {
     if constexpr (in_pieces) {
       return Touching(triangle, part, motion_, gap_, sharp(), last_, window);
@@ -177,7 +178,7 @@ class Query : private PairTimes<Degree> {
     }
   }
 
-  /// The same of two parts that touch, if at all, within a window.
+  /// The same for two parts that touch, if at all, within a window.
   double first_time(const PlacedTriangle& triangle, const Part& part, TimeWindow window, double tau0, ContactMode mode,
                     double& passed_over) const {
     if constexpr (Degree == 1 && !in_pieces) {
@@ -188,8 +189,8 @@ class Query : private PairTimes<Degree> {
     }
   }
 
-  /// The answer of where() from a contact that first_contact has found to be `foremost`: the first of all that hold at
-  /// tau, if it still holds and approaches. No other need be looked for then. Else nothing.
+  /// The answer of where() if first_contact has found a contact to be `foremost`, the first of all that hold at tau,
+  /// and it still holds and approaches: then no other need be searched. Otherwise nothing.
   std::optional<MeshTouchPlace> where_foremost(double tau, const MeshTouch& known) const {
     if (!known.foremost) return std::nullopt;
     bool near = false;
@@ -262,7 +263,7 @@ class Query : private PairTimes<Degree> {
     return where;
   }
 
-  /// Asked at a time when nothing is near: halfway between the centres.
+  /// For a time at which nothing is near: halfway between the centres.
   MeshTouchPlace without_contact(double tau) const {
     const Eigen::Vector3d offset = motion_.position(tau);
     const double distance = norm(offset);

@@ -1,4 +1,4 @@
-// When it is worth looking for contacts of two shapes, one of them a mesh.
+// The times at which contacts of two shapes, one of them a mesh, have to be searched.
 #pragma once
 
 #include "collision/narrow_phase/mesh_margins.hpp"
@@ -19,7 +19,7 @@
 
 namespace kds::collision::detail {
 
-/// s; contacts that lie farther ahead than 10^60 are none. Keeps polynomials of the time from overflowing.
+/// s; contacts farther ahead than 10^60 s are not predicted. Keeps polynomials of the time from overflowing.
 inline constexpr double farthest = 0x1p200;
 
 /// The relative motion of a pair, and the times at which its bounding balls are near each other.
@@ -65,14 +65,14 @@ class PairTimes {
     return spans.size;
   }
 
-  /// A time after which there is nothing to look for; a function of shapes and motion alone. By then even the bounding
-  /// balls are apart for good, or the gap has become so wide that it tells nothing: see `widest_gap`.
+  /// A time after which there are no contacts to find; a function of shapes and motion alone. By then the bounding
+  /// balls are and stay apart, or the gap has become too wide to be useful: see `widest_gap`.
   double last_time() const {
     const auto& g = gap_.c;
     const double excess = g[0] - std::max(4 * g[0], widest_gap * radii_);
     if constexpr (Degree >= 3) {
-      // The gap, which only grows, has grown to that. (Bodies that part without end need no bound of their own: they
-      // have ceased to be near each other.)
+      // The time at which the gap, which only grows, has become that wide. (Bodies that part without end need no bound
+      // of their own: they have ceased to be near each other.)
       std::array<double, std::size_t{Degree} + 1> room;
       for (std::size_t i = 0; i <= Degree; ++i) room[i] = -g[i];
       room[0] = -excess;
@@ -91,9 +91,9 @@ class PairTimes {
     }
   }
 
-  /// A slice ends before the margin has grown both twofold and to a large part of the shapes (that is, soon only where
-  /// bodies hardly move but their speeds are known less well than they are slow), and before a curved path is too far
-  /// from its chord for the box tests to be any use. At rest there is nothing but the present.
+  /// A slice ends before the margin has both doubled and grown to a large part of the shapes (which is soon only if
+  /// bodies hardly move, so that the error of their speeds exceeds the speeds), and before a curved path is too far
+  /// from its chord for useful box tests. At rest one slice is enough.
   double slice_end(double begin, double end) const {
     constexpr double large = 0x1p-11;  // of the gap: quick_margin times that is the margin
     constexpr double most_bend = 0x1p-3;
@@ -115,8 +115,8 @@ class PairTimes {
     return end;
   }
 
-  /// A time, the whole one or so many halves of it, in which the terms of the path above the linear one come to no more
-  /// than half of the shapes: as far off the chord as a parabola may be.
+  /// A time, the whole one halved a number of times, in which the terms of the path above the linear one come to no
+  /// more than half of the shapes' size: as far from the chord as a parabola may be.
   double nearly_straight(double begin, double whole) const {
     std::array<double, std::size_t{Degree} + 1> size;
     for (int i = 2; i <= Degree; ++i) size[static_cast<std::size_t>(i)] = norm(motion_.coefficient(i, begin));

@@ -9,7 +9,7 @@ TimeSpans near_spans(const std::array<Vector3d, 2>& s, const std::array<double, 
   const double c2 = dot(s[1], s[1]) - g1 * g1;
   const double half_c1 = dot(s[0], s[1]) - g0 * g1;
   if (!(c2 > 0)) {
-    // Moves not at all, or so slowly that the distance is known no better than the margin: along an edge.
+    // At rest, or so slow that the distance is known no better than the margin: moving along an edge.
     const double distance = std::sqrt(dot(s[0], s[0]));
     return negative_spans((distance - g0) * (distance + g0), 2 * half_c1, c2);
   }

@@ -75,8 +75,9 @@ class DistanceQuartic {
     return crossings([this](double tau) { return slope(tau); }, bends, horizon);
   }
 
-  /// A double, at most two roundings after the change, at which g is negative or not as it is at `above`; it is
-  /// otherwise at `below`. Regula falsi, Illinois variant, and halving now and then, so that it cannot creep.
+  /// A double, at most two roundings after the change, at which g has the sign that it has at `above`; at `below` it
+  /// has the other. Regula falsi, Illinois variant, with bisection steps in between, so that convergence cannot be
+  /// slow.
   template <class Function>
   static double crossing(const Function& g, double below, double above) {
     constexpr double enough = 4 * 0x1p-53;

@@ -18,7 +18,7 @@ inline Eigen::Vector3d unit(const Eigen::Vector3d& v) {
   return scaled / std::sqrt(dot(scaled, scaled));
 }
 
-/// The point of a triangle nearest to another point, and what part of the triangle it lies on.
+/// The point of a triangle nearest to another point, and the part of the triangle that it lies on.
 struct NearestPoint {
   Eigen::Vector3d point;
   int dimension;      ///< 0: a vertex, 1: inside an edge, 2: inside the triangle

@@ -10,7 +10,7 @@
 namespace kds::collision {
 namespace {
 
-/// Squared speeds below are left to the other tests: next to underflow quotients are not good to a few roundings.
+/// Squared speeds below this are left to the other tests: near underflow quotients are not accurate to a few roundings.
 constexpr float slowest = 0x1p-100F;
 
 /// The next float is never below the number.
@@ -38,7 +38,7 @@ struct Clip {
   }
 };
 
-/// Path over a window as a straight line, and how far the path may be from it.
+/// A path over a window as a straight line, and how far the path may be from it.
 template <int Degree>
 struct Chord {
   Lanes p0;

@@ -37,7 +37,7 @@ struct StepWindow {
   float end = 1;
 };
 
-/// Rounding of a moment of a slice: what a descent calls simultaneous.
+/// Rounding of a moment of a slice: moments nearer to each other than this count as simultaneous.
 inline constexpr float step_rounding = 0x1p-21F;
 
 /// The window in seconds, rounded outward.
@@ -56,13 +56,14 @@ inline float in_steps(const TimeSlice& slice, double tau) {
 /// Motion during a slice, in units of the pair's size, for the box tests.
 ///
 /// All lengths of a pair are divided by `size`, the sum of the radii of the shapes; during a slice their centres are at
-/// most about that far apart, so that every number is of order 1 and floats will do. Margin: `rounding`, plus
+/// most about that far apart, so that every number is of order 1 and floats suffice. Margin: `rounding`, plus
 /// `quick_margin` contact gaps at the end of the slice.
 ///
 /// Derivation of `rounding`, in roundings of a float (2^-24) of numbers of order 1: the turned axes are good to 10, the
 /// place of a centre to 12, a projection of it to 20 and of both boxes' edges to 40; axes that are orthonormal only to
-/// 6 cost 18; the times at which an interval is entered and left are good to 4 and are places good to 16 at these
-/// speeds. That is 94; 128 leaves room. Larger slows (boxes that far apart are opened), smaller may miss.
+/// 6 cost 18; the times at which an interval is entered and left are good to 4, which at these speeds are places good
+/// to 16. That is 94; 128 leaves room. A larger margin is slower (boxes that far apart are opened), a smaller one might
+/// miss contacts.
 ///
 /// Paths of degree n >= 3: during a slice all terms above the linear one come to less than half of the size, so that
 /// they are of order 1 too. Each has its coefficient turned and rounded (4) and goes through Horner's rule for the
@@ -74,7 +75,7 @@ struct SliceMotion {
   SliceMotion(const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, const TimeSlice& slice, double size);
 
   std::array<Eigen::Vector3d, std::size_t{Degree} + 1>
-      r;  ///< centre of b seen from a: coefficients about the slice's begin
+      r;  ///< centre of b relative to a: coefficients about the slice's begin
   double size;
   float margin;
   float bend;  ///< length of the quadratic coefficient, or the most that half of the second derivative has; rounded up
@@ -83,20 +84,19 @@ struct SliceMotion {
 /// Separating-axis test of two oriented boxes over a stretch of time.
 ///
 /// Each of the 15 axes lets the boxes overlap during a stretch of time, and they can touch only during the intersection
-/// of all of them. A quadratic path is replaced by its chord over the window, and the boxes grow by how far it can
-/// leave the chord, |r2| length^2 / 4: as windows shrink on the way down, that soon is nothing. A path of a higher
-/// degree is replaced by its tangent in the middle of the window, which it leaves by no more than half of the second
-/// derivative's bound times (length / 2)^2: the same formula.
-/// Conservative: the window holds every time at which a test of leaves may report contact. Products of edges are not
-/// normalised; they are no longer than 1, so that for them the margin is wider than needed, and parallel edges, whose
-/// product is nothing but rounding, never separate.
-/// Paper: [Gottschalk96] section 5 for the axes, [Eberly01] for time.
+/// of all of them. A quadratic path is replaced by its chord over the window, and the boxes grow by the distance that
+/// the path can have from the chord, |r2| length^2 / 4: as windows shrink on the way down, this soon vanishes. A path
+/// of a higher degree is replaced by its tangent in the middle of the window, which it leaves by no more than half of
+/// the second derivative's bound times (length / 2)^2: the same formula. Conservative: the window contains every time
+/// at which a test of leaves may report contact. Products of edges are not normalised; they are no longer than 1, so
+/// that for them the margin is wider than needed, and parallel edges, whose product is only rounding error, never
+/// separate. Paper: [Gottschalk96] section 5 for the axes, [Eberly01] for time.
 template <int Degree>
 class BoxPairTest {
  public:
   BoxPairTest(const TreePose& a, const TreePose& b, const SliceMotion<Degree>& motion);
 
-  /// What depends on the box of a alone: kept while it meets several boxes of b.
+  /// The data that depend on the box of a alone: kept while it is tested with several boxes of b.
   struct Frame {
     std::array<Lanes, 3> turn;  ///< column k: coordinate k of b's model along the axes of a's box
     std::array<Lanes, std::size_t{Degree} + 1> motion;  ///< of b's model origin along them
@@ -138,8 +138,8 @@ class BoxBallTest {
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 #undef KDS_DECLARE
 
-/// Looks for the earliest contact. Parts that begin after the best hit so far are left out, parts that begin together
-/// with it are not: the winner among equal times must not depend on the order of the walk.
+/// A search for the earliest contact. Parts that begin after the best hit so far are left out, but parts that begin
+/// together with it are not: the winner among equal times must not depend on the order of the walk.
 struct EarliestFirst {
   float best = 1;  ///< no later than this; the leaf lowers it, rounded upward
 
@@ -148,7 +148,7 @@ struct EarliestFirst {
   static bool before(const StepWindow& x, const StepWindow& y) { return x.begin <= y.begin; }
 };
 
-/// Looks for any contact at the begin of the slice, first where it may last longest.
+/// A search for any contact at the begin of the slice, first where it may last longest.
 struct AnyAtOnce {
   bool found = false;  ///< set by the leaf
 

@@ -12,8 +12,9 @@
 
 namespace kds::collision {
 
-/// Of degree 3 and above whether bodies part along a normal, and when they cease to, is told exactly: by the derivative
-/// of their place along it. (In doubles a path that comes to rest would be lost in the roundings of its terms.)
+/// For degree 3 and above it is decided exactly whether bodies part along a normal, and when they cease to: by the
+/// derivative of their distance along it. (In doubles the speed of a path that comes to rest would be lost in the
+/// roundings of its terms.)
 template <int Degree>
 DerivativeCertificate<certificates::PlaneSeparation<Degree>> parting(const Contact& contact,
                                                                      const TranslatingShape<Degree>& a,
@@ -40,8 +41,9 @@ double turning_time(const Contact& contact, const TranslatingShape<Degree>& a, c
   return bend < 0 ? std::max(next_up(t), t + rate / -bend) : never;
 }
 
-/// Where to begin to look for a contact that counts, from t0 on: later where the bodies have just been in contact, do
-/// not approach, and part before they turn. Exact signs would say whether they overlap by a rounding, and until when.
+/// The time from which to search for a contact that counts, not before t0: later if the bodies have just been in
+/// contact, do not approach, and part before they turn. This saves exact signs, which would be needed to decide whether
+/// they overlap by a rounding, and until when.
 template <class P, int Degree, class Where>
 double after_contact(const P& piece, const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t0,
                      const Where& where) {
@@ -60,7 +62,7 @@ double first_piece_contact(const P& piece, const TranslatingShape<Degree>& a, co
     if (t == never || mode == ContactMode::transparent) return t;
     const Contact contact = where(t);
     if (approaching(contact, a, b)) return t;
-    // Overlapping by rounding and moving apart: next when they have parted, or turn before they have.
+    // Overlapping by rounding and moving apart: searches again from when they have parted, or turn before that.
     t = std::min(piece.first_outside(t, horizon), turning_time(contact, a, b));
     if (t == never || t > horizon) return never;
   }
@@ -101,7 +103,7 @@ struct PiecewiseContact {
     return inside;
   }
 
-  /// Out of one piece may be into another: until no piece holds them.
+  /// The end of one piece may lie in another: repeat until no piece contains them.
   static double first_separation(const Body& a, const Body& b, double t0, double horizon) {
     const Pieces pair(a, b, t0, horizon);
     double t = t0;

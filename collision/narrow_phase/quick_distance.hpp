@@ -14,8 +14,8 @@
 
 namespace kds::collision {
 
-/// The gap "sum of y^2 - r^2" for up to three coordinates y, each known to the error of a QuickMotion: what its filter
-/// says of gaps along axes, for a distance. What it does not know, exact signs decide.
+/// The gap "sum of y^2 - r^2" for up to three coordinates y, each known to the error of a QuickMotion: the answers of
+/// its filter for gaps along axes, for a distance. Where the filter does not decide, exact signs do.
 template <int Degree>
 class QuickDistance {
  public:
@@ -88,8 +88,8 @@ bool QuickDistance<Degree>::cut(TimeWindow& window, double end) const {
 }
 
 /// For f = sum y^2 - r^2. f is known to E = sum (2 |y| e + e^2) and f' = 2 sum y y' to four times less than it is; in
-/// the short time until f has grown by more than 47 E its second derivative, below `bend`, takes away no more than a
-/// quarter of that.
+/// the short time until f has grown by more than 47 E its second derivative, below `bend`, reduces that by no more than
+/// a quarter.
 template <int Degree>
 double QuickDistance<Degree>::opened_by() const {
   const double e = motion_->error();

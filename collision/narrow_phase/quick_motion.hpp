@@ -1,4 +1,4 @@
-// Which gaps two moving shapes may close, and when, in plain doubles.
+// Which gaps between two moving shapes may close, and when, in plain doubles.
 #pragma once
 
 #include "certificates/point_motion.hpp"
@@ -16,8 +16,8 @@
 
 namespace kds::collision {
 
-/// The motion of b seen from a about `now`, with one bound on the error of everything that is read from it until the
-/// horizon: a filter. What it says for sure is true of the motions as they are; what it does not, exact signs decide.
+/// The motion of b relative to a about `now`, with one error bound for all values computed from it until the horizon: a
+/// filter. Its certain answers are true of the exact motions; where it has none, exact signs decide.
 ///
 /// A *gap* is side * axis . r(tau) - distance, with |axis| <= 1 up to rounding and a distance of at most three times
 /// `size`, added up of at most nine numbers. tau is the time since now.
@@ -25,10 +25,10 @@ namespace kds::collision {
 /// Error bound, with u = 2^-53, M_i a bound on the coordinates of coefficient i, T the last tau and M = M_0 + M_1 T +
 /// M_2 T^2. A coordinate of a coefficient is known to 8 u M_i; its product with an axis, whose 1-norm is below 1.74, to
 /// 20 u M_i. A value at tau adds 7 u M; roots are those of a polynomial with coefficients off by 8 u, which is 14 u M,
-/// at times off by 2 u, 4 u M. The distance is known to 33 u size, and takes part in what is rounded. That is less than
+/// at times off by 2 u, 4 u M. The distance is known to 33 u size, and is part of the rounded sums. That is less than
 /// 60 u (M + 2 size); charged are 128 u, so that a gap that is closed by rounding alone is never taken for one that
-/// stays open, nor the other way round. T is no longer than it takes for the highest term to outgrow the others, after
-/// which boxes part for good (note_parting()); where M would be 2^20 times what it is now the filter ends in any case.
+/// stays open, nor the other way round. T ends when the highest term has outgrown the others, after which boxes part
+/// without end (note_parting()); where M would be 2^20 times what it is now the filter ends in any case.
 ///
 /// Degree n = 3 to 5: M has the terms M_i T^i, and the filter ends at that growth alone. Moving a coefficient to now
 /// takes a term through 5 n roundings (detail::shifted_balls() in kds/motion.hpp) and one for the difference; the axis
@@ -49,16 +49,18 @@ class QuickMotion {
   double error() const { return error_; }
   double rate_error() const { return rate_error_; }
   double tau(double t) const { return t - now_; }
-  /// A double not later than now + tau, by 2^-20 of tau: so far off a root that it is an ordinary root from there.
+  /// A double earlier than now + tau by 2^-20 of tau: so far from a root that the search from there is well
+  /// conditioned.
   double time_before(double tau) const;
 
   /// A double not earlier than now + tau.
   double time_after(double tau) const { return next_up(next_up(now_ + tau * (1 + 0x1p-20))); }
 
-  /// The last tau of which anything is said; if `whole` nothing happens after it until the horizon.
+  /// The last tau for which there are answers; if `whole` nothing happens after it until the horizon.
   double end() const { return end_; }
   bool whole() const { return whole_; }
-  /// Looks whether one side of a gap, open at the end, can only open further from there on. That makes it whole.
+  /// Tests whether one side of a gap, open at the end, can only open further from there on. If so, `whole` becomes
+  /// true.
   void note_parting(const Along& p, double distance) {
     whole_ = whole_ || opens_for_good(p, 1, distance) || opens_for_good(p, -1, distance);
   }
@@ -66,10 +68,10 @@ class QuickMotion {
   /// Shrinks the window, within [0, end()], to times at which the gap may be closed; false if there are none.
   bool clip(const Along& p, double side, double distance, TimeWindow& window) const;
   bool surely_closed(const Along& p, double side, double distance, double tau) const;
-  /// For a gap that is closed at t: a time before which it surely stays so, t itself, or infinity.
+  /// For a gap that is closed at t: a time before which it certainly stays closed, t itself, or infinity.
   double closed_until(const Along& p, double side, double distance, double t) const;
 
-  /// For a gap that may be touching now: a tau by which it has surely opened without turning, or infinity.
+  /// For a gap that may be touching now: a tau by which it has certainly opened without turning, or infinity.
   double opened_by(const Along& p, double side, double distance) const;
 
   static double value(const Along& p, double tau) {
@@ -164,11 +166,11 @@ QuickMotion<Degree>::QuickMotion(const Path& a, const Path& b, double now, doubl
   }
   rate_error_ = unit * most[1];
   bend_error_ = Degree == 2 ? unit * most[Degree] : 0;
-  if (!(end_ >= 0)) end_ = 0;  // a horizon that is past: nothing will be asked
+  if (!(end_ >= 0)) end_ = 0;  // a horizon in the past: there will be no queries
 }
 
-/// Degree 3 and above. Nothing is done to find out earlier when bodies part: the end is the horizon, or where the path
-/// has grown so much that it must be dominated by its highest term, or else unknown.
+/// Degree 3 and above. When bodies part is not searched any earlier: the end is the horizon, or the time at which the
+/// path has grown so much that its highest term dominates, or unknown.
 template <int Degree>
 void QuickMotion<Degree>::begin_curve(const Path& a, const Path& b, double horizon, double size) {
   const auto greatest = [](const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff(); };
@@ -188,7 +190,7 @@ void QuickMotion<Degree>::begin_curve(const Path& a, const Path& b, double horiz
       binomial = binomial * static_cast<double>(j + 1) / static_cast<double>(j + 1 - i);
     }
   }
-  // What the two share from a common start on, or have as their highest terms, is exactly nothing.
+  // Equal terms of a common start, and equal highest terms, cancel exactly.
   still_[0] = false;
   bool same = true, nothing_above = true;
   for (std::size_t i = Degree; i > 0; --i) {
@@ -203,7 +205,7 @@ void QuickMotion<Degree>::begin_curve(const Path& a, const Path& b, double horiz
     for (std::size_t i = Degree; i > 0; --i) sum = (sum + most[i]) * time;
     return sum;
   };
-  const double wanted = std::max(horizon - now_, 0.0);  // a horizon that is past: nothing will be asked
+  const double wanted = std::max(horizon - now_, 0.0);  // a horizon in the past: there will be no queries
   end_ = std::min(wanted, 0x1p200);
   while (end_ > 0 && !(growth(end_) <= most_growth * base)) end_ *= 0.5;
   whole_ = end_ == wanted;
@@ -212,7 +214,7 @@ void QuickMotion<Degree>::begin_curve(const Path& a, const Path& b, double horiz
   bend_error_ = unit * most[2];
 }
 
-/// side * axis . r - distance, without its distance, as a polynomial of the time, with a constant of its own.
+/// side * axis . r - distance, without its distance, as a polynomial of the time, with another constant.
 template <int Degree>
 auto QuickMotion<Degree>::gap(const Along& p, double side, double constant) const -> Along {
   Along gap;
@@ -269,11 +271,11 @@ bool QuickMotion<Degree>::opens_for_good(const Along& p, double side, double dis
     const double bend = side * p[2];
     const double rate = side * p[1] + 2 * end_ * bend;
     const bool rises = rate > 2 * (rate_error_ + end_ * bend_error_);
-    return rises && (bend > bend_error_ || bend_error_ == 0);  // no error: no bend
+    return rises && (bend > bend_error_ || bend_error_ == 0);  // no error means no bend
   }
 }
 
-/// Twice the error is enough; it takes more of it, so that what follows starts from an ordinary place.
+/// Twice the error would be enough; more is taken, so that the next search is well conditioned.
 template <int Degree>
 double QuickMotion<Degree>::opened_by(const Along& p, double side, double distance) const {
   if (side * p[0] - distance > error_) return TimeSpans::infinity;  // does not touch
@@ -296,7 +298,7 @@ double QuickMotion<Degree>::opened_by(const Along& p, double side, double distan
 template <int Degree>
 double QuickMotion<Degree>::closed_until(const Along& p, double side, double distance, double t) const {
   if constexpr (Degree >= 3) {
-    // As far as the gap, with the error on it, is certainly below zero.
+    // As far as the gap plus its error is below zero.
     const double from = tau(t);
     const double length = end_ - from;
     if (!(from >= 0 && length >= 0)) return t;

@@ -1,4 +1,4 @@
-// The motion of one body seen from another.
+// The motion of one body relative to another.
 #pragma once
 
 #include "certificates/point_motion.hpp"
@@ -14,11 +14,11 @@
 namespace kds::collision {
 
 /// Centre of b minus centre of a: coefficients of a polynomial in tau, the time since the epoch of the pair. Bodies do
-/// not rotate, so this is all that moves in a pair.
+/// not rotate, so this is the whole motion of a pair.
 template <int Degree>
 struct RelativeMotion {
   std::array<Eigen::Vector3d, std::size_t{Degree} + 1> coefficients;
-  std::array<double, std::size_t{Degree} + 1> uncertainty{};  ///< how far each coefficient may be from the true one
+  std::array<double, std::size_t{Degree} + 1> uncertainty{};  ///< bound on the error of each coefficient
   double epoch = 0;                              ///< s; the clock's value at tau = 0
 
   Eigen::Vector3d position(double tau) const {
@@ -66,7 +66,7 @@ struct RelativeMotion {
   }
 };
 
-/// The motion of b seen from a. The epoch is the later of the two starts: a function of the motions alone.
+/// The motion of b relative to a. The epoch is the later of the two starts: a function of the motions alone.
 template <int Degree>
 RelativeMotion<Degree> relative_to(const certificates::PointMotion<Degree>& a,
                                    const certificates::PointMotion<Degree>& b) {

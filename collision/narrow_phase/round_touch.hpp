@@ -1,4 +1,4 @@
-// What the tests of balls and of capsules against a triangle have in common.
+// The common part of the tests of balls and of capsules against a triangle.
 #pragma once
 
 #include "collision/narrow_phase/convex_touch.hpp"
@@ -62,8 +62,8 @@ struct NearestPart {
 };
 
 /// Whether a point on a path of degree 3 or above comes nearer to a polyhedron just after tau: the sign of the first
-/// derivative of the squared distance from the nearest part that is more than rounding; of the part that the point
-/// comes to, if it is about to pass from an edge, say, to a face.
+/// derivative of the squared distance from the nearest part that exceeds rounding errors; if it is about to pass from
+/// one part to another, from an edge to a face, say, of the part that it comes to.
 ///
 /// About tau the point moves on y0 + y1 x + ..., across the edge or along the normal if those are near, and the square
 /// of the distance is a polynomial with the coefficients q_k = sum y_j . y_(k-j), q_k / (2 |y0|) the first of the

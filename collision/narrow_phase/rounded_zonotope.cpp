@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The sum of two. That of the radii is rounded, which a filter may.
+/// The sum of two. The sum of the radii is rounded, which is allowed in a filter.
 RoundedCore sum(RoundedCore core, const RoundedCore& other) {
   for (const auto& generator : other.generators) core.generators.push_back(generator);
   core.radius += other.radius;
@@ -23,8 +23,9 @@ template <int Degree>
 RoundedZonotope<Degree>::RoundedZonotope(const Body& a, const Body& b, double now, double horizon)
     : RoundedZonotope(a, b, rounded_core(a.shape), rounded_core(b.shape), now, horizon) {}
 
-/// Error bounds: QuickMotion has room for an axis that is off by 4 roundings, as normals and what is made of them are,
-/// and for the place of a cell, a sum of at most nine numbers: 128 roundings are charged, of which it needs 60.
+/// Error bounds: the bound of QuickMotion includes an axis that is off by 4 roundings, as normals and vectors computed
+/// from them are, and the place of a cell, a sum of at most nine numbers: 128 roundings are charged, of which it needs
+/// 60.
 template <int Degree>
 RoundedZonotope<Degree>::RoundedZonotope(const Body& a, const Body& b, const RoundedCore& core_a,
                                          const RoundedCore& core_b, double now, double horizon)
@@ -107,7 +108,7 @@ RoundedZonotope<Degree>::Piece::Piece(const RoundedZonotope& pair, const Cell& c
   if (!near()) window_ = pair.motion_.whole() ? TimeWindow{1, 0} : pair.after_end();
 }
 
-/// The sides of the cell, and the coordinates of the distance from what it spans.
+/// The sides of the cell, and the coordinates of the distance from the point, line or plane that it spans.
 template <int Degree>
 void RoundedZonotope<Degree>::Piece::add_cell() {
   const auto generators = pair_->cells_.generators();
@@ -128,7 +129,7 @@ void RoundedZonotope<Degree>::Piece::add_cell() {
     const Along along = shifted(pair_->along_[cell_.swept[0]], dot(u, centre));
     const double square = squared_norm(u);
     sides_.push_back({along, first.length * square, true});
-    // What is left across the line.
+    // The part across the line.
     for (std::size_t d = 0; d < 3; ++d) {
       const auto at = static_cast<Eigen::Index>(d);
       Along y = shifted(pair_->coordinates_[d], centre[at]);
@@ -150,7 +151,7 @@ void RoundedZonotope<Degree>::Piece::add_cell() {
   if (face.known) distance_.add(shifted(face.along, dot(face.normal, centre)));
 }
 
-/// Looks at the distance; false if b's place is not in the piece by a time.
+/// Applies the distance; false if b's place is not in the piece by a time.
 template <int Degree>
 bool RoundedZonotope<Degree>::Piece::cut(double until) {
   if (solid_ || distance_.size() < 2) return true;

@@ -22,23 +22,22 @@ namespace kds::collision {
 
 /// Two shapes, balls, capsules or a capsule and a box, from `now` to the horizon.
 ///
-/// Bodies do not rotate, so the difference of two shapes is a solid that stays as it is: the sum of the segments of
-/// both, a zonotope, grown by the sum of the radii. They penetrate while the place of b as seen from a, a point on a
+/// Bodies do not rotate, so the difference of two shapes is a solid that does not change: the sum of the segments of
+/// both, a zonotope, grown by the sum of the radii. They penetrate while the place of b relative to a, a point on a
 /// line or a parabola, is inside. That is a union of convex *pieces*: for each cell of the zonotope's surface (vertex,
 /// segment, parallelogram) the places that are between its sides and nearer than the radius to the point, line or plane
-/// that it spans; and the zonotope itself, where it is solid. Where the radius is zero only that is left: boxes have
-/// tests of their own (box_and_box.hpp), and so have a box and a ball (box_and_ball.hpp), for which the axes of the box
-/// across each other make the pieces fewer and their conditions products of coordinates.
+/// that it spans; and the zonotope itself, where it is solid. If the radius is zero only the last is left: boxes have
+/// their own tests (box_and_box.hpp), and so have a box and a ball (box_and_ball.hpp), for which the pieces are fewer
+/// and simpler since the axes of the box are orthogonal.
 ///
-/// The shapes are those that the columns of their rotations describe, taken as exact, and so are all signs: there is
-/// no margin, and no bound on how nearly parallel two capsules are. Parallel ones, a capsule along a face or an edge of
-/// a box, and one that meets just the side between two pieces are no special cases, see ZonotopeCells.
+/// The shapes are those that the columns of their rotations describe, taken as exact, and so are all signs: there is no
+/// margin, and no bound on how nearly parallel two capsules are. Parallel capsules, a capsule along a face or an edge
+/// of a box, and one that meets exactly the side between two pieces are no special cases, see ZonotopeCells.
 ///
 /// A filter in doubles leaves few pieces, and decides most of them: its directions across faces are known to some
-/// roundings, or not used (`unknown_normal`).
-/// Paper: [Ericson05] section 5.5.7 for the moving point; zonotopes in the place of boxes are ours.
-/// Cost: 0.2 us (a capsule and a ball), 0.5 us (two capsules) or 2 us (a capsule and a box) to tell until when they do
-/// not meet, as a rule; 1, 2.5 and 10 us for the first contact.
+/// roundings, or not used (`unknown_normal`). Paper: [Ericson05] section 5.5.7 for the moving point; Differs: zonotopes
+/// in the place of boxes. Cost: 0.2 us (a capsule and a ball), 0.5 us (two capsules) or 2 us (a capsule and a box)
+/// typically to find a time until which they do not meet; 1, 2.5 and 10 us for the first contact.
 template <int Degree>
 class RoundedZonotope {
  public:
@@ -52,16 +51,16 @@ class RoundedZonotope {
   RoundedZonotope(const RoundedZonotope&) = delete;  // refers to itself
   RoundedZonotope& operator=(const RoundedZonotope&) = delete;
 
-  /// A time before which they do not penetrate, as far as directions across the shapes tell; `never` if they never do.
+  /// A time before which directions across the shapes show that they do not penetrate; `never` if they never do.
   double apart_until() const { return apart_ ? never : motion_.time_before(hull_.begin); }
 
-  /// Calls visit(piece) for the pieces in which b's place may be between `now` and the horizon, in no order, until it
-  /// returns false.
+  /// Calls visit(piece) for the pieces in which b's place may be between `now` and the horizon, in no particular order,
+  /// until it returns false.
   template <class Visit>
   void every_piece(const Visit& visit) const;
 
-  /// The same, the earliest first as far as is known, and only those in which it may be by a time: the horizon first,
-  /// then what visit(piece) returns.
+  /// The same, the earliest first as far as is known, and only those in which it may be by a time: at first the
+  /// horizon, then the time that visit(piece) returns.
   template <class Visit>
   void earliest_pieces(double horizon, const Visit& visit) const;
 
@@ -72,15 +71,15 @@ class RoundedZonotope {
   using Along = typename Quick::Along;
   static constexpr std::size_t most_generators = certificates::most_generators;
   static constexpr std::size_t most_faces = most_generators * (most_generators - 1) / 2;
-  /// 24 parallelograms, 32 segments and 16 vertices of four generators that doubles cannot tell to be inside, and the
-  /// zonotope.
+  /// 24 parallelograms, 32 segments and 16 vertices of four generators, if doubles decide of none that it is inside,
+  /// and the zonotope.
   static constexpr std::size_t most_pieces = 73;
 
   /// Two generators that are not parallel, and the direction across them.
   struct Face {
     std::array<std::uint8_t, 2> spanned;
     Eigen::Vector3d normal;  ///< unit, up to some roundings
-    bool known;              ///< it is that
+    bool known;              ///< whether `normal` is accurate to some roundings
     Along along;
     double half_width;  ///< of the zonotope
   };
@@ -117,8 +116,9 @@ class RoundedZonotope<Degree>::Piece {
   /// A time before which it is not in the piece.
   double earliest() const { return pair_->motion_.time_before(window_.begin); }
 
-  // ---- For gap_conditions.hpp: gaps 2 k and 2 k + 1 are the two ends of what sweeps the cell, or the sides of the
-  // zonotope beyond face k; the last one of a cell is the distance from the point, line or plane that it spans.
+  // ---- For gap_conditions.hpp: gaps 2 k and 2 k + 1 are the two ends of a generator that sweeps the cell, or the
+  // sides of the zonotope beyond face k; the last one of a cell is the distance from the point, line or plane that it
+  // spans.
 
   std::size_t size() const { return 2 * sides_.size() + (solid_ ? 0 : 1); }
   bool surely_closed(std::size_t i, double t) const;

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Calls visit(way) for ways of which one is the shortest, if the segment does not go through the triangle.
+/// Calls visit(way) for several ways, among them the shortest, if the segment does not go through the triangle.
 template <class Visit>
 void every_way(const PlacedTriangle& triangle, const Vector3d& centre, const Vector3d& half, const Visit& visit) {
   for (const double end : {-1.0, 1.0}) {

@@ -1,4 +1,4 @@
-// The ways from a triangle to a segment.
+// Shortest connections from a triangle to a segment.
 #pragma once
 
 #include "collision/narrow_phase/separating_axes.hpp"
@@ -7,7 +7,8 @@
 
 namespace kds::collision {
 
-/// A way from a triangle to a segment, and what it is across: nothing (from corner to end), a line, or a plane.
+/// A connection from a triangle to a segment. It is perpendicular to nothing (from corner to end), to a line, or to a
+/// plane.
 struct SegmentWay {
   Eigen::Vector3d apart = Eigen::Vector3d::Zero();
   int dimension = 0;
@@ -20,9 +21,9 @@ SegmentWay shortest_way(const PlacedTriangle& triangle, const Eigen::Vector3d& c
 
 /// Where a segment about `centre` is nearest to a triangle.
 struct NearestStretch {
-  Eigen::Vector3d core;   ///< on the segment: the middle of all that is nearest, up to the tolerance
+  Eigen::Vector3d core;   ///< on the segment: the middle of its nearest points, up to the tolerance
   Eigen::Vector3d point;  ///< on the triangle
-  double low, high;       ///< from where to where that is, -1 and 1 being the ends of the segment
+  double low, high;       ///< the interval of nearest points; -1 and 1 are the ends of the segment
 };
 NearestStretch nearest_stretch(const PlacedTriangle& triangle, const Eigen::Vector3d& centre,
                                const Eigen::Vector3d& half, double tolerance);

@@ -55,7 +55,7 @@ struct PlacedBall {
   }
 };
 
-/// All that is nearer than a radius to a segment about its centre.
+/// A capsule: all points nearer than a radius to a segment about its centre.
 struct PlacedCapsule {
   Eigen::Vector3d half;  ///< of the segment
   double radius;
@@ -68,16 +68,16 @@ struct PlacedCapsule {
 
 inline Interval interval(double x, double y) { return x < y ? Interval{x, y} : Interval{y, x}; }
 
-/// Calls test(axis, interval of a, interval of b) for the directions that can separate the two, until it says false;
-/// returns what it said last. The intervals are the projections on the axis, which has any length.
+/// Calls test(axis, interval of a, interval of b) for the directions that can separate the two, until it returns false;
+/// returns its last result. The intervals are the projections on the axis, which has any length.
 ///
 /// Two triangles: the two normals, the nine products of edges, and the normals of the six edges in their planes, which
 /// alone separate triangles of one plane, and keep those of nearly one plane from counting as touching far away from
 /// each other. Any direction is a valid witness of separation, however it was rounded, so a bad one (from nearly
-/// parallel edges) only fails to separate. That an axis is perpendicular to the edges it was made of is made use of
-/// only where it is so but for rounding: a product u x v is off by 2 roundings of |u| |v|, so the ends of u project to
-/// points 2 |u| / sine of the angle apart. Where the sine is below 1/2 all vertices are projected; else that is 8 of
-/// the radius.
+/// parallel edges) only fails to separate. That an axis is perpendicular to the edges of which it is the product is
+/// used only where this is true up to rounding: a product u x v is off by 2 roundings of |u| |v|, so the ends of u
+/// project to points 2 |u| / sine of the angle apart. Where the sine is below 1/2 all vertices are projected; else that
+/// is 8 of the radius.
 template <class Test>
 bool every_axis(const PlacedTriangle& a, const PlacedTriangle& b, Test&& test) {
   const std::array<Eigen::Vector3d, 3> u{a.edge(0), a.edge(1), a.edge(2)};
@@ -139,8 +139,8 @@ bool every_axis(const PlacedTriangle& a, const PlacedBox& b, Test&& test) {
   return true;
 }
 
-/// A triangle and something round: not all directions that can separate them (their number has no end), but the normals
-/// of the triangle and its edges, and of the box around it.
+/// A triangle and a round shape: not all directions that can separate them (there are infinitely many), but the normals
+/// of the triangle and its edges, and of the box around the shape.
 template <class Round, class Test>
 bool every_axis_of_triangle(const PlacedTriangle& a, const Round& b, Test&& test) {
   const auto try_axis = [&](const Eigen::Vector3d& axis) { return test(axis, a.project(axis), b.project(axis)); };
@@ -161,7 +161,7 @@ bool every_axis(const PlacedTriangle& a, const PlacedBall& b, Test&& test) {
   return every_axis_of_triangle(a, b, test);
 }
 
-/// As for a ball, and what is across the capsule and the edges.
+/// As for a ball, and the directions across the capsule and each edge.
 template <class Test>
 bool every_axis(const PlacedTriangle& a, const PlacedCapsule& b, Test&& test) {
   if (!every_axis_of_triangle(a, b, test)) return false;
@@ -173,15 +173,15 @@ bool every_axis(const PlacedTriangle& a, const PlacedCapsule& b, Test&& test) {
 }
 
 /// The same for the directions of k-DOPs, the axes among them. They are needed where sharp corners may face each other,
-/// tip to tip: the directions above tell whether convex shapes overlap, but are all nearly across the line between such
-/// tips, and so say little of how far they are apart.
+/// tip to tip: the directions above decide whether convex shapes overlap, but are all nearly perpendicular to the line
+/// between such tips, and so show only a small part of their distance.
 ///
-/// How far? Let d lead from the nearest point of one shape to that of the other, two vertices (else a direction above
-/// is within 45 degrees of d), so that the directions for which these are the nearest are a convex set N of the sphere
-/// about d. Its sides are arcs along which directions of every_axis follow each other in steps of 90 degrees at most:
-/// of a triangle's edge, half a circle with the normal in the plane in its middle; of a box's, a quarter. So, if a side
-/// is delta from d, some direction has a cosine of cos(delta) sqrt(1/2) with d at least, and the distance is at most
-/// sqrt(2) / cos(delta) times the greatest separation that is seen.
+/// Bound on the distance. Let d lead from the nearest point of one shape to that of the other, two vertices (else a
+/// direction above is within 45 degrees of d), so that the directions for which these are the nearest are a convex set
+/// N of the sphere about d. Its sides are arcs along which directions of every_axis follow each other in steps of 90
+/// degrees at most: of a triangle's edge, half a circle with the normal in the plane in its middle; of a box's, a
+/// quarter. So, if a side is delta from d, some direction has a cosine of cos(delta) sqrt(1/2) with d at least, and the
+/// distance is at most sqrt(2) / cos(delta) times the greatest separation that is seen.
 /// - N lies in the set of each of the two vertices. A corner of a triangle with the angle theta has a sector of 180
 ///   degrees - theta, so that delta <= 90 degrees - theta / 2: where one of the triangles has no corner that is sharp
 ///   (Mesh::sharp_half_sine), 11.4 times. Of a vertex of a box, delta <= 35.3 degrees: 1.74 times.

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How far a shape reaches from its centre along a unit vector, either way.
+/// The half width of a shape along a unit vector, from its centre.
 double half_width(const PlacedShape& shape, const Vector3d& along) {
   const double radius = ball_radius(shape.shape);
   if (radius > 0) return radius;

@@ -14,13 +14,13 @@ struct SurfaceGap {
   Eigen::Vector3d normal;  ///< unit, from a to b
 };
 
-/// The gap between a and b at t, in doubles: right to some roundings of the coordinates. Precondition: neither is a
+/// The gap between a and b at t, in doubles: accurate to some roundings of the coordinates. Precondition: neither is a
 /// mesh.
 template <int Degree>
 SurfaceGap surface_gap(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t);
 
-/// How far apart a and b are along a unit vector from a to b: negative where its slabs overlap. What has a gap > 0
-/// along any direction does not touch. Precondition: neither is a mesh.
+/// The gap of a and b along a unit vector from a to b: negative where their slabs overlap. Shapes with a gap > 0 along
+/// any direction do not touch. Precondition: neither is a mesh.
 template <int Degree>
 double gap_along(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Eigen::Vector3d& normal,
                  double t);

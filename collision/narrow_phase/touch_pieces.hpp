@@ -1,4 +1,4 @@
-// When a shape on a path touches another, told by pieces of the space of their relative positions.
+// When a shape on a path touches another, from convex pieces of the space of their relative positions.
 #pragma once
 
 #include "collision/narrow_phase/convex_touch.hpp"
@@ -34,7 +34,7 @@ class TouchPieces {
     return first;
   }
 
-  /// Since when they have touched at tau: downwards through the pieces that contain the time, as far as they go.
+  /// The time since which they have touched at tau: back through overlapping pieces as far as they go.
   double enter(double tau) const {
     double begin = TimeSpans::infinity;
     for (const Piece& piece : pieces_) {
@@ -43,7 +43,7 @@ class TouchPieces {
     return begin;
   }
 
-  /// Until when: out of one piece may be into another.
+  /// The time until which they touch: the end of one piece may lie in another.
   double leave(double tau) const {
     for (bool moved = true; moved;) {
       moved = false;

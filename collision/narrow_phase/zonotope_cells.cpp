@@ -10,12 +10,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of the product of three unit vectors: some 20 roundings in doubles.
+/// Error of the product of three unit vectors: some 20 roundings in doubles.
 constexpr double product_rounding = 0x1p-47;
 
 bool exactly_parallel(const Vector3d& u, const Vector3d& v) {
   if (u == v || u == -v) return true;
-  // Most are not by far. The product is known to 4 roundings of that of the lengths.
+  // Most are far from parallel. The product is known to 4 roundings of the product of the lengths.
   if (!(cross(u, v).cwiseAbs().maxCoeff() <= 0x1p-48 * u.cwiseAbs().maxCoeff() * v.cwiseAbs().maxCoeff())) return false;
   const auto zero = [&](Eigen::Index i, Eigen::Index j) {
     return (Exact(u[i]) * Exact(v[j]) - Exact(u[j]) * Exact(v[i])).sign() == 0;
@@ -60,26 +60,26 @@ Vector3d ZonotopeCells::centre(const Cell& cell) const {
   return sum;
 }
 
-/// Whether the cell is surely not on the surface. It is on it if there is a direction across what sweeps it with which
-/// all that is held makes the sign of its end. So seen along what sweeps it, what is held, times its ends, must not
-/// positively span the rest: on a line two vectors do that opposite each other, in a plane three do round about, in
-/// space four that have one another between them.
+/// Whether the cell is certainly not on the surface. It is on it if there is a direction perpendicular to the
+/// generators that sweep it whose product with each of the others, the fixed ones, has the sign of their end. So the
+/// fixed generators, times their ends and projected along those that sweep, must not positively span the rest of space:
+/// on a line two opposite vectors do, in a plane three around the origin, in space four around it.
 bool ZonotopeCells::inside(const Cell& cell) const {
-  std::array<std::size_t, most> held{};
+  std::array<std::size_t, most> fixed{};
   std::size_t count = 0;
   for (std::size_t k = 0; k < size(); ++k) {
-    if (cell.end[k] != 0) held[count++] = k;
+    if (cell.end[k] != 0) fixed[count++] = k;
   }
   const auto same = [](int x, int y, int z) { return x != 0 && x == y && y == z; };
   const auto end = [&](std::size_t k) { return int{cell.end[k]}; };
   if (cell.dimension == 2 && count == 2) {
     const auto [i, j] = cell.swept;
-    return turn(i, j, held[0]) * end(held[0]) * turn(i, j, held[1]) * end(held[1]) < 0;
+    return turn(i, j, fixed[0]) * end(fixed[0]) * turn(i, j, fixed[1]) * end(fixed[1]) < 0;
   }
   if (cell.dimension == 1 && count == 3) {
     const std::size_t i = cell.swept[0];
     const auto around = [&](std::size_t x, std::size_t y) {
-      return turn(i, held[x], held[y]) * end(held[x]) * end(held[y]);
+      return turn(i, fixed[x], fixed[y]) * end(fixed[x]) * end(fixed[y]);
     };
     return same(around(0, 1), around(1, 2), around(2, 0));
   }

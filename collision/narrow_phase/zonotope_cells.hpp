@@ -19,12 +19,13 @@ Eigen::Vector3d accurate_cross(const Eigen::Vector3d& u, const Eigen::Vector3d& 
 /// Products of unit vectors shorter than this have a direction that accurate_cross() does not know to some roundings.
 inline constexpr double unknown_normal = 0x1p-48;
 
-/// Which sums of segments and of ends of segments may be part of the surface of a zonotope.
+/// The sums of segments and of ends of segments that may be part of the surface of a zonotope.
 ///
-/// Law: the union of the cells that are visited covers the surface. It may well have others, inside or within a face,
-/// and cells that overlap: where generators are parallel, or three of them in a plane, or so nearly that doubles do not
-/// tell, all sums are. (Every face is a zonotope itself, and such sums tile it; which ones does not matter to a union.)
-/// Parallelograms of parallel generators are left out. So what depends on the union alone needs no exact structure.
+/// Law: the union of the cells that are visited covers the surface. Others may be visited too, inside or within a face,
+/// and cells may overlap: where generators are parallel, or three of them in a plane, or so nearly that doubles do not
+/// decide, all sums are visited. (Every face is itself a zonotope, and such sums tile it; which ones does not matter
+/// for a union.) Parallelograms of parallel generators are left out. So no exact structure is needed for functions of
+/// the union.
 ///
 /// Of n generators in general position there are n (n - 1) parallelograms, 2 n (n - 1) segments and n (n - 1) + 2
 /// vertices; of two generators, a parallelogram, 4 and 4.
@@ -38,11 +39,11 @@ class ZonotopeCells {
   certificates::Generators generators() const { return generators_; }
   bool parallel(std::size_t i, std::size_t j) const { return parallel_[i][j]; }
 
-  /// Calls visit(cell) until it returns false; returns what it said last.
+  /// Calls visit(cell) until it returns false; returns its last result.
   template <class Visit>
   bool every_cell(const Visit& visit) const;
 
-  /// Of generator k, length times direction, rounded.
+  /// Length times direction of generator k, rounded.
   const Eigen::Vector3d& half(std::size_t k) const { return half_[k]; }
   /// The centre of a cell, rounded.
   Eigen::Vector3d centre(const Cell& cell) const;
@@ -59,7 +60,7 @@ class ZonotopeCells {
   certificates::Generators generators_;
   std::array<Eigen::Vector3d, most> half_;  ///< length times direction, rounded
   std::array<std::array<bool, most>, most> parallel_{};
-  /// Of the product of three directions, where doubles tell it, else 0.
+  /// Sign of the product of three directions, where doubles decide it, otherwise 0.
   std::array<std::array<std::array<Sign, most>, most>, most> turns_{};
 };
 
@@ -68,14 +69,14 @@ class ZonotopeCells {
 template <class Visit>
 bool ZonotopeCells::every_end(Cell cell, const Visit& visit) const {
   const std::size_t n = size();
-  std::array<std::uint8_t, most> held{};
+  std::array<std::uint8_t, most> fixed{};
   std::size_t count = 0;
   for (std::uint8_t k = 0; k < n; ++k) {
     const bool sweeps = (cell.dimension > 0 && cell.swept[0] == k) || (cell.dimension > 1 && cell.swept[1] == k);
-    if (!sweeps) held[count++] = k;
+    if (!sweeps) fixed[count++] = k;
   }
   for (unsigned ends = 0; ends < 1u << count; ++ends) {
-    for (std::size_t k = 0; k < count; ++k) cell.end[held[k]] = (ends >> k & 1u) != 0 ? 1 : -1;
+    for (std::size_t k = 0; k < count; ++k) cell.end[fixed[k]] = (ends >> k & 1u) != 0 ? 1 : -1;
     if (!inside(cell) && !visit(std::as_const(cell))) return false;
   }
   return true;

@@ -17,7 +17,7 @@ using Eigen::Matrix3d;
 constexpr double least_entry = 0x1p-617;
 constexpr double greatest_entry = 0x1p617;
 
-/// Of symmetric matrices; the product of their entries must neither overflow nor underflow.
+/// For symmetric matrices; products of entries must neither overflow nor underflow.
 DoubleDouble minor_of(const Matrix3d& m, Eigen::Index i, Eigen::Index j, Eigen::Index k, Eigen::Index l) {
   return two_product(m(i, k), m(j, l)) - two_product(m(i, l), m(j, k));
 }
@@ -75,7 +75,7 @@ Matrix3d checked_inertia(const Matrix3d& inertia) {
     }
   }
   if (!detail::positive_definite(m)) refuse_tensor("must be positive definite");
-  // The integrals of x x^T over the body: half the trace less the tensor. No body has a negative one.
+  // The integrals of x x^T over the body: half the trace minus the tensor. They are not negative for any body.
   const double trace = m(0, 0) + m(1, 1) + m(2, 2);
   Matrix3d spread = -m;
   for (Eigen::Index i = 0; i < 3; ++i) spread(i, i) += trace / 2 + 4 * inertia_tolerance * trace;

@@ -18,12 +18,12 @@ using Eigen::Vector3d;
 using Rates = std::span<Vector3d>;
 using Touches = std::span<Touch>;
 
-/// Sweeps for a set of touches; at most this many touches are looked at in all. They bound the work where a solution is
-/// slow to come (tall stacks, heavy above light) or does not exist.
+/// Sweeps for a set of touches; at most this many touches are looked at in all. They bound the work where convergence
+/// is slow (tall stacks, heavy above light) or there is no solution.
 constexpr std::size_t most_updates = 1'000'000;
 std::size_t most_sweeps(std::size_t touches) { return std::min(4096 + 64 * touches, 64 + most_updates / touches); }
 
-/// Found to take the fewest sweeps for heaps of balls; 1 takes half as many again.
+/// Measured: the fewest sweeps for heaps of balls; with 1 they are half as many again.
 constexpr double over_relaxation = 1.3;
 
 double greatest(std::span<const Vector3d> rates) {
@@ -48,7 +48,7 @@ double aim_of(const Touch& touch, double target) {
   return target == 0 || along_axis(touch.normal) ? touch.least : touch.least + target;
 }
 
-/// Gives each touch in turn what it lacks, or takes what it has too much. Returns the largest change.
+/// Increases or reduces the push of each touch in turn to what it needs. Returns the largest change.
 double sweep(Rates rates, Touches touches, double relaxation, double target) {
   double change = 0;
   for (Touch& touch : touches) {
@@ -65,7 +65,7 @@ bool holds(std::span<const Vector3d> rates, std::span<const Touch> touches, doub
                      [&](const Touch& touch) { return parting_rate(rates, touch) >= touch.least - tolerance; });
 }
 
-/// Rates that differ from those of a fixed body, or from rest, by rounding alone are made equal to them, if all touches
+/// Rates that differ from those of a fixed body, or from rest, only by rounding are made equal to them, if all touches
 /// allow it.
 void snap(Rates rates, std::span<const Touch> touches, double scale) {
   std::vector<Vector3d> fixed{Vector3d::Zero()};
@@ -144,7 +144,7 @@ class ActiveSet {
     return result;
   }
 
-  /// Solves for the active touches, lets go those that would pull, on the way, and repeats.
+  /// Solves for the active touches, removes those that would pull, and repeats.
   bool improve() {
     for (std::size_t round = 0; round <= touches_.size() + 4; ++round) {
       std::vector<std::size_t> places;
@@ -160,7 +160,7 @@ class ActiveSet {
       }
       const std::vector<double> change = least_norm_solution(matrix, lacks);
       if (!std::all_of(change.begin(), change.end(), [](double x) { return std::isfinite(x); })) return false;
-      // As far as no push becomes a pull.
+      // The step goes only as far as no push becomes a pull.
       double part = 1;
       std::size_t first = none;
       std::vector<double> amounts;
@@ -197,7 +197,7 @@ class ActiveSet {
 
 constexpr std::size_t most_active = 64;
 
-/// For many touches; slow where the heavy lie upon the light.
+/// For many touches; slow where heavy bodies lie on light ones.
 void relax(Rates rates, Touches touches, double target, double scale) {
   const double n = static_cast<double>(touches.size());
   const double relaxation = 2 / (1 + std::sin(std::numbers::pi / (n + 1)));

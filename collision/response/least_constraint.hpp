@@ -1,4 +1,4 @@
-// Gauss's principle of least constraint: what bodies in contact do instead of moving into each other.
+// Gauss's principle of least constraint: how bodies in contact move without penetrating.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ struct Touch {
   Eigen::Vector3d normal;  ///< unit, from a to b
   double inverse_mass_a;   ///< 0: a is fixed; not both
   double inverse_mass_b;
-  double push = 0;   ///< what the touch adds to the relative rate, >= 0; in: a guess
+  double push = 0;   ///< what the touch adds to the relative rate, >= 0; on entry a guess
   double least = 0;  ///< the least relative rate that is allowed: below 0 where there is a gap to be closed
 };
 
@@ -30,21 +30,21 @@ struct Touch {
 /// touches to be independent of each other.
 ///
 /// Rounding: along the axes (all normals are unit vectors of an axis) bodies at rest come out at rest, exactly.
-/// Elsewhere the relative rate is up to some 2^-48 of the largest rate above zero, so that what is held parts,
-/// very slowly, rather than sinks in.
+/// Elsewhere the relative rate is up to some 2^-48 of the largest rate above zero, so that bodies in contact part, very
+/// slowly, rather than sink in.
 ///
-/// Cost: a linear solve or a few where the guesses push where the solution does, up to some n of them else. Above 64
-/// touches, touches x sweeps; a chain of n equal masses takes about 6 n sweeps. Both are bounded.
+/// Cost for n touches: one or a few linear solves if the guesses are positive where the solution is, otherwise up to
+/// some n of them. Above 64 touches, touches x sweeps; a chain of n equal masses takes about 6 n sweeps. Both are
+/// bounded.
 bool least_constraint(std::span<Eigen::Vector3d> rates, std::span<Touch> touches);
 
-/// The same to a tolerance, for which touches are visited no more than `most_sweeps` times each: for many bodies whose
-/// pushes are known from a little while ago. Returns whether no relative rate is below what is allowed by more than the
-/// tolerance.
+/// The same up to a tolerance, with at most `most_sweeps` visits of each touch: for many bodies whose pushes were
+/// solved a short time before. Returns whether no relative rate is below the allowed one by more than the tolerance.
 bool nearly_least_constraint(std::span<Eigen::Vector3d> rates, std::span<Touch> touches, double tolerance,
                              std::size_t most_sweeps);
 
-/// Pushes the two of a touch apart: changes their relative rate by `amount`. Of a fixed partner nothing is taken, and
-/// the other takes all of it, exactly.
+/// Pushes the two of a touch apart: changes their relative rate by `amount`. If one is fixed the other takes all of it,
+/// exactly.
 inline void give_push(std::span<Eigen::Vector3d> rates, Touch& touch, double amount) {
   touch.push += amount;
   const double sum = touch.inverse_mass_a + touch.inverse_mass_b;
@@ -59,7 +59,7 @@ inline double parting_rate(std::span<const Eigen::Vector3d> rates, const Touch& 
   return touch.normal[0] * (b[0] - a[0]) + touch.normal[1] * (b[1] - a[1]) + touch.normal[2] * (b[2] - a[2]);
 }
 
-/// Relative rates of magnitude below this times the largest rate are rounding.
+/// Relative rates of magnitude below this times the largest rate count as rounding errors.
 inline constexpr double rate_rounding = 0x1p-40;
 
 }  // namespace kds::collision

@@ -7,12 +7,12 @@
 namespace kds::collision {
 namespace {
 
-/// What rounding may leave of a diagonal entry of 1, for each unknown: an entry is the difference of 1 and up to n
-/// squares with the sum 1, each of a quotient of sums like that. Greater takes equations that nearly depend on each
-/// other for dependent ones.
+/// Rounding may leave this much, for each unknown, of a diagonal entry of 1 that should become 0: it is the difference
+/// of 1 and up to n squares with the sum 1, each of a quotient of such sums. With a greater number equations that
+/// nearly depend on each other would count as dependent.
 constexpr double rest_of_diagonal = 4 * 0x1p-52;
 
-/// Four sums side by side, which a processor may or may not add at a time.
+/// Four sums side by side, in a fixed order whether or not the processor adds them at once.
 double dot(const double* a, const double* b, std::size_t n) {
   double sum[4] = {0, 0, 0, 0};
   std::size_t i = 0;
@@ -53,8 +53,8 @@ std::size_t factor(std::span<const double> matrix, std::vector<double>& rows, st
   return n;
 }
 
-/// Columns of L of rank r made orthonormal, one after the other, each twice: so they are to a rounding. R has rows of
-/// r.
+/// The r columns of L are made orthonormal one after the other, each twice: so they are orthonormal up to rounding. R
+/// has rows of r.
 void make_orthonormal(std::vector<std::vector<double>>& columns, std::vector<double>& r) {
   const std::size_t rank = columns.size();
   for (std::size_t k = 0; k < rank; ++k) {

@@ -10,8 +10,8 @@ namespace kds::collision {
 /// The shortest x for which |A x - b| is least. A is symmetric, n x n, row by row, has no negative eigenvalue beyond
 /// rounding and ones on its diagonal.
 ///
-/// A = L L^T by Cholesky, taking the greatest rest of the diagonal at each step, which stops where only rounding is left
-/// of it [Higham02], section 10.3. Where that is before the end, L = Q R has full column rank, and x = Q (R R^T)^-1 Q^T b.
+/// A = L L^T by Cholesky with diagonal pivoting, which stops where only rounding errors are left on the diagonal
+/// [Higham02], section 10.3. If that is before the end, L = Q R has full column rank, and x = Q (R R^T)^-1 Q^T b.
 ///
 /// All sums are in one order, so that the bits are the same whatever vector instructions a compiler may use.
 /// Cost: n^3 / 3 products for independent equations, and up to 4 n r^2 more where the rank r is less than n.

@@ -65,8 +65,8 @@ struct Side {
               " both run along " + edge + " that way");
 }
 
-/// Each edge is run along as often in one direction as in the other. Then the solid does not depend on the point from
-/// which it is made of tetrahedra.
+/// Checks that triangles run along each edge as often in one direction as in the other. Then the integrals do not
+/// depend on the common corner of the tetrahedra.
 void require_closed(const Mesh& mesh) {
   const std::vector<std::uint32_t> first = first_at_place(mesh.vertices());
   std::vector<Side> sides;
@@ -91,15 +91,15 @@ void require_closed(const Mesh& mesh) {
   }
 }
 
-/// Of the solid, with lengths in `unit`, a power of two, counted from `origin`: 6 times the volume, 24 times the
-/// integral of x, 120 times that of x x^T. In this unit no coordinate is beyond 1.
+/// Integrals over the solid, with lengths in `unit`, a power of two, counted from `origin`: 6 times the volume, 24
+/// times the integral of x, 120 times that of x x^T. In this unit no coordinate is beyond 1.
 struct Integrals {
   Vector3d origin;
   double unit = 1;
   DoubleDouble volume{};
   PreciseVector first{};
   PreciseVector squares{}, products{};  // of x x, y y, z z; of y z, z x, x y
-  double magnitude = 0;                 // sum of what the volumes of the tetrahedra can be at most
+  double magnitude = 0;                 // sum of bounds on the magnitudes of the tetrahedra's volumes
 
   /// 6 times the volume, off the exact one by at most this. A determinant is 6 products of 3 exact differences, each
   /// sum and product rounded by 2^-102 of itself; so are the n sums. The other integrals, with their factors of 6 / 24
@@ -109,7 +109,7 @@ struct Integrals {
 
 Integrals integrate(const Mesh& mesh) {
   Integrals sum;
-  // A corner of a triangle: with those around it the triangle makes no tetrahedra.
+  // A corner of a triangle: the triangles around it make tetrahedra without volume, which are left out.
   sum.origin = mesh.vertices()[mesh.triangles()[0][0]];
   double largest = 0;
   for (const Mesh::Triangle& triangle : mesh.triangles()) {

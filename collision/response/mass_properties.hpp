@@ -13,16 +13,17 @@ struct MassProperties {
   Eigen::Matrix3d inertia;  ///< about the centre of mass, in the axes of the shape; mass * length^2
 };
 
-/// What the shape has as a solid of the mass given. A mesh is the solid that its triangles bound: space counts as often
-/// as they wind around it counterclockwise seen from outside, so cavities are bounded by triangles turned inward, and
-/// what two parts share counts twice. Vertices at one place count as one; the scale is included.
+/// Mass, centre and inertia of the shape as a uniform solid of the mass given. A mesh is the solid that its triangles
+/// bound: space counts as often as they wind around it counterclockwise seen from outside, so cavities are bounded by
+/// triangles turned inward, and what two parts share counts twice. Vertices at one place count as one; the scale is
+/// included.
 ///
-/// Errors, with u = 2^-53: ball and box, each moment 4 u of itself; capsule 12 u. Mesh: each coordinate of the centre
-/// 2 u of itself, and each entry of the tensor 4 u of itself; and besides 2^-54 s for the centre and 2^-50 m s^2 for
-/// the tensor, where s is the greatest extent of the mesh along an axis, m the mass. These are reached only by meshes
-/// that are nearly flat: the integrals are made in double-doubles, from a vertex of the mesh, so for n triangles that
-/// make a body of some thickness it is some n 2^-95. (Where the mesh is far from its origin, its vertices were rounded
-/// before; that is another matter.)
+/// Errors, with u = 2^-53: ball and box, each moment 4 u of itself; capsule 12 u. Mesh: each coordinate of the centre 2
+/// u of itself, and each entry of the tensor 4 u of itself; and besides 2^-54 s for the centre and 2^-50 m s^2 for the
+/// tensor, where s is the greatest extent of the mesh along an axis, m the mass. These are reached only by meshes that
+/// are nearly flat: the integrals are made in double-doubles, from a vertex of the mesh, so for n triangles that make a
+/// body of some thickness it is some n 2^-95. (The rounding of the vertices of a mesh far from its origin is not
+/// counted.)
 ///
 /// Throws std::invalid_argument, in one line:
 /// - what place() says of the numbers of a shape, and of the mass as of a size;
@@ -35,9 +36,9 @@ struct MassProperties {
 ///   errors above: a needle some four million times longer than thick;
 /// - what checked_inertia() says of the tensor of a mesh some parts of which are inside out.
 ///
-/// Cost: n log n for n triangles. Paper: the integrals are polynomials of the vertices, as in [Mirtich96].
-/// Differs: summed over the tetrahedra that triangles make with one vertex of the mesh, not over projected faces, whose
-/// quotients are lost where a face is seen from its edge.
+/// Cost: n log n for n triangles. Paper: the integrals are polynomials of the vertices, as in [Mirtich96]. Differs:
+/// summed over the tetrahedra that triangles make with one vertex of the mesh, not over projected faces, whose
+/// quotients lose all digits where a face is seen edge-on.
 MassProperties mass_properties(const Shape& shape, double mass);
 
 }  // namespace kds::collision

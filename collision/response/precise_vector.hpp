@@ -1,4 +1,4 @@
-// Vectors of double-doubles: for what is calculated to some 100 bits and rounded once, at the end.
+// Vectors of double-doubles: for results that are calculated to some 100 bits and rounded once, at the end.
 #pragma once
 
 #include "kds/arithmetic/double_double.hpp"
@@ -59,7 +59,7 @@ inline PreciseVector operator*(const Eigen::Matrix3d& m, const PreciseVector& v)
   return {row(0), row(1), row(2)};
 }
 
-/// a - b, exactly but for underflow.
+/// a - b, exactly except for underflow.
 inline PreciseVector precise_difference(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return {two_sum(a[0], -b[0]), two_sum(a[1], -b[1]), two_sum(a[2], -b[2])};
 }

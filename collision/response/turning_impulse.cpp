@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// In the plane of contact.
+/// A vector in the plane of contact.
 struct PlaneVector {
   DoubleDouble x, y;
 };
@@ -24,7 +24,8 @@ PlaneVector operator-(const PlaneVector& v, const PlaneVector& w) { return {v.x 
 PlaneVector operator*(const PlaneVector& v, const DoubleDouble& factor) { return {v.x * factor, v.y * factor}; }
 DoubleDouble product(const PlaneVector& v, const PlaneVector& w) { return v.x * w.x + v.y * w.y; }
 
-/// Scaled, so that what is left of a slip by rounding has a length too; hypot is not the same with every C library.
+/// Scaled, so that the length of a slip of the size of rounding errors does not underflow; hypot differs between C
+/// libraries.
 double length(const PlaneVector& v) {
   const double greatest = std::max(std::abs(v.x.high), std::abs(v.y.high));
   if (greatest == 0) return 0;
@@ -36,7 +37,7 @@ PreciseVector turned_by(const Mobility& body, const PreciseVector& angular_impul
   return body.spherical ? angular_impulse * body.inverse_moment : body.inverse_inertia * angular_impulse;
 }
 
-/// The unit vector that is meant: to 2^-100.
+/// Normalised to 2^-100.
 PreciseVector precise_unit(const Vector3d& normal) {
   return PreciseVector(normal) * (DoubleDouble(1.0) - 0.5 * excess_of_unit(normal));
 }
@@ -56,7 +57,7 @@ class Partner {
     turns_by_[i] = turned_by(mobility_, levers_[i]);
   }
 
-  /// What an impulse along d_j does to the velocity along d_i of the point of contact by turning the body.
+  /// The change of the velocity of the point of contact along d_i when an impulse along d_j turns the body.
   DoubleDouble by_turning(std::size_t i, std::size_t j) const {
     return turns_ ? dot(levers_[i], turns_by_[j]) : DoubleDouble(0.0);
   }
@@ -91,7 +92,7 @@ class Pair {
     set_direction(precise_unit(arms.normal));
   }
 
-  /// d_1 is perpendicular to n and to the axis that is the least along n, so neither product is short.
+  /// d_1 is perpendicular to n and to the axis along which n is least, so that neither cross product is short.
   void set_tangents() {
     Eigen::Index axis = 0;
     for (Eigen::Index d = 1; d < 3; ++d) {
@@ -104,7 +105,7 @@ class Pair {
 
   const PreciseVector& direction(std::size_t i) const { return directions_[i]; }
 
-  /// K_ij: what an impulse along d_j changes of the relative velocity along d_i.
+  /// K_ij: the change of the relative velocity along d_i by an impulse along d_j.
   DoubleDouble coupling(std::size_t i, std::size_t j) const {
     const DoubleDouble turning = a_.by_turning(i, j) + b_.by_turning(i, j);
     return i == j ? masses_ + turning : turning;
@@ -167,8 +168,8 @@ class Friction {
   DoubleDouble normal(const PlaneVector& along) const { return push_ - product(tilt_, along); }
   bool in_cone(const PlaneVector& along) const { return length(along) <= surfaces_.friction * normal(along).high; }
 
-  /// As far as the cone allows on the way from nothing along -h, and from where the slip along h is turned into -e_t of
-  /// itself, straight to `sticking`, which is outside.
+  /// The last point inside the cone on the path that starts from zero along -h and, where the slip along h has become
+  /// -e_t of itself, goes straight on to `sticking`, which is outside.
   PlaneVector sliding(const PlaneVector& sticking) const {
     const double size = length(slip_);
     const double x = slip_.x.high / size, y = slip_.y.high / size;
@@ -181,7 +182,7 @@ class Friction {
       const double part = mu * push_.high / (1 - mu * (tilt_.x.high * x + tilt_.y.high * y));
       return {-part * x, -part * y};
     }
-    // The cone is convex: the way crosses it once. Halving is enough, since what slides need not be exact.
+    // The cone is convex: the path crosses its surface once. Bisection is enough, since sliding need not be exact.
     const PlaneVector rest = sticking - turned;
     double inside = 0, outside = 1;
     for (int i = 0; i < 53; ++i) {

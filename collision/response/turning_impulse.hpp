@@ -11,18 +11,18 @@ struct RigidVelocity {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rad / s, in the axes of the world
 };
 
-/// How much an impulse changes the motion of a body: nothing, if it is fixed or driven.
+/// How much an impulse changes the motion of a body: not at all, if it is fixed or driven.
 struct Mobility {
   double inverse_mass = 0;
   double inverse_moment = 0;  ///< of a body whose moments are equal; 1 / (mass * length^2)
-  /// Of others, besides: in the axes of the world, symmetric.
+  /// For other bodies: in the axes of the world, symmetric.
   Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero();
   bool spherical = true;  ///< whether inverse_inertia is left out
 
   static Mobility fixed() { return {}; }
-  /// Of a body whose moments are equal (is_spherical()).
+  /// The mobility of a body whose moments are equal (is_spherical()).
   static Mobility of_spherical(double inverse_mass, double inverse_moment) { return {inverse_mass, inverse_moment}; }
-  /// Of any body: turned_tensor(inverse_inertia(inertia), rotation).
+  /// The mobility of any body: turned_tensor(inverse_inertia(inertia), rotation).
   static Mobility of(double inverse_mass, const Eigen::Matrix3d& inverse_inertia) {
     return {inverse_mass, 0, inverse_inertia, false};
   }
@@ -32,17 +32,17 @@ struct Mobility {
 };
 
 /// Where two bodies touch. The arms lead from either's centre of mass to the point of contact. They should end at one
-/// point: by how far they do not, times the impulse, the angular momentum is changed.
+/// point: their distance there, times the impulse, is an error of the angular momentum.
 struct ContactArms {
-  Eigen::Vector3d normal;  ///< from a to b, of length 1 but for rounding
+  Eigen::Vector3d normal;  ///< from a to b, of length 1 up to rounding
   Eigen::Vector3d a, b;    ///< units of length
 };
 
-/// What the surfaces are like.
+/// The properties of the surfaces.
 struct Surfaces {
   double restitution = 1;             ///< e, in [0, 1]: the speed of parting over that of approach
   double friction = 0;                ///< mu >= 0: the tangential impulse over the normal one, at most
-  double tangential_restitution = 0;  ///< e_t, in [-1, 1]: -1 smooth, 0 what sticks stays, 1 perfectly rough
+  double tangential_restitution = 0;  ///< e_t, in [-1, 1]: -1 smooth, 0 the bodies stick, 1 perfectly rough
 
   bool smooth() const { return friction == 0 || tangential_restitution == -1; }
 };
@@ -53,21 +53,21 @@ struct TurningImpulse {
 };
 
 /// Changes the motions of two bodies that touch and approach each other at the point of contact; changes nothing if
-/// they do not approach, or if both are fixed. Pass an arm as zero where a body's turning shall not matter.
+/// they do not approach, or if both are fixed. Pass a zero arm for a body whose turning shall not count.
 ///
 /// **The law.** Let g be the velocity of b's point of contact seen from a's, n the normal, and K the matrix by which an
 /// impulse changes g: K = (1 / m_a + 1 / m_b) 1 - [r_a] I_a^-1 [r_a] - [r_b] I_b^-1 [r_b], with [r] x = r x x.
 ///
 /// 1. Normal velocity: n . g' = -e n . g.
 /// 2. Without friction (mu = 0 or e_t = -1) the impulse is -(1 + e) (n . g) / K_nn along n.
-/// 3. With friction there is a tangential part s besides, and the normal part is made such that law 1 holds: j = j0 -
+/// 3. With friction there is a tangential part s besides, and the normal part is chosen such that law 1 holds: j = j0 -
 ///    K_nt s / K_nn, where j0 is that of law 2. Always |s| <= mu j (Coulomb's cone), up to roundings of the impulse.
-/// 4. Let h = g_t - K_tn g_n / K_nn: the slip when compression ends, if nothing rubbed until then; for balls it is that
-///    at the beginning. Where the cone allows, s changes h into -e_t h. Of balls this is the rough sphere of
-///    [Walton86].
-/// 5. Where the cone does not allow it, s is smaller. As long as it is too small to turn the slip round it is along -h
-///    (Coulomb's sliding); from there to what law 4 asks for, for bodies whose S = K_tt - K_tn K_nt / K_nn is not the
-///    same in all directions, it follows a line: the path of [Powell70].
+/// 4. Let h = g_t - K_tn g_n / K_nn: the slip at the end of compression if there is no friction until then; for balls
+///    it is the slip at the beginning. Where the cone allows, s changes h into -e_t h. For balls this is the rough
+///    sphere of [Walton86].
+/// 5. Where the cone does not allow it, s is smaller. As long as it is too small to reverse the slip it is along -h
+///    (Coulomb's sliding); from there to the s of law 4, for bodies whose S = K_tt - K_tn K_nt / K_nn is not the same
+///    in all directions, it follows a straight line: the path of [Powell70].
 ///
 /// Energy: s changes it by h . s + s . S s / 2, and law 2 by -(1 - e^2) (n . g)^2 / (2 K_nn). With p the point of the
 /// path, s = (1 + e_t) p, and p . (h + S p) <= 0 all along that path, so the first is at most -(1 - e_t^2) / 2 times p
@@ -75,12 +75,12 @@ struct TurningImpulse {
 /// bodies are; the laws of Newton and Coulomb, applied to the velocities before and after, would let it grow
 /// [Stronge90]. The component of the slip along h ends at no less than -e_t times h.
 ///
-/// **Roundings.** All is calculated in double-doubles (some 2^-95), but for how far s goes where it slides, which law 3
+/// **Roundings.** All is calculated in double-doubles (some 2^-95), except how far s goes where it slides, which law 3
 /// does not need; the new velocities are rounded once, to the nearest double. So with u = 2^-53 each coordinate of a
 /// velocity is off by u of itself at most, law 1 holds up to what that makes of g, momentum, angular momentum and
-/// energy change by no more than that, and none of them is biased: roundings to nearest are as often up as down. What
-/// would be the same at every contact, as the quotient of two masses or the length of the normal (see impulse.hpp), is
-/// not rounded. Masses are what the inverses say, exactly.
+/// energy change by no more than that, and none of them is biased: roundings to nearest are as often up as down.
+/// Numbers that are the same at every contact, as the quotient of two masses or the length of the normal (see
+/// impulse.hpp), are not rounded. Masses are defined by their inverses, exactly.
 ///
 /// Where neither turning nor friction matters, the velocities change as by change_relative_velocity(), bit for bit:
 /// worlds give the same events whether or not they know of turning. That is where each arm is along the normal, with a

@@ -1,4 +1,4 @@
-// What the world checks of itself.
+// How the world checks itself.
 #include "kds/audit.hpp"
 #include "collision/motions.hpp"
 #include "collision/world.hpp"

@@ -11,8 +11,8 @@
 namespace kds::collision {
 namespace {
 
-/// A new motion whose position differs from the old one's by more than this, relative to the coordinates and the
-/// body's size, is a jump: far above what restarting a motion rounds, far below what a caller would mean as one.
+/// A new motion whose position differs from the old one's by more than this, relative to the coordinates and the body's
+/// size, is a jump: far above the rounding of a restarted motion, far below any jump that a caller would intend.
 constexpr double jump_tolerance = 0x1p-40;
 
 }  // namespace
@@ -90,7 +90,7 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
 
 template <class Motion>
 void Bodies<Motion>::remove(BodySlot slot) {
-  std::erase(waiting_, slot);  // or the next in this slot would enter in its stead
+  std::erase(waiting_, slot);  // otherwise the next body in this slot would enter in its place
   bodies_[slot] = Body{};
   --alive_;
   if (generations_.size() <= slot) generations_.resize(bodies_.size());

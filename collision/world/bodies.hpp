@@ -1,4 +1,4 @@
-// The bodies of a world: what callers have said of them, and how they move.
+// The bodies of a world: their descriptions and their motions.
 #pragma once
 
 #include "certificates/balls_together.hpp"
@@ -26,7 +26,7 @@ inline constexpr std::uint32_t last_generation = ~std::uint32_t{0};
 
 namespace detail {
 
-/// Half the acceleration that callers gave. At degree 1 there is none.
+/// Half the acceleration that callers gave; at degree 1 there is none.
 struct Force {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
 };
@@ -37,20 +37,20 @@ struct Course {
   PathOf<Motion> given;
 };
 
-/// Of bodies that turn.
+/// The properties of bodies that turn.
 struct Turns {
-  double inverse_inertia = 0;  ///< the same about all axes; 0 if nothing changes how it turns
+  double inverse_inertia = 0;  ///< the same about all axes; 0 if nothing changes its angular velocity
   double friction = 0;
   double tangential_restitution = 0;
 };
 struct TurnsNot {};
 
-/// A body, but for its motion and its radius, which the tests of balls read and which have a place of their own.
+/// A body without its motion and its radius, which the tests of balls read and which are stored separately.
 template <class Motion>
 struct Body
     : std::conditional_t<Motion::degree >= 3, Course<Motion>, std::conditional_t<Motion::degree == 2, Force, NoForce>>,
       std::conditional_t<turns<Motion>, Turns, TurnsNot> {
-  Body() {}  // not the implicit one, for which all is set to zero first
+  Body() {}  // the implicit one would set all to zero first
 
   double inverse_mass = 1;
   double restitution = 1;
@@ -64,10 +64,10 @@ struct Body
   bool entered = false;        ///< its motion has begun; it is in the broad phase, if it collides with anything
   std::uint64_t meetings = 0;  ///< contacts since burst_start (ZenoPolicy)
   double burst_start = -never;
-  std::shared_ptr<const PlacedShape> shape;  ///< none if it is placed_ball(bounding_radius)
+  std::shared_ptr<const PlacedShape> shape;  ///< null if it is placed_ball(bounding_radius)
 };
 
-/// A body for the narrow phase; the shape of a ball is made for the occasion.
+/// A body for the narrow phase; the shape of a ball is made on demand.
 template <class Motion>
 class Moving : private std::optional<PlacedShape>, public MovingShape<Motion> {
  public:
@@ -86,8 +86,8 @@ class Moving : private std::optional<PlacedShape>, public MovingShape<Motion> {
 /// first: so which slots bodies get is a function of what callers do. A slot whose generations are used up, after 2^32
 /// bodies, is retired: it stays empty.
 ///
-/// Cost: O(1) each; memory for the largest number of bodies that there have been at once. Worlds from which nothing is
-/// removed keep no generations.
+/// Cost: O(1) each; memory for the largest number of bodies at any one time. Worlds from which nothing is removed store
+/// no generations.
 template <class Motion>
 class Bodies {
  public:
@@ -95,12 +95,12 @@ class Bodies {
   using Description = BasicBodyDescription<Motion>;
   using Body = detail::Body<Motion>;
   using Moving = detail::Moving<Motion>;
-  using Mover = certificates::MovingBall<Motion::degree>;  ///< what the tests of balls read of a body: path and radius
+  using Mover = certificates::MovingBall<Motion::degree>;  ///< path and radius, for the tests of balls
 
   std::size_t size() const { return alive_; }
   bool contains(BodyId id) const { return alive(body_slot(id)) && generation(body_slot(id)) == body_generation(id); }
-  /// Where a body is. Throws std::out_of_range, naming the id and saying whether the body was removed, if there is none
-  /// (any more).
+  /// The slot of a body. Throws std::out_of_range, naming the id and saying whether the body was removed, if there is
+  /// no such body.
   BodySlot slot_of(BodyId id) const {
     if (!contains(id)) [[unlikely]]
       refuse(id);
@@ -129,14 +129,14 @@ class Bodies {
   const Path& path(BodySlot slot) const { return movers_[slot].motion; }
   Moving moving(BodySlot slot) const { return Moving(bodies_[slot], motion(slot)); }
   PlacedShape shape(BodySlot slot) const { return moving(slot).shape; }
-  /// Whether no other body changes its motion.
+  /// Whether the body is fixed: no other body changes its motion.
   bool fixed(BodySlot slot) const { return bodies_[slot].inverse_mass == 0; }
 
   void move(BodySlot slot, const Motion& motion) {
     movers_[slot].motion = path_of(motion);
     if constexpr (turns<Motion>) motions_[slot] = motion;
   }
-  /// Half the acceleration that the body has by itself: that of the motion that callers gave last.
+  /// Half the acceleration that the body has without contacts: that of the motion that callers gave last.
   Eigen::Vector3d free_acceleration(BodySlot slot) const requires(Motion::degree <= 2) {
     if constexpr (Motion::degree == 2) {
       return bodies_[slot].force;
@@ -157,7 +157,7 @@ class Bodies {
     if constexpr (Motion::degree == 2) bodies_[slot].force = path_of(motion).coefficients[2];
     if constexpr (Motion::degree >= 3) bodies_[slot].given = path_of(motion);
   }
-  /// Whether a body that takes up another motion at t is then elsewhere, by more than rounding.
+  /// Whether a body that is given another motion at t jumps: is then elsewhere, by more than rounding.
   bool is_jump(BodySlot slot, const Motion& to, double t) const;
 
   /// Whether some body is a sensor, or was.
@@ -165,14 +165,14 @@ class Bodies {
 
   /// Whether some body does not collide with all others, or did not.
   bool filters() const { return filters_; }
-  /// Whether there is something that it may collide with. What collides with nothing no broad phase knows.
+  /// Whether there is anything that it may collide with. Bodies that collide with nothing are not in the broad phase.
   bool collides(BodySlot slot) const { return bodies_[slot].category != 0 && bodies_[slot].collides_with != 0; }
   bool may_collide(BodySlot a, BodySlot b) const {
     return (bodies_[a].category & bodies_[b].collides_with) != 0 &&
            (bodies_[b].category & bodies_[a].collides_with) != 0;
   }
 
-  /// Adds one with a motion to begin with. No `shape` is that of a ball that is not turned. Precondition: valid.
+  /// Adds a body with its first motion. A null `shape` stands for a ball that is not turned. Precondition: valid.
   BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion);
   void remove(BodySlot slot);
   void reserve(std::size_t bodies);
@@ -184,12 +184,12 @@ class Bodies {
   const std::vector<BodySlot>& waiting() const { return waiting_; }
   std::vector<BodySlot> take_waiting() { return std::exchange(waiting_, {}); }
 
-  /// All of it, as plain data: what a snapshot holds.
+  /// The whole state as plain data, for snapshots.
   struct Image;
   Image image() const;
   /// Precondition: the image has been checked.
   void become(const Image& image);
-  /// Every mesh that some body has, once.
+  /// Every mesh of the bodies, once.
   std::vector<std::shared_ptr<const Mesh>> meshes() const;
 
  private:
@@ -201,7 +201,7 @@ class Bodies {
   std::vector<Mover> movers_;
   std::vector<Motion> motions_;  ///< by slot, where bodies turn
   std::vector<Body> bodies_;
-  /// By slot, up to the last from which a body was removed: of the body that is there, or of the next.
+  /// By slot, up to the last from which a body was removed: the generation of the body that is there, or of the next.
   std::vector<std::uint32_t> generations_;
   std::vector<BodySlot> free_;
   std::vector<BodySlot> waiting_;

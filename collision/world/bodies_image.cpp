@@ -21,7 +21,7 @@ bool equal(std::span<const Eigen::Vector3d> a, const std::vector<Eigen::Vector3d
   return std::equal(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// A shape as place() makes it of some orientation.
+/// Whether a shape is one that place() makes of some orientation.
 void check_shape(const PlacedShape& placed, std::size_t slot) {
   try {
     image::require(is_placed(placed), "bodies", slot, "its bounds are not those of its shape");

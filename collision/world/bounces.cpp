@@ -11,7 +11,7 @@ namespace kds::collision {
 
 using Eigen::Vector3d;
 
-/// Of two that have no rate, its first derivative that is not zero, up to a factor.
+/// If that rate is zero, its first derivative that is not, up to a positive factor.
 template <class Motion>
 double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>) {
   const auto& path_a = bodies_.path(a);
@@ -51,17 +51,17 @@ void BasicWorld<Motion>::process_wall() requires(!turns<Motion>) {
   ++counters_.wall_contacts;
   const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
   const bool clustered = resting_.clustered(id) && !bodies_.fixed(id);
-  bool held = !clustered && stays(rebound, pressed, size, count_meeting(id));
+  bool suppressed = !clustered && stays(rebound, pressed, size, count_meeting(id));
   if (clustered && endless(count_meeting(id))) {
     resting_.halt(id);
   } else if (clustered) {
     const bool rested = resting_.find(id, no_body, wall) != Resting::none;
     resting_.impact({.a = id, .wall = wall, .normal = event.contact.normal, .point = point},
                     std::min(body.restitution, options_.walls->restitution));
-    held = !rested && resting_.find(id, no_body, wall) != Resting::none;
-    counters_.held += held;
-  } else if (held) {
-    ++counters_.held;
+    suppressed = !rested && resting_.find(id, no_body, wall) != Resting::none;
+    counters_.rebounds_suppressed += suppressed;
+  } else if (suppressed) {
+    ++counters_.rebounds_suppressed;
     resting_.add({.a = id, .wall = wall, .normal = event.contact.normal, .point = point});
   } else {
     motion.coefficients[1][axis] = -rebound * out;
@@ -72,25 +72,27 @@ void BasicWorld<Motion>::process_wall() requires(!turns<Motion>) {
   resting_.solve();
   tell([&](Listener& listener) {
     listener.wall(*this, event);
-    if (held) listener.held_at_wall(*this, event);
+    if (suppressed) listener.rebound_suppressed_at_wall(*this, event);
   });
 }
 
-/// Whether what meets is held: see ZenoPolicy. `pressed`: relative acceleration towards each other; `size`: of the
-/// coordinates.
+/// Whether the two that meet rest on each other from now on, without rebound: see ZenoPolicy. `pressed`: relative
+/// acceleration towards each other; `size`: magnitude of the coordinates.
 template <class Motion>
 bool BasicWorld<Motion>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
   if (!(rebound > 0) || burst > options_.zeno.contacts) return true;
   if (!(pressed > 0)) return false;
-  // Near a large clock doubles are sparse: a flight lasts some of them at least. And it rises by some roundings of the
-  // coordinates: bodies with a light one between them bounce for ever where positions cannot come nearer.
+  // At a large clock the doubles are sparse: a flight must last for several of them. And it must rise by several
+  // roundings of the coordinates: else two bodies with a light one between them would bounce for ever at a distance
+  // that doubles cannot make smaller.
   const double spacing = next_up(std::abs(clock_.now)) - std::abs(clock_.now);
   const double shortest = std::max(options_.zeno.interval / std::max(options_.zeno.contacts, 1u), 16 * spacing);
   const double lowest = 0x1p-48 * size;
   return 2 * rebound < shortest * pressed || rebound * rebound < 2 * pressed * lowest;
 }
 
-/// Whether so many meetings at nearly one time are a sign that there will be more without end.
+/// Whether the number of meetings at nearly one time says that they will not end: true at each multiple of
+/// ZenoPolicy::contacts.
 template <class Motion>
 bool BasicWorld<Motion>::endless(std::uint64_t burst) const {
   const std::uint64_t many = std::max(options_.zeno.contacts, 1u);
@@ -101,8 +103,8 @@ template <class Motion>
 bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
   if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
   const std::uint64_t burst = count_meeting(a, b);
-  if (burst > patience()) {  // Holding does not help: the pair is left as it is, and so passes through.
-    ++counters_.held;
+  if (burst > patience()) {  // A resting contact would not last: the pair passes through.
+    ++counters_.rebounds_suppressed;
     pairs_.let_pass(a, b);
     const PairEvent event = event_of(a, b, contact);
     reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);
@@ -124,18 +126,18 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
     resting_.gather(a), resting_.gather(b);
     return strike(a, b, contact, restitution);
   }
-  const bool held = bounce_or_hold(a, b, contact, restitution, burst);
-  // What neither bounces nor is held by itself is held by what it leans on.
-  if (rest() || !approach()) return held;
+  const bool suppressed = bounce_or_rest(a, b, contact, restitution, burst);
+  // They still approach though they have bounced: the bodies that they lean on press them together, so they rest.
+  if (rest() || !approach()) return suppressed;
   if (resting_.can_gather(a, b)) {
     resting_.gather(a), resting_.gather(b);
-    return strike(a, b, contact, restitution) || held;
+    return strike(a, b, contact, restitution) || suppressed;
   }
-  hold(a, b, contact);
+  begin_rest(a, b, contact);
   return true;
 }
 
-/// A contact in a cluster. Whether the two are held from now on.
+/// A contact in a cluster. Whether the two rest on each other from now on.
 template <class Motion>
 bool BasicWorld<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact,
                                 double restitution) requires(!turns<Motion>) {
@@ -143,28 +145,28 @@ bool BasicWorld<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact,
   const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, restitution);
   resting_.solve();
-  // What the others that lean on the two have turned back towards each other stays together.
+  // If the bodies that lean on the two push them back towards each other, they stay together.
   if (resting_.find(a, b) == Resting::none && parting(a, b, contact) < 0) {
     resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, 0);
     resting_.solve();
   }
   const bool rests = resting_.find(a, b) != Resting::none;
-  counters_.held += rests && !rested;
+  counters_.rebounds_suppressed += rests && !rested;
   return rests && !rested;
 }
 
 template <class Motion>
-void BasicWorld<Motion>::hold(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
-  ++counters_.held;
+void BasicWorld<Motion>::begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
+  ++counters_.rebounds_suppressed;
   const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.add({.a = a, .b = b, .normal = contact.normal, .point = point});
   resting_.disturb(a), resting_.disturb(b);
   resting_.solve();
 }
 
-/// A contact in no cluster. Whether the two are held from now on.
+/// A contact in no cluster. Whether the two rest on each other from now on.
 template <class Motion>
-bool BasicWorld<Motion>::bounce_or_hold(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+bool BasicWorld<Motion>::bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
                                         std::uint64_t burst) requires(!turns<Motion>) {
   Motion motion_a = bodies_.motion(a).restarted(contact.time);
   Motion motion_b = bodies_.motion(b).restarted(contact.time);
@@ -178,7 +180,7 @@ bool BasicWorld<Motion>::bounce_or_hold(BodySlot a, BodySlot b, const Contact& c
   const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
                       bodies_[a].bounding_radius + bodies_[b].bounding_radius;
   if (stays(restitution * approach, pressed, size, burst)) {
-    hold(a, b, contact);
+    begin_rest(a, b, contact);
     return true;
   }
   change_relative_velocity(motion_a.coefficients[1], motion_b.coefficients[1], n, (1 + restitution) * approach,

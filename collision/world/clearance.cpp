@@ -1,4 +1,4 @@
-// How far bounding volumes are beyond their bodies, in worlds with meshes.
+// How much larger than their bodies bounding volumes are, in worlds with meshes.
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/world/volumes.hpp"
@@ -8,26 +8,27 @@
 
 namespace kds::collision {
 
-/// By what a body's volume is grown from now on, on all sides. Meshes in the box around their shape have the least of
-/// that in place already.
+/// By how much a body's volume is grown from now on, on all sides. The boxes around the shapes of meshes include the
+/// least such growth already.
 template <class Motion>
 std::array<double, std::size_t{Motion::degree} + 1> Volumes<Motion>::growth(BodySlot slot) const {
   std::array<double, std::size_t{Motion::degree} + 1> growth{};
   if (!meshes_) return growth;
   const detail::Body<Motion>& b = bodies_[slot];
   const MeshClearance<Motion::degree> clearance(bodies_.path(slot), b.bounding_radius);
-  // A caller's box is valid for as long as the caller says.
+  // A caller's box is valid as long as the caller says.
   if (from_caller(slot) || clearance.holds_until() <= clock_.now) return clearance.growing();
   const bool in_place = !is_round(slot) && clearance.is_least() && has_mesh(b.shape->shape);
   if (!in_place) growth[0] = clearance.constant();
   return growth;
 }
 
-/// Where there are no meshes, a volume with this box.
+/// A volume with this box, in a world without meshes.
 template <class Motion>
 KineticBox<Motion::degree> Volumes<Motion>::grown(BodySlot slot, Box box) const {
   const auto by = growth(slot);
-  // Its ends are no longer as far from a ball as its radius says. (That of a mesh's volume says nothing of its gap.)
+  // Its ends are now farther from a ball than its rounding radius assumes. (That of a mesh's volume does not include
+  // the gap.)
   const bool moves_alike = std::all_of(by.begin() + 1, by.end(), [](double c) { return c == 0; });
   box.rounding = bodies_.mover(slot).radius > 0 && moves_alike && box.rounding > 0 ? box.rounding + by[0] : 0;
   grow(box, by, bodies_.path(slot).start);

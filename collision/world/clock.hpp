@@ -3,10 +3,10 @@
 
 namespace kds::collision {
 
-/// Parts read it. It is set by the world, and while a broad phase is at work by the pairs that it reports.
+/// Parts read it. The world sets it, and so do the pairs while the broad phase reports them.
 struct Clock {
-  double now = 0;      ///< s: of what is being done
-  double horizon = 0;  ///< s: what happens later need not be known yet
+  double now = 0;      ///< s: the time of the event that is being processed
+  double horizon = 0;  ///< s: events later than this need not be known yet
 };
 
 }  // namespace kds::collision

@@ -1,4 +1,4 @@
-// Impacts on clusters: what is struck passes it on to all that leans on it, at once.
+// Impacts on clusters: a body that is struck passes the impact on, at once, to all bodies that lean on it.
 #include "collision/motions.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/cluster_rules.hpp"
@@ -15,21 +15,21 @@ namespace {
 using Eigen::Vector3d;
 using namespace cluster;
 
-/// More than what is lacking is pushed, since neighbours take some of it away again. Found to take the fewest visits
-/// for heaps of balls; 1 takes a third more.
+/// Over-relaxation: more than the missing push is added, since neighbours take some of it away again. Measured: the
+/// fewest visits for heaps of balls; 1 takes a third more.
 constexpr double over_relaxation = 1.2;
 /// How exactly the contact that is struck is solved, compared with those elsewhere.
 constexpr double struck_precision = 0x1p-8;
 
 }  // namespace
 
-/// The bodies and contacts that an impact reaches, one after the other, from where it happens: solved by sweeps
+/// The bodies and contacts that an impact affects, one after the other, beginning where it happens: solved by sweeps
 /// [Cryer71] over those whose bodies have changed.
 template <class Motion>
 class RestingContacts<Motion>::Neighbourhood {
  public:
-  /// From a contact on, which may be a resting one. `least`: the rate at which it is to part. `span`: s, of bodies in
-  /// no cluster.
+  /// Begins with a contact, which may be a resting one. `least`: the rate at which it is to part. `span`: s, for bodies
+  /// in no cluster.
   Neighbourhood(RestingContacts& all, const Contact& struck, Slot slot, double least, double span)
       : all_(all), span_(span) {
     ++all_.islands_;
@@ -38,7 +38,7 @@ class RestingContacts<Motion>::Neighbourhood {
       Contact& contact = all_.contacts_[slot];
       contact.seen = all_.islands_;
       contact.place = 0;
-      if (all_.gaps_.has_mesh(contact)) {  // They touch, or are known to be deeper by some roundings.
+      if (all_.gaps_.has_mesh(contact)) {  // They touch, or overlap by some roundings.
         contact.gap = std::min(all_.gaps_.along_normal(contact), 0.0);
         contact.since = all_.clock_.now;
         contact.aim = contact.gap - closing(contact, contact.gap);
@@ -47,7 +47,7 @@ class RestingContacts<Motion>::Neighbourhood {
     add_touch(struck, slot, least);
   }
 
-  /// Velocities, of which nothing is known but that they were allowed before.
+  /// Solves for velocities; those before the impact were allowed by all other contacts.
   bool solve_velocities(double restitution) {
     const bool solved = solve(velocities, Order::velocities);
     if (restitution == 0) return solved;
@@ -58,7 +58,7 @@ class RestingContacts<Motion>::Neighbourhood {
     return solve(velocities, Order::velocities) && solved;
   }
 
-  /// Half the accelerations, of all that have been reached and are in clusters.
+  /// Solves for half the accelerations of all bodies that are affected and in clusters.
   bool solve_accelerations() {
     const std::size_t reached = touches_.size();
     for (std::size_t i = 0; i < reached; ++i) prepare(i);
@@ -116,7 +116,7 @@ class RestingContacts<Motion>::Neighbourhood {
     turned_.push_back(0);
   }
 
-  /// What is left of the span of its cluster; of two clusters', until the later one ends.
+  /// The rest of the span of its cluster; with two clusters, until the later one ends.
   double span_of(const Contact& contact) const {
     double ends = all_.clock_.now + span_;
     for (const BodySlot id : {contact.a, contact.b}) {
@@ -126,10 +126,10 @@ class RestingContacts<Motion>::Neighbourhood {
     return ends - all_.clock_.now;
   }
 
-  /// For accelerations: the push that a contact has, and the least that is left to it.
+  /// For accelerations: the push that a contact has, and its least relative acceleration.
   void prepare(std::size_t i) {
     Touch& touch = touches_[i];
-    if (slots_[i] == none) {  // They part.
+    if (slots_[i] == none) {  // The two part.
       touch.push = 0;
       touch.least = -never;
       return;
@@ -143,13 +143,14 @@ class RestingContacts<Motion>::Neighbourhood {
     touch.least = least_acceleration(falls, parting_rate(velocities, touch), spans_[i]);
   }
 
-  /// Whether what a contact slides by has changed by enough to matter.
+  /// Whether the distance that a contact slides in the span has changed by enough to matter.
   bool goes_elsewhere(const Touch& touch, const Contact& contact, double span) const {
     const Vector3d change = (velocities[touch.b] - before_[touch.b]) - (velocities[touch.a] - before_[touch.a]);
     return norm(change) * span > contact.room;
   }
 
-  /// The normal becomes that between now and the end of the span, and what the contact pushes goes along with it.
+  /// The normal becomes the one half-way between now and the end of the span, and the push of the contact is turned to
+  /// it.
   void turn(Touch& touch, Contact& contact, double span) {
     Contact here = contact;
     const double gap = all_.gaps_.nearest(here);
@@ -165,7 +166,7 @@ class RestingContacts<Motion>::Neighbourhood {
     contact.aim = all_.gaps_.along_normal(contact) - closing(contact, gap);
   }
 
-  /// A body has changed: all its contacts are to be looked at.
+  /// A body has changed: all its contacts are queued for a visit.
   void look_at(std::uint32_t place, Order order) {
     if (!known_[place]) list_touches(place, order);
     const auto [first, last] = of_body_[place];
@@ -202,7 +203,7 @@ class RestingContacts<Motion>::Neighbourhood {
     std::fill(waits_.begin(), waits_.end(), 1);
   }
 
-  /// False if that takes too long.
+  /// False if there are too many visits.
   bool solve(std::vector<Vector3d>& rates, Order order) {
     for (std::size_t visits = 0; !waiting_.empty(); ++visits) {
       if (visits > most_sweeps * (touches_.size() + 10)) return false;
@@ -217,7 +218,7 @@ class RestingContacts<Motion>::Neighbourhood {
       for (const std::uint32_t side : {touches_[i].a, touches_[i].b}) look_at(side, order);
     }
     if (order == Order::accelerations) return true;
-    Touch& struck = touches_.front();  // What is to part does so, exactly.
+    Touch& struck = touches_.front();  // The contact that is struck parts exactly as it should.
     const double lacks = struck.least - parting_rate(rates, struck);
     if (lacks > 0) give_push(rates, struck, lacks);
     return true;
@@ -226,7 +227,7 @@ class RestingContacts<Motion>::Neighbourhood {
   RestingContacts& all_;
   double span_;
   std::vector<Vector3d> before_;
-  std::vector<char> known_;                                       ///< by body, whether its touches are listed
+  std::vector<char> known_;                                       ///< by body: whether its touches are listed
   std::vector<std::pair<std::uint32_t, std::uint32_t>> of_body_;  ///< where in listed_
   std::vector<std::uint32_t> listed_;
   std::vector<Touch> touches_;
@@ -238,8 +239,8 @@ class RestingContacts<Motion>::Neighbourhood {
   std::deque<std::uint32_t> waiting_;
 };
 
-/// A body that is struck joins the cluster of what it strikes, or stays in its own; what rested wakes. The time at
-/// which their span ends, which is now if it is to begin.
+/// A body that strikes another joins the cluster of that one, or stays in its own; bodies that rested wake. Returns the
+/// time at which their span ends, which is now if a new one is to begin.
 template <class Motion>
 double RestingContacts<Motion>::wake(const Contact& contact, bool joins) {
   const double now = clock_.now;
@@ -262,7 +263,8 @@ double RestingContacts<Motion>::wake(const Contact& contact, bool joins) {
   return ends;
 }
 
-/// A contact in a cluster begins to last, with the room that its neighbours have, which says whether there are many.
+/// A contact in a cluster begins to last, with the room that neighbouring contacts have, which depends on how many
+/// there are.
 template <class Motion>
 typename RestingContacts<Motion>::Slot RestingContacts<Motion>::add_to_cluster(const Contact& contact) {
   Contact lasting = contact;
@@ -281,12 +283,12 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::add_to_cluster(c
   return slot;
 }
 
-/// The law of impacts [Moreau88]: of all velocities that no contact forbids those nearest to the ones before, by mass;
-/// and as far beyond as restitution says. Only what the impact reaches is looked at.
+/// The law of impacts [Moreau88]: of all velocities that no contact forbids those nearest to the ones before, measured
+/// by mass; and as far beyond as restitution says. Only bodies that the impact affects are solved for.
 template <class Motion>
 void RestingContacts<Motion>::impact(const Contact& contact, double restitution) {
   const double now = clock_.now;
-  double bounce = never;  // flights that are shorter are none
+  double bounce = never;  // s; shorter flights are left out
   double weight = 0;
   for (const BodySlot id : {contact.a, contact.b}) {
     if (id == no_body || bodies_.fixed(id)) continue;
@@ -311,7 +313,7 @@ void RestingContacts<Motion>::impact(const Contact& contact, double restitution)
     }
     if (slot != none && !contacts_[slot].alive) slot = none;
   }
-  // What stays together parts by so little that rounding does not have it meet again.
+  // Bodies that stay together part by so little that they do not meet again by rounding.
   const double least = joins ? lift * (slot != none ? contacts_[slot].room : 0.0) / span : 0.0;
   Neighbourhood near(*this, contact, joins ? slot : none, least, span);
   const bool solved = near.solve_velocities(restitution) && (anew || near.solve_accelerations());
@@ -324,7 +326,7 @@ void RestingContacts<Motion>::impact(const Contact& contact, double restitution)
     if constexpr (Motion::degree >= 2) motion.coefficients[2] = near.halves[i];
     if (!(motion == before)) listener_.take_up(id, motion);
   }
-  if (!solved && slot == none) add_to_cluster(contact);  // What is squeezed does not bounce.
+  if (!solved && slot == none) add_to_cluster(contact);  // Bodies that are squeezed do not bounce.
   if (!anew && solved) return;
   for (const BodySlot id : {contact.a, contact.b}) {
     if (id == no_body || bodies_.fixed(id)) continue;

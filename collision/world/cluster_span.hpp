@@ -1,4 +1,4 @@
-// A span of a cluster: what its bodies do in it. Included by resting_clusters.cpp alone.
+// A span of a cluster: the motions of its bodies. Included only by resting_clusters.cpp.
 #pragma once
 
 #include "collision/vectors.hpp"
@@ -15,12 +15,12 @@
 namespace kds::collision {
 namespace cluster {
 
-/// Normals and accelerations depend on each other: so often they are found in turn.
+/// Normals and accelerations depend on each other: this many times they are computed in turn.
 inline constexpr std::size_t most_passes = 4;
 
-/// By sweeps, which is quick where the pushes are known from a little while ago; what they do not solve (a wedge that
-/// is squeezed, what is light between the heavy) by active sets. Where that is impossible, since bodies fill all the
-/// room that there is, no gap is made to grow: `at_least` are the bounds for that.
+/// By sweeps, which are quick if the pushes of a short time before are known; what they do not solve (a wedge that is
+/// squeezed, light bodies between heavy ones) by active sets. If there is no solution, since bodies fill all the room
+/// between fixed ones, no gap is made to grow: `at_least` has the bounds for that.
 inline bool solve(std::vector<Eigen::Vector3d>& rates, std::vector<Touch>& touches, std::span<const double> at_least,
                   double tolerance) {
   const std::vector<Eigen::Vector3d> before = rates;
@@ -40,8 +40,7 @@ inline bool solve(std::vector<Eigen::Vector3d>& rates, std::vector<Touch>& touch
 
 }  // namespace cluster
 
-/// A span of a cluster that begins now: what its bodies do in it. Places among rates are those of the island, and the
-/// walls come last.
+/// A span of a cluster that begins now. Places among rates are those of the island, and the walls come last.
 template <class Motion>
 class RestingContacts<Motion>::Span {
   using Vector3d = Eigen::Vector3d;
@@ -58,7 +57,7 @@ class RestingContacts<Motion>::Span {
     length = longest();
   }
 
-  /// False if not all contacts could be kept from closing.
+  /// False if some contacts could not be kept from closing.
   bool solve_velocities(bool turns) {
     tolerance_ = never;
     for (std::size_t k = 0; k < touches_.size(); ++k) {
@@ -83,7 +82,7 @@ class RestingContacts<Motion>::Span {
   }
 
   /// Half the accelerations, and the pushes of contacts. On a curved surface the normal is that between those at both
-  /// ends of the span, so that what begins in touch and along the surface ends so, and no speed is lost.
+  /// ends of the span, so that bodies that begin in touch and moving along the surface end so, and no speed is lost.
   bool solve_accelerations() {
     std::vector<Vector3d> free = halves;
     for (std::size_t i = 0; i < island_.free; ++i) free[i] = 0.5 * all_.acceleration(island_.bodies[i]);
@@ -105,8 +104,8 @@ class RestingContacts<Motion>::Span {
     return solved;
   }
 
-  /// How long it may last: what has been left too near ends it before it is too late. Contacts know from then on how
-  /// far they will be, and which of them are proven.
+  /// How long it may last: it ends before a gap that was left too small closes. Also sets the gap of each contact at
+  /// the end, and whether it is proven.
   double usable() {
     for (double result = length;;) {
       pay(result);
@@ -116,7 +115,7 @@ class RestingContacts<Motion>::Span {
     }
   }
 
-  /// Of what cannot be solved all bodies get one velocity and one acceleration, which no contact forbids: those of the
+  /// If there is no solution all bodies get one velocity and one acceleration, which no contact forbids: those of the
   /// fixed bodies that they lean on, or the means by mass if there are none.
   void move_as_one() {
     const auto wall = island_.bodies.size();
@@ -169,15 +168,16 @@ class RestingContacts<Motion>::Span {
     return span;
   }
 
-  /// What lifts contacts to their room, and what is rounded, is paid by the speeds: the bodies end the span with no
-  /// more energy than they have before it, if it lasts for a time. Fixed bodies that move do work, which nobody pays.
+  /// The energy that lifts contacts to their room, and that rounding adds, is taken from the speeds: the bodies end the
+  /// span with no more energy than they have before it, if it lasts for a time. The work of moving fixed bodies is not
+  /// taken off.
   void pay(double time) {
     const auto moves = [](const Vector3d& vector) { return !vector.isZero(0); };
     const auto fixed = static_cast<std::ptrdiff_t>(island_.free);
     if (std::any_of(velocities.begin() + fixed, velocities.end(), moves)) return;
     if (std::any_of(halves.begin() + fixed, halves.end(), moves)) return;
     double gained = 0;
-    double by_speeds = 0;  // its derivative by a factor of all velocities
+    double by_speeds = 0;  // its derivative with respect to a common factor of all velocities
     for (std::size_t i = 0; i < island_.free; ++i) {
       const BodySlot id = island_.bodies[i];
       const Vector3d weight = all_.acceleration(id);
@@ -191,7 +191,7 @@ class RestingContacts<Motion>::Span {
     for (std::size_t i = 0; i < island_.free; ++i) velocities[i] *= 1 - gained / by_speeds;
   }
 
-  /// For how much of a time no bodies come into each other.
+  /// For how long, up to a time, no bodies penetrate.
   double provable(double time) {
     proven_.clear();
     for (std::size_t k = 0; k < touches_.size(); ++k) {
@@ -205,7 +205,7 @@ class RestingContacts<Motion>::Span {
       const auto apart_at = [&](double at) {
         return all_.gaps_.after(contact, displacement(touches_[k], at)).width >= 0;
       };
-      const auto lasts = [&](double until) {  // What would meet at once lasts not at all.
+      const auto lasts = [&](double until) {  // If the two would meet at once it does not last at all.
         if (!all_.gaps_.bends(contact)) return all_.gaps_.proven(contact, rate, half, until);
         return apart_at(until) && apart_at(cluster::shortest_span * until);
       };
@@ -214,12 +214,12 @@ class RestingContacts<Motion>::Span {
     return time;
   }
 
-  /// Of b, seen from a.
+  /// How far b moves relative to a in a time.
   Vector3d displacement(const Touch& touch, double time) const {
     return (velocities[touch.b] - velocities[touch.a]) * time + (halves[touch.b] - halves[touch.a]) * (time * time);
   }
 
-  /// False if the paths would end nearer to each other than the normals that they were found with tell.
+  /// False if the paths would end nearer to each other than follows from the normals with which they were computed.
   bool turn_normals() {
     bool follow = true;
     for (const std::size_t k : bends_) {
@@ -239,11 +239,11 @@ class RestingContacts<Motion>::Span {
   RestingContacts& all_;
   Island& island_;
   std::vector<Touch>& touches_;
-  std::vector<Vector3d> normals_;   ///< of contacts when it begins
+  std::vector<Vector3d> normals_;   ///< of contacts at the beginning of the span
   std::vector<std::size_t> bends_;  ///< contacts whose normals turn
   std::vector<double> at_least_;
   std::vector<char> proven_;
-  double tolerance_ = never;  ///< of gaps when it ends, in units of length
+  double tolerance_ = never;  ///< of gaps at the end of the span, in units of length
 };
 
 }  // namespace kds::collision

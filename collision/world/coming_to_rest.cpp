@@ -1,4 +1,4 @@
-// When bodies that are slow come to rest.
+// When slow bodies come to rest.
 #include "collision/motions.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/cluster_rules.hpp"
@@ -14,9 +14,9 @@ namespace kds::collision {
 using Eigen::Vector3d;
 using namespace cluster;
 
-/// When bodies that go on like this come to rest, `never` if they do not: something at rest carries them, no contact is
-/// perfectly elastic, all have met others that are free (what slides alone on a plane slides on), and have been slow
-/// for long enough.
+/// The time at which the bodies come to rest if they go on like this, `never` if they do not: they do if something at
+/// rest carries them, no contact is perfectly elastic, all have met others that are free (a body that slides alone on a
+/// plane slides on), and all have been slow for long enough.
 template <class Motion>
 double RestingContacts<Motion>::comes_to_rest(const Island& island, const std::vector<Vector3d>& velocities) {
   const bool carried = std::any_of(island.contacts.begin(), island.contacts.end(), [this](Slot slot) {

@@ -18,14 +18,14 @@ bool is_round(const PlacedShape& shape) {
   return std::holds_alternative<Sphere>(shape.shape) || std::holds_alternative<Capsule>(shape.shape);
 }
 
-/// b, moved.
+/// b, displaced.
 template <int Degree>
 certificates::PointMotion<Degree> moved(certificates::PointMotion<Degree> motion, const Vector3d& by) {
   motion.coefficients[0] += by;
   return motion;
 }
 
-/// As a part of their size, how much nearer a mesh is moved to find what is nearest.
+/// By how much a mesh is moved nearer to find the nearest places, as a part of their size.
 constexpr double nearest_part = 0x1p-26;
 
 }  // namespace
@@ -136,7 +136,7 @@ bool ContactGaps<Motion>::renew(Contact& contact) const {
   const bool round = is_round(a.shape) || is_round(b.shape);
   const bool mesh = has_mesh(contact);
   if (round && !mesh) return true;
-  // Faces may have slid off each other. What is nearest is found first, then what is near.
+  // Faces may have slid off each other. First the nearest places are found, then those that are near.
   for (const double part : {nearest_part, cluster::room_of_many}) {
     const Vector3d nearer = -(contact.gap + part * size(contact)) * contact.normal;
     const auto motion = moved(b.motion, nearer);

@@ -1,4 +1,4 @@
-// What is between bodies that rest on each other.
+// The gaps between bodies that rest on each other.
 #pragma once
 
 #include "collision/motions.hpp"
@@ -26,39 +26,39 @@ class ContactGaps {
 
   /// The bounding radius of the smaller of the two.
   double size(const Contact& contact) const;
-  /// Whether one of the two is a mesh: of its surface nothing is known but where it touches.
+  /// Whether one of the two is a mesh, whose surface is known only where it touches.
   bool has_mesh(const Contact& contact) const;
-  /// Whether its normal turns while the two slide over each other: one is round, and what it touches no face of a box.
+  /// Whether its normal turns while the two slide over each other: one is round, and does not touch a face of a box.
   bool turns(const Contact& contact) const;
-  /// That, and no mesh: the normal is known elsewhere too.
+  /// turns(), and no mesh: so the normal is known at other places too.
   bool bends(const Contact& contact) const { return turns(contact) && !has_mesh(contact); }
 
   /// Rate at which the two part along the normal.
   double parting(const Contact& contact) const;
-  /// The gap along the normal. Of meshes, what it was at contact.since and the way they have gone: precondition: they
-  /// have moved since then as they do now.
+  /// The gap along the normal. For meshes, the gap at contact.since plus the displacement since then. Precondition:
+  /// they have not changed their motions since.
   double along_normal(const Contact& contact) const;
   /// The gap; the normal becomes that of the places where the two are nearest.
   double nearest(Contact& contact) const;
   /// The same when b will have moved relative to a. Precondition: turns(), and no mesh.
   SurfaceGap after(const Contact& contact, const Eigen::Vector3d& displacement) const;
-  /// Takes gap and normal anew. False if the contact is over.
+  /// Recomputes gap and normal. False if the contact has ended.
   bool renew(Contact& contact) const;
 
-  /// Whether a plane across the normal is sure to stay between the two for `span` seconds, in which they part at a rate
-  /// and with half an acceleration: there is a gap, and what follows is a parabola that is above zero when that ends.
+  /// Whether a plane across the normal certainly stays between the two for `span` seconds, in which they part at a rate
+  /// and with half an acceleration: there is a gap now, and the parabola of the gap is above zero at the end.
   bool proven(const Contact& contact, double rate, double half, double span) const;
 
-  /// How far the two overlap, as far as that is known: of meshes it is not.
+  /// How far the two overlap; not known for meshes.
   double overlap(Contact contact) const { return has_mesh(contact) ? 0 : -nearest(contact); }
-  /// Whether they overlap by more than that. Boxes that have slid off each other overlap along the normal alone.
+  /// Whether they overlap by more than that. Boxes that have slid off each other overlap only along the normal.
   bool deeper(const Contact& contact, double by) const;
-  /// How much farther they may than when the contact began: by a billionth of the smaller, and by what motions are
-  /// rounded by at this clock.
+  /// By how much more they may overlap than when the contact began: by a billionth of the smaller size, and by the
+  /// rounding of motions at this clock.
   double deepest_overlap(const Contact& contact) const;
 
  private:
-  /// Most contacts are of two balls, for which a tenth of the work will do.
+  /// Most contacts are of two balls, for which a tenth of the work suffices.
   bool balls(const Contact& contact) const;
 
   const Bodies<Motion>& bodies_;

@@ -13,8 +13,8 @@
 
 namespace kds::collision {
 
-/// A time before which a ball will not be outside a wall and going outward; `never` for never. Wall 2 d is the lower
-/// one on axis d, 2 d + 1 the upper. Of degree 3 and above: `now`, which says nothing.
+/// A time before which a ball is not both outside a wall and moving outward; `never` if it never is. Wall 2 d is the
+/// lower one on axis d, 2 d + 1 the upper. For degree 3 and above: `now`, the trivial bound.
 ///
 /// Error bound, for straight paths: the gap is a sum of five numbers, with a product of a time known to one rounding:
 /// at most 6 units of 2^-53 of their magnitudes. The quotient by the speed, which is a double, and the sum with the
@@ -58,7 +58,7 @@ double earliest_wall_time(const certificates::PointMotion<Degree>& motion, doubl
 namespace detail {
 
 /// How many seconds from now on that time is away, for two coordinates at a time; `never` where one does not move.
-/// Without a branch, since nobody can predict which walls bodies approach.
+/// Without a branch, since processors cannot predict which walls bodies approach.
 inline Two wait_for_wall(Two at, Two speed, Two elapsed, Two radius, Two low, Two high) {
   const Two moved = speed * elapsed;
   const Two plane = speed > 0 ? high : low;

@@ -1,4 +1,4 @@
-// A bound on what callbacks change while the clock hardly moves.
+// A bound on the changes by callbacks while the clock hardly moves.
 #pragma once
 
 #include "kds/roots/failure_time.hpp"
@@ -9,10 +9,10 @@
 
 namespace kds::collision {
 
-/// Counts the changes that callbacks make. Those that go on for ever at one time would never let the clock move.
+/// Counts the changes that callbacks make. Changes that go on for ever at one time would stop the clock.
 class EditLimit {
  public:
-  /// One more, at `now`. Throws std::runtime_error if it exceeds `most` within `interval` seconds.
+  /// Counts one more, at `now`. Throws std::runtime_error if it exceeds `most` within `interval` seconds.
   void count(double now, double interval, std::uint64_t most) {
     if (now - since_ > interval) {
       since_ = now;

@@ -1,4 +1,4 @@
-// How bodies come into the world, change and go.
+// How bodies are added to the world, changed and removed.
 #include "collision/motions.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
@@ -130,7 +130,7 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
   return bodies_.id_of(change_or_fail([&] { return put(description, std::move(shape)); }));
 }
 
-/// No shape is that of a ball that is not turned.
+/// A null shape stands for a ball that is not turned.
 template <class Motion>
 inline BodySlot BasicWorld<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape) {
   // Pieces that are over are skipped; the rest is a script.
@@ -147,7 +147,7 @@ inline BodySlot BasicWorld<Motion>::put(const Description& description, std::sha
   return slot;
 }
 
-/// From the first mesh on all volumes have room for contact gaps: those of bodies that are there already get it now.
+/// From the first mesh on all volumes include contact gaps: those of bodies that are there already are enlarged now.
 template <class Motion>
 void BasicWorld<Motion>::make_room_for_meshes() {
   if (!volumes_.make_room_for_meshes()) return;
@@ -156,7 +156,7 @@ void BasicWorld<Motion>::make_room_for_meshes() {
   }
 }
 
-/// Makes known a volume that is another though nothing has moved.
+/// Reports a volume to the broad phase that has changed although nothing has moved.
 template <class Motion>
 void BasicWorld<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degree>& box) {
   if (bodies_.collides(slot)) broad_phase_->update(slot, box, clock_.now, pairs_);
@@ -167,7 +167,7 @@ void BasicWorld<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::d
 template <class Motion>
 void BasicWorld<Motion>::enter_new_bodies() {
   const std::vector<BodySlot> entering = bodies_.take_waiting();
-  // What is due now among the others comes first, lest it count as what the new ones bring.
+  // Events of the others that are due now come first, so that they are not attributed to the new bodies.
   while (broad_phase_->advance(clock_.now, pairs_)) {
   }
   std::vector<Entry> entries;
@@ -179,7 +179,7 @@ void BasicWorld<Motion>::enter_new_bodies() {
     entries.push_back({slot, nullptr});
   }
   const auto boxes = std::make_unique_for_overwrite<KineticBox<Motion::degree>[]>(entries.size());
-  // The functions of callers are called by their own thread, and in order.
+  // The functions of callers are called by the calling thread, and in order.
   const std::size_t threads = volumes_.any_from_callers() ? 1 : threads_for(entries.size(), options_.threads);
   in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -238,7 +238,7 @@ template <class Motion>
 void BasicWorld<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   bodies_.move(slot, motion);
-  pairs_.prefetch(slot);  // while the broad phase is at work
+  pairs_.prefetch(slot);  // in parallel with the work of the broad phase
   if (jumped) pairs_.set_begin(Begin::jumping);
   if (bodies_.collides(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
   pairs_.set_begin(Begin::moving);

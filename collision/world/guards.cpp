@@ -1,4 +1,4 @@
-// What may be asked of a world at which moment, and what is left of it when something throws.
+// Which functions of a world may be called when, and its state after an exception.
 #include "collision/motions.hpp"
 #include "collision/world.hpp"
 
@@ -8,7 +8,7 @@
 
 namespace kds::collision {
 
-/// Keeps the first reason: what is thrown later follows from it.
+/// Keeps the first reason: later exceptions follow from it.
 template <class Motion>
 void BasicWorld<Motion>::note_failure() {
   if (!failure_) failure_ = std::current_exception();

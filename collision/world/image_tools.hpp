@@ -1,4 +1,4 @@
-// What the images of the world's parts have in common: see World::archive().
+// Tools of the images of the world's parts: see World::archive().
 #pragma once
 
 #include <Eigen/Core>
@@ -9,17 +9,17 @@
 
 namespace kds::collision::image {
 
-/// Throws std::runtime_error: it is no image that a world could have made of itself. Whatever else is loaded would be
-/// read out of bounds, or never end.
+/// Throws std::runtime_error: it is not an image that a world can have saved. Other images could make the world read
+/// out of bounds, or never end.
 [[noreturn]] inline void fail(const std::string& what) { throw std::runtime_error("snapshot: " + what); }
 
 inline void require(bool right, const char* list, std::size_t index, const char* what) {
   if (!right) fail(std::string(list) + "[" + std::to_string(index) + "]: " + what);
 }
 
-/// Since the beginning of time, but not from now on.
+/// A time that may be -infinity, and is not after now.
 inline bool is_past(double time, double now) { return time <= now; }
-/// Perhaps never, but not before now.
+/// A time that may be infinity, and is not before now.
 inline bool is_to_come(double time, double now) { return time >= now; }
 
 template <class Archive>

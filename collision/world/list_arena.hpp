@@ -15,22 +15,21 @@
 
 namespace kds::collision {
 
-/// Lists that grow and shrink at their end, of room for a power of two each. To make one, or to let it grow, costs a
-/// few instructions instead of a call of malloc(); all are gone with the arena, at once.
+/// Lists that grow and shrink at their end, each with room for a power of two. Making one, or letting it grow, costs a
+/// few instructions instead of a call of malloc(); all are freed with the arena, at once.
 ///
-/// Room that a list has outgrown, or that is given back, serves the next one of that room. Memory: twice the room of
-/// all lists, at most, and what has been given back.
-/// Cost: O(1), amortised where a list or the arena grows.
+/// Room that a list has outgrown, or that is given back, is used for the next list of that size. Memory: at most twice
+/// the room of all lists, and the room given back. Cost: O(1), amortised where a list or the arena grows.
 ///
-/// The arena has room for `Most` items, those not in use included; what would go beyond throws std::length_error, and
-/// then nothing is changed.
+/// The arena has room for `Most` items, those not in use included; a call that would exceed it throws
+/// std::length_error, and changes nothing.
 template <class T, std::uint64_t Most = std::uint64_t{1} << 32>
 class ListArena {
   static_assert(Most <= std::uint64_t{1} << 32, "places are numbered by 32 bits");
 
  public:
-  /// A list is known by this; copying it does not copy the list. Spans of items are valid until the next push_back()
-  /// to any list, or reserve().
+  /// A handle of a list; copying it does not copy the list. Spans of items are valid until the next push_back() to any
+  /// list, or reserve().
   struct List {
     std::uint32_t begin = 0;
     std::uint32_t size = 0;
@@ -72,7 +71,7 @@ class ListArena {
   static std::size_t place(std::uint32_t room) { return static_cast<std::size_t>(std::countr_zero(room)); }
 
   void grow(List& list, std::uint32_t room) {
-    const std::uint32_t begin = block(room);  // first: it may throw
+    const std::uint32_t begin = block(room);  // before any change, since it may throw
     const std::uint32_t size = list.size;
     if (list.room > 0) {
       std::copy_n(memory_.get() + list.begin, size, memory_.get() + begin);
@@ -81,7 +80,7 @@ class ListArena {
     list = {begin, size, room};
   }
 
-  /// Where there is so much room.
+  /// The beginning of a block of that size.
   std::uint32_t block(std::uint32_t room) {
     if (room > 0 && !free_[place(room)].empty()) {
       auto& free = free_[place(room)];
@@ -97,7 +96,7 @@ class ListArena {
     return static_cast<std::uint32_t>(std::exchange(used_, used));
   }
 
-  /// What is not used yet is not written to.
+  /// Memory that is not used yet is not written to.
   void enlarge(std::size_t room) {
     auto memory = std::make_unique_for_overwrite<T[]>(room);
     std::copy_n(memory_.get(), std::min(used_, room_), memory.get());

@@ -1,4 +1,4 @@
-// What a world says of what is near.
+// The queries of a world.
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/motions.hpp"
 #include "collision/world.hpp"
@@ -10,8 +10,8 @@
 
 namespace kds::collision {
 
-/// `ask(look)` asks the broad phase. What it names depends on which it is; meets(slot), of all that are named, does
-/// not.
+/// `ask(look)` queries the broad phase. The bodies that it visits depend on the broad phase; those of them for which
+/// meets(slot) is true do not.
 template <class Motion>
 template <class Ask, class Meets>
 void BasicWorld<Motion>::answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const {
@@ -35,7 +35,7 @@ void BasicWorld<Motion>::answer(const char* function, const Ask& ask, const Meet
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
-  std::vector<BodyId> named;  // all of them now, since what is called may change the world
+  std::vector<BodyId> named;  // all are collected first, since `visit` may change the world
   named.reserve(found.size());
   for (const BodySlot slot : found) named.push_back(bodies_.id_of(slot));
   for (const BodyId id : named) visit(id);

@@ -1,4 +1,4 @@
-// The broad phase that options ask for.
+// Makes the broad phase that options ask for.
 #pragma once
 
 #include "collision/broad_phase/broad_phase.hpp"
@@ -10,8 +10,8 @@
 
 namespace kds::collision {
 
-/// A broad phase without bodies, at `now`. Throws std::invalid_argument, naming the option, for one that it cannot
-/// have.
+/// A broad phase without bodies, at `now`. Throws std::invalid_argument, naming the option, for an option that it
+/// cannot have.
 template <int Degree>
 std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options, double now, Profile* profile,
                                                     Kdops<Degree> kdops);

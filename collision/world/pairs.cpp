@@ -23,7 +23,7 @@ Pairs<Motion>::Pairs(const Bodies<Motion>& bodies, const Volumes<Motion>& volume
       contacts_(detail::PairRank{&pairs_}),
       boxes_(detail::PairRank{&pairs_}) {}
 
-/// Room for them and some more, if they are the first.
+/// Reserves room for them and some more, if they are the first.
 template <class Motion>
 void Pairs<Motion>::pairs_to_come(std::size_t pairs) {
   if (!pairs_.empty()) return;
@@ -73,7 +73,7 @@ inline typename Pairs<Motion>::Slot Pairs<Motion>::add(BodySlot a, BodySlot b) {
   return slot;
 }
 
-/// Makes a pair known to its bodies.
+/// Adds a pair to the lists of its bodies.
 template <class Motion>
 inline void Pairs<Motion>::link(Slot slot, std::uint32_t first_room) {
   Pair& pair = pairs_[slot];
@@ -139,7 +139,7 @@ typename Pairs<Motion>::Slot Pairs<Motion>::find(BodySlot a, BodySlot b) const {
 template <class Motion>
 void Pairs<Motion>::release(Slot slot) {
   Pair& pair = pairs_[slot];
-  // Each body's list closes up with its last entry.
+  // The last entry of each body's list takes the place of the one removed.
   for (const BodySlot id : {pair.a, pair.b}) {
     const auto of_body = links_.items(of_[id]);
     const std::uint32_t place = id == pair.a ? pair.place_in_a : pair.place_in_b;
@@ -156,7 +156,7 @@ void Pairs<Motion>::release(Slot slot) {
 
 template <class Motion>
 void Pairs<Motion>::box_changed(BodySlot id) {
-  if (!follows_boxes_) return;  // when it meets others is the broad phase's to find anew
+  if (!follows_boxes_) return;  // the broad phase finds anew when it meets others
   for (const Link& link : links(id)) mark_dirty(link.slot);
 }
 
@@ -185,7 +185,7 @@ void Pairs<Motion>::remove(BodySlot id) {
   while (!links(id).empty()) {  // those that overlap, or have just separated
     const Slot slot = links(id).back().slot;
     const Pair& pair = pairs_[slot];
-    // They separate, unless it has not been told yet that they overlap.
+    // They separate, unless their overlap has not been reported yet.
     if (mode(pair.a, pair.b) == ContactMode::transparent && pair.overlapping &&
         !reports_.take_back(Reports::Kind::overlap, bodies_.id_of(pair.a), bodies_.id_of(pair.b))) {
       reports_.add(Reports::Kind::separation, bodies_.id_of(pair.a), bodies_.id_of(pair.b),
@@ -216,7 +216,7 @@ bool Pairs<Motion>::listed(BodySlot a, BodySlot b) const {
   return slot != none && pairs_[slot].listed;
 }
 
-/// Balls need not be made into shapes for it.
+/// Without making shapes of balls.
 template <class Motion>
 Contact Pairs<Motion>::contact(BodySlot a, BodySlot b, double t, const FoundTouch& found) const {
   const auto& of_a = bodies_.mover(a);

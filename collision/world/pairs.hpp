@@ -29,8 +29,8 @@ namespace detail {
 
 using PairSlot = std::uint32_t;
 
-/// Two bodies that may meet. It is there while the broad phase lists it, and while they overlap: so what it knows is a
-/// function of what has happened to the two, whatever the broad phase.
+/// Two bodies that may meet. It exists while the broad phase lists it, and while the two overlap: so its state is a
+/// function of the history of the two bodies, whatever the broad phase.
 struct Pair {
   BodySlot a = 0, b = 0;
   std::uint32_t place_in_a = 0, place_in_b = 0;  ///< in the lists of the two bodies
@@ -43,7 +43,7 @@ struct Pair {
   bool boxes_overlap = false;
   bool estimated = false;  ///< its contact time is a lower bound
   PairMemory memory;
-  double passes_at = -never;  ///< it overlaps at this time at least, whatever else happens at it
+  double passes_at = -never;  ///< at this time it counts as overlapping, whatever else happens then
 };
 
 struct PairRank {
@@ -55,12 +55,12 @@ struct PairRank {
 
 }  // namespace detail
 
-/// The pairs that a broad phase lists, and those that overlap: what is known of each, and when its next contact or
-/// separation is. With WorldOptions.report_pairs and a broad phase that is not exact, also when its boxes meet and
-/// part.
+/// The pairs that a broad phase lists, and those that overlap: the state of each, and the time of its next contact or
+/// separation. With WorldOptions.report_pairs and a broad phase that is not exact, also the times at which its boxes
+/// meet and part.
 ///
 /// [Coming06] Figure 2: the result of a dynamic test is kept until the motion of one of the bodies changes. Then the
-/// pair is dirty, until test(). Most tests give no more than a lower bound, which costs less; only what comes first is
+/// pair is dirty, until test(). Most tests give only a lower bound, which costs less; only the earliest time is
 /// certified.
 ///
 /// Cost: O(1) a pair that begins, ends or becomes dirty; one dynamic test a dirty pair; O(log n) an event.
@@ -81,20 +81,20 @@ class Pairs final : public PairListener {
     const bool sensor = bodies_.any_sensor() && (bodies_[a].sensor || bodies_[b].sensor);
     return sensor || options_.response == Response::none ? ContactMode::transparent : ContactMode::resolved;
   }
-  /// Whether the broad phase says exactly which boxes overlap. To be set before the first pair.
+  /// Whether the broad phase reports exactly the boxes that overlap. To be set before the first pair.
   void expect_exact(bool exact) { follows_boxes_ = options_.report_pairs && !exact, exact_ = exact; }
 
-  // What the broad phase tells. It runs ahead to t, and the clock with it.
+  // Reports of the broad phase. It runs ahead to t, and the clock with it.
   void pairs_to_come(std::size_t pairs) override;
   bool filters() const override { return bodies_.filters(); }
   bool may_collide(BodySlot a, BodySlot b) const override { return bodies_.may_collide(a, b); }
   void pair_began(BodySlot a, BodySlot b, double t) override;
   void pair_ended(BodySlot a, BodySlot b, double t) override;
-  /// A broad phase has been made anew, and this is all it lists, in order.
+  /// A new broad phase has been made, and these are all the pairs that it lists, in order.
   void list_anew(std::span<const std::pair<BodySlot, BodySlot>> listed);
 
-  /// What bodies do while pairs begin. What enters may overlap others from the start; so may what jumps, but where they
-  /// pass through each other that is a contact.
+  /// The change of bodies during which pairs begin. A body that enters may overlap others from the start; so may one
+  /// that jumps, but if they pass through each other that is a contact.
   enum class Begin { moving, jumping, entering };
   void set_begin(Begin begin) { begin_ = begin; }
 
@@ -103,12 +103,12 @@ class Pairs final : public PairListener {
   void prefetch(BodySlot id) const;
   /// A body has another box, and moves as before.
   void box_changed(BodySlot id);
-  /// What the two may meet next has to be found anew.
+  /// The next contact of the two has to be found anew.
   void changed(BodySlot a, BodySlot b);
   /// Lets a pair pass until it has separated, and at this time whatever else happens, even if its boxes do not overlap
   /// just now.
   void let_pass(BodySlot a, BodySlot b);
-  /// A body goes; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.
+  /// A body is removed; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.
   void remove(BodySlot id);
 
   /// Tests all dirty pairs.
@@ -117,19 +117,19 @@ class Pairs final : public PairListener {
 
   /// A time up to which there is no contact and no separation.
   double next_time() const { return contacts_.empty() ? never : contacts_.top().time; }
-  /// Where that is no more than a bound, puts the exact time in its place, which may be later: true if so.
+  /// If that is only a bound, replaces it by the exact time, which may be later; true if it was one.
   bool certify();
-  /// A contact or separation that is due. What the pair does next has to be found anew.
+  /// Takes a contact or separation that is due. The next event of the pair has to be found anew.
   struct Event {
     BodySlot a, b;
     bool separates;
-    FoundTouch found;  ///< of a contact, as far as known
+    FoundTouch found;  ///< for a contact, if known
   };
   /// Precondition: certify() has returned false.
   Event take_next();
 
-  /// When boxes meet or part, where that is to be reported and the broad phase does not say so; process_boxes() reports
-  /// it.
+  /// When boxes next meet or part, if that is to be reported and the broad phase does not report it; process_boxes()
+  /// does.
   double next_box_time() const { return boxes_.empty() ? never : boxes_.top().time; }
   void process_boxes() { process_boxes(boxes_.top().slot, boxes_.top().time); }
 
@@ -140,8 +140,8 @@ class Pairs final : public PairListener {
   /// Where and how two bodies touch at t.
   Contact contact(BodySlot a, BodySlot b, double t, const FoundTouch& found = {}) const;
 
-  /// Throws AuditFailure unless pairs that the broad phase does not list are those that overlap, and what overlaps
-  /// penetrates or is about to separate at this instant.
+  /// Throws AuditFailure unless pairs that the broad phase does not list are pairs that overlap, and pairs that overlap
+  /// penetrate or are about to separate at this instant.
   void audit(double t) const;
 
   /// All of it, as plain data, in the order of (a, b).
@@ -163,7 +163,7 @@ class Pairs final : public PairListener {
 
  private:
   static constexpr Slot none = ~Slot{0};
-  /// Room for pairs that a body gets with its first; where there are few bodies, for all.
+  /// Room for pairs that a body gets with its first pair; if there are few bodies, for all.
   static constexpr std::uint32_t first_pairs = 4;
   static constexpr std::uint32_t few_pairs = 8;
 
@@ -213,17 +213,17 @@ class Pairs final : public PairListener {
   std::vector<typename ListArena<Link>::List> of_;  ///< the pairs of each body, up to the last that has had one
   std::vector<Slot> dirty_;
   std::vector<double> estimates_;             ///< by place in dirty_: see estimate_balls()
-  std::vector<FoundTouch> found_;             ///< by pair, as far as known; of no use once a motion has changed
+  std::vector<FoundTouch> found_;             ///< by pair, if known; not valid once a motion has changed
   CalendarQueue<detail::PairRank> contacts_;  ///< slots are pairs
   DaryQueue<detail::PairRank> boxes_;         ///< slots are pairs; used where follows_boxes_
   std::size_t unlisted_ = 0;                  ///< pairs that the broad phase does not list
-  bool follows_boxes_ = false;                ///< has to find itself when boxes meet and part
+  bool follows_boxes_ = false;                ///< whether it has to find by itself when boxes meet and part
   bool exact_ = false;
   Begin begin_ = Begin::moving;
 };
 
-// What a change of motion or a contact needs, in the header: each is a few instructions for a pair, in the innermost
-// loops of World.
+// Functions for a change of motion or a contact are in the header: each is a few instructions for a pair, in the
+// innermost loops of World.
 
 template <class Motion>
 inline void Pairs<Motion>::mark_dirty(Slot slot) {

@@ -1,4 +1,4 @@
-// What can be asked of a world.
+// The simple queries of a world.
 #include "collision/motions.hpp"
 #include "collision/world.hpp"
 
@@ -33,7 +33,7 @@ bool BasicWorld<Motion>::resting_at_wall(BodyId a, int wall) const {
 template <class Motion>
 typename BasicWorld<Motion>::Motion BasicWorld<Motion>::free_motion(BodyId id) const {
   const BodySlot slot = bodies_.slot_of(id);
-  if constexpr (!turns<Motion>) {  // Nothing carries what turns.
+  if constexpr (!turns<Motion>) {  // Bodies that turn have no resting contacts.
     if (!resting_.carries(slot)) return bodies_.motion(slot);
     Motion motion = bodies_.motion(slot).restarted(now());
     for (std::size_t i = 2; i <= Motion::degree; ++i) motion.coefficients[i] = bodies_.free_term(slot, i, now());
@@ -45,7 +45,7 @@ typename BasicWorld<Motion>::Motion BasicWorld<Motion>::free_motion(BodyId id) c
 template <class Motion>
 WorldCounters BasicWorld<Motion>::counters() const {
   WorldCounters counters = counters_;
-  counters.broad_phase = counters_.broad_phase + broad_phase_->counters();  // and those of before it was loaded
+  counters.broad_phase = counters_.broad_phase + broad_phase_->counters();  // and before it was loaded
   return counters;
 }
 

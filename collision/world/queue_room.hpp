@@ -14,7 +14,7 @@ void clear(Queue& queue, Slot slot) {
   if (slot < queue.slots()) queue.clear(slot);
 }
 
-/// Slots that a queue has at first: small scenes never need more, and growing slot by slot would be much of their cost.
+/// Slots that a queue has at first: small scenes never need more, and growing slot by slot would dominate their cost.
 inline constexpr std::size_t first_slots = 32;
 
 /// Gives a queue at least this many slots; throws as its resize() does. Queues grow by doubling, as vectors do, up to

@@ -5,10 +5,10 @@
 
 namespace kds::collision {
 
-/// As WorldListener says.
+/// The order that WorldListener states.
 bool detail::Pending::operator<(const Pending& other) const {
   const auto key = [](const Pending& event) {
-    // Volumes that meet and those that part are told together.
+    // Volumes that meet and volumes that part are reported together.
     const Kind stage = event.kind == Kind::pair_began ? Kind::pair_ended : event.kind;
     return std::tuple(stage, body_rank(event.a), body_rank(event.b), event.kind, event.wall);
   };

@@ -1,4 +1,4 @@
-// What a world has to tell of one instant.
+// The reports that a world makes of one instant.
 #pragma once
 
 #include "collision/body_id.hpp"
@@ -15,7 +15,7 @@ namespace detail {
 /// A report to be made at this instant.
 struct Pending {
   /// In the order in which WorldListener is told of them.
-  enum class Kind { held, wakes, passes, rests, moved, pair_ended, pair_began, separation, overlap } kind;
+  enum class Kind { rebound_suppressed, wakes, passes, rests, moved, pair_ended, pair_began, separation, overlap } kind;
   BodyId a, b;  ///< in order of their ranks; b is a where it is about one body
   Contact contact;
   int wall = -1;  ///< of a body that rests at one, or ceases to
@@ -37,19 +37,19 @@ class Reports {
     reports_.insert({kind, a, b, contact, wall});
   }
 
-  /// Bounding volumes meet, or part. Those that meet and part at one instant, or part and meet (bodies that are moved
-  /// in turn, lists of ends that are brought into order one after the other), have done neither.
+  /// Bounding volumes meet, or part. If they meet and part at one instant, or part and meet (bodies that are moved in
+  /// turn, lists of ends that are brought into order one after the other), neither is reported.
   void add_volumes(bool meet, BodyId a, BodyId b, double now);
 
-  /// Two bodies, or a and a wall, begin or cease to rest on each other. Those that do both at one instant have done
-  /// neither.
+  /// Two bodies, or a and a wall, begin or cease to rest on each other. If they do both at one instant, neither is
+  /// reported.
   void add_resting(bool begins, BodyId a, BodyId b, const Contact& contact, int wall);
 
   /// Forgets a report that has been undone before it was made; false if there is none.
   bool take_back(Kind kind, BodyId a, BodyId b, int wall = -1);
 
-  /// A body has been removed, and has no pairs any more: its separations are told as they were, and what would be told
-  /// of a body that is there is not.
+  /// A body has been removed, with its pairs: its separations are still reported, and the reports that only a body in
+  /// the world can have are dropped.
   void forget(BodyId removed);
 
   /// The next to be told. Precondition: not empty.

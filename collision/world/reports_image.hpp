@@ -31,7 +31,7 @@ void check_reports(const std::vector<Reports::Report>& pending, const BodiesImag
   for (std::size_t i = 0; i < pending.size(); ++i) {
     const Report& event = pending[i];
     const auto need = [i](bool right, const char* what) { image::require(right, "pending", i, what); };
-    need(event.kind >= Kind::held && event.kind <= Kind::overlap, "is of an unknown kind");
+    need(event.kind >= Kind::rebound_suppressed && event.kind <= Kind::overlap, "is of an unknown kind");
     const bool resting = event.kind == Kind::rests || event.kind == Kind::wakes;
     need(event.wall == -1 || (resting && event.wall >= 0 && event.wall < 6), "is at no wall");
     if (event.kind == Kind::moved || event.wall >= 0) {

@@ -1,4 +1,4 @@
-// What follows from contacts: what is told, and who passes through whom.
+// What follows from contacts: reports, and pairs that are let pass.
 #include "collision/motions.hpp"
 #include "collision/world.hpp"
 
@@ -13,7 +13,7 @@ void BasicWorld<Motion>::process_meeting() {
   const BodySlot b = meeting.b;
   const auto contact = [&] { return pairs_.contact(a, b, clock_.now, meeting.found); };
   if (!meeting.separates) return process_contact(a, b, contact());
-  // What was let pass may meet again from now on.
+  // A pair that was let pass has separated: it may meet again from now on.
   if (pairs_.mode(a, b) == ContactMode::resolved) return;
   ++counters_.separations;
   const PairEvent event = event_of(a, b, contact());
@@ -27,15 +27,15 @@ void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& 
   if (pairs_.mode(a, b) == ContactMode::transparent) {
     return tell([&](Listener& listener) { listener.contact(*this, event); });
   }
-  bool held = false;
+  bool suppressed = false;
   bool passes = false;
   if (options_.response == Response::elastic) {
-    held = respond(a, b, contact);
+    suppressed = respond(a, b, contact);
   } else {
-    held = passes = count_meeting(a, b) > patience();
-    counters_.held += held;
+    suppressed = passes = count_meeting(a, b) > patience();
+    counters_.rebounds_suppressed += suppressed;
   }
-  // A pair that is still pressed together (nobody can or will move it) passes through.
+  // A pair that still approaches (two fixed bodies, or a callback that left them so) passes through.
   const auto after = [&] {
     if (!contains(event.a) || !contains(event.b) || resting_.find(a, b) != Resting::none) return;
     // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a
@@ -47,7 +47,7 @@ void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& 
   try {
     tell([&](Listener& listener) {
       listener.contact(*this, event);
-      if (held) listener.held(*this, event);
+      if (suppressed) listener.rebound_suppressed(*this, event);
     });
   } catch (...) {
     if (!failure_) after();
@@ -56,7 +56,8 @@ void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& 
   after();
 }
 
-/// Both have met others so often; a fixed body's meetings count only with another fixed one.
+/// How often both have met others within ZenoPolicy::interval; a fixed body's meetings count only with another fixed
+/// one.
 template <class Motion>
 std::uint64_t BasicWorld<Motion>::count_meeting(BodySlot a, BodySlot b) {
   const bool a_fixed = bodies_.fixed(a);
@@ -84,10 +85,10 @@ void BasicWorld<Motion>::take_up(BodySlot id, const Motion& motion) {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::tell_held(BodySlot a, BodySlot b) {
-  ++counters_.held;
+void BasicWorld<Motion>::tell_rebound_suppressed(BodySlot a, BodySlot b) {
+  ++counters_.rebounds_suppressed;
   const PairEvent event = event_of(a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
-  reports_.add(Reports::Kind::held, event.a, event.b, event.contact);
+  reports_.add(Reports::Kind::rebound_suppressed, event.a, event.b, event.contact);
 }
 
 template <class Motion>

@@ -17,7 +17,7 @@ bool RestingContacts<Motion>::in_cluster(const Island& island) const {
   return std::any_of(island.bodies.begin(), island.bodies.end(), [this](BodySlot id) { return clustered(id); });
 }
 
-/// Whether the normal of any contact does while bodies slide.
+/// Whether the normal of any contact turns while bodies slide.
 template <class Motion>
 bool RestingContacts<Motion>::turns(const Island& island) const {
   return std::any_of(island.contacts.begin(), island.contacts.end(),
@@ -38,14 +38,14 @@ Vector3d RestingContacts<Motion>::velocity(BodySlot id) const {
   return bodies_.path(id).velocity(clock_.now);
 }
 
-/// Of a cluster to which a body belongs, as far as its weight alone matters.
+/// The longest span of a body's cluster, as far as it depends on the body's weight.
 template <class Motion>
 double RestingContacts<Motion>::longest_span(BodySlot id) const {
   const double a = norm(acceleration(id));
   return a > 0 ? part_of_fall * std::sqrt(bodies_[id].bounding_radius / a) : never;
 }
 
-/// Whether what parts at a rate is back within a span: a flight that short is none.
+/// Whether two bodies that part at this rate are back within a span: so short a flight counts as contact.
 template <class Motion>
 bool RestingContacts<Motion>::soon_back(const Contact& contact, double rate) const {
   if (contact.b == no_body || !(contact.fresh || contact.push > 0)) return false;
@@ -84,7 +84,7 @@ void RestingContacts<Motion>::gather(BodySlot id, double ends) {
   }
 }
 
-/// Bodies go on as they are, and solve_island() sees to the rest.
+/// Bodies keep their motions; solve_island() does the rest.
 template <class Motion>
 void RestingContacts<Motion>::dissolve(const Island& island) {
   for (std::size_t i = 0; i < island.free; ++i) {
@@ -97,7 +97,7 @@ void RestingContacts<Motion>::dissolve(const Island& island) {
   for (const Slot slot : island.contacts) contacts_[slot].fresh = true;
 }
 
-/// Whether no contact of a cluster turns any more, nor parts, so that it needs no more spans.
+/// Whether no contact of a cluster turns or parts any more, so that it needs no more spans.
 template <class Motion>
 bool RestingContacts<Motion>::slides_on(const Island& island) const {
   const auto at_wall = [this](Slot slot) { return contacts_[slot].b == no_body; };
@@ -111,7 +111,8 @@ bool RestingContacts<Motion>::slides_on(const Island& island) const {
   });
 }
 
-/// Whether a contact with a mesh has come to where one before it is: the bodies have left the facet that it was on.
+/// Whether a contact with a mesh has moved to the place of an earlier one in the list: the bodies have left the facet
+/// that it was on.
 template <class Motion>
 bool RestingContacts<Motion>::repeats(const Island& island, std::size_t k) const {
   const Contact& contact = contacts_[island.contacts[k]];
@@ -124,7 +125,7 @@ bool RestingContacts<Motion>::repeats(const Island& island, std::size_t k) const
   return false;
 }
 
-/// Takes the contacts of a cluster anew. False if some are over, and dropped: then the cluster is another.
+/// Recomputes the contacts of a cluster. False if some have ended and were dropped: then the cluster has changed.
 template <class Motion>
 bool RestingContacts<Motion>::renew(const Island& island) {
   bool all = true;
@@ -136,8 +137,8 @@ bool RestingContacts<Motion>::renew(const Island& island) {
   return all;
 }
 
-/// The span of a cluster begins. False if it is to be called again. `dissolved`: whether its bodies have been a cluster
-/// at this instant that was dissolved; what cannot do without one stays one.
+/// The span of a cluster begins. False if it is to be called again. `dissolved`: whether a cluster of its bodies has
+/// been dissolved at this instant already; then it is not dissolved again.
 template <class Motion>
 bool RestingContacts<Motion>::step_cluster(Island& island, bool& dissolved) {
   if (!renew(island)) return false;
@@ -171,7 +172,7 @@ bool RestingContacts<Motion>::step_cluster(Island& island, bool& dissolved) {
   return true;
 }
 
-/// What a span says, until it ends. One without end is rest.
+/// Gives the bodies the motions of a span, until it ends. A span without end is rest.
 template <class Motion>
 void RestingContacts<Motion>::take_up(const Island& island, Span& span, double length) {
   const bool sleeps = length == never;
@@ -188,7 +189,7 @@ void RestingContacts<Motion>::take_up(const Island& island, Span& span, double l
   set_span(island.bodies.front(), clock_.now + length);
 }
 
-/// Bodies that fill all the room that there is may be driven to and fro by roundings alone.
+/// Bodies that fill all the room between fixed ones may be driven to and fro by rounding errors.
 template <class Motion>
 void RestingContacts<Motion>::halt(BodySlot id) {
   if (!clustered(id) || bodies_.fixed(id)) return;
@@ -209,7 +210,7 @@ void RestingContacts<Motion>::move(BodySlot id, const Vector3d& velocity, const 
   if (!(motion == bodies_.motion(id))) listener_.take_up(id, motion);
 }
 
-/// What is not proven is tested as pairs that do not rest are.
+/// Contacts that are not proven are tested like pairs that do not rest.
 template <class Motion>
 void RestingContacts<Motion>::set_proven(Contact& contact, bool proven) {
   if (contact.b == no_body) return;

@@ -14,13 +14,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How far a held pair may part before it is let go, relative to the smaller bounding radius: balls that slide over
-/// each other part by this from plane to plane, and fall back. Less makes that more exact, and costs more pieces.
+/// How far a resting pair may part before its contact ends, relative to the smaller bounding radius: balls that slide
+/// over each other follow a plane of contact until they have parted by this, and meet again on the next. Less makes
+/// that more exact, and costs more pieces.
 constexpr double slack = 0x1p-20;
 /// The same relative to the coordinates, which are rounded whenever a motion is restarted.
 constexpr double coordinate_slack = 0x1p-40;
 
-/// How far beyond its contacts of this moment a mesh in a cluster may sink, for roundings, before it is a contact anew;
+/// How far a mesh in a cluster may sink beyond its contacts of this moment, by rounding, before that is a new contact;
 /// relative to the smaller bounding radius.
 constexpr double approach_slack = 0x1p-37;
 
@@ -41,7 +42,7 @@ double slack_of(const TranslatingShape<Degree>& a, const TranslatingShape<Degree
 
 template <class Motion>
 typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_among(BodySlot a, BodySlot b, int wall) const {
-  // A floor has many.
+  // The shorter list is searched: a floor has many contacts.
   const bool from_b = b != no_body && b < of_.size() && of_[b].contacts.size() < of_[a].contacts.size();
   for (const Slot slot : of_[from_b ? b : a].contacts) {
     const Contact& contact = contacts_[slot];
@@ -50,7 +51,7 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_among(BodyS
   return none;
 }
 
-/// The one of the same bodies and in the same place: convex bodies have but one.
+/// The contact of the same bodies and with nearly the same normal; convex bodies have one contact at most.
 template <class Motion>
 typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const Contact& contact) const {
   if (!gaps_.has_mesh(contact)) return find(contact.a, contact.b, contact.wall);
@@ -111,10 +112,10 @@ void RestingContacts<Motion>::drop_all(BodySlot id) {
   while (rests(id)) drop(of_[id].contacts.back());
 }
 
-/// Convex bodies that are held are on either side of a plane through the touch and stay there, so they cannot meet
-/// again before they are let go. A mesh may have something else in the way; where rounding makes it the held touch that
-/// is found, that is left behind by some roundings, for as long as the two move as they do: so the answer does not
-/// depend on how often it is asked for.
+/// Convex bodies that rest on each other stay on either side of a plane through the point of contact, so they cannot
+/// meet again before the contact ends. A mesh may meet the other body elsewhere. Where rounding makes the search find
+/// the resting contact itself, the body is moved away from it by some roundings, as long as the two motions stay as
+/// they are: so the answer does not depend on how often it is asked for.
 template <class Motion>
 double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
   const auto a = bodies_.moving(id_a);
@@ -132,7 +133,7 @@ double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
     left_behind = left_behind || contacts_[slot].left_behind == began;
   }
   const double now = clock_.now;
-  if (clustered(id_a) || clustered(id_b)) {  // What sweeps leave of an approach is no contact.
+  if (clustered(id_a) || clustered(id_b)) {  // The approach that the solver's sweeps leave is no contact.
     const double least = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
     const Motion farther = shifted(b.motion, approach_slack * least * out);
     return first_contact(a, MovingShape<Motion>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
@@ -149,11 +150,11 @@ double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
   return first_contact(a, MovingShape<Motion>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
 }
 
-/// Held pairs part by sliding off, or by `slack`.
+/// A resting contact ends when the bodies have slid off each other, or have parted by `slack`.
 template <class Motion>
 void RestingContacts<Motion>::schedule_release(Slot slot) {
   const Contact& contact = contacts_[slot];
-  if (clustered(contact.a) || (contact.b != no_body && clustered(contact.b))) return;  // Spans see to it.
+  if (clustered(contact.a) || (contact.b != no_body && clustered(contact.b))) return;  // The cluster's spans end it.
   if (contact.b == no_body) {  // Walls have no edge to slide off.
     if constexpr (Motion::degree >= 3) releases_.set(slot, contact.ends);
     return;
@@ -165,7 +166,7 @@ void RestingContacts<Motion>::schedule_release(Slot slot) {
   for (std::size_t i = 1; i <= Motion::degree; ++i) {
     together = together && a.motion.coefficients[i] == b.motion.coefficients[i];
   }
-  bool steady = true;  // about any start the same
+  bool steady = true;  // the same polynomial about any start
   for (std::size_t i = 2; i <= Motion::degree; ++i) steady = steady && a.motion.coefficients[i].isZero(0);
   if (together && (steady || a.motion.start == b.motion.start)) {
     return Motion::degree >= 3 ? releases_.set(slot, contact.ends) : releases_.clear(slot);
@@ -202,9 +203,9 @@ void RestingContacts<Motion>::extend_horizon() {
   }
 }
 
-/// Each contact is of two bodies that are there (or one and a wall), is listed with them and no others, and is held:
-/// along its normal the two have no relative velocity but for rounding, as drop_broken() measures it, and accelerations
-/// that cancel. What is due to be let go lies ahead.
+/// Each contact is of two bodies that are there (or one and a wall), is listed with them and no others, and lasts:
+/// along its normal the two have no relative velocity up to rounding, as drop_broken() measures it, and accelerations
+/// that cancel. The times at which contacts end lie ahead.
 template <class Motion>
 void RestingContacts<Motion>::audit(double t, bool walls) const {
   const auto fail = [](Slot slot, const char* what) {
@@ -223,14 +224,14 @@ void RestingContacts<Motion>::audit(double t, bool walls) const {
   for (BodySlot id = 0; id < of_.size(); ++id) {
     for (const Slot slot : of_[id].contacts) {
       ++listed;
-      if (slot >= contacts_.size() || !contacts_[slot].alive) fail(slot, "a body is held by what is none");
-      if (contacts_[slot].a != id && contacts_[slot].b != id) fail(slot, "a body is held that has no part in it");
+      if (slot >= contacts_.size() || !contacts_[slot].alive) fail(slot, "a body lists a contact that is none");
+      if (contacts_[slot].a != id && contacts_[slot].b != id) fail(slot, "a body lists it that has no part in it");
     }
   }
   for (Slot slot = 0; slot < contacts_.size(); ++slot) {
     const Contact& contact = contacts_[slot];
     if (!contact.alive) {
-      if (releases_.contains(slot)) fail(slot, "it is over, and is to be let go");
+      if (releases_.contains(slot)) fail(slot, "it has ended, but has a time at which it ends");
       continue;
     }
     const bool at_wall = contact.b == no_body;
@@ -242,7 +243,7 @@ void RestingContacts<Motion>::audit(double t, bool walls) const {
     }
     if (at_wall && (contact.wall < 0 || contact.wall > 5 || !walls)) fail(slot, "there is no such wall");
     if (std::abs(norm(contact.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
-    if (releases_.time(slot) < t) fail(slot, "it should have been let go");
+    if (releases_.time(slot) < t) fail(slot, "it should have ended");
     if (contact.fresh) continue;
     if ((!at_wall || clustered(contact.a)) && gaps_.deeper(contact, contact.depth + gaps_.deepest_overlap(contact)))
       fail(slot, "its bodies overlap");
@@ -252,7 +253,7 @@ void RestingContacts<Motion>::audit(double t, bool walls) const {
     if (!at_wall) b = bodies_.path(contact.b).velocity(t);
     double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), contact.solved});
     if constexpr (Motion::degree >=
-                  2) {  // Accelerations cancel along the normal, but for rounding, and act since the start.
+                  2) {  // Accelerations cancel along the normal, up to rounding, and act since the start.
       for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b}) {
         largest += 2 * bodies_.free_term(id, 2, t).cwiseAbs().maxCoeff() * (1 + t - bodies_.path(id).start);
       }
@@ -265,13 +266,13 @@ void RestingContacts<Motion>::audit(double t, bool walls) const {
       fail(slot, "the bodies part or press on along its normal");
     }
   }
-  if (listed != expected) fail(static_cast<Slot>(contacts_.size()), "bodies list more holds than there are");
+  if (listed != expected) fail(static_cast<Slot>(contacts_.size()), "bodies list more contacts than there are");
 }
 
 template <class Motion>
 typename RestingContacts<Motion>::Image RestingContacts<Motion>::image() const {
   Image image{contacts_, free_, {}, {}, {}, {}, {}, {}, {}};
-  // Of bodies that were disturbed and are gone, or have been solved for since, the list may still speak.
+  // The list may still contain bodies that have been removed, or solved for, since they were disturbed.
   std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
                [&](BodySlot id) { return of_[id].disturbed && bodies_.entered(id); });
   for (const Member& member : of_) {

@@ -47,14 +47,14 @@ double velocity_terms(const certificates::PointMotion<Degree>& motion, double t)
   return sum;
 }
 
-/// What resting contacts tell a world.
+/// The listener of resting contacts: their world.
 template <class Motion>
 class RestingListener {
  public:
   virtual void take_up(BodySlot id, const Motion& motion) = 0;  ///< a new motion
-  virtual void changed(BodySlot a, BodySlot b) = 0;             ///< what the two may meet next has to be found anew
+  virtual void changed(BodySlot a, BodySlot b) = 0;             ///< the next contact of the two has to be found anew
   virtual void let_pass(BodySlot a, BodySlot b) = 0;
-  virtual void tell_held(BodySlot a, BodySlot b) = 0;  ///< that the policy has acted on the two
+  virtual void tell_rebound_suppressed(BodySlot a, BodySlot b) = 0;  ///< the Zeno policy has acted on the two
   /// A contact begins or ceases to last.
   virtual void tell_resting(bool begins, const detail::RestingContact& contact) = 0;
   virtual void tell_passes(const detail::RestingContact& contact) = 0;
@@ -64,12 +64,12 @@ class RestingListener {
 };
 
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
-/// docs/resting.md says what the law is.
+/// docs/resting.md states the law.
 ///
 /// A part of World that owns its state and its queue. It reads the bodies, and tells its listener what follows.
 ///
 /// Cost: nothing while nothing rests. O(1) a contact that begins or ends; a change of motion of a body that rests
-/// solves for all that lean on each other with it (least_constraint.hpp).
+/// solves for all bodies of its island (least_constraint.hpp).
 template <class Motion>
 class RestingContacts {
  public:
@@ -91,9 +91,9 @@ class RestingContacts {
 
   /// Whether there are any.
   bool empty() const { return contacts_.size() == free_.size(); }
-  /// One of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
+  /// A contact of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
   Slot find(BodySlot a, BodySlot b, int wall = -1) const { return rests(a) ? find_among(a, b, wall) : none; }
-  /// Whether there is one that keeps the two from coming nearer: in a cluster there are others, where it need not.
+  /// Whether the two have a resting contact that keeps them from coming nearer; in a cluster only those that push do.
   bool holds(BodySlot a, BodySlot b, int wall = -1) const {
     const Slot slot = find(a, b, wall);
     return slot != none && (contacts_[slot].push > 0 || !(clustered(a) || (b != no_body && clustered(b))));
@@ -102,9 +102,9 @@ class RestingContacts {
 
   /// A contact begins to last. Between meshes several may last at once, in a groove, say; one for each normal.
   void add(const Contact& contact);
-  /// All of a body end, since it jumps.
+  /// All contacts of a body end, since it jumps.
   void drop_all(BodySlot id);
-  /// All of a body end, since it goes.
+  /// All contacts of a body end, since it is removed.
   void forget(BodySlot id) {
     drop_all(id);
     if (id < spans_.slots()) spans_.clear(id);
@@ -118,18 +118,18 @@ class RestingContacts {
     if (id < spans_.slots()) spans_.clear(id);
   }
 
-  /// The motion of a body has changed: those that it rests with are to be looked at by solve().
+  /// The motion of a body has changed: solve() is to look at those that rest on it or that it rests on.
   void disturb(BodySlot id) {
     if (!contacts_.empty()) note(id);
   }
   bool solved() const { return disturbed_.empty(); }
-  /// Gives all that have been disturbed the motions that their contacts leave them.
+  /// Gives all disturbed bodies the motions that their contacts allow.
   void solve() {
     if (!solved()) solve_all();
   }
 
-  /// Whether the two bodies of a contact surely do not meet until the motion of one changes, or the contact does: a
-  /// plane stays between them.
+  /// Whether a plane is proven to stay between the two bodies of a contact, so that they do not meet until a motion or
+  /// the contact changes.
   bool keeps_apart(Slot contact) const { return contacts_[contact].proven && !gaps_.has_mesh(contacts_[contact]); }
   /// When two bodies that rest on each other may meet elsewhere.
   double next_contact(BodySlot a, BodySlot b);
@@ -179,23 +179,23 @@ class RestingContacts {
     void check(const typename Bodies<Motion>::Image& bodies, double now, const WorldOptions& options) const;
 
    private:
-    /// How far a normal may be from unit length: far above what normalising rounds.
+    /// How far a normal may be from unit length: far above the rounding of a normalisation.
     static constexpr double normal_rounding = 0x1p-40;
   };
   Image image() const;
   void become(const Image& image);
 
  private:
-  /// Of a body.
+  /// The state of a body.
   struct Member {
     std::vector<Slot> contacts;
-    std::uint64_t island = 0;  ///< the last it was seen in
+    std::uint64_t island = 0;  ///< the last island in which it was found
     std::uint32_t place = 0;   ///< in that
     bool disturbed = false;
     double span_ends = -never;  ///< s, of the cluster's span; `never`: asleep; -never: in no cluster
     double calm_since = never;  ///< s
-    bool met = false;           ///< another that is not fixed: it may come to rest with it
-    bool carried = false;       ///< degree 3 and above: its motion is what contacts have left of it, or made of it
+    bool met = false;           ///< it has met another that is not fixed, and may come to rest
+    bool carried = false;       ///< degree 3 and above: its motion is one that contacts have changed
   };
   /// Bodies that lean on each other, in the arithmetic of least_constraint.
   struct Island {

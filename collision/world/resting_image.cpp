@@ -43,7 +43,8 @@ void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image&
     const bool none = span_ends[i] == -never;
     image::require(none || (image::is_to_come(span_ends[i], now) && bodies.entered(static_cast<BodySlot>(i))),
                    "clusters", i, "has ended, or is of no body");
-    image::require(none || options.response == Response::elastic, "clusters", i, "is there where none are held");
+    image::require(none || options.response == Response::elastic, "clusters", i,
+                   "is there in a mode without resting contacts");
     image::require(calm_since[i] == never || image::is_past(calm_since[i], now), "clusters", i, "is not calm yet");
     spans_go_on = spans_go_on || (!none && span_ends[i] < never && span_ends[i] < first);
   }
@@ -69,7 +70,7 @@ void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image&
     } else {
       need(contact.a < contact.b && bodies.entered(contact.b) && contact.wall == -1,
            "is not of two bodies in the world");
-      need(options.response == Response::elastic, "is of two bodies where none are held");
+      need(options.response == Response::elastic, "is of two bodies in a mode without resting contacts");
     }
     need(std::abs(contact.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
     need(std::isfinite(contact.push) && std::isfinite(contact.solved), "its push or rate is not finite");
@@ -87,7 +88,8 @@ void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image&
     for (auto slot = of_body.begin(); slot != of_body.end(); ++slot) {
       const bool known =
           *slot < contacts.size() && contacts[*slot].alive && (contacts[*slot].a == id || contacts[*slot].b == id);
-      image::require(known && std::find(of_body.begin(), slot, *slot) == slot, "bodies", id, "is held by what is none");
+      image::require(known && std::find(of_body.begin(), slot, *slot) == slot, "bodies", id,
+                     "lists a contact that is none");
       --sides;
     }
   }

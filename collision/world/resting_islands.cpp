@@ -39,18 +39,19 @@ void RestingContacts<Motion>::solve_all() {
   }
 }
 
-/// Nothing but walls holds a fixed body: they take the speed and the acceleration that lead out of the domain.
+/// A fixed body rests at walls only: they take away the speed and the acceleration that lead out of the domain.
 template <class Motion>
 void RestingContacts<Motion>::solve_fixed(BodySlot id) {
   const Motion before = bodies_.motion(id).restarted(clock_.now);
   Motion motion = before;
-  const std::vector<Slot> holds = of_[id].contacts;  // some may be dropped
-  const bool at_wall = std::any_of(holds.begin(), holds.end(), [&](Slot slot) { return contacts_[slot].wall >= 0; });
+  const std::vector<Slot> contacts = of_[id].contacts;  // some may be dropped
+  const auto is_wall = [&](Slot slot) { return contacts_[slot].wall >= 0; };
+  const bool at_wall = std::any_of(contacts.begin(), contacts.end(), is_wall);
   const bool given_anew = at_wall || (Motion::degree >= 3 && of_[id].carried);  // or a wall has let it go
   for (std::size_t i = 2; i <= Motion::degree && given_anew; ++i)
     motion.coefficients[i] = bodies_.free_term(id, i, clock_.now);
   of_[id].carried = false;
-  for (const Slot slot : holds) {
+  for (const Slot slot : contacts) {
     Contact& contact = contacts_[slot];
     if (contact.wall < 0) {
       disturb(contact.a == id ? contact.b : contact.a);
@@ -76,7 +77,7 @@ void RestingContacts<Motion>::solve_fixed(BodySlot id) {
   if (given_anew && !(motion == before)) listener_.take_up(id, motion);
 }
 
-/// False if a contact had to be dropped: then it is to be called again. Each time there is one contact less.
+/// False if a contact had to be dropped: the caller then calls it again, with one contact fewer.
 template <class Motion>
 bool RestingContacts<Motion>::solve_island(BodySlot id, bool& dissolved) {
   Island island = find_island(id);
@@ -99,9 +100,8 @@ bool RestingContacts<Motion>::solve_island(BodySlot id, bool& dissolved) {
       }
       if constexpr (Motion::degree >= 3) of_[island.bodies[i]].carried = !island.contacts.empty();
     }
-    if (!constrain(island, 2, motions) ||
-        (Motion::degree >= 3 &&
-         !constrain_curves(island, motions))) {  // What is pulled away at once has been stopped all the same.
+    if (!constrain(island, 2, motions) || (Motion::degree >= 3 && !constrain_curves(island, motions))) {
+      // Bodies that are pulled apart at once have still lost their speed of approach.
       motions = stopped;
       take_up_all();
       return false;
@@ -166,8 +166,8 @@ typename RestingContacts<Motion>::Island RestingContacts<Motion>::find_island(Bo
   return island;
 }
 
-/// Lets go what has been given speed along its normal; what approaches meets anew, and may bounce. What is back within
-/// a span, or would bounce to be, makes a cluster.
+/// Ends the contacts whose bodies have been given speed along the normal; those that approach meet anew, and may
+/// bounce. If they would be back within a span, at once or after a bounce, they form a cluster instead.
 template <class Motion>
 bool RestingContacts<Motion>::drop_broken(const Island& island) {
   bool any = false;
@@ -194,7 +194,7 @@ bool RestingContacts<Motion>::drop_broken(const Island& island) {
 }
 
 /// Velocities (order 1) or accelerations (2) by least constraint. False if a contact had to be dropped: one that parts,
-/// or one that cannot be held.
+/// or one whose bodies nothing can keep apart.
 template <class Motion>
 bool RestingContacts<Motion>::constrain(Island& island, std::size_t order, std::vector<Motion>& motions) {
   std::vector<Vector3d> rates;
@@ -235,10 +235,10 @@ bool RestingContacts<Motion>::constrain(Island& island, std::size_t order, std::
 
 /// Degree 3 and above: the terms of higher order, one after the other, and when each contact ceases to be pressed.
 ///
-/// What a contact pushes is a polynomial of the time, of which constrain() has found the constant. While it is positive
-/// the two stay together whatever their higher terms are, so that of each order they are made equal along the normal; a
-/// push that vanishes up to some order gives way in the next like any other (no contact approaches). It lasts until the
-/// polynomial turns negative. False if a contact had to be dropped.
+/// The push of a contact is a polynomial in time, whose constant term constrain() has found. While the push is positive
+/// the two bodies stay together whatever their higher terms are, so the terms of each order are made equal along the
+/// normal. Where the push vanishes up to some order, the next order is constrained as velocities are (no contact
+/// approaches). The contact lasts until the polynomial turns negative. False if a contact had to be dropped.
 template <class Motion>
 bool RestingContacts<Motion>::constrain_curves(Island& island, std::vector<Motion>& motions) {
   if constexpr (Motion::degree >= 3) {
@@ -294,8 +294,8 @@ bool RestingContacts<Motion>::constrain_curves(Island& island, std::vector<Motio
   return true;
 }
 
-/// A fixed body at a wall, of degree 3 and above: takes what presses it outward, as long as that does. False if it is
-/// drawn inward at once.
+/// A fixed body at a wall, of degree 3 and above: removes the terms that press it outward, and notes when they cease
+/// to. False if they draw it inward at once.
 template <class Motion>
 bool RestingContacts<Motion>::press(Motion& motion, Contact& contact) const {
   if constexpr (Motion::degree >= 3) {
@@ -314,8 +314,8 @@ bool RestingContacts<Motion>::press(Motion& motion, Contact& contact) const {
   return true;
 }
 
-/// Ends a contact of bodies that are no longer pressed together: from now on they part, if only by terms of a higher
-/// order. What they overlap by rounding is no new contact.
+/// Ends a contact of bodies that nothing presses together from now on: they part, if only by terms of a higher order.
+/// They are let pass, so that an overlap by rounding is not taken for a new contact.
 template <class Motion>
 void RestingContacts<Motion>::part(Slot slot) {
   const Contact contact = contacts_[slot];
@@ -323,7 +323,7 @@ void RestingContacts<Motion>::part(Slot slot) {
   drop(slot);
 }
 
-/// Of bodies that cannot all be held the pair that is pressed together most passes through. Walls do not give way.
+/// If the bodies cannot all be kept apart, the pair that is pressed together most is let pass. Walls do not give way.
 template <class Motion>
 bool RestingContacts<Motion>::let_pass_worst(const Island& island, const std::vector<Vector3d>& rates) {
   Slot worst = none;
@@ -339,7 +339,8 @@ bool RestingContacts<Motion>::let_pass_worst(const Island& island, const std::ve
   listener_.let_pass(contact.a, contact.b);
   listener_.tell_passes(contact);
   drop(worst);
-  if (!contact.fresh) listener_.tell_held(contact.a, contact.b);  // else the event that made it is about to be reported
+  // If it is fresh, the event that has made it is about to be reported.
+  if (!contact.fresh) listener_.tell_rebound_suppressed(contact.a, contact.b);
   return true;
 }
 

@@ -1,4 +1,4 @@
-// The motions that bodies will take up: pieces of motion still to come.
+// The scripts of bodies: pieces of motion still to come.
 #pragma once
 
 #include "certificates/point_motion.hpp"
@@ -13,7 +13,8 @@
 
 namespace kds::collision {
 
-/// The scripts of a world's bodies: for each the pieces of motion to come, and when the next of all begins.
+/// The scripts of a world's bodies: for each the pieces of motion to come, and the time at which the next one of all
+/// begins.
 ///
 /// Cost: nothing for bodies without a script; O(log n) a piece.
 template <class Motion>
@@ -21,7 +22,7 @@ class Scripts {
  public:
   /// Gives a body pieces to come, in order of their starts. Precondition: it has none.
   void add(BodySlot slot, std::span<const Motion> pieces);
-  /// Forgets what was to come.
+  /// Removes the pieces still to come.
   void clear(BodySlot slot);
 
   /// When the next piece begins.

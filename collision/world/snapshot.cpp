@@ -15,11 +15,10 @@
 namespace kds::collision {
 namespace {
 
-/// Which members the image of a world has; another number for others, so that bytes of another form are refused as
-/// such.
+/// The version of the image's layout: it changes with the members, so that bytes of another layout are refused as such.
 constexpr int snapshot_form = 5;
 
-/// Options that decide events. Broad phase, window, threads and profile may be others.
+/// Options that decide events. Broad phase, window, threads and profile may differ.
 template <class Archive>
 void archive_options(Archive& archive, const WorldOptions& options, bool exact) {
   const auto same = [&](const char* what, auto value) {
@@ -45,10 +44,9 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact) 
 
 }  // namespace
 
-/// A copy of all that decides the events to come. Broad phases are not in it, since they are functions of the motions,
-/// nor are times that are. What has been decided with the past in view is: contact times of known pairs, the places
-/// where resting bodies lean on each other, who passes through whom, the counts of the Zeno policy, reports not yet
-/// made.
+/// A copy of all that decides later events. Broad phases and times that are functions of the motions are not in it.
+/// State that depends on the past is: contact times of known pairs, the places of resting contacts, pairs that are let
+/// pass, the counts of the Zeno policy, reports not yet made.
 template <class Motion>
 struct BasicWorld<Motion>::Image {
   double now = 0, callers_now = 0, horizon = 0;
@@ -68,8 +66,8 @@ struct BasicWorld<Motion>::Image {
     archive(scripts, pairs, resting, pending);
   }
 
-  /// Throws std::runtime_error, naming what is wrong, unless it may be an image of a world with these options: then it
-  /// can become one.
+  /// Throws std::runtime_error, naming what is wrong, unless it may be an image of a world with these options, which
+  /// can then become it.
   void check(const WorldOptions& options) const {
     if (!std::isfinite(now)) image::fail("now: is not finite");
     if (!image::is_to_come(horizon, now)) image::fail("horizon: is before now");
@@ -131,7 +129,7 @@ void BasicWorld<Motion>::become(const Image& image) {
 template <class Motion>
 template <class Archive>
 void BasicWorld<Motion>::archive(Archive& archive) {
-  // What has been interrupted may be loaded: then it is whole again.
+  // A world that is broken by an exception may be loaded: then it is valid again.
   if (!Archive::loading || stepping_ || volumes_.calling()) require_idle("World::archive");
   archive.tag((turns<Motion> ? "World of bodies that turn, of degree " : "World of degree ") +
               std::to_string(Motion::degree) + ", form " + std::to_string(snapshot_form));

@@ -25,7 +25,7 @@ std::vector<KdopDirection> directions_of(const WorldOptions& options) {
   return {all.begin() + 3, all.end()};
 }
 
-/// Whether two boxes overlap, rounded as they say, by more than what is rounded here can feign.
+/// Whether two boxes overlap, with their rounded edges, by more than the rounding errors of this test.
 template <int Degree>
 bool surely_overlap_rounded(const KineticBox<Degree>& a, const KineticBox<Degree>& b, double now) {
   const double radius = a.rounding + b.rounding;
@@ -110,7 +110,7 @@ void Volumes<Motion>::become(bool room_for_meshes) {
   }
 }
 
-/// How far a body that comes in reaches in the directions beyond the axes: that stays so, as it does not turn or its
+/// The extents of a new body in the directions beyond the axes: they do not change, since it does not turn or its
 /// volume is round.
 template <class Motion>
 void Volumes<Motion>::place_extents(BodySlot slot) {
@@ -128,7 +128,7 @@ void Volumes<Motion>::place_extents(BodySlot slot) {
   }
 }
 
-/// What a body covers along a direction from now on.
+/// The slab of a body along a direction from now on.
 template <class Motion>
 KineticSlab<Motion::degree> Volumes<Motion>::slab(BodySlot slot, std::size_t i, double now) const {
   const auto& [low, high] = extents_[slot * directions_.size() + i];

@@ -17,7 +17,7 @@ inline void WallTimes<Motion>::make_room(std::size_t slots) {
   if (is_bound_.size() < times_.slots()) is_bound_.resize(times_.slots());
 }
 
-/// Takes note that a body is at no wall before some time. Precondition: there is room for it.
+/// Notes that a body meets no wall before a time. Precondition: there is room for it.
 template <class Motion>
 inline void WallTimes<Motion>::note(BodySlot slot, double earliest) {
   if (bodies_[slot].sensor) return;

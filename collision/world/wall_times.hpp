@@ -16,7 +16,7 @@
 namespace kds::collision {
 
 /// For each body that has entered a world with walls, a time before which the ball around it goes through none of them:
-/// a bound that costs little, and only for the body that comes first the exact time.
+/// a cheap bound, and the exact time only for the body that is first.
 ///
 /// A ball reaches a wall when it is outside and still going outward. Walls have the numbers of WallEvent.
 ///
@@ -39,13 +39,13 @@ class WallTimes {
   double next_time() const { return times_.empty() ? never : times_.top().time; }
   /// The body that this is the time of. Precondition: next_time() < never.
   BodySlot next_body() const { return times_.top().slot; }
-  /// Where next_time() is no more than a bound, puts the exact time in its place, which may be later: true if so.
+  /// If next_time() is only a bound, replaces it by the exact time, which may be later; true if it was one.
   bool certify();
-  /// Which wall the body that comes next reaches then. Precondition: certify() has returned false.
+  /// The wall that the next body reaches then. Precondition: certify() has returned false.
   int next_wall() const;
   void extend_horizon();
 
-  /// All bodies are others. Nothing is saved or loaded of them: times are functions of the motions.
+  /// All bodies have been replaced. Times are not saved or loaded: they are functions of the motions.
   void become();
 
  private:

@@ -16,9 +16,9 @@
 
 namespace kds::course {
 
-/// What a certificate says, of the elements of a set. One overload for each kind that is known; a certificate of yours
-/// may have a function fact(certificate, name) beside it, where name(element) gives the element's name, else it is
-/// called by its members.
+/// The fact of a certificate in words. One overload for each kind in the library; your own certificate may have a
+/// function fact(certificate, name) beside it, where name(element) gives the element's name; otherwise the names of its
+/// members are shown.
 template <class Element>
 class Facts {
  public:
@@ -57,7 +57,7 @@ class Facts {
   }
 
  private:
-  /// Certificates refer to the elements that they are about.
+  /// Finds an element's name by its address: certificates refer to their elements.
   Id id(const Element& element) const {
     for (const Id id : members_) {
       if (&elements_[id] == &element) return id;
@@ -71,7 +71,7 @@ class Facts {
   std::vector<Id> members_;
 };
 
-/// The certificates that a rule holds in the slots below `end`, and when each fails if nothing happens before.
+/// The certificates of a rule in the slots below `end`, and when each fails if nothing happens before.
 template <class Rule>
 std::vector<Held> certificates_of(const Rule& rule, Slot end, const MovingSet<typename Rule::Element>& elements,
                                   double now, const Page& page) {

@@ -67,7 +67,7 @@ std::string Page::names(const std::vector<Id>& ids) const {
 
 void Page::add_piece(Id id, Piece piece) {
   auto& pieces = find(id).pieces;
-  // Several changes at one instant: the last one is what happens.
+  // Of several changes at one instant only the last one counts.
   if (!pieces.empty() && pieces.back().since == piece.since) pieces.pop_back();
   pieces.push_back(std::move(piece));
 }
@@ -84,7 +84,7 @@ void Page::event(double time, std::string text, std::vector<Id> members, State s
   add_state(std::move(state));
 }
 
-/// Certificates that are held on are not written again.
+/// Certificates that stay are not written again.
 void Page::add_state(State state) {
   const std::size_t number = states_.size();
   std::vector<std::size_t> still;
@@ -156,7 +156,7 @@ std::string Page::html() const {
   std::string page(page_template);
   std::string code;
   for (const std::string_view script : scripts) code += script;
-  // What is inserted may contain anything, so the last mark comes first.
+  // The last mark is replaced first, since inserted text may contain marks.
   replace(page, "/*{SCRIPTS}*/", code);
   std::string data = json();
   for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos; ++at) data.replace(at, 2, "<\\/");

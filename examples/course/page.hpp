@@ -1,4 +1,4 @@
-// A page that shows a run: who moved how, what happened, and what was known after each event.
+// A page that shows a run: motions, events, and the state after each event.
 #pragma once
 
 #include "certificates/plane_motion.hpp"
@@ -19,13 +19,13 @@ enum class View { line, plane };
 /// A certificate as a page shows it.
 struct Held {
   std::string fact;         ///< in words
-  std::vector<Id> members;  ///< whom it is about; of a circle the three that are on it first
+  std::vector<Id> members;  ///< the elements that it is about; for a circle first the three that are on it
   double fails = never;     ///< s
 
   friend bool operator==(const Held&, const Held&) = default;
 };
 
-/// What a structure knows between two events. What a structure does not keep stays empty.
+/// The state of a structure between two events. Parts that a structure does not have stay empty.
 struct State {
   std::string text;                     ///< in words
   std::vector<Id> order;                ///< the least first
@@ -35,7 +35,7 @@ struct State {
   std::vector<Held> certificates;
 };
 
-/// What the legend calls the parts of a state.
+/// The names of the parts of a state in the legend.
 struct Legend {
   std::string event = "an event";
   std::string marked = "marked";
@@ -45,15 +45,15 @@ struct Legend {
 
 /// Collects a run and writes it as one HTML file that needs nothing else: no network, no library.
 ///
-/// Motions are stored as they are, so the page draws any time between `begin` and `end`; what structures know is stored
-/// event by event, so the page decides nothing. Times are in seconds, all numbers are written so that they read back
-/// the same.
+/// Motions are stored as polynomials, so the page can draw any time between `begin` and `end`; states of structures are
+/// stored event by event, so the page decides nothing. Times are in seconds, all numbers are written so that they read
+/// back the same.
 class Page {
  public:
   Page(View view, std::string title, std::string about, double begin, double end);
 
-  /// Someone who moves: a dot, or a ball of this radius, or a box of these half widths. Names of one or two letters
-  /// stand in the dot, of others the first.
+  /// A moving element: a dot, or a ball of this radius, or a box of these half widths. Names of one or two letters are
+  /// written in the dot, of longer ones the first letter.
   void element(Id id, std::string name, double radius = 0);
   void box(Id id, std::string name, std::array<double, 2> half);
   const std::string& name(Id id) const;
@@ -75,14 +75,14 @@ class Page {
     add_piece(id, {since, path.start, list(path.axis(0).position), list(path.axis(1).position)});
   }
 
-  /// What is known at the beginning; to be called once, before any event.
+  /// The state at the beginning; to be called once, before any event.
   void starts(State state);
-  /// Something happened, and this is known from then on. Events come in order of time; in the space-time diagram one is
-  /// drawn where its first member is. Throws std::logic_error for one that comes before another.
+  /// An event, and the state from then on. Events are given in order of time; in the space-time diagram an event is
+  /// drawn at its first member. Throws std::logic_error for one that comes before another.
   void event(double time, std::string text, std::vector<Id> members, State state);
 
   Legend legend;
-  std::vector<double> window;  ///< what is to be seen: least and greatest value; or x, y, x, y. Else all that moves
+  std::vector<double> window;  ///< the visible part: least and greatest value; or x, y, x, y. By default all that moves
   std::vector<double> walls;   ///< x, y, x, y of a box to draw in the plane
   bool intervals = false;      ///< draw the shadows of boxes on both axes
   std::string edge_style;      ///< "pair" for a broken line
@@ -111,7 +111,7 @@ class Page {
     std::string text;
     std::vector<Id> members;
   };
-  /// A certificate, and the numbers of the states in which it is held: from the one up to below the other.
+  /// A certificate, and the numbers of the states in which it exists: from the first up to below the second.
   struct Span {
     Held held;
     std::size_t from, until;
@@ -132,7 +132,7 @@ class Page {
   std::vector<Event> events_;
   std::vector<State> states_;
   std::vector<Span> spans_;
-  std::vector<std::size_t> open_;  ///< spans that are held in the last state
+  std::vector<std::size_t> open_;  ///< spans that continue in the last state
 };
 
 }  // namespace kds::course

@@ -56,7 +56,7 @@ class Teller final : public kds::collision::BasicWorldListener<Motion> {
   }
   void separation(World&, const PairEvent& event) override { tell(EventKind::separation, event); }
   void overlap(World&, const PairEvent& event) override { tell(EventKind::overlap, event); }
-  void held(World& world, const PairEvent& event) override { tell_motions(world, event); }
+  void rebound_suppressed(World& world, const PairEvent& event) override { tell_motions(world, event); }
   void moved(World& world, BodyId id) override { tell_motion(world, id); }
 
   void wall(World& world, const WallEvent& event) override {
@@ -161,7 +161,7 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   result.overlaps = counters.overlaps;
   result.wall_contacts = counters.wall_contacts;
   result.motion_updates = counters.motion_updates;
-  result.held = counters.held;
+  result.held = counters.rebounds_suppressed;
   result.peak_memory_bytes = peak_memory();
   result.profile = world.work_profile();
   return result;

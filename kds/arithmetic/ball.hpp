@@ -22,7 +22,7 @@ inline constexpr double rounding_unit<DoubleDouble> = 0x1p-101;
 /// They are computed in doubles with 2 u in place of u, which pays for evaluating |a + b| in place of the exact sum;
 /// the roundings of the radius itself are relative errors of 2^-53 each, at most a few hundred of them, so the true
 /// bound is below radius * (1 + 2^-40). `certain_sign` demands that much. An overflow leaves an infinity or a NaN, for
-/// which no comparison holds, so that it is undecided too. A radius of zero means that the value is exact: the
+/// which no comparison holds, so that the sign is undecided too. A radius of zero means that the value is exact: the
 /// differences of equal coefficients (a common gravity) are known to be zero, and cost no exact arithmetic.
 template <class T>
 struct Ball {

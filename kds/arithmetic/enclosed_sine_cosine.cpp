@@ -5,8 +5,8 @@
 
 namespace kds {
 
-// The angle is halved until it is small, Taylor's series is summed there, and cosine + i sine is squared as often. So
-// pi is not needed, and angles of any size are like others.
+// The angle is halved until it is small, Taylor's series is summed there, and cosine + i sine is squared as many times
+// as the angle was halved. So pi is not needed, and large angles need no special treatment.
 //
 // Error bound. All numbers are multiples of e = 2^-w. The small angle y, below 2^-8, is truncated: e. In the series
 // each term is the one before times y / n, truncated twice: it is off by x_n <= x_(n-1) / 512 + 1.5 e < 2 e for n >= 2,

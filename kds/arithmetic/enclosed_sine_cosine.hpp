@@ -8,7 +8,7 @@ namespace kds {
 
 /// Sine and cosine of an angle (rad) of any size: each radius is at most 2^-bits, besides that of the angle.
 ///
-/// Cost: some 7 us for 200 bits, growing with (bits + log2 |angle|)^2 and a little more. Precondition: bits >= 0, and
+/// Cost: some 7 us for 200 bits, growing slightly faster than (bits + log2 |angle|)^2. Precondition: bits >= 0, and
 /// bits + log2 |angle| below 2^23.
 SineCosine<Enclosure> enclosed_sine_cosine(const Enclosure& angle, int bits);
 

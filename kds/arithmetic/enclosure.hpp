@@ -8,15 +8,15 @@
 namespace kds {
 
 /// The real number meant lies within `radius` of `middle`. Nothing is rounded: a sum of such numbers is off by the sum
-/// of the radii, a product by |a| s + |b| r + r s. For numbers that are not dyadic, such as roots and sines, to as many
-/// digits as it takes.
+/// of the radii, a product by |a| s + |b| r + r s. For numbers that are not dyadic, such as roots and sines, to any
+/// number of digits.
 struct Enclosure {
   Exact middle;
   Exact radius;  ///< >= 0
 
   Enclosure() = default;
   Enclosure(Exact exact)
-      : middle(std::move(exact)) {}  // NOLINT(google-explicit-constructor): what is exact is enclosed
+      : middle(std::move(exact)) {}  // NOLINT(google-explicit-constructor): an exact number encloses itself
   Enclosure(Exact m, Exact r) : middle(std::move(m)), radius(std::move(r)) {}
 
   friend Enclosure operator-(const Enclosure& a) { return {-a.middle, a.radius}; }

@@ -93,7 +93,7 @@ Exact scaled(const Exact& a, int exponent) {
   return result;
 }
 
-// Quotients of integers are truncated towards zero; a shift to the right is made of magnitudes.
+// Quotients of integers are truncated towards zero; right shifts act on magnitudes, so they truncate the same way.
 Exact truncated(const Exact& a, int bits) {
   const int excess = -bits - a.exponent_;
   if (excess <= 0 || a.sign() == 0) return a;

@@ -1,4 +1,4 @@
-// Powers of two as doubles, for scales: multiplying by one is exact but for overflow and underflow.
+// Powers of two as doubles, for scales: multiplying by one is exact except for overflow and underflow.
 #pragma once
 
 #include <bit>
@@ -7,7 +7,7 @@
 
 namespace kds {
 
-/// 2^exponent, without a call where it is a normal number; infinity or 0 where no double is it.
+/// 2^exponent, without a library call where that is a normal number; infinity or 0 where it is outside the doubles.
 inline double power_of_two(int exponent) {
   constexpr int bias = 1023;  // of the exponent of a double
   return exponent > -bias && exponent <= bias ? std::bit_cast<double>(static_cast<std::uint64_t>(exponent + bias) << 52)

@@ -19,13 +19,12 @@ struct SineCosine {
   Number sine, cosine;
 };
 
-/// Greatest angle that sine_cosine() knows, rad: a million million. Beyond it nothing is decided: the radii are
-/// infinite.
+/// Greatest angle that sine_cosine() computes, rad: 10^12. Beyond it nothing is decided: the radii are infinite.
 inline constexpr double greatest_angle = 0x1p40;
 
 /// Sine and cosine of an angle in rad, given as a double-double within a radius. Number is Ball<double> or
-/// Ball<DoubleDouble>. Made of + - * alone, each rounded as it is written: the same bits on every system, which those
-/// of the C library are not.
+/// Ball<DoubleDouble>. Made of + - * alone, each rounded as it is written: so the bits are the same on every system,
+/// unlike those of the C library.
 ///
 /// Errors, for |angle| <= greatest_angle, beside the radius of the angle itself (no derivative exceeds 1): at most
 /// 2^-51 in doubles and 2^-99 in double-doubles; where the angle is below pi/4 that of the sine is relative to the
@@ -36,7 +35,7 @@ inline constexpr double greatest_angle = 0x1p40;
 template <class Number>
 SineCosine<Number> sine_cosine(const Ball<DoubleDouble>& angle);
 
-/// Of rate * time, rad; the product of two doubles is exact as a double-double.
+/// Sine and cosine of rate * time, rad; the product of two doubles is exact as a double-double.
 template <class Number>
 SineCosine<Number> sine_cosine(double rate, double time);
 
@@ -54,7 +53,7 @@ struct ReducedAngle {
 inline constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
 inline constexpr std::array<double, 3> half_pi{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110};
 
-/// How many right angles are in an angle, to the nearest.
+/// The nearest whole number of right angles in an angle.
 inline double right_angles(double angle) {
   constexpr double to_integer = 0x1.8p52;  // a sum with it has the unit 1
   return (angle * two_over_pi + to_integer) - to_integer;
@@ -131,7 +130,7 @@ double series(const std::array<DoubleDouble, 13>& c, double z) {
   return h;
 }
 
-/// Of a reduced angle r, in doubles.
+/// Sine and cosine of a reduced angle r, in doubles.
 ///
 /// Error bound, with u = 2^-53 and z = r^2 < 0.618. Each coefficient of the series is at most 1/12 of the one before,
 /// and signs alternate, so that each partial result of Horner's rule lies between 0 and the coefficient c_m that it

@@ -1,4 +1,4 @@
-// What every exact sign rests on: that + - * / and sqrt of doubles are rounded once, to the nearest double.
+// Checks the assumption of all exact signs: + - * / and sqrt of doubles are rounded once, to the nearest double.
 #pragma once
 
 #include <cfloat>
@@ -7,7 +7,7 @@
 #include <string>
 
 // The error bounds of kds are those of single operations in the order in which they are written. Options that let a
-// compiler assume or do otherwise make it remove the very terms that measure an error.
+// compiler reorder or contract them make it remove the very terms that measure an error.
 #if defined(__FAST_MATH__)
 #error "kds: compile without -ffast-math and -Ofast: signs are exact only if every operation is rounded as it is written"
 #elif defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
@@ -29,14 +29,15 @@ namespace detail {
 
 /// Throws std::runtime_error, in the name of `who`, if the thread that calls it, or the file that it is compiled with,
 /// does not calculate as the exact signs need it: rounding to nearest, with subnormal numbers, each operation by itself
-/// and in its place. Graphics and audio libraries, and any shared library linked with -ffast-math, are known to change the
-/// mode of the processor and to leave it so; and not every compiler says of all options, as above, that they are on.
+/// and in the order written. Graphics and audio libraries, and any shared library linked with -ffast-math, are known to
+/// change the mode of the processor and to leave it so; and not every compiler defines macros, as are tested above, for
+/// all these options.
 ///
-/// Cost: about ten operations. It is called where worlds, simulators and sorted lists are made; whoever changes the
-/// mode later, or runs them in another thread, may call it there.
+/// Cost: about ten operations. Worlds, simulators and sorted lists call it when they are made; a program that changes
+/// the mode later, or runs them in another thread, may call it there.
 [[gnu::always_inline]] inline void require_strict_arithmetic(const char* who) {
   const auto refuse = [who](const char* why) { detail::refuse_arithmetic(who, why); };
-  // Volatile: to be calculated here and now, and not by the compiler.
+  // Volatile: calculated at run time, and not by the compiler.
   volatile double one = 1;
   volatile double tiny = std::numeric_limits<double>::epsilon() / 1024;  // far below half a rounding of 1
   volatile double sum = one + tiny;

@@ -19,16 +19,16 @@ namespace kds {
 /// A calendar queue: amortised O(1) for set, clear and pop, without allocation after resize(). At most `most_slots`:
 /// resize() throws std::length_error for more, and then changes nothing.
 ///
-/// A year begins at the earliest event and has a few days for each event; what comes later waits in an unsorted list,
-/// the years to come. A day is an unsorted, doubly linked list of its slots, so that set and clear touch a constant
-/// number of words. Only the events of the present day, and any set to a time before it, stand in order, in a small
-/// heap. When the last day is over, the events to come are dealt out into a new year, whose days are as long as the
-/// distance between the events then nearest.
+/// A year begins at the earliest event and has a few days for each event; later events wait in an unsorted list, the
+/// years to come. A day is an unsorted, doubly linked list of its slots, so that set and clear touch a constant number
+/// of words. Only the events of the present day, and any set to a time before it, stand in order, in a small heap. When
+/// the last day is over, the events to come are dealt out into a new year, whose days are as long as the distance
+/// between the events then nearest.
 ///
 /// The division into days is monotone in time even as it is rounded (a subtraction and a multiplication by a positive
-/// number, each monotone), so the order is exact whatever the length of a day. Bad luck only costs time: should the
-/// present day grow long (a burst, a cluster narrower than a day, times all equal or set backwards), the heap takes
-/// over with O(log n) an operation, and a new year is begun once that has cost about as much as beginning one.
+/// number, each monotone), so the order is exact whatever the length of a day. An unlucky distribution only costs time:
+/// if the present day grows long (a burst, a cluster narrower than a day, times all equal or set backwards), the heap
+/// takes O(log n) an operation, and a new year is begun once that has cost about as much as beginning one.
 ///
 /// Paper: [Brown88]; the sorted front is from [Tang05]. Differs: days do not wrap around, so none is searched for the
 /// events of this year; the present day is a heap, so bursts need no finer calendar within the calendar.
@@ -61,12 +61,13 @@ class CalendarQueue {
 
   // These change the speed, never the order.
   static constexpr std::size_t days_per_event = 4;  ///< in a year. More make years rarer and take more memory
-  static constexpr double events_per_day = 1;       ///< meant at the beginning of the year
-  static constexpr std::size_t near_part = 8;       ///< one in so many events, the earliest, tells the length of a day
-  static constexpr std::size_t sample_size = 256;   ///< of events looked at for that
-  static constexpr std::size_t long_day = 16;       ///< events; what goes beyond is put on the bill for a new year
+  static constexpr double events_per_day = 1;       ///< intended, at the beginning of the year
+  static constexpr std::size_t near_part = 8;       ///< the earliest 1 / near_part of the events decide a day's length
+  static constexpr std::size_t sample_size = 256;   ///< events looked at for that, at most
+  static constexpr std::size_t long_day = 16;       ///< events; the cost of longer days is counted, see bill_
 
-  // What Node::back says: the slot before, or the day whose first slot this is, or the place in the present day's heap.
+  // The meaning of Node::back: the slot before, or the day whose first slot this is, or the place in the present day's
+  // heap.
   static constexpr std::uint32_t first_of_day = 1u << 30;
   static constexpr std::uint32_t in_present = 1u << 31;
   static constexpr std::uint32_t payload = first_of_day - 1;
@@ -114,7 +115,7 @@ class CalendarQueue {
   void end_year() const;
   double day_length(double& earliest) const;
 
-  // To turn a leaf of the calendar changes nothing that can be seen, hence top() may do it: mutable.
+  // Mutable: top() may open the next day or year, which changes nothing that callers can see.
   mutable std::vector<Node> nodes_;          // by slot
   mutable std::vector<std::uint32_t> days_;  // first slot of each day; days_[year_] is that of the years to come
   mutable std::vector<std::uint64_t> busy_;  // a bit for each of days_ that is not empty
@@ -123,11 +124,11 @@ class CalendarQueue {
   mutable std::uint32_t today_ = 0;
   mutable double begin_ = 0;            // time at which the year begins
   mutable double days_per_second_ = 1;  // positive and finite
-  // In days since the beginning: what comes before tomorrow_ is the present day's, what comes from year_end_ on is the
-  // years to come's. At first all is.
+  // In days since the beginning: events before tomorrow_ belong to the present day, those from year_end_ on to the
+  // years to come, as all events do at first.
   mutable double tomorrow_ = -detail::no_event;
   mutable double year_end_ = -detail::no_event;
-  mutable std::size_t bill_ = 0;
+  mutable std::size_t bill_ = 0;  // cost of long days, in slots; beyond the number of events a new year is begun
   std::vector<std::uint64_t> ranks_;  // by slot, as they were when it was set; empty for SlotRank
   std::size_t size_ = 0;
   std::uint64_t operations_ = 0;
@@ -156,7 +157,8 @@ void CalendarQueue<Rank>::resize(std::size_t slots) {
   days_.resize(days + 1, none);
   busy_.resize(days / 64 + 1, 0);
   link_all(waiting, year_);
-  tomorrow_ = year_end_ = -detail::no_event;  // nor may what is set before the next year begins stand before them
+  // So that events set before the next year begins do not belong to the present day.
+  tomorrow_ = year_end_ = -detail::no_event;
 }
 
 template <QueueRank Rank>
@@ -329,7 +331,7 @@ void CalendarQueue<Rank>::open_day(std::uint32_t day) const {
   for (std::uint32_t slot = take_day(day); slot != none;) push_present(std::exchange(slot, nodes_[slot].next));
 }
 
-/// The years to come, if there is no other; not past them. Precondition: one of them is busy.
+/// The next day with events, or year_ (the years to come) if there is none. Precondition: the queue is not empty.
 template <QueueRank Rank>
 inline std::uint32_t CalendarQueue<Rank>::next_busy_day() const {
   std::size_t word = today_ / 64;
@@ -379,10 +381,10 @@ double CalendarQueue<Rank>::day_length(double& earliest) const {
   const auto begin = sample.begin();
   const auto end = begin + static_cast<std::ptrdiff_t>((seen + stride - 1) / stride);
   std::sort(begin, end);
-  // Enough events to be told apart from one burst at the beginning.
+  // So many events that one burst at the beginning does not decide the length.
   const auto near = std::max(begin + (end - begin - 1) / static_cast<std::ptrdiff_t>(near_part),
                              std::upper_bound(begin, end, earliest));
-  if (near == end) return 1;  // all at one time, as far as is seen
+  if (near == end) return 1;  // the sample is all at one time
   const double events = static_cast<double>(near - begin + 1) * static_cast<double>(stride);
   return events_per_day * (*near - earliest) / events;
 }

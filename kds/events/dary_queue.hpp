@@ -14,7 +14,7 @@ namespace kds {
 /// An implicit heap whose nodes have Arity children; O(log n) for set, clear and pop.
 ///
 /// A cleared slot is not taken out of the heap but parked in it at the time +infinity, so that after resize() no
-/// operation allocates. Four children suit a cache line and were the quickest of 2, 4 and 8.
+/// operation allocates. Four children fit a cache line and are the quickest of 2, 4 and 8.
 template <QueueRank Rank = SlotRank, unsigned Arity = 4>
 class DaryQueue {
  public:

@@ -1,4 +1,4 @@
-// Eight times in a cache line: which is the least, all compared at once.
+// Eight times in a cache line, compared at once: which is the least.
 #pragma once
 
 #include "kds/simd/target.hpp"
@@ -9,7 +9,7 @@
 
 namespace kds::detail {
 
-/// For vectors that begin with a cache line.
+/// An allocator for vectors that begin at a cache line.
 template <class T>
 struct LineAllocator {
   using value_type = T;
@@ -25,7 +25,7 @@ struct LineAllocator {
   friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }
 };
 
-/// The least of some times, and who has it: two bits each, in their order.
+/// The least of some times, and whose it is: two bits each, in their order.
 struct LeastTime {
   double time;
   unsigned who;

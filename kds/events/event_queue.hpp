@@ -1,4 +1,4 @@
-// What an event queue is: numbered slots, each with at most one time, and the least of them.
+// The concept of an event queue: numbered slots, each with at most one time, and the least of them.
 #pragma once
 
 #include <concepts>
@@ -16,7 +16,7 @@ namespace detail {
 inline constexpr double no_event = std::numeric_limits<double>::infinity();
 }  // namespace detail
 
-/// What a queue gives at its top.
+/// The entry at the top of a queue.
 struct QueuedEvent {
   double time = detail::no_event;
   Slot slot = 0;
@@ -29,25 +29,25 @@ struct SlotRank {
   constexpr std::uint64_t operator()(Slot slot) const noexcept { return slot; }
 };
 
-/// Who goes first among events of one time.
+/// The order among events of one time.
 template <class R>
 concept QueueRank = std::copyable<R> && requires(const R& rank, Slot slot) {
   { rank(slot) } -> std::convertible_to<std::uint64_t>;
 };
 
-/// A map from slots to times whose least entry is at hand.
+/// A map from slots to times with access to its least entry.
 ///
 /// Laws, for a queue q that has been given resize(n), with slots s < n:
 ///  1. Order. Entries are ordered by (time, rank, slot). top() is the least. Since no two are equal, the sequence of
 ///     tops is a function of the entries alone: every queue gives the same one, bit for bit.
 ///  2. Map. After set(s, t), contains(s) and time(s) == t, whether s was there before or not; nothing else changes.
-///     After clear(s), which may be said of an empty slot too, not contains(s) and time(s) is +infinity.
+///     After clear(s), which may be called for an empty slot too, not contains(s) and time(s) is +infinity.
 ///  3. set(s, +infinity) is clear(s). Any other time is finite: a NaN or -infinity breaks the precondition (asserted).
 ///  4. Rank. rank(s) is read by set(s, t) and kept: a slot whose rank changes takes its place when it is set again,
 ///     and the queue is in order at all times, also while ranks are being changed.
 ///  5. No clock. set may give a time before earlier tops; the order holds all the same.
 ///  6. pop() is clear(top().slot). top() and pop() need a queue that is not empty. Though const, top() may rearrange
-///     what it finds: threads that share a queue must take turns even to look.
+///     the queue's memory: threads that share a queue must take turns even to read.
 ///  7. resize(m) keeps the entries of slots below m and drops the rest; a new queue has no slots.
 ///  8. operations() counts the calls of set, clear and pop that found or left an entry.
 template <class Q>
@@ -75,7 +75,7 @@ struct QueueKey {
   Slot slot;
 
   static QueueKey make(double time, Slot slot, const Rank& rank) { return {time, rank(slot), slot}; }
-  /// Of a slot without event, whose rank need not be known yet.
+  /// The key of a slot without event, whose rank need not be known yet.
   static QueueKey without_event(Slot slot) { return {no_event, 0, slot}; }
 
   friend bool operator<(const QueueKey& a, const QueueKey& b) {
@@ -98,7 +98,7 @@ struct QueueKey<SlotRank> {
   }
 };
 
-/// Boost's heaps hold the greatest at the top.
+/// Boost's heaps have the greatest at the top.
 template <class Key>
 struct LaterKey {
   bool operator()(const Key& a, const Key& b) const { return b < a; }

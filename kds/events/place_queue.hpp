@@ -1,4 +1,4 @@
-// Event queue for slots in a row, of which neighbours change together: a tree of minima without branches.
+// Event queue for slots in a row whose neighbours change together: a tree of minima, updated without branches.
 #pragma once
 
 #include "kds/arithmetic/lattice.hpp"
@@ -17,18 +17,19 @@ namespace kds {
 
 /// The least of a row of times, and where it stands.
 ///
-/// Slots are places in a row: insert_slot() and erase_slot() shift those behind. Eight of them, a cache line, have
-/// their least kept; four such lines are a group, whose least is kept too; so are four groups, and so on up to one. A
-/// change is written down at once and counts after the next settle(), which brings lines and groups of the places
-/// changed since the last one up to date: for neighbours, one group on each level, log4(n / 8) of them.
+/// Slots are places in a row: insert_slot() and erase_slot() shift those behind. The least of each eight of them, a
+/// cache line, is stored; four such lines are a group, whose least is stored too; four groups are a group of the next
+/// level, and so on up to one. A change is stored at once and takes effect with the next settle(), which brings lines
+/// and groups of the places changed since the last one up to date: for neighbours, one group on each level, log4(n / 8)
+/// of them.
 ///
-/// Made for lists whose swaps change three neighbouring slots: what a heap or a calendar decides by branches that
-/// nobody can foresee, this does by conditional moves, in the same few dozens of cycles each time, whatever the times
-/// are. On the way up the first of the other three of a group, which have not changed, is known before the changed one
-/// is, so that each level adds one comparison to the wait for the next event.
+/// Made for lists whose swaps change three neighbouring slots: a heap or a calendar decides by branches that processors
+/// mispredict, this queue by conditional moves, in the same few dozens of cycles whatever the times are. On the way up
+/// the first of the other three of a group, which have not changed, is known before the changed one is, so that each
+/// level adds one comparison to the latency of the next event.
 ///
-/// In groups times are kept as their place among all doubles, and "no event" as a number of each one's own behind them,
-/// so that only events of one time are ever equal, and to look at ranks is a branch that is hardly ever taken.
+/// In groups a time is stored as its place among all doubles, and "no event" as a greater number, another one for each
+/// place: so only events of one time are equal, and the branch that compares ranks is hardly ever taken.
 ///
 /// Cost: set, clear O(1); settle O(log n + distance between the first and the last place changed / 8); insert_slot,
 /// erase_slot O(n) moves of memory, and all groups.
@@ -63,32 +64,33 @@ class PlaceQueue {
   /// Number of events; counts them.
   std::size_t size() const;
 
-  /// Of events of one time the one with the least rank(place) goes first, then the first place. Ranks of places that
+  /// Among events of one time the one with the least rank(place) goes first, then the first place. Ranks of places that
   /// have not changed must not have changed either.
   template <class Rank>
   void settle(Rank&& rank);
 
-  // Precondition of these: settled.
+  // Precondition of these: settle() has been called since the last change.
 
   bool empty() const { return top_.time == detail::no_event; }
   /// Time of the first event, infinity if there is none.
   double next_time() const { return top_.time; }
   /// Precondition: not empty.
   QueuedEvent top() const { return top_; }
-  /// One of the next few events, probably, which has just become one: worth fetching into the cache.
+  /// A slot that has probably just become one of the next few events: worth fetching into the cache.
   Slot candidate() const { return candidate_; }
 
  private:
   using Key = std::int64_t;
   static constexpr std::size_t line = 8;
   static constexpr std::size_t group = 4;
-  static constexpr std::size_t most_levels = 16;  ///< of groups: Slot has 32 bits
+  static constexpr std::size_t most_levels = 16;  ///< levels of groups: Slot has 32 bits
 
   struct Event {
     Key key;
     Slot place;
   };
-  /// By conditional moves: compilers take a branch for two choices by one condition unless told that it is no use.
+  /// By conditional moves: compilers emit a branch for two choices by one condition unless told that it cannot be
+  /// predicted.
   static Event lesser(Event a, Event b) {
     Slot place = a.place;
     const Key key = std::min(a.key, b.key);
@@ -145,7 +147,7 @@ class PlaceQueue {
   template <class Rank>
   void settle_lines(std::size_t first, std::size_t last, Rank& rank);
 
-  std::vector<double, detail::LineAllocator<double>> times_;  ///< of all places; filled up with no events
+  std::vector<double, detail::LineAllocator<double>> times_;  ///< of all places; filled up with entries without event
   /// On level 0 those of the lines, on level k + 1 those of level k; the last level has one.
   std::vector<Group> groups_;
   std::array<std::size_t, most_levels> begins_{};  ///< of levels among them
@@ -205,7 +207,7 @@ inline void PlaceQueue::move_slot(Slot from, Slot to) {
   touch(first, last);
 }
 
-/// What is behind the last slot is no event.
+/// Places behind the last slot have no event.
 inline std::size_t PlaceQueue::size() const {
   return times_.size() - static_cast<std::size_t>(std::count(times_.begin(), times_.end(), detail::no_event));
 }
@@ -243,15 +245,15 @@ inline void PlaceQueue::settle(Rank&& rank) {
   if (!settled) settle_lines(first, last, rank);
 }
 
-/// False where two times are equal, so that ranks count.
+/// False where two times are equal, so that ranks decide.
 inline bool PlaceQueue::find_first_in_line(std::size_t i, Event& first) const {
   const detail::LeastTime least = detail::least_of_eight(&times_[line * i]);
   first = {key_of(least.time, i), static_cast<Slot>(line * i + least.first())};
   return !least.shared();
 }
 
-/// Of a line and all groups above it, or of two neighbours; false where two times are equal, so that ranks count: then
-/// nothing is settled.
+/// Updates a line and all groups above it, or two neighbouring ones; false where two times are equal, so that ranks
+/// decide: then the groups are not up to date.
 inline bool PlaceQueue::settle_line(std::size_t i) {
   Event event;
   if (__builtin_expect(!find_first_in_line(i, event), 0)) return false;

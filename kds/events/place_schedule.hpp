@@ -13,8 +13,7 @@ namespace kds {
 /// A Schedule whose slots are places in a row: that of the certificate between the elements at places i and i + 1 is i.
 ///
 /// Laws: (1) settle() comes after each change, before the next event is asked for (see PlaceQueue); (2) a failure time
-/// is that of failure_time(), in whichever way it is asked for, so certifying two or three places together changes
-/// nothing but what it costs.
+/// is that of failure_time(), however it is computed, so certifying two or three places together changes only the cost.
 class PlaceSchedule : public Schedule<PlaceQueue> {
  public:
   // See PlaceQueue.
@@ -34,7 +33,7 @@ class PlaceSchedule : public Schedule<PlaceQueue> {
     queue_.set_three(middle, times.first, failure_time_after_turn(turned, now, horizon()), times.second);
   }
 
-  /// Of two new certificates.
+  /// Certifies two new certificates.
   template <Certificate C>
   void certify_two(Slot first, const C& a, Slot second, const C& b, double now) {
     counters_.certificates += 2;
@@ -57,7 +56,7 @@ class PlaceSchedule : public Schedule<PlaceQueue> {
     return times;
   }
 
-  /// A quick answer, or where there is none the usual one.
+  /// The quick answer, or where there is none that of failure_time().
   template <Certificate C>
   double completed(double quick, const C& certificate, double now) const {
     if (__builtin_expect(std::isnan(quick), 0)) return failure_time(certificate, now, horizon());

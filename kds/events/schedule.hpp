@@ -19,10 +19,10 @@ namespace kds {
 /// Keeps the failure time of the certificate in each slot, and knows which fails first.
 ///
 /// A structure calls certify() whenever a slot holds a new certificate, and, in its process(), failed() before it
-/// repairs anything. With the certified solver that is all; events are then where failure_time() says, and no
-/// event proves early.
+/// repairs anything. With the certified solver nothing else is needed: events are at the times that failure_time()
+/// gives, and no event proves early.
 ///
-/// With any other solver the schedule puts right what exact signs can put right:
+/// With any other solver the schedule corrects what exact signs can correct:
 ///  1. a certificate that does not hold when it is made fails at once, whatever the solver says, and one that holds
 ///     fails after now;
 ///  2. an event whose certificate still holds (it proves early) is not processed, but rescheduled to the certified
@@ -52,15 +52,15 @@ class Schedule {
 
   double horizon() const { return horizon_; }
 
-  /// What is beyond needs no event. The structure certifies again those slots that the change concerns: see
+  /// Failures beyond the horizon get no event. The structure certifies again those slots that the change concerns: see
   /// concerned().
   void set_horizon(double horizon) {
     extended_ = horizon > horizon_;
     horizon_ = horizon;
   }
 
-  /// Whether the last change of the horizon concerns a slot: what is scheduled stays right when the horizon grows;
-  /// what lies beyond a shrunken one goes.
+  /// Whether the last change of the horizon concerns a slot: scheduled events stay right when the horizon grows, and
+  /// those beyond a horizon that has shrunk are dropped.
   bool concerned(Slot slot) const {
     return extended_ ? !queue_.contains(slot) : queue_.contains(slot) && queue_.time(slot) > horizon_;
   }
@@ -104,9 +104,9 @@ class Schedule {
     }
   }
 
-  /// To be asked by process(): whether the certificate of the slot on top has really failed at its time. If not, the
-  /// event has been rescheduled, and there is nothing to repair. (What vanishes for good never fails by itself: such a
-  /// slot was set by hand, and has its event.)
+  /// To be called by process(): whether the certificate of the slot on top has really failed at its time. If not, the
+  /// event has been rescheduled, and there is nothing to repair. (A certificate that is zero throughout never fails:
+  /// the event of such a slot was set by hand, and is valid.)
   template <Certificate C>
   bool failed(Slot slot, const C& certificate, double time) {
     if constexpr (!Solver::certified) {
@@ -120,12 +120,12 @@ class Schedule {
     return true;
   }
 
-  /// What failed() and certify() have counted.
+  /// The counts of failed() and certify().
   const Counters& counters() const { return counters_; }
   const Queue& queue() const { return queue_; }
 
   /// Saves or loads the times of the slots, the horizon and the counters; see save() in snapshot.hpp. Queues are
-  /// functions of their times, so that one may be loaded into another. A queue of places is to be settled afterwards.
+  /// functions of their times, so that one may be loaded into another. Call settle() of a queue of places afterwards.
   template <class Archive>
   void archive(Archive& archive) {
     std::vector<double> times;
@@ -151,7 +151,7 @@ class Schedule {
       const int s = sign_after(certificate, now);
       if (s <= 0) return s < 0 && now <= horizon_ ? now : never;
       const double t = solver_(certificate, now, horizon_);
-      if (!(t > now)) return next_up(now) <= horizon_ ? next_up(now) : never;  // also a NaN: asked again then, exactly
+      if (!(t > now)) return next_up(now) <= horizon_ ? next_up(now) : never;  // also a NaN: failed() is exact
       return t <= horizon_ ? t : never;
     }
   }

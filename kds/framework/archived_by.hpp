@@ -1,4 +1,4 @@
-// What can be saved and loaded.
+// The concept of a type that can be saved and loaded.
 #pragma once
 
 #include "kds/member_named.hpp"

@@ -1,5 +1,5 @@
-// What a rule may say that a slot's certificate is: one, perhaps none (std::optional, std::monostate), or one of
-// several kinds (std::variant), nested at will.
+// The types that a rule may return for a slot's certificate: a certificate, perhaps none (std::optional,
+// std::monostate), or one of several kinds (std::variant), nested at will.
 #pragma once
 
 #include "kds/certificate.hpp"
@@ -21,7 +21,7 @@ struct IsVariant : std::false_type {};
 template <class... T>
 struct IsVariant<std::variant<T...>> : std::true_type {};
 
-/// Whether failure times can be asked of it, directly or as of a certificate of sampled elements.
+/// Whether it has failure times, directly or as a certificate of sampled elements.
 template <class C>
 concept AnyCertificate = Certificate<C> || UncertainCertificate<C>;
 

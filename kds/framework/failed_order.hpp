@@ -1,11 +1,12 @@
-// Which two an order is about, so that after a swap the order of the two exchanged is recognised.
+// Identifies the two elements of an order certificate, so that the certificate of the two exchanged is recognised after
+// a swap.
 #pragma once
 
 #include "kds/certificate_hooks.hpp"
 
 namespace kds::detail {
 
-/// What an antisymmetric certificate is about, and which kind it is: none of the two if default-made.
+/// The two elements and the kind of an antisymmetric certificate; neither if default-constructed.
 struct Ordered {
   const void* lower = nullptr;
   const void* upper = nullptr;

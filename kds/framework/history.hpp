@@ -19,12 +19,12 @@
 
 namespace kds {
 
-/// Runs a simulator and can bring back each of its earlier states, bit for bit: saves a snapshot every so many events,
-/// and writes down what it is asked to do in between, which is done again from the last snapshot on. [Jefferson85]
-/// calls this roll-back with periodic state saving.
+/// Runs a simulator and can bring back each of its earlier states, bit for bit: it saves a snapshot every so many
+/// events and records the calls in between, which are repeated from the last snapshot on. [Jefferson85] calls this
+/// roll-back with periodic state saving.
 ///
-/// Steps and edits must be made through it from the beginning, or it knows nothing of them. Edits and listeners are
-/// called again when they are replayed, and must then do the same (replaying() tells them). What is rolled back is
+/// All steps and edits must be made through it, or it does not know of them. Edits and listeners are called again when
+/// they are replayed, and must then do the same (replaying() is true then). Events and calls that are rolled back are
 /// forgotten: the run goes on from there. Simulator and parts are referred to, and must outlive it.
 ///
 /// Cost: memory, a snapshot every `every` events or calls, and a few words a call; a roll-back, a load and at most
@@ -39,7 +39,7 @@ class History {
     keep();
   }
 
-  /// As Simulator::step(). A step for which there is no event is not written down.
+  /// As Simulator::step(). A step for which there is no event is not recorded.
   bool step(double limit = forever) {
     keep_now_and_then();
     if (!simulator_.step(limit)) return false;
@@ -59,19 +59,19 @@ class History {
     calls_.push_back({t, 0, {}});
   }
   /// Calls f(), which may edit the elements, plan pieces, and so on, at the clock, but must not move it. f is kept as
-  /// long as it may be replayed, and so must be what it refers to. If it throws, nothing is written down of what it did
-  /// before.
+  /// long as it may be replayed, and everything that it refers to must live as long. If it throws, what it did before
+  /// is not recorded.
   void edit(std::function<void()> f) {
     keep_now_and_then();
     f();
     calls_.push_back({simulator_.now(), 0, std::move(f)});
   }
 
-  /// Events from the beginning to the present state. Those that were rolled back do not count, and those that were due
-  /// at an edit and made by it are part of the edit.
+  /// Events from the beginning to the present state. Those that were rolled back do not count, and those that an edit
+  /// processed because they were due are part of the edit.
   std::uint64_t events() const { return events_; }
   std::size_t snapshots() const { return kept_.size(); }
-  /// Whether a replay is going on: what is called then has been called before.
+  /// Whether a replay is going on: all that is called then has been called before.
   bool replaying() const { return replaying_; }
 
   /// Back to time t: all edits up to and including t have been made, and all events have happened. Throws
@@ -86,8 +86,9 @@ class History {
     advance_to(t);
   }
 
-  /// Undoes the last event and whatever came after it: the state is the one in which it was due. The clock may stand
-  /// before its time. False, and nothing is done, if there is none, or none after the earliest snapshot that is kept.
+  /// Undoes the last event and whatever came after it: the state is the one in which it was due. The clock may then
+  /// stand before that time. False, and nothing is done, if there is no such event after the earliest snapshot that is
+  /// kept.
   bool step_back() {
     if (events_ == kept_.front().events) return false;
     const std::uint64_t before = events_ - 1;
@@ -95,7 +96,7 @@ class History {
     return true;
   }
 
-  /// Forgets what is not needed to go back to t; earlier times are out of reach from then on.
+  /// Forgets what is not needed to go back to t; a return to earlier times is not possible from then on.
   void forget_before(double t) {
     std::size_t first = 0;
     while (first + 1 < kept_.size() && kept_[first + 1].time <= t) ++first;
@@ -129,7 +130,7 @@ class History {
     kept_.push_back({simulator_.now(), events_, calls_.size(), std::apply(all, parts_)});
   }
 
-  /// Loads the last snapshot that will do, and does again what was done up to a time and a number of events.
+  /// Loads the last snapshot before a time and a number of events, and repeats the calls up to them.
   template <class WillDo>
   void replay(WillDo&& will_do, double t, std::uint64_t events) {
     while (!will_do(kept_.back())) kept_.pop_back();

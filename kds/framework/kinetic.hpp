@@ -1,6 +1,6 @@
-// A kinetic structure made of a rule: everything but how to certify and how to repair. What it is, and its events;
-// kinetic_edits.hpp has how edits come in, kinetic_samples.hpp what is different with sampled elements,
-// kinetic_audit.hpp how it checks itself, is measured and saved.
+// A kinetic structure made of a rule: everything but how to certify and how to repair. This file has the class and its
+// events; kinetic_edits.hpp has edits, kinetic_samples.hpp sampled elements, kinetic_audit.hpp audits, measures and
+// snapshots.
 #pragma once
 
 #include "kds/audit.hpp"
@@ -22,8 +22,8 @@
 
 namespace kds {
 
-/// A certificate that failed and was repaired; or, of sampled elements, one that was no longer guaranteed, so that they
-/// were sampled anew (internal).
+/// A certificate that failed and was repaired; or one of sampled elements whose guarantee ended, so that they were
+/// sampled anew (internal).
 struct KineticEvent {
   double time = 0;  ///< s
   Slot slot = 0;
@@ -32,9 +32,9 @@ struct KineticEvent {
   friend bool operator==(const KineticEvent&, const KineticEvent&) = default;
 };
 
-/// Hears nothing. A listener is a function object called as listener(rule, event) after each event, when the
-/// structure is in order again: it may look at the rule, and edit the elements, at the time of the event. What it
-/// throws comes out of the step or edit that the event was part of; the event has been made then.
+/// A listener that does nothing. A listener is a function object called as listener(rule, event) after each event, when
+/// the structure is valid again: it may look at the rule, and edit the elements, at the time of the event. What it
+/// throws comes out of the step or edit that the event was part of; the event has been processed then.
 struct NoListener {
   template <class Rule>
   void operator()(const Rule& /*rule*/, const KineticEvent& /*event*/) const {}
@@ -47,7 +47,7 @@ struct NoListener {
 /// means that the certificate is no longer guaranteed: the rule is not asked to repair, but the elements are sampled
 /// anew (MovingSet::sample_with); the state is that of the samples.
 ///
-/// An exception from the rule leaves the structure in pieces: every event and edit after that throws std::logic_error.
+/// An exception from the rule leaves the structure invalid: every event and edit after that throws std::logic_error.
 ///
 /// Cost of an event, beyond the rule's own: a pop, and for each certificate it marks a failure time and a push.
 template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue, class Solver = CertifiedSolver>
@@ -76,8 +76,8 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
  public:
   using Element = typename Rule::Element;
 
-  /// Takes up what is in the set at the time `now`, which is the clock: finite, and not before the last edit (neither
-  /// is checked). The set must outlive the structure.
+  /// Takes up the elements that the set has at the time `now`, which is the clock: finite, and not before the last edit
+  /// (neither is checked). The set must outlive the structure.
   explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
       : elements_(elements),
         rule_(std::move(rule)),
@@ -104,15 +104,15 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   /// Time of the next event within the horizon, `never` if there is none.
   double next_time() const { return schedule_.next_time(); }
 
-  /// Makes the event due at next_time(). Precondition: there is one.
+  /// Processes the event due at next_time(). Precondition: there is one.
   void process();
 
   /// See KineticStructure. Cost: a failure time for each certificate that the change concerns.
   void extend_horizon(double now, double horizon);
 
-  /// Certifies anew, all elements having been turned round and the clock too: see reverse() in reverse.hpp. What has
-  /// failed by then fails at once, so that the events of this time bring the state before it. Throws std::logic_error
-  /// if the elements have not been turned round.
+  /// Certifies anew after all elements and the clock have been turned round: see reverse() in reverse.hpp. Certificates
+  /// that do not hold then fail at once, so that the events of this time undo those that led to the state. Throws
+  /// std::logic_error if the elements have not been turned round.
   void turn_round(double now, double horizon) requires Reversible<Element> {
     backwards_ = !backwards_;
     begin(now);
@@ -123,15 +123,15 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
     finish(false);
   }
 
-  /// Checks every certificate and failure time with exact signs, and what the rule itself has to check. Throws
-  /// AuditFailure. Precondition: `now` is the clock.
+  /// Checks every certificate and failure time with exact signs, and calls the rule's own audit(). Throws AuditFailure.
+  /// Precondition: `now` is the clock.
   void audit(double now) const;
 
   Counters counters() const { return schedule_.counters(); }
   /// Counted so far; most_per_element is found now, in time linear in the certificates.
   Measures measures() const;
 
-  /// Saves or loads all that the structure knows. Needs a rule with archive().
+  /// Saves or loads the whole state of the structure. Needs a rule with archive().
   template <class Archive>
   void archive(Archive& archive);
 
@@ -142,7 +142,7 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   void removing(Id id, double now) override;
   void changing(Id id, const Element& next, double now) override;
   void changed(Id id, double now) override;
-  /// Throws unless events and edits may be taken up.
+  /// Throws if the rule is being called, or the structure is invalid since the rule has thrown.
   void require_ready() const;
 
   // Each call of a function of the rule stands between these two: marked slots are certified when it is over.
@@ -155,16 +155,16 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   void certify(Slot slot, bool in_event);
   void hold(Slot slot, bool held);
 
-  /// Whether it is for a failure that a slot is due, not for a sample, nor too early.
+  /// Whether the slot on top is due for a failure: not for a sample, and not too early.
   bool failed(Slot slot, double time, bool counts = true);
-  /// Whether it is the negative of the certificate that has just failed: that is known to be positive at t+.
+  /// Whether a certificate is the negative of the one that has just failed, and so known to be positive at t+.
   template <class C>
   bool has_turned(const C& certificate) const {
     if constexpr (Antisymmetric<C>) return detail::Ordered::by(certificate) == crossed_.turned();
     return false;
   }
 
-  // What is different with sampled elements: kinetic_samples.hpp.
+  // With sampled elements: kinetic_samples.hpp.
   template <class C>
   void certify_samples(Slot slot, const C& certificate);
   template <class C>
@@ -241,7 +241,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
     } else {
       if (in_event) schedule_.look_for_late_events(certificate, last_);
       if (in_event && has_turned(certificate)) {
-        assert(sign_after(certificate, last_) > 0);  // else it is not antisymmetric, or the rule did not mark a slot
+        assert(sign_after(certificate, last_) > 0);  // else not antisymmetric, or a slot was not marked
         schedule_.certify_turned(slot, certificate, last_);
       } else {
         schedule_.certify(slot, certificate, last_);

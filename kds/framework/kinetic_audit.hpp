@@ -12,9 +12,9 @@
 
 namespace kds {
 
-/// The proof of the state, checked slot by slot: a slot that is held has a certificate, which holds just after now,
-/// unless its event is due; its event is at its failure time (of sampled elements: when these are to be sampled, at the
-/// latest); no other slot has an event. Then what the rule has to check of its own state.
+/// Checks the proof of the state slot by slot: a slot that is in use has a certificate, which holds just after now,
+/// unless its event is due; its event is at its failure time (with sampled elements: at the time at which they are to
+/// be sampled, at the latest); no other slot has an event. Then calls the rule's own audit.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
   const auto fail = [](Slot slot, const char* what) {

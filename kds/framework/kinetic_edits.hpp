@@ -1,4 +1,4 @@
-// How the edits of a set of elements come into a structure made of a rule.
+// How a structure made of a rule takes up the edits of its set of elements.
 #pragma once
 
 #include "kds/framework/kinetic.hpp"
@@ -9,11 +9,11 @@
 
 namespace kds {
 
-// The set calls process_due(), with the elements as they were; makes the edit; and tells of it: inserted(), removing()
+// The set calls process_due(), with the elements as they were; makes the edit; and reports it: inserted(), removing()
 // while the element is still there, or changing() before and changed() after it has its new motion. Law: an edit comes
-// after the events of its time. So the rule is called with a state that is right, and marks what the edit changes. A
-// new motion that the rule does not keep (ChoosesMotions), or any if it cannot (TakesUpMotions), is a removal before
-// the change and an insertion after it.
+// after the events of its time. So the rule is called with a valid state, and marks what the edit changes. A new motion
+// that the rule does not keep (ChoosesMotions), or any if it cannot (TakesUpMotions), is a removal before the change
+// and an insertion after it.
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::inserted(Id id, double now) {
@@ -53,7 +53,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::require_ready() const {
   if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
 }
 
-/// Makes what is due up to now. What is due for a sample, not for a failure, can wait until after the edit.
+/// Processes the failures that are due up to now. Samples that are due can wait until after the edit.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::process_due(double now) {
   require_ready();
@@ -63,8 +63,8 @@ void Kinetic<Rule, Listener, Queue, Solver>::process_due(double now) {
   if (next_time() < now) {
     fail_use("an edit at " + std::to_string(now) + " would pass over an event at " + std::to_string(next_time()));
   }
-  if constexpr (Sampled<Element> && !MovingSample<Element>) return;  // In order at all times.
-  // What is due for a sample can wait. It is put back also if a listener throws.
+  if constexpr (Sampled<Element> && !MovingSample<Element>) return;  // Such samples never fail.
+  // Slots that are due for a sample can wait. They are put back also if a listener throws.
   struct Waiting {
     Kinetic& structure;
     double now;

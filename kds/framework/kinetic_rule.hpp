@@ -1,4 +1,4 @@
-// What the writer of a kinetic structure writes: how to certify a slot, and how to repair when it fails.
+// The part that the author of a kinetic structure writes: how to certify a slot, and how to repair when it fails.
 #pragma once
 
 #include "kds/bounded.hpp"
@@ -18,10 +18,10 @@
 
 namespace kds {
 
-/// A change in the making, as a rule sees it: when, of which elements, and which slots have a new certificate.
+/// A change that a rule is making: its time, the elements, and the slots that have got a new certificate.
 ///
-/// Slots that are marked are certified when the rule is done, each once: a rule may mark more than it must, in any
-/// order, while its state is in pieces.
+/// Slots that are marked are certified when the rule is done, each once: a rule may mark more slots than it must, in
+/// any order, while its state is incomplete.
 template <MovingElement E>
 class Repair {
  public:
@@ -35,9 +35,9 @@ class Repair {
     return exact_sign(certificate, now_);
   }
 
-  /// The slot's certificate is another, or there is none any more: it will be asked for.
+  /// The slot's certificate has changed, or there is none any more: certificate() will be called for it.
   void certify(Slot slot) { mark(slot, Mark::certify); }
-  /// The slot is given up: it will not be asked for.
+  /// The slot is given up: certificate() will not be called for it.
   void retire(Slot slot) { mark(slot, Mark::retire); }
 
   /// For rules made of rules: while `part` runs, its slot s is the slot first + stride * s of the whole. Returns what
@@ -109,26 +109,26 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
 
 }  // namespace detail
 
-/// The part of a kinetic structure that its writer writes; Kinetic<Rule> makes a structure of it.
+/// The part of a kinetic structure that its author writes; Kinetic<Rule> makes a structure of it.
 ///
 ///     static constexpr const char* name           what messages call it
 ///     using Element                               what moves
 ///     certificate(slot, elements) const           the slot's fact: a certificate; std::optional or std::variant of
 ///                                                 them (with std::monostate) where there may be none, or several kinds
 ///     members(slot) const                         ids of the elements that the slot's certificate is about, as a range
-///     repair(slot, repair) -> Effect              put right what failed, and mark the slots whose certificates are new
+///     repair(slot, repair) -> Effect              repair the state, and mark the slots whose certificates are new
 ///     insert(id, repair), remove(id, repair)      take up an element; let one go, which is still there
 ///
-/// and, if it likes, what the concepts below describe: change, keeps, build, audit; and archive, so that it can be
-/// saved (ArchivedBy). A member of one of these names that is something else does not compile: it would never be
+/// and, optionally, what the concepts below describe: change, keeps, build, audit; and archive, so that it can be saved
+/// (ArchivedBy). A member with one of these names that does not fit its concept does not compile: it would never be
 /// called.
 ///
 /// Semantic laws: (1) certificates that hold, all of them, prove the state; (2) what a slot's certificate is depends on
 /// the rule's state and the motions only; (3) repair() decides by exact signs at now+ (Repair::sign), and is called
-/// only for a slot whose certificate has failed there; each call removes a contradiction between state and signs and
-/// makes none that was removed before at the same time (see docs/termination.md); (4) every slot whose certificate is
-/// another after a call has been marked in it; (5) insert, remove and change are called with a state that is right;
-/// (6) none of these functions edits the elements or throws (but for audit(), and for want of memory).
+/// only for a slot whose certificate has failed there; each call removes a contradiction between state and signs, and
+/// makes none again that was removed at the same time (see docs/termination.md); (4) every slot whose certificate is
+/// changed by a call has been marked in it; (5) insert, remove and change are called with a valid state; (6) none of
+/// these functions edits the elements or throws (except audit(), and when memory is exhausted).
 template <class R>
 concept KineticRule = detail::NamesElement<R> && detail::HasName<R> && detail::Certifies<R> &&
     detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R>;
@@ -140,8 +140,8 @@ concept TakesUpMotions = requires(R& rule, Id id, Repair<typename R::Element>& r
 };
 
 /// `bool keeps(Id id, const Element& next, Repair<Element>& repair)`: whether change() can take up this motion; if not,
-/// the element is removed and inserted. Asked before either, with the old motion still in place. Of a rule with
-/// change() only. Without it: always.
+/// the element is removed and inserted. Called before either, with the old motion still in place. Only for a rule with
+/// change(). Without it: change() takes up every motion.
 template <class R>
 concept ChoosesMotions = TakesUpMotions<R> &&
     requires(R& rule, Id id, const typename R::Element& next, Repair<typename R::Element>& repair) {

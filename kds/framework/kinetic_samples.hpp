@@ -1,4 +1,4 @@
-// What is different in a structure made of a rule where only samples of its elements are known.
+// How a structure made of a rule works when only samples of its elements are known.
 #pragma once
 
 #include "kds/framework/kinetic.hpp"

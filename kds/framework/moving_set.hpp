@@ -1,4 +1,4 @@
-// The moving elements that several structures share, and who is told when they are changed.
+// The moving elements that several structures share; the structures are told of each change.
 #pragma once
 
 #include "kds/member_named.hpp"
@@ -34,13 +34,13 @@ bool finite(const E& element) {
 }
 }  // namespace detail
 
-/// What moves: a Motion, a path in the plane or in space, a sampled position with a bound on its speed.
+/// A moving element: a Motion, a path in the plane or in space, a sampled position with a bound on its speed.
 template <class E>
 concept MovingElement = std::default_initializable<E> && std::copyable<E> && requires(const E& element) {
   { detail::finite(element) } -> std::convertible_to<bool>;
 };
 
-/// An element of which only samples are known, the last one at time `start`: Bounded, and what is made of it.
+/// An element of which only samples are known, the last one at time `start`: Bounded, and types made of it.
 template <class E>
 concept Sampled = MovingElement<E> && requires(const E& element) {
   requires std::same_as<decltype(E::sampled), const bool>;
@@ -70,9 +70,9 @@ concept Reversible = MovingElement<E> && requires(const E& element) {
 /// Moving elements by id. Structures attach themselves, and are told of every edit.
 ///
 /// An edit is made at a clock value, which is that of the simulator that runs the structures. Law: an edit comes after
-/// the events of its time: every structure first processes what is due then (so that nobody has to repair a state that
-/// is being repaired), the edit is made, and every structure takes it up. A time before the last event or edit, or past
-/// an event that has not been processed, is refused by the structures with std::logic_error before the elements are
+/// the events of its time: every structure first processes what is due then (so that no structure is edited in an
+/// invalid state), the edit is made, and every structure takes it up. A time before the last event or edit, or past an
+/// event that has not been processed, is refused by the structures with std::logic_error before the elements are
 /// changed; one that is not finite by the set with std::invalid_argument. Any other time is taken for the clock, and
 /// not compared with it.
 ///
@@ -89,7 +89,7 @@ class MovingSet {
  public:
   using Element = E;
 
-  /// Who is told of edits. In their order: process_due(), then one of the others, which must not throw.
+  /// A structure that is told of edits. For each edit: process_due(), then one of the others, which must not throw.
   class Observer {
    public:
     virtual void process_due(double now) = 0;                     ///< process what is due up to now, or throw
@@ -108,7 +108,7 @@ class MovingSet {
 
   bool contains(Id id) const { return id < present_.size() && present_[id]; }
   std::size_t size() const { return size_; }
-  /// Every id is below this.
+  /// All ids are below this.
   Id end_id() const { return static_cast<Id>(present_.size()); }
   /// Precondition: contains(id). The reference holds until the next insertion, and shows later motions.
   const Element& operator[](Id id) const { return elements_[id]; }
@@ -122,15 +122,15 @@ class MovingSet {
     return result;
   }
 
-  /// What every edit begins with: the structures process what is due up to now. What their listeners do to the set is
-  /// done then: an edit of the same time that follows finds it as it is now.
+  /// The first step of every edit: the structures process what is due up to now. Their listeners may edit the set then,
+  /// so the edit that follows sees the set as they leave it.
   void process_due(double now) {
     if (!std::isfinite(now)) throw std::invalid_argument("MovingSet: the time of an edit must be finite");
     for (Observer* observer : observers_) observer->process_due(now);
   }
 
-  /// Throws std::invalid_argument for an id that is used or reserved (`nobody`), also if it is the listener of an event
-  /// of this time that has used it, and for an element that is not finite.
+  /// Throws std::invalid_argument for an id that is used or reserved (`nobody`), even if only the listener of an event
+  /// of this time has taken it, and for an element that is not finite.
   void insert(Id id, Element element, double now) {
     require_free(id);
     require_finite(id, element);
@@ -138,7 +138,7 @@ class MovingSet {
     put(id, std::move(element), now);
   }
 
-  /// Inserts under the first id above all that were ever used, and gives it. Throws as insert() does.
+  /// Inserts under the first id above all that were ever used, and returns it. Throws as insert() does.
   Id add(Element element, double now) {
     require_finite(end_id(), element);
     process_due(now);
@@ -147,7 +147,7 @@ class MovingSet {
     return id;
   }
 
-  /// Throws std::out_of_range for an id that is not used, also if it is the listener of an event of this time that has
+  /// Throws std::out_of_range for an id that is not used, even if only the listener of an event of this time has
   /// removed it.
   void remove(Id id, double now) {
     require(id);
@@ -167,10 +167,10 @@ class MovingSet {
     replace(id, element, now);
   }
 
-  /// Where new samples come from: sampler(id, now) gives an element sampled at now. Structures ask for one when a
-  /// certificate is no longer guaranteed, but not before a member's last one is `tick` seconds old: what is closer to
-  /// failing than that is not guaranteed in between (a tick of 0 would have them ask for ever where two elements meet).
-  /// Throws std::invalid_argument for a tick that is not > 0.
+  /// Sets the source of new samples: sampler(id, now) gives an element sampled at now. Structures ask for one when the
+  /// guarantee of a certificate ends, but not before a member's last one is `tick` seconds old: a certificate that may
+  /// fail sooner than that is not guaranteed in between (with a tick of 0, two elements that meet would be sampled
+  /// without end). Throws std::invalid_argument for a tick that is not > 0.
   void sample_with(std::function<Element(Id, double)> sampler, double tick) requires Sampled<Element> {
     if (!(tick > 0)) throw std::invalid_argument("MovingSet::sample_with: the tick must be > 0");
     sampler_ = std::move(sampler);

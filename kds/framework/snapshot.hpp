@@ -17,9 +17,9 @@
 
 namespace kds {
 
-/// What save() gives and restore() takes: a copy of everything that decides the events to come. Loaded into parts of
-/// the same types, it gives the same events, bit for bit. A roll-back is a restore() of an earlier snapshot, which is
-/// what optimistic concurrency asks for ([Coming06] section 4.2; [Jefferson85]).
+/// The state that save() returns and restore() takes: a copy of everything that decides later events. Loaded into parts
+/// of the same types, it gives the same events, bit for bit. A roll-back is a restore() of an earlier snapshot, as
+/// optimistic concurrency needs it ([Coming06] section 4.2; [Jefferson85]).
 ///
 /// The bytes are those of the machine: a file is for the same program on the same kind of processor.
 class Snapshot {
@@ -28,8 +28,8 @@ class Snapshot {
   explicit Snapshot(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
 
   const std::vector<char>& bytes() const { return bytes_; }
-  /// Of the bytes, which are those of the state: but elements of the caller's own that have padding and no archive()
-  /// are copied padding and all.
+  /// Compares the bytes, which are those of the state; but elements of a caller's own type without archive() are copied
+  /// with their padding, whose bytes count too.
   friend bool operator==(const Snapshot&, const Snapshot&) = default;
 
  private:
@@ -45,8 +45,8 @@ concept OptionalLike = requires(T& value) {
   value.reset();
 };
 
-/// Calls archive(...) of its own for what has one, goes through vectors and optional values, and copies the bytes of
-/// what may be copied so.
+/// Calls archive() of types that have one, goes through vectors and optional values, and copies the bytes of trivially
+/// copyable types.
 template <class Derived>
 class Archive {
  public:
@@ -55,7 +55,7 @@ class Archive {
     (one(values), ...);
   }
 
-  /// A name that must be there again when it is loaded.
+  /// A name that must be found again when the snapshot is loaded.
   void tag(std::string_view name) {
     std::vector<char> letters(name.begin(), name.end());
     const std::vector<char> expected = letters;
@@ -68,13 +68,13 @@ class Archive {
     }
   }
 
-  /// For what is loaded to check itself by, before it relies on what it has loaded.
+  /// By this a part checks what it has loaded before it relies on it.
   static void require(bool right, const char* otherwise) {
     if (!right) throw std::runtime_error(std::string("snapshot: ") + otherwise);
   }
 
-  /// The size of a list, and each of its entries by one(entry). When it is loaded entries are made one after another,
-  /// so that a size that cannot be is noticed when the bytes are at an end, and not when there is no memory left.
+  /// The size of a list, and each of its entries by one(entry). When the list is loaded, entries are made one after
+  /// another, so that an impossible size is noticed at the end of the bytes, and not when memory is exhausted.
   template <class T, class One>
   void each(std::vector<T>& values, const One& one_of) {
     std::uint64_t size = values.size();
@@ -108,7 +108,7 @@ class Archive {
     }
   }
 
-  /// The size and, of plain entries, how long they are: so that entries of other types are refused.
+  /// The number of entries and, for plain ones, the size of one: so that entries of other types are refused.
   template <class T>
   void several(T& values) {
     auto& self = static_cast<Derived&>(*this);
@@ -131,7 +131,7 @@ class Archive {
     }
   }
 
-  /// What is there already is loaded where it is: it may know more than is saved.
+  /// An entry that exists already is loaded in place: it may contain more than is saved.
   template <class Values, class One>
   void entries(Values& values, std::uint64_t size, const One& one_of) {
     static_cast<Derived&>(*this).room(size, 1);
@@ -163,7 +163,7 @@ class Reader : public Archive<Reader> {
     std::copy_n(in_.begin() + static_cast<std::ptrdiff_t>(at_), size, data);
     at_ += size;
   }
-  /// Refuses sizes that cannot be: so many entries of so many bytes each, at least, are to come.
+  /// Refuses impossible sizes: at least so many bytes for each of so many entries must follow.
   void room(std::uint64_t entries, std::size_t length) const {
     if (entries > (in_.size() - at_) / length) throw std::runtime_error("snapshot: it ends before its time");
   }
@@ -174,7 +174,7 @@ class Reader : public Archive<Reader> {
   std::size_t at_ = 0;
 };
 
-/// FNV-1a: finds damage, not malice.
+/// FNV-1a: detects damage, but not a forgery.
 inline std::uint64_t checksum(const std::vector<char>& bytes) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
@@ -183,7 +183,7 @@ inline std::uint64_t checksum(const std::vector<char>& bytes) {
 
 }  // namespace detail
 
-/// Copies the state of simulators, sets of elements, structures: whatever has archive(). A Simulator includes its
+/// Copies the state of simulators, sets of elements, structures: of all types with archive(). A Simulator includes its
 /// structures, but not the elements: save(simulator, points).
 template <class... Parts>
 Snapshot save(Parts&... parts) {
@@ -194,11 +194,11 @@ Snapshot save(Parts&... parts) {
 
 /// Puts parts back into a saved state. They must be those that were saved, or others made of the same types in the same
 /// order; structures must be attached to the sets. Listeners and queues may be others. Throws std::runtime_error for a
-/// snapshot of other parts, or one that is damaged, and then leaves the parts as they were. What comes from elsewhere
-/// may be changed in ways that cannot be told from a right state: the events to come are then other ones. Worlds, sets,
-/// and lists and tournaments that are not made of rules check all that they rely on. Structures made of rules check
-/// lengths and times, but not all links, nor that they fit the elements: load them from files of your own only. Cost:
-/// that of a save() and a load.
+/// snapshot of other parts, or one that is damaged, and then leaves the parts as they were. A snapshot from elsewhere
+/// may have been changed into another valid state, which cannot be detected. Worlds, sets, and lists and tournaments
+/// that are not made of rules check all that they rely on. Structures made of rules check lengths and times, but not
+/// all links, nor that they fit the elements: load them only from files that you trust. Cost: that of a save() and a
+/// load.
 template <class... Parts>
 void restore(const Snapshot& snapshot, Parts&... parts) {
   const auto load = [&](const Snapshot& from) {
@@ -226,8 +226,8 @@ inline void write(std::ostream& out, const Snapshot& snapshot) {
   if (!out) throw std::runtime_error("snapshot: cannot be written");
 }
 
-/// Reads a snapshot, which must be all that is left of the stream: a file holds one, at its end. Throws
-/// std::runtime_error for what is no snapshot of this kind of machine, or is damaged.
+/// Reads a snapshot, which must be all that is left of the stream: a file has one snapshot at most, at its end. Throws
+/// std::runtime_error if it is damaged, or not a snapshot of this kind of machine.
 inline Snapshot read_snapshot(std::istream& in) {
   std::uint64_t head[3] = {};
   char letters[sizeof head];

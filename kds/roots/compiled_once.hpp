@@ -1,4 +1,4 @@
-// What failure times and signs of one kind of certificate share, compiled in one place.
+// The functions that failure times and signs of one kind of certificate use, compiled in one place.
 #pragma once
 
 #include "kds/roots/failure_time.hpp"
@@ -7,8 +7,8 @@
 /// for certificates of that kind, so that its includers need not compile them; `KDS_COMPILED_ONCE(template, Kind)` in
 /// a .cpp file compiles them.
 ///
-/// All are too large for a compiler to inline. What it does inline (sign_after() of doubles, the quick part of
-/// failure_time_after_turn()) is not among them.
+/// All are too large for a compiler to inline. Functions that it does inline (sign_after() of doubles, the quick part
+/// of failure_time_after_turn()) are not among them.
 #define KDS_COMPILED_ONCE(prefix, ...)                                                           \
   prefix double failure_time(const __VA_ARGS__&, double, double);                                \
   prefix double detail::failure_time_while_positive(                                             \

@@ -1,4 +1,4 @@
-// Failure times with what is known of them: a guaranteed enclosure and a status.
+// Failure times with a guaranteed enclosure and a status.
 #pragma once
 
 #include "kds/roots/failure_time.hpp"
@@ -9,7 +9,7 @@
 
 namespace kds {
 
-/// How a failure time was got.
+/// How a failure time was computed, and what is certain of it.
 enum class FailureStatus {
   holds,          ///< certified: the certificate does not fail within the horizon
   fails_at_once,  ///< certified: it has failed just after `now`
@@ -30,7 +30,7 @@ template <Certificate C>
 FailureTime certified_failure_time(const C& certificate, double now, double horizon = never);
 
 /// Whether and at which root the certificate fails is decided exactly, as by failure_time(), but the time is only near
-/// that root: for who needs no canonical double.
+/// that root: for callers that do not need the canonical double.
 ///
 /// The result is `holds` or `fails_at_once` exactly when failure_time() gives `never` or `now`; where it is `root`, the
 /// time and failure_time() both lie in [lower, next double above upper], and
@@ -45,7 +45,7 @@ FailureTime enclosed_failure_time(const C& certificate, double now, double horiz
 namespace detail {
 
 /// The root that failure_time() would look for, of a line or a parabola, from doubles alone; undecided where these do
-/// not do. `holds` is set where there is certainly none. Precondition: f > 0 just after now.
+/// not suffice. `holds` is set where there is certainly none. Precondition: f > 0 just after now.
 template <int Degree>
 ApproximateRoot enclosed_root(const Polynomial<Degree, Ball<double>>& p, bool& holds) {
   if constexpr (Degree == 0) {

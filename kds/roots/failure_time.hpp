@@ -20,37 +20,36 @@ namespace kds {
 ///
 /// `horizon` may be infinite; one before now makes the interval empty.
 ///
-/// The ladder. Each rung answers what it is sure of, in its bounds on errors, and leaves the rest to the next one; so
-/// all of them give the same bits, and what they differ in is what they cost.
+/// The ladder. Each rung answers where its error bounds make the answer certain, and leaves the rest to the next one;
+/// so all give the same bits, and differ only in cost.
 ///
 /// 1. The certificate knows (AnswersQuickly, certificate_hooks.hpp): its coefficients are doubles, or sums of two,
-/// known
-///    without rounding, or nearly. Signs in doubles say whether it fails within the horizon; a quotient or the
-///    quadratic formula says where, and one value there, whose large parts are exact, which double. 7 to 15 ns.
+///    known without rounding, or nearly. Signs in doubles decide whether it fails within the horizon; a quotient or the
+///    quadratic formula gives the root, and one value there, whose large parts are exact, gives the double. 7 to 15 ns.
 ///      line       quick_line_failure_time(), failure_time_known_line.hpp
 ///      parabola   quick_parabola_failure_time(), failure_time_known_parabola.hpp
 ///    Both also for the difference of two motions with starts of their own (certificates/order_parabola.hpp), and for
 ///    two lines side by side (certificates/order_together.hpp).
-/// 2. The formula in doubles with error bounds (Ball<double>) about now says whether there is a root and roughly where;
-///    one value of it in double-doubles which double (root_rounding.hpp), with one exact sign where a double is as good
-///    as the root itself. Any certificate. By the degree that the difference really has:
+/// 2. The formula in doubles with error bounds (Ball<double>) about now decides whether there is a root and roughly
+///    where; one value of it in double-doubles gives the double (root_rounding.hpp), with one exact sign where the root
+///    may be a double itself. Any certificate. By the degree that the polynomial really has:
 ///      1          a quotient, failure_time_linear.hpp
 ///      2          the quadratic formula, failure_time_quadratic.hpp. 30 ns
 ///      3 to 8     the rule of Descartes and Halley's method, first_crossing.hpp and failure_time_isolated.hpp. 120 to
 ///                 300 ns
 /// 3. Exact signs of f and its derivatives on the lattice of doubles (DerivativeIntervals, failure_time_by_signs.hpp):
-///    certificates that touch zero, or nearly, and clustered roots. Nothing is assumed. 2 to 70 us, the most for
+///    certificates that touch zero, or nearly, and clustered roots. Needs no assumptions. 2 to 70 us, the most for
 ///    clustered roots of a high degree; counted by sign_counters.searches.
 ///
-/// What each special form gains: how many instructions more all takes without it that a sorted list does for a second,
-/// or a loop over random polynomials (callgrind; a form that gained less than 3 % is not here).
+/// What each special form gains: by how much the instruction count of a sorted list that runs for a second, or of a
+/// loop over random polynomials, grows without it (callgrind; forms that gain less than 3 % are left out).
 ///      known line                               +118 % lists of parabolas that share their acceleration
 ///      its root, if that is a double            +133 % lines on a grid
 ///      known parabola                           +71 % lists, +46 % random parabolas
 ///      either, of two motions' own starts       +42 % lists of lines, +37 % of parabolas, +94 % that share it
 ///      signs before a start is moved (Order<1>) +16 % lists of lines with starts of their own
 ///      two lines side by side                   +14 % lists of lines with one start; 4 % less with starts of their own
-///      quick answers after a turn               +10 to 22 % lists, but for parabolas with starts of their own
+///      quick answers after a turn               +10 to 22 % lists, except parabolas with starts of their own
 ///      line, of computed coefficients           +7 to 18 % random lines
 ///
 /// enclosed_failure_time.hpp gives enclosures and a status, solver.hpp makes the solver of a structure exchangeable.
@@ -58,11 +57,11 @@ template <Certificate C>
 double failure_time(const C& certificate, double now, double horizon = never);
 
 /// The same where f is known to be positive just after now, which is a precondition: -f has failed there (two elements
-/// that have just swapped), so that its sign, zero up to rounding, would ask for the expensive rungs.
+/// that have just swapped), so that its sign, zero up to rounding, would need the expensive rungs.
 ///
-/// What was before now is not asked: f need not have risen through zero just now, and even a line may fail yet. For a
-/// certificate may have failed before it is made, and then -f may be falling already. (In a heap a child comes under
-/// another parent, and had passed it within the same spacing of doubles.)
+/// Nothing is assumed about f before now: it need not have risen through zero just now, and even a line may still fail.
+/// For -f may have been negative already when its certificate was made, and may be rising. (In a heap a child comes
+/// under another parent, which it had passed within the same spacing of doubles.)
 template <Certificate C>
 double failure_time_after_turn(const C& certificate, double now, double horizon = never);
 
@@ -90,17 +89,17 @@ double recovery_time(const C& certificate, double now, double horizon = never) {
 
 namespace detail {
 
-/// Whether all coefficients but the first are certainly not negative: f never falls. This spares what touches zero now
-/// and rises, or stays, the third rung.
+/// Whether all coefficients but the first are certainly not negative: f never falls. So certificates that are zero now
+/// and rise, or stay zero, do not need the third rung.
 template <int Degree>
 bool never_falls(const Polynomial<Degree, Ball<double>>& p) {
   bool rises = true;
-  // An infinity less an infinite radius is no number, and so not certain.
+  // Infinity minus an infinite radius is a NaN, and so not certain.
   unrolled<Degree>([&](auto i) { rises = rises && p.c[i + 1].middle - p.c[i + 1].radius * Ball<double>::slack >= 0; });
   return rises;
 }
 
-/// p without its last coefficient, for polynomials of which that is zero.
+/// p without its last coefficient, for polynomials where that is zero.
 template <int Degree>
 Polynomial<Degree - 1, Ball<double>> without_last(const Polynomial<Degree, Ball<double>>& p) {
   Polynomial<Degree - 1, Ball<double>> shorter;
@@ -108,7 +107,7 @@ Polynomial<Degree - 1, Ball<double>> without_last(const Polynomial<Degree, Ball<
   return shorter;
 }
 
-/// p is f about now, without its leading zeros as far as they have been looked at. Precondition: f > 0 just after now.
+/// p is f about now, without the leading zeros that have been found so far. Precondition: f > 0 just after now.
 template <class C, int Degree>
 double failure_time_while_positive(const C& certificate, const Polynomial<Degree, Ball<double>>& p, double now,
                                    double horizon) {
@@ -129,7 +128,7 @@ double failure_time_while_positive(const C& certificate, const Polynomial<Degree
   }
 }
 
-/// From the second rung on. Precondition: now <= horizon.
+/// Starts at the second rung. Precondition: now <= horizon.
 template <class C>
 double failure_time_of_formula(const C& certificate, double now, double horizon) {
   const auto p = certificate.template polynomial<Ball<double>>(now);
@@ -152,8 +151,8 @@ struct FormulaOnly {
   }
 };
 
-/// See hook_checks.hpp. Of a certificate after a turn, too: if it is positive just after now, as it must be, then
-/// failure_time() gives the same.
+/// See hook_checks.hpp. Valid after a turn, too: the certificate is positive just after now, so failure_time() gives
+/// the same.
 template <Hook hook, class C>
 void check_failure_time(const char* name, const C& certificate, double quick, double now, double horizon) {
   if (!is_to_be_checked<C, hook>()) return;

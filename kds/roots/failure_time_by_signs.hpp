@@ -1,4 +1,4 @@
-// Rung 3: failure times by the exact signs of all derivatives, for what the quicker methods leave undecided.
+// Rung 3: failure times by the exact signs of all derivatives, where the quicker methods do not decide.
 #pragma once
 
 #include "kds/roots/lattice_crossing.hpp"
@@ -11,8 +11,8 @@
 
 namespace kds::detail {
 
-/// Sign changes on the lattice of doubles, by derivatives, with exact signs only: right for every polynomial, whatever
-/// its roots.
+/// Sign changes on the lattice of doubles, by derivatives, with exact signs only: correct for every polynomial,
+/// whatever its roots.
 ///
 /// A cell is a pair of neighbouring doubles. Call a set of cells *complete* for a function if the function has no sign
 /// change outside them. The empty set is complete for the highest derivative, which is constant. Given a complete set
@@ -22,7 +22,7 @@ namespace kds::detail {
 /// its sign is dropped. In the end, the first double just after which f < 0 is one where f turns between two cells, or
 /// the end of a cell.
 ///
-/// Without a horizon the last stretch reaches to infinity, where the leading coefficient tells the sign, which is
+/// Without a horizon the last stretch extends to infinity, where the leading coefficient gives the sign, which is
 /// cheaper than the sign at the largest double; but only as long as no higher derivative turns beyond all doubles.
 ///
 /// Cost: O(degree^2) searches of a few values in double-double each: 2 us for a parabola, up to 70 us for clustered
@@ -74,7 +74,7 @@ class DerivativeIntervals {
     double start = now_;
     for (std::size_t i = 0; i <= count_; ++i) {
       const double t = crossing(0, start, i < count_ ? cells_[i].before : horizon_);
-      if (t != never) return t;  // f was not negative before, so it is from here on
+      if (t != never) return t;  // f was not negative before, so it turns negative here
       if (i == count_) return never;
       start = cells_[i].at;
       if (sign_after(certificate_, start) < 0) return start;
@@ -120,7 +120,7 @@ class DerivativeIntervals {
     const double guess = now_ + approximate_root(scaled_derivative(order), start - now_, above - now_, after > 0);
     const double t = LatticeCrossing<C>(certificate_, order)(start, above, after, guess);
     if (stop == never && t == above && sign_after(certificate_, t, order) != after) {
-      horizon_ = above;  // It is beyond all doubles.
+      horizon_ = above;  // The sign changes beyond all doubles.
       return never;
     }
     return t;

@@ -25,7 +25,7 @@ double refined_root(const Polynomial<Degree, Ball<double>>& p, double x, double 
     (value > 0 ? lower : upper) = x;
     const double step = value * slope / (slope * slope - value * bend);
     const double next = x - step;
-    // The error is cubed: from here one more step would give all the digits there are, and this is it.
+    // Each step cubes the error: one more gives all the digits of a double, and this is that step.
     if (std::abs(step) <= 0x1p-17 * x) return next;
     x = next > lower && next < upper ? next : (upper < never ? 0.5 * (lower + upper) : 2 * x);
   }

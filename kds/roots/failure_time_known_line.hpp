@@ -9,7 +9,8 @@
 
 namespace kds {
 
-/// What failure_time() gives for g + r x, the parabola p with a = 0, bit for bit, or a NaN where it takes more care.
+/// What failure_time() gives for g + r x, the parabola p with a = 0, bit for bit, or a NaN where this needs the general
+/// methods.
 template <bool shifted>
 double quick_line_failure_time(const Parabola<shifted>& p, double now, double horizon);
 
@@ -17,8 +18,8 @@ double quick_line_failure_time(const Parabola<shifted>& p, double now, double ho
 
 namespace detail {
 
-/// Whether the line is zero at t, or false where that takes more digits. Precondition: t is its root up to rounding,
-/// and g and r are in the range below.
+/// Whether the line is certainly zero at t; false where doubles do not decide. Precondition: t is its root up to
+/// rounding, and g and r are in the range below.
 inline bool is_root(const Parabola<false>& p, double t) {
   const DoubleDouble h = two_sum(t, -p.epoch);
   const DoubleDouble run = two_product(p.r.high, h.high);
@@ -32,10 +33,10 @@ inline bool is_root(const Parabola<false>& p, double t) {
 /// d = -v / r, gives the root as start + d. Error bound, with u = 2^-53:
 /// - not shifted: start = c. The sums are off by 2^-75 |g|. |d| is below 2^-23 |x|, and known to 3 u of itself. In all
 ///   less than 2^-73 |x|.
-/// - shifted: start = x, for r may be known so roughly that a longer step would not do: d is off by |r_spread / r| of
-///   itself. v has one more part, (x - c) r, off by 2^-78 |g|; and the low parts are off by 2^-48 of the spreads when
-///   given, and by another 2^-50 in here.
-/// The sum of the low parts of start and time is off by 2^-98 of the time, and more than that is charged for d.
+/// - shifted: start = x, for r may be known so roughly that a longer step would not be exact enough: d is off by
+///   |r_spread / r| of itself. v has one more part, (x - c) r, off by 2^-78 |g|; and the low parts are off by 2^-48 of
+///   the spreads when given, and by another 2^-50 in here. The sum of the low parts of start and time is off by 2^-98
+///   of the time, and more than that is charged for d.
 template <bool shifted>
 [[gnu::always_inline]] inline double first_double_after_line(const Parabola<shifted>& p) {
   const double g = p.g.high;

@@ -24,13 +24,14 @@ struct Parabola {
   double epoch;
 };
 
-/// What failure_time() gives for g + r x + a x^2, a != 0, bit for bit, or a NaN where it takes more care. If `turned`,
-/// the value is known to be positive just after now: failure_time_after_turn() is meant.
+/// What failure_time() gives for g + r x + a x^2, a != 0, bit for bit, or a NaN where this needs the general methods.
+/// If `turned`, the value is known to be positive just after now: failure_time_after_turn() is meant.
 ///
-/// A parabola falls through zero once at most: where it is positive now, that is its failure, if it is still ahead.
-/// Signs at now and at the horizon say whether; the quadratic formula says where, and one value there, its large parts
-/// computed exactly, places the root among the doubles. (It is inlined: a parabola passed on in memory costs a fifth
-/// more.) What falls so briefly that no double may see it, or nearly touches, is left to the general method.
+/// A parabola falls through zero once at most: if it is positive now, that crossing is its failure, if it is still
+/// ahead. Signs at now and at the horizon decide whether it is; the quadratic formula says where, and one value there,
+/// its large parts computed exactly, places the root among the doubles. (It is inlined: a parabola passed on in memory
+/// costs a fifth more.) Parabolas that nearly touch zero, or are negative so briefly that perhaps no double sees it,
+/// are left to the general method.
 template <bool turned, bool shifted>
 double quick_parabola_failure_time(const Parabola<shifted>& p, double now, double horizon);
 
@@ -38,8 +39,8 @@ double quick_parabola_failure_time(const Parabola<shifted>& p, double now, doubl
 
 namespace detail {
 
-/// The first `bits` significant bits of a number, 1 <= bits <= 53. What is cut off is below 2^(1 - bits) of it.
-/// Products of numbers of 53 bits together are exact while nothing underflows.
+/// The first `bits` significant bits of a number, 1 <= bits <= 53. The rest is below 2^(1 - bits) of it. Products of
+/// numbers of 53 bits together are exact while nothing underflows.
 template <int bits>
 double leading_bits(double x) {
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & ~((std::uint64_t{1} << (53 - bits)) - 1));
@@ -105,10 +106,11 @@ struct FallingRoot {
 
 template <bool shifted>
 FallingRoot falling_root(const Parabola<shifted>& p, const Estimate& discriminant) {
-  const double half = 0.5 / p.a.high;  // does not wait for the square root
+  const double half = 0.5 / p.a.high;  // independent of the square root, so computed beside it
   const double q = std::sqrt(discriminant.value);
   const double sum = p.r.high + q;
-  // (-r - q) / (2 a) is fine up to some cancellation, which will be made good for; 2 g / (q - r) is the same without.
+  // (-r - q) / (2 a) loses digits by cancellation if r < 0, which the step below corrects; 2 g / (q - r) is the same
+  // root without.
   const double x = std::abs(sum) > 0x1p-20 * q ? -sum * half : 2 * p.g.high / (q - p.r.high);
   return {x, q, discriminant.value > 0x1p32 * discriminant.error};
 }
@@ -148,8 +150,8 @@ template <bool shifted>
   const DoubleDouble place = two_sum(p.epoch, x);
   const double low = place.low + d;
   const double t = place.high + (d + (place.low + half_spacing(place.high)));
-  // Or so; whether it is shows here. The double before t is t less one spacing: not less than half of one (then this
-  // would be t, and nothing decided), not 3/2. Differences of neighbours are exact.
+  // Up to rounding; here it is checked. The double before t is t minus one spacing: not minus half of one (then this
+  // would be t, and nothing decided), and not 3/2. Differences of neighbours are exact.
   const double before = t - 0x1.0000000000001p-53 * std::abs(t);
   const double margin = std::min((t - place.high) - low, low - (before - place.high));
 
@@ -185,8 +187,8 @@ template <bool turned, bool shifted>
   } else {
     const detail::Estimate value = detail::value_at(p, elapsed);
     if (!value.positive()) return value.negative() ? now : undecided;
-    // Positive, and convex: it never fails if it rises or has no root. This is one comparison, since which certificates
-    // fail is what processors cannot foresee. What is not a number comes first in max and min, so that it stays.
+    // Positive, and convex: it never fails if it rises or has no root. This is one comparison, since processors cannot
+    // predict which certificates fail. A NaN is the first argument of max and min, so that the result is a NaN.
     const double rise = slope.value - slope.error;
     const double depth = -discriminant.value - discriminant.error;
     if (std::min(std::max(rise, depth), p.a.high) > 0) return never;

@@ -13,7 +13,7 @@ namespace kds::detail {
 ///
 /// A root in doubles, then one Newton step from it with f evaluated in double-double: the step is small, so a double
 /// division gives it to a few units of 2^-53, and the root is start + step to well beyond the precision of start. It is
-/// what RootRounding does, with less to be careful about.
+/// what RootRounding does, with fewer conditions to check.
 template <class C>
 double linear_failure_time(const C& certificate, const Polynomial<1, Ball<double>>& p, double now, double horizon) {
   const double steepest = std::abs(p.c[1].middle) + p.c[1].radius;

@@ -27,7 +27,7 @@ struct ApproximateRoot {
 
 /// N / M with N known to +-n and M to +-m. With m / M <= 2^-8 the error is at most (n + |x| m) / (M - m), plus the
 /// roundings of the inverse and of the product, 2^-52 |x|; the factor 1.01 covers M - m in place of M and what the
-/// bound itself loses. Out of 2^+-900 nothing is said, so that underflow plays no part.
+/// bound itself loses. Outside 2^+-900 the result is a NaN, so that underflow plays no part.
 inline ApproximateRoot bounded_quotient(double numerator, double n, double denominator, double m) {
   const double inverse = 1 / denominator;
   const double x = numerator * inverse;
@@ -56,7 +56,7 @@ inline ApproximateRoot quadratic_root(const Polynomial<2, Ball<double>>& p, cons
 
 /// p is f about now. Precondition: f > 0 just after now.
 ///
-/// The closed form gives the root to a few digits at least, which settles most pairs that meet beyond the horizon; one
+/// The closed form gives the root to a few digits at least, which decides most pairs that meet beyond the horizon; one
 /// value in double-double then places it among the doubles. Parabolas that nearly touch zero are left to exact signs.
 template <class C>
 double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<double>>& p, double now, double horizon) {

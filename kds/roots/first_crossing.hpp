@@ -17,12 +17,12 @@
 
 namespace kds {
 
-/// What is known of the first x in (0, end] where a polynomial turns from + to -.
+/// The result of a search for the first x in (0, end] where a polynomial turns from + to -.
 struct Crossing {
   enum class Status {
     none,      ///< certified: the polynomial is >= 0 on (0, end]
     isolated,  ///< certified: > 0 on (0, after], and one sign change, from + to -, in (after, before)
-    undecided  ///< the doubles do not tell
+    undecided  ///< doubles do not decide
   };
   Status status;
   double after = 0;   ///< rounded: the ends meant are within 2^-44 of their size
@@ -58,8 +58,9 @@ constexpr std::array<double, std::size_t{Degree} + 1> inverse_binomials() {
   return result;
 }
 
-/// A point of the projective line: y = w / v, with w + v = 1. Both are kept, for neither says enough of the other where
-/// it is near 1; they are sums and products of positive numbers, so their relative errors stay small.
+/// A point of the projective line: y = w / v, with w + v = 1. Both are stored, since the smaller cannot be computed
+/// accurately from one that is near 1; they are sums and products of positive numbers, so their relative errors stay
+/// small.
 struct ProjectivePoint {
   double w;
   double v;
@@ -67,7 +68,7 @@ struct ProjectivePoint {
 
 enum class Pattern { positive, falls_once, other };
 
-/// The signs of a row of coefficients as bits: signs of random polynomials are what processors cannot foresee.
+/// The signs of a row of coefficients as bits: branches on signs of random polynomials would be mispredicted.
 struct SignMasks {
   unsigned positive = 0;
   unsigned negative = 0;
@@ -99,7 +100,7 @@ struct BernsteinPiece {
   ProjectivePoint begin;
   ProjectivePoint end;
 
-  /// What the signs of the coefficients, in order, say.
+  /// What follows from the signs of the coefficients, in order.
   Pattern pattern() const {
     SignMasks signs;
     unrolled<Degree + 1>([&](auto i) { signs.set(i, b[i], error); });
@@ -130,7 +131,7 @@ struct BernsteinPiece {
 
   /// A guess of the root where the polygon falls.
   ProjectivePoint fall_point() const {
-    // As in crossing(), but for one division less: the numbers w and v may be multiplied by anything.
+    // As in crossing(), with one division less: the numbers w and v may be multiplied by anything.
     const std::size_t i = fall();
     const double step = std::max(b[i - 1], 0.0) + error;
     const double whole = step + std::max(-b[i], 0.0) + error;
@@ -152,7 +153,7 @@ struct BernsteinPiece {
     double largest = 0;
     unrolled<Degree + 1>([&](auto i) { largest = std::max(largest, std::abs(b[i])); });
     error += 2.1 * Degree * 0x1p-53 * largest;
-    // Two numbers at a time. What a stage makes of the number behind its last one is of no use, and not used.
+    // Two numbers at a time. What a stage computes of the number behind its last one is not used.
     constexpr std::size_t pairs = Degree / 2 + 1;
     std::array<Two, pairs> row;
     unrolled<pairs>([&](auto j) {
@@ -194,8 +195,9 @@ struct BernsteinPiece {
 inline int exponent_of(double x) { return static_cast<int>((std::bit_cast<std::uint64_t>(x) >> 52) & 0x7ff) - 1023; }
 
 /// A power of two near the least x at which a negative term comes up to the constant one, or near the end if that is
-/// earlier. A guess of where things happen; nothing rests on it. Where the constant term may be zero (two things that
-/// have just met) it says nothing of what comes, and the linear one takes its place.
+/// earlier. A guess of the scale on which the polynomial changes; correctness does not depend on it. Where the constant
+/// term may be zero (two things that have just met) it says nothing about later times, and the linear term takes its
+/// place.
 template <int Degree>
 int scale_exponent(const Polynomial<Degree, Ball<double>>& p, double end) {
   constexpr int most = 100;  // so that no power up to the tenth overflows
@@ -223,7 +225,7 @@ class CrossingSearch {
     double radius = 0;
     double sum = 0;  // not a number if anything is not
     unrolled<Degree + 1>([&](auto i) {
-      // Multiplications by powers of two are exact but for underflow, which is charged below.
+      // Multiplications by powers of two are exact except for underflow, which is charged below.
       const double weight = std::get<i>(factor) * power;
       b[i] = p.c[i].middle * weight;
       const double r = p.c[i].radius * weight;

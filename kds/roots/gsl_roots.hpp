@@ -40,8 +40,8 @@ double gsl_failure_time(const C& certificate, double now, double horizon = never
   return t <= horizon ? t : never;
 }
 
-/// The same with what is known of it, which is that it has been estimated: the enclosure is [now, horizon], whatever
-/// the time, for a crossing may have been missed or made up. (In an empty interval the certificate certainly holds.)
+/// The same with a status, which is `estimated`: the enclosure is [now, horizon] whatever the time, since a crossing
+/// may have been missed or made up. (In an empty interval the certificate certainly holds.)
 template <Certificate C>
 FailureTime gsl_estimated_failure_time(const C& certificate, double now, double horizon = never) {
   if (!(now <= horizon)) return {};

@@ -1,4 +1,4 @@
-// From a root known to a few digits to the double that is its failure time.
+// From a root that is known to a few digits to the double that is the failure time.
 #pragma once
 
 #include "kds/arithmetic/lattice.hpp"
@@ -47,7 +47,7 @@ Slope slope_at(const Polynomial<Degree, Ball<double>>& p, double x) {
 inline double spacing(double t) { return std::abs(t) * 0x1p-52 + std::numeric_limits<double>::denorm_min(); }
 
 /// The first double not before a root that is known up to `error`, where f falls from + to - and which is the only one
-/// near: `root` rounded up, unless a double is within the error; there one exact sign tells, if no other double is
+/// near: `root` rounded up, unless a double is within the error; then one exact sign decides, if no other double is
 /// near. A NaN where the error is too large for that.
 template <class C>
 double first_double_not_before(const C& certificate, const DoubleDouble& root, double error) {
@@ -81,7 +81,7 @@ class RootRounding {
   template <int Degree>
   double operator()(const Polynomial<Degree, Ball<double>>& p, double x, double after, double before) const {
     double t = now_ + x;
-    // A better start is worth a second evaluation and a third; if they do not do it, nothing about f is ordinary.
+    // A better start is worth a second evaluation and a third; if these do not suffice, f is left to exact signs.
     for (int attempt = 0; attempt < 3; ++attempt) {
       const double elapsed = t - now_;
       if (!(elapsed > after * (1 + 0x1p-39) && elapsed < before * (1 - 0x1p-39))) return undecided;

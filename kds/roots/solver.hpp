@@ -1,4 +1,4 @@
-// Who finds failure times: the solver as a part that can be exchanged.
+// The part of a structure that finds failure times: it can be exchanged.
 #pragma once
 
 #include "kds/certificate.hpp"
@@ -20,9 +20,9 @@ concept FailureTimeSolver = std::default_initializable<S> &&
   { solver(f, t, t) } -> std::same_as<double>;
 };
 
-/// `double after_turn(const C& certificate, double now, double horizon) const`: a solver may know this too, which means
-/// what failure_time_after_turn() means, of a certificate that is positive just after now. Without it the solver is
-/// asked as of any other. One that is there and cannot be called so does not compile.
+/// `double after_turn(const C& certificate, double now, double horizon) const`: optional, with the meaning of
+/// failure_time_after_turn(): for a certificate that is positive just after now. Without it the solver is called as for
+/// any other. A member after_turn() that cannot be called so does not compile.
 template <class S, class C>
 concept AnswersAfterTurn = requires(const S& solver, const C& certificate, double t) {
   { solver.after_turn(certificate, t, t) } -> std::same_as<double>;

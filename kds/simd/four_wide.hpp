@@ -10,7 +10,8 @@
 namespace kds {
 
 /// As Two (two_doubles.hpp), for files that are compiled for processors with registers of that size. Such a file has
-/// functions of these alone, all others inlined: of an ordinary function that is in two files any one may be linked.
+/// functions of these types only, and all others inlined: of an ordinary function that two files contain the linker may
+/// take either, and so call AVX2 instructions where there are none.
 using Four = double __attribute__((vector_size(32)));
 using FourBits = std::int64_t __attribute__((vector_size(32)));
 
@@ -23,8 +24,8 @@ using FourBits = std::int64_t __attribute__((vector_size(32)));
 
 [[gnu::always_inline]] inline Four square_root(Four x) { return _mm256_sqrt_pd(x); }
 
-/// Lane j of places[i] is lane i of the j-th. In intrinsics, for compilers take more instructions for shuffles by
-/// number.
+/// Lane j of places[i] is lane i of the j-th. In intrinsics, since compilers need more instructions for the generic
+/// shuffles.
 [[gnu::always_inline]] inline void transpose(Four x0, Four x1, Four x2, Four x3, Four (&places)[4]) {
   const Four even01 = _mm256_unpacklo_pd(x0, x1), odd01 = _mm256_unpackhi_pd(x0, x1);
   const Four even23 = _mm256_unpacklo_pd(x2, x3), odd23 = _mm256_unpackhi_pd(x2, x3);

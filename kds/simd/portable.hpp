@@ -1,4 +1,4 @@
-// What vectors of the compiler's own cannot say by themselves, for any processor.
+// Operations that the compiler's own vectors do not have, for any processor.
 #pragma once
 
 #include "kds/simd/vectors.hpp"
@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <cstring>
 
-/// Whatever the processor, these functions are there under these names, and give the same bits (tests/kds/simd).
+/// These functions exist under these names for every processor, and give the same bits (tests/kds/simd).
 namespace kds::simd::portable {
 
 inline Two square_root(Two x) { return Two{std::sqrt(x[0]), std::sqrt(x[1])}; }

@@ -1,5 +1,5 @@
-// The instructions of the processor that is compiled for, where they do better than what is portable: kds::simd::target
-// has the functions of portable.hpp. For the lane types of this folder; others include those.
+// Instructions of the target processor, where they are faster than portable code: kds::simd::target has the functions
+// of portable.hpp. For the lane types of this folder; others include those.
 #pragma once
 
 #ifdef __SSE2__

@@ -11,14 +11,14 @@ namespace kds {
 using Two = double __attribute__((vector_size(16)));
 using FourFloats = float __attribute__((vector_size(16)));
 
-/// What comparisons of them give, lane by lane: all bits set, or none.
+/// The result of comparing them, lane by lane: all bits set, or none.
 using TwoBits = std::int64_t __attribute__((vector_size(16)));
 using FourFloatsBits = std::int32_t __attribute__((vector_size(16)));
 
 /// Eight signed bytes, the first one lowest.
 using EightBytes = std::uint64_t;
 
-/// The least of some times, and who has it: two bits each, in their order.
+/// The least of some times, and whose it is: two bits each, in their order.
 struct LeastOfEight {
   double value;
   unsigned who;

@@ -1,5 +1,5 @@
-// What portable.hpp says, in instructions of x86 processors with SSE2. These are all the intrinsics there are, but for
-// those of wider registers in four_wide.hpp.
+// The functions of portable.hpp in instructions of x86 processors with SSE2. These are all intrinsics of the library,
+// except those of wider registers in four_wide.hpp.
 //
 // They are in a header because each is one to ten instructions in the innermost loop of its caller: a call would cost
 // more than the function.
@@ -45,7 +45,7 @@ namespace kds::simd::x86 {
   const __m128i most = _mm_set1_epi64x(static_cast<long long>(limits));
   const auto* const from = reinterpret_cast<const __m128i*>(four);
   const auto exceed = [&](const __m128i& two) { return _mm_cmpgt_epi8(_mm_load_si128(&two), most); };
-  const __m128i all = _mm_packs_epi32(exceed(from[0]), exceed(from[1]));  // zero remains zero, and nothing else
+  const __m128i all = _mm_packs_epi32(exceed(from[0]), exceed(from[1]));  // only zero becomes zero
   const __m128i none_exceeds = _mm_cmpeq_epi32(all, _mm_setzero_si128());
   return static_cast<std::uint64_t>(_mm_movemask_ps(_mm_castsi128_ps(none_exceeds)));
 }

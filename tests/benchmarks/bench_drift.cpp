@@ -44,7 +44,7 @@ void measure(const Case& c, std::uint64_t contacts, std::ofstream& csv) {
                   std::sqrt(d.energy_square), d.momentum.norm() / gas.momentum_scale(),
                   std::sqrt(d.momentum_square) / gas.momentum_scale(), std::sqrt(d.pair_energy_square / count),
                   d.pair_energy / std::sqrt(d.pair_energy_square), d.worst_energy,
-                  static_cast<unsigned long long>(gas.world().counters().held));
+                  static_cast<unsigned long long>(gas.world().counters().rebounds_suppressed));
     csv << line << std::flush;
     std::fputs(line, stdout);
   }
@@ -61,9 +61,9 @@ void bounces(double mass_ratio) {
   const double now =
       0.5 * (mass_ratio * found.heavy_speed() * found.heavy_speed() + found.light_speed() * found.light_speed());
   std::printf("bounces at mass ratio %g: %zu, with a hundred digits %zu; times differ by %.2g at most (relative), "
-              "energy by %.2g, held %llu\n",
+              "energy by %.2g, rebounds suppressed %llu\n",
               mass_ratio, found.times().size(), exact.size(), worst, (now - energy) / energy,
-              static_cast<unsigned long long>(found.times_held()));
+              static_cast<unsigned long long>(found.rebounds_suppressed()));
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ oracle::Piece exact_piece(const certificates::PointMotion<Degree>& motion) {
   return piece;
 }
 
-/// The scene and what the world says of it, up to the first contact that is held (from there on what is right is
-/// another question), or up to this many events: a body between a fixed one and a wall that close in has events without
-/// number.
+/// The scene and what the world says of it, up to the first contact whose rebound is suppressed (from there on what is
+/// right is another question), or up to this many events: a body between a fixed one and a wall that close in has
+/// events without number.
 template <int Degree>
 oracle::ElasticRun record(const Scene<Degree>& scene, const WorldOptions& options, std::size_t most_events = 100) {
   oracle::ElasticRun run;
@@ -42,14 +42,14 @@ oracle::ElasticRun record(const Scene<Degree>& scene, const WorldOptions& option
     motions.emplace_back();
     for (BodyId id = 0; id < scene.bodies.size(); ++id) motions.back().push_back(exact_piece(w.motion(id)));
   };
-  const auto held = [&] { return world.counters().held > 0; };
-  while (!held() && log.events.size() < most_events && world.step(run.end)) {
+  const auto suppressed = [&] { return world.counters().rebounds_suppressed > 0; };
+  while (!suppressed() && log.events.size() < most_events && world.step(run.end)) {
   }
-  run.cut = held() || log.events.size() >= most_events;
+  run.cut = suppressed() || log.events.size() >= most_events;
   if (run.cut) run.end = world.now();
   for (std::size_t i = 0; i < log.events.size(); ++i) {
     const Event& e = log.events[i];
-    if (e.kind == Kind::held) break;
+    if (e.kind == Kind::rebound_suppressed) break;
     oracle::ElasticEvent event{oracle::ElasticEvent::Kind::contact,
                                body_slot(e.a),
                                body_slot(e.b),
@@ -60,8 +60,8 @@ oracle::ElasticRun record(const Scene<Degree>& scene, const WorldOptions& option
     if (e.kind == Kind::wall) event.kind = oracle::ElasticEvent::Kind::wall;
     run.events.push_back(std::move(event));
   }
-  // The contact that is held is told before it is said to be held, with motions of another kind.
-  if (held()) run.events.pop_back();
+  // A contact is told before its rebound is said to be suppressed, and its motions are already those of rest.
+  if (suppressed()) run.events.pop_back();
   return run;
 }
 

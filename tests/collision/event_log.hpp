@@ -16,10 +16,11 @@ namespace kds::collision::tests {
 
 using Eigen::Vector3d;
 
-enum class Kind { contact, separation, overlap, wall, pair_began, pair_ended, held };
+enum class Kind { contact, separation, overlap, wall, pair_began, pair_ended, rebound_suppressed };
 
 inline const char* name(Kind kind) {
-  constexpr std::array names{"contact", "separation", "overlap", "wall", "pair_began", "pair_ended", "held"};
+  constexpr std::array names{"contact",    "separation", "overlap",           "wall",
+                             "pair_began", "pair_ended", "rebound_suppressed"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -65,7 +66,9 @@ struct EventLog final : WorldListener<Degree> {
   }
   void pair_began(W& w, BodyId a, BodyId b, double t) override { note(w, {Kind::pair_began, a, b, {.time = t}}); }
   void pair_ended(W& w, BodyId a, BodyId b, double t) override { note(w, {Kind::pair_ended, a, b, {.time = t}}); }
-  void held(W& w, const PairEvent& e) override { note(w, {Kind::held, e.a, e.b, e.contact}); }
+  void rebound_suppressed(W& w, const PairEvent& e) override {
+    note(w, {Kind::rebound_suppressed, e.a, e.b, e.contact});
+  }
 
   std::vector<Event> of(Kind kind) const {
     std::vector<Event> result;

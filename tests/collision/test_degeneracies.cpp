@@ -235,7 +235,7 @@ TEST_CASE("Newton's cradle: the last ball leaves with the first one's speed", "[
       }
       for (const Event& e : log.of(Kind::contact)) CHECK(e.time() == 2);
       CHECK(log.count(Kind::contact) == static_cast<std::size_t>(in * (n - in)));
-      CHECK(log.count(Kind::held) == 0);
+      CHECK(log.count(Kind::rebound_suppressed) == 0);
     }
   }
 }

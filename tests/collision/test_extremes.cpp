@@ -74,7 +74,7 @@ TEST_CASE("Clock at 1e9: bounces go on and the run ends", "[degenerate]") {
   world.advance_to(1e9 + 20);
   world.audit();
   CHECK(log.count(Kind::contact) + log.count(Kind::wall) > 100);
-  CHECK(log.count(Kind::held) == 0);
+  CHECK(log.count(Kind::rebound_suppressed) == 0);
   for (BodyId id = 0; id < 8; ++id) {
     CHECK(world.motion(id).position(world.now()).cwiseAbs().maxCoeff() < 4 + 1e-5);
   }

@@ -38,7 +38,7 @@ TEST_CASE("callbacks: a body sent to and fro between two that it touches passes 
     world.advance_to(10);
     CHECK(world.now() == 10);
     // Ten times the policy's patience of 100 contacts at this one instant.
-    CHECK(log.count(Kind::held) >= 1);
+    CHECK(log.count(Kind::rebound_suppressed) >= 1);
     CHECK(log.count(Kind::contact) >= 1000);
     CHECK(log.count(Kind::contact) < 3000);
   }
@@ -180,18 +180,18 @@ TEST_CASE("callbacks: many changes spread over time, or made outside callbacks, 
     for (int i = 0; i < 1000; ++i) world.update_motion(1, motion<1>({4, 0, 0}, {4, 0, 0}));
     world.advance_to(500);
     CHECK(log.count(Kind::contact) == 500);
-    CHECK(log.count(Kind::held) == 0);
+    CHECK(log.count(Kind::rebound_suppressed) == 0);
   }
 }
 
 TEST_CASE("callbacks: a listener may lift what rests, and take away what it rests on", "[world][loop]") {
   for (const auto method : all_methods) {
     EventLog<2> log;
-    int held = 0;
+    int suppressed = 0;
     log.then = [&](World<2>& world, const Event& e) {
-      if (e.kind != Kind::held) return;
-      ++held;
-      if (held == 1) {  // up again
+      if (e.kind != Kind::rebound_suppressed) return;
+      ++suppressed;
+      if (suppressed == 1) {  // up again
         auto up = world.free_motion(1).restarted(world.now());
         up.coefficients[1][2] += 10;
         world.update_motion(1, up);
@@ -205,7 +205,7 @@ TEST_CASE("callbacks: a listener may lift what rests, and take away what it rest
     thrown.restitution = 0;
     world.add_body(thrown);
     world.advance_to(10);
-    CHECK(held == 2);
+    CHECK(suppressed == 2);
     // Falls 1, is thrown up for 2 s, lands, and falls for good.
     const double start = std::sqrt(0.2) + 2;
     CHECK(world.motion(1).position(10)[2] == Approx(1 - 5 * (10 - start) * (10 - start)));

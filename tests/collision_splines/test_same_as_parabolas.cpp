@@ -86,7 +86,8 @@ TEMPLATE_TEST_CASE_SIG("Curves: without higher terms bodies come to rest as in W
   }
   const auto options = with_response(Response::elastic);
   const auto expected = run(scene, options);
-  CHECK(std::count_if(expected.begin(), expected.end(), [](const Event& e) { return e.kind == Kind::held; }) > 3);
+  CHECK(std::count_if(expected.begin(), expected.end(),
+                      [](const Event& e) { return e.kind == Kind::rebound_suppressed; }) > 3);
   require_equal(run(raised<Degree>(scene), options, {.audit = true}), expected);
 }
 

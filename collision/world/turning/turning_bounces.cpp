@@ -33,7 +33,7 @@ template <class Motion>
 bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
   if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
   if (count_meeting(a, b) > patience()) {  // No rebound helps: between fixed bodies that close in, say.
-    ++counters_.held;
+    ++counters_.rebounds_suppressed;
     pairs_.let_pass(a, b);
     const PairEvent event = event_of(a, b, contact);
     reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);

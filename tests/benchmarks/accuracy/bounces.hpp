@@ -36,7 +36,7 @@ class Bounces final : private kds::collision::WorldListener<1> {
   const std::vector<double>& times() const { return times_; }
   double heavy_speed() const { return world_.motion(2).coefficients[1][0]; }
   double light_speed() const { return world_.motion(1).coefficients[1][0]; }
-  std::uint64_t times_held() const { return world_.counters().held; }
+  std::uint64_t rebounds_suppressed() const { return world_.counters().rebounds_suppressed; }
 
  private:
   static kds::collision::WorldOptions options() {

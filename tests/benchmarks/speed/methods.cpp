@@ -37,7 +37,7 @@ class Hasher final : public kds::collision::WorldListener<1> {
   void wall(World&, const kds::collision::WallEvent& e) override {
     note(4, e.body, static_cast<BodyId>(e.wall), e.contact);
   }
-  void held(World&, const kds::collision::PairEvent& e) override { note(5, e.a, e.b, e.contact); }
+  void rebound_suppressed(World&, const kds::collision::PairEvent& e) override { note(5, e.a, e.b, e.contact); }
 
  private:
   static std::uint64_t mix(std::uint64_t h, std::uint64_t x) {

@@ -49,7 +49,7 @@ struct Parts final : RestingContacts<certificates::PointMotion<Degree>>::Listene
   }
   void changed(BodySlot a, BodySlot b) override { pairs.changed(a, b); }
   void let_pass(BodySlot a, BodySlot b) override { pairs.let_pass(a, b); }
-  void tell_held(BodySlot a, BodySlot b) override { told.emplace_back(a, b); }
+  void tell_rebound_suppressed(BodySlot a, BodySlot b) override { told.emplace_back(a, b); }
   void tell_resting(bool, const detail::RestingContact&) override {}
   void tell_passes(const detail::RestingContact&) override {}
 

@@ -46,7 +46,7 @@ TEMPLATE_TEST_CASE_SIG("A fixed body stops at a wall without rebound, slides alo
     REQUIRE(advance(world, 4));
     REQUIRE(log.count(Kind::wall) == 1);
     CHECK(log.of(Kind::wall)[0].time() == 2);
-    CHECK(world.counters().held == 1);
+    CHECK(world.counters().rebounds_suppressed == 1);
     CHECK(world.resting_at_wall(0, 1));
     CHECK_FALSE(world.resting_at_wall(0, 0));
     CHECK(world.motion(0).position(4) == Vector3d(9, 4, 0));
@@ -80,7 +80,7 @@ TEST_CASE("A fixed body pressed against a wall comes to rest there, and keeps it
       const Vector3d pull(0, 0.125, -1);
       world.add_body(fixed_ball<2>({0, 0, -5}, zero, pull));
       REQUIRE(advance(world, 2.0 * (1 + restitution) / (1 - restitution) + 1e-6));
-      CHECK(world.counters().held == 1);
+      CHECK(world.counters().rebounds_suppressed == 1);
       CHECK(world.resting_at_wall(0, 4));
       const double t = world.now();
       CHECK(world.motion(0).position(t)[2] == Approx(-9).epsilon(1e-12));
@@ -110,7 +110,7 @@ TEST_CASE("A fixed body without rebound that is pulled away from the wall stops,
   CHECK_FALSE(world.resting_at_wall(0, 1));
 }
 
-TEST_CASE("Pieces of a script go on after a wall has held a fixed body", "[world][walls]") {
+TEST_CASE("Pieces of a script go on after a fixed body has come to rest at a wall", "[world][walls]") {
   EventLog<1> log;
   World<1> world(between_walls(Response::none, 0), &log);
   auto scripted = fixed_ball<1>({5, 0, 0}, {2, 0, 0});

@@ -42,9 +42,11 @@ class Told final : public WorldListener<2> {
     w.remove_body(id(gone));
     w.remove_body(id(gone_sensor));
   }
-  void held(World<2>& w, const PairEvent& e) override { note(w, "held", e.a, e.b); }
+  void rebound_suppressed(World<2>& w, const PairEvent& e) override { note(w, "rebound_suppressed", e.a, e.b); }
   void wall(World<2>& w, const WallEvent& e) override { note(w, "wall", e.body, e.body); }
-  void held_at_wall(World<2>& w, const WallEvent& e) override { note(w, "held_at_wall", e.body, e.body); }
+  void rebound_suppressed_at_wall(World<2>& w, const WallEvent& e) override {
+    note(w, "rebound_suppressed_at_wall", e.body, e.body);
+  }
   void pair_began(World<2>& w, BodyId a, BodyId b, double) override { note(w, "pair_began", a, b); }
   void pair_ended(World<2>& w, BodyId a, BodyId b, double) override { note(w, "pair_ended", a, b); }
   void moved(World<2>& w, BodyId a) override { note(w, "moved", a, a); }
@@ -114,8 +116,8 @@ TEST_CASE("Ids: everything told in a world of reused slots names bodies by their
       CHECK(world.resting_at_wall(told.id(bouncing), 4));
       world.advance_to(40);
       CHECK(told.wrong == 0);
-      for (const char* what :
-           {"contact", "separation", "overlap", "held", "wall", "held_at_wall", "pair_began", "pair_ended", "moved"}) {
+      for (const char* what : {"contact", "separation", "overlap", "rebound_suppressed", "wall",
+                               "rebound_suppressed_at_wall", "pair_began", "pair_ended", "moved"}) {
         INFO(what);
         CHECK(told.counts[what] > 0);
       }

@@ -67,7 +67,7 @@ TEMPLATE_TEST_CASE_SIG("Momentum and energy last through thousands of elastic co
   world.advance_to(3);
   const auto [momentum_after, energy_after] = state(3);
   CHECK(log.count(Kind::contact) > 1000);
-  CHECK(log.count(Kind::held) == 0);
+  CHECK(log.count(Kind::rebound_suppressed) == 0);
   // Each contact rounds a few times; the bound leaves 10^3 roundings of the sum.
   CHECK((momentum_after - (momentum + 2 * 3 * mass * gravity)).norm() < 1e-12 * mass * 20);
   CHECK(energy_after == Approx(energy).epsilon(1e-11));

@@ -1,4 +1,4 @@
-// Bodies that are held: what lies on what, slides, is lifted, knocked and let go.
+// Bodies in resting contact: they lie on each other, slide, are lifted, knocked and let go.
 #include "tests/collision/world/resting_scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -21,7 +21,7 @@ TEST_CASE("Resting: a box slides off the edge and falls, from the instant at whi
     world.advance_to(10);
   };
   with_all_methods(elastic(), scene, [&](World<2>& world, EventLog<2>& log) {
-    CHECK(log.count(Kind::held) == 1);
+    CHECK(log.count(Kind::rebound_suppressed) == 1);
     CHECK_FALSE(world.resting(0, 1));
     CHECK(world.motion(1).start == Approx(2.25));
     const double fallen = 5 * 7.75 * 7.75;
@@ -104,7 +104,7 @@ TEST_CASE("Resting: what falls on a body at rest does not press it through the f
     };
     with_all_methods(elastic(), scene, [&](World<2>& world, EventLog<2>& log) {
       INFO("mass " << mass);
-      CHECK(log.count(Kind::held) >= 3);
+      CHECK(log.count(Kind::rebound_suppressed) >= 3);
       CHECK(at_rest(world, 1));
       CHECK(at_rest(world, 2));
       CHECK(std::abs(world.motion(1).position(30)[2] - 1) < 1e-9);
@@ -150,7 +150,7 @@ TEST_CASE("Resting: two balls, one upon the other, and a pile of three boxes", "
       };
       with_all_methods(elastic(), scene, [&](World<2>& world, EventLog<2>& log) {
         INFO("restitution " << e << (balls ? ", balls" : ", boxes"));
-        CHECK(log.count(Kind::held) >= world.size() - 1);
+        CHECK(log.count(Kind::rebound_suppressed) >= world.size() - 1);
         CHECK(log.count(Kind::contact) < 20000);
         for (BodyId id = 1; id < world.size(); ++id) {
           CHECK(world.resting(id - 1, id));
@@ -186,7 +186,7 @@ TEST_CASE("Resting: a ball slides over a ball and off it", "[zeno]") {
     world.add_body(fixed_body<2>(Sphere{2}, motion<2>(zero)));
     world.add_body(bouncy(ball<2>(1, {0.125, 0, 3.25}, zero, weight), 0.25));
     double least = 3;
-    double leaves_at = 1;  // the height at which they are last held, over the distance of their centres
+    double leaves_at = 1;  // the height at which they last rest on each other, over the distance of their centres
     while (world.step(3)) {
       const Vector3d place = world.motion(1).position(world.now());
       least = std::min(least, place.norm());
@@ -222,7 +222,7 @@ TEST_CASE("Resting: meshes rest on meshes and slide into what stands in the way"
       world.advance_to(3);
     };
     with_all_methods(elastic(), scene, [&](World<2>& world, EventLog<2>& log) {
-      REQUIRE(log.count(Kind::held) >= 1);
+      REQUIRE(log.count(Kind::rebound_suppressed) >= 1);
       // At x = 0 it meets the face of the higher cube and goes back at half the speed, still on the lower one.
       const auto contacts = log.of(Kind::contact);
       const auto hit = std::find_if(contacts.begin(), contacts.end(),
@@ -252,7 +252,7 @@ TEST_CASE("What is left along a normal is a rounding of the speeds there were, n
     ++steps;
   }
   CHECK(steps > 20);
-  CHECK(world.counters().held > 0);
+  CHECK(world.counters().rebounds_suppressed > 0);
 }
 
 }  // namespace

@@ -38,11 +38,11 @@ struct Log : collision::WorldListener<2> {
   }
   void contact(World<2>&, const PairEvent& e) override { note('c', e.a, std::uint64_t{e.b}, e.contact); }
   void overlap(World<2>&, const PairEvent& e) override { note('o', e.a, std::uint64_t{e.b}, e.contact); }
-  void held(World<2>&, const PairEvent& e) override { note('h', e.a, std::uint64_t{e.b}, e.contact); }
+  void rebound_suppressed(World<2>&, const PairEvent& e) override { note('h', e.a, std::uint64_t{e.b}, e.contact); }
   void wall(World<2>&, const WallEvent& e) override {
     note('w', e.body, static_cast<std::uint64_t>(e.wall), e.contact);
   }
-  void held_at_wall(World<2>&, const WallEvent& e) override {
+  void rebound_suppressed_at_wall(World<2>&, const WallEvent& e) override {
     note('H', e.body, static_cast<std::uint64_t>(e.wall), e.contact);
   }
   void moved(World<2>& world, BodyId id) override {

@@ -50,7 +50,7 @@ class Listener : public collision::WorldListener<2> {
   }
 
   void contact(World<2>&, const PairEvent& e) override { touch(e.a), touch(e.b); }
-  void held(World<2>&, const PairEvent& e) override { touch(e.a), touch(e.b); }
+  void rebound_suppressed(World<2>&, const PairEvent& e) override { touch(e.a), touch(e.b); }
   void wall(World<2>&, const WallEvent& e) override { touch(e.body); }
   void moved(World<2>&, BodyId id) override { touch(id); }
 

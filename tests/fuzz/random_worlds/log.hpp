@@ -26,8 +26,8 @@ struct Line {
     wall,
     pair_began,
     pair_ended,
-    held,
-    held_at_wall,
+    rebound_suppressed,
+    rebound_suppressed_at_wall,
     rests,
     rests_at_wall,
     wakes,
@@ -35,7 +35,7 @@ struct Line {
     passes,
     moved,
     thrown,  ///< by a call; `text` is what it says
-    state,   ///< behind an advance: `text` says the clock, where the bodies are, and who touches and is held
+    state,   ///< behind an advance: `text` says the clock, where the bodies are, and who touches and rests
   };
   Kind kind = Kind::state;
   BodyId a = 0;
@@ -44,13 +44,26 @@ struct Line {
   std::string text{};
 };
 
-inline constexpr std::string_view line_names[] = {
-    "contact", "separation",    "overlap", "wall",          "pair_began", "pair_ended", "held",   "held_at_wall",
-    "rests",   "rests_at_wall", "wakes",   "wakes_at_wall", "passes",     "moved",      "thrown", "state"};
+inline constexpr std::string_view line_names[] = {"contact",
+                                                  "separation",
+                                                  "overlap",
+                                                  "wall",
+                                                  "pair_began",
+                                                  "pair_ended",
+                                                  "rebound_suppressed",
+                                                  "rebound_suppressed_at_wall",
+                                                  "rests",
+                                                  "rests_at_wall",
+                                                  "wakes",
+                                                  "wakes_at_wall",
+                                                  "passes",
+                                                  "moved",
+                                                  "thrown",
+                                                  "state"};
 
 constexpr bool is_of_a_wall(Line::Kind kind) {
   using enum Line::Kind;
-  return kind == wall || kind == held_at_wall || kind == rests_at_wall || kind == wakes_at_wall;
+  return kind == wall || kind == rebound_suppressed_at_wall || kind == rests_at_wall || kind == wakes_at_wall;
 }
 
 /// Text of a line for a call that must be refused and was not.

@@ -73,8 +73,8 @@ int reduce(std::uint64_t seed) {
   return 1;
 }
 
-/// Seeds of which the wrong world must be found in most, and then be made so small. Contacts of meshes and held bodies
-/// may take more; some scenarios have no contact.
+/// Seeds of which the wrong world must be found in most, and then be made so small. Contacts of meshes and resting
+/// bodies may take more; some scenarios have no contact.
 int check() {
   constexpr std::uint64_t seeds = 40;
   constexpr std::size_t least_found = 20;

@@ -74,7 +74,7 @@ void Player<Degree>::note_state() {
     if (there.size() > most_compared) continue;
     for (std::size_t j = i + 1; j < there.size(); ++j) {
       const BodyId b = there[j];
-      const char* const how = world_->touching(a, b) ? " touch " : world_->resting(a, b) ? " held " : nullptr;
+      const char* const how = world_->touching(a, b) ? " touch " : world_->resting(a, b) ? " resting " : nullptr;
       if (how) text += how + std::to_string(a) + '-' + std::to_string(b);
     }
   }

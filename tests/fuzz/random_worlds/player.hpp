@@ -31,9 +31,13 @@ class Player final : public collision::WorldListener<Degree> {
   void contact(World&, const PairEvent& e) override { note(Line::Kind::contact, e.a, e.b, e.contact); }
   void separation(World&, const PairEvent& e) override { note(Line::Kind::separation, e.a, e.b, e.contact); }
   void overlap(World&, const PairEvent& e) override { note(Line::Kind::overlap, e.a, e.b, e.contact); }
-  void held(World&, const PairEvent& e) override { note(Line::Kind::held, e.a, e.b, e.contact); }
+  void rebound_suppressed(World&, const PairEvent& e) override {
+    note(Line::Kind::rebound_suppressed, e.a, e.b, e.contact);
+  }
   void wall(World&, const WallEvent& e) override { note_wall(Line::Kind::wall, e); }
-  void held_at_wall(World&, const WallEvent& e) override { note_wall(Line::Kind::held_at_wall, e); }
+  void rebound_suppressed_at_wall(World&, const WallEvent& e) override {
+    note_wall(Line::Kind::rebound_suppressed_at_wall, e);
+  }
   void rests(World&, const PairEvent& e) override { note(Line::Kind::rests, e.a, e.b, e.contact); }
   void rests_at_wall(World&, const WallEvent& e) override { note_wall(Line::Kind::rests_at_wall, e); }
   void wakes(World&, const PairEvent& e) override { note(Line::Kind::wakes, e.a, e.b, e.contact); }

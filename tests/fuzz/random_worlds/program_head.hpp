@@ -49,13 +49,13 @@ struct Player : WorldListener<Degree> {
   void contact(W&, const PairEvent& e) override { pair("contact", e); }
   void separation(W&, const PairEvent& e) override { pair("separation", e); }
   void overlap(W&, const PairEvent& e) override { pair("overlap", e); }
-  void held(W&, const PairEvent& e) override { pair("held", e); }
+  void rebound_suppressed(W&, const PairEvent& e) override { pair("rebound_suppressed", e); }
   void rests(W&, const PairEvent& e) override { pair("rests", e); }
   void wakes(W&, const PairEvent& e) override { pair("wakes", e); }
   void passes(W&, const PairEvent& e) override { pair("passes", e); }
   void at_wall(const char* kind, const WallEvent& e) { note(kind, e.body, e.wall, e.wall, e.contact); }
   void wall(W&, const WallEvent& e) override { at_wall("wall", e); }
-  void held_at_wall(W&, const WallEvent& e) override { at_wall("held_at_wall", e); }
+  void rebound_suppressed_at_wall(W&, const WallEvent& e) override { at_wall("rebound_suppressed_at_wall", e); }
   void rests_at_wall(W&, const WallEvent& e) override { at_wall("rests_at_wall", e); }
   void wakes_at_wall(W&, const WallEvent& e) override { at_wall("wakes_at_wall", e); }
   void pair_began(W&, BodyId a, BodyId b, double t) override { note("pair_began", a, b, number[b], {.time = t}); }
