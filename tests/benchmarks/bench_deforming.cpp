@@ -33,9 +33,9 @@ struct BentRing {
   std::vector<Vector3d> begin, end;
 
   BentRing(Random& random, const Mesh& ring, const Vector3d& from, const Vector3d& to) {
-    const Eigen::Quaterniond turn(Eigen::Vector4d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1),
-                                                  random.between(-1, 1))
-                                      .normalized());
+    const Eigen::Quaterniond turn(
+        Eigen::Vector4d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1))
+            .normalized());
     Eigen::Matrix3d bend = Eigen::Matrix3d::Identity();
     for (int d = 0; d < 3; ++d) bend.col(d) += vector(random, 0.2);
     for (const Vector3d& v : ring.vertices()) {
@@ -67,7 +67,8 @@ void measure_rings(std::ofstream& csv, std::uint32_t around, std::uint32_t acros
       for (auto* points : {&of_b.begin, &of_b.end}) {
         for (std::size_t v = 0; v < points->size(); ++v) {
           const Vector3d p = ring->vertices()[v];
-          (*points)[v] = Vector3d(0.75 + p[0], p[2], p[1]) + (points == &of_b.end ? vector(random, 0.005) : Vector3d::Zero());
+          (*points)[v] =
+              Vector3d(0.75 + p[0], p[2], p[1]) + (points == &of_b.end ? vector(random, 0.005) : Vector3d::Zero());
         }
       }
       auto& self = const_cast<BentRing&>(of_a);
