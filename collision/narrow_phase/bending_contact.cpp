@@ -70,6 +70,20 @@ class PieceSurface {
   std::optional<MovingSurface<Degree>> bent_;
 };
 
+/// Pieces after the last keyframe grow up to this many times the first of them. Bodies whose balls still overlap then
+/// move alike, but for roundings of what they have flown: nothing more is told of them.
+constexpr double longest_piece = 0x1p40;
+
+/// Whether nothing changes between two motions.
+template <int Degree>
+bool move_alike(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b) {
+  bool alike = a.coefficients[1] == b.coefficients[1];
+  if constexpr (Degree == 2) {
+    alike = alike && a.coefficients[2] == b.coefficients[2] && (a.start == b.start || a.coefficients[2].isZero(0));
+  }
+  return alike;
+}
+
 /// A stretch of time in which the two are in contact.
 struct Touch {
   double begin = never;
@@ -80,7 +94,7 @@ template <int Degree>
 class BendingPair {
  public:
   BendingPair(const Body<Degree>& a, const Body<Degree>& b)
-      : a_(a), b_(b), start_(std::max(a.motion.start, b.motion.start)) {
+      : a_(a), b_(b), start_(std::max(a.motion.start, b.motion.start)), together_(move_alike(a.motion, b.motion)) {
     const double radius = script_of(a.shape)->bounding_radius();
     query_ = {.tolerance = 1, .absolute_tolerance = bending_tolerance * radius, .overlaps = false};
     times_.push_back(start_);
@@ -105,7 +119,8 @@ class BendingPair {
     bool open = false;
     for (std::size_t k = piece_of(t);; ++k) {
       const auto [w0, w1] = piece(k);
-      if (!(w0 <= horizon) || !(w0 < w1)) break;
+      if (!(w0 <= horizon) || !(w0 < w1) || w1 - w0 > longest_piece * unit_) break;
+      if (together_ && w0 > times_.back()) break;  // nothing changes any more
       if (!open) {
         const double near = balls_meet(w0);
         if (near > horizon) break;
@@ -200,6 +215,7 @@ class BendingPair {
   const Body<Degree>& a_;
   const Body<Degree>& b_;
   double start_;
+  bool together_;
   double unit_;
   SurfaceQuery query_;
   std::vector<double> times_;

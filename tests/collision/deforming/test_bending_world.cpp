@@ -165,7 +165,8 @@ TEMPLATE_TEST_CASE_SIG("meshes that bend among others: the same events by all br
     CAPTURE(static_cast<int>(kind));
     samples::Random random(seed);
     EventLog<Degree> log;
-    World<Degree> world({.response = Response::none, .broad_phase = kind}, &log);
+    World<Degree> world(
+        {.response = Response::none, .broad_phase = kind, .rate = kind == BroadPhaseKind::sap ? 10.0 : 0.0}, &log);
     for (const auto& body : random_bodies<Degree>(random)) world.add_body(body);
     if (kind == BroadPhaseKind::sap) {
       for (int i = 1; i <= 30; ++i) world.advance_to(0.1 * i);
