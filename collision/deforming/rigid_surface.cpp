@@ -52,7 +52,7 @@ SurfaceTree tree_of(const PlacedShape& shape, const std::vector<Vector3d>& offse
     triangles.push_back({a, c, d});
   }
   SurfaceTree tree(offsets, triangles);
-  for (const auto& face : box_faces) tree.disown_edge(face[0], face[2]);
+  tree.join_pairs_of_triangles();
   return tree;
 }
 

@@ -81,7 +81,8 @@ class SurfacePair {
   Eigen::Vector3d place(const Surface& surface, std::uint32_t v, double t) const {
     return t == surface.begin() ? surface.control_points(0)[v] : surface.position(v, t);
   }
-  Feature feature_of(const std::uint32_t* vertices, const double* weights, std::size_t count, std::uint32_t face) const;
+  static Feature feature_of(const Surface& surface, const std::uint32_t* vertices, const double* weights,
+                            std::size_t count, std::uint32_t face);
   Eigen::Vector3d point_at(const Surface& surface, const std::uint32_t* vertices, const double* weights,
                            std::size_t count, double t) const;
 };
@@ -281,17 +282,19 @@ Eigen::Vector3d SurfacePair<Degree>::point_at(const Surface& surface, const std:
   return sum;
 }
 
-/// The corner, the edge or all of it on which the point with the weights lies.
+/// The corner, the edge or all of it on which the point with the weights lies; nothing of a ball.
 template <int Degree>
-Feature SurfacePair<Degree>::feature_of(const std::uint32_t* vertices, const double* weights, std::size_t count,
-                                        std::uint32_t face) const {
+Feature SurfacePair<Degree>::feature_of(const Surface& surface, const std::uint32_t* vertices, const double* weights,
+                                        std::size_t count, std::uint32_t face) {
+  if (surface.tree().vertices() == 1) return {};
   std::array<std::uint32_t, 3> used{};
   std::size_t n = 0;
   for (std::size_t k = 0; k < count; ++k) {
     if (weights[k] != 0) used[n++] = vertices[k];
   }
   if (n == 1) return Feature::vertex(used[0]);
-  return n == 2 ? Feature::edge(used[0], used[1]) : Feature::face(face);
+  if (n == 2 && !surface.tree().is_diagonal(used[0], used[1])) return Feature::edge(used[0], used[1]);
+  return Feature::face(face);
 }
 
 template <int Degree>
@@ -316,8 +319,8 @@ SurfaceContact SurfacePair<Degree>::described(Kind kind, const std::array<std::u
   Contact& contact = result.contact;
   contact.time = touch.time;
   contact.normal = normal;
-  contact.feature_a = feature_of(v, w, of_a, face);
-  contact.feature_b = feature_of(v + of_a, w + of_a, 4 - of_a, face);
+  contact.feature_a = feature_of(a_, v, w, of_a, face);
+  contact.feature_b = feature_of(b_, v + of_a, w + of_a, 4 - of_a, face);
   contact.point = point_at(a_, v, w, of_a, touch.time) + normal * a_.radius();
   return result;
 }

@@ -163,7 +163,8 @@ class BendingPair {
   }
 
   Contact contact_at(double t) {
-    const auto [w0, w1] = piece(piece_of(t));
+    auto [w0, w1] = piece(piece_of(t));
+    if (w1 < t) w1 = (w0 = t) + unit_;  // they move together, as they did in the last piece
     const SurfaceTouching<Degree> touching(surface_a().over(w0, w1), surface_b().over(w0, w1), query_);
     // What has just parted is a little farther apart; what touches in no piece may be asked about, too.
     const double farthest =
@@ -201,6 +202,7 @@ class BendingPair {
   std::size_t piece_of(double t) const {
     const auto after = std::upper_bound(times_.begin(), times_.end(), t);
     std::size_t k = after == times_.begin() ? 0 : static_cast<std::size_t>(after - times_.begin()) - 1;
+    if (together_) return k;  // the last piece stands for all that follow
     while (k + 1 >= times_.size() && piece(k).end <= t && piece(k).end < 0x1p500) ++k;
     return k;
   }

@@ -56,14 +56,19 @@ SurfaceTree::SurfaceTree(std::size_t vertices, SurfaceElement element)
 SurfaceTree SurfaceTree::point() { return {1, {{0, 0, 0}, 0, 1, 1, 0}}; }
 SurfaceTree SurfaceTree::segment() { return {2, {{0, 1, 1}, 0, 2, 3, 1}}; }
 
-void SurfaceTree::disown_edge(std::uint32_t a, std::uint32_t b) {
+void SurfaceTree::join_pairs_of_triangles() {
   for (SurfaceElement& element : elements_) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (edge_of(element, k) == Edge(std::min(a, b), std::max(a, b))) {
-        element.owned_edges &= static_cast<std::uint8_t>(~(1U << k));
-      }
-    }
+    const std::size_t diagonal = element.index % 2 == 0 ? 2 : 0;  // from the last to the first; from that to the second
+    const auto [a, b] = edge_of(element, diagonal);
+    diagonals_.push_back({a, b});
+    element.owned_edges &= static_cast<std::uint8_t>(~(1U << diagonal));
+    element.index /= 2;
   }
+}
+
+bool SurfaceTree::is_diagonal(std::uint32_t a, std::uint32_t b) const {
+  return std::find(diagonals_.begin(), diagonals_.end(), std::array{std::min(a, b), std::max(a, b)}) !=
+         diagonals_.end();
 }
 
 void SurfaceTree::build(std::span<const Eigen::Vector3d> positions) {

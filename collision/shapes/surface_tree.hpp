@@ -52,8 +52,11 @@ class SurfaceTree {
   std::span<const SurfaceElement> elements() const { return elements_; }
   std::size_t vertices() const { return vertices_; }
 
-  /// The edge is owned by no element: for diagonals of faces that are drawn as two triangles.
-  void disown_edge(std::uint32_t a, std::uint32_t b);
+  /// The triangles 2 i and 2 i + 1 are the face i, and their common edge is no edge, owned by no element. Precondition:
+  /// each has the diagonal from its first vertex to the last (of an even one) or to the second (of an odd one).
+  void join_pairs_of_triangles();
+  /// Whether two vertices are those of such a diagonal.
+  bool is_diagonal(std::uint32_t a, std::uint32_t b) const;
 
   /// Throws AuditFailure unless each element is in one leaf, and each vertex that elements use and each edge is owned
   /// by one of them (edges: at most one).
@@ -66,6 +69,7 @@ class SurfaceTree {
   std::size_t vertices_;
   std::vector<SurfaceElement> elements_;
   std::vector<Node> nodes_;
+  std::vector<std::array<std::uint32_t, 2>> diagonals_;  ///< the lower vertex first
 };
 
 }  // namespace kds::collision

@@ -6,6 +6,7 @@
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/collision/sample_meshes.hpp"
+#include "tests/collision/sample_sheets.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -45,6 +47,17 @@ struct BentRing {
   }
 };
 
+/// Each ring through the other, bent where it is.
+void link(Random& random, const Mesh& ring, BentRing& a, BentRing& b) {
+  for (std::size_t v = 0; v < ring.vertices().size(); ++v) {
+    const Vector3d p = ring.vertices()[v];
+    a.begin[v] = p;
+    b.begin[v] = Vector3d(0.75 + p[0], p[2], p[1]);
+    a.end[v] = a.begin[v] + vector(random, 0.005);
+    b.end[v] = b.begin[v] + vector(random, 0.005);
+  }
+}
+
 enum class Kind { free, linked, itself };
 
 /// Median of the times of a step of both rings with a search for the first contact, us.
@@ -58,25 +71,12 @@ void measure_rings(std::ofstream& csv, std::uint32_t around, std::uint32_t acros
   for (int i = 0; i < count; ++i) {
     const Vector3d from = vector(random, 1).normalized();
     const bool free = kind == Kind::free;
-    const BentRing of_a(random, *ring, free ? Vector3d(-1.25 * from) : Vector3d::Zero(),
-                        free ? vector(random, 0.2) : Vector3d::Zero());
-    BentRing of_b(random, *ring, free ? Vector3d(1.25 * from) : Vector3d::Zero(),
-                  free ? vector(random, 0.2) : Vector3d::Zero());
-    if (kind == Kind::linked) {  // each through the other
-      of_b = of_a;
-      for (auto* points : {&of_b.begin, &of_b.end}) {
-        for (std::size_t v = 0; v < points->size(); ++v) {
-          const Vector3d p = ring->vertices()[v];
-          (*points)[v] =
-              Vector3d(0.75 + p[0], p[2], p[1]) + (points == &of_b.end ? vector(random, 0.005) : Vector3d::Zero());
-        }
-      }
-      auto& self = const_cast<BentRing&>(of_a);
-      for (std::size_t v = 0; v < self.begin.size(); ++v) {
-        self.begin[v] = ring->vertices()[v];
-        self.end[v] = ring->vertices()[v] + vector(random, 0.005);
-      }
-    }
+    const Vector3d place_a = free ? Vector3d(-1.25 * from) : Vector3d::Zero();
+    const Vector3d end_a = free ? vector(random, 0.2) : Vector3d::Zero();
+    const Vector3d end_b = free ? vector(random, 0.2) : Vector3d::Zero();
+    BentRing of_a(random, *ring, place_a, end_a);
+    BentRing of_b(random, *ring, -place_a, end_b);
+    if (kind == Kind::linked) link(random, *ring, of_a, of_b);
     double best = 1e9, best_refit = 1e9;
     bool found = false;
     for (int round = 0; round < 3; ++round) {
@@ -109,17 +109,12 @@ void measure_rings(std::ofstream& csv, std::uint32_t around, std::uint32_t acros
 class FallingCloth {
  public:
   explicit FallingCloth(std::uint32_t n) : n_(n) {
+    samples::Sheet sheet(n, 2);
+    positions = std::move(sheet.positions);
+    triangles = std::move(sheet.triangles);
     for (std::uint32_t i = 0; i <= n; ++i) {
       for (std::uint32_t j = 0; j <= n; ++j) {
-        positions.emplace_back(4.0 * i / n - 2, 4.0 * j / n - 2, 1.2 + 0.01 * std::sin(i * 0.7) * std::cos(j * 0.9));
-      }
-    }
-    for (std::uint32_t i = 0; i < n; ++i) {
-      for (std::uint32_t j = 0; j < n; ++j) {
-        const std::uint32_t a = i * (n + 1) + j;
-        const std::uint32_t b = a + n + 1;
-        triangles.push_back({a, b, b + 1});
-        triangles.push_back({a, b + 1, a + 1});
+        positions[i * (n + 1) + j][2] = 1.2 + 0.01 * std::sin(i * 0.7) * std::cos(j * 0.9);
       }
     }
     velocities_.assign(positions.size(), Vector3d::Zero());

@@ -3,6 +3,7 @@
 #include "collision/deforming/surface_contact.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "tests/collision/sample_meshes.hpp"
+#include "tests/collision/sample_sheets.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace {
@@ -18,33 +20,9 @@ using namespace kds;
 using namespace kds::collision;
 using certificates::FeatureContactStatus;
 using Eigen::Vector3d;
+using samples::Sheet;
 template <int Degree>
 using Path = certificates::PointMotion<Degree>;
-
-/// A square sheet of 2 n n triangles in the plane z = 0, between -1 and 1.
-struct Sheet {
-  std::vector<Vector3d> positions;
-  std::vector<Mesh::Triangle> triangles;
-
-  explicit Sheet(std::uint32_t n) {
-    for (std::uint32_t i = 0; i <= n; ++i) {
-      for (std::uint32_t j = 0; j <= n; ++j) positions.emplace_back(2.0 * i / n - 1, 2.0 * j / n - 1, 0);
-    }
-    for (std::uint32_t i = 0; i < n; ++i) {
-      for (std::uint32_t j = 0; j < n; ++j) {
-        const std::uint32_t a = i * (n + 1) + j;
-        const std::uint32_t b = a + n + 1;
-        triangles.push_back({a, b, b + 1});
-        triangles.push_back({a, b + 1, a + 1});
-      }
-    }
-  }
-  std::vector<Vector3d> moved(const Vector3d& by) const {
-    std::vector<Vector3d> result = positions;
-    for (Vector3d& p : result) p += by;
-    return result;
-  }
-};
 
 template <int Degree>
 const MovingSurface<Degree>& moving(RigidSurface<Degree>& surface, const Path<Degree>& path, double t0, double t1) {
@@ -130,9 +108,10 @@ TEST_CASE("a membrane that bulges meets a ball, a box and a capsule above it", "
   membrane.step_to(3, bulged);
   const Path<1> at_rest = Path<1>::line(Vector3d(0, 0, 1.5), Vector3d::Zero());
   const auto upright = Eigen::Quaterniond::Identity();
-  for (const auto& [shape, time] :
-       {std::pair{place(Sphere{0.5}, upright), 2.0}, std::pair{place(Box{Vector3d(0.5, 0.5, 0.75)}, upright), 1.75},
-        std::pair{place(Capsule{0.25, 0.25}, upright), 2.0}}) {
+  for (const auto& [shape, time, feature] :
+       {std::tuple{place(Sphere{0.5}, upright), 2.0, Feature{}},
+        std::tuple{place(Box{Vector3d(0.5, 0.5, 0.75)}, upright), 1.75, Feature::face(4)},
+        std::tuple{place(Capsule{0.25, 0.25}, upright), 2.0, Feature::vertex(0)}}) {
     RigidSurface<1> other(shape);
     const auto found = first_contact(membrane.surface(), moving(other, at_rest, 1, 3));
     CAPTURE(shape.shape.index());
@@ -142,6 +121,7 @@ TEST_CASE("a membrane that bulges meets a ball, a box and a capsule above it", "
     CHECK(found->contact.normal.isApprox(Vector3d::UnitZ(), 1e-6));
     CHECK(found->contact.point.isApprox(Vector3d(0, 0, time - 1), 1e-6));
     CHECK(found->contact.feature_a == Feature::vertex(static_cast<std::uint32_t>(middle)));
+    CHECK(found->contact.feature_b == feature);
     CHECK(membrane.surface().velocity(middle, time).isApprox(Vector3d::UnitZ()));
   }
 }
