@@ -87,7 +87,7 @@ TEST_CASE("scenes with meshes that bend: what is wrong is named with its place")
   CHECK(with("/bodies/0/vertices/1/positions", json::parse("[[0,0,0],[1,0,0]]")) ==
         "bodies[0].vertices[1].positions: has 2 positions, and the mesh has 3 vertices");
   CHECK(with("/bodies/0/vertices/1/positions/2", json::parse("[0,1]")) ==
-        "bodies[0].vertices[1].positions[2]: must have 3 entries");
+        "bodies[0].vertices[1].positions[2]: must be an array of 3 numbers");
   CHECK(with("/bodies/0/vertices/0/place", 1) == "bodies[0].vertices[0].place: unknown key");
   CHECK(with("/bodies/0/shape/scale", 2) ==
         "bodies[0].vertices: is for meshes without a scale: positions are as they are given");
