@@ -76,13 +76,37 @@ Triple<Polynomial<Degree, Number>> from_cell(const PointMotion<Degree>& a, const
   return x;
 }
 
+/// How far x is from the origin, the line through it along one direction or the plane of two, by the dimension: the
+/// square of that, less that of a radius, times the square of the direction or of the product of the two.
+///
+/// With r the radius, u and v the directions: x^2 - r^2; (u x x)^2 - r^2 u^2; or, with n = u x v, (n . x)^2 - r^2 n^2.
+template <int Degree, class Number, class Direction>
+Polynomial<2 * Degree, Number> distance_beyond(const Triple<Polynomial<Degree, Number>>& x, int dimension,
+                                               const Direction& direction, const Number& radius) {
+  const Number radius_square = radius * radius;
+  Polynomial<2 * Degree, Number> f;
+  if (dimension == 0) {
+    f = square(x[0]) + square(x[1]) + square(x[2]);
+    f.c[0] = f.c[0] - radius_square;
+    return f;
+  }
+  const Triple<Number> u = direction(0);
+  if (dimension == 1) {
+    const auto w = cross_product(constants(u), x);
+    f = square(w[0]) + square(w[1]) + square(w[2]);
+    f.c[0] = f.c[0] - radius_square * inner_product(u, u);
+  } else {
+    const auto n = cross_product(u, direction(1));
+    f = square(inner_product(constants(n), x));
+    f.c[0] = f.c[0] - radius_square * inner_product(n, n);
+  }
+  return f;
+}
+
 }  // namespace detail
 
 /// The point b - a is not nearer than the sum of two radii to the point, line or plane that a cell spans. Degree 2 for
 /// linear, 4 for quadratic paths.
-///
-/// With r the sum, x from the cell's centre, u and v the directions that sweep it: x^2 >= r^2; (u x x)^2 >= r^2 u^2;
-/// or, with n = u x v, (n . x)^2 >= r^2 n^2.
 template <int PathDegree>
 struct CellDistance {
   static constexpr int degree = 2 * PathDegree;
@@ -95,25 +119,8 @@ struct CellDistance {
   template <class Number>
   Polynomial<degree, Number> polynomial(double epoch) const {
     const auto x = detail::from_cell<Number>(a, b, generators, cell, epoch);
-    const Number radius = Number(radii[0]) + radii[1];
-    const Number radius_square = radius * radius;
-    Polynomial<degree, Number> f;
-    if (cell.dimension == 0) {
-      f = square(x[0]) + square(x[1]) + square(x[2]);
-      f.c[0] = f.c[0] - radius_square;
-      return f;
-    }
-    const auto u = detail::numbers<Number>(generators[cell.swept[0]].direction);
-    if (cell.dimension == 1) {
-      const auto w = detail::cross_product(detail::constants(u), x);
-      f = square(w[0]) + square(w[1]) + square(w[2]);
-      f.c[0] = f.c[0] - radius_square * detail::inner_product(u, u);
-    } else {
-      const auto n = detail::cross_product(u, detail::numbers<Number>(generators[cell.swept[1]].direction));
-      f = square(detail::inner_product(detail::constants(n), x));
-      f.c[0] = f.c[0] - radius_square * detail::inner_product(n, n);
-    }
-    return f;
+    const auto direction = [&](std::size_t k) { return detail::numbers<Number>(generators[cell.swept[k]].direction); };
+    return detail::distance_beyond(x, cell.dimension, direction, Number(radii[0]) + radii[1]);
   }
 };
 

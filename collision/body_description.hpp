@@ -71,9 +71,9 @@ struct BasicBodyDescription {
   double mass = 1;  ///< > 0, unless the body is fixed
   /// For bodies that turn: the moment about every axis through the centre, > 0, or a tensor that checked_inertia() in
   /// response/inertia.hpp accepts. If neither is given, or 0: that of a solid with the shape and mass, whose centre of
-  /// mass must be at the origin of the shape, up to inertia_tolerance of its radius. If contacts move the body, the
-  /// moments of a tensor, given or not, have to be equal (is_spherical()), as those of balls and cubes are: a body
-  /// whose moments differ does not turn about a fixed axis when it is free.
+  /// mass must be at the origin of the shape, up to inertia_tolerance of its radius. If contacts move the body and its
+  /// moments differ (not is_spherical()), it precesses (docs/turning.md): the angular velocity of a motion is then that
+  /// at the time when the body takes the motion up, and the least moment must be at least 2^-40 of the greatest.
   Inertia inertia{};
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.

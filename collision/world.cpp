@@ -45,6 +45,7 @@ BasicWorld<Motion>::BasicWorld(const WorldOptions& options, Listener* listener)
     : options_(validated(options)),
       listener_(listener ? listener : &silent_),
       clock_{options.start_time, options.start_time + options.window},
+      tumbling_(bodies_, options_, counters_),
       volumes_(bodies_, options_, clock_),
       walls_(bodies_, options_.walls, clock_),
       resting_(bodies_, options_.walls, clock_, *this),
@@ -150,6 +151,7 @@ inline typename BasicWorld<Motion>::Due BasicWorld<Motion>::next_due() const {
     if (time < first.time) first = {time, task};
   };
   consider(scripts_.next_time(), Task::start_pieces);
+  consider(tumbling_.next_time(), Task::turn_on);
   consider(pairs_.next_box_time(), Task::meet_boxes);
   consider(volumes_.next_time(), Task::renew_volume);
   consider(walls_.next_time(), Task::meet_wall);
@@ -177,6 +179,9 @@ bool BasicWorld<Motion>::process(Task task) {
     case Task::start_pieces:
       start_pieces();
       return true;
+    case Task::turn_on:
+      turn_on();
+      return false;  // The report ends the step.
     case Task::meet_boxes:
       pairs_.process_boxes();
       return false;
@@ -216,7 +221,7 @@ bool BasicWorld<Motion>::next_event(double limit, Search search) {
     const bool is_due = due.time == next && next < never;
     if (is_due && certify(due.task)) continue;
     // A piece that starts now is the motion at t+, so it starts before the broad phase runs past this time.
-    const bool piece = is_due && due.task == Task::start_pieces;
+    const bool piece = is_due && due.task <= Task::turn_on;
     const double until = next == never ? broad_phase_->next_time() : piece ? next_down(next) : next;
     if (until == never) {
       if (looks) return false;
@@ -302,9 +307,10 @@ bool BasicWorld<Motion>::advance_for(double budget_seconds, double t) {
 /// Starts all pieces that are due in one go: bodies that jump together are not apart in between.
 template <class Motion>
 void BasicWorld<Motion>::start_pieces() {
-  const auto pieces = scripts_.take_next();
+  auto pieces = scripts_.take_next();
   std::vector<char> jumps;
-  for (const auto& [slot, motion] : pieces) {
+  for (auto& [slot, motion] : pieces) {
+    if (tumbling_.has(slot)) motion = tumbling_.take_up(slot, motion, clock_.now);
     jumps.push_back(bodies_[slot].entered && bodies_.is_jump(slot, motion, clock_.now));
     if (jumps.back()) resting_.drop_all(slot);
     resting_.leave(slot);
@@ -321,6 +327,13 @@ void BasicWorld<Motion>::start_pieces() {
       bodies_.wait(slot);
     }
   }
+}
+
+/// A piece of a body that precesses is over. The next begins where it ends, so nothing has jumped.
+template <class Motion>
+void BasicWorld<Motion>::turn_on() {
+  const auto piece = tumbling_.take_next();
+  take_up(piece.slot, piece.motion);
 }
 
 template <class Motion>

@@ -7,6 +7,7 @@
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/profile.hpp"
+#include "collision/response/free_rotation.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/edit_limit.hpp"
@@ -14,6 +15,7 @@
 #include "collision/world/reports.hpp"
 #include "collision/world/resting_contacts.hpp"
 #include "collision/world/scripts.hpp"
+#include "collision/world/turning/tumbling.hpp"
 #include "collision/world/volumes.hpp"
 #include "collision/world/wall_times.hpp"
 #include "collision/world_counters.hpp"
@@ -24,6 +26,7 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 namespace kds::collision {
@@ -31,9 +34,10 @@ namespace kds::collision {
 /// Moves bodies through time and reports their contacts at exact times. The type of motion is a template parameter
 /// (body_motion.hpp): most worlds are a World<Degree>, below, whose bodies keep their orientation.
 ///
-/// [Coming06] Figure 2. Events are, in this order where times are equal: pieces of motion that start, changes of the
-/// broad phase, bounding volumes that have to be renewed, walls, resting contacts that end, contacts and separations by
-/// (a, b). The broad phase makes no difference: WorldListener states the order of reports.
+/// [Coming06] Figure 2. Events are, in this order where times are equal: pieces of motion that start (of scripts, then
+/// of bodies that precess), changes of the broad phase, bounding volumes that have to be renewed, walls, resting
+/// contacts that end, contacts and separations by (a, b). The broad phase makes no difference: WorldListener states the
+/// order of reports.
 ///
 /// It is made of parts (world/), which docs/design.md lists.
 ///
@@ -123,6 +127,11 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   const Motion& motion(BodyId id) const { return bodies_.motion(bodies_.slot_of(id)); }
   /// The motion that the body would have without its resting contacts: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
+  /// The orientation, angular velocity and angular momentum at now() of a body that turns freely. Those of a body that
+  /// precesses are exact up to roundings, while its motion() consists of pieces with a constant angular velocity, whose
+  /// orientation differs by up to WorldOptions::orientation_error. Throws std::invalid_argument for a body whose
+  /// turning is not changed by contacts.
+  FreeTurning free_turning(BodyId id) const requires(turns<Motion>);
   PlacedShape shape(BodyId id) const { return bodies_.shape(bodies_.slot_of(id)); }
   double mass(BodyId id) const { return bodies_[bodies_.slot_of(id)].mass; }
   bool sensor(BodyId id) const { return bodies_[bodies_.slot_of(id)].sensor; }
@@ -182,6 +191,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   /// The tasks of the parts of the world, in the order in which they are done if they are due at one time.
   enum class Task {
     start_pieces,     ///< scripts_
+    turn_on,          ///< tumbling_
     meet_boxes,       ///< pairs_
     renew_volume,     ///< volumes_
     meet_wall,        ///< walls_
@@ -206,6 +216,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void set_horizon(double limit);
   void go_back(double t);
   void start_pieces();
+  void turn_on();
   void report_next();
   void report_resting(const Reports::Report& event);
   void count_edit();
@@ -249,7 +260,8 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   }
 
   // world/edits.cpp: bodies that are added, moved and removed
-  BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape);
+  BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape,
+               const std::optional<PrincipalInertia>& principal);
   void make_room_for_meshes();
   void enter_new_bodies();
   void take_out(BodySlot slot);
@@ -284,6 +296,9 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   double rebound(double approach, double pressed, double restitution) const requires(turns<Motion>);
   void process_wall() requires(turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
+  Motion met(BodySlot slot, double t) requires(turns<Motion>);
+  void turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
+                 const Contact& contact) requires(turns<Motion>);
 
   // Reports of resting contacts (RestingContacts::Listener).
   void take_up(BodySlot slot, const Motion& motion) override;
@@ -314,6 +329,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   // The parts, each with a state, a queue and laws of its own.
   Bodies<Motion> bodies_;
   Scripts<Motion> scripts_;
+  Tumbling<Motion> tumbling_;
   Volumes<Motion> volumes_;
   WallTimes<Motion> walls_;
   Reports reports_;

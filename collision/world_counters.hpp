@@ -19,6 +19,8 @@ struct WorldCounters {
   std::uint64_t wall_contacts = 0;
   std::uint64_t motion_updates = 0;       ///< by response, walls, scripts and callers
   std::uint64_t rebounds_suppressed = 0;  ///< times the Zeno policy acted on a contact
+  std::uint64_t rotation_pieces = 0;      ///< of bodies that precess, after the first of each
+  std::uint64_t orientation_resets = 0;   ///< law 2 of world/turning/tumbling.hpp
 
   friend bool operator==(const WorldCounters&, const WorldCounters&) = default;
   /// The counters of a kinetic structure: events, and failure times that were computed.

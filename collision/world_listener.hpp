@@ -67,7 +67,8 @@ class BasicWorldListener {
   /// Two bodies pass through each other until they have separated: no motion keeps them apart (a piston), their
   /// meetings do not end, or a callback has left them approaching.
   virtual void passes(BasicWorld<Motion>&, const PairEvent&) {}
-  /// The motion of a body has changed that is not one of the event's: resting contacts pass on what happens to others.
+  /// The motion of a body has changed that is not one of the event's: resting contacts pass on what happens to others,
+  /// and a body that precesses begins its next piece.
   virtual void moved(BasicWorld<Motion>&, BodyId) {}
 };
 

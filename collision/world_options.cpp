@@ -27,6 +27,9 @@ void validate(const WorldOptions& options) {
   if (options.zeno.contacts == 0) throw std::invalid_argument("WorldOptions.zeno.contacts: must be > 0");
   if (!(options.zeno.interval >= 0)) throw std::invalid_argument("WorldOptions.zeno.interval: must be >= 0");
   if (!(options.shortest_flight > 0)) throw std::invalid_argument("WorldOptions.shortest_flight: must be > 0");
+  if (!(options.orientation_error >= 0x1p-30 && options.orientation_error <= 0.125)) {
+    throw std::invalid_argument("WorldOptions.orientation_error: must be from 2^-30 (9.3e-10) to 0.125 rad");
+  }
   if (options.walls) {
     const Walls& walls = *options.walls;
     if (!walls.min.allFinite() || !walls.max.allFinite()) {

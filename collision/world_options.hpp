@@ -75,6 +75,13 @@ struct WorldOptions {
   /// acceleration g it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1 ms), and costs a contact per
   /// flight.
   double shortest_flight = 1e-3;
+  /// rad, from 2^-30 to 1/8. Bodies that turn freely and whose moments of inertia differ precess. Their motion consists
+  /// of pieces with a constant angular velocity, so short that the orientation differs from the solution of Euler's
+  /// equations by at most this much; after contacts in quick succession by at most twice as much. The errors of pieces
+  /// do not accumulate, and energy and momenta do not depend on this option. With the default no point of a body is off
+  /// by more than a thousandth of its radius, for about ten pieces a radian; a hundredth of it costs ten times as many
+  /// pieces (docs/turning.md).
+  double orientation_error = 1e-3;
   /// How often callbacks may add, remove or move bodies within zeno.interval of simulated time; 64 times the number of
   /// bodies, if that is more. The call that exceeds it throws std::runtime_error: callbacks that go on for ever at one
   /// time would stop the clock. Without callbacks a run always ends.

@@ -21,9 +21,9 @@ namespace kds::collision {
 ///
 /// The span ends at the horizon, if that is near. Otherwise its length balances the cost of new boxes and that of
 /// pairs: the next span is longer if pairs, with their tests, cost less than new boxes for all, and shorter if they
-/// cost more. Its length changes the cost, never the contacts. Cost: O(n) a motion change and O(n^2) a span, both with
-/// a small constant: two boxes are compared at a time, without a branch. No queue, and no allocation once the bodies
-/// are there.
+/// cost more. Its length changes the cost, never the contacts.
+/// Cost: O(n) a motion change and O(n^2) a span, both with a small constant: two boxes are compared at a time, without
+/// a branch. No queue, and no allocation once the bodies are there.
 template <int Degree>
 class FewBoxes final : public BroadPhase<Degree> {
  public:

@@ -25,8 +25,8 @@ namespace kds::collision {
 /// after most changes. The travel changes the cost, never the contacts.
 ///
 /// The time at which a fat box ends is not a root: a time is chosen, and the box is then the swept AABB until that
-/// time, rounded outward. So scheduled times need not be exact. Cost: O(1) a renewal or motion change, for bodies of
-/// bounded density, and a queue operation; nothing in between.
+/// time, rounded outward. So scheduled times need not be exact.
+/// Cost: O(1) a renewal or motion change, for bodies of bounded density, and a queue operation; nothing in between.
 template <int Degree>
 class KineticGrid final : public BroadPhase<Degree> {
  public:

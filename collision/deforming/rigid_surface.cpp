@@ -1,5 +1,7 @@
 #include "collision/deforming/rigid_surface.hpp"
 
+#include "collision/shapes/polytope.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -18,9 +20,15 @@ using Eigen::Vector3d;
 constexpr std::array<std::array<std::uint32_t, 4>, 6> box_faces{
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 
+/// A mesh, or a hull, whose surface is one.
+bool is_surface(const Shape& shape) {
+  return std::holds_alternative<MeshShape>(shape) || std::holds_alternative<ConvexHull>(shape);
+}
+
 std::vector<Vector3d> offsets_of(const PlacedShape& shape) {
-  if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) {
-    return mesh->mesh->placed_vertices(shape.rotation, mesh->scale);
+  if (is_surface(shape.shape)) {
+    const MeshShape mesh = surface_of(shape.shape);
+    return mesh.mesh->placed_vertices(shape.rotation, mesh.scale);
   }
   if (std::holds_alternative<Sphere>(shape.shape)) return {Vector3d::Zero()};
   if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
@@ -45,7 +53,7 @@ std::vector<Vector3d> offsets_of(const PlacedShape& shape) {
 SurfaceTree tree_of(const PlacedShape& shape, const std::vector<Vector3d>& offsets) {
   if (std::holds_alternative<Sphere>(shape.shape)) return SurfaceTree::point();
   if (std::holds_alternative<Capsule>(shape.shape)) return SurfaceTree::segment();
-  if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) return {offsets, mesh->mesh->triangles()};
+  if (is_surface(shape.shape)) return {offsets, surface_of(shape.shape).mesh->triangles()};
   std::vector<Mesh::Triangle> triangles;
   for (const auto& [a, b, c, d] : box_faces) {
     triangles.push_back({a, b, c});
@@ -65,7 +73,7 @@ RigidSurface<Degree>::RigidSurface(const PlacedShape& shape)
       surface_(*tree_) {
   if (const auto* const ball = std::get_if<Sphere>(&shape.shape)) surface_.set_radius(ball->radius);
   if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) surface_.set_radius(capsule->radius);
-  if (std::holds_alternative<Box>(shape.shape)) surface_.set_solid();
+  if (std::holds_alternative<Box>(shape.shape) || std::holds_alternative<ConvexHull>(shape.shape)) surface_.set_solid();
 }
 
 template <int Degree>

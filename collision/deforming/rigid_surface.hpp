@@ -1,4 +1,4 @@
-// Balls, boxes, capsules and meshes that keep their shape, as surfaces that may meet one that bends.
+// Balls, boxes, capsules, hulls and meshes that keep their shape, as surfaces that may meet one that bends.
 #pragma once
 
 #include "certificates/point_motion.hpp"
@@ -13,8 +13,9 @@
 namespace kds::collision {
 
 /// The surface of a placed shape about its centre: of a ball the centre, of a capsule its segment, both with a radius;
-/// of a box its faces as two triangles each, whose diagonals do not count; of a mesh its triangles. All but meshes are
-/// solid. Its vertices are those of the shape as it is placed, rounded (a box: as its rounded axes say).
+/// of a box its faces as two triangles each, whose diagonals do not count; of a mesh or a hull its triangles, by whose
+/// names its features go. All but meshes are solid. Its vertices are those of the shape as it is placed, rounded (a
+/// box: as its rounded axes say).
 ///
 /// Cost: building takes O(n log n), each move O(n).
 template <int Degree>

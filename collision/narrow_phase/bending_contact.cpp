@@ -5,6 +5,7 @@
 #include "collision/deforming/surface_contact.hpp"
 #include "collision/deforming/surface_touching.hpp"
 #include "collision/shapes/bending_mesh.hpp"
+#include "collision/shapes/polytope.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -173,6 +174,9 @@ class BendingPair {
       if (const auto found = touching.closest(t, distance)) {
         Contact contact = found->contact;
         contact.time = t;
+        if (const auto* const hull = std::get_if<ConvexHull>(&b_.shape.shape)) {
+          contact.feature_b = hull->polytope->feature_of(contact.feature_b);
+        }
         return contact;
       }
       if (distance > farthest) throw std::logic_error("BendingContact: two surfaces without features");

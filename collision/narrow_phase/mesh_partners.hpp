@@ -9,6 +9,7 @@
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/shapes/feature.hpp"
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "collision/shapes/shape.hpp"
 
 #include <Eigen/Core>
@@ -23,10 +24,11 @@ namespace kds::collision::detail {
 
 // ---- The kinds of b ------------------------------------------------------------------------------------------------
 
-/// A mesh in the orientation and scale of its body.
+/// A mesh, or the surface of a hull, in the orientation and scale of its body.
 struct PlacedMesh {
-  explicit PlacedMesh(const PlacedShape& shape)
-      : PlacedMesh(*std::get<MeshShape>(shape.shape).mesh, shape.rotation, std::get<MeshShape>(shape.shape).scale) {}
+  explicit PlacedMesh(const PlacedShape& shape) : PlacedMesh(surface_of(shape.shape), shape.rotation) {}
+  PlacedMesh(const MeshShape& shape, const Eigen::Matrix3d& rotation)
+      : PlacedMesh(*shape.mesh, rotation, shape.scale) {}
   PlacedMesh(const Mesh& m, const Eigen::Matrix3d& rotation, double s)
       : mesh(m), scale(s), pose{m.tree().nodes(), s * m.tree().unit(), rotation} {}
 
@@ -133,6 +135,8 @@ template <>
 struct PartnerOfKind<Capsule> : std::type_identity<CapsulePartner> {};
 template <>
 struct PartnerOfKind<MeshShape> : std::type_identity<PlacedMesh> {};
+template <>
+struct PartnerOfKind<ConvexHull> : std::type_identity<PlacedMesh> {};
 template <class Alternative>
 using PartnerOf = typename PartnerOfKind<Alternative>::type;
 

@@ -5,6 +5,8 @@
 #include "collision/narrow_phase/bending_contact.hpp"
 #include "collision/narrow_phase/capsule_contact.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
+#include "collision/narrow_phase/hull_contact.hpp"
+#include "collision/narrow_phase/mesh_and_hull.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
 #include "collision/narrow_phase/pair_tests.hpp"
 #include "collision/narrow_phase/turning/turning_contact.hpp"
@@ -23,9 +25,11 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   table.template add<Box, Sphere>(BoxBallContact<Degree>{});
   table.template add<Box, Box>(BoxesContact<Degree>{});
   table.template add<Capsule, Sphere, Box, Capsule>(CapsuleContact<Degree>{});
+  table.template add<ConvexHull, Sphere, Box, Capsule, ConvexHull>(HullContact<Degree>{});
   table.template add<MeshShape, Sphere, Box, Capsule, MeshShape>(MeshContact<Degree>{});
+  table.template add<MeshShape, ConvexHull>(MeshHullContact<Degree>{});
   if constexpr (Degree <= 2) {
-    table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, BendingMesh>(BendingContact<Degree>{});
+    table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(BendingContact<Degree>{});
   }
   return table;
 }
@@ -36,7 +40,8 @@ constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   PairTable<certificates::RigidMotion<Degree>> table;
   table.template add<Sphere, Sphere>(TurningContact<Degree>{});
   table.template add<Box, Sphere, Box>(TurningContact<Degree>{});
-  table.template add<MeshShape, Sphere, Box, MeshShape>(TurningMeshContact<Degree>{});
+  table.template add<ConvexHull, Sphere, Box, ConvexHull>(TurningContact<Degree>{});
+  table.template add<MeshShape, Sphere, Box, ConvexHull, MeshShape>(TurningMeshContact<Degree>{});
   return table;
 }
 
@@ -155,7 +160,7 @@ Contact contact_at(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
 }
 
 #define KDS_INSTANTIATE(motion)                                                                                       \
-  static_assert(turns<motion> || motion::degree > 2 || table<motion>.complete());                                                           \
+  static_assert(turns<motion> || motion::degree > 2 || table<motion>.complete());                                     \
   template const PairTests<motion>& pair_tests(const PlacedShape&, const PlacedShape&);                               \
   template bool can_move_by<motion>(const Shape&);                                                                    \
   template double first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double, double, ContactMode,  \

@@ -36,8 +36,8 @@ struct FoundTouch {
   std::uint32_t triangle_a = 0, triangle_b = 0;
 };
 
-/// Whether there are tests for shapes of this kind that move so: bodies that turn are balls, boxes and meshes; meshes
-/// that bend move on straight lines and parabolas.
+/// Whether there are tests for shapes of this kind that move so: bodies that turn are balls, boxes, hulls and meshes;
+/// meshes that bend move on straight lines and parabolas.
 template <class Motion>
 bool can_move_by(const Shape& shape);
 
@@ -46,8 +46,8 @@ bool can_move_by(const Shape& shape);
 /// Spheres, boxes and capsules: the first double just after which they penetrate, by exact signs, of shapes as their
 /// rounded axes describe them. (Two boxes with edges that are parallel but for an angle below 2^-40 may be found early,
 /// by at most that part of their size: box_and_box.hpp.) Meshes: never late, early by at most the margin of
-/// mesh_contact.hpp; but of bodies that turn by exact signs, too (turning_mesh_contact.hpp). The answer depends on the two shapes and motions alone, and on t0 only in that earlier contacts
-/// are passed over.
+/// mesh_contact.hpp; but of bodies that turn by exact signs, too (turning_mesh_contact.hpp). The answer depends on the
+/// two shapes and motions alone, and on t0 only in that earlier contacts are passed over.
 ///
 /// Of bodies that turn the horizon is finite, here and below.
 ///

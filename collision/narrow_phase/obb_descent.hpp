@@ -90,7 +90,8 @@ struct SliceMotion {
 /// the second derivative's bound times (length / 2)^2: the same formula. Conservative: the window contains every time
 /// at which a test of leaves may report contact. Products of edges are not normalised; they are no longer than 1, so
 /// that for them the margin is wider than needed, and parallel edges, whose product is only rounding error, never
-/// separate. Paper: [Gottschalk96] section 5 for the axes, [Eberly01] for time.
+/// separate.
+/// Paper: [Gottschalk96] section 5 for the axes, [Eberly01] for time.
 template <int Degree>
 class BoxPairTest {
  public:

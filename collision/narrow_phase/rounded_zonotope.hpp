@@ -35,9 +35,11 @@ namespace kds::collision {
 /// of a box, and one that meets exactly the side between two pieces are no special cases, see ZonotopeCells.
 ///
 /// A filter in doubles leaves few pieces, and decides most of them: its directions across faces are known to some
-/// roundings, or not used (`unknown_normal`). Paper: [Ericson05] section 5.5.7 for the moving point; Differs: zonotopes
-/// in the place of boxes. Cost: 0.2 us (a capsule and a ball), 0.5 us (two capsules) or 2 us (a capsule and a box)
-/// typically to find a time until which they do not meet; 1, 2.5 and 10 us for the first contact.
+/// roundings, or not used (`unknown_normal`).
+/// Paper: [Ericson05] section 5.5.7 for the moving point.
+/// Differs: zonotopes in the place of boxes.
+/// Cost: 0.2 us (a capsule and a ball), 0.5 us (two capsules) or 2 us (a capsule and a box) typically to find a time
+/// until which they do not meet; 1, 2.5 and 10 us for the first contact.
 template <int Degree>
 class RoundedZonotope {
  public:

@@ -1,20 +1,31 @@
 #include "collision/narrow_phase/surface_gap.hpp"
 
 #include "collision/narrow_phase/capsule_contact.hpp"
+#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/rotation.hpp"
 #include "collision/shapes/rounded_core.hpp"
 #include "collision/vectors.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace kds::collision {
 namespace {
 
 using Eigen::Vector3d;
 
-/// The half width of a shape along a unit vector, from its centre.
-double half_width(const PlacedShape& shape, const Vector3d& along) {
+/// How far a shape extends from its centre along a unit vector.
+double extent_along(const PlacedShape& shape, const Vector3d& along) {
   const double radius = ball_radius(shape.shape);
   if (radius > 0) return radius;
+  if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
+    double most = -never;
+    for (const std::uint32_t i : hull->polytope->structure().corners) {
+      most = std::max(most, dot(along, rotated(shape.rotation, hull->polytope->points()[i])));
+    }
+    return most;
+  }
   const RoundedCore core = rounded_core(shape);
   double sum = core.radius;
   for (const auto& each : core.generators) sum += each.length * std::abs(dot(along, each.direction));
@@ -27,7 +38,7 @@ template <int Degree>
 double gap_along(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Vector3d& normal,
                  double t) {
   const Vector3d apart = b.motion.position(t) - a.motion.position(t);
-  return dot(normal, apart) - half_width(a.shape, normal) - half_width(b.shape, normal);
+  return dot(normal, apart) - extent_along(a.shape, normal) - extent_along(b.shape, -normal);
 }
 
 template <int Degree>
@@ -39,7 +50,9 @@ SurfaceGap surface_gap(const TranslatingShape<Degree>& a, const TranslatingShape
     const double distance = norm(apart);
     if (distance > 0) return {distance - radius_a - radius_b, apart / distance};
   }
-  const Vector3d normal = rounded_contact(a, b, t).normal;
+  const bool hull =
+      std::holds_alternative<ConvexHull>(a.shape.shape) || std::holds_alternative<ConvexHull>(b.shape.shape);
+  const Vector3d normal = hull ? contact_at(a, b, t).normal : rounded_contact(a, b, t).normal;
   return {gap_along(a, b, normal, t), normal};
 }
 

@@ -1,8 +1,9 @@
 #include "collision/response/mass_properties.hpp"
 
+#include "collision/precise_vector.hpp"
 #include "collision/response/inertia.hpp"
-#include "collision/response/precise_vector.hpp"
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "kds/arithmetic/power_of_two.hpp"
 
 #include <algorithm>
@@ -22,9 +23,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-[[noreturn]] void refuse_mesh(const std::string& what) {
-  throw std::invalid_argument("mass_properties: the mesh " + what);
+[[noreturn]] void refuse(const char* kind, const std::string& what) {
+  throw std::invalid_argument(std::string("mass_properties: the ") + kind + ' ' + what);
 }
+[[noreturn]] void refuse_mesh(const std::string& what) { refuse("mesh", what); }
 
 /// For each vertex the first one at its place.
 std::vector<std::uint32_t> first_at_place(std::span<const Vector3d> vertices) {
@@ -155,23 +157,22 @@ constexpr double largest_error = 0x1p-56;
 /// s^2.
 constexpr double least_share = 0x1p-44;
 
-MassProperties of_mesh(const MeshShape& shape, double mass) {
-  const Mesh& mesh = *shape.mesh;
-  require_closed(mesh);
+/// Of a closed surface: `kind`, in messages.
+MassProperties of_surface(const char* kind, const Mesh& mesh, double scale, double mass) {
   const Integrals sum = integrate(mesh);
   const double least = sum.error(mesh.triangles().size()) / largest_error;
-  if (sum.volume.high < -least) refuse_mesh("is inside out: its triangles turn clockwise seen from outside");
-  if (!(sum.volume.high > least)) refuse_mesh("has no volume beyond rounding");
+  if (sum.volume.high < -least) refuse(kind, "is inside out: its triangles turn clockwise seen from outside");
+  if (!(sum.volume.high > least)) refuse(kind, "has no volume beyond rounding");
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   PreciseVector centre, mean_square;
   for (std::size_t d = 0; d < 3; ++d) {
     centre[d] = sum.first[d] / (sum.volume * 4.0);
-    const DoubleDouble place = (centre[d] * sum.unit + sum.origin[static_cast<Eigen::Index>(d)]) * shape.scale;
+    const DoubleDouble place = (centre[d] * sum.unit + sum.origin[static_cast<Eigen::Index>(d)]) * scale;
     result.centre[static_cast<Eigen::Index>(d)] = place.high;
   }
   const DoubleDouble twenty = sum.volume * 20.0;
   for (std::size_t d = 0; d < 3; ++d) mean_square[d] = sum.squares[d] / twenty - centre[d] * centre[d];
-  const double length = shape.scale * sum.unit;
+  const double length = scale * sum.unit;
   const double whole = mass * length * length;
   for (std::size_t d = 0; d < 3; ++d) {
     const std::size_t e = (d + 1) % 3, f = (d + 2) % 3;
@@ -182,7 +183,8 @@ MassProperties of_mesh(const MeshShape& shape, double mass) {
   }
   Matrix3d certain = result.inertia;
   certain.diagonal().array() -= least_share * result.inertia.diagonal().maxCoeff();
-  if (!detail::positive_definite(certain)) refuse_mesh("is too thin: its least moment of inertia is lost in roundings");
+  if (!detail::positive_definite(certain))
+    refuse(kind, "is too thin: its least moment of inertia is lost in roundings");
   checked_inertia(result.inertia);
   return result;
 }
@@ -212,7 +214,14 @@ MassProperties of(const Capsule& capsule, double mass) {
   return solid(mass, Vector3d(across, across, along));
 }
 
-MassProperties of(const MeshShape& shape, double mass) { return of_mesh(shape, mass); }
+MassProperties of(const MeshShape& shape, double mass) {
+  require_closed(*shape.mesh);
+  return of_surface("mesh", *shape.mesh, shape.scale, mass);
+}
+
+MassProperties of(const ConvexHull& hull, double mass) {
+  return of_surface("hull", *hull.polytope->surface(), 1, mass);
+}
 
 MassProperties of(const BendingMesh&, double) {
   throw std::invalid_argument("shape: a mesh that bends has no mass properties of its own");

@@ -36,8 +36,8 @@ struct MassProperties {
 ///   errors above: a needle some four million times longer than thick;
 /// - what checked_inertia() says of the tensor of a mesh some parts of which are inside out.
 ///
-/// Cost: n log n for n triangles. Paper: the integrals are polynomials of the vertices, as in [Mirtich96]. Differs:
-/// summed over the tetrahedra that triangles make with one vertex of the mesh, not over projected faces, whose
+/// Cost: n log n for n triangles. Paper: the integrals are polynomials of the vertices, as in [Mirtich96].
+/// Differs: summed over the tetrahedra that triangles make with one vertex of the mesh, not over projected faces, whose
 /// quotients lose all digits where a face is seen edge-on.
 MassProperties mass_properties(const Shape& shape, double mass);
 

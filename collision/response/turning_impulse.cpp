@@ -1,7 +1,7 @@
 #include "collision/response/turning_impulse.hpp"
 
+#include "collision/precise_vector.hpp"
 #include "collision/response/impulse.hpp"
-#include "collision/response/precise_vector.hpp"
 #include "collision/vectors.hpp"
 #include "kds/arithmetic/square_root.hpp"
 

@@ -11,7 +11,8 @@ namespace kds::collision {
 /// A vertex, an edge or a face of a shape. Indices count from 0; an edge is named by its two vertices, lower first.
 /// Those of a mesh are indices into its vertices and triangles. Of a box, in its own orientation, vertex i has
 /// coordinate d at +half extent where bit d of i is set; face 2 d is the one at -half extent on axis d, face 2 d + 1
-/// the opposite one. Of a capsule, vertex 0 is the end at -half_length, vertex 1 the other, and its only edge its side.
+/// the opposite one. Those of a hull are indices into the points that were given, and into the faces of HullStructure.
+/// Of a capsule, vertex 0 is the end at -half_length, vertex 1 the other, and its only edge its side.
 struct Feature {
   enum class Kind : std::uint8_t { none, vertex, edge, face };
 

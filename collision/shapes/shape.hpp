@@ -12,6 +12,7 @@ namespace kds::collision {
 
 class Mesh;
 class MeshScript;
+class Polytope;
 struct RoundedCore;
 
 /// What numbers may be, in any units: sizes and masses from smallest_size to largest_magnitude; coordinates, speeds and
@@ -48,21 +49,27 @@ struct Capsule {
   double half_length;
 };
 
+/// A solid polytope, the convex hull of points, shared by any number of bodies: made by convex_hull()
+/// (convex_hull.hpp).
+struct ConvexHull {
+  std::shared_ptr<const Polytope> polytope;
+};
+
 /// A triangle surface that bends with time, shared by any number of bodies.
 struct BendingMesh {
   std::shared_ptr<const MeshScript> script;
 };
 
 /// Each kind says in a file of its own what the functions below have to know of it: sphere.hpp, box.hpp,
-/// mesh_shape.hpp. To add one: a struct, its place in this list, its file, and its row in the table of pair tests
-/// (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
-using Shape = std::variant<Sphere, Box, MeshShape, Capsule, BendingMesh>;
+/// mesh_shape.hpp, capsule.hpp, convex_hull.hpp. To add one: a struct, its place in this list, its file, and its row in
+/// the table of pair tests (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
+using Shape = std::variant<Sphere, Box, MeshShape, Capsule, ConvexHull, BendingMesh>;
 
-/// "sphere", "box", "mesh", "capsule", "bending mesh".
+/// "sphere", "box", "mesh", "capsule", "hull", "bending mesh".
 const char* kind_name(const Shape& shape);
 
 /// The numbers of the shape: half of what it measures along its own axes; of a mesh its scale, thrice; of a capsule its
-/// radius twice, and its half length.
+/// radius twice, and its half length; of a hull 1, thrice.
 Eigen::Vector3d measures(const Shape& shape);
 
 /// The radius of what looks alike from all sides; 0 of other shapes.
@@ -104,7 +111,7 @@ PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation);
 /// Whether it is what place_turned() makes of its shape and rotation, which throws if they cannot be placed.
 bool is_placed(const PlacedShape& shape);
 
-/// The shape as a zonotope grown by a radius. Precondition: it is no mesh.
+/// The shape as a zonotope grown by a radius. Precondition: it is no mesh and no hull.
 RoundedCore rounded_core(const PlacedShape& shape);
 
 /// From where to where the shape reaches about its centre along a direction: least and greatest direction . x, rounded

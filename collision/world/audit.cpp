@@ -15,6 +15,7 @@ void BasicWorld<Motion>::audit(double t) const {
   broad_phase_->audit(t);
   // Work of this instant may still have to be done.
   if (bodies_.any_waits() || !pairs_.tested() || volumes_.next_time() <= t) return;
+  tumbling_.audit(t);
   if (resting_.solved()) resting_.audit(t, options_.walls.has_value());
   pairs_.audit(t);
   if (broad_phase_->next_time() <= t) return;
@@ -29,7 +30,7 @@ void BasicWorld<Motion>::audit(double t) const {
   }
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -144,6 +144,7 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
     if constexpr (turns<Motion>) {
       to.inverse_inertia = b.inverse_inertia;
       to.friction = b.friction, to.tangential_restitution = b.tangential_restitution;
+      to.tumbles = b.tumbles;
     }
     if constexpr (Motion::degree <= 2) to.force = free_acceleration(slot);
     if constexpr (Motion::degree >= 3) to.given = b.given;
@@ -182,6 +183,7 @@ void Bodies<Motion>::become(const Image& image) {
     if constexpr (turns<Motion>) {
       b.inverse_inertia = from.inverse_inertia;
       b.friction = from.friction, b.tangential_restitution = from.tangential_restitution;
+      b.tumbles = from.tumbles;
     }
     sensors_ = sensors_ || b.sensor;
     filters_ = filters_ || b.category != default_category || ~b.collides_with != 0;

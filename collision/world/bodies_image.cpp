@@ -66,7 +66,7 @@ void Bodies<Motion>::Image::body(Archive& archive, One& body) const {
   archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category,
           body.collides_with, body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
-  if constexpr (turns<Motion>) archive(body.inverse_inertia, body.friction, body.tangential_restitution);
+  if constexpr (turns<Motion>) archive(body.inverse_inertia, body.friction, body.tangential_restitution, body.tumbles);
   if constexpr (Motion::degree >= 3) archive(body.given);
 }
 
@@ -118,7 +118,7 @@ void Bodies<Motion>::Image::check(double now) const {
 }
 
 #define KDS_INSTANTIATE(motion)                                                                                        \
-  template struct Bodies<motion>::Image;                                                                               \
+  KDS_TEMPLATE_PART struct Bodies<motion>::Image;                                                                      \
   template void Bodies<motion>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&); \
   template void Bodies<motion>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)

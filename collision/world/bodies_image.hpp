@@ -22,6 +22,7 @@ struct Bodies<Motion>::Image {
     Motion motion;
     double mass = 1, inverse_mass = 1, restitution = 1;
     double inverse_inertia = 0, friction = 0, tangential_restitution = 0;  ///< of bodies that turn
+    bool tumbles = false;
     std::uint32_t category = 1, collides_with = ~0u;
     BoundingVolume volume = BoundingVolume::shape;
     std::uint64_t meetings = 0;

@@ -1,6 +1,7 @@
 #include "collision/world/contact_gaps.hpp"
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/cluster_rules.hpp"
 #include "kds/arithmetic/lattice.hpp"
@@ -59,6 +60,10 @@ bool ContactGaps<Motion>::turns(const Contact& contact) const {
   if (!a_round && !b_round) return false;
   const PlacedShape& other = a_round ? b : a;
   if (collision::has_mesh(other.shape)) return true;
+  if (std::holds_alternative<ConvexHull>(other.shape)) {
+    const Vector3d towards = a_round ? Vector3d(-contact.normal) : contact.normal;
+    return supporting_feature(other, towards).feature.kind != Feature::Kind::face;
+  }
   return std::none_of(other.half_axes.begin(), other.half_axes.end(), [&](const Vector3d& axis) {
     return std::abs(dot(contact.normal, axis)) >= norm(axis) * (1 - 0x1p-40);
   });

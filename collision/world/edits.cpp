@@ -4,12 +4,15 @@
 #include "collision/profile.hpp"
 #include "collision/response/inertia.hpp"
 #include "collision/response/mass_properties.hpp"
+#include "collision/response/principal_inertia.hpp"
+#include "collision/vectors.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <stdexcept>
@@ -33,7 +36,7 @@ void validate(const BasicBodyDescription<Motion>& description) {
   if (!description.fixed) require_size(description.mass, "mass");
   if (!can_move_by<Motion>(description.shape)) {
     const std::string name = std::string("shape: a ") + kind_name(description.shape);
-    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes and meshes can");
+    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes, hulls and meshes can");
     fail(name + " cannot move on paths of degree " + std::to_string(Motion::degree) + ": at most 2");
   }
   if constexpr (turns<Motion>) {
@@ -62,32 +65,30 @@ void validate(const BasicBodyDescription<Motion>& description) {
   if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
 }
 
-/// The moment of inertia of a body that turns freely. Precondition: the description is valid.
+/// The tensor of inertia of a body that turns freely. Precondition: the description is valid, and gives no moment.
 template <class Motion>
-double moment_of(const BasicBodyDescription<Motion>& description) {
-  if (description.inertia.moment() != 0) return description.inertia.moment();
+Eigen::Matrix3d tensor_of(const BasicBodyDescription<Motion>& description) {
   const Shape& shape = description.shape;
-  const auto& given = description.inertia.tensor();
-  std::ostringstream text;
-  Eigen::Matrix3d inertia;
-  if (given) {
-    inertia = checked_inertia(*given);
-  } else {
-    const MassProperties solid = mass_properties(shape, description.mass);
-    inertia = solid.inertia;
-    if (!(solid.centre.norm() <= inertia_tolerance * place(shape, Eigen::Quaterniond::Identity()).bounding_radius)) {
-      text << "inertia: the centre of mass of this " << kind_name(shape) << " is at (" << solid.centre[0] << ", "
-           << solid.centre[1] << ", " << solid.centre[2]
-           << "), and free bodies turn about their origin: subtract it from the vertices, or give one number";
-      throw std::invalid_argument(text.str());
-    }
+  if (description.inertia.tensor()) return checked_inertia(*description.inertia.tensor());
+  const MassProperties solid = mass_properties(shape, description.mass);
+  if (!(solid.centre.norm() <= inertia_tolerance * place(shape, Eigen::Quaterniond::Identity()).bounding_radius)) {
+    std::ostringstream text;
+    text << "inertia: the centre of mass of this " << kind_name(shape) << " is at (" << solid.centre[0] << ", "
+         << solid.centre[1] << ", " << solid.centre[2]
+         << "), and free bodies turn about their origin: subtract it from the vertices, or give their inertia";
+    throw std::invalid_argument(text.str());
   }
-  if (is_spherical(inertia)) return inertia(0, 0);
-  text << "inertia: the moments of this " << (given ? "tensor" : kind_name(shape)) << " differ (" << inertia(0, 0)
-       << ", " << inertia(1, 1) << ", " << inertia(2, 2) << (inertia.isDiagonal(0) ? "" : " and entries beside them")
-       << "), and only bodies of equal moments turn about a fixed axis when they are free: "
-       << "give one number, or make the body fixed";
-  throw std::invalid_argument(text.str());
+  return solid.inertia;
+}
+
+/// A body that precesses moves in pieces, and the clock has to tell these from each other.
+template <int Degree>
+void require_steady_clock(const certificates::RigidMotion<Degree>& motion, double now, const std::string& where) {
+  const double t = std::max(std::abs(now), std::abs(motion.start()));
+  if (norm(motion.angular_velocity) * (next_up(t) - t) <= longest_turn) return;
+  throw std::invalid_argument(where +
+                              ".angular_velocity: the body precesses, and turns by more than a radian between two "
+                              "doubles of the clock");
 }
 
 }  // namespace
@@ -110,13 +111,24 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
     throw std::invalid_argument(
         "shape: a mesh that bends only reports contacts: it has to be a sensor, or the response of the world `none`");
   }
+  std::optional<PrincipalInertia> principal;  // of one that precesses
   if constexpr (turns<Motion>) {
     // Nothing else changes how a body turns.
     const bool responds = options_.response == Response::elastic && !description.fixed && !description.sensor;
     if (responds && description.inertia.moment() == 0) {
-      Description whole = description;
-      whole.inertia = moment_of(description);
-      return add_body(whole);
+      const Eigen::Matrix3d tensor = tensor_of(description);
+      if (is_spherical(tensor)) {
+        Description whole = description;
+        whole.inertia = tensor(0, 0);
+        return add_body(whole);
+      }
+      principal = principal_inertia(tensor);
+      if (!(principal->moments.minCoeff() >= 0x1p-40 * principal->moments.maxCoeff())) {
+        throw std::invalid_argument("inertia: its least moment must be at least 2^-40 (9.1e-13) of the greatest");
+      }
+      for (std::size_t i = 0; i < description.motion.size(); ++i) {
+        require_steady_clock(description.motion[i], clock_.now, "motion[" + std::to_string(i) + "]");
+      }
     }
   }
   count_edit();
@@ -127,18 +139,26 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
   } else {
     shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
   }
-  return bodies_.id_of(change_or_fail([&] { return put(description, std::move(shape)); }));
+  return bodies_.id_of(change_or_fail([&] { return put(description, std::move(shape), principal); }));
 }
 
 /// A null shape stands for a ball that is not turned.
 template <class Motion>
-inline BodySlot BasicWorld<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape) {
+inline BodySlot BasicWorld<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape,
+                                        [[maybe_unused]] const std::optional<PrincipalInertia>& principal) {
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && path_of(*std::next(piece)).start <= clock_.now) ++piece;
   if (has_mesh(description.shape)) make_room_for_meshes();
   const BodySlot slot = bodies_.add(description, std::move(shape), *piece);
+  if constexpr (turns<Motion>) {
+    if (principal) {
+      bodies_[slot].tumbles = true;
+      tumbling_.add(slot, *principal);
+    }
+  }
   if (path_of(*piece).start <= clock_.now) {
+    if (tumbling_.has(slot)) bodies_.move(slot, tumbling_.take_up(slot, *piece, clock_.now));
     bodies_.wait(slot);
     ++piece;
   }
@@ -213,8 +233,14 @@ void BasicWorld<Motion>::update_motion(BodyId id, const Motion& motion) {
     throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(path_of(motion).start) +
                                 ", after the clock at " + std::to_string(clock_.now));
   }
+  if constexpr (turns<Motion>) {
+    if (tumbling_.has(slot)) require_steady_clock(motion, clock_.now, "World::update_motion: motion");
+  }
   count_edit();
-  change_or_fail([&] { give(slot, motion); });
+  change_or_fail([&] {
+    if (tumbling_.has(slot)) return give(slot, tumbling_.take_up(slot, motion, clock_.now));
+    give(slot, motion);
+  });
 }
 
 template <class Motion>
@@ -259,6 +285,7 @@ template <class Motion>
 void BasicWorld<Motion>::take_out(BodySlot slot) {
   resting_.forget(slot);
   scripts_.clear(slot);
+  tumbling_.remove(slot);
   walls_.remove(slot);
   if (bodies_[slot].entered && bodies_.collides(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
   volumes_.remove(slot);
@@ -267,7 +294,7 @@ void BasicWorld<Motion>::take_out(BodySlot slot) {
   bodies_.remove(slot);
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -19,7 +19,8 @@ namespace kds::collision {
 /// few instructions instead of a call of malloc(); all are freed with the arena, at once.
 ///
 /// Room that a list has outgrown, or that is given back, is used for the next list of that size. Memory: at most twice
-/// the room of all lists, and the room given back. Cost: O(1), amortised where a list or the arena grows.
+/// the room of all lists, and the room given back.
+/// Cost: O(1), amortised where a list or the arena grows.
 ///
 /// The arena has room for `Most` items, those not in use included; a call that would exceed it throws
 /// std::length_error, and changes nothing.

@@ -75,6 +75,15 @@ bool only_touching(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
 
 }  // namespace
 
+/// Up to when a pair is tested: that is seen anew when a piece of the motion of a body that precesses ends.
+template <class Motion>
+double Pairs<Motion>::horizon(const Pair& pair) const {
+  if constexpr (turns<Motion>) {
+    return std::min({clock_.horizon, bodies_[pair.a].turns_until, bodies_[pair.b].turns_until});
+  }
+  return clock_.horizon;
+}
+
 template <class Motion>
 bool Pairs<Motion>::balls_are_quick() const {
   return options_.response != Response::none;
@@ -204,9 +213,9 @@ void Pairs<Motion>::test(Slot slot) {
     if (at_rest(a) && at_rest(b)) {  // Nothing will happen, but a jump may have happened.
       next.time = in_contact(a, b, clock_.now) == pair.overlapping ? never : clock_.now;
     } else if (pair.overlapping) {
-      next = certified_first_separation(a, b, clock_.now, clock_.horizon);
+      next = certified_first_separation(a, b, clock_.now, horizon(pair));
     } else {
-      next = estimated_first_contact(a, b, clock_.now, clock_.horizon, mode, pair.memory, &found);
+      next = estimated_first_contact(a, b, clock_.now, horizon(pair), mode, pair.memory, &found);
     }
   } else {
     if (pair.fresh) {
@@ -216,11 +225,11 @@ void Pairs<Motion>::test(Slot slot) {
     }
     if (pair.overlapping) {
       const double start = pair.passes_at == clock_.now ? next_up(clock_.now) : clock_.now;
-      if (start <= clock_.horizon) next = certified_first_separation(a, b, start, clock_.horizon);
+      if (start <= horizon(pair)) next = certified_first_separation(a, b, start, horizon(pair));
     } else if (resting_.find(pair.a, pair.b) != Resting::none) {
       next.time = resting_.next_contact(pair.a, pair.b);
     } else if (!(at_rest(a) && at_rest(b))) {
-      next = estimated_first_contact(a, b, clock_.now, clock_.horizon, mode, pair.memory, &found);
+      next = estimated_first_contact(a, b, clock_.now, horizon(pair), mode, pair.memory, &found);
     }
   }
   contacts_.set(slot, next.time);
@@ -263,8 +272,8 @@ bool Pairs<Motion>::certify() {
   const double from = turns<Motion> ? contacts_.time(slot) : clock_.now;
   const ContactEstimate next =
       pair.overlapping
-          ? certified_first_separation<Motion>(a_moves, b_moves, from, clock_.horizon)
-          : certified_first_contact<Motion>(a_moves, b_moves, from, clock_.horizon, mode(pair.a, pair.b), &found);
+          ? certified_first_separation<Motion>(a_moves, b_moves, from, horizon(pair))
+          : certified_first_contact<Motion>(a_moves, b_moves, from, horizon(pair), mode(pair.a, pair.b), &found);
   set_contact(slot, next.time);
   pairs_[slot].estimated = !next.exact;
   remember(slot, found);
@@ -295,7 +304,7 @@ void Pairs<Motion>::process_boxes(Slot slot, double t) {
   test_boxes(slot);
 }
 
-#define KDS_INSTANTIATE(motion) template class Pairs<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Pairs<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -187,6 +187,7 @@ class Pairs final : public PairListener {
   }
 
   // pair_tests.cpp
+  double horizon(const Pair& pair) const;
   bool balls_are_quick() const;
   void test_resting();
   void finish_test(Slot slot);

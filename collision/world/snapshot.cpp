@@ -16,11 +16,11 @@ namespace kds::collision {
 namespace {
 
 /// The version of the image's layout: it changes with the members, so that bytes of another layout are refused as such.
-constexpr int snapshot_form = 5;
+constexpr int snapshot_form = 6;
 
 /// Options that decide events. Broad phase, window, threads and profile may differ.
 template <class Archive>
-void archive_options(Archive& archive, const WorldOptions& options, bool exact) {
+void archive_options(Archive& archive, const WorldOptions& options, bool exact, bool turns_bodies) {
   const auto same = [&](const char* what, auto value) {
     auto found = value;
     archive(found);
@@ -36,6 +36,7 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact) 
   }
   same("zeno.contacts", options.zeno.contacts);
   same("zeno.interval", options.zeno.interval);
+  if (turns_bodies) same("orientation_error", options.orientation_error);
   same("report_pairs", std::uint32_t{options.report_pairs});
   if (!options.report_pairs) return;
   same("broad_phase, which reports its pairs", std::uint32_t{exact});
@@ -55,6 +56,7 @@ struct BasicWorld<Motion>::Image {
   EditLimit edits;
   typename Bodies<Motion>::Image bodies;
   typename Scripts<Motion>::Image scripts;
+  typename Tumbling<Motion>::Image tumbling;
   typename Pairs<Motion>::Image pairs;
   typename Resting::Image resting;
   std::vector<Reports::Report> pending;
@@ -63,7 +65,7 @@ struct BasicWorld<Motion>::Image {
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
     archive(now, callers_now, horizon, room_for_meshes, counters, edits);
     bodies.archive(archive, known);
-    archive(scripts, pairs, resting, pending);
+    archive(scripts, tumbling, pairs, resting, pending);
   }
 
   /// Throws std::runtime_error, naming what is wrong, unless it may be an image of a world with these options, which
@@ -75,6 +77,7 @@ struct BasicWorld<Motion>::Image {
     if (!edits.began_by(now)) image::fail("edits: are counted from a time after now");
     bodies.check(now);
     scripts.check(now, [&](BodySlot slot) { return bodies.alive(slot); });
+    tumbling.check(bodies, now);
     std::vector<char> enters(bodies.bodies.size());
     for (const BodySlot slot : bodies.waiting) enters[slot] = 1;
     for (BodySlot slot = 0; slot < bodies.bodies.size(); ++slot) {
@@ -103,6 +106,7 @@ typename BasicWorld<Motion>::Image BasicWorld<Motion>::image() const {
           .edits = edits_,
           .bodies = bodies_.image(),
           .scripts = scripts_.image(),
+          .tumbling = tumbling_.image(),
           .pairs = pairs_.image(),
           .resting = resting_.image(),
           .pending = reports_.image()};
@@ -116,6 +120,7 @@ void BasicWorld<Motion>::become(const Image& image) {
   edits_ = image.edits;
   bodies_.become(image.bodies);
   scripts_.become(image.scripts);
+  tumbling_.become(image.tumbling);
   volumes_.become(image.room_for_meshes);
   reports_.become(image.pending);
   resting_.become(image.resting);
@@ -133,7 +138,7 @@ void BasicWorld<Motion>::archive(Archive& archive) {
   if (!Archive::loading || stepping_ || volumes_.calling()) require_idle("World::archive");
   archive.tag((turns<Motion> ? "World of bodies that turn, of degree " : "World of degree ") +
               std::to_string(Motion::degree) + ", form " + std::to_string(snapshot_form));
-  archive_options(archive, options_, broad_phase_->exact());
+  archive_options(archive, options_, broad_phase_->exact(), turns<Motion>);
   if constexpr (Archive::loading) {
     Image loaded;
     loaded.archive(archive, bodies_.meshes());
@@ -147,7 +152,7 @@ void BasicWorld<Motion>::archive(Archive& archive) {
 }
 
 #define KDS_INSTANTIATE(motion)                                    \
-  template class BasicWorld<motion>;                               \
+  KDS_TEMPLATE_PART class BasicWorld<motion>;                      \
   template void BasicWorld<motion>::archive(kds::detail::Writer&); \
   template void BasicWorld<motion>::archive(kds::detail::Reader&);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)

@@ -121,7 +121,8 @@ inline KineticBox<Motion::degree> Volumes<Motion>::bare_box(BodySlot slot) const
   if (from_caller(slot)) return given_[slot]->box;
   const detail::Body<Motion>& b = bodies_[slot];
   if constexpr (turns<Motion>) {
-    if (b.shape && b.volume == BoundingVolume::shape) {
+    // Each piece of a body that precesses has another axis, so its volume is the bounding ball.
+    if (b.shape && b.volume == BoundingVolume::shape && !b.tumbles) {
       const Eigen::Vector3d half_extents = turning_half_extents(*b.shape, bodies_.motion(slot));
       return box_around<Motion::degree>(bodies_.path(slot), -half_extents, half_extents);
     }

@@ -99,6 +99,9 @@ void describe(CLI::App& app, Arguments& arguments) {
       ->type_name("NAME");
   add_number<int>(app, "--kdop", arguments.run.kdop, "Bounding volumes of kinetic-sap: 6 (boxes), 14, 18 or 26 sides")
       ->type_name("K");
+  add_number<double>(app, "--orientation-error", arguments.run.orientation_error,
+                     "How far bodies that precess may be turned otherwise than they would be, in rad")
+      ->type_name("RAD");
   add_number<double>(app, "--until", arguments.until, "End the run at T, in seconds, instead of the scene's end_time")
       ->type_name("T");
   add_number<double>(app, "--rate", arguments.run.rate,
@@ -115,7 +118,8 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_flag("--quiet", arguments.quiet, "No progress and no summary on standard error");
 
   const std::string group = "Making a scene instead of running one";
-  auto* kind = app.add_option("--generate", arguments.generator.kind, "rings, models, spheres, boxes, spinners or sheet")
+  auto* kind = app.add_option("--generate", arguments.generator.kind,
+                              "rings, models, spheres, boxes, spinners, spinning-rings, rods, plates or sheet")
                    ->type_name("KIND")
                    ->group(group);
   const auto add = [&]<class Number>(const char* name, const char* type, Number& value, const char* what) {
@@ -155,6 +159,9 @@ void check(const Arguments& arguments) {
     for (const auto& b : known) names += (names.empty() ? "" : ", ") + std::string(b.name);
     throw ArgumentError("--broad-phase: there is no \"" + run.broad_phase + "\"; there are " + names);
   }
+  if (!(run.orientation_error >= 0x1p-30 && run.orientation_error <= 0.125)) {
+    throw ArgumentError("--orientation-error: must be from 2^-30 (9.3e-10) to 0.125");
+  }
   if (run.kdop != 6 && run.kdop != 14 && run.kdop != 18 && run.kdop != 26) {
     throw ArgumentError("--kdop: must be 6, 14, 18 or 26");
   }
@@ -174,6 +181,7 @@ void check(const Arguments& arguments, const Scene& scene) {
   }
   const std::filesystem::path folder = std::filesystem::path(arguments.scene).parent_path();
   for (const SceneMesh& mesh : scene.meshes) {
+    if (mesh.file.empty()) continue;
     for (const auto& [option, path] : outputs(arguments)) {
       if (same_file(folder / mesh.file, path)) {
         throw ArgumentError(std::string(option) + ": is the same file as meshes." + mesh.name + ".file of the scene");

@@ -105,7 +105,7 @@ class Placement {
   std::unordered_map<std::int64_t, std::vector<Ball>> cells_;
 };
 
-void append_vector(std::string& text, const Vector3d& v) {
+void append_array(std::string& text, const Vector3d& v) {
   for (int d = 0; d < 3; ++d) {
     text += d == 0 ? '[' : ',';
     append_number(text, v[d]);
@@ -118,7 +118,7 @@ std::string box_shape(double radius, Random& random) {
   Vector3d half;
   for (int d = 0; d < 3; ++d) half[d] = random.uniform(0.5, 1);
   std::string text = "{\"box\": {\"half_extents\": ";
-  append_vector(text, half * (radius / half.norm()));
+  append_array(text, half * (radius / half.norm()));
   return text + "}}";
 }
 
@@ -128,12 +128,22 @@ std::string spinner_shape(double radius, std::size_t kind) {
   constexpr double slender = 0.125;  // width of a rod, thickness of a plate
   const Vector3d half = std::array{Vector3d(1, 1, 1), Vector3d(slender, slender, 1), Vector3d(1, 1, slender)}[kind % 3];
   std::string text = "{\"box\": {\"half_extents\": ";
-  append_vector(text, half * (radius / half.norm()));
+  append_array(text, half * (radius / half.norm()));
   text += "}}";
   if (kind % 3 == 0) return text;
   text += ", \"inertia\": ";
   append_number(text, 2 * radius * radius / 9);
   return text;
+}
+
+/// Of this bounding radius, slender, with widths in random proportions: no two moments are equal.
+std::string slender_shape(double radius, bool rod, Random& random) {
+  const double thickness = random.uniform(0.08, 0.16);
+  const double width = rod ? random.uniform(0.08, 0.16) : random.uniform(0.6, 1);
+  const Vector3d half(thickness, width, 1);
+  std::string text = "{\"box\": {\"half_extents\": ";
+  append_array(text, half * (radius / half.norm()));
+  return text + "}}";
 }
 
 std::string sphere_shape(double radius) {
@@ -157,8 +167,9 @@ double bounding_radius(const MeshData& mesh) {
 void check(const GeneratorOptions& options) {
   const auto kinds = generator_kinds();
   if (std::find(kinds.begin(), kinds.end(), options.kind) == kinds.end()) {
-    throw std::invalid_argument("--generate: there is no \"" + options.kind +
-                                "\"; use rings, models, spheres, boxes, spinners or sheet");
+    throw std::invalid_argument(
+        "--generate: there is no \"" + options.kind +
+        "\"; use rings, models, spheres, boxes, spinners, spinning-rings, rods, plates or sheet");
   }
   constexpr std::size_t most_bodies = 10'000'000;  // about 3 GB of text
   if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
@@ -243,7 +254,9 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
 
 }  // namespace
 
-std::vector<std::string_view> generator_kinds() { return {"rings", "models", "spheres", "boxes", "spinners", "sheet"}; }
+std::vector<std::string_view> generator_kinds() {
+  return {"rings", "models", "spheres", "boxes", "spinners", "spinning-rings", "rods", "plates", "sheet"};
+}
 
 GeneratedScene generate_scene(const GeneratorOptions& options) {
   check(options);
@@ -254,13 +267,14 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     meshes.push_back({name, bounding_radius(mesh)});
     scene.meshes.push_back({name + ".obj", to_obj(mesh)});
   };
-  if (options.kind == "rings") add_mesh("ring", ring_mesh());
+  if (options.kind == "rings" || options.kind == "spinning-rings") add_mesh("ring", ring_mesh());
   if (options.kind == "models") {
     add_mesh("knot", knot_mesh());
     add_mesh("bumpy-torus", bumpy_torus_mesh());
   }
 
-  const bool spins = options.kind == "spinners";
+  const bool rods = options.kind == "rods", plates = options.kind == "plates";
+  const bool spins = rods || plates || options.kind == "spinners" || options.kind == "spinning-rings";
 
   Random random(options.seed);
   std::vector<double> radii(options.bodies);
@@ -280,7 +294,7 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
   json = "{\n\"scene\": 1,\n\"end_time\": ";
   append_number(json, options.end_time);
   json += ",\n\"response\": \"elastic\",\n\"domain\": {\"min\": [0,0,0], \"max\": ";
-  append_vector(json, Vector3d::Constant(side));
+  append_array(json, Vector3d::Constant(side));
   json += ", \"walls\": \"reflect\"},\n\"meshes\": {";
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     json += (i == 0 ? "\"" : ", \"") + meshes[i].name + "\": {\"file\": \"" + meshes[i].name + ".obj\"}";
@@ -310,6 +324,8 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     if (!meshes.empty()) {
       const NamedMesh& mesh = meshes[i % meshes.size()];
       json += mesh_shape(mesh.name, radii[i] / mesh.radius);
+    } else if (rods || plates) {
+      json += slender_shape(radii[i], rods, random);
     } else if (spins) {
       json += spinner_shape(radii[i], i);
     } else {
@@ -322,14 +338,14 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     }
     json.back() = ']';
     json += ", \"motion\": [{\"start\": 0, \"position\": [";
-    append_vector(json, at);
+    append_array(json, at);
     json += ',';
-    append_vector(json, velocity);
+    append_array(json, velocity);
     json += ']';
     if (spins) {
       json += ", \"angular_velocity\": ";
       const Vector3d axis = random.direction();
-      append_vector(json, axis * random.uniform(0, most_turning));
+      append_array(json, axis * random.uniform(0, most_turning));
     }
     json += i + 1 < options.bodies ? "}]},\n" : "}]}\n";
   }

@@ -2,6 +2,7 @@
 
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "examples/kds-collide/number_text.hpp"
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <string_view>
 #include <variant>
@@ -128,10 +130,16 @@ std::vector<MotionPiece> drawn(const std::vector<MotionPiece>& pieces, double si
   return result;
 }
 
+/// The triangles of a shape that has some: a mesh, or the surface of a hull.
+std::shared_ptr<const kds::collision::Mesh> triangles_of(const kds::collision::Shape& shape) {
+  const auto* const hull = std::get_if<kds::collision::ConvexHull>(&shape);
+  return hull ? hull->polytope->surface() : mesh_of(shape);
+}
+
 void append_shape(std::string& text, const SceneBody& body,
                   const std::map<const kds::collision::Mesh*, std::size_t>& mesh_numbers) {
   const kds::collision::Shape& shape = body.shape;
-  if (const auto mesh = body.bent ? body.bent : mesh_of(shape)) {
+  if (const auto mesh = body.bent ? body.bent : triangles_of(shape)) {
     append_number(text, mesh_numbers.at(mesh.get()));
   } else {
     text += '"';
@@ -213,10 +221,14 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
   }
   text += ",\n\"meshes\":[";
   std::map<const kds::collision::Mesh*, std::size_t> mesh_numbers;
-  for (const SceneMesh& mesh : scene_.meshes) {
-    if (!mesh_numbers.empty()) text += ",\n";
-    mesh_numbers.try_emplace(mesh.mesh.get(), mesh_numbers.size());
-    append_mesh(text, *mesh.mesh);
+  const auto add_mesh = [&](const kds::collision::Mesh& mesh) {
+    if (!mesh_numbers.try_emplace(&mesh, mesh_numbers.size()).second) return;
+    if (mesh_numbers.size() > 1) text += ",\n";
+    append_mesh(text, mesh);
+  };
+  for (const SceneMesh& mesh : scene_.meshes) add_mesh(*mesh.mesh);
+  for (const SceneBody& body : scene_.bodies) {
+    if (const auto mesh = triangles_of(body.shape)) add_mesh(*mesh);
   }
   text += "],\n\"bodies\":[\n";
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {

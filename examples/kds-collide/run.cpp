@@ -109,6 +109,7 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   world_options.response = scene.response;
   world_options.broad_phase = broad_phase;
   world_options.kdop = options.kdop;
+  world_options.orientation_error = options.orientation_error;
   world_options.rate = options.rate;
   world_options.report_pairs = options.pairs;
   world_options.profile = options.profile;
@@ -124,7 +125,12 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   const double setup_start = cpu_seconds();
   Teller<Motion> teller(sink, scene.response);
   kds::collision::BasicWorld<Motion> world(world_options, &teller);
-  for (const SceneBody& body : scene.bodies) world.add_body(describe<Motion>(body));
+  for (const SceneBody& body : scene.bodies) {
+    const auto description = describe<Motion>(body);
+    const BodyId id = world.add_body(description);
+    // Of a body that precesses the first piece is none of the scene's.
+    if (!(world.motion(id) == description.motion.front())) sink.on_motion(body_slot(id), to_piece(world.motion(id)));
+  }
   world.advance_to(begin);
   const double run_start = cpu_seconds();
 
@@ -161,6 +167,8 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   result.overlaps = counters.overlaps;
   result.wall_contacts = counters.wall_contacts;
   result.motion_updates = counters.motion_updates;
+  result.rotation_pieces = counters.rotation_pieces;
+  result.orientation_resets = counters.orientation_resets;
   result.held = counters.rebounds_suppressed;
   result.peak_memory_bytes = peak_memory();
   result.profile = world.work_profile();

@@ -15,6 +15,7 @@ namespace kds_collide {
 struct RunOptions {
   std::string broad_phase = "auto";  ///< a name in collision/broad_phase/broad_phase_kind.hpp
   int kdop = 6;                      ///< 6, boxes, or, for "kinetic-sap", 14, 18 or 26
+  double orientation_error = 1e-3;   ///< rad, of bodies that precess: WorldOptions
   double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
   bool pairs = false;                ///< tell of bounding volumes too
   bool steady_progress = false;      ///< call on_time about a hundred times, or more, in a run of 1e-306 s or more
@@ -39,7 +40,9 @@ struct RunResult {
   std::uint64_t overlaps = 0;
   std::uint64_t wall_contacts = 0;
   std::uint64_t motion_updates = 0;
-  std::uint64_t held = 0;  ///< times the policy for endless bounces acted
+  std::uint64_t rotation_pieces = 0;     ///< of bodies that precess
+  std::uint64_t orientation_resets = 0;  ///< times such a body was not turned as it should have been for too long
+  std::uint64_t held = 0;                ///< times the policy for endless bounces acted
   std::uint64_t peak_memory_bytes = 0;
   kds::collision::Profile profile;  ///< where the time went, if asked for
 };

@@ -46,7 +46,7 @@ struct SceneBody {
 
 struct SceneMesh {
   std::string name;
-  std::string file;  ///< as written in the scene
+  std::string file;  ///< as written in the scene; empty if it was made for a body with a pivot
   std::shared_ptr<const kds::collision::Mesh> mesh;
 };
 

@@ -1,12 +1,14 @@
 #include "examples/kds-collide/scene_reader.hpp"
 
 #include "certificates/turning/turned_orientation.hpp"
+#include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
 #include "examples/kds-collide/json_node.hpp"
 #include "examples/kds-collide/material_reader.hpp"
 #include "examples/kds-collide/mesh_file.hpp"
 #include "examples/kds-collide/number_text.hpp"
+#include "examples/kds-collide/pivot.hpp"
 #include "examples/kds-collide/scene_world.hpp"
 
 #include <algorithm>
@@ -67,6 +69,27 @@ Shape read_capsule(const JsonNode& node, const Meshes&) {
   return kds::collision::Capsule{capsule["radius"].positive(), capsule["half_length"].length()};
 }
 
+Shape read_hull(const JsonNode& node, const Meshes&) {
+  const JsonNode points = node["hull"].object({"points"})["points"];
+  const std::vector<JsonNode> places = points.elements();
+  std::vector<Eigen::Vector3d> corners;
+  for (const JsonNode& place : places) corners.push_back(place.vector());
+  try {
+    const Shape hull = kds::collision::convex_hull(std::move(corners));
+    kds::collision::place(hull, Eigen::Quaterniond::Identity());
+    return hull;
+  } catch (const kds::collision::InvalidHull& error) {
+    if (error.point()) {
+      const std::string what = error.what();  // "point 4: ..."
+      places[*error.point()].fail(what.substr(what.find(": ") + 2));
+    }
+    points.fail(error.what());
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();  // "hull: ..."
+    points.fail(what.substr(what.find(": ") + 2));
+  }
+}
+
 Shape read_mesh_shape(const JsonNode& node, const Meshes& meshes) {
   const std::string name = node["mesh"].string();
   const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const SceneMesh& m) { return m.name == name; });
@@ -87,12 +110,15 @@ struct ShapeReader {
   const char* key;
   Shape (*read)(const JsonNode& node, const Meshes& meshes);
 };
-constexpr const char* one_shape = "must have exactly one of \"sphere\", \"box\", \"mesh\" and \"capsule\"";
-constexpr ShapeReader shape_readers[] = {
-    {"sphere", read_sphere}, {"box", read_box}, {"mesh", read_mesh_shape}, {"capsule", read_capsule}};
+constexpr const char* one_shape = "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\" and \"hull\"";
+constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},
+                                         {"box", read_box},
+                                         {"mesh", read_mesh_shape},
+                                         {"capsule", read_capsule},
+                                         {"hull", read_hull}};
 
 Shape read_shape(const JsonNode& node, const Meshes& meshes) {
-  node.object({"sphere", "box", "mesh", "capsule", "scale"});
+  node.object({"sphere", "box", "mesh", "capsule", "hull", "scale"});
   const ShapeReader* found = nullptr;
   for (const ShapeReader& each : shape_readers) {
     if (!node.has(each.key)) continue;
@@ -167,7 +193,7 @@ std::vector<MotionPiece> read_motion(const JsonNode& node, const Eigen::Quaterni
   if (pieces.empty()) node.fail("must have at least one piece");
   std::vector<MotionPiece> motion;
   for (const JsonNode& each : pieces) {
-    each.object({"start", "position", "orientation", "angular_velocity"});
+    each.object({"start", "position", "orientation", "angular_velocity", "pivot"});
     MotionPiece piece{read_path(each), orientation};
     if (!motion.empty()) {
       if (!(motion.back().start() < piece.start())) {
@@ -192,7 +218,9 @@ std::vector<MotionPiece> read_motion(const JsonNode& node, const Eigen::Quaterni
 /// Whether anything is said of how the body turns.
 bool speaks_of_turning(const JsonNode& node) {
   const std::vector<JsonNode> pieces = node["motion"].elements();
-  const auto turns = [](const JsonNode& piece) { return piece.has("angular_velocity") || piece.has("orientation"); };
+  const auto turns = [](const JsonNode& piece) {
+    return piece.has("angular_velocity") || piece.has("orientation") || piece.has("pivot");
+  };
   return node.has("inertia") || std::any_of(pieces.begin(), pieces.end(), turns);
 }
 
@@ -216,6 +244,13 @@ SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbe
   body.restitution = surface.restitution, body.friction = surface.friction;
   body.tangential_restitution = surface.tangential_restitution;
   body.motion = read_motion(node["motion"], body.orientation, scene.response);
+  if (const auto pivot = read_pivot(node["motion"])) {
+    const JsonNode at = node["motion"].elements().front()["pivot"];
+    if (scene.response == Response::elastic && !body.fixed && !body.sensor) {
+      at.fail("a body that contacts move turns about its centre of mass: make it fixed, or a sensor");
+    }
+    body.shape = about_pivot(body.shape, *pivot, at);
+  }
   return body;
 }
 
@@ -278,7 +313,9 @@ void check_turns(const std::vector<JsonNode>& nodes, const Scene& scene) {
       const std::string what = error.what();
       const std::size_t colon = what.find(": ");
       if (colon == std::string::npos) nodes[i].fail(what);
-      throw JsonError(nodes[i].path() + '.' + what.substr(0, colon), what.substr(colon + 2));
+      std::string member = what.substr(0, colon);
+      if (member == "mass_properties") member = "shape";  // which is no solid
+      throw JsonError(nodes[i].path() + '.' + member, what.substr(colon + 2));
     }
   }
 }
@@ -308,6 +345,12 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
     const auto [entry, is_new] = names.try_emplace(scene.bodies.back().name, node.path());
     if (!is_new) node["name"].fail('"' + entry->first + "\" is the name of " + entry->second + " too");
     scene.turning = scene.turning || speaks_of_turning(node);
+  }
+  for (const SceneBody& body : scene.bodies) {  // made by pivots
+    const auto mesh = mesh_of(body.shape);
+    const auto is_it = [&](const SceneMesh& known) { return known.mesh == mesh; };
+    if (!mesh || std::any_of(scene.meshes.begin(), scene.meshes.end(), is_it)) continue;
+    scene.meshes.push_back({body.name, "", mesh});
   }
   if (scene.turning) {
     check_turns(bodies, scene);

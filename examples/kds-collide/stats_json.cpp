@@ -24,6 +24,8 @@ std::string to_json(const RunResult& result, const RunOptions& options, double r
   json["overlaps"] = result.overlaps;
   json["wall_contacts"] = result.wall_contacts;
   json["motion_updates"] = result.motion_updates;
+  json["rotation_pieces"] = result.rotation_pieces;
+  json["orientation_resets"] = result.orientation_resets;
   json["held"] = result.held;
   json["peak_memory_bytes"] = result.peak_memory_bytes;
   return json.dump(2) + '\n';

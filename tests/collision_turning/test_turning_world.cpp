@@ -1,6 +1,7 @@
 // Worlds of bodies that turn.
 #include "collision/world.hpp"
 
+#include "collision/shapes/convex_hull.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -11,8 +12,10 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+namespace test_turning_world {
 namespace {
 
 using namespace kds;
@@ -84,7 +87,8 @@ TEST_CASE("a rod that turns meets a ball, and both fly on with their energy and 
   CHECK(std::abs(spin - 1.5) < 1e-14);
 }
 
-TEST_CASE("a tensor of equal moments is the moment, and others are for what no contact turns", "[turning]") {
+TEST_CASE("a tensor of equal moments is the moment, and others are of bodies that precess, if contacts turn them",
+          "[turning]") {
   const auto rod_after = [](const Inertia& inertia) {
     Turning world({.response = Response::elastic});
     const BodyId rod = world.add_body({.shape = Box{Vector3d(2, 0.125, 0.125)},
@@ -98,18 +102,23 @@ TEST_CASE("a tensor of equal moments is the moment, and others are for what no c
   CHECK(rod_after(Eigen::Matrix3d(1.5 * Eigen::Matrix3d::Identity())) == rod_after(1.5));
   CHECK_FALSE(rod_after(1.25) == rod_after(1.5));
   const Turning::Description rod{.shape = Box{Vector3d(1, 2, 3)},
-                                 .motion = {motion({0, 0, 0}, {0, 0, 0}, {0, 0, 1})},
+                                 .motion = {motion({0, 0, 0}, {0, 0, 0}, {1, 0, 1})},
                                  .inertia = Eigen::Matrix3d(Vector3d(3, 4, 5).asDiagonal())};
   Turning({.response = Response::none}).add_body(rod);
   Turning world({.response = Response::elastic});
-  CHECK_THROWS_AS(world.add_body(rod), std::invalid_argument);
+  world.add_body(rod);
+  world.advance_to(1);
+  const auto pieces = world.counters().rotation_pieces;
+  CHECK(pieces > 0);
+  world.remove_body(0);
   auto driven = rod;
   driven.fixed = true;
   world.add_body(driven);
   auto ghost = rod;
   ghost.sensor = true;
   world.add_body(ghost);
-  CHECK(world.size() == 2);
+  world.advance_to(2);
+  CHECK(world.counters().rotation_pieces == pieces);
 }
 
 TEST_CASE("turning worlds find the same contacts whichever broad phase they have", "[turning]") {
@@ -154,6 +163,49 @@ TEST_CASE("turning worlds with meshes find the same contacts whichever broad pha
   for (const auto& lines : logs) CHECK(lines == logs.front());
 }
 
+TEST_CASE("turning worlds with hulls find the same contacts whichever broad phase they have", "[turning][hull]") {
+  const Shape octahedron =
+      convex_hull({{0.7, 0, 0}, {-0.7, 0, 0}, {0, 0.7, 0}, {0, -0.7, 0}, {0, 0, 0.7}, {0, 0, -0.7}});
+  const Shape wedge = convex_hull({{0.6, 0, 0}, {-0.6, 0, 0}, {0, 0.6, 0.4}, {0, -0.6, 0.4}, {0, 0, -0.2}});
+  const auto ring = samples::torus(6, 4);
+  const auto fill = [&](Turning& world) {
+    tests::Random random(79);
+    for (std::size_t i = 0; i < 24; ++i) {
+      const Vector3d place(static_cast<double>(i % 3) * 2.4 - 2.4, static_cast<double>(i / 3 % 3) * 2.4 - 2.4,
+                           static_cast<double>(i / 9) * 2.4 - 2.4);
+      const auto between = [&] { return random.between(-1, 1); };
+      Turning::Description body{.shape = i % 2 == 0 ? octahedron : wedge,
+                                .motion = {motion(place, 3 * Vector3d(between(), between(), between()),
+                                                  5 * Vector3d(between(), between(), between()))}};
+      if (i % 2 != 0) body.inertia = 0.3;  // that of an octahedron is the same about all axes
+      if (i % 5 == 0) body.shape = Sphere{0.5};
+      if (i % 7 == 0) body.shape = Box{Vector3d(0.5, 0.5, 0.5)};
+      if (i % 11 == 3) body.shape = MeshShape{ring, 0.5}, body.inertia = 0.3;
+      world.add_body(body);
+    }
+  };
+  const auto logs = logs_by_broad_phase(2, fill);
+  CHECK(logs.front().size() > 15);
+  for (const auto& lines : logs) CHECK(lines == logs.front());
+}
+
+TEST_CASE("a cube that is a hull bounces as the box does", "[turning][hull]") {
+  std::vector<Vector3d> corners;
+  for (int k = 0; k < 8; ++k) corners.emplace_back(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5);
+  const auto contacts_of = [](const Shape& cube) {
+    Log log;
+    Turning world({.response = Response::elastic}, &log);
+    world.add_body({.shape = cube, .motion = {motion({0, 0, 0}, {0, 0, 0}, {1, 2, 3})}});
+    world.add_body({.shape = Sphere{0.25}, .motion = {motion({0.25, 3, 0.125}, {0, -1, 0}, {0, 0, 0})}});
+    world.advance_to(5);
+    return std::pair(log.lines.size(), world.motion(0).angular_velocity);
+  };
+  const auto of_box = contacts_of(Box{Vector3d(0.5, 0.5, 0.5)}), of_hull = contacts_of(convex_hull(corners));
+  CHECK(of_box.first == 1);
+  CHECK(of_hull.first == 1);
+  CHECK((of_box.second - of_hull.second).norm() < 1e-12);
+}
+
 TEST_CASE("a mesh that turns bounces off a ball, and energy and momenta are kept", "[turning]") {
   Log log;
   Turning world({.response = Response::elastic}, &log);
@@ -170,3 +222,5 @@ TEST_CASE("a mesh that turns bounces off a ball, and energy and momenta are kept
                         0.5 * 1.5 * of_rod.angular_velocity.squaredNorm();
   CHECK(std::abs(energy - 0.75) < 1e-15);
 }
+
+}  // namespace test_turning_world

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <string>
 
+namespace test_command_line {
+
 using kds_collide::tests::head_on;
 using kds_collide::tests::kds_collide_in;
 using kds_collide::tests::lines_of;
@@ -79,7 +81,8 @@ TEST_CASE("command line: a ball that bounces ever lower comes to rest, which the
 
 TEST_CASE("command line: all broad phases write the same events of generated scenes") {
   const TemporaryFolder folder;
-  const auto kind = std::string(GENERATE(as<std::string>(), "rings", "spheres", "boxes", "models", "spinners"));
+  const auto kind = std::string(GENERATE(as<std::string>(), "rings", "spheres", "boxes", "models", "spinners",
+                                         "spinning-rings", "rods", "plates"));
   INFO(kind);
   const std::string size = kind == "models" ? " --bodies 12 --density 0.1" : " --bodies 60 --density 0.2";
   REQUIRE(kds_collide_in(folder, "--generate " + kind + size + " --seed 5").code == 0);
@@ -196,3 +199,5 @@ TEST_CASE("command line: scenes at the edge of what makes sense run") {
     CHECK_THAT(lines[1], Catch::StartsWith("0,overlap,a,b,"));
   }
 }
+
+}  // namespace test_command_line

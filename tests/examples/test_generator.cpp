@@ -11,6 +11,8 @@
 #include <numbers>
 #include <string>
 
+namespace test_generator {
+
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 
@@ -102,6 +104,23 @@ TEST_CASE("generator: spinners are cubes, rods and plates that turn, and only th
   CHECK_FALSE(read(generate_scene({.kind = "boxes", .bodies = 3}), folder).turning);
 }
 
+TEST_CASE("generator: spinning rings, rods and plates turn, with the inertia of their shapes") {
+  const TemporaryFolder folder;
+  const auto kind = std::string(GENERATE(as<std::string>(), "spinning-rings", "rods", "plates"));
+  INFO(kind);
+  const Scene scene = read(generate_scene({.kind = kind, .bodies = 30, .seed = 3}), folder);
+  CHECK(scene.turning);
+  for (const SceneBody& body : scene.bodies) {
+    CHECK(body.inertia == 0);
+    CHECK_FALSE(body.inertia_tensor);
+    CHECK(body.motion.front().angular_velocity.norm() > 0);
+    if (kind == "spinning-rings") continue;
+    const Eigen::Vector3d& half = std::get<kds::collision::Box>(body.shape).half_extents;
+    CHECK(half[0] < 0.17 * half[2]);
+    CHECK((kind == "rods" ? half[1] < 0.17 * half[2] : half[1] > 0.59 * half[2]));
+  }
+}
+
 TEST_CASE("generator: meshes are closed, wound outward and of bounding radius 1") {
   const GeneratedScene rings = generate_scene({.kind = "rings", .bodies = 1});
   const GeneratedScene models = generate_scene({.kind = "models", .bodies = 1});
@@ -144,10 +163,12 @@ TEST_CASE("generator: options out of range are refused") {
     }
   };
   CHECK(error({.kind = "cubes"}) ==
-        "--generate: there is no \"cubes\"; use rings, models, spheres, boxes, spinners "
-        "or sheet");
+        "--generate: there is no \"cubes\"; use rings, models, spheres, boxes, spinners, "
+        "spinning-rings, rods, plates or sheet");
   CHECK(error({.bodies = 0}) == "--bodies: must be > 0");
   for (const double density : {0.0, 1e-100, 0.9, static_cast<double>(NAN)}) {
     CHECK(error({.density = density}) == "--density: must be from 1e-12 to 0.3");
   }
 }
+
+}  // namespace test_generator

@@ -1,8 +1,12 @@
 #include "examples/kds-collide/replay.hpp"
+
+#include "collision/shapes/convex_hull.hpp"
 #include "tests/examples/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+
+namespace test_replay {
 
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
@@ -80,6 +84,18 @@ TEST_CASE("replay: shapes by their names and measures") {
   CHECK(data["bodies"][0]["size"] == json::parse("[1,2,3]"));
   CHECK(data["bodies"][1]["shape"] == "capsule");
   CHECK(data["bodies"][1]["size"] == json::parse("[0.5,0.5,2]"));
+}
+
+TEST_CASE("replay: a hull is drawn as the triangles of its surface, once for all bodies that share it") {
+  Scene scene = scene_of_two();
+  scene.bodies[0].shape = scene.bodies[1].shape =
+      kds::collision::convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.25, 0.25, 0.25}});
+  const json data = json::parse(ReplayRecorder(scene).to_json("a"));
+  REQUIRE(data["meshes"].size() == 1);
+  CHECK(data["meshes"][0]["triangles"].size() == 12);
+  CHECK(data["bodies"][0]["shape"] == 0);
+  CHECK(data["bodies"][1]["shape"] == 0);
+  CHECK(data["bodies"][1]["size"] == json::parse("[1,1,1]"));
 }
 
 TEST_CASE("replay: a change of motion stands before the pieces of the script that come after it") {
@@ -164,3 +180,5 @@ TEST_CASE("replay: without three.js the package is named") {
   CHECK_THROWS_WITH(replay_page("", folder / "none"), Catch::Contains("libjs-three"));
   CHECK_THROWS_WITH(replay_page("", ""), Catch::Contains("libjs-three"));
 }
+
+}  // namespace test_replay

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace test_run {
+
 using namespace kds_collide;
 
 namespace {
@@ -117,6 +119,47 @@ TEST_CASE("run: where both have friction, a ball that spins is driven on by the 
   CHECK((ball.angular_velocity - Eigen::Vector3d(0, 5.5, 0)).norm() < 1e-13);
 }
 
+TEST_CASE("run: a door that turns about its hinge meets a ball") {
+  Record record;
+  const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic", "bodies": [
+    {"name": "door", "shape": {"box": {"half_extents": [1,0.0625,1]}}, "fixed": true, "motion": [
+      {"start": 0, "position": [[0,0,0]], "angular_velocity": [0,0,1], "pivot": [-1,0,0]}]},
+    {"name": "ball", "shape": {"sphere": {"radius": 0.25}}, "motion": [{"start": 0, "position": [[0,1.5,0]]}]}]})",
+                                  "scene.json");
+  run(scene, {}, record);
+  REQUIRE(record.events.size() == 1);
+  // The ball's centre is at 1.5 cos t from the middle plane of the door.
+  CHECK(record.events[0].time == Approx(std::acos(0.3125 / 1.5)).epsilon(1e-14));
+  REQUIRE(record.pieces.size() == 2);
+  CHECK((record.pieces[1].path.coefficients[1] - 2 * 1.5 * std::sin(record.events[0].time) * record.events[0].normal)
+            .norm() < 1e-14);
+}
+
+TEST_CASE("run: a body that precesses tells its pieces, and turns as its inertia says") {
+  const auto scene = [](const std::string& inertia) {
+    return parse_scene(R"({"scene": 1, "end_time": 3, "response": "elastic", "bodies": [
+      {"name": "a", "shape": {"sphere": {"radius": 1}}, "inertia": )" +
+                           inertia + R"(, "motion": [
+        {"start": 0, "position": [[0,0,0]], "angular_velocity": [1,0,1]}]}]})",
+                       "scene.json");
+  };
+  Record fixed_axis;
+  run(scene("[1,1,1]"), {}, fixed_axis);
+  CHECK(fixed_axis.pieces.empty());
+  Record record;
+  const RunResult result = run(scene("[1,1,2]"), {}, record);
+  CHECK(record.events.empty());
+  CHECK(record.pieces.size() == result.rotation_pieces + 1);
+  // The axis of the top goes round the angular momentum, (1, 0, 2), at |L| / I1.
+  const double angle = std::sqrt(5.0) * 3;
+  const Eigen::Vector3d about = Eigen::Vector3d(1, 0, 2).normalized();
+  const Eigen::Vector3d expected = Eigen::AngleAxisd(angle, about) * Eigen::Vector3d::UnitZ();
+  const MotionPiece last = record.pieces.back().restarted(3);
+  CHECK((last.orientation.normalized() * Eigen::Vector3d::UnitZ() - expected).norm() <= 1e-3);
+  Record fine;
+  CHECK(run(scene("[1,1,2]"), {.orientation_error = 1e-5}, fine).rotation_pieces > 5 * result.rotation_pieces);
+}
+
 TEST_CASE("run: a body that is turned by its script meets what is beside it") {
   Record record;
   const Scene scene = parse_scene(R"({"scene": 1, "end_time": 3, "bodies": [
@@ -133,3 +176,5 @@ TEST_CASE("run: a body that is turned by its script meets what is beside it") {
   CHECK(record.events[1].kind == EventKind::separation);
   CHECK(record.events[1].time == 2);
 }
+
+}  // namespace test_run

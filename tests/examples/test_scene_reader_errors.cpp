@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace test_scene_reader_errors {
+
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 using kds_collide::tests::tetrahedron;
@@ -100,9 +102,9 @@ TEST_CASE("scene reader: each bad value is named with its place") {
       {"/bodies/1/name", "\"a\\nb\"", "bodies[1].name: must not hold control characters"},
       {"/bodies/0/shape", "", "bodies[0].shape: is missing"},
       {"/bodies/0/shape", "{}",
-       "bodies[0].shape: must have exactly one of \"sphere\", \"box\", \"mesh\" and \"capsule\""},
+       "bodies[0].shape: must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\" and \"hull\""},
       {"/bodies/0/shape/box", "{}",
-       "bodies[0].shape: must have exactly one of \"sphere\", \"box\", \"mesh\" and \"capsule\""},
+       "bodies[0].shape: must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\" and \"hull\""},
       {"/bodies/0/shape/cone", "{}", "bodies[0].shape.cone: unknown key"},
       {"/bodies/0/shape/scale", "2", "bodies[0].shape.scale: is for meshes only"},
       {"/bodies/0/shape/sphere/radius", "0", "bodies[0].shape.sphere.radius: must be > 0"},
@@ -120,6 +122,17 @@ TEST_CASE("scene reader: each bad value is named with its place") {
        "bodies[0].shape.capsule.half_length: must be 0, or at least 1e-30"},
       {"/bodies/0/shape", R"({"capsule": {"radius": 1, "half_length": 1, "axis": 2}})",
        "bodies[0].shape.capsule.axis: unknown key"},
+      {"/bodies/0/shape", R"({"hull": {}})", "bodies[0].shape.hull.points: is missing"},
+      {"/bodies/0/shape", R"({"hull": {"points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1]]}})",
+       "bodies[0].shape.hull.points[4]: must be an array of 3 numbers"},
+      {"/bodies/0/shape", R"({"hull": {"points": [[0,0,0],[1,0,0],[0,1,0]]}})",
+       "bodies[0].shape.hull.points: has 3 points; a solid takes at least 4"},
+      {"/bodies/0/shape", R"({"hull": {"points": [[0,0,0],[1,0,0],[0,1,0],[1,1,0]]}})",
+       "bodies[0].shape.hull.points: has no volume: all points lie in a plane"},
+      {"/bodies/0/shape", R"({"hull": {"points": [[0,0,0],[1,1,1],[2,2,2],[-1,-1,-1]]}})",
+       "bodies[0].shape.hull.points: has no volume: all points lie in a line"},
+      {"/bodies/0/shape", R"({"hull": {"points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], "scale": 2}})",
+       "bodies[0].shape.hull.scale: unknown key"},
       {"/bodies/1/shape/box/half_extents", "1", "bodies[1].shape.box.half_extents: must be an array of 3 numbers"},
       {"/bodies/1/shape/box/half_extents/2", "0", "bodies[1].shape.box.half_extents[2]: must be > 0"},
       {"/bodies/2/shape/mesh", "\"rang\"", "bodies[2].shape.mesh: there is no mesh \"rang\" in \"meshes\""},
@@ -139,7 +152,12 @@ TEST_CASE("scene reader: each bad value is named with its place") {
        "bodies[0].motion[0].angular_velocity: must be an array of 3 numbers"},
       {"/bodies/0/motion/0/angular_velocity", "[0,0,1e31]",
        "bodies[0].motion[0].angular_velocity[2]: must be at most 1e+30 in magnitude"},
-      {"/bodies/0/motion/0/pivot", "[1,0,0]", "bodies[0].motion[0].pivot: unknown key"},
+      {"/bodies/0/motion/0/pivot", "[1,0,0]",
+       "bodies[0].motion[0].pivot: a sphere turns about its centre alone: boxes and meshes may have a pivot"},
+      {"/bodies/1/motion/0/pivot", "[1,0]", "bodies[1].motion[0].pivot: must be an array of 3 numbers"},
+      {"/bodies/2/motion/0/pivot", "[1,0,0]", "bodies[2].motion[1]: all pieces of a motion must have the same pivot"},
+      {"/bodies/2/motion/1/pivot", "[1,0,0]",
+       "bodies[2].motion[1].pivot: all pieces of a motion must have the same pivot"},
       {"/bodies/0/motion/0/orientation", "[1,0,0,0]",
        "bodies[0].motion[0].orientation: the first piece begins with the \"orientation\" of the body"},
       {"/bodies/2/motion/1/orientation", "[1,1,0,0]",
@@ -313,3 +331,5 @@ TEST_CASE("scene reader: no mutation of a valid scene breaks it") {
   CHECK(errors > 100);
   CHECK(scenes > 0);
 }
+
+}  // namespace test_scene_reader_errors

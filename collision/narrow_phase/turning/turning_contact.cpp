@@ -3,7 +3,9 @@
 #include "collision/narrow_phase/contact_patch.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/narrow_phase/turning/turning_ball_and_box.hpp"
+#include "collision/narrow_phase/turning/turning_ball_and_polytope.hpp"
 #include "collision/narrow_phase/turning/turning_boxes.hpp"
+#include "collision/narrow_phase/turning/turning_polytopes.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 #include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
@@ -26,9 +28,14 @@ double radius(const PlacedShape& shape) { return std::get<Sphere>(shape.shape).r
 const Vector3d& half_extents(const PlacedShape& shape) { return std::get<Box>(shape.shape).half_extents; }
 bool is_ball(const PlacedShape& shape) { return std::holds_alternative<Sphere>(shape.shape); }
 
-/// Calls ask(pair) with what WaysApart takes. Precondition: not two balls.
+/// Calls ask(pair) with what WaysApart takes. Precondition: not two balls; a hull comes first.
 template <int Degree, class Ask>
 auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
+  if (std::holds_alternative<ConvexHull>(a.shape.shape)) {
+    const ConvexCore core(a.shape.shape);
+    if (is_ball(b.shape)) return ask(TurningBallAndPolytope<Degree>(a.motion, core, b.motion, radius(b.shape)));
+    return ask(TurningPolytopes<Degree>(a.motion, core, b.motion, ConvexCore(b.shape.shape)));
+  }
   if (is_ball(a.shape)) {
     return ask(TurningBallAndBox<Degree>(b.motion, half_extents(b.shape), a.motion, radius(a.shape)));
   }

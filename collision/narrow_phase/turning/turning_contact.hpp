@@ -1,4 +1,4 @@
-// Contacts of bodies that turn: balls and boxes, by exact signs.
+// Contacts of bodies that turn: balls, boxes and convex hulls, by exact signs.
 #pragma once
 
 #include "certificates/turning/rigid_motion.hpp"
@@ -10,7 +10,8 @@ namespace kds::collision {
 // The functions of narrow_phase.hpp for bodies that turn. What they answer is a function of motions and shapes alone,
 // as there: contact is the first double just after which the two penetrate, by exact signs.
 //
-// A box is the exact box of its half extents, turned by the exact rotation of its motion: nothing of it is rounded. The
+// A box is the exact box of its half extents, a hull that of its points, turned by the exact rotation of its motion:
+// nothing of it is rounded. The
 // rotation in PlacedShape does not count; orientations are those of motions.
 //
 // Mode `resolved`, bodies that overlap by rounding: they are in contact if they approach at some point that they share,

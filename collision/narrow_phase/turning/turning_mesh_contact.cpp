@@ -1,6 +1,7 @@
 #include "collision/narrow_phase/turning/turning_mesh_contact.hpp"
 
 #include "collision/narrow_phase/turning/turning_mesh_search.hpp"
+#include "collision/shapes/polytope.hpp"
 
 #include <stdexcept>
 #include <type_traits>
@@ -20,6 +21,10 @@ auto with_search(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
     return ask(TurningMeshSearch<Degree, std::decay_t<decltype(side)>>(mesh, a.motion, side, b.motion));
   };
   if (const auto* const other = std::get_if<MeshShape>(&b.shape.shape)) return with(MeshOfPair(*other));
+  if (std::holds_alternative<ConvexHull>(b.shape.shape)) {
+    const MeshShape surface = surface_of(b.shape.shape);
+    return with(MeshOfPair(surface));
+  }
   if (const auto* const box = std::get_if<Box>(&b.shape.shape)) return with(BoxOfPair(*box));
   return with(BallOfPair(std::get<Sphere>(b.shape.shape)));
 }
@@ -53,7 +58,10 @@ double TurningMeshContact<Degree>::first_separation(const Body& a, const Body& b
 template <int Degree>
 Contact TurningMeshContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch&) {
   return with_search<Degree>(a, b, [&](const auto& search) -> Contact {
-    const TurningTouch touch = search.touch_at(t);
+    TurningTouch touch = search.touch_at(t);
+    if (const auto* const hull = std::get_if<ConvexHull>(&b.shape.shape)) {
+      touch.feature_b = hull->polytope->feature_of(touch.feature_b);
+    }
     return {t, a.motion.path.position(t) + touch.point, touch.normal, touch.feature_a, touch.feature_b};
   });
 }

@@ -8,29 +8,48 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace kds::collision {
+
+/// Failure times and signs as they are, each found when it is asked for.
+struct ExactFailures {
+  template <class C>
+  double failure_time(const C& certificate, double t, double until) const {
+    return kds::failure_time(certificate, t, until);
+  }
+  template <class C>
+  int sign_after(const C& certificate, double t) const {
+    return kds::sign_after(certificate, t);
+  }
+};
 
 /// Finds contacts of a pair that has a finite number of *ways* of being apart, each of them a conjunction of turning
 /// certificates, its conditions: the bodies do not penetrate if all the conditions of some way hold.
 ///
-/// `Pair`: `ways`, their number; `all(way)`, its conditions, and `every_condition(way, conditions, test)`;
-/// `separates_nothing(way)`, whether the way does not count: all of its conditions are zero at all times, and
-/// `known_to_separate_nothing(way)`, where that is told at once; `frame(t)`, what is known in doubles; `gaps(frame,
-/// gap)`, which fills in a width for each way and returns an error, so that a way that is narrower than -error has a
-/// condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change; `unsure(frame, way,
-/// stretch)`, the conditions that have to be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`.
+/// `Pair`: `ways`, their number, a constant or a member; `all(way)`, its conditions, and `every_condition(way,
+/// conditions, test)`; `separates_nothing(way)`, whether the way does not count: all of its conditions are zero at all
+/// times, and `known_to_separate_nothing(way)`, where that is told at once; `frame(t)`, what is known in doubles;
+/// `gaps(frame, gap)`, which fills in a width for each way and returns an error, so that a way that is narrower than
+/// -error has a condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change;
+/// `unsure(frame, way, stretch)`, the conditions that have to be looked at; `apart_until(t, horizon)`, a proven time;
+/// `time_of_turning()`.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
 ///
 /// Method: a way that is open just after t stays so until the first of its conditions fails. Then another may be open,
 /// just after that time; if none is, they penetrate. Before that, as far as they get, proofs in doubles.
-template <class Pair>
+///
+/// `Failures` finds failure times and signs: kds::failure_time and kds::sign_after, or what remembers them.
+template <class Pair, class Failures = ExactFailures>
 class WaysApart {
  public:
-  explicit WaysApart(const Pair& pair) : pair_(pair) {
-    for (int way = 0; way < Pair::ways; ++way) {
+  explicit WaysApart(const Pair& pair, Failures failures = Failures())
+      : pair_(pair), failures_(failures), nothing_(by_way<signed char>()) {
+    for (int way = 0; way < pair_.ways; ++way) {
       nothing_[static_cast<std::size_t>(way)] = pair.known_to_separate_nothing(way) ? 1 : -1;
     }
   }
@@ -71,6 +90,24 @@ class WaysApart {
 
  private:
   static constexpr int none = -1;
+
+  /// A value for each way: an array where their number is a constant.
+  static constexpr bool has_constant_ways = !std::is_member_object_pointer_v<decltype(&Pair::ways)>;
+  template <class T>
+  static auto values(const Pair& pair) {
+    if constexpr (has_constant_ways) {
+      return std::array<T, static_cast<std::size_t>(Pair::ways)>{};
+    } else {
+      return std::vector<T>(static_cast<std::size_t>(pair.ways));
+    }
+  }
+  template <class T>
+  using ByWay = decltype(values<T>(std::declval<const Pair&>()));
+  template <class T>
+  ByWay<T> by_way() const {
+    return values<T>(pair_);
+  }
+
   /// Of a stretch: what is likely to be all that is needed of it.
   static constexpr double soon_part = 0x1p-10;
 
@@ -79,16 +116,16 @@ class WaysApart {
   bool open(int way, const Frame& frame) const {
     if (nothing_[static_cast<std::size_t>(way)] > 0) return false;
     return pair_.every_condition(way, pair_.unsure(frame, way, 0), [&](const auto& condition) {
-      const int sign = sign_after(condition, frame.time);
+      const int sign = failures_.sign_after(condition, frame.time);
       return sign > 0 || (sign == 0 && !separates_nothing(way));
     });
   }
 
   /// As those of the pair, but for ways that are known to separate nothing.
   template <class Frame>
-  double gaps(const Frame& frame, std::array<double, Pair::ways>& gap) const {
+  double gaps(const Frame& frame, ByWay<double>& gap) const {
     const double error = pair_.gaps(frame, gap);
-    for (int way = 0; way < Pair::ways; ++way) {
+    for (int way = 0; way < pair_.ways; ++way) {
       if (nothing_[static_cast<std::size_t>(way)] > 0) gap[static_cast<std::size_t>(way)] = -never;
     }
     return error;
@@ -96,7 +133,7 @@ class WaysApart {
 
   /// One that is open just after t, or `none`; the widest first.
   int open_way(double t) const {
-    std::array<double, Pair::ways> gap;
+    ByWay<double> gap = by_way<double>();
     const auto frame = pair_.frame(t);
     const double error = gaps(frame, gap);
     for (;;) {
@@ -116,7 +153,7 @@ class WaysApart {
     for (const double end : {soon, until}) {
       double first = never;
       pair_.every_condition(way, pair_.unsure(frame, way, (end - t) * (1 + 0x1p-40)), [&](const auto& condition) {
-        first = std::min(first, failure_time(condition, t, std::min(first, end)));
+        first = std::min(first, failures_.failure_time(condition, t, std::min(first, end)));
         return true;
       });
       if (first != never) return first;
@@ -126,12 +163,12 @@ class WaysApart {
 
   /// The first double in [t, until] just after which a way is open. Precondition: none is open just after t.
   double first_opening(double t, double until) const {
-    std::array<double, Pair::ways> gap;
+    ByWay<double> gap = by_way<double>();
     const auto frame = pair_.frame(t);
     const double error = gaps(frame, gap);
     const double fastest = pair_.fastest(frame, (until - t) * (1 + 0x1p-40));
     double first = never;
-    for (int round = 0; round < Pair::ways; ++round) {  // the widest first, which is mostly the one
+    for (int round = 0; round < pair_.ways; ++round) {  // the widest first, which is mostly the one
       const auto widest = std::max_element(gap.begin(), gap.end());
       const double stretch = (std::min(first, until) - t) * (1 + 0x1p-40);
       if (*widest == -never || *widest + fastest * stretch < -error) break;  // too narrow to be open by then
@@ -146,7 +183,7 @@ class WaysApart {
   double opens(int way, double t, double until) const {
     for (bool waited = true; waited;) {
       waited = false;
-      pair_.every_condition(way, Pair::all(way), [&](const auto& condition) {
+      pair_.every_condition(way, pair_.all(way), [&](const auto& condition) {
         if (sign_after(condition, t) >= 0) return true;
         t = recovery_time(condition, t, until);
         waited = true;
@@ -156,7 +193,7 @@ class WaysApart {
     }
     // Conditions that are zero just after t are zero at all times.
     const auto zero = [&](const auto& condition) { return sign_after(condition, t) == 0; };
-    return pair_.every_condition(way, Pair::all(way), zero) ? never : t;
+    return pair_.every_condition(way, pair_.all(way), zero) ? never : t;
   }
 
   /// As the pair says, which is asked once: exact zeros cost most.
@@ -167,7 +204,8 @@ class WaysApart {
   }
 
   const Pair& pair_;
-  mutable std::array<signed char, Pair::ways> nothing_;  ///< by way: whether it separates nothing; -1: not known
+  Failures failures_;
+  mutable ByWay<signed char> nothing_;  ///< by way: whether it separates nothing; -1: not known
 };
 
 }  // namespace kds::collision

@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace kds::collision {
@@ -39,12 +42,18 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
     reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);
     return true;
   }
-  Motion motion_a = bodies_.motion(a).restarted(contact.time);
-  Motion motion_b = bodies_.motion(b).restarted(contact.time);
+  Motion motion_a = met(a, contact.time);
+  Motion motion_b = met(b, contact.time);
   const Vector3d& n = contact.normal;
   const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
   const double approach = -dot(n, rates.velocity(contact.point));
-  if (!(approach > 0)) return false;
+  if (!(approach > 0)) {  // The pieces of their motions approach, their free rotations do not.
+    turn_back(a, b, motion_a, motion_b, contact);
+    for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
+      if (tumbling_.has(slot)) set_motion(slot, motion, false);
+    }
+    return false;
+  }
   // A side of a box that turns carries its normal along, so that what slides on it is pressed to it or lifted off.
   const auto ball = [&](BodySlot slot) { return bodies_.mover(slot).radius > 0; };
   const Vector3d& point = ball(a)   ? motion_a.path.coefficients[0]
@@ -65,6 +74,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
   const auto mobility = [&](BodySlot slot) {
+    if (tumbling_.has(slot)) return Mobility::of(bodies_[slot].inverse_mass, tumbling_.inverse_inertia(slot));
     return Mobility::of_spherical(bodies_[slot].inverse_mass, bodies_[slot].inverse_inertia);
   };
   // Of two bodies the lower counts, as of restitutions.
@@ -77,15 +87,80 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
     return surfaces.smooth() && ball(slot) ? Vector3d(Vector3d::Zero())
                                            : Vector3d(contact.point - motion.path.coefficients[0]);
   };
-  collide(velocity_a, velocity_b, mobility(a), mobility(b), {n, arm(a, motion_a), arm(b, motion_b)}, surfaces);
+  const ContactArms arms{n, arm(a, motion_a), arm(b, motion_b)};
+  const Vector3d impulse = collide(velocity_a, velocity_b, mobility(a), mobility(b), arms, surfaces).impulse;
   motion_a.path.coefficients[1] = velocity_a.velocity, motion_a.angular_velocity = velocity_a.angular_velocity;
   motion_b.path.coefficients[1] = velocity_b.velocity, motion_b.angular_velocity = velocity_b.angular_velocity;
+  const auto push = [&](BodySlot slot, Motion& motion, const Vector3d& angular_impulse) {
+    if (!tumbling_.has(slot)) return;
+    tumbling_.push(slot, angular_impulse);
+    tumbling_.set_path(slot, motion.path);
+    motion.angular_velocity = tumbling_.angular_velocity(slot);
+  };
+  push(a, motion_a, -cross(arms.a, impulse));
+  push(b, motion_b, cross(arms.b, impulse));
+  turn_back(a, b, motion_a, motion_b, contact);
   for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
     if (bodies_.fixed(slot)) continue;
     ++counters_.motion_updates;
     set_motion(slot, motion, false);
   }
   return false;
+}
+
+/// The motion of a body just before a contact, for one that precesses with the angular velocity of its free rotation.
+template <class Motion>
+Motion BasicWorld<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
+  Motion motion = bodies_.motion(slot).restarted(t);
+  if (!tumbling_.has(slot)) return motion;
+  tumbling_.meet(slot, motion.orientation, t);
+  motion.angular_velocity = tumbling_.angular_velocity(slot);
+  return motion;
+}
+
+/// Two bodies move like this just after a contact: those that precess get the pieces that lead back to their free
+/// rotations. As the additional turn may close the gap again, only such a part of it is used that the two bodies part
+/// with half of their speed at least.
+template <class Motion>
+void BasicWorld<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
+                                   const Contact& contact) requires(turns<Motion>) {
+  if (!tumbling_.has(a) && !tumbling_.has(b)) return;
+  const double t = contact.time;
+  const auto parting = [&](const Motion& of_a, const Motion& of_b) {
+    return dot(contact.normal, PointRates<Motion::degree>(of_a, of_b, t).velocity(contact.point));
+  };
+  std::optional<RotationPiece> piece_a, piece_b;
+  Motion back_a = motion_a, back_b = motion_b;
+  const auto look = [&](BodySlot slot, Motion& back, std::optional<RotationPiece>& piece) {
+    if (!tumbling_.has(slot)) return;
+    piece = tumbling_.way_back(slot, back.orientation, t);
+    back.angular_velocity = piece->angular_velocity;
+  };
+  look(a, back_a, piece_a), look(b, back_b, piece_b);
+  const double free = parting(motion_a, motion_b);
+  const double led = parting(back_a, back_b);
+  const bool whole = free > 0 && led >= free / 2;
+  const double share = whole ? 1 : free > 0 ? free / 2 / (free - led) : 0;
+  const auto lead = [&](BodySlot slot, Motion& motion, const std::optional<RotationPiece>& piece) {
+    if (!piece) return;
+    const Vector3d more = piece->angular_velocity - motion.angular_velocity;
+    motion.angular_velocity = whole ? piece->angular_velocity : Vector3d(motion.angular_velocity + share * more);
+    tumbling_.follow(slot, *piece, whole, t);
+  };
+  lead(a, motion_a, piece_a), lead(b, motion_b, piece_b);
+}
+
+template <class Motion>
+FreeTurning BasicWorld<Motion>::free_turning(BodyId id) const requires(turns<Motion>) {
+  const BodySlot slot = bodies_.slot_of(id);
+  if (tumbling_.has(slot)) return tumbling_.turning(slot, now());
+  if (bodies_[slot].inverse_inertia == 0) {
+    throw std::invalid_argument("World::free_turning: nothing changes how body " + std::to_string(id) + " turns");
+  }
+  const Motion motion = bodies_.motion(slot).restarted(now());
+  const double length = norm(motion.orientation);
+  return {Eigen::Quaterniond(Eigen::Vector4d(motion.orientation.coeffs() / length)), motion.angular_velocity,
+          motion.angular_velocity / bodies_[slot].inverse_inertia};
 }
 
 /// Walls meet bounding balls, so that they turn nothing.
@@ -109,11 +184,12 @@ void BasicWorld<Motion>::process_wall() requires(turns<Motion>) {
   event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
   ++counters_.wall_contacts;
   ++counters_.motion_updates;
+  if (tumbling_.has(slot)) tumbling_.set_path(slot, motion.path);
   set_motion(slot, motion, false);
   tell([&](Listener& listener) { listener.wall(*this, event); });
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

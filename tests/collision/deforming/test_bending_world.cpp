@@ -1,4 +1,5 @@
 #include "collision/shapes/bending_mesh.hpp"
+#include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
@@ -51,14 +52,15 @@ template <int Degree>
 std::vector<BodyDescription<Degree>> random_bodies(samples::Random& random) {
   std::vector<BodyDescription<Degree>> bodies;
   const auto ring = samples::torus(6, 4);
+  const ConvexHull hull = convex_hull({{0.5, 0, 0}, {-0.25, 0.5, 0}, {-0.25, -0.5, 0}, {0, 0, 0.5}, {0, 0, -0.25}});
   for (std::size_t i = 0; i < 16; ++i) {
-    const std::vector<Shape> shapes{random_sheet(random), Sphere{0.4}, Box{Vector3d(0.4, 0.2, 0.3)}, Capsule{0.2, 0.4},
-                                    MeshShape{ring}};
+    const std::vector<Shape> shapes{random_sheet(random), Sphere{0.4},     Box{Vector3d(0.4, 0.2, 0.3)},
+                                    Capsule{0.2, 0.4},    MeshShape{ring}, hull};
     Path<Degree> path = Path<Degree>::line(random.vector(1.75), random.vector(1.5), i % 4 == 3 ? 0.5 : 0.0);
     if (i % 5 == 0) path.coefficients[1] = Vector3d::Zero();  // it bends where it is
     if constexpr (Degree == 2) path.coefficients[2] = random.vector(0.5);
     bodies.push_back(
-        {.shape = shapes[i % 2 == 0 ? 0 : 1 + (i / 2) % 4], .orientation = random.orientation(), .motion = {path}});
+        {.shape = shapes[i % 2 == 0 ? 0 : 1 + (i / 2) % 5], .orientation = random.orientation(), .motion = {path}});
   }
   return bodies;
 }

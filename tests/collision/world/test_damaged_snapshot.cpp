@@ -1,4 +1,5 @@
 // Snapshots that have been damaged, everywhere and in several ways: they are refused, or give a world that runs.
+#include "collision/shapes/convex_hull.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/random_scenes.hpp"
 #include "tests/support/damaged_bytes.hpp"
@@ -12,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_damaged_snapshot {
 namespace {
 
 using namespace tests;
@@ -140,6 +141,19 @@ TEST_CASE("damaged: meshes", "[world][snapshot][damaged]") {
   damage(world, options);
 }
 
+TEST_CASE("damaged: hulls", "[world][snapshot][damaged]") {
+  const WorldOptions options = with_response(Response::elastic);
+  World<1> world(options);
+  for (int i = 0; i < 2; ++i) {
+    auto one = body<1>(convex_hull({{0.5, 0, 0}, {-0.5, 0, 0.25}, {0, 0.5, 0}, {0, 0, 0.5 * (i + 1)}}),
+                       motion<1>({1.5 * i, 0.1 * i, 0}, {1.0 - i, 0, 0}));
+    if (i > 0) one.orientation = Eigen::Quaterniond(1, 0.5, 0.25, i).normalized();
+    world.add_body(one);
+  }
+  world.advance_to(0.25);
+  damage(world, options);
+}
+
 TEST_CASE("damaged: capsules", "[world][snapshot][damaged]") {
   const WorldOptions options = with_response(Response::elastic);
   World<1> world(options);
@@ -188,4 +202,4 @@ TEST_CASE("damaged: scripts and bodies still to come", "[world][snapshot][damage
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_damaged_snapshot

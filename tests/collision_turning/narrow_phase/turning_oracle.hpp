@@ -18,27 +18,10 @@ class TurningOracle {
   using Number = long double;
   using Vector = std::array<Number, 3>;
 
-  template <int Degree>
-  static Number gap(const certificates::RigidMotion<Degree>& a, const collision::Shape& shape_a,
-                    const certificates::RigidMotion<Degree>& b, const collision::Shape& shape_b, double t) {
-    const Pose pose_a = pose(a, t), pose_b = pose(b, t);
-    const auto* const ball_a = std::get_if<collision::Sphere>(&shape_a);
-    const auto* const ball_b = std::get_if<collision::Sphere>(&shape_b);
-    if (ball_a) return ball_gap(pose_b, std::get<collision::Box>(shape_b), pose_a.centre, ball_a->radius);
-    if (ball_b) return ball_gap(pose_a, std::get<collision::Box>(shape_a), pose_b.centre, ball_b->radius);
-    return box_gap(pose_a, std::get<collision::Box>(shape_a), pose_b, std::get<collision::Box>(shape_b));
-  }
-
- private:
   struct Pose {
     Vector centre;
     std::array<Vector, 3> axes;
   };
-
-  static Number dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-  static Vector cross(const Vector& a, const Vector& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  }
 
   template <int Degree>
   static Pose pose(const certificates::RigidMotion<Degree>& motion, double t) {
@@ -66,6 +49,23 @@ class TurningOracle {
       for (std::size_t d = 0; d < 3; ++d) v[d] = v[d] * cosine + side[d] * sine + k[d] * along;
     }
     return pose;
+  }
+
+  template <int Degree>
+  static Number gap(const certificates::RigidMotion<Degree>& a, const collision::Shape& shape_a,
+                    const certificates::RigidMotion<Degree>& b, const collision::Shape& shape_b, double t) {
+    const Pose pose_a = pose(a, t), pose_b = pose(b, t);
+    const auto* const ball_a = std::get_if<collision::Sphere>(&shape_a);
+    const auto* const ball_b = std::get_if<collision::Sphere>(&shape_b);
+    if (ball_a) return ball_gap(pose_b, std::get<collision::Box>(shape_b), pose_a.centre, ball_a->radius);
+    if (ball_b) return ball_gap(pose_a, std::get<collision::Box>(shape_a), pose_b.centre, ball_b->radius);
+    return box_gap(pose_a, std::get<collision::Box>(shape_a), pose_b, std::get<collision::Box>(shape_b));
+  }
+
+ private:
+  static Number dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+  static Vector cross(const Vector& a, const Vector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   }
 
   static Number half(const collision::Box& box, std::size_t i) {

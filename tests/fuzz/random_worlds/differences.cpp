@@ -34,6 +34,7 @@ std::string shapes_of(const Scenario& scenario) {
   has(ShapeKind::ball, " balls");
   has(ShapeKind::box, " boxes");
   has(ShapeKind::capsule, " capsules");
+  has(ShapeKind::hull, " hulls");
   has(ShapeKind::mesh, " meshes");
   return result;
 }

@@ -50,4 +50,12 @@ const std::vector<std::shared_ptr<const collision::Mesh>>& sample_meshes() {
   return meshes;
 }
 
+std::vector<Eigen::Vector3d> cut_box(const Eigen::Vector3d& half_extents) {
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < 7; ++i) {
+    corners.push_back(half_extents.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+  }
+  return corners;
+}
+
 }  // namespace kds::fuzz

@@ -19,4 +19,7 @@ const std::vector<Surface>& sample_surfaces();
 /// One mesh of each, shared by all bodies.
 const std::vector<std::shared_ptr<const collision::Mesh>>& sample_meshes();
 
+/// The corners of a box without one of them.
+std::vector<Eigen::Vector3d> cut_box(const Eigen::Vector3d& half_extents);
+
 }  // namespace kds::fuzz

@@ -1,5 +1,6 @@
 #include "tests/fuzz/random_worlds/player.hpp"
 
+#include "collision/shapes/convex_hull.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/fuzz/random_worlds/meshes.hpp"
 
@@ -127,6 +128,9 @@ BodyDescription<Degree> Player<Degree>::description(const BodyPlan& plan) {
       break;
     case ShapeKind::capsule:
       result.shape = collision::Capsule{size[0], size[1]};
+      break;
+    case ShapeKind::hull:
+      result.shape = collision::convex_hull(cut_box(size));
       break;
     case ShapeKind::mesh:
       result.shape = collision::MeshShape{sample_meshes()[plan.mesh], size[0]};

@@ -74,6 +74,12 @@ void print_body(const Scenario& scenario, std::size_t number_of_body) {
     std::printf("  d.shape = Capsule{p.length * %s, p.length * %s};\n", number(body.size[0]).c_str(),
                 number(body.size[1]).c_str());
   }
+  if (body.shape == ShapeKind::hull) {
+    std::printf("  d.shape = convex_hull({");
+    for (const Eigen::Vector3d& corner : cut_box(body.size))
+      std::printf("p.length * Vector3d%s, ", vector(corner).c_str());
+    std::printf("});\n");
+  }
   if (body.shape == ShapeKind::mesh) {
     std::printf("  d.shape = MeshShape{mesh_%zu(), p.length * %s};\n", body.mesh, number(body.size[0]).c_str());
   }

@@ -1,0 +1,38 @@
+// Solid shapes as convex hulls of points, grown by a radius.
+#pragma once
+
+#include "collision/shapes/hull_structure.hpp"
+#include "collision/shapes/shape.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace kds::collision {
+
+/// The hull of points in the coordinates of a body, and all that is nearer to it than a radius: of a ball its centre,
+/// of a capsule the ends of its segment, of a box its corners (bit d of the index set: at the upper end of axis d), of
+/// a hull its points. None of these numbers is rounded.
+class ConvexCore {
+ public:
+  /// Precondition: the shape is no mesh. Refers to it.
+  explicit ConvexCore(const Shape& shape);
+
+  std::span<const Eigen::Vector3d> points() const { return hull_.empty() ? std::span(own_.data(), size_) : hull_; }
+  const HullStructure& structure() const { return *structure_; }
+  double radius() const { return radius_; }
+
+  /// Whether it has faces, that is, a volume of its own.
+  bool solid() const { return !structure_->faces.empty(); }
+
+ private:
+  std::span<const Eigen::Vector3d> hull_;
+  std::array<Eigen::Vector3d, 8> own_;
+  std::size_t size_ = 0;
+  const HullStructure* structure_;
+  double radius_ = 0;
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,41 @@
+// Bodies that precess, in worlds of bodies that keep their orientation: there are none.
+#pragma once
+
+#include "collision/body_motion.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world_counters.hpp"
+#include "collision/world_options.hpp"
+#include "kds/arithmetic/lattice.hpp"
+
+namespace kds::collision {
+
+template <class Motion>
+class Tumbling;
+
+/// Answers as the part of a world in which nothing turns.
+template <class Motion>
+requires(!turns<Motion>) class Tumbling<Motion> {
+ public:
+  Tumbling(const Bodies<Motion>&, const WorldOptions&, const WorldCounters&) {}
+
+  static void remove(BodySlot) {}
+  static bool has(BodySlot) { return false; }
+  static const Motion& take_up(BodySlot, const Motion& given, double) { return given; }
+  static constexpr double next_time() { return never; }
+  struct Piece {
+    BodySlot slot;
+    Motion motion;
+  };
+  static Piece take_next() { return {}; }
+  static void audit(double) {}
+
+  struct Image {
+    template <class Archive>
+    void archive(Archive&) {}
+    void check(const typename Bodies<Motion>::Image&, double) const {}
+  };
+  static Image image() { return {}; }
+  static void become(const Image&) {}
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,212 @@
+#include "collision/world/turning/tumbling.hpp"
+
+#include "collision/motions.hpp"
+#include "collision/vectors.hpp"
+#include "collision/world/bodies_image.hpp"
+#include "collision/world/queue_room.hpp"
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace kds::collision {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+namespace {
+
+Quaterniond of_axes(const PrincipalInertia& inertia, const Quaterniond& of_body) {
+  return product(of_body, inertia.axes);
+}
+Quaterniond of_body(const PrincipalInertia& inertia, const Quaterniond& of_axes) {
+  return product(of_axes, inertia.axes.conjugate());
+}
+
+Quaterniond unit(const Quaterniond& q) {
+  const double length = norm(q);
+  return {q.w() / length, q.x() / length, q.y() / length, q.z() / length};
+}
+
+}  // namespace
+
+template <class Motion>
+void Tumbling<Motion>::add(BodySlot slot, const PrincipalInertia& inertia) {
+  make_room(ends_, slot + std::size_t{1});
+  if (of_.size() <= slot) of_.resize(slot + std::size_t{1});
+  of_[slot] = Body{.inertia = inertia};
+}
+
+template <class Motion>
+void Tumbling<Motion>::remove(BodySlot slot) {
+  if (!has(slot)) return;
+  of_[slot].reset();
+  ends_.clear(slot);
+}
+
+template <class Motion>
+void Tumbling<Motion>::begin(BodySlot slot, const RotationPiece& piece) {
+  of_[slot]->ahead = piece.orientation;
+  of_[slot]->astray = false;
+  set_end(slot, piece.end);
+}
+
+template <class Motion>
+void Tumbling<Motion>::set_end(BodySlot slot, double end) {
+  of_[slot]->ends = bodies_[slot].turns_until = end;
+  ends_.set(slot, end);
+}
+
+template <class Motion>
+Motion Tumbling<Motion>::motion_of(const Body& body, const Quaterniond& orientation, const RotationPiece& piece,
+                                   double t) const {
+  Motion motion;
+  motion.path = body.path.start == t ? body.path : body.path.restarted(t);
+  motion.orientation = orientation;
+  motion.angular_velocity = piece.angular_velocity;
+  return motion;
+}
+
+template <class Motion>
+Motion Tumbling<Motion>::take_up(BodySlot slot, const Motion& given, double t) {
+  Body& body = *of_[slot];
+  body.path = given.path;
+  const bool goes_on = body.ends > t && given.angular_velocity == bodies_.motion(slot).angular_velocity;
+  if (bodies_[slot].entered && goes_on && !bodies_.is_jump(slot, given, t)) return given.restarted(t);
+  const Quaterniond orientation = unit(given.restarted(t).orientation);
+  body.state.orientation = of_axes(body.inertia, orientation);
+  body.state.momentum = angular_momentum(body.inertia, body.state.orientation, given.angular_velocity);
+  body.state.time = t;
+  const RotationPiece piece = rotation_piece(body.inertia, body.state, t, body.state.orientation, error_);
+  begin(slot, piece);
+  return motion_of(body, orientation, piece, t);
+}
+
+template <class Motion>
+typename Tumbling<Motion>::Piece Tumbling<Motion>::take_next() {
+  const double t = next_time();
+  const BodySlot slot = ends_.top().slot;
+  Body& body = *of_[slot];
+  if (body.inertia.symmetry < 0) body.state.orientation = body.ahead, body.state.time = t;
+  ++counters_.rotation_pieces;
+  if (!body.astray) {
+    const RotationPiece piece = rotation_piece(body.inertia, body.state, t, body.ahead, error_);
+    const Motion motion = motion_of(body, of_body(body.inertia, body.ahead), piece, t);
+    begin(slot, piece);
+    return {slot, motion};
+  }
+  const Quaterniond orientation = bodies_.motion(slot).restarted(t).orientation;
+  const RotationPiece piece = way_back(slot, orientation, t);
+  begin(slot, piece);
+  return {slot, motion_of(body, orientation, piece, t)};
+}
+
+template <class Motion>
+void Tumbling<Motion>::meet(BodySlot slot, const Quaterniond& as_it_moves, double t) {
+  constexpr double farthest = 1.75;  // of the option: a piece that leads back in part adds a quarter
+  Body& body = *of_[slot];
+  if (t > body.state.time) {
+    body.state.orientation = orientation_at(body.inertia, body.state, t);
+    body.state.time = t;
+  }
+  const Quaterniond orientation = of_axes(body.inertia, as_it_moves);
+  if (!(angle_between(body.state.orientation, orientation) > farthest * error_)) return;
+  body.state.orientation = unit(orientation);
+  ++counters_.orientation_resets;
+}
+
+template <class Motion>
+Vector3d Tumbling<Motion>::angular_velocity(BodySlot slot) const {
+  return collision::angular_velocity(of_[slot]->inertia, of_[slot]->state);
+}
+
+template <class Motion>
+Eigen::Matrix3d Tumbling<Motion>::inverse_inertia(BodySlot slot) const {
+  return collision::inverse_inertia(of_[slot]->inertia, of_[slot]->state.orientation);
+}
+
+/// A bulge of a quarter of the option keeps a piece that begins off by the option, or by twice that, from being off by
+/// more: d (1 - s) + 4 (error / 4) s (1 - s) <= d for d >= error.
+template <class Motion>
+RotationPiece Tumbling<Motion>::way_back(BodySlot slot, const Quaterniond& as_it_moves, double t) const {
+  const Body& body = *of_[slot];
+  return rotation_piece(body.inertia, body.state, t, of_axes(body.inertia, as_it_moves), error_ / 4);
+}
+
+/// One that does not lead back at all is off by a h^2 / 2 more at its end, four times the bulge: half as long, by a
+/// quarter of the option.
+template <class Motion>
+void Tumbling<Motion>::follow(BodySlot slot, const RotationPiece& piece, bool whole, double t) {
+  begin(slot, piece);
+  if (whole || piece.end == never) return;
+  Body& body = *of_[slot];
+  body.astray = true;
+  set_end(slot, std::max(t + (piece.end - t) / 2, next_up(t)));
+  body.ahead = orientation_at(body.inertia, body.state, body.ends);
+}
+
+template <class Motion>
+FreeTurning Tumbling<Motion>::turning(BodySlot slot, double t) const {
+  const Body& body = *of_[slot];
+  const RotationState then{body.state.momentum, orientation_at(body.inertia, body.state, t), t};
+  return {of_body(body.inertia, then.orientation), collision::angular_velocity(body.inertia, then), then.momentum};
+}
+
+template <class Motion>
+void Tumbling<Motion>::audit(double t) const {
+  constexpr double farthest = 2.0 + 0x1p-10;  // of the option, and some for the sum of small rotations
+  for (BodySlot slot = 0; slot < of_.size(); ++slot) {
+    if (!of_[slot] || !bodies_.entered(slot)) continue;
+    const auto need = [&](bool right, const char* what) {
+      if (!right) throw AuditFailure("World: body " + std::to_string(bodies_.id_of(slot)) + ": " + what);
+    };
+    const Body& body = *of_[slot];
+    need(body.ends >= t, "its piece of rotation is over");
+    need(ends_.time(slot) == body.ends, "the end of its piece of rotation is not in the queue");
+    const Quaterniond moves = bodies_.motion(slot).restarted(t).orientation;
+    need(angle_between(moves, turning(slot, t).orientation) <= farthest * error_, "it is off its free rotation");
+  }
+}
+
+template <class Motion>
+void Tumbling<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, double now) const {
+  for (BodySlot slot = 0; slot < bodies.bodies.size(); ++slot) {
+    image::require(!bodies.alive(slot) || bodies.bodies[slot].tumbles == (slot < of.size() && of[slot]), "tumbling",
+                   slot, "is of no body, or missing");
+  }
+  for (BodySlot slot = 0; slot < of.size(); ++slot) {
+    if (!of[slot]) continue;
+    const Body& body = *of[slot];
+    const auto need = [slot](bool right, const char* what) { image::require(right, "tumbling", slot, what); };
+    const auto is_rotation = [](const Quaterniond& q) {
+      const double length = norm(q);
+      return length > 0.5 && length < 2;
+    };
+    need(bodies.alive(slot), "is of no body");
+    const PrincipalInertia& inertia = body.inertia;
+    need(inertia.moments.allFinite() && inertia.moments.minCoeff() > 0, "its moments are not > 0");
+    need(inertia.symmetry >= -1 && inertia.symmetry < 3, "has no such axis");
+    need(is_rotation(inertia.axes) && is_rotation(body.state.orientation) && is_rotation(body.ahead),
+         "a quaternion is not of length 1");
+    need(body.state.momentum.allFinite(), "its angular momentum is not finite");
+    need(body.path.finite(), "its path is not finite");
+    need(body.state.time <= now && image::is_to_come(body.ends, now), "its piece is over, or to begin");
+  }
+}
+
+template <class Motion>
+void Tumbling<Motion>::become(const Image& image) {
+  of_ = image.of;
+  ends_.resize(0);
+  ends_.resize(of_.size());
+  for (BodySlot slot = 0; slot < of_.size(); ++slot) {
+    if (of_[slot]) set_end(slot, of_[slot]->ends);
+  }
+}
+
+#define KDS_INSTANTIATE(motion) template class Tumbling<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision

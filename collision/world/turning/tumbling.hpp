@@ -1,0 +1,146 @@
+// Bodies that precess: those that turn freely and whose moments of inertia differ.
+#pragma once
+
+#include "collision/body_motion.hpp"
+#include "collision/response/free_rotation.hpp"
+#include "collision/response/rotation_piece.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/image_tools.hpp"
+#include "collision/world/turning/no_tumbling.hpp"
+#include "collision/world_counters.hpp"
+#include "collision/world_options.hpp"
+#include "kds/events/dary_queue.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <optional>
+#include <vector>
+
+namespace kds::collision {
+
+namespace detail {
+
+/// A body that precesses.
+template <class Motion>
+struct Tumbler {
+  PrincipalInertia inertia;
+  /// Its free rotation: the angular momentum, and the orientation at the last contact or, of bodies that are no tops,
+  /// where the present piece begins. That is not the orientation of the motion, which is off by up to the option.
+  RotationState state{};
+  PathOf<Motion> path{};  ///< as it was given or came out of an impulse: pieces restart it, but do not add up roundings
+  double ends = never;    ///< when the present piece does
+  Eigen::Quaterniond ahead = Eigen::Quaterniond::Identity();  ///< the orientation of the free rotation then
+  bool astray = false;                                        ///< whether the present piece ends elsewhere
+};
+
+template <class Archive, class Motion>
+void archive_members(Archive& archive, Tumbler<Motion>& body) {
+  const auto quaternion = [&archive](Eigen::Quaterniond& q) {
+    archive(q.coeffs()[0], q.coeffs()[1], q.coeffs()[2], q.coeffs()[3]);
+  };
+  image::vector(archive, body.inertia.moments), quaternion(body.inertia.axes), archive(body.inertia.symmetry);
+  image::vector(archive, body.state.momentum), quaternion(body.state.orientation), archive(body.state.time);
+  archive(body.path, body.ends), quaternion(body.ahead), archive(body.astray);
+}
+
+}  // namespace detail
+
+/// The bodies of a world that precess: how they would turn by themselves, and the pieces of constant angular velocity
+/// that stand for that.
+///
+/// A body has an angular momentum, which is changed by contacts and callers only, and an orientation that follows from
+/// it by Euler's equations (free_rotation.hpp): its free rotation. Its motion is a sequence of pieces. Each begins and
+/// ends with the orientation of the free rotation, and differs from it by at most WorldOptions::orientation_error in
+/// between (rotation_piece.hpp). Contact times are those of the pieces. Impulses are calculated with the free rotation,
+/// so that energy and momenta are conserved. The piece after a contact begins with the orientation that the motion has,
+/// and leads back to the free rotation.
+///
+/// Laws:
+/// 1. The angular momentum is the same, to the bit, from one contact to the next.
+/// 2. The motion differs from the free rotation by at most the option until the first contact, and always by at most
+///    twice the option. If a sequence of contacts keeps a body from turning back so that it would differ by more, the
+///    free rotation is set to the orientation of the motion, which changes the energy by that difference times the
+///    torque of Euler's equations. These resets are counted (orientation_resets).
+/// 3. States and pieces depend on contacts and on calls of the user only, not on windows, broad phases or snapshots.
+///
+/// Cost: nothing for other bodies; 2 us a piece and O(log n), beside the tests of its pairs.
+template <class Motion>
+class Tumbling {
+ public:
+  using Body = detail::Tumbler<Motion>;
+
+  Tumbling(Bodies<Motion>& bodies, const WorldOptions& options, WorldCounters& counters)
+      : bodies_(bodies), error_(options.orientation_error), counters_(counters) {}
+
+  /// A body comes that will precess.
+  void add(BodySlot slot, const PrincipalInertia& inertia);
+  void remove(BodySlot slot);
+  bool has(BodySlot slot) const { return slot < of_.size() && of_[slot]; }
+
+  /// A body is given a motion at t; returns the first piece. The angular momentum follows from the angular velocity,
+  /// except where that is bit for bit the one that the body has already and the body does not jump: then the angular
+  /// momentum stays as it is. Precondition: the motion has started.
+  Motion take_up(BodySlot slot, const Motion& given, double t);
+  /// The path of its centre has changed.
+  void set_path(BodySlot slot, const PathOf<Motion>& path) { of_[slot]->path = path; }
+
+  /// When the next piece begins.
+  double next_time() const { return ends_.empty() ? never : ends_.top().time; }
+  struct Piece {
+    BodySlot slot;
+    Motion motion;
+  };
+  /// The piece of the first body of which one begins at next_time(), by slot.
+  Piece take_next();
+
+  /// A body with this orientation has a contact at t: advances its free rotation to t. The next three functions are
+  /// about that time: angular velocity, and inverse tensor of inertia in the axes of the world; an impulse.
+  void meet(BodySlot slot, const Eigen::Quaterniond& as_it_moves, double t);
+  Eigen::Vector3d angular_velocity(BodySlot slot) const;
+  Eigen::Matrix3d inverse_inertia(BodySlot slot) const;
+  void push(BodySlot slot, const Eigen::Vector3d& angular_impulse) { of_[slot]->state.momentum += angular_impulse; }
+
+  /// The piece that leads from this orientation back to the free rotation.
+  RotationPiece way_back(BodySlot slot, const Eigen::Quaterniond& as_it_moves, double t) const;
+  /// The body takes up that piece, or if it cannot turn back as fast a part of that turn, for half the time.
+  void follow(BodySlot slot, const RotationPiece& piece, bool whole, double t);
+
+  /// Its free rotation at t.
+  FreeTurning turning(BodySlot slot, double t) const;
+
+  /// Throws AuditFailure if a motion is off its free rotation by more than it may be, or a piece is over.
+  void audit(double t) const;
+
+  /// All of it, as plain data.
+  struct Image {
+    std::vector<std::optional<Body>> of;
+
+    template <class Archive>
+    void archive(Archive& archive) {
+      archive(of);
+    }
+    /// Throws std::runtime_error, naming what is wrong.
+    void check(const typename Bodies<Motion>::Image& bodies, double now) const;
+  };
+  Image image() const { return {of_}; }
+  void become(const Image& image);
+
+ private:
+  void begin(BodySlot slot, const RotationPiece& piece);
+  void set_end(BodySlot slot, double end);
+  Motion motion_of(const Body& body, const Eigen::Quaterniond& orientation, const RotationPiece& piece, double t) const;
+
+  Bodies<Motion>& bodies_;  ///< which are told when pieces end
+  const double error_;
+  WorldCounters& counters_;
+  std::vector<std::optional<Body>> of_;  ///< by slot, up to the last that has had one
+  DaryQueue<> ends_;                     ///< slots are bodies
+};
+
+#ifdef KDS_TURNING
+extern template class Tumbling<certificates::RigidMotion<1>>;
+extern template class Tumbling<certificates::RigidMotion<2>>;
+#endif
+
+}  // namespace kds::collision
