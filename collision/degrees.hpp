@@ -22,3 +22,12 @@
 #define KDS_GREATEST_DEGREE 2
 #define KDS_FOR_ALL_DEGREES(declare) declare(1) declare(2)
 #endif
+
+/// KDS_TEMPLATE_PART class X<...>; instantiates a class template in each of the files that define some of its members
+/// except its own, which ends in `template class X<...>;`: what is defined there. Where all of them are compiled as one
+/// (KDS_PARTS_TOGETHER), its own file comes last and instantiates all.
+#ifdef KDS_PARTS_TOGETHER
+#define KDS_TEMPLATE_PART extern template
+#else
+#define KDS_TEMPLATE_PART template
+#endif

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 // All of a query in one function saves a sixth of its time. Sanitizers would make more of that than a compiler can
 // take.
@@ -48,21 +49,29 @@ class Search {
  public:
   /// `paths` makes the paths, in their place.
   template <class Paths>
-  Search(const Paths& paths, const ContactTolerance& tolerance, double t0, double t1)
-      : paths_(paths()), t0_(t0), t1_(t1) {
+  Search(const Paths& paths, const ContactTolerance& tolerance, double t0, double t1, double from)
+      : paths_(paths()), t0_(t0), t1_(t1), from_(from) {
+    // Three roundings, downward: never after the time meant.
+    if (from > t0) begin_ = std::min((from - t0) / (t1 - t0) * (1 - 0x1p-50), 1.0);
+    if (!(tolerance.thickness >= 0 && tolerance.thickness < std::numeric_limits<double>::infinity())) {
+      throw std::invalid_argument("feature contact: the thickness must be finite and >= 0");
+    }
     if (paths_.size > 0 && !(paths_.size > least_size && paths_.size < greatest_size)) rescale();
-    margin_ = axis_margin(paths_);
+    thickness_ = tolerance.thickness * scale_;
+    // Features are never farther apart than twice their size: a greater thickness is as good, and does not overflow.
+    if (scale_ != 1 && thickness_ > 4 * paths_.size) thickness_ = 4 * paths_.size;
+    margin_ = axis_margin(paths_, thickness_);
     tolerance_ = std::max(std::min(tolerance.absolute * scale_, tolerance.relative * paths_.size),
-                          std::max(least_tolerance * paths_.size, 8 * margin_));
+                          std::max(least_tolerance * (paths_.size + thickness_), 8 * margin_));
     // The points of the patch meant are within sqrt(3) paths.error of those computed, up to a few roundings.
-    const double inner = tolerance_ - 5 * margin_;
+    const double inner = thickness_ + tolerance_ - 5 * margin_;
     inner2_ = inner * inner;
   }
 
   KDS_FLATTEN FeatureContact run() {
     result_.tolerance = tolerance_ * unscale_;
-    if (boxes_apart(paths_, margin_)) return result_;
-    double s = 0;
+    if (boxes_apart(paths_, margin_ + thickness_)) return result_;
+    double s = begin_;
     for (;; ++result_.steps) {
       const PlacedPatch<kind> patch(paths_.at(s));
       const PatchPoint point = patch.closest();
@@ -82,9 +91,9 @@ class Search {
 
  private:
   double free_until(const PlacedPatch<kind>& patch, const PatchPoint& point, double s) {
-    double until = separated_until(paths_, margin_, point.position, s);
+    double until = separated_until(paths_, margin_, thickness_, point.position, s);
     if (until >= 1) return until;
-    if (!turning_) turning_.emplace(paths_);
+    if (!turning_) turning_.emplace(paths_, thickness_);
     const int steps = result_.steps;
     until = std::max(until,
                      steps < plane_steps ? turning_->separated_by_plane_until(s) : turning_->separated_until(point, s));
@@ -93,7 +102,9 @@ class Search {
           std::max(until, turning_->separated_turning_on(normalized(axis_), axis_time_, normalized(point.position), s));
     }
     if (!(until > s)) {
-      for (const auto& axis : patch.careful_axes()) until = std::max(until, separated_until(paths_, margin_, axis, s));
+      for (const auto& axis : patch.careful_axes()) {
+        until = std::max(until, separated_until(paths_, margin_, thickness_, axis, s));
+      }
     }
     return until;
   }
@@ -102,12 +113,12 @@ class Search {
     const auto w = patch.weights(point);
     const Eigen::Vector3d p = patch.position(w);
     if (squared_norm(p) > inner2_) return false;
-    if (s == 0) {
+    if (s == begin_) {
       describe(patch, w, p, s, FeatureContactStatus::at_start);
       return true;
     }
     describe(patch, w, p, s, FeatureContactStatus::undecided);
-    if (point.part == PatchPart::interior) {
+    if (point.part == PatchPart::interior && thickness_ == 0) {
       if (const auto end = Crossing<kind, Degree>(paths_, *turning_, patch, s).until(w)) {
         result_.status = FeatureContactStatus::contact;
         result_.latest = std::min(clock(*end, 1), t1_);
@@ -119,7 +130,7 @@ class Search {
   void describe(const PlacedPatch<kind>& patch, const std::array<double, 4>& w, const Eigen::Vector3d& p, double s,
                 FeatureContactStatus status) {
     result_.status = status;
-    result_.time = s > 0 ? std::max(clock(s, -1), t0_) : t0_;
+    result_.time = s > begin_ ? std::max(clock(s, -1), from_) : from_;
     // While the clock is rounded (see clock()) a corner moves on: by sqrt(3) 2 size a unit of s at most.
     const double rounding = s > 0 ? 0x1p-50 * (std::abs(result_.time) / (t1_ - t0_) + s) : 0;
     const double distance = norm(p);
@@ -166,8 +177,11 @@ class Search {
   std::optional<TurningAxis<kind, Degree>> turning_;  // once a fixed axis has failed: before any s > 0
   double t0_;
   double t1_;
+  double from_;
+  double begin_ = 0;  // s at that time
   double scale_ = 1;  // a power of two
   double unscale_ = 1;
+  double thickness_;
   double margin_;
   double tolerance_;
   double inner2_;
@@ -180,13 +194,13 @@ template <Patch kind, int Degree>
 FeatureContact search(const std::array<const PointMotion<Degree>*, 4>& points, double t0, double t1,
                       const ContactTolerance& tolerance) {
   const auto paths = [&] { return patch_paths<kind, Degree>(points, t0, t1); };
-  return Search<kind, Degree>(paths, tolerance, t0, t1).run();
+  return Search<kind, Degree>(paths, tolerance, t0, t1, t0).run();
 }
 
-template <Patch kind>
-FeatureContact search(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
+template <Patch kind, int Degree>
+FeatureContact search(const ControlPoints<Degree>& control, double t0, double t1, double from,
                       const ContactTolerance& tolerance) {
-  return Search<kind, 1>([&] { return patch_paths<kind>(begin, end); }, tolerance, 0, 1).run();
+  return Search<kind, Degree>([&] { return patch_paths<kind, Degree>(control); }, tolerance, t0, t1, from).run();
 }
 
 }  // namespace
@@ -205,24 +219,37 @@ FeatureContact edge_edge_contact(const PointMotion<Degree>& a, const PointMotion
   return search<Patch::parallelogram, Degree>({&a, &b, &c, &d}, t0, t1, tolerance);
 }
 
+template <int Degree>
+FeatureContact vertex_face_contact(const ControlPoints<Degree>& control, double t0, double t1, double from,
+                                   const ContactTolerance& tolerance) {
+  return search<Patch::triangle, Degree>(control, t0, t1, from, tolerance);
+}
+
+template <int Degree>
+FeatureContact edge_edge_contact(const ControlPoints<Degree>& control, double t0, double t1, double from,
+                                 const ContactTolerance& tolerance) {
+  return search<Patch::parallelogram, Degree>(control, t0, t1, from, tolerance);
+}
+
 FeatureContact vertex_face_contact(const std::array<Eigen::Vector3d, 4>& begin,
                                    const std::array<Eigen::Vector3d, 4>& end, const ContactTolerance& tolerance) {
-  return search<Patch::triangle>(begin, end, tolerance);
+  return vertex_face_contact<1>({begin, end}, 0, 1, 0, tolerance);
 }
 
 FeatureContact edge_edge_contact(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end,
                                  const ContactTolerance& tolerance) {
-  return search<Patch::parallelogram>(begin, end, tolerance);
+  return edge_edge_contact<1>({begin, end}, 0, 1, 0, tolerance);
 }
 
-template FeatureContact vertex_face_contact(const PointMotion<1>&, const PointMotion<1>&, const PointMotion<1>&,
-                                            const PointMotion<1>&, double, double, const ContactTolerance&);
-template FeatureContact vertex_face_contact(const PointMotion<2>&, const PointMotion<2>&, const PointMotion<2>&,
-                                            const PointMotion<2>&, double, double, const ContactTolerance&);
-template FeatureContact edge_edge_contact(const PointMotion<1>&, const PointMotion<1>&, const PointMotion<1>&,
-                                          const PointMotion<1>&, double, double, const ContactTolerance&);
-template FeatureContact edge_edge_contact(const PointMotion<2>&, const PointMotion<2>&, const PointMotion<2>&,
-                                          const PointMotion<2>&, double, double, const ContactTolerance&);
+#define KDS_INSTANTIATE(name, degree)                                                                              \
+  template FeatureContact name(const PointMotion<degree>&, const PointMotion<degree>&, const PointMotion<degree>&, \
+                               const PointMotion<degree>&, double, double, const ContactTolerance&);               \
+  template FeatureContact name<degree>(const ControlPoints<degree>&, double, double, double, const ContactTolerance&);
+KDS_INSTANTIATE(vertex_face_contact, 1)
+KDS_INSTANTIATE(vertex_face_contact, 2)
+KDS_INSTANTIATE(edge_edge_contact, 1)
+KDS_INSTANTIATE(edge_edge_contact, 2)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::certificates
 

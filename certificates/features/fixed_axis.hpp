@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/features/closest_point.hpp"
+#include "certificates/vectors.hpp"
 
 #include <cmath>
 #include <limits>
@@ -12,11 +13,11 @@ namespace kds::certificates {
 ///
 /// axis . corner(s), computed as a polynomial of s, differs from what is meant by at most paths.error for the patch,
 /// and by less than 52 x 2^-53 size for the arithmetic: 3 for the coefficients, 1 for taking off the margin, and for
-/// quadratic paths 4 roundings of moving to s and 8 for the root, of coefficients whose parts sum to 4 size. See
-/// docs/features.md, "Rounding".
+/// quadratic paths 4 roundings of moving to s and 8 for the root, of coefficients whose parts sum to 4 size. Where
+/// features have a thickness it is one more of these parts. See docs/features.md, "Rounding".
 template <int Degree>
-double axis_margin(const PatchPaths<Degree>& paths) {
-  return paths.error + 64 * half_ulp * paths.size;
+double axis_margin(const PatchPaths<Degree>& paths, double thickness) {
+  return paths.error + 64 * half_ulp * (paths.size + thickness);
 }
 
 namespace detail {
@@ -35,12 +36,16 @@ inline double first_root(double c0, double c1, double c2) {
 
 }  // namespace detail
 
-/// The last r up to which, from s on, `axis` certifiably separates all corners of the patch from the origin; infinity
-/// if that is up to the end of time, s if it does not separate now. Any axis will do: a bad one is only of no use.
+/// The last r up to which, from s on, `axis` certifiably keeps all corners of the patch farther than the margin and
+/// `thickness` from the origin; infinity if that is up to the end of time, s if it does not do so now. Any axis will
+/// do: a bad one is only of no use.
 template <int Degree>
-double separated_until(const PatchPaths<Degree>& paths, double margin, const Eigen::Vector3d& axis, double s) {
+double separated_until(const PatchPaths<Degree>& paths, double margin, double thickness, const Eigen::Vector3d& axis,
+                       double s) {
   constexpr double none = std::numeric_limits<double>::infinity();
-  const Lanes level(margin * (std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2])));
+  double least = margin * (std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]));
+  if (thickness > 0) least += thickness * norm(axis);  // their roundings are in the margin
+  const Lanes level(least);
   const Lanes height = detail::dot(axis, paths.c[0]) - level;
   const Lanes rate = detail::dot(axis, paths.c[1]);
   if constexpr (Degree == 1) {
@@ -58,8 +63,8 @@ double separated_until(const PatchPaths<Degree>& paths, double margin, const Eig
   }
 }
 
-/// Whether a coordinate axis separates the patch from the origin for all of [0, 1]: the boxes around the two features'
-/// paths are apart.
+/// Whether a coordinate axis separates the patch from the origin, by more than the margin, for all of [0, 1]: the boxes
+/// around the two features' paths are apart.
 template <int Degree>
 bool boxes_apart(const PatchPaths<Degree>& paths, double margin) {
   for (std::size_t d = 0; d < 3; ++d) {

@@ -148,12 +148,13 @@ PatchPaths<Degree> patch_paths(const std::array<const PointMotion<Degree>*, 4>& 
   return paths;
 }
 
-/// Of four points on straight paths from begin[k] at s = 0 to end[k] at s = 1.
+/// Of four points by the control points of their paths.
 ///
-/// Error: one rounding for each end's difference and one for the difference of the two; the ends are no larger than
-/// `size`, so three roundings of it.
-template <Patch kind>
-PatchPaths<1> patch_paths(const std::array<Eigen::Vector3d, 4>& begin, const std::array<Eigen::Vector3d, 4>& end) {
+/// Error: differences d[i] of control points are rounded once, and none is larger than `size`. Degree 1: c[1] = d[1] -
+/// d[0] is rounded once more: three roundings of size. Degree 2: c[1] = 2 (d[1] - d[0]), 5 roundings with those of the
+/// differences; c[2] = (d[2] - d[1]) - (d[1] - d[0]), 4 for the differences and 3 for the subtractions; 13 in all.
+template <Patch kind, int Degree>
+PatchPaths<Degree> patch_paths(const std::array<std::array<Eigen::Vector3d, 4>, std::size_t{Degree} + 1>& control) {
   const auto difference = [](const std::array<Eigen::Vector3d, 4>& p, int d) {
     if constexpr (kind == Patch::triangle) {
       return Lanes(p[0][d]) - Lanes(p[1][d], p[2][d], p[3][d], p[1][d]);
@@ -161,14 +162,20 @@ PatchPaths<1> patch_paths(const std::array<Eigen::Vector3d, 4>& begin, const std
       return Lanes(p[0][d], p[1][d], p[1][d], p[0][d]) - Lanes(p[2][d], p[2][d], p[3][d], p[3][d]);
     }
   };
-  PatchPaths<1> paths;
+  PatchPaths<Degree> paths;
   for (int d = 0; d < 3; ++d) {
     const auto i = static_cast<std::size_t>(d);
-    paths.c[0][i] = difference(begin, d);
-    paths.c[1][i] = difference(end, d) - paths.c[0][i];
+    paths.c[0][i] = difference(control[0], d);
+    const Lanes first = difference(control[1], d) - paths.c[0][i];
+    if constexpr (Degree == 1) {
+      paths.c[1][i] = first;
+    } else {
+      paths.c[1][i] = first * Lanes(2.0);
+      paths.c[2][i] = (difference(control[2], d) - difference(control[1], d)) - first;
+    }
   }
   paths.size = detail::size_of(paths);
-  paths.error = 6 * half_ulp * paths.size;
+  paths.error = (Degree == 1 ? 6 : 16) * half_ulp * paths.size;
   return paths;
 }
 

@@ -59,6 +59,37 @@ bool all_above(const std::array<double, Count>& b, double level) {
   return least > level;
 }
 
+/// The part of a stretch before the polynomial can have come down to the level, which its first coefficient is above.
+/// The steepest line from the first control point down to another one lies below all of them.
+template <std::size_t Count>
+double steepest_descent(const std::array<double, Count>& b, double level) {
+  double steepest = 0;
+  for (std::size_t j = 1; j < Count; ++j) {
+    steepest = std::max(steepest, (b[0] - b[j]) * (Count - 1) / static_cast<double>(j));
+  }
+  return (b[0] - level) / steepest * (1 - 0x1p-40);
+}
+
+/// Bernstein coefficients, of a higher degree, of a polynomial that is not below the length of n on [s, s + width].
+template <int Degree, int NormalDegree>
+std::array<double, std::size_t{Degree} + 1> bound_of_length(const std::array<Polynomial<NormalDegree>, 3>& n, double s,
+                                                            double width) {
+  std::array<std::array<double, std::size_t{NormalDegree} + 1>, 3> b;
+  for (std::size_t d = 0; d < 3; ++d) b[d] = bernstein(taylor_shift<double>(n[d], s), width);
+  std::array<double, std::size_t{Degree} + 1> length{};
+  for (std::size_t j = 0; j <= NormalDegree; ++j) {
+    length[j] = std::sqrt(b[0][j] * b[0][j] + b[1][j] * b[1][j] + b[2][j] * b[2][j]);
+  }
+  for (std::size_t degree = NormalDegree; degree < Degree; ++degree) {
+    length[degree + 1] = length[degree];
+    for (std::size_t j = degree; j > 0; --j) {
+      const double part = static_cast<double>(j) / static_cast<double>(degree + 1);
+      length[j] = part * length[j - 1] + (1 - part) * length[j];
+    }
+  }
+  return length;
+}
+
 /// A guess of the last x in (0, width) before p comes down to the level, by Halley's method from 0; 0 if p turns up
 /// first.
 ///
@@ -124,13 +155,44 @@ double positive_until(const Polynomial<Degree>& p, double s, double margin) {
       width = std::min(1 - s, 4 * width);
       continue;
     }
-    // The steepest line from the first control point down to another one lies below all of them.
-    double steepest = 0;
-    for (std::size_t j = 1; j <= Degree; ++j) {
-      steepest = std::max(steepest, (b[0] - b[j]) * Degree / static_cast<double>(j));
-    }
-    s += (b[0] - level) / steepest * (1 - 0x1p-40) * width;
+    s += detail::steepest_descent(b, level) * width;
     if (b[0] - level < 0x1p-10 * start) return s;  // near the root: what is left is for whoever asked to see to
+    width = std::min(1 - s, 0.5 * width);
+  }
+  return std::min(s, 1.0);
+}
+
+/// An r in [s, 1] such that p > thickness |n| + margin on all of [s, r]; near the first time at which it is not, or 1.
+/// It is s where that is not certain at s. Precondition: 0 <= s <= 1; n is of no higher degree than p.
+///
+/// The length of a sum is at most the sum of the lengths: so |n| is below the polynomial whose Bernstein coefficients
+/// are the lengths of those of n, and by less the shorter the stretch is, in square. With it the certificate is a
+/// polynomial again, for the stretch at hand, and the stretch is chosen as by positive_until().
+///
+/// Rounding: as there, with the coefficients of n and their lengths, three roundings more each, times the thickness;
+/// raising the degree is of sums with weights that sum to 1, 2 Degree roundings of parts no larger than |n|.
+template <int Degree, int NormalDegree>
+double positive_beyond_until(const Polynomial<Degree>& p, const std::array<Polynomial<NormalDegree>, 3>& n,
+                             double thickness, double s, double margin) {
+  static_assert(NormalDegree <= Degree && Degree <= 10);
+  constexpr int most_stretches = 64;
+  const double lengths = norm(n[0]) + norm(n[1]) + norm(n[2]);
+  const double level = margin + 0x1p-46 * (norm(p) + thickness * lengths);
+  double width = 1 - s;
+  double start = 0;
+  for (int i = 0; i < most_stretches && s < 1; ++i) {
+    auto b = detail::bernstein(taylor_shift<double>(p, s), width);
+    const auto length = detail::bound_of_length<Degree>(n, s, width);
+    for (std::size_t j = 0; j <= Degree; ++j) b[j] -= thickness * length[j];
+    if (!(b[0] > level)) return s;
+    if (i == 0) start = b[0] - level;
+    if (detail::all_above(b, level)) {
+      s += width;
+      width = std::min(1 - s, 4 * width);
+      continue;
+    }
+    s += detail::steepest_descent(b, level) * width;
+    if (b[0] - level < 0x1p-10 * start) return s;
     width = std::min(1 - s, 0.5 * width);
   }
   return std::min(s, 1.0);

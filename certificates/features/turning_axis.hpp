@@ -25,11 +25,13 @@ namespace kds::certificates {
 /// A corner is approached with the axes of its two edges, an edge also with the normal. Each failure of such a
 /// certificate uses up a root, or a quarter turn: a query takes few of these steps, whatever the gap (docs/features.md,
 /// "Steps").
+///
+/// Where features have a thickness the certificates are n(s) . corner(s) > thickness |n(s)| (positive_beyond_until()).
 template <Patch kind, int Degree>
 class TurningAxis {
  public:
-  explicit TurningAxis(const PatchPaths<Degree>& paths) : paths_(paths) {
-    const auto n = cross(side(0, 1), side(0, kind == Patch::triangle ? 2 : 3));
+  explicit TurningAxis(const PatchPaths<Degree>& paths, double thickness = 0) : paths_(paths), thickness_(thickness) {
+    const auto n = plane();
     const auto q0 = corner(0);
     volume_ = dot(n.v, q0.v);
     volume_error_ = dot_error(n, q0);
@@ -43,7 +45,9 @@ class TurningAxis {
   /// As separated_until() in fixed_axis.hpp, with the normal of the patch, n = u x v: all corners are at one height,
   /// n . q0.
   double separated_by_plane_until(double s) const {
-    return positive_until(volume_(s) < 0 ? -volume_ : volume_, s, volume_error_);
+    const Polynomial<3 * Degree> height = volume_(s) < 0 ? -volume_ : volume_;
+    if (thickness_ == 0) return positive_until(height, s, volume_error_);
+    return beyond(height, volume_error_, plane(), s);
   }
 
   /// The same with the axes that belong to the part of the patch on which `point` lies, and to the larger parts next to
@@ -65,7 +69,7 @@ class TurningAxis {
     for (int d = 0; d < 3; ++d) axis[static_cast<std::size_t>(d)] = {{now[d] - s * rate[d], rate[d]}};
     const Bounded<1> n{axis, norm(axis), 0};
     double until = 1;
-    for (std::size_t k = 0; k < 4 && until > s; ++k) until = std::min(until, positive(n, corner(k), s));
+    for (std::size_t k = 0; k < 4 && until > s; ++k) until = std::min(until, positive(n, corner(k), n, s));
     return until;
   }
 
@@ -108,6 +112,7 @@ class TurningAxis {
     const Vector q = path(k);
     return {q, norm(q), paths_.error};
   }
+  Bounded<2 * Degree> plane() const { return cross(side(0, 1), side(0, kind == Patch::triangle ? 2 : 3)); }
   Bounded<Degree> side(std::size_t from, std::size_t to) const {
     const Vector e = minus(path(to), path(from));
     const double size = norm(e);
@@ -129,9 +134,17 @@ class TurningAxis {
     return 3.03 * (a.size * b.error + b.size * a.error + a.error * b.error) + roundings * a.size * b.size;
   }
 
-  template <int A, int B>
-  static double positive(const Bounded<A>& a, const Bounded<B>& b, double s) {
-    return positive_until(dot(a.v, b.v), s, dot_error(a, b));
+  /// How long `height`, off by `error` at most, is above the thickness times the length of n.
+  template <int P, int N>
+  double beyond(const Polynomial<P>& height, double error, const Bounded<N>& n, double s) const {
+    return positive_beyond_until(height, n.v, thickness_, s, error + thickness_ * (1.74 * n.error));  // sqrt(3)
+  }
+  /// The same of a . b.
+  template <int A, int B, int N>
+  double positive(const Bounded<A>& a, const Bounded<B>& b, const Bounded<N>& n, double s) const {
+    const auto height = dot(a.v, b.v);
+    if (thickness_ == 0) return positive_until(height, s, dot_error(a, b));
+    return beyond(height, dot_error(a, b), n, s);
   }
 
   // The two corners that are not of the edge are as high as each other, if there are two.
@@ -141,12 +154,16 @@ class TurningAxis {
         {{{{direction[0]}}, {{direction[1]}}, {{direction[2]}}}}, direction.lpNorm<Eigen::Infinity>(), 0};
     const auto e = side(k, (k + 1) % 4);
     const auto across = cross(e, m);
-    const double own = positive(across, cross(e, corner(k)), s);
+    // n = m |e|^2 - e (e . m) = (e x m) x e.
+    const Bounded<2 * Degree> n = thickness_ > 0 ? cross(across, e) : Bounded<2 * Degree>{};
+    const double own = positive(across, cross(e, corner(k)), n, s);
     if (!(own > s)) return s;
-    return std::min(own, positive(across, cross(e, corner(kind == Patch::triangle ? (k + 2) % 3 : (k + 3) % 4)), s));
+    const std::size_t opposite = kind == Patch::triangle ? (k + 2) % 3 : (k + 3) % 4;
+    return std::min(own, positive(across, cross(e, corner(opposite)), n, s));
   }
 
   const PatchPaths<Degree>& paths_;
+  double thickness_;
   Polynomial<3 * Degree> volume_;
   double volume_error_;
 };

@@ -1,6 +1,7 @@
 // Edges of two bodies that turn: on which side of each other their lines pass.
 #pragma once
 
+#include "certificates/turning/extended_pose.hpp"
 #include "certificates/turning/rigid_motion.hpp"
 #include "certificates/turning/turned_vector.hpp"
 #include "certificates/turning/turning_terms.hpp"
@@ -65,6 +66,22 @@ struct EdgeEdgeSeparation {
     const double error = o_a.error + o_b.error + turn_a.error() * magnitude_sum(edge_a[0]) +
                          turn_b.error() * magnitude_sum(edge_b[0]) + size * (turn_a.error() + turn_b.error() + 0x1p-49);
     return bounded_value(value, magnitude_sum(u) * magnitude_sum(v), size, error);
+  }
+
+  /// The same in double-doubles, times both scales: with d in place of u, and edges that are exact.
+  Ball<DoubleDouble> extended_value(double t) const {
+    const ExtendedPose pose_a(a, t);
+    const ExtendedPose pose_b(b, t);
+    const ExtendedVector u = exact_difference(edge_a[0], edge_a[1]);
+    const ExtendedVector v = exact_difference(edge_b[0], edge_b[1]);
+    const ExtendedVector ends = pose_a(vector_of<DoubleDouble>(edge_a[0])) - pose_b(vector_of<DoubleDouble>(edge_b[0]));
+    const ExtendedVector between = pose_a.origin() - pose_b.origin();
+    const double turns = pose_a.error() + pose_b.error();
+    const double size = magnitude_sum(between) + magnitude_sum(ends);
+    const double error = pose_a.origin_error() + pose_b.origin_error() + pose_a.error() * magnitude_sum(edge_a[0]) +
+                         pose_b.error() * magnitude_sum(edge_b[0]) + size * (turns + 16 * extended_unit);
+    return bounded_value(dot(cross(pose_a(u), pose_b(v)), between + ends), pose_a.scale() * pose_b.scale(),
+                         magnitude_sum(u) * magnitude_sum(v), size, error);
   }
 
  private:

@@ -1,6 +1,7 @@
 // How the plane of a face of a body that turns leans towards an edge of another.
 #pragma once
 
+#include "certificates/turning/extended_pose.hpp"
 #include "certificates/turning/rigid_motion.hpp"
 #include "certificates/turning/turned_vector.hpp"
 #include "certificates/turning/turning_terms.hpp"
@@ -48,6 +49,19 @@ struct NormalAlongEdge {
     const double size = magnitude_sum(v);
     return bounded_value(dot(turn_a(cross(first, second)), turn_b(v)), magnitude_sum(first) * magnitude_sum(second),
                          size, size * (turn_a.error() + turn_b.error() + 0x1p-49));
+  }
+
+  /// The same in double-doubles, times both scales: with d in place of u.
+  Ball<DoubleDouble> extended_value(double t) const {
+    const ExtendedPose pose_a(a, t);
+    const ExtendedPose pose_b(b, t);
+    const ExtendedVector first = exact_difference(corners[0], corners[1]);
+    const ExtendedVector second = exact_difference(corners[0], corners[2]);
+    const ExtendedVector v = exact_difference(edge[0], edge[1]);
+    const double size = magnitude_sum(v);
+    return bounded_value(dot(pose_a(cross(first, second)), pose_b(v)), pose_a.scale() * pose_b.scale(),
+                         magnitude_sum(first) * magnitude_sum(second), size,
+                         size * (pose_a.error() + pose_b.error() + 16 * extended_unit));
   }
 };
 

@@ -1,6 +1,7 @@
 // A vertex of a body that turns beyond the plane of a face of another.
 #pragma once
 
+#include "certificates/turning/extended_pose.hpp"
 #include "certificates/turning/rigid_motion.hpp"
 #include "certificates/turning/turned_vector.hpp"
 #include "certificates/turning/turning_terms.hpp"
@@ -59,6 +60,23 @@ struct VertexFaceSeparation {
     const double value = dot(turn_b(normal), g) - dot(normal, corners[0]);
     const double error = x.error + o.error + size * (turn_b.error() + 0x1p-49) + 0x1p-49 * magnitude_sum(corners[0]);
     return bounded_value(value, lengths, size + magnitude_sum(corners[0]), error);
+  }
+
+  /// The same in double-doubles, times both scales: with d in place of u.
+  Ball<DoubleDouble> extended_value(double t) const {
+    const ExtendedPose pose_a(a, t);
+    const ExtendedPose pose_b(b, t);
+    const ExtendedVector first = exact_difference(corners[0], corners[1]);
+    const ExtendedVector second = exact_difference(corners[0], corners[2]);
+    const ExtendedVector normal = cross(first, second);
+    const ExtendedVector between = pose_a.origin() - pose_b.origin();
+    const ExtendedVector g = between + pose_a(vector_of<DoubleDouble>(vertex));
+    const double size = magnitude_sum(between) + magnitude_sum(vertex);
+    const double error = pose_a.origin_error() + pose_b.origin_error() + pose_a.error() * magnitude_sum(vertex) +
+                         size * (pose_b.error() + 16 * extended_unit) + 16 * extended_unit * magnitude_sum(corners[0]);
+    return bounded_value(dot(pose_b(normal), g) - dot(normal, vector_of<DoubleDouble>(corners[0])),
+                         pose_a.scale() * pose_b.scale(), magnitude_sum(first) * magnitude_sum(second),
+                         size + magnitude_sum(corners[0]), error);
   }
 };
 

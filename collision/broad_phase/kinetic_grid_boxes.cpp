@@ -189,7 +189,7 @@ double KineticGrid<Degree>::kept_until(BodySlot id, const BoxSweep<Degree>& swee
   return expiry;
 }
 
-#define KDS_INSTANTIATE(degree) template class KineticGrid<degree>;
+#define KDS_INSTANTIATE(degree) KDS_TEMPLATE_PART class KineticGrid<degree>;
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

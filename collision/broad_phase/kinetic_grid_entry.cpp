@@ -159,7 +159,7 @@ void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span
   }
 }
 
-#define KDS_INSTANTIATE(degree) template class KineticGrid<degree>;
+#define KDS_INSTANTIATE(degree) KDS_TEMPLATE_PART class KineticGrid<degree>;
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

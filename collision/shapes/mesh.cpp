@@ -14,17 +14,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-void check_vertices(std::span<const Vector3d> vertices) {
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (!vertices[i].allFinite()) {
-      throw InvalidMesh(InvalidMesh::Part::vertex, i, "vertex " + std::to_string(i) + ": must be finite");
-    }
-    if (vertices[i].cwiseAbs().maxCoeff() > Mesh::largest_coordinate) {
-      throw InvalidMesh(InvalidMesh::Part::vertex, i, "vertex " + std::to_string(i) + ": is beyond 2^100");
-    }
-  }
-}
-
 /// Whether the corners lie in a line, as far as doubles tell. Scaled first, so that tiny triangles do not underflow.
 bool in_a_line(const Vector3d& p, const Vector3d& q, const Vector3d& r) {
   Vector3d u = q - p;
@@ -41,22 +30,12 @@ bool in_a_line(const Vector3d& p, const Vector3d& q, const Vector3d& r) {
 }
 
 void check_triangles(std::span<const Vector3d> vertices, std::span<const Mesh::Triangle> triangles) {
-  if (triangles.empty()) throw InvalidMesh(InvalidMesh::Part::whole, 0, "mesh: has no triangles");
+  check_triangle_indices(vertices.size(), triangles);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const auto& [a, b, c] = triangles[i];
-    const std::string name = "triangle " + std::to_string(i);
-    for (const std::uint32_t index : triangles[i]) {
-      if (index >= vertices.size()) {
-        throw InvalidMesh(InvalidMesh::Part::triangle, i,
-                          name + ": vertex " + std::to_string(index) + " does not exist, there are " +
-                              std::to_string(vertices.size()));
-      }
-    }
-    if (a == b || b == c || c == a) {
-      throw InvalidMesh(InvalidMesh::Part::triangle, i, name + ": names a vertex twice");
-    }
     if (in_a_line(vertices[a], vertices[b], vertices[c])) {
-      throw InvalidMesh(InvalidMesh::Part::triangle, i, name + ": is degenerate, its corners lie in a line");
+      throw InvalidMesh(InvalidMesh::Part::triangle, i,
+                        "triangle " + std::to_string(i) + ": is degenerate, its corners lie in a line");
     }
   }
 }
@@ -69,6 +48,35 @@ std::vector<Mesh::Triangle> checked(std::span<const Vector3d> vertices, std::vec
 }
 
 }  // namespace
+
+void check_vertices(std::span<const Vector3d> vertices) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (!vertices[i].allFinite()) {
+      throw InvalidMesh(InvalidMesh::Part::vertex, i, "vertex " + std::to_string(i) + ": must be finite");
+    }
+    if (vertices[i].cwiseAbs().maxCoeff() > Mesh::largest_coordinate) {
+      throw InvalidMesh(InvalidMesh::Part::vertex, i, "vertex " + std::to_string(i) + ": is beyond 2^100");
+    }
+  }
+}
+
+void check_triangle_indices(std::size_t vertices, std::span<const Mesh::Triangle> triangles) {
+  if (triangles.empty()) throw InvalidMesh(InvalidMesh::Part::whole, 0, "mesh: has no triangles");
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto& [a, b, c] = triangles[i];
+    const std::string name = "triangle " + std::to_string(i);
+    for (const std::uint32_t index : triangles[i]) {
+      if (index >= vertices) {
+        throw InvalidMesh(
+            InvalidMesh::Part::triangle, i,
+            name + ": vertex " + std::to_string(index) + " does not exist, there are " + std::to_string(vertices));
+      }
+    }
+    if (a == b || b == c || c == a) {
+      throw InvalidMesh(InvalidMesh::Part::triangle, i, name + ": names a vertex twice");
+    }
+  }
+}
 
 Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
     : vertices_(std::move(vertices)),

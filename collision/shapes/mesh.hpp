@@ -32,6 +32,11 @@ class InvalidMesh : public std::invalid_argument {
   std::size_t index_;
 };
 
+/// Throws InvalidMesh if a coordinate is not finite or beyond Mesh::largest_coordinate.
+void check_vertices(std::span<const Eigen::Vector3d> vertices);
+/// Throws InvalidMesh if there is no triangle, an index is out of range, or a triangle names a vertex twice.
+void check_triangle_indices(std::size_t vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
+
 /// Where a body's rotation and scale put a vertex of its mesh, about the body's centre. Every part of the module that
 /// needs a turned vertex gets it from here, so that triangles with a common vertex agree on it bit for bit.
 inline Eigen::Vector3d placed_vertex(const Eigen::Matrix3d& rotation, double scale, const Eigen::Vector3d& vertex) {

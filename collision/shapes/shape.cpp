@@ -1,5 +1,6 @@
 #include "collision/shapes/shape.hpp"
 
+#include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/box.hpp"
 #include "collision/shapes/capsule.hpp"
 #include "collision/shapes/convex_hull.hpp"

@@ -11,6 +11,7 @@
 namespace kds::collision {
 
 class Mesh;
+class MeshScript;
 class Polytope;
 struct RoundedCore;
 
@@ -54,12 +55,17 @@ struct ConvexHull {
   std::shared_ptr<const Polytope> polytope;
 };
 
+/// A triangle surface that bends with time, shared by any number of bodies.
+struct BendingMesh {
+  std::shared_ptr<const MeshScript> script;
+};
+
 /// Each kind says in a file of its own what the functions below have to know of it: sphere.hpp, box.hpp,
 /// mesh_shape.hpp, capsule.hpp, convex_hull.hpp. To add one: a struct, its place in this list, its file, and its row in
 /// the table of pair tests (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
-using Shape = std::variant<Sphere, Box, MeshShape, Capsule, ConvexHull>;
+using Shape = std::variant<Sphere, Box, MeshShape, Capsule, ConvexHull, BendingMesh>;
 
-/// "sphere", "box", "mesh", "capsule", "hull".
+/// "sphere", "box", "mesh", "capsule", "hull", "bending mesh".
 const char* kind_name(const Shape& shape);
 
 /// The numbers of the shape: half of what it measures along its own axes; of a mesh its scale, thrice; of a capsule its
@@ -75,7 +81,10 @@ inline double ball_radius(const Shape& shape) {
 /// Whether the shape is a surface, which is tested in doubles, with a margin: bounding volumes need room for that.
 inline bool has_mesh(const Shape& shape) { return std::holds_alternative<MeshShape>(shape); }
 
-/// The mesh of such a shape, else null.
+/// Whether the shape changes while the body rests.
+inline bool bends(const Shape& shape) { return std::holds_alternative<BendingMesh>(shape); }
+
+/// The mesh of a MeshShape, else null.
 std::shared_ptr<const Mesh> mesh_of(const Shape& shape);
 
 /// The bounding box of a mesh is grown by this part of its radius, which is enough for paths of a quarter of a million

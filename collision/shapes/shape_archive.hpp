@@ -1,6 +1,7 @@
 // Placed shapes in snapshots.
 #pragma once
 
+#include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/box.hpp"
 #include "collision/shapes/capsule.hpp"
 #include "collision/shapes/convex_hull.hpp"

@@ -30,7 +30,7 @@ void BasicWorld<Motion>::audit(double t) const {
   }
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -118,7 +118,7 @@ void Bodies<Motion>::Image::check(double now) const {
 }
 
 #define KDS_INSTANTIATE(motion)                                                                                        \
-  template struct Bodies<motion>::Image;                                                                               \
+  KDS_TEMPLATE_PART struct Bodies<motion>::Image;                                                                      \
   template void Bodies<motion>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&); \
   template void Bodies<motion>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)

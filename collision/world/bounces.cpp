@@ -195,7 +195,7 @@ bool BasicWorld<Motion>::bounce_or_rest(BodySlot a, BodySlot b, const Contact& c
   return false;
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

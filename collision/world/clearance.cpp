@@ -43,7 +43,7 @@ double Volumes<Motion>::clearance_until(BodySlot slot) const {
   return until > clock_.now ? until : never;  // it grows already
 }
 
-#define KDS_INSTANTIATE(motion) template class Volumes<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Volumes<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

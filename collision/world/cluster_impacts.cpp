@@ -335,7 +335,7 @@ void RestingContacts<Motion>::impact(const Contact& contact, double restitution)
   }
 }
 
-#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class RestingContacts<motion>;
 KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

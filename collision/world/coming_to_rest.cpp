@@ -68,7 +68,7 @@ void RestingContacts<Motion>::watch(const Island& island, std::vector<Motion>& m
   for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[1] = Vector3d::Zero();
 }
 
-#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class RestingContacts<motion>;
 KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

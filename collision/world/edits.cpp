@@ -35,7 +35,9 @@ void validate(const BasicBodyDescription<Motion>& description) {
   }
   if (!description.fixed) require_size(description.mass, "mass");
   if (!can_move_by<Motion>(description.shape)) {
-    fail(std::string("shape: a ") + kind_name(description.shape) + " cannot turn: balls, boxes, hulls and meshes can");
+    const std::string name = std::string("shape: a ") + kind_name(description.shape);
+    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes, hulls and meshes can");
+    fail(name + " cannot move on paths of degree " + std::to_string(Motion::degree) + ": at most 2");
   }
   if constexpr (turns<Motion>) {
     if (description.orientation.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
@@ -105,6 +107,10 @@ template <class Motion>
 BodyId BasicWorld<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
+  if (bends(description.shape) && options_.response != Response::none && !description.sensor) {
+    throw std::invalid_argument(
+        "shape: a mesh that bends only reports contacts: it has to be a sensor, or the response of the world `none`");
+  }
   std::optional<PrincipalInertia> principal;  // of one that precesses
   if constexpr (turns<Motion>) {
     // Nothing else changes how a body turns.
@@ -288,7 +294,7 @@ void BasicWorld<Motion>::take_out(BodySlot slot) {
   bodies_.remove(slot);
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

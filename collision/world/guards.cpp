@@ -29,7 +29,7 @@ void BasicWorld<Motion>::refuse(const char* function) const {
   throw std::logic_error(called + "the world can no longer be used, since a change was interrupted half-way: " + why);
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

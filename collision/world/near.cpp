@@ -71,7 +71,7 @@ void BasicWorld<Motion>::visit_swept(const KineticBox<Motion::degree>& box, doub
       visit);
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

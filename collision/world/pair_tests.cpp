@@ -33,6 +33,12 @@ bool at_rest(const certificates::RigidMotion<Degree>& motion) {
   return at_rest(motion.path) && motion.angular_velocity.isZero(0);
 }
 
+/// Whether the place of nothing in it changes.
+template <class Motion>
+bool at_rest(const MovingShape<Motion>& body) {
+  return at_rest(body.motion) && !bends(body.shape.shape);
+}
+
 /// The same place for good, moved by a way.
 template <int Degree>
 certificates::PointMotion<Degree> standing(const certificates::PointMotion<Degree>& motion, double t,
@@ -204,7 +210,7 @@ void Pairs<Motion>::test(Slot slot) {
       pair.overlapping = true;
       report_overlap();
     }
-    if (at_rest(a.motion) && at_rest(b.motion)) {  // Nothing will happen, but a jump may have happened.
+    if (at_rest(a) && at_rest(b)) {  // Nothing will happen, but a jump may have happened.
       next.time = in_contact(a, b, clock_.now) == pair.overlapping ? never : clock_.now;
     } else if (pair.overlapping) {
       next = certified_first_separation(a, b, clock_.now, horizon(pair));
@@ -222,7 +228,7 @@ void Pairs<Motion>::test(Slot slot) {
       if (start <= horizon(pair)) next = certified_first_separation(a, b, start, horizon(pair));
     } else if (resting_.find(pair.a, pair.b) != Resting::none) {
       next.time = resting_.next_contact(pair.a, pair.b);
-    } else if (!(at_rest(a.motion) && at_rest(b.motion))) {
+    } else if (!(at_rest(a) && at_rest(b))) {
       next = estimated_first_contact(a, b, clock_.now, horizon(pair), mode, pair.memory, &found);
     }
   }
@@ -298,7 +304,7 @@ void Pairs<Motion>::process_boxes(Slot slot, double t) {
   test_boxes(slot);
 }
 
-#define KDS_INSTANTIATE(motion) template class Pairs<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Pairs<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

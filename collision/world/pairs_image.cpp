@@ -76,7 +76,7 @@ void Pairs<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, d
 }
 
 #define KDS_INSTANTIATE(motion)                                      \
-  template class Pairs<motion>;                                      \
+  KDS_TEMPLATE_PART class Pairs<motion>;                             \
   template void Pairs<motion>::Image::archive(kds::detail::Writer&); \
   template void Pairs<motion>::Image::archive(kds::detail::Reader&);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)

@@ -109,7 +109,7 @@ Contact BasicWorld<Motion>::contact_of(const detail::RestingContact& resting) co
   return contact;
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -241,7 +241,7 @@ bool RestingContacts<Motion>::squeezed(const Island& island) const {
   return false;
 }
 
-#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class RestingContacts<motion>;
 KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -104,7 +104,7 @@ void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image&
 }
 
 #define KDS_INSTANTIATE(motion)                                                \
-  template class RestingContacts<motion>;                                      \
+  KDS_TEMPLATE_PART class RestingContacts<motion>;                             \
   template void RestingContacts<motion>::Image::archive(kds::detail::Writer&); \
   template void RestingContacts<motion>::Image::archive(kds::detail::Reader&);
 KDS_FOR_EACH_PATH(KDS_INSTANTIATE)

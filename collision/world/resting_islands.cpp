@@ -344,7 +344,7 @@ bool RestingContacts<Motion>::let_pass_worst(const Island& island, const std::ve
   return true;
 }
 
-#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class RestingContacts<motion>;
 KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

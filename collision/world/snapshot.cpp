@@ -152,7 +152,7 @@ void BasicWorld<Motion>::archive(Archive& archive) {
 }
 
 #define KDS_INSTANTIATE(motion)                                    \
-  template class BasicWorld<motion>;                               \
+  KDS_TEMPLATE_PART class BasicWorld<motion>;                      \
   template void BasicWorld<motion>::archive(kds::detail::Writer&); \
   template void BasicWorld<motion>::archive(kds::detail::Reader&);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)

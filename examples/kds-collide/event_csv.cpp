@@ -18,7 +18,7 @@ void append_name(std::string& text, std::string_view name) {
   text += '"';
 }
 
-void append_vector(std::string& text, const Eigen::Vector3d& v) {
+void append_columns(std::string& text, const Eigen::Vector3d& v) {
   for (int d = 0; d < 3; ++d) {
     text += ',';
     // Adding zero turns -0 into 0, which says the same and compares equal as text.
@@ -40,8 +40,8 @@ void append_csv_line(std::string& text, const Event& event, const Scene& scene) 
     text += ",,,,,,,-,-\n";
     return;
   }
-  append_vector(text, event.point);
-  append_vector(text, event.normal);
+  append_columns(text, event.point);
+  append_columns(text, event.normal);
   text += ',';
   text += to_string(event.feature_a);
   text += ',';

@@ -105,7 +105,7 @@ class Placement {
   std::unordered_map<std::int64_t, std::vector<Ball>> cells_;
 };
 
-void append_vector(std::string& text, const Vector3d& v) {
+void append_array(std::string& text, const Vector3d& v) {
   for (int d = 0; d < 3; ++d) {
     text += d == 0 ? '[' : ',';
     append_number(text, v[d]);
@@ -118,7 +118,7 @@ std::string box_shape(double radius, Random& random) {
   Vector3d half;
   for (int d = 0; d < 3; ++d) half[d] = random.uniform(0.5, 1);
   std::string text = "{\"box\": {\"half_extents\": ";
-  append_vector(text, half * (radius / half.norm()));
+  append_array(text, half * (radius / half.norm()));
   return text + "}}";
 }
 
@@ -128,7 +128,7 @@ std::string spinner_shape(double radius, std::size_t kind) {
   constexpr double slender = 0.125;  // width of a rod, thickness of a plate
   const Vector3d half = std::array{Vector3d(1, 1, 1), Vector3d(slender, slender, 1), Vector3d(1, 1, slender)}[kind % 3];
   std::string text = "{\"box\": {\"half_extents\": ";
-  append_vector(text, half * (radius / half.norm()));
+  append_array(text, half * (radius / half.norm()));
   text += "}}";
   if (kind % 3 == 0) return text;
   text += ", \"inertia\": ";
@@ -142,7 +142,7 @@ std::string slender_shape(double radius, bool rod, Random& random) {
   const double width = rod ? random.uniform(0.08, 0.16) : random.uniform(0.6, 1);
   const Vector3d half(thickness, width, 1);
   std::string text = "{\"box\": {\"half_extents\": ";
-  append_vector(text, half * (radius / half.norm()));
+  append_array(text, half * (radius / half.norm()));
   return text + "}}";
 }
 
@@ -167,8 +167,9 @@ double bounding_radius(const MeshData& mesh) {
 void check(const GeneratorOptions& options) {
   const auto kinds = generator_kinds();
   if (std::find(kinds.begin(), kinds.end(), options.kind) == kinds.end()) {
-    throw std::invalid_argument("--generate: there is no \"" + options.kind +
-                                "\"; use rings, models, spheres, boxes, spinners, spinning-rings, rods or plates");
+    throw std::invalid_argument(
+        "--generate: there is no \"" + options.kind +
+        "\"; use rings, models, spheres, boxes, spinners, spinning-rings, rods, plates or sheet");
   }
   constexpr std::size_t most_bodies = 10'000'000;  // about 3 GB of text
   if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
@@ -185,14 +186,81 @@ struct NamedMesh {
   double radius;
 };
 
+/// A square of 2 n n triangles.
+MeshData sheet_mesh(std::uint32_t n, double side) {
+  MeshData mesh;
+  for (std::uint32_t i = 0; i <= n; ++i) {
+    for (std::uint32_t j = 0; j <= n; ++j) mesh.vertices.emplace_back(side * i / n, side * j / n, 0);
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const std::uint32_t a = i * (n + 1) + j, b = a + n + 1;
+      mesh.triangles.push_back({a, b, b + 1});
+      mesh.triangles.push_back({a, b + 1, a + 1});
+    }
+  }
+  return mesh;
+}
+
+/// A hump between 0 and 1 of the period 1: two parabolas, as sines are not rounded alike everywhere.
+double hump(double x) {
+  const double part = x - std::floor(x);
+  const double from_middle = std::abs(2 * part - 1);
+  return from_middle < 0.5 ? 1 - 2 * from_middle * from_middle : 2 * (1 - from_middle) * (1 - from_middle);
+}
+
+/// A sheet on which two waves run, and balls that fly through it from above and below.
+GeneratedScene sheet_scene(const GeneratorOptions& options) {
+  constexpr std::uint32_t squares = 24;
+  constexpr int steps = 24;  // of the sheet, between keyframes
+  constexpr double side = 16, height = 2;
+  const MeshData mesh = sheet_mesh(squares, side);
+  GeneratedScene scene;
+  scene.meshes.push_back({"sheet.obj", to_obj(mesh)});
+  std::string& json = scene.json;
+  json = "{\n\"scene\": 1,\n\"end_time\": ";
+  append_number(json, options.end_time);
+  json += ",\n\"response\": \"none\",\n\"meshes\": {\"sheet\": {\"file\": \"sheet.obj\"}},\n\"bodies\": [\n";
+  json +=
+      "{\"name\": \"sheet\", \"shape\": {\"mesh\": \"sheet\"}, \"motion\": [{\"start\": 0, \"position\": [[0,0,0]]}],";
+  json += " \"vertices\": [\n";
+  for (int step = 0; step <= steps; ++step) {
+    const double part = static_cast<double>(step) / steps;
+    json += "{\"time\": ";
+    append_number(json, options.end_time * part);
+    json += ", \"positions\": [";
+    for (const Vector3d& v : mesh.vertices) {
+      append_vector(json, {v[0], v[1], height * (hump(v[0] / side - part) + 0.5 * hump(2 * v[1] / side + part))});
+      json += ',';
+    }
+    json.back() = ']';
+    json += step < steps ? "},\n" : "}]}";
+  }
+  Random random(options.seed);
+  for (std::size_t i = 0; i < options.bodies; ++i) {
+    const double from = i % 2 == 0 ? 6 : -4;
+    json += ",\n{\"name\": \"b" + std::to_string(i) + "\", \"shape\": " + sphere_shape(random.uniform(0.2, 0.6));
+    json += ", \"motion\": [{\"start\": 0, \"position\": [";
+    const double x = random.uniform(1, side - 1), y = random.uniform(1, side - 1);
+    append_vector(json, {x, y, from});
+    json += ',';
+    const double way = random.uniform(4, 10) / options.end_time;
+    append_vector(json, {0, 0, from > 0 ? -way : way});
+    json += "]}]}";
+  }
+  json += "\n]\n}\n";
+  return scene;
+}
+
 }  // namespace
 
 std::vector<std::string_view> generator_kinds() {
-  return {"rings", "models", "spheres", "boxes", "spinners", "spinning-rings", "rods", "plates"};
+  return {"rings", "models", "spheres", "boxes", "spinners", "spinning-rings", "rods", "plates", "sheet"};
 }
 
 GeneratedScene generate_scene(const GeneratorOptions& options) {
   check(options);
+  if (options.kind == "sheet") return sheet_scene(options);
   GeneratedScene scene;
   std::vector<NamedMesh> meshes;
   const auto add_mesh = [&](const std::string& name, const MeshData& mesh) {
@@ -226,7 +294,7 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
   json = "{\n\"scene\": 1,\n\"end_time\": ";
   append_number(json, options.end_time);
   json += ",\n\"response\": \"elastic\",\n\"domain\": {\"min\": [0,0,0], \"max\": ";
-  append_vector(json, Vector3d::Constant(side));
+  append_array(json, Vector3d::Constant(side));
   json += ", \"walls\": \"reflect\"},\n\"meshes\": {";
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     json += (i == 0 ? "\"" : ", \"") + meshes[i].name + "\": {\"file\": \"" + meshes[i].name + ".obj\"}";
@@ -270,14 +338,14 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     }
     json.back() = ']';
     json += ", \"motion\": [{\"start\": 0, \"position\": [";
-    append_vector(json, at);
+    append_array(json, at);
     json += ',';
-    append_vector(json, velocity);
+    append_array(json, velocity);
     json += ']';
     if (spins) {
       json += ", \"angular_velocity\": ";
       const Vector3d axis = random.direction();
-      append_vector(json, axis * random.uniform(0, most_turning));
+      append_array(json, axis * random.uniform(0, most_turning));
     }
     json += i + 1 < options.bodies ? "}]},\n" : "}]}\n";
   }

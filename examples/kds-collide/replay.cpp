@@ -1,6 +1,7 @@
 #include "examples/kds-collide/replay.hpp"
 
 #include "certificates/turning/turned_orientation.hpp"
+#include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "examples/kds-collide/number_text.hpp"
 
@@ -135,9 +136,10 @@ std::shared_ptr<const kds::collision::Mesh> triangles_of(const kds::collision::S
   return hull ? hull->polytope->surface() : mesh_of(shape);
 }
 
-void append_shape(std::string& text, const kds::collision::Shape& shape,
+void append_shape(std::string& text, const SceneBody& body,
                   const std::map<const kds::collision::Mesh*, std::size_t>& mesh_numbers) {
-  if (const auto mesh = triangles_of(shape)) {
+  const kds::collision::Shape& shape = body.shape;
+  if (const auto mesh = body.bent ? body.bent : triangles_of(shape)) {
     append_number(text, mesh_numbers.at(mesh.get()));
   } else {
     text += '"';
@@ -146,6 +148,26 @@ void append_shape(std::string& text, const kds::collision::Shape& shape,
   }
   text += ",\"size\":";
   append_vector(text, measures(shape));
+}
+
+/// Where the vertices of a mesh that bends are at its keyframes.
+void append_frames(std::string& text, const kds::collision::MeshScript& script, double begin) {
+  text += ",\"frames\":";
+  char separator = '[';
+  for (const auto& keyframe : script.keyframes()) {
+    text += separator;
+    separator = ',';
+    text += '[';
+    append_number(text, keyframe.time - begin);
+    for (const Eigen::Vector3d& v : keyframe.positions) {
+      for (int d = 0; d < 3; ++d) {
+        text += ',';
+        append_short(text, v[d]);
+      }
+    }
+    text += ']';
+  }
+  text += ']';
 }
 
 std::string read_script(const std::filesystem::path& folder, const char* name) {
@@ -213,7 +235,10 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
     const SceneBody& body = scene_.bodies[i];
     if (i > 0) text += ",\n";
     text += "{\"name\":" + quoted(body.name) + ",\"shape\":";
-    append_shape(text, body.shape, mesh_numbers);
+    append_shape(text, body, mesh_numbers);
+    if (const auto* bending = std::get_if<kds::collision::BendingMesh>(&body.shape)) {
+      append_frames(text, *bending->script, scene_.begin_time);
+    }
     const Eigen::Quaterniond& q = body.orientation;
     text += ",\"turn\":";
     append_list(text, {q.x(), q.y(), q.z(), q.w()});

@@ -31,6 +31,7 @@ struct SurfaceNumbers {
 struct SceneBody {
   std::string name;
   kds::collision::Shape shape;
+  std::shared_ptr<const kds::collision::Mesh> bent{};  ///< of a mesh that bends: the one that gives it its triangles
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit; that of the first piece
   double mass = 1;
   double inertia = 0;                               ///< about every axis; 0: that of a solid of the shape

@@ -2,6 +2,7 @@
 
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
 #include "examples/kds-collide/json_node.hpp"
 #include "examples/kds-collide/material_reader.hpp"
@@ -129,6 +130,37 @@ Shape read_shape(const JsonNode& node, const Meshes& meshes) {
   return found->read(node, meshes);
 }
 
+/// `vertices`: keyframes of the vertices of the body's mesh, which then bends.
+void read_vertices(const JsonNode& node, SceneBody& body, Response response) {
+  const auto* const shape = std::get_if<kds::collision::MeshShape>(&body.shape);
+  if (!shape) node.fail("is for meshes only");
+  if (shape->scale != 1) node.fail("is for meshes without a scale: positions are as they are given");
+  if (response == Response::elastic && !body.sensor) {
+    node.fail("a mesh that bends only reports contacts: \"response\": \"none\", or \"sensor\": true for this body");
+  }
+  const std::size_t count = shape->mesh->vertices().size();
+  std::vector<kds::collision::MeshScript::Keyframe> keyframes;
+  for (const JsonNode& each : node.elements()) {
+    each.object({"time", "positions"});
+    kds::collision::MeshScript::Keyframe keyframe{each["time"].number(), {}};
+    if (!keyframes.empty() && !(keyframe.time > keyframes.back().time)) {
+      each["time"].fail("must be later than that of the keyframe before, " + number_text(keyframes.back().time));
+    }
+    const std::vector<JsonNode> positions = each["positions"].elements();
+    if (positions.size() != count) {
+      each["positions"].fail("has " + std::to_string(positions.size()) + " positions, and the mesh has " +
+                             std::to_string(count) + " vertices");
+    }
+    for (const JsonNode& position : positions) keyframe.positions.push_back(position.vector());
+    keyframes.push_back(std::move(keyframe));
+  }
+  if (keyframes.empty()) node.fail("must have at least one keyframe");
+  const auto triangles = shape->mesh->triangles();
+  body.bent = shape->mesh;
+  body.shape = kds::collision::BendingMesh{std::make_shared<const kds::collision::MeshScript>(
+      std::move(keyframes), std::vector<kds::collision::Mesh::Triangle>(triangles.begin(), triangles.end()))};
+}
+
 Eigen::Quaterniond read_orientation(const JsonNode& node) {
   const std::vector<JsonNode> parts = node.tuple(4);
   const Eigen::Quaterniond q(parts[0].number(), parts[1].number(), parts[2].number(), parts[3].number());
@@ -193,8 +225,8 @@ bool speaks_of_turning(const JsonNode& node) {
 }
 
 SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbers& of_scene) {
-  node.object({"name", "shape", "orientation", "mass", "inertia", "fixed", "sensor", "restitution", "friction",
-               "tangential_restitution", "motion"});
+  node.object({"name", "shape", "vertices", "orientation", "mass", "inertia", "fixed", "sensor", "restitution",
+               "friction", "tangential_restitution", "motion"});
   SceneBody body;
   body.name = node["name"].string();
   body.shape = read_shape(node["shape"], scene.meshes);
@@ -207,6 +239,7 @@ SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbe
   }
   if (node.has("fixed")) body.fixed = node["fixed"].boolean();
   if (node.has("sensor")) body.sensor = node["sensor"].boolean();
+  if (node.has("vertices")) read_vertices(node["vertices"], body, scene.response);
   const SurfaceNumbers surface = read_surface(node, of_scene);
   body.restitution = surface.restitution, body.friction = surface.friction;
   body.tangential_restitution = surface.tangential_restitution;

@@ -5,6 +5,7 @@
 #include "kds/arithmetic/enclosure.hpp"
 #include "kds/arithmetic/exact.hpp"
 #include "kds/certificate.hpp"
+#include "kds/certificate_hooks.hpp"
 #include "kds/turning/exact_zero.hpp"
 #include "kds/turning/spin.hpp"
 #include "kds/turning/turning_sum.hpp"
@@ -94,6 +95,16 @@ Number turning_value(const C& certificate, double t, int derivative) {
   return value_at_epoch(derived_sum<Number>(certificate, t, derivative), a, b);
 }
 
+/// f at t in double-doubles, got the cheapest way in which its sign is certain, if there is one.
+template <class C>
+Ball<DoubleDouble> extended_turning_value(const C& certificate, double t) {
+  if constexpr (GivesExtendedValue<C>) {
+    const Ball<DoubleDouble> value = certificate.extended_value(t);
+    if (certain_sign(value) != 0) return value;
+  }
+  return turning_value<Ball<DoubleDouble>>(certificate, t, 0);
+}
+
 /// Of a sum that is not zero at its epoch t.
 template <int Degree>
 int enclosed_sign(const TurningSum<Degree, Exact>& f, const std::array<Spin, 2>& spins, double t) {
@@ -134,7 +145,8 @@ int sign_at(const C& certificate, double t, int derivative) {
     if (value.is_zero()) return 0;
   }
   ++turning_sign_counters.extended;
-  const auto value = detail::turning_value<Ball<DoubleDouble>>(certificate, t, derivative);
+  const auto value = derivative == 0 ? detail::extended_turning_value(certificate, t)
+                                     : detail::turning_value<Ball<DoubleDouble>>(certificate, t, derivative);
   if (const int s = certain_sign(value)) return s;
   return value.is_zero() ? 0 : detail::exact_turning_sign(certificate, t, derivative);
 }

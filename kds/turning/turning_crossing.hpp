@@ -39,7 +39,7 @@ class TurningCrossing {
   /// f in double-doubles.
   Ball<DoubleDouble> value(double t) const {
     ++turning_search_counters.signs;
-    const auto value = turning_value<Ball<DoubleDouble>>(certificate_, t, 0);
+    const auto value = extended_turning_value(certificate_, t);
     return side_ > 0 ? value : -value;
   }
 
@@ -83,7 +83,8 @@ class TurningCrossing {
         without_progress = 0;
       }
       candidate = std::clamp(candidate, next_up(below), next_down(above));
-      const auto value = turning_value<Ball<DoubleDouble>>(certificate_, candidate, order);
+      const auto value = order == 0 ? extended_turning_value(certificate_, candidate)
+                                    : turning_value<Ball<DoubleDouble>>(certificate_, candidate, order);
       int s = side_ * certain_sign(value);
       const bool certain = s != 0;
       if (certain) {

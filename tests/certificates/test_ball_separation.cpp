@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+namespace test_ball_separation {
 namespace {
 
 using namespace kds;
@@ -161,3 +162,5 @@ TEMPLATE_TEST_CASE_SIG("balls do not meet before a plane between them is sure to
   CHECK(told > (PathDegree <= 2 ? 5000 : -1));
   CHECK(near > (PathDegree <= 2 ? 500 : -1));
 }
+
+}  // namespace test_ball_separation

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+namespace test_balls_together {
 namespace {
 
 using namespace kds;
@@ -169,3 +170,5 @@ TEST_CASE("balls that touch, balls on curves that are not alike, and what is no 
   CHECK(std::isnan(found[2]));
   CHECK(found[3] == never);
 }
+
+}  // namespace test_balls_together

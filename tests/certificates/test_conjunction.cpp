@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+namespace test_conjunction {
 namespace {
 
 using namespace kds;
@@ -149,3 +150,5 @@ TEST_CASE("by hand: two facts that fail in turn and never together, and two that
   CHECK(first_any_holds(2.0, never, std::span<const OnAParabola>(together)) == 3);
   CHECK(first_any_holds(2.0, 2.5, std::span<const OnAParabola>(together)) == never);
 }
+
+}  // namespace test_conjunction

@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 
+namespace test_feature_contact {
 namespace {
 
 using namespace kds;
@@ -139,3 +140,5 @@ TEMPLATE_TEST_CASE_SIG(
   CHECK(false_alarms == 0);
   CHECK(found > 15);
 }
+
+}  // namespace test_feature_contact

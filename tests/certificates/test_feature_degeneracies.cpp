@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_feature_degeneracies {
 namespace {
 
 using namespace kds;
@@ -234,3 +235,5 @@ TEST_CASE("an interval that is an instant, and numbers that are none", "[feature
   CHECK_THROWS_AS(ask(vf, still(std::numeric_limits<double>::infinity()), 0, 1), std::invalid_argument);
   CHECK_THROWS_AS(ask(vf, still(1), 0, std::numeric_limits<double>::infinity()), std::invalid_argument);
 }
+
+}  // namespace test_feature_degeneracies

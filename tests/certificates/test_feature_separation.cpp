@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+namespace test_feature_separation {
 namespace {
 
 using namespace kds;
@@ -61,3 +62,5 @@ TEST_CASE("a ball meets a corner and slips past an edge", "[feature_separation]"
   // An axis that is not used does not count, wherever its offset.
   CHECK(failure_time(FeatureSeparation<1>{box, ball, world, {1, 1, 9}, {true, true, false}, 2}, 0) == 2);
 }
+
+}  // namespace test_feature_separation

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 
+namespace test_order {
 namespace {
 
 using namespace kds;
@@ -220,3 +221,7 @@ TEMPLATE_TEST_CASE_SIG("what is said to vanish does", "[order]", FOR_EACH_DEGREE
   }
   CHECK(vanished > 50);
 }
+
+#undef FOR_EACH_DEGREE
+
+}  // namespace test_order

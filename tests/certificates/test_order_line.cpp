@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace test_order_line {
 namespace {
 
 using namespace kds;
@@ -128,3 +129,7 @@ TEMPLATE_TEST_CASE_SIG("lines of nearly equal rates", "[order]", EACH_DEGREE_AND
   }
   comparison.report();
 }
+
+#undef EACH_DEGREE_AND_START
+
+}  // namespace test_order_line

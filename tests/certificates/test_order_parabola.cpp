@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+namespace test_order_parabola {
 namespace {
 
 using namespace kds;
@@ -22,8 +23,9 @@ Motion<Degree> ordinary_value(Random& random) {
 
 }  // namespace
 
-#define EACH_DEGREE_AND_START ((int Degree, Starts starts), Degree, starts), (2, Starts::common), \
-    (2, Starts::different), (3, Starts::common), (3, Starts::different)
+#define EACH_DEGREE_AND_START                                                                                      \
+  ((int Degree, Starts starts), Degree, starts), (2, Starts::common), (2, Starts::different), (3, Starts::common), \
+      (3, Starts::different)
 
 TEMPLATE_TEST_CASE_SIG("ordinary parabolas swap at the quick answer", "[order]", EACH_DEGREE_AND_START) {
   const std::uint64_t seed = 90;
@@ -184,3 +186,7 @@ TEST_CASE("cubics that share their leading coefficient are parabolas only from a
   const Motion<3> later{{{0.75, -1.25, 0.75, -2}}, 2};
   CHECK(std::isnan(Order<3>{lower, later}.quick_failure_time(2, never)));
 }
+
+#undef EACH_DEGREE_AND_START
+
+}  // namespace test_order_parabola

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 
+namespace test_plane_certificates {
 namespace {
 
 using namespace kds;
@@ -143,3 +144,5 @@ TEST_CASE("certificates of sampled points never fail late", "[plane][bounded]") 
   CHECK(ends > 400);
   CHECK(tight > 20);  // In one dimension, towards each other at full speed, the bound is reached.
 }
+
+}  // namespace test_plane_certificates

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+namespace test_plane_separation {
 namespace {
 
 using namespace kds;
@@ -113,3 +114,5 @@ TEST_CASE("boxes face to face part and meet at their faces", "[plane_separation]
   CHECK(failure_time(other_side, 0) == 0);
   CHECK(recovery_time(other_side, 0) == 7);
 }
+
+}  // namespace test_plane_separation

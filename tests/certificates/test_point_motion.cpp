@@ -9,6 +9,7 @@
 #include <limits>
 #include <new>
 
+namespace test_point_motion {
 namespace {
 
 using namespace kds;
@@ -214,3 +215,5 @@ TEMPLATE_TEST_CASE_SIG("a relative motion is b less a, exactly", "[point_motion]
     }
   }
 }
+
+}  // namespace test_point_motion

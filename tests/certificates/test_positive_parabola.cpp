@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace kds::certificates {
+namespace kds::certificates::test_positive_parabola {
 namespace {
 
 TEST_CASE("A parabola is positive for as long as is told, and not for much longer", "[positive_parabola]") {
@@ -60,4 +60,4 @@ TEST_CASE("A parabola that is zero or too large to tell is positive for no time"
 }
 
 }  // namespace
-}  // namespace kds::certificates
+}  // namespace kds::certificates::test_positive_parabola

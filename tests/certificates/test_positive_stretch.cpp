@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+namespace test_positive_stretch {
 namespace {
 
 using namespace kds;
@@ -66,3 +67,5 @@ TEMPLATE_TEST_CASE_SIG("a certified stretch has no root, and ends near one", "[p
   CHECK(whole > 10);
   CHECK(part > 10);
 }
+
+}  // namespace test_positive_stretch

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 
+namespace test_query_files {
 namespace {
 
 using namespace kds;
@@ -63,3 +64,5 @@ TEST_CASE("numbers that are no doubles are left out, and broken files named", "[
   folder.write("vertex-face/0.csv", "1,1,1,1,1,1,2\n");
   CHECK_THROWS_WITH(read_queries(folder.path, left_out), Catch::Contains("must be 0 or 1"));
 }
+
+}  // namespace test_query_files

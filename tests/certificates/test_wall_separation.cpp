@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+namespace test_wall_separation {
 namespace {
 
 using namespace kds;
@@ -43,3 +44,5 @@ TEST_CASE("a ball meets the upper and the lower wall", "[wall_separation]") {
   CHECK(failure_time(WallSeparation<2>{Motion<2>{{{0, 4, -2}}, 0}, 3, 1, 1}, 0) == never);
   CHECK(failure_time(WallSeparation<2>{Motion<2>{{{0, 4, -2}}, 0}, next_down(3), 1, 1}, 0) < 1);
 }
+
+}  // namespace test_wall_separation

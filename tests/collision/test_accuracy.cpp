@@ -17,6 +17,7 @@
 #include <tuple>
 #include <vector>
 
+namespace test_accuracy {
 namespace {
 
 using namespace accuracy;
@@ -97,8 +98,7 @@ void check_drift(const char* what, const GasOptions& options, std::uint64_t cont
   // All in all: a restart rounds position and velocity of one ball, on parabolas; a wall changes nothing.
   const auto counters = gas.world().counters();
   const Long restarts = static_cast<Long>(counters.motion_updates);
-  const Long of_restarts =
-      Degree == 1 ? 0 : 4 * 0x1p-53L * std::sqrt(restarts) / static_cast<Long>(options.balls);
+  const Long of_restarts = Degree == 1 ? 0 : 4 * 0x1p-53L * std::sqrt(restarts) / static_cast<Long>(options.balls);
   CHECK(std::abs(drift.all_energy) < 5 * std::sqrt(drift.energy_square) + 5 * of_restarts + 0x1p-60L);
 }
 
@@ -129,8 +129,8 @@ TEST_CASE("Bounces between masses of ratio 100^k count the digits of pi", "[accu
     // Each contact rounds speeds by some 2^-53. The last two balls to meet are almost equally fast, some ten times less
     // than the heavy one comes in with, so what has added up there moves the time ten times as much.
     CHECK(worst < 0x1p-53 * 16 * digits);
-    const double energy = 0.5 * (ratio * found.heavy_speed() * found.heavy_speed() +
-                                 found.light_speed() * found.light_speed());
+    const double energy =
+        0.5 * (ratio * found.heavy_speed() * found.heavy_speed() + found.light_speed() * found.light_speed());
     CHECK(energy == Approx(0.5 * ratio).epsilon(0x1p-53 * 4 * std::sqrt(digits)));
   }
 }
@@ -172,9 +172,8 @@ TEMPLATE_TEST_CASE_SIG("Samplers see what the engine knows, and nothing else", "
         });
       }
       REQUIRE(polled.size() == sampled.size());
-      CHECK(std::equal(polled.begin(), polled.end(), sampled.begin(), [](const Report& x, const Report& y) {
-        return x.time == y.time && x.a == y.a && x.b == y.b;
-      }));
+      CHECK(std::equal(polled.begin(), polled.end(), sampled.begin(),
+                       [](const Report& x, const Report& y) { return x.time == y.time && x.a == y.a && x.b == y.b; }));
       const Errors errors = compare<Degree>(truth.contacts, sampled, placed, paths);
       CHECK(errors.phantom == 0);
       CHECK(errors.time_max <= 1.0 / rate + 1e-9);
@@ -187,3 +186,5 @@ TEMPLATE_TEST_CASE_SIG("Samplers see what the engine knows, and nothing else", "
 }
 
 }  // namespace
+
+}  // namespace test_accuracy

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace kds::collision {
+namespace kds::collision::test_body_id {
 namespace {
 
 TEST_CASE("An id is a slot and a generation in one number", "[body_id]") {
@@ -26,4 +26,4 @@ TEST_CASE("Ids are ranked by slot, and of one slot by generation", "[body_id]") 
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_body_id

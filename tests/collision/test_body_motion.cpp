@@ -8,7 +8,7 @@
 
 #include <type_traits>
 
-namespace kds::collision {
+namespace kds::collision::test_body_motion {
 namespace {
 
 using certificates::PointMotion;
@@ -54,4 +54,4 @@ TEST_CASE("body motions have a path that is restarted with them") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_body_motion

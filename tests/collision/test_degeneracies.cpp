@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_degeneracies {
 namespace {
 
 using namespace tests;
@@ -264,4 +264,4 @@ TEST_CASE("Resting on each other in free fall is no contact", "[degenerate]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_degeneracies

@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-namespace kds::collision {
+namespace kds::collision::test_elastic_oracle {
 namespace {
 
 using namespace tests;
@@ -194,4 +194,4 @@ TEST_CASE("A pair that a world never tests is seen", "[oracle]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_elastic_oracle

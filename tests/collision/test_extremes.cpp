@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_extremes {
 namespace {
 
 using namespace tests;
@@ -216,11 +216,17 @@ TEST_CASE("Numbers out of range are refused by name, and the world goes on", "[e
     const auto a = world.add_body(ball<2>(size, {-3 * size, 0, 0}, {size, 0, 0}));
     const auto b = world.add_body(ball<2>(size, zero, {0, 5e-324, 0}, {0, 0, 5e-324}));
     world.update_motion(a, motion<2>({-3 * size, 0, 0}, {0.5 * size, 0, 0}, zero, world.now()));
-    refuses([&] { world.update_motion(b, motion<2>({1e62, 0, 0}, zero, zero, world.now())); },
-            "World::update_motion: motion.coefficients[0]: ");
+    refuses(
+        [&] {
+          world.update_motion(b, motion<2>({1e62, 0, 0}, zero, zero, world.now()));
+        },
+        "World::update_motion: motion.coefficients[0]: ");
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    refuses([&] { world.update_motion(b, motion<2>({nan, 0, 0}, zero, zero, world.now())); },
-            "World::update_motion: motion: must be finite");
+    refuses(
+        [&] {
+          world.update_motion(b, motion<2>({nan, 0, 0}, zero, zero, world.now()));
+        },
+        "World::update_motion: motion: must be finite");
     const double start = world.now();
     world.advance_to(start + 2.5);
     CHECK(world.touching(a, b));
@@ -233,11 +239,11 @@ TEST_CASE("Meshes at the ends of their range meet as others do", "[extreme]") {
     for (const auto method : all_methods) {
       WorldOptions options = with(Response::none, method);
       INFO("scale " << scale << ", method " << static_cast<int>(method));
-      const auto events = run(
-          Scene<1>{{body<1>(MeshShape{tetrahedron(), scale}, motion<1>(zero, {scale, 0, 0})),
-                    body<1>(MeshShape{tetrahedron(), scale}, motion<1>({6 * scale, 0.1 * scale, 0.2 * scale}))},
-                   20},
-          options);
+      const auto events =
+          run(Scene<1>{{body<1>(MeshShape{tetrahedron(), scale}, motion<1>(zero, {scale, 0, 0})),
+                        body<1>(MeshShape{tetrahedron(), scale}, motion<1>({6 * scale, 0.1 * scale, 0.2 * scale}))},
+                       20},
+              options);
       const auto contacts = contacts_of(events);
       REQUIRE(contacts.size() == 1);
       CHECK(contacts[0].time() == Approx(4));
@@ -246,4 +252,4 @@ TEST_CASE("Meshes at the ends of their range meet as others do", "[extreme]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_extremes

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_instants {
 namespace {
 
 using namespace tests;
@@ -180,4 +180,4 @@ TEST_CASE("Bodies are said to touch until their separation is told", "[instants]
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_instants

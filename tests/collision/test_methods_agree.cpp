@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-namespace kds::collision {
+namespace kds::collision::test_methods_agree {
 namespace {
 
 using namespace tests;
@@ -159,4 +159,4 @@ TEMPLATE_TEST_CASE_SIG("It does not matter how often the world is asked, nor how
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_methods_agree

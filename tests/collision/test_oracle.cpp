@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_oracle {
 namespace {
 
 using namespace tests;
@@ -239,4 +239,4 @@ TEMPLATE_TEST_CASE_SIG("Bounding volumes begin and cease to overlap at exact tim
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_oracle

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace kds::collision {
+namespace kds::collision::test_stress_callbacks {
 namespace {
 
 using namespace tests;
@@ -213,4 +213,4 @@ TEST_CASE("callbacks: a listener may lift what rests, and take away what it rest
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_stress_callbacks

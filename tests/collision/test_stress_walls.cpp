@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace kds::collision {
+namespace kds::collision::test_stress_walls {
 namespace {
 
 using namespace tests;
@@ -61,4 +61,4 @@ TEMPLATE_TEST_CASE_SIG("stress: fixed bodies that move, between walls with and w
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_stress_walls

@@ -1,5 +1,6 @@
 // The world where thousands of events fall on one instant, where an ulp decides, and where numbers are extreme; each
 // with every broad phase.
+#include "tests/collision/counted_runs.hpp"
 #include "tests/collision/random_scenes.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -11,7 +12,7 @@
 #include <functional>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_stress_world {
 namespace {
 
 using namespace tests;
@@ -49,11 +50,6 @@ std::vector<Event> run_all(const std::vector<BodyDescription<Degree>>& bodies, W
     }
   }
   return first;
-}
-
-std::size_t count(const std::vector<Event>& events, Kind kind) {
-  return static_cast<std::size_t>(
-      std::count_if(events.begin(), events.end(), [kind](const Event& e) { return e.kind == kind; }));
 }
 
 template <int Degree>
@@ -298,4 +294,4 @@ TEST_CASE("stress: scenes whose numbers are all tiny, all huge, or equal", "[wor
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_stress_world

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_threads {
 namespace {
 
 using tests::EventLog;
@@ -90,4 +90,4 @@ TEST_CASE("Parts of an array are worked on once each, and what one throws is thr
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_threads

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_world {
 namespace {
 
 using namespace tests;
@@ -310,4 +310,4 @@ TEST_CASE("A body has the shape it was given, and room may be made beforehand", 
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_world

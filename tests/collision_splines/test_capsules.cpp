@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace kds::collision {
+namespace kds::collision::test_capsules {
 namespace {
 
 using namespace tests;
@@ -90,4 +90,4 @@ TEMPLATE_TEST_CASE_SIG("Curves: contacts of capsules are where the distances are
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_capsules

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace kds::collision {
+namespace kds::collision::test_degeneracies {
 namespace {
 
 using namespace tests;
@@ -210,4 +210,4 @@ TEST_CASE("Curves: boxes at rest hold what a point sweeps, exactly", "[splines]"
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_degeneracies

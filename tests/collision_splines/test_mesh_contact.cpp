@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace test_mesh_contact {
+
 using namespace kds::collision;
 using namespace kds::collision::samples;
 
@@ -16,3 +18,5 @@ TEST_CASE("Curves: before a contact surfaces are apart, and at it they are near"
   against_distances<4>(32, 10);
   against_distances<5>(33, 30);
 }
+
+}  // namespace test_mesh_contact

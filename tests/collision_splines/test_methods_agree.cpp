@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-namespace kds::collision {
+namespace kds::collision::test_methods_agree {
 namespace {
 
 using namespace tests;
@@ -104,4 +104,4 @@ TEST_CASE("Curves: many bodies at once, in the grid and by sorted lists", "[spli
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_methods_agree

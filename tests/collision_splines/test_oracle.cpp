@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace kds::collision {
+namespace kds::collision::test_oracle {
 namespace {
 
 using namespace tests;
@@ -113,4 +113,4 @@ TEMPLATE_TEST_CASE_SIG("Curves: contacts and separations of small scenes are tho
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_oracle

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace kds::collision {
+namespace kds::collision::test_resting {
 namespace {
 
 using namespace tests;
@@ -146,4 +146,4 @@ TEST_CASE("Curves: a world that is loaded goes on as the one that was saved", "[
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_resting

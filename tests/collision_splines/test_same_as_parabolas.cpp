@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace kds::collision {
+namespace kds::collision::test_same_as_parabolas {
 namespace {
 
 using namespace tests;
@@ -92,4 +92,4 @@ TEMPLATE_TEST_CASE_SIG("Curves: without higher terms bodies come to rest as in W
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_same_as_parabolas

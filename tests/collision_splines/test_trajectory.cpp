@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_trajectory {
 namespace {
 
 using Eigen::Vector3d;
@@ -56,4 +56,4 @@ TEST_CASE("Curves: two gripping hands that cross each other's way", "[splines][t
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_trajectory

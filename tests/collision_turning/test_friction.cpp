@@ -3,6 +3,7 @@
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
 
+#include "tests/collision_turning/narrow_phase/turning_solids.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -16,6 +17,7 @@
 #include <string>
 #include <vector>
 
+namespace test_friction {
 namespace {
 
 using namespace kds;
@@ -30,11 +32,6 @@ RigidMotion<1> motion(const Vector3d& position, const Vector3d& velocity, const 
   RigidMotion<1> result{{{position, velocity}}};
   result.angular_velocity = spin;
   return result;
-}
-
-Vector3d random_vector(Random& random, double size) {
-  const double x = random.between(-size, size), y = random.between(-size, size), z = random.between(-size, size);
-  return {x, y, z};
 }
 
 /// Contacts, with the motions that they lead to.
@@ -301,3 +298,5 @@ TEST_CASE("surfaces that no body has are refused", "[friction]") {
   body.friction = 0, body.tangential_restitution = -1;
   CHECK_THROWS_WITH(others.add_body(body), "tangential_restitution: bodies of this world do not turn");
 }
+
+}  // namespace test_friction

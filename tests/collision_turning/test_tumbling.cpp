@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+namespace test_tumbling {
 namespace {
 
 using namespace kds;
@@ -159,6 +160,18 @@ TEST_CASE("a body that precesses is turned as Euler's equations say, up to the o
     CHECK(world.counters().rotation_pieces > 3);
     world.audit();
   }
+}
+
+TEST_CASE("a plate that turns about its intermediate axis flips over", "[turning]") {
+  Turning<1> world({.response = Response::elastic, .orientation_error = 1e-4});
+  const Box plate{Vector3d(1.5, 1, 0.25)};
+  const BodyId id = world.add_body({.shape = plate, .motion = {motion({0, 0, 0}, {0, 0, 0}, {0.001, 2, 0})}});
+  const FreeTurning at_first = world.free_turning(id);
+  world.advance_to(15);  // It turned about its y axis, the intermediate one: by now that points the other way.
+  const FreeTurning turning = world.free_turning(id);
+  CHECK((turning.orientation * Vector3d::UnitY())[1] < -0.999);
+  CHECK(turning.angular_momentum == at_first.angular_momentum);
+  world.audit();
 }
 
 TEST_CASE("what turns about a principal axis, or not at all, has no pieces", "[turning]") {
@@ -399,3 +412,5 @@ TEST_CASE("what cannot precess is refused by name", "[turning]") {
   CHECK_THROWS_AS(Turning<1>({.orientation_error = 0.2}), std::invalid_argument);
   CHECK_THROWS_AS(Turning<1>({.orientation_error = std::nan("")}), std::invalid_argument);
 }
+
+}  // namespace test_tumbling

@@ -4,6 +4,7 @@
 
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/collision_turning/narrow_phase/turning_oracle.hpp"
+#include "tests/collision_turning/narrow_phase/turning_solids.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+namespace test_turning_attacks {
 namespace {
 
 using namespace kds;
@@ -58,10 +60,6 @@ RigidMotion<Degree> motion(const Vector3d& position, const Vector3d& velocity, c
   return result;
 }
 
-Vector3d random_vector(Random& random, double size) {
-  const double x = random.between(-size, size), y = random.between(-size, size), z = random.between(-size, size);
-  return {x, y, z};
-}
 Quaterniond random_orientation(Random& random) {
   const Vector3d v = random_vector(random, 1);
   return {random.between(-1, 1), v[0], v[1], v[2]};
@@ -263,3 +261,5 @@ TEST_CASE("descriptions of bodies that cannot turn are refused, and nothing is a
   CHECK_THROWS_WITH(world.update_motion(id, bad), Catch::Contains("orientation"));
   CHECK(world.motion(id) == still);
 }
+
+}  // namespace test_turning_attacks

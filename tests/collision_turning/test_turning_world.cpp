@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+namespace test_turning_world {
 namespace {
 
 using namespace kds;
@@ -221,3 +222,5 @@ TEST_CASE("a mesh that turns bounces off a ball, and energy and momenta are kept
                         0.5 * 1.5 * of_rod.angular_velocity.squaredNorm();
   CHECK(std::abs(energy - 0.75) < 1e-15);
 }
+
+}  // namespace test_turning_world

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <string>
 
+namespace test_command_line {
+
 using kds_collide::tests::head_on;
 using kds_collide::tests::kds_collide_in;
 using kds_collide::tests::lines_of;
@@ -197,3 +199,5 @@ TEST_CASE("command line: scenes at the edge of what makes sense run") {
     CHECK_THAT(lines[1], Catch::StartsWith("0,overlap,a,b,"));
   }
 }
+
+}  // namespace test_command_line

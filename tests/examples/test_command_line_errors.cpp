@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <string>
 
+namespace test_command_line_errors {
+
 using kds_collide::tests::head_on;
 using kds_collide::tests::kds_collide_in;
 using kds_collide::tests::lines_of;
@@ -137,3 +139,5 @@ TEST_CASE("command line: a file that may not grow so far ends the run with 1") {
   CHECK(outcome.err == events + ": file: cannot be written: File too large\n");
   CHECK(folder.file_count() == 1);
 }
+
+}  // namespace test_command_line_errors

@@ -10,6 +10,8 @@
 #include <random>
 #include <string>
 
+namespace test_event_csv {
+
 using namespace kds_collide;
 using kds::collision::Feature;
 using kds_collide::tests::read_file;
@@ -82,3 +84,5 @@ TEST_CASE("event csv: a file appears when it is complete") {
   CHECK(std::count(text.begin(), text.end(), '\n') == 5001);
   CHECK(folder.file_count() == 1);
 }
+
+}  // namespace test_event_csv

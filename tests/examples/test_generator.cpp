@@ -11,6 +11,8 @@
 #include <numbers>
 #include <string>
 
+namespace test_generator {
+
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 
@@ -162,9 +164,11 @@ TEST_CASE("generator: options out of range are refused") {
   };
   CHECK(error({.kind = "cubes"}) ==
         "--generate: there is no \"cubes\"; use rings, models, spheres, boxes, spinners, "
-        "spinning-rings, rods or plates");
+        "spinning-rings, rods, plates or sheet");
   CHECK(error({.bodies = 0}) == "--bodies: must be > 0");
   for (const double density : {0.0, 1e-100, 0.9, static_cast<double>(NAN)}) {
     CHECK(error({.density = density}) == "--density: must be from 1e-12 to 0.3");
   }
 }
+
+}  // namespace test_generator

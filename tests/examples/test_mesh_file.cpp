@@ -8,6 +8,8 @@
 #include <cstring>
 #include <string>
 
+namespace test_mesh_file {
+
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 
@@ -125,3 +127,5 @@ TEST_CASE("mesh file: files that are no mesh") {
   CHECK(error(folder.write("a.stl", "solid s\nendsolid s\n")) != "no error");
   CHECK(error(folder.write("a.stl", "x")) != "no error");
 }
+
+}  // namespace test_mesh_file

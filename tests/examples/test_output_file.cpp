@@ -5,6 +5,8 @@
 
 #include <string>
 
+namespace test_output_file {
+
 using namespace kds_collide;
 using kds_collide::tests::read_file;
 using kds_collide::tests::TemporaryFolder;
@@ -86,3 +88,5 @@ TEST_CASE("output file: a place that cannot be written is named") {
   CHECK(error(missing) == missing + ": file: cannot be written: No such file or directory");
   CHECK(error((folder / "").string()) == (folder / "").string() + ": file: cannot be written: Is a directory");
 }
+
+}  // namespace test_output_file

@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+namespace test_replay {
+
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 using nlohmann::json;
@@ -178,3 +180,5 @@ TEST_CASE("replay: without three.js the package is named") {
   CHECK_THROWS_WITH(replay_page("", folder / "none"), Catch::Contains("libjs-three"));
   CHECK_THROWS_WITH(replay_page("", ""), Catch::Contains("libjs-three"));
 }
+
+}  // namespace test_replay

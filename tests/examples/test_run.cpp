@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace test_run {
+
 using namespace kds_collide;
 
 namespace {
@@ -174,3 +176,5 @@ TEST_CASE("run: a body that is turned by its script meets what is beside it") {
   CHECK(record.events[1].kind == EventKind::separation);
   CHECK(record.events[1].time == 2);
 }
+
+}  // namespace test_run

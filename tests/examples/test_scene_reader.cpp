@@ -11,6 +11,8 @@
 #include <cmath>
 #include <string>
 
+namespace test_scene_reader {
+
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 using kds_collide::tests::tetrahedron;
@@ -250,3 +252,5 @@ TEST_CASE("scene reader: the run begins with the earliest motion, and its degree
   CHECK(scene.begin_time == 1e9);
   CHECK(scene.degree() == 1);
 }
+
+}  // namespace test_scene_reader

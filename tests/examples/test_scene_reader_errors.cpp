@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace test_scene_reader_errors {
+
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 using kds_collide::tests::tetrahedron;
@@ -329,3 +331,5 @@ TEST_CASE("scene reader: no mutation of a valid scene breaks it") {
   CHECK(errors > 100);
   CHECK(scenes > 0);
 }
+
+}  // namespace test_scene_reader_errors

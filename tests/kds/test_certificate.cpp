@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_certificate {
 namespace {
 
 using namespace kds;
@@ -237,3 +238,7 @@ TEST_CASE("the polynomial of a certificate does not depend on the epoch", "[cert
     CHECK((p(Exact(t) - Exact(epoch)) - q(Exact(t) - Exact(0.5))).sign() == 0);
   }
 }
+
+#undef FOR_EACH_DEGREE
+
+}  // namespace test_certificate

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+namespace test_motion {
 namespace {
 
 using namespace kds;
@@ -18,7 +19,7 @@ using oracle::Rational;
 using oracle::rational;
 
 template <int Degree>
-Motion<Degree> random_motion(Random& random) {
+Motion<Degree> any_motion(Random& random) {
   Motion<Degree> motion;
   const bool coarse = random.one_in(3);
   for (double& c : motion.position.c) c = coarse ? random.coarse() : random.scaled(-30, 30);
@@ -43,7 +44,7 @@ TEMPLATE_TEST_CASE_SIG("a motion about any epoch is the same function, exactly",
   CAPTURE(Degree, seed);
   Random random(seed);
   for (int round = 0; round < 200; ++round) {
-    const auto motion = random_motion<Degree>(random);
+    const auto motion = any_motion<Degree>(random);
     const double epoch = random.one_in(4) ? motion.start : random.scaled(-20, 31);
     const auto shifted = about<Exact>(motion, epoch);
     // Degree + 1 points fix a polynomial; one more for the test's own sake.
@@ -60,8 +61,8 @@ TEMPLATE_TEST_CASE_SIG("a motion about an epoch is contained in its balls", "[mo
   CAPTURE(Degree, seed);
   Random random(seed);
   for (int round = 0; round < 200; ++round) {
-    const auto motion = random_motion<Degree>(random);
-    const auto other = random_motion<Degree>(random);
+    const auto motion = any_motion<Degree>(random);
+    const auto other = any_motion<Degree>(random);
     const double epoch = random.one_in(4) ? motion.start : random.scaled(-20, 31);
     const auto check = [&](const auto& exact, const auto& balls, const auto& extended) {
       for (std::size_t i = 0; i <= Degree; ++i) {
@@ -87,8 +88,8 @@ TEMPLATE_TEST_CASE_SIG("a difference of motions is the difference of the two", "
   CAPTURE(Degree, seed);
   Random random(seed);
   for (int round = 0; round < 200; ++round) {
-    const auto a = random_motion<Degree>(random);
-    auto b = random_motion<Degree>(random);
+    const auto a = any_motion<Degree>(random);
+    auto b = any_motion<Degree>(random);
     if (random.one_in(2)) b.start = a.start;  // subtracted before the shift
     const double epoch = random.scaled(-20, 31);
     const auto difference = difference_about<Exact>(a, b, epoch);
@@ -166,3 +167,7 @@ TEST_CASE("motions that are not finite are told", "[motion]") {
     CHECK_FALSE(is_finite(Motion<2>{{}, bad}));
   }
 }
+
+#undef FOR_EACH_DEGREE
+
+}  // namespace test_motion

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+namespace test_polynomial {
 namespace {
 
 using kds::Exact;
@@ -85,3 +86,5 @@ TEST_CASE("one formula runs in any number type", "[polynomial]") {
   CHECK((square - Exact(1.0)).sign() > 0);
   CHECK((square - Exact(1 + 2 * tiny)).sign() > 0);
 }
+
+}  // namespace test_polynomial

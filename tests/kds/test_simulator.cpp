@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+namespace test_simulator {
 namespace {
 
 using namespace kds;
@@ -323,3 +324,5 @@ TEST_CASE("windows change what is in the queue and nothing else", "[simulator]")
     CHECK(log == expected);
   }
 }
+
+}  // namespace test_simulator

@@ -1,47 +1,24 @@
-// Hashes the event logs of fixed scenes, and compares them with what they shall be.
-//
-// event_log_hash                  prints a line `NAME RECORDS HASH` for each scene
-// event_log_hash GOLDEN           compares these lines with a file, says what differs, and exits 1 where something does
-// event_log_hash --log NAME WAY   prints the events of one scene, numbers in hexadecimal, for diff
-//
-// Each scene is run in several ways, with every broad phase or queue, and all must give the line of the file. The file
-// in the repository is made by the first form: event_log_hash > tests/replay/golden.txt
+// The event logs of sorted lists and of worlds whose bodies keep their orientation, each with every queue or broad
+// phase: see replay.hpp. The file in the repository is made by: event_log_hash > tests/replay/golden.txt
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
 #include "kds/events/pairing_queue.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
-#include "tests/replay/event_hash.hpp"
+#include "tests/replay/replay.hpp"
 #include "tests/replay/scenes.hpp"
 #include "tests/structures/random_values.hpp"
 #include "tests/structures/rule_list.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cinttypes>
 #include <cstdint>
-#include <cstdio>
-#include <exception>
-#include <fstream>
-#include <functional>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace kds::replay {
 namespace {
-
-/// A scene, and what must give one and the same log of it.
-struct Replay {
-  struct Way {
-    std::string name;
-    std::function<void(EventHash&)> run;
-  };
-  std::string name;
-  std::vector<Way> ways;
-};
 
 // --- sorted lists
 
@@ -151,66 +128,7 @@ std::vector<Replay> all_replays() {
   return replays;
 }
 
-std::string line_of(const Replay& replay, const Replay::Way& way) {
-  EventHash hash(false);
-  way.run(hash);
-  char text[64];
-  std::snprintf(text, sizeof text, " %" PRIu64 " %016" PRIx64, hash.records(), hash.value());
-  return replay.name + text;
-}
-
-int compare(const char* file) {
-  std::ifstream golden(file);
-  if (!golden) throw std::runtime_error(std::string(file) + " cannot be read");
-  std::string expected;
-  int differences = 0;
-  for (const Replay& replay : all_replays()) {
-    if (!std::getline(golden, expected)) expected = "(nothing)";
-    for (const Replay::Way& way : replay.ways) {
-      const std::string found = line_of(replay, way);
-      if (found == expected) continue;
-      ++differences;
-      std::printf("differs: %s, %s\n golden: %s\n", found.c_str(), way.name.c_str(), expected.c_str());
-    }
-  }
-  for (; std::getline(golden, expected); ++differences) std::printf("not run: %s\n", expected.c_str());
-  std::printf("%d differences from %s\n", differences, file);
-  return differences == 0 ? 0 : 1;
-}
-
-int print_log(std::string_view name, std::string_view way_name) {
-  for (const Replay& replay : all_replays()) {
-    for (const Replay::Way& way : replay.ways) {
-      if (replay.name != name || way.name != way_name) continue;
-      EventHash hash(true);
-      way.run(hash);
-      return 0;
-    }
-  }
-  throw std::runtime_error("there is no scene of this name, or no such way to run it");
-}
-
-void print_lines() {
-  for (const Replay& replay : all_replays()) {
-    const std::string line = line_of(replay, replay.ways.front());
-    for (const Replay::Way& way : replay.ways) {
-      if (line_of(replay, way) != line) throw std::runtime_error(replay.name + ": " + way.name + " disagrees");
-    }
-    std::printf("%s\n", line.c_str());
-  }
-}
-
 }  // namespace
 }  // namespace kds::replay
 
-int main(int argc, char** argv) {
-  try {
-    if (argc == 2) return kds::replay::compare(argv[1]);
-    if (argc == 4 && std::string_view(argv[1]) == "--log") return kds::replay::print_log(argv[2], argv[3]);
-    if (argc != 1) throw std::runtime_error("usage: event_log_hash [GOLDEN | --log NAME WAY]");
-    kds::replay::print_lines();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "event_log_hash: %s\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return kds::replay::main_of(argc, argv, kds::replay::all_replays); }

@@ -5,6 +5,7 @@
 #include "kds/framework/snapshot.hpp"
 #include "kds/simulator.hpp"
 #include "tests/structures/random_values.hpp"
+#include "tests/structures/to_log.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -14,14 +15,6 @@
 #include <vector>
 
 namespace kds::tests {
-
-struct ToLog {
-  std::vector<KineticEvent>* log;
-  template <class Rule>
-  void operator()(const Rule&, const KineticEvent& event) const {
-    log->push_back(event);
-  }
-};
 
 template <class Element>
 Element restarted_at(const Element& element, double t) {

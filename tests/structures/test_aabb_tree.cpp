@@ -21,6 +21,7 @@ MovingBox<Path> restarted(const MovingBox<Path>& box, double t) {
 }
 }  // namespace kds::structures
 
+namespace test_aabb_tree {
 namespace {
 
 using namespace kds;
@@ -283,3 +284,5 @@ TEST_CASE("motions that leave the doubles have infinite boxes and no events", "[
   CHECK(tree.rule().query({{-1}, {1}}, set, 0) == std::vector<Id>{1});
   tree.audit(0);
 }
+
+}  // namespace test_aabb_tree

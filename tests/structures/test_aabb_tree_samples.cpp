@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
+namespace test_aabb_tree_samples {
 namespace {
 
 using namespace kds;
@@ -44,14 +45,25 @@ std::array<std::uint64_t, 2> run(const At& at, const Truth& truth) {
 TEST_CASE("Fat boxes hold what is only sampled, and a bound on the acceleration spares samples", "[aabb_tree]") {
   const auto truth = [](Id id, double t) { return std::array{std::cos(t + id), std::sin(t + id)}; };
   const auto [wrong, samples] = run<certificates::BoundedPoint, 2>(
-      [&](Id id, double t) { return certificates::BoundedPoint{truth(id, t), 1, t}; }, truth);
+      [&](Id id, double t) {
+        return certificates::BoundedPoint{truth(id, t), 1, t};
+      },
+      truth);
   CHECK(wrong == 0);
   CHECK(samples > 100);
-  const auto [wrong_speed, of_speed] =
-      run<Bounded, 1>([&](Id id, double t) { return Bounded{truth(id, t)[0], 1, t}; }, truth);
+  const auto [wrong_speed, of_speed] = run<Bounded, 1>(
+      [&](Id id, double t) {
+        return Bounded{truth(id, t)[0], 1, t};
+      },
+      truth);
   const auto [wrong_acceleration, of_acceleration] = run<BoundedAcceleration, 1>(
-      [&](Id id, double t) { return BoundedAcceleration{truth(id, t)[0], -truth(id, t)[1], 1, t}; }, truth);
+      [&](Id id, double t) {
+        return BoundedAcceleration{truth(id, t)[0], -truth(id, t)[1], 1, t};
+      },
+      truth);
   CHECK(wrong_speed == 0);
   CHECK(wrong_acceleration == 0);
   CHECK(of_acceleration < of_speed);
 }
+
+}  // namespace test_aabb_tree_samples

@@ -1,7 +1,7 @@
 // The tree under the kinetic AABB tree: against brute force, and its depth.
-#include "structures/box_tree.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "kds/roots/failure_time.hpp"
+#include "structures/box_tree.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -11,6 +11,7 @@
 #include <map>
 #include <vector>
 
+namespace test_box_tree {
 namespace {
 
 using namespace kds;
@@ -132,3 +133,5 @@ TEST_CASE("equal box trees are saved as equal bytes", "[box_tree][snapshot]") {
   // Nine nodes of 4 doubles and 5 numbers, five leaves, the root; and how long these lists and that of the free are.
   CHECK(save(tree).bytes().size() == 9 * (4 * 8 + 5 * 4) + 5 * 4 + 4 + 3 * (8 + 4));
 }
+
+}  // namespace test_box_tree

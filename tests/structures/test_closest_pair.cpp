@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+namespace test_closest_pair {
 namespace {
 
 using namespace kds;
@@ -87,3 +88,5 @@ TEST_CASE("of none, one, two, and of points that are one", "[closest_pair][degen
   CHECK(closest.rule().pair() == std::array<Id, 2>{4, 9});
   closest.audit(0);
 }
+
+}  // namespace test_closest_pair

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+namespace test_damaged_snapshots {
 namespace {
 
 using namespace kds;
@@ -115,3 +116,5 @@ TEST_CASE("damaged snapshots of sets and pieces are refused, or give sets that r
 }
 
 }  // namespace
+
+}  // namespace test_damaged_snapshots

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+namespace test_edits {
 namespace {
 
 using namespace kds;
@@ -148,3 +149,5 @@ TEST_CASE("a sample that a structure cannot take up leaves the others as they we
   CHECK(whole.rule().order == std::vector<Id>{0, 1});
   whole.audit(0);
 }
+
+}  // namespace test_edits

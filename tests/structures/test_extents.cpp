@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
+namespace test_extents {
 namespace {
 
 using namespace kds;
@@ -128,3 +129,5 @@ TEST_CASE("points that move together keep their extents by id", "[extents][degen
   CHECK(extents.rule().foremost(0) == 4);
   extents.audit(1);
 }
+
+}  // namespace test_extents

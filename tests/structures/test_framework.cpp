@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+namespace test_framework {
 namespace {
 
 using namespace kds;
@@ -29,7 +30,7 @@ void apply(const Change<Degree>& change, MovingSet<Motion<Degree>>& set, double 
 
 /// Random changes and advances; the number of states that were wrong.
 template <int Degree, class Queue>
-int mistakes(std::uint64_t seed, Kind kind, double window, Log& log) {
+int mistakes(std::uint64_t seed, Kind kind, double window, KineticLog& log) {
   Random random(seed);
   Model<Degree> model;
   MovingSet<Motion<Degree>> set;
@@ -38,7 +39,7 @@ int mistakes(std::uint64_t seed, Kind kind, double window, Log& log) {
     model.motions[2 * id] = random_motion<Degree>(random, kind, now);
     set.insert(2 * id, model.motions[2 * id], now);
   }
-  List<Degree, Queue> list(set, now, {}, {&log});
+  LoggedList<Degree, Queue> list(set, now, {}, {&log});
   Simulator simulator(now, list);
   if (window < never) simulator.set_window(window);
   int wrong = 0;
@@ -65,7 +66,7 @@ TEMPLATE_TEST_CASE_SIG("a list in forty lines is in exact order after every even
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 500; seed < 503; ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
-      Log log, same;
+      KineticLog log, same;
       CHECK(mistakes<Degree, CalendarQueue<>>(seed, kind, never, log) == 0);
       CHECK(mistakes<Degree, PairingQueue<>>(seed, kind, 0.3, same) == 0);
       CHECK(log == same);
@@ -101,8 +102,8 @@ TEST_CASE("the list of the framework swaps when the tuned one does, and keeps to
     set.insert(id, motion, 0);
     entries.push_back({motion, id});
   }
-  Log log;
-  List<2> list(set, 0, {}, {&log});
+  KineticLog log;
+  LoggedList<2> list(set, 0, {}, {&log});
   structures::SortedList<2> tuned;
   tuned.assign(entries, 0);
   Simulator simulator(0, list, tuned);
@@ -133,10 +134,10 @@ TEST_CASE("the list of the framework swaps when the tuned one does, and keeps to
 
 TEST_CASE("several structures share one set, and each hears of each edit", "[framework]") {
   MovingSet<Motion<1>> set;
-  Log first_log, second_log;
-  List<1> first(set, 0, {}, {&first_log});
+  KineticLog first_log, second_log;
+  LoggedList<1> first(set, 0, {}, {&first_log});
   set.insert(7, {{{0, 1}}, 0}, 0);
-  List<1> second(set, 0, {}, {&second_log});  // Comes later, and takes up what is there.
+  LoggedList<1> second(set, 0, {}, {&second_log});  // Comes later, and takes up what is there.
   set.insert(3, {{{2, 0}}, 0}, 0);
   Simulator simulator(0, first, second);
   CHECK(first.rule().order == std::vector<Id>{7, 3});
@@ -158,8 +159,8 @@ TEST_CASE("several structures share one set, and each hears of each edit", "[fra
 
 TEST_CASE("a set refuses what cannot be, and changes nothing", "[framework]") {
   MovingSet<Motion<1>> set;
-  Log log;
-  List<1> list(set, 0, {}, {&log});
+  KineticLog log;
+  LoggedList<1> list(set, 0, {}, {&log});
   set.insert(0, {{{0, 1}}, 0}, 0);
   set.insert(1, {{{1, 0}}, 0}, 0);
   Simulator simulator(0, list);
@@ -223,8 +224,8 @@ TEST_CASE("a rule may not edit the elements, a listener may", "[framework]") {
 
 TEST_CASE("a structure of none and of one has no events", "[framework]") {
   MovingSet<Motion<1>> set;
-  Log log;
-  List<1> list(set, 0, {}, {&log});
+  KineticLog log;
+  LoggedList<1> list(set, 0, {}, {&log});
   Simulator simulator(0, list);
   CHECK_FALSE(simulator.step());
   CHECK(list.measures() == Measures{});
@@ -241,11 +242,13 @@ TEST_CASE("an audit finds a clock that has run past an event", "[framework]") {
   MovingSet<Motion<1>> set;
   set.insert(0, {{{0, 1}}, 0}, 0);
   set.insert(1, {{{1, 0}}, 0}, 0);
-  Log log;
-  List<1> list(set, 0, {}, {&log});
+  KineticLog log;
+  LoggedList<1> list(set, 0, {}, {&log});
   CHECK_NOTHROW(list.audit(1));
   CHECK_THROWS_WITH(list.audit(2), Catch::Contains("ListRule: slot 0"));
   list.process();
   CHECK_NOTHROW(list.audit(2));
   CHECK_THROWS_AS(list.audit(0), AuditFailure);
 }
+
+}  // namespace test_framework

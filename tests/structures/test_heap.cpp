@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+namespace test_heap {
 namespace {
 
 using namespace kds;
@@ -145,3 +146,5 @@ TEST_CASE("values that move together make no event in a heap", "[heap][degenerac
   CHECK(heap.rule().size() == 19);
   heap.audit(5);
 }
+
+}  // namespace test_heap

@@ -22,6 +22,7 @@
 #include <type_traits>
 #include <vector>
 
+namespace test_moving_samples {
 namespace {
 
 using namespace kds;
@@ -267,3 +268,5 @@ TEST_CASE("the listener of a crossing may remove what is to be sampled at its ti
   busy.simulator.audit();
   CHECK(busy.list.rule().order == std::vector<Id>{1, 3, 2});
 }
+
+}  // namespace test_moving_samples

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+namespace test_pieces {
 namespace {
 
 using namespace kds;
@@ -19,8 +20,8 @@ using namespace kds::tests;
 TEST_CASE("a zigzag in pieces is that of edits by hand", "[framework][pieces]") {
   const auto zigzag = [](bool planned) {
     MovingSet<Motion<1>> set;
-    Log log;
-    List<1> list(set, 0, {}, {&log});
+    KineticLog log;
+    LoggedList<1> list(set, 0, {}, {&log});
     Pieces<Motion<1>> pieces(set);
     set.insert(0, {{{0.5, 0}}, 0}, 0);
     set.insert(1, {{{0, 1}}, 0}, 0);
@@ -38,7 +39,7 @@ TEST_CASE("a zigzag in pieces is that of edits by hand", "[framework][pieces]") 
     CHECK(pieces.counters().events == (planned ? 7 : 0));
     return log;
   };
-  const Log log = zigzag(true);
+  const KineticLog log = zigzag(true);
   CHECK(log.size() == 8);
   CHECK(log == zigzag(false));
 }
@@ -64,8 +65,8 @@ TEST_CASE("a thousand seams at one time need no deep stack and leave the right o
   MovingSet<Motion<1>> set;
   Pieces<Motion<1>> pieces(set);
   const Id n = 1000;
-  Log log;
-  List<1> list(set, 0, {}, {&log});
+  KineticLog log;
+  LoggedList<1> list(set, 0, {}, {&log});
   for (Id id = 0; id < n; ++id) {
     set.insert(id, {{{1.0 * id, 0}}, 0}, 0);
     pieces.plan(id, 1, {{{1.0 * id, -2.0 * id}}, 1}, 0);
@@ -129,3 +130,5 @@ TEST_CASE("a seam at whose time a listener throws is made when the run goes on",
   simulator.advance_to(2);
   simulator.audit();
 }
+
+}  // namespace test_pieces

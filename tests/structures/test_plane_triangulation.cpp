@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_plane_triangulation {
 namespace {
 
 using namespace kds;
@@ -177,3 +178,5 @@ TEST_CASE("a Delaunay triangulation of sampled points is that of the truth where
   CHECK(set.samples() > n);
   CHECK(set.samples() < 0.5 * n * end / tick);  // Sampling everything every tick takes n end / tick.
 }
+
+}  // namespace test_plane_triangulation

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_plane_triangulation_degeneracies {
 namespace {
 
 using namespace kds;
@@ -147,3 +148,5 @@ TEST_CASE("where the clock is coarse many events fall on one of its times, and t
   }
   CHECK(rebuilds > 0);  // The last resort is tested too.
 }
+
+}  // namespace test_plane_triangulation_degeneracies

@@ -22,6 +22,7 @@
 #include <tuple>
 #include <vector>
 
+namespace test_reverse {
 namespace {
 
 using namespace kds;
@@ -324,7 +325,8 @@ TEST_CASE("a history brings back any earlier state bit for bit, edits and plans 
     CHECK(history.snapshots() < kept);
     history.roll_back(now / 2);
     past.simulator.audit();
-    while (history.step_back()) {}
+    while (history.step_back()) {
+    }
   }
 }
 
@@ -355,3 +357,5 @@ TEST_CASE("a replay that throws is over", "[reverse][history]") {
   CHECK_THROWS_WITH(history.roll_back(2), "no more");
   CHECK_FALSE(history.replaying());
 }
+
+}  // namespace test_reverse

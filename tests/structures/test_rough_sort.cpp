@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_rough_sort {
 namespace {
 
 using kds::structures::RoughPlace;
@@ -72,3 +73,5 @@ TEST_CASE("buckets sort values however they are spread", "[sorted_list]") {
 }
 
 }  // namespace
+
+}  // namespace test_rough_sort

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
+namespace test_samples {
 namespace {
 
 using namespace kds;
@@ -64,3 +65,5 @@ TEST_CASE("sampled values need a sampler with a tick", "[framework][bounded]") {
   CHECK(list.next_time() == 0.5);
   CHECK_THROWS_AS(list.process(), std::logic_error);
 }
+
+}  // namespace test_samples

@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 
+namespace test_simulator_snapshots {
 namespace {
 
 using namespace kds;
@@ -21,11 +22,11 @@ using namespace kds::tests;
 
 struct Run {
   MovingSet<Motion<2>> set;
-  Log log;
+  KineticLog log;
   Pieces<Motion<2>> pieces{set};
-  List<2> list;
-  List<2, PairingQueue<>> other;
-  Simulator<Pieces<Motion<2>>, List<2>, List<2, PairingQueue<>>> simulator{0, pieces, list, other};
+  LoggedList<2> list;
+  LoggedList<2, PairingQueue<>> other;
+  Simulator<Pieces<Motion<2>>, LoggedList<2>, LoggedList<2, PairingQueue<>>> simulator{0, pieces, list, other};
 
   explicit Run(std::uint64_t seed, Id n) : list(set, 0, {}, {&log}), other(set, 0, {}, {&log}) {
     Random random(seed);
@@ -59,7 +60,7 @@ TEST_CASE("rolled back and run again, and loaded elsewhere, a simulator makes th
   const std::size_t before = run.log.size();
   run.go_on(2);
   const Snapshot end = save(run.simulator, run.set);
-  const Log expected(run.log.begin() + static_cast<std::ptrdiff_t>(before), run.log.end());
+  const KineticLog expected(run.log.begin() + static_cast<std::ptrdiff_t>(before), run.log.end());
   REQUIRE(expected.size() > 100);
 
   run.log.clear();
@@ -102,3 +103,5 @@ TEST_CASE("snapshots that are damaged, cut or of other parts are refused", "[fra
   CHECK_THROWS_AS(restore(good, run.simulator), std::runtime_error);
   CHECK_THROWS_AS(restore(save(run.set), run.set, run.set), std::runtime_error);
 }
+
+}  // namespace test_simulator_snapshots

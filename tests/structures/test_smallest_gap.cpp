@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_smallest_gap {
 namespace {
 
 using namespace kds;
@@ -83,12 +84,15 @@ TEST_CASE("the smallest gap keeps to its measures", "[smallest_gap]") {
   for (Id id = 0; id < n; ++id) set.insert(id, random_motion<2>(random, Kind::generic, 0), 0);
   Kinetic<SmallestGapRule> gap(set, 0);
   Simulator simulator(0, gap);
-  while (simulator.step(2)) {}
+  while (simulator.step(2)) {
+  }
   simulator.audit();
   const Measures m = gap.measures();
   CHECK(m.events > n);
   CHECK(m.external > 0);
   CHECK(m.external < m.events);
-  CHECK(m.held == 2 * n - 3);            // compact: n - 1 neighbours, n - 2 matches
+  CHECK(m.held == 2 * n - 3);              // compact: n - 1 neighbours, n - 2 matches
   CHECK(m.most_touched <= 3 + 3 * 6 + 1);  // responsive: three pairs, and for each gap a way to the top
 }
+
+}  // namespace test_smallest_gap

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+namespace test_snapshots {
 namespace {
 
 using namespace kds;
@@ -184,3 +185,5 @@ TEST_CASE("entries of another length and optional values that are not there", "[
   CHECK(loaded == some);
   CHECK(optional_reader.at_end());
 }
+
+}  // namespace test_snapshots

@@ -18,6 +18,7 @@
 #include <stdexcept>
 #include <vector>
 
+namespace test_sorted_list {
 namespace {
 
 using namespace kds;
@@ -365,3 +366,5 @@ TEST_CASE("a list is not made where arithmetic is not exact", "[sorted_list]") {
   CHECK(refused);
   CHECK_NOTHROW(structures::SortedList<1>());
 }
+
+}  // namespace test_sorted_list

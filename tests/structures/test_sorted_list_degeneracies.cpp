@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_sorted_list_degeneracies {
 namespace {
 
 using namespace kds;
@@ -179,3 +180,5 @@ TEST_CASE("values of 1e-6 pass next to values of 1e6", "[sorted_list][degeneracy
   }
   CHECK(log.size() > 50);
 }
+
+}  // namespace test_sorted_list_degeneracies

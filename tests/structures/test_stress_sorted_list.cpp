@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+namespace test_stress_sorted_list {
 namespace {
 
 using namespace kds;
@@ -277,3 +278,5 @@ TEMPLATE_TEST_CASE_SIG("stress: numbers all subnormal, huge, equal, or of all si
   }
   run_checked<Degree>(motions, 100);
 }
+
+}  // namespace test_stress_sorted_list

@@ -17,6 +17,7 @@
 #include <stdexcept>
 #include <vector>
 
+namespace test_tournament {
 namespace {
 
 using namespace kds;
@@ -263,3 +264,5 @@ TEST_CASE("a motion of the tournament may be given to its changes", "[tournament
   for (std::uint32_t id = 0; id < 300; ++id) CHECK(tournament.motion(id) == Motion<1>{{{3, 7}}, 0});
   tournament.audit(0);
 }
+
+}  // namespace test_tournament

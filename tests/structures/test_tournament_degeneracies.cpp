@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+namespace test_tournament_degeneracies {
 namespace {
 
 using namespace kds;
@@ -108,3 +109,5 @@ TEST_CASE("leads at clock 1e9 change as at clock 0, to the bit", "[tournament][d
   }
   CHECK(events > 20);
 }
+
+}  // namespace test_tournament_degeneracies

@@ -16,7 +16,7 @@
 #include <limits>
 #include <vector>
 
-namespace kds::tests {
+namespace kds::tests::test_uncertified_solvers {
 namespace {
 
 using structures::Tournament;
@@ -182,4 +182,4 @@ TEST_CASE("a list on the GSL's roots makes the swaps of a certified one, in thei
 }
 #endif
 
-}  // namespace kds::tests
+}  // namespace kds::tests::test_uncertified_solvers

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+namespace test_exact_algebra {
 namespace {
 
 using namespace oracle;
@@ -118,3 +119,5 @@ TEST_CASE("the first negative time", "[oracle]") {
   CHECK(first_negative(poly({0, 0, 0, -1}), 0)->compare(0) == 0);
   CHECK_FALSE(first_negative(Polynomial(), 0));
 }
+
+}  // namespace test_exact_algebra

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace oracle {
+namespace oracle::test_exact_elastic {
 namespace {
 
 using Kind = ElasticEvent::Kind;
@@ -265,4 +265,4 @@ TEST_CASE("Balls whose parabolas touch do not meet, those that come nearer do", 
 }
 
 }  // namespace
-}  // namespace oracle
+}  // namespace oracle::test_exact_elastic

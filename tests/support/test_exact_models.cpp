@@ -5,6 +5,8 @@
 
 #include <vector>
 
+namespace test_exact_models {
+
 using namespace oracle;
 
 TEST_CASE("order just after a time", "[oracle]") {
@@ -56,3 +58,5 @@ TEST_CASE("boxes overlap while all their intervals do", "[oracle]") {
   CHECK(growing[0].begin.compare(2) == 0);
   CHECK_FALSE(growing[0].end);
 }
+
+}  // namespace test_exact_models

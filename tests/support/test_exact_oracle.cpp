@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 
+namespace test_exact_oracle {
 namespace {
 
 using namespace oracle;
@@ -346,3 +347,5 @@ TEST_CASE("two boxes penetrate where a point lies inside both", "[oracle]") {
   }
   CHECK(witnessed > 40);
 }
+
+}  // namespace test_exact_oracle

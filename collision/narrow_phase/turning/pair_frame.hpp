@@ -94,6 +94,7 @@ class PairFrame {
 struct TurningBounds {
   double third;     ///< of |f'''|
   double rounding;  ///< of what is lost in computing f, f' and f'', and following them
+  double lengths;   ///< of what p is the sum of, at any time of the stretch
 
   /// |n| is at most 1. `of_a`, `of_b`: sums of the lengths of the vectors that turn with each body.
   template <int Degree>
@@ -108,8 +109,8 @@ struct TurningBounds {
     const double p3 = wa * wa * wa * of_a + wb * wb * wb * of_b;
     third = rate_n > 0 || p3 > 0 ? rate_n * (rate_n * (rate_n * p + 3 * p1) + 3 * p2) + p3 : 0;
     third *= 1 + 0x1p-40;
-    rounding = PairFrame<Degree>::rounding * (norm(frame.way.value) + of_a + of_b + speed * stretch) + frame.way_error +
-               frame.rate_error * stretch;
+    lengths = norm(frame.way.value) + of_a + of_b + speed * stretch;
+    rounding = PairFrame<Degree>::rounding * lengths + frame.way_error + frame.rate_error * stretch;
   }
 };
 

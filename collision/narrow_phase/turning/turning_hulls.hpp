@@ -34,7 +34,7 @@ class TurningHulls {
   TurningHulls(const RigidMotion& a, const TriangleHull& hull_a, const RigidMotion& b, const HullB& hull_b)
       : a_(a), b_(b), hull_a_(hull_a), hull_b_(hull_b) {}
 
-  // What WaysApart asks. Conditions are few, and all are looked at.
+  // What WaysApart asks. All conditions are looked at, unless a pair says more.
   using Conditions = std::uint32_t;
   static constexpr Conditions all(int) { return ~Conditions{0}; }
   Conditions unsure(const TurningView<Degree>&, int way, double) const { return all(way); }
@@ -165,6 +165,7 @@ class TurningHulls {
   }
 
  protected:
+  double slack() const { return slack_; }
   void set_slack(double slack) { slack_ = slack; }
 
   const RigidMotion& a_;

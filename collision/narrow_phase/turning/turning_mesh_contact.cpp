@@ -11,11 +11,11 @@ namespace kds::collision {
 namespace {
 
 template <int Degree>
-using Body = typename TurningMeshContact<Degree>::Body;
+using MeshBody = typename TurningMeshContact<Degree>::Body;
 
 /// Calls ask(search) with the search for the kind of b.
 template <int Degree, class Ask>
-auto with_search(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
+auto with_search(const MeshBody<Degree>& a, const MeshBody<Degree>& b, const Ask& ask) {
   const MeshOfPair mesh(std::get<MeshShape>(a.shape.shape));
   const auto with = [&](const auto& side) {
     return ask(TurningMeshSearch<Degree, std::decay_t<decltype(side)>>(mesh, a.motion, side, b.motion));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/turning/shared_failures.hpp"
 #include "collision/narrow_phase/turning/turning_touch.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 
@@ -22,22 +23,27 @@ class TurningMeshSearch {
  public:
   using RigidMotion = certificates::RigidMotion<Degree>;
   using Pair = typename Side::template PairWith<Degree>;
-  using View = TurningView<Degree>;
+  using View = NodesView<Degree>;
 
   TurningMeshSearch(const MeshOfPair& a, const RigidMotion& motion_a, const Side& b, const RigidMotion& motion_b)
-      : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b) {}
+      : a_(a),
+        b_(b),
+        motion_a_(motion_a),
+        motion_b_(motion_b),
+        reach_a_(reach(a.node(0))),
+        reach_b_(reach(b.node(0))) {}
 
   double first_contact(double t0, double horizon, ContactMode mode) const;
 
   bool in_contact(double t) const {
-    return find(View(motion_a_, motion_b_, t), [](Leaves, const Pair&) { return true; });
+    return find(view(t), [](Leaves, const Pair&) { return true; });
   }
 
   /// The pair of triangles that penetrates just after t is followed until it parts, then the next one.
   double first_separation(double t0, double horizon) const {
     for (double t = t0; t <= horizon;) {
       double parts = t;
-      const bool penetrate = find(View(motion_a_, motion_b_, t), [&](Leaves, const Pair& pair) {
+      const bool penetrate = find(view(t), [&](Leaves, const Pair& pair) {
         parts = WaysApart<Pair>(pair).first_parting(t, horizon);
         return true;
       });
@@ -62,6 +68,7 @@ class TurningMeshSearch {
   };
   struct Item {
     double time;
+    double seen;  ///< the time of the view that has told so
     Leaves nodes;
     Known known;
     int tries = 0;  ///< by exact signs, one after the other
@@ -72,25 +79,33 @@ class TurningMeshSearch {
   class Front {
    public:
     Front(const TurningMeshSearch& search, double t0, double horizon, ContactMode mode)
-        : search_(search), horizon_(horizon), mode_(mode), view_(search.motion_a_, search.motion_b_, t0) {
-      visit({0, 0});
+        : search_(search), horizon_(horizon), mode_(mode), view_(search.view(t0, horizon)) {
+      visit({0, 0}, t0);
     }
     double next();
 
    private:
     void push(double t, Leaves nodes, Known known, int tries = 0) {
-      if (t <= horizon_) queue_.push({t, nodes, known, tries});
+      if (t <= horizon_) queue_.push({t, view_.time, nodes, known, tries});
     }
-    void visit(Leaves nodes, int tries = 0);
+    void look(double t) {
+      if (t != view_.time) view_ = search_.view(t, horizon_);
+    }
+    void visit(Leaves nodes, double from, int tries = 0);
     void visit_exactly(Leaves nodes, int tries);
     bool counts(Leaves nodes) const;
 
     const TurningMeshSearch& search_;
     double horizon_;  ///< in mode `transparent` no later than a contact that is known
     ContactMode mode_;
-    View view_;  ///< at the time that is looked at
+    View view_;  ///< at the time that is looked at, or not long before
+    SharedFailures failures_;
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
   };
+
+  static double reach(const BodyNode& root) { return (norm(root.centre) + root.radius) * (1 + 0x1p-40); }
+  View view(double t, double horizon) const { return {motion_a_, motion_b_, reach_a_, reach_b_, t, horizon}; }
+  View view(double t) const { return view(t, t); }
 
   Pair pair(Leaves leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
   bool are_leaves(Leaves nodes) const { return a_.is_leaf(nodes.a) && b_.is_leaf(nodes.b); }
@@ -135,6 +150,7 @@ class TurningMeshSearch {
   const Side& b_;
   const RigidMotion& motion_a_;
   const RigidMotion& motion_b_;
+  double reach_a_, reach_b_;  ///< how far parts are from the origin of their body
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -144,20 +160,26 @@ double TurningMeshSearch<Degree, Side>::first_contact(double t0, double horizon,
   return Front(*this, t0, horizon, mode).next();
 }
 
+/// A view costs as much as some pairs of nodes, so that one is looked through for a part of the time that the last one
+/// was good for.
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::Front::next() {
+  constexpr double part = 0.25;
   while (!queue_.empty()) {
     const Item item = queue_.top();
     queue_.pop();
-    if (item.time != view_.time) view_ = View(search_.motion_a_, search_.motion_b_, item.time);
     switch (item.known) {
       case Known::apart_until:
-        visit(item.nodes, item.tries);
+        if (item.time > horizon_) return never;
+        if (!(item.time - view_.time <= part * (item.time - item.seen))) look(item.time);
+        visit(item.nodes, item.time, item.tries);
         break;
       case Known::stuck:
+        look(item.time);
         visit_exactly(item.nodes, item.tries);
         break;
       case Known::contact:
+        look(item.time);
         if (mode_ == ContactMode::transparent || counts(item.nodes)) return item.time;
         push(search_.passed_over(search_.pair(item.nodes), view_, horizon_), item.nodes, Known::apart_until);
     }
@@ -165,21 +187,27 @@ double TurningMeshSearch<Degree, Side>::Front::next() {
   return never;
 }
 
-/// By doubles, from the time of the view on.
+/// By doubles, of two that are known to be apart up to a time not before that of the view.
 template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit(Leaves nodes, int tries) {
-  const double t = view_.time;
-  const double limit = (horizon_ - t) * (1 + 0x1p-40);
-  const NodeWait apart = nodes_apart(view_, search_.a_.node(nodes.a), search_.b_.node(nodes.b), limit);
-  if (apart.wait > horizon_ - t) return;
+void TurningMeshSearch<Degree, Side>::Front::visit(Leaves nodes, double from, int tries) {
+  const NodeWait apart = nodes_apart(view_, search_.a_.node(nodes.a), search_.b_.node(nodes.b));
+  if (apart.wait > horizon_ - view_.time) return;
   if (apart.worth_it) {
-    if (const double until = next_down(t + apart.wait); until > t) return push(until, nodes, Known::apart_until);
+    if (const double until = next_down(view_.time + apart.wait); until > from) {
+      return push(until, nodes, Known::apart_until);
+    }
   }
-  if (search_.are_leaves(nodes)) {
-    const double until = search_.pair(nodes).apart_until(view_, horizon_);
-    return until > t ? push(until, nodes, Known::apart_until) : push(t, nodes, Known::stuck, tries);
+  if (!search_.are_leaves(nodes)) {
+    search_.of_halves(nodes, [&](Leaves halves) { return visit(halves, from), false; });
+    return;
   }
-  search_.of_halves(nodes, [&](Leaves halves) { return visit(halves), false; });
+  const Pair pair = search_.pair(nodes);
+  double until = pair.apart_until(view_, horizon_);
+  if (until <= from && view_.time < from) {
+    look(from);
+    until = pair.apart_until(view_, horizon_);
+  }
+  until > from ? push(until, nodes, Known::apart_until) : push(from, nodes, Known::stuck, tries);
 }
 
 /// By exact signs: for a while, or to where other pairs may come first. What slides on each other has nothing else: the
@@ -193,7 +221,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tri
   const double others = queue_.empty() ? never : queue_.top().time;
   const double step = std::max(next_up(t), t + std::ldexp(part_of_turn, 2 * tries) * pair.time_of_turning());
   const double until = std::min(horizon_, std::max(others, step));
-  const double contact = WaysApart<Pair>(pair).first_penetration(t, until);
+  const double contact = WaysApart<Pair, SharedFailures&>(pair, failures_).first_penetration(t, until);
   if (contact != never) {
     push(contact, nodes, Known::contact);
     if (mode_ == ContactMode::transparent) horizon_ = contact;
@@ -233,10 +261,10 @@ template <int Degree, class Side>
 TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   TurningTouch best;
   Leaves of_best{};
-  const View view(motion_a_, motion_b_, t);
+  const View view = this->view(t);
   for (const double when : {t, next_down(t)}) {
     bool any = false;
-    find(View(motion_a_, motion_b_, when), [&](Leaves leaves, const Pair& pair) {
+    find(this->view(when), [&](Leaves leaves, const Pair& pair) {
       const TurningTouch each = touch(leaves, pair, view);
       if (!any || each.approach > best.approach || (each.approach == best.approach && leaves < of_best)) {
         best = each, of_best = leaves;

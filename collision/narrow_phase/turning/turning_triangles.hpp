@@ -4,6 +4,7 @@
 #include "certificates/turning/edge_edge_separation.hpp"
 #include "certificates/turning/normal_along_edge.hpp"
 #include "certificates/turning/vertex_face_separation.hpp"
+#include "collision/narrow_phase/turning/triangle_gap.hpp"
 #include "collision/narrow_phase/turning/turning_hulls.hpp"
 #include "kds/turning/turning_failure_time.hpp"
 
@@ -42,21 +43,41 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
   TurningTriangles(const RigidMotion& a, const Corners& corners_a, const RigidMotion& b, const Corners& corners_b)
       : Base(a, triangle_hull(corners_a), b, triangle_hull(corners_b)) {}
 
-  /// Calls test(certificate) for the conditions of a way until it returns false.
+  /// Numbers of conditions of a way, as bits.
+  using Conditions = typename Base::Conditions;
+  static constexpr Conditions all(int) { return 7; }
+
+  /// Calls test(certificate) for some conditions of a way, or all, until it returns false.
   template <class Test>
-  bool every_condition(int way, typename Base::Conditions, const Test& test) const {
+  bool every_condition(int way, Conditions which, const Test& test) const {
     const Corners& p = this->hull_a_.points;
     const Corners& q = this->hull_b_.points;
     const bool forward = way % 2 != 0;
-    if (way < 4) return every_corner(way, p, q, test);
+    if (way < 4) return every_corner(way, p, q, which, test);
     const auto k = static_cast<std::size_t>(way - 4) / 2;
     const std::array<Eigen::Vector3d, 2> u{p[k / 3], p[(k / 3 + 1) % 3]}, u_back{u[1], u[0]};
     const std::array<Eigen::Vector3d, 2> v{q[k % 3], q[(k % 3 + 1) % 3]}, v_back{v[1], v[0]};
     // An edge from a to b: the product has to point from b to a for EdgeEdgeSeparation.
-    return test(certificates::EdgeEdgeSeparation<Degree>{this->a_, this->b_, forward ? u_back : u, v}) &&
-           test(certificates::NormalAlongEdge<Degree>{this->a_, this->b_, p, forward ? v : v_back}) &&
-           test(certificates::NormalAlongEdge<Degree>{this->b_, this->a_, q, forward ? u : u_back});
+    using certificates::EdgeEdgeSeparation, certificates::NormalAlongEdge;
+    return (!(which & 1) || test(EdgeEdgeSeparation<Degree>{this->a_, this->b_, forward ? u_back : u, v})) &&
+           (!(which & 2) || test(NormalAlongEdge<Degree>{this->a_, this->b_, p, forward ? v : v_back})) &&
+           (!(which & 4) || test(NormalAlongEdge<Degree>{this->b_, this->a_, q, forward ? u : u_back}));
   }
+
+  /// A time from t on until which they are apart; t where doubles do not tell, or where it would be hardly later.
+  double apart_until(double t, double horizon) const { return apart_until(this->frame(t), horizon); }
+  double apart_until(const TurningView<Degree>& view, double horizon) const {
+    if (this->slack() > 0) return Base::apart_until(view, horizon);
+    const TriangleGap<Degree> gap(view, this->hull_a_, this->hull_b_);
+    if (!(gap.width() > this->error(view))) return view.time;
+    const double stretch =
+        view.stretch(this->hull_a_.radius + this->hull_b_.radius, (horizon - view.time) * (1 + 0x1p-40));
+    const double wait = gap.open_for(stretch);
+    return wait > horizon - view.time ? never : after_wait(view.time, wait, stretch);
+  }
+
+  /// The conditions of a way that do not hold for certain, and are positive, for so long from now on.
+  Conditions unsure(const TurningView<Degree>& view, int way, double stretch) const;
 
   /// Whether all of its conditions are zero at all times.
   bool separates_nothing(int way) const {
@@ -71,7 +92,7 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     for (Eigen::Vector3d& x : p) x -= along * this->hull_a_.normals[0];
     for (Eigen::Vector3d& x : q) x += along * this->hull_b_.normals[0];
     double first = never;
-    every_corner(way, way < 2 ? p : this->hull_a_.points, way < 2 ? this->hull_b_.points : q,
+    every_corner(way, way < 2 ? p : this->hull_a_.points, way < 2 ? this->hull_b_.points : q, all(way),
                  [&](const auto& condition) {
                    first = std::min(first, failure_time(condition, t, std::min(first, until)));
                    return true;
@@ -88,19 +109,66 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
  private:
   /// Of the ways of planes.
   template <class Test>
-  bool every_corner(int way, const Corners& p, const Corners& q, const Test& test) const {
+  bool every_corner(int way, const Corners& p, const Corners& q, Conditions which, const Test& test) const {
     const bool forward = way % 2 != 0;
-    if (way < 2) return every_corner(this->a_, forward ? p : turned_over(p), this->b_, q, test);
-    return every_corner(this->b_, forward ? turned_over(q) : q, this->a_, p, test);
+    if (way < 2) return every_corner(this->a_, forward ? p : turned_over(p), this->b_, q, which, test);
+    return every_corner(this->b_, forward ? turned_over(q) : q, this->a_, p, which, test);
   }
   template <class Test>
   static bool every_corner(const RigidMotion& of_face, const Corners& face, const RigidMotion& of_corner,
-                           const Corners& corners, const Test& test) {
-    for (const Eigen::Vector3d& x : corners) {
-      if (!test(certificates::VertexFaceSeparation<Degree>{of_corner, of_face, x, face})) return false;
+                           const Corners& corners, Conditions which, const Test& test) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!(which >> i & 1)) continue;
+      if (!test(certificates::VertexFaceSeparation<Degree>{of_corner, of_face, corners[i], face})) return false;
     }
     return true;
   }
 };
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// Each condition is n . p, or n . v, with unit vectors that turn: what exact signs are taken of, times a positive
+/// number. Normals are off by the doubt of their hull, and stay so as they turn.
+template <int Degree>
+auto TurningTriangles<Degree>::unsure(const TurningView<Degree>& view, int way, double stretch) const -> Conditions {
+  const auto& hull_a = this->hull_a_;
+  const auto& hull_b = this->hull_b_;
+  if (!view.certain || !(stretch <= view.stretch(hull_a.radius + hull_b.radius, stretch))) return all(way);
+  const typename Base::Seen seen(*this, view);
+  const double sense = way % 2 != 0 ? 1 : -1;
+  Conditions unsure = 0;
+  const auto note = [&](int number, Jet f, double less, double third) {
+    f.value -= less;
+    const bool sure = f.value > 0 && positive_for(f, third, stretch) >= stretch;
+    if (!sure) unsure |= Conditions{1} << number;
+  };
+  if (way < 4) {
+    const bool of_a = way < 2;
+    const VectorJet n = sense * turning(seen.normal[of_a ? 0 : 1], of_a ? view.spin_a : view.spin_b);
+    const TurningBounds bounds(view, of_a ? view.rate_a : view.rate_b, hull_a.radius, hull_b.radius, stretch);
+    const double less = bounds.rounding + (of_a ? hull_a.doubt : hull_b.doubt) * bounds.lengths;
+    const Jet face = of_a ? dot(n, view.way) - dot(n, turning(seen.a[0], view.spin_a))
+                          : dot(n, view.way) + dot(n, turning(seen.b[0], view.spin_b));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Jet f =
+          of_a ? face + dot(n, turning(seen.b[i], view.spin_b)) : face - dot(n, turning(seen.a[i], view.spin_a));
+      note(static_cast<int>(i), f, less, bounds.third);
+    }
+    return unsure;
+  }
+  const auto k = static_cast<std::size_t>(way - 4) / 2;
+  const VectorJet u = turning(seen.u[k / 3], view.spin_a), v = turning(seen.v[k % 3], view.spin_b);
+  const double rates = view.rate_a + view.rate_b;
+  const TurningBounds bounds(view, rates, hull_a.radius, hull_b.radius, stretch);
+  const VectorJet between{view.way.value + seen.b[k % 3] - seen.a[k / 3],
+                          view.way.rate + cross(view.spin_b, seen.b[k % 3]) - cross(view.spin_a, seen.a[k / 3]),
+                          view.way.bend + cross(view.spin_b, cross(view.spin_b, seen.b[k % 3])) -
+                              cross(view.spin_a, cross(view.spin_a, seen.a[k / 3]))};
+  note(0, sense * dot(cross(u, v), between), bounds.rounding, bounds.third);
+  const double third = rates * rates * rates * (1 + 0x1p-40);
+  note(1, sense * dot(turning(seen.normal[0], view.spin_a), v), PairFrame<Degree>::rounding + hull_a.doubt, third);
+  note(2, sense * dot(turning(seen.normal[1], view.spin_b), u), PairFrame<Degree>::rounding + hull_b.doubt, third);
+  return unsure;
+}
 
 }  // namespace kds::collision

@@ -14,6 +14,18 @@
 
 namespace kds::collision {
 
+/// Failure times and signs as they are, each found when it is asked for.
+struct ExactFailures {
+  template <class C>
+  double failure_time(const C& certificate, double t, double until) const {
+    return kds::failure_time(certificate, t, until);
+  }
+  template <class C>
+  int sign_after(const C& certificate, double t) const {
+    return kds::sign_after(certificate, t);
+  }
+};
+
 /// Finds contacts of a pair that has a finite number of *ways* of being apart, each of them a conjunction of turning
 /// certificates, its conditions: the bodies do not penetrate if all the conditions of some way hold.
 ///
@@ -30,10 +42,13 @@ namespace kds::collision {
 ///
 /// Method: a way that is open just after t stays so until the first of its conditions fails. Then another may be open,
 /// just after that time; if none is, they penetrate. Before that, as far as they get, proofs in doubles.
-template <class Pair>
+///
+/// `Failures` finds failure times and signs: kds::failure_time and kds::sign_after, or what remembers them.
+template <class Pair, class Failures = ExactFailures>
 class WaysApart {
  public:
-  explicit WaysApart(const Pair& pair) : pair_(pair), nothing_(by_way<signed char>()) {
+  explicit WaysApart(const Pair& pair, Failures failures = Failures())
+      : pair_(pair), failures_(failures), nothing_(by_way<signed char>()) {
     for (int way = 0; way < pair_.ways; ++way) {
       nothing_[static_cast<std::size_t>(way)] = pair.known_to_separate_nothing(way) ? 1 : -1;
     }
@@ -101,7 +116,7 @@ class WaysApart {
   bool open(int way, const Frame& frame) const {
     if (nothing_[static_cast<std::size_t>(way)] > 0) return false;
     return pair_.every_condition(way, pair_.unsure(frame, way, 0), [&](const auto& condition) {
-      const int sign = sign_after(condition, frame.time);
+      const int sign = failures_.sign_after(condition, frame.time);
       return sign > 0 || (sign == 0 && !separates_nothing(way));
     });
   }
@@ -138,7 +153,7 @@ class WaysApart {
     for (const double end : {soon, until}) {
       double first = never;
       pair_.every_condition(way, pair_.unsure(frame, way, (end - t) * (1 + 0x1p-40)), [&](const auto& condition) {
-        first = std::min(first, failure_time(condition, t, std::min(first, end)));
+        first = std::min(first, failures_.failure_time(condition, t, std::min(first, end)));
         return true;
       });
       if (first != never) return first;
@@ -189,6 +204,7 @@ class WaysApart {
   }
 
   const Pair& pair_;
+  Failures failures_;
   mutable ByWay<signed char> nothing_;  ///< by way: whether it separates nothing; -1: not known
 };
 

@@ -189,7 +189,7 @@ void BasicWorld<Motion>::process_wall() requires(turns<Motion>) {
   tell([&](Listener& listener) { listener.wall(*this, event); });
 }
 
-#define KDS_INSTANTIATE(motion) template class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

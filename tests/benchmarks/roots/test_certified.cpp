@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+namespace test_certified {
 namespace {
 
 using namespace bench_roots;
@@ -64,3 +65,5 @@ TEST_CASE("certified solvers: three roots at 1e-39, where most coefficients look
                          -0x1.2bc74d358b276p+500, 0x1.06d13a9dc1377p+623, -0x1p+744}});
   CHECK(complaints == "");
 }
+
+}  // namespace test_certified

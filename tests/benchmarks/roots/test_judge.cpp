@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+namespace test_judge {
 namespace {
 
 using namespace bench_roots;
@@ -199,3 +200,5 @@ TEST_CASE("contenders: all are right where it is easy", "[roots]") {
   (std::make_integer_sequence<int, greatest_degree>{});
   CHECK(complaints == "");
 }
+
+}  // namespace test_judge

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+namespace test_truth {
 namespace {
 
 using namespace bench_roots;
@@ -140,3 +141,5 @@ TEST_CASE("families are what they say", "[roots]") {
     }
   }
 }
+
+}  // namespace test_truth

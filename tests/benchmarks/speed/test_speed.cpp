@@ -17,6 +17,7 @@
 #include <tuple>
 #include <vector>
 
+namespace test_speed {
 namespace {
 
 using namespace speed;
@@ -239,3 +240,5 @@ TEST_CASE("speed race: a ratio is the median over rounds", "[speed]") {
   CHECK(ratio(many, one).low == 39);  // the 40th and the 61st: the interval of textbooks for n = 100
   CHECK(ratio(many, one).high == 60);
 }
+
+}  // namespace test_speed

@@ -2,7 +2,7 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
-#include "tests/benchmarks/turning/query.hpp"
+#include "tests/benchmarks/turning/random_boxes.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <algorithm>
@@ -18,26 +18,9 @@ using namespace kds;
 using namespace kds::collision;
 using Eigen::Vector3d;
 using tests::Random;
+using turning::between;
 using turning::Query;
-
-Vector3d between(Random& random, double size) {
-  return size * Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-}
-
-/// Boxes that pass each other at a distance of up to their size, and turn by `turn` rad in a second.
-Query random_boxes(Random& random, double turn) {
-  Query query;
-  for (auto [half, motion] : {std::pair(&query.half_a, &query.a), std::pair(&query.half_b, &query.b)}) {
-    *half = Vector3d(random.between(0.2, 1), random.between(0.2, 1), random.between(0.2, 1));
-    const Vector3d velocity = between(random, 2);
-    *motion = {{{between(random, 1) - 0.5 * velocity, velocity}}};
-    motion->path.coefficients[0][0] += motion == &query.a ? -0.8 : 0.8;
-    motion->orientation.coeffs() =
-        Eigen::Vector4d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-    motion->angular_velocity = turn * between(random, 1).normalized();
-  }
-  return query;
-}
+using turning::random_boxes;
 
 /// A rod of 1 : 100 that comes down on a thin plate.
 Query rod_and_plate(Random& random, double turn) {

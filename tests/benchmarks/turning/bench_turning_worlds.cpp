@@ -1,7 +1,8 @@
-// Worlds of cubes that turn, beside the same without spin, and rods.
+// Worlds of cubes, rods and rings that turn, beside the same without spin.
 #include "collision/world.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
+#include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <cmath>
@@ -16,16 +17,17 @@ using Eigen::Vector3d;
 
 struct Scene {
   int bodies;
-  double packing;  ///< the part of the space that the boxes fill
-  Vector3d half;
-  double rate;  ///< rad/s
+  double packing;  ///< the part of the space that the shapes' boxes fill
+  Shape shape;
+  Vector3d half;  ///< of the box around it
+  double rate;    ///< rad/s
+  double seconds = 2;
 };
 
-/// Boxes on a lattice, their velocities at random up to 1 in each coordinate, between elastic walls.
+/// Bodies on a lattice, their velocities at random up to 1 in each coordinate, between elastic walls.
 template <class World>
 void run(std::FILE* csv, const char* name, const Scene& scene) {
   constexpr bool turning = turns<typename World::Motion>;
-  constexpr double seconds = 2;
   const double volume = 8 * scene.half.prod() / scene.packing;
   const int side = static_cast<int>(std::ceil(std::cbrt(scene.bodies)));
   const double spacing = std::cbrt(volume * scene.bodies) / side;
@@ -43,7 +45,7 @@ void run(std::FILE* csv, const char* name, const Scene& scene) {
         return Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
       };
       const Vector3d velocity = at_random(), spin = scene.rate * at_random().normalized();
-      typename World::Description body{.shape = Box{scene.half}};
+      typename World::Description body{.shape = scene.shape};
       if constexpr (turning) {
         body.motion = {{{{place, velocity}}}};
         body.motion[0].angular_velocity = spin;
@@ -53,7 +55,7 @@ void run(std::FILE* csv, const char* name, const Scene& scene) {
       }
       world.add_body(body);
     }
-    world.advance_to(seconds);
+    world.advance_to(scene.seconds);
     best = std::min(best, benchmarks::thread_seconds() - start);
     counters = world.counters();
   }
@@ -74,14 +76,22 @@ int main(int argc, char** argv) {
   const Vector3d cube = Vector3d::Constant(0.5), rod(1, 0.1, 0.1);
   for (const double packing : {0.01, 0.1}) {
     std::printf("1000 cubes at %g %%, 2 s\n", 100 * packing);
-    run<World<1>>(csv, "cubes that keep their orientation", {1000, packing, cube, 0});
-    run<TurningWorld<1>>(csv, "cubes without spin at first", {1000, packing, cube, 0});
-    run<TurningWorld<1>>(csv, "cubes at 1 rad/s", {1000, packing, cube, 1});
-    run<TurningWorld<1>>(csv, "cubes at 10 rad/s", {1000, packing, cube, 10});
+    run<World<1>>(csv, "cubes that keep their orientation", {1000, packing, Box{cube}, cube, 0});
+    run<TurningWorld<1>>(csv, "cubes without spin at first", {1000, packing, Box{cube}, cube, 0});
+    run<TurningWorld<1>>(csv, "cubes at 1 rad/s", {1000, packing, Box{cube}, cube, 1});
+    run<TurningWorld<1>>(csv, "cubes at 10 rad/s", {1000, packing, Box{cube}, cube, 10});
   }
   std::printf("1000 rods of 1 : 10 at 0.2 %%, 2 s\n");
-  run<World<1>>(csv, "rods that keep their orientation", {1000, 0.002, rod, 0});
-  run<TurningWorld<1>>(csv, "rods at 1 rad/s", {1000, 0.002, rod, 1});
-  run<TurningWorld<1>>(csv, "rods at 10 rad/s", {1000, 0.002, rod, 10});
+  run<World<1>>(csv, "rods that keep their orientation", {1000, 0.002, Box{rod}, rod, 0});
+  run<TurningWorld<1>>(csv, "rods at 1 rad/s", {1000, 0.002, Box{rod}, rod, 1});
+  run<TurningWorld<1>>(csv, "rods at 10 rad/s", {1000, 0.002, Box{rod}, rod, 10});
+  const Vector3d flat(1, 1, 0.25);
+  const MeshShape ring{samples::torus(8, 4), 1};
+  for (const auto& [packing, seconds] : {std::pair(0.01, 20.0), {0.1, 2.0}}) {
+    std::printf("1000 rings of 64 triangles at %g %%, %g s\n", 100 * packing, seconds);
+    run<World<1>>(csv, "rings that keep their orientation", {1000, packing, ring, flat, 0, seconds});
+    run<TurningWorld<1>>(csv, "rings at 1 rad/s", {1000, packing, ring, flat, 1, seconds});
+    run<TurningWorld<1>>(csv, "rings at 10 rad/s", {1000, packing, ring, flat, 10, seconds});
+  }
   return std::fclose(csv) == 0 ? 0 : 1;
 }

@@ -47,11 +47,11 @@ void compare_around(const Certificate& f, double t, LadderTally& tally) {
     // Next to zero doubles are so dense that the truth would need more digits.
     const double time = std::abs(t) > 1e-25 ? lattice_point(lattice_index(t) + step) : t + step * 0x1p-50;
     const int expected = truth.at(time);
-    tally.wrong += sign_at(f, time) != expected;
+    tally.wrong += kds::sign_at(f, time) != expected;
     ++tally.cases;
     if (expected != 0 && step != 0) continue;
     tally.wrong += sign_after(f, time) != truth.after(time);
-    tally.wrong += sign_at(f, time, 1) != truth.derivative_at(time);
+    tally.wrong += kds::sign_at(f, time, 1) != truth.derivative_at(time);
     tally.cases += 2;
   }
 }

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 
+namespace test_aligned {
 namespace {
 
 using namespace kds;
@@ -153,3 +154,5 @@ TEST_CASE("turning at rates of a simple ratio is told from turning at nearly tha
   a.path.start = 1;
   CHECK_FALSE(vanishes(f));
 }
+
+}  // namespace test_aligned

@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+namespace test_edge_edge_separation {
 namespace {
 
 using namespace kds;
@@ -45,3 +46,5 @@ TEST_CASE("a blade that turns meets an edge", "[turning]") {
   // The derivative has the sign that the blade's turning gives.
   CHECK(sign_at(f, met, 1) == sign_after(f, met));
 }
+
+}  // namespace test_edge_edge_separation

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 
+namespace test_rigid_motion {
 namespace {
 
 using namespace kds;
@@ -160,3 +161,5 @@ TEST_CASE("bodies that turn take up pieces of motion", "[rigid_motion]") {
   pieces.process();
   CHECK(bodies[id] == next);
 }
+
+}  // namespace test_rigid_motion

@@ -1,5 +1,6 @@
 // Each rung of the ladder by itself: what it says holds the truth, and is as narrow as it should be.
 #include "certificates/turning/edge_edge_separation.hpp"
+#include "certificates/turning/normal_along_edge.hpp"
 #include "certificates/turning/vertex_face_separation.hpp"
 #include "tests/certificates/turning/check_turning.hpp"
 #include "tests/certificates/turning/turning_scenes.hpp"
@@ -9,11 +10,13 @@
 #include <algorithm>
 #include <cstdint>
 
+namespace test_rungs {
 namespace {
 
 using namespace kds;
 using namespace kds::tests;
 using certificates::EdgeEdgeSeparation;
+using certificates::NormalAlongEdge;
 using certificates::RigidMotion;
 using certificates::VertexFaceSeparation;
 using Eigen::Vector3d;
@@ -48,7 +51,7 @@ struct Widths {
 };
 
 struct Rungs {
-  Widths quick, doubles, extended, slope;
+  Widths quick, doubles, turned, extended, slope;  // turned: vectors in double-doubles, with one bound for all
 
   template <class Certificate>
   void take(const Certificate& f, double t) {
@@ -60,6 +63,7 @@ struct Rungs {
     const Real value = truth.value * scale;
     const Real size = truth.size * scale;
     doubles.take(kds::detail::turning_value<Ball<double>>(f, t, 0), value, size);
+    turned.take(f.extended_value(t), value, size);
     extended.take(kds::detail::turning_value<Ball<DoubleDouble>>(f, t, 0), value, size);
     const Real rate = 1 + length(real(f.a.angular_velocity)) + length(real(f.b.angular_velocity));
     const Real h = Real("1e-30") / rate;
@@ -86,18 +90,30 @@ TEST_CASE("each rung holds the truth", "[turning]") {
     for (Vector3d& corner : f.corners) corner = turning_vector(random, coarse);
     rungs.take(f, t);
     rungs.take(EdgeEdgeSeparation<2>{scene.a, scene.b, {f.vertex, f.corners[0]}, {f.corners[1], f.corners[2]}}, t);
+    // Of the third kind the two values in double-doubles have to agree.
+    const NormalAlongEdge<2> leaning{scene.a, scene.b, f.corners, {f.vertex, turning_vector(random, coarse)}};
+    const Ball<DoubleDouble> turned = leaning.extended_value(t);
+    const auto added = kds::detail::turning_value<Ball<DoubleDouble>>(leaning, t, 0);
+    const double apart = std::abs((turned.middle - added.middle).high);
+    CHECK_FALSE(apart > (turned.radius + added.radius) * Ball<double>::slack);
   }
   for (const Rungs* rungs : {&near, &any}) {
-    CAPTURE(rungs->quick.radius, rungs->doubles.radius, rungs->extended.radius, rungs->slope.radius);
-    CAPTURE(rungs->quick.share, rungs->doubles.share, rungs->extended.share, rungs->slope.share);
+    CAPTURE(rungs->quick.radius, rungs->doubles.radius, rungs->turned.radius, rungs->extended.radius);
+    CAPTURE(rungs->slope.radius);
+    CAPTURE(rungs->quick.share, rungs->doubles.share, rungs->turned.share, rungs->extended.share, rungs->slope.share);
     CHECK(rungs->quick.share < 1);
     CHECK(rungs->doubles.share < 1);
+    CHECK(rungs->turned.share < 1);
     CHECK(rungs->extended.share < 1);
     CHECK(rungs->slope.share < 1);
   }
   CHECK(near.quick.radius < 0x1p-40);
+  CHECK(near.turned.radius < 0x1p-86);
+  CHECK(near.turned.share > 0.00001);
   CHECK(near.extended.radius < 0x1p-88);
   CHECK(near.quick.share > 0.001);
   CHECK(near.extended.share > 0.0001);
   CHECK(any.extended.radius < 0x1p-60);
 }
+
+}  // namespace test_rungs

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstdio>
 
+namespace test_turning_failure_time {
 namespace {
 
 using namespace kds;
@@ -94,3 +95,5 @@ TEST_CASE("a tip that touches the ground does not fail, one that is nudged down 
   CHECK(std::abs(t - (2 - 0x1p-26)) < 1e-15);
   CHECK(std::abs(recovery_time(f, t, 100) - (2 + 0x1p-26)) < 1e-15);
 }
+
+}  // namespace test_turning_failure_time

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 
+namespace test_vertex_face_separation {
 namespace {
 
 using namespace kds;
@@ -94,3 +95,5 @@ TEST_CASE("numbers out of all range have exact signs too", "[turning]") {
     }
   }
 }
+
+}  // namespace test_vertex_face_separation

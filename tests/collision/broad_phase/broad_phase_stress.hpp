@@ -69,7 +69,7 @@ oracle::MovingBox exact(const KineticBox<Degree>& box) {
 }
 
 /// Keeps what is reported and holds it against the contract.
-struct Pairs final : PairListener {
+struct ListedPairs final : PairListener {
   std::set<std::pair<BodySlot, BodySlot>> now;
   std::map<std::pair<BodySlot, BodySlot>, double> since;
   double clock = 0;
@@ -172,7 +172,7 @@ struct Stress {
   std::unique_ptr<BroadPhase<Degree>> owner;
   BroadPhase<Degree>& broad_phase;
   std::map<BodySlot, KineticBox<Degree>> boxes;
-  Pairs pairs;
+  ListedPairs pairs;
   double now = 0;
   double side = 12;
   std::size_t events = 0;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_adaptive_broad_phase {
 namespace {
 
 using namespace tests;
@@ -73,4 +73,4 @@ TEST_CASE("Changes between a few boxes and the kinetic grid lose no event and ad
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_adaptive_broad_phase

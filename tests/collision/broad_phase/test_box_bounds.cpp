@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_box_bounds {
 namespace {
 
 using namespace tests;
@@ -228,4 +228,4 @@ TEST_CASE("A body that is less rounded from now on gets another fat box", "[broa
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_box_bounds

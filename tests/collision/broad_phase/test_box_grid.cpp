@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_box_grid {
 namespace {
 
 using namespace tests;
@@ -207,4 +207,4 @@ TEST_CASE("Boxes that enter together are found by those that come and move", "[b
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_box_grid

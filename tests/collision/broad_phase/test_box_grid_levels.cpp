@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_box_grid_levels {
 namespace {
 
 using namespace tests;
@@ -139,4 +139,4 @@ TEST_CASE("Boxes of many levels that share the buckets of a small table", "[box_
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_box_grid_levels

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_box_pairs {
 namespace {
 
 using kds::tests::Random;
@@ -122,4 +122,4 @@ TEST_CASE("Any number of threads finds the same pairs in the same order", "[box_
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_box_pairs

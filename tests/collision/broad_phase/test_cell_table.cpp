@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-namespace kds::collision {
+namespace kds::collision::test_cell_table {
 namespace {
 
 using kds::tests::Random;
@@ -85,4 +85,4 @@ TEST_CASE("A cell table holds what was added and not removed", "[cell_table]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_cell_table

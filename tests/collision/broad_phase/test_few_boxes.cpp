@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_few_boxes {
 namespace {
 
 using namespace tests;
@@ -74,7 +74,7 @@ TEMPLATE_TEST_CASE_SIG("Few boxes have all pairs that overlap, whatever happens"
 
 TEST_CASE("As many boxes as fit are compared with each other, and one more is refused", "[broad_phase]") {
   FewBoxes<1> few;
-  Pairs pairs;
+  ListedPairs pairs;
   constexpr std::size_t count = FewBoxes<1>::most;
   std::vector<KineticBox<1>> boxes;  // a row, each overlaps the next
   for (std::size_t i = 0; i <= count; ++i) boxes.push_back(cube({0.75 * static_cast<double>(i), 0, 0}, {0, 0, 0}));
@@ -99,7 +99,7 @@ TEST_CASE("As many boxes as fit are compared with each other, and one more is re
 
 TEST_CASE("A span that ends at the horizon is renewed only when there is a later one", "[broad_phase]") {
   FewBoxes<1> few;
-  Pairs pairs;
+  ListedPairs pairs;
   const std::vector<KineticBox<1>> boxes{cube({0, 0, 0}, {0.25, 0, 0}), cube({3, 0, 0}, {0, 0, 0})};
   few.extend_horizon(0, 1);
   few.insert(entries_of(boxes), 0, pairs);
@@ -117,7 +117,7 @@ TEST_CASE("A span that ends at the horizon is renewed only when there is a later
 
 TEST_CASE("Bodies at rest have one span for all time", "[broad_phase]") {
   FewBoxes<1> few;
-  Pairs pairs;
+  ListedPairs pairs;
   const std::vector<KineticBox<1>> boxes{cube({0, 0, 0}, {0, 0, 0}), cube({3, 0, 0}, {0, 0, 0})};
   few.insert(entries_of(boxes), 0, pairs);
   CHECK_FALSE(few.advance(1e300, pairs));
@@ -130,7 +130,7 @@ TEST_CASE("Bodies at rest have one span for all time", "[broad_phase]") {
 
 TEST_CASE("Few boxes go on where a body moves by its size between two doubles", "[broad_phase]") {
   FewBoxes<1> few;
-  Pairs pairs;
+  ListedPairs pairs;
   const double now = 0x1p60;  // where doubles are 256 apart
   const std::vector<KineticBox<1>> boxes{cube({0, 0, 0}, {1, 0, 0}, now), cube({5000, 0, 0}, {0, 0, 0}, now)};
   few.insert(entries_of(boxes), now, pairs);
@@ -141,7 +141,7 @@ TEST_CASE("Few boxes go on where a body moves by its size between two doubles", 
 
 TEST_CASE("An audit of few boxes sees a body outside its box", "[broad_phase]") {
   FewBoxes<1> few;
-  Pairs pairs;
+  ListedPairs pairs;
   const std::vector<KineticBox<1>> boxes{cube({0, 0, 0}, {1, 0, 0})};
   few.insert(entries_of(boxes), 0, pairs);
   few.audit(0);
@@ -149,4 +149,4 @@ TEST_CASE("An audit of few boxes sees a body outside its box", "[broad_phase]") 
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_few_boxes

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_kdop {
 namespace {
 
 using Eigen::Vector3d;
@@ -146,4 +146,4 @@ TEST_CASE("Extents hold every vertex, and hardly more", "[kdop]") {
   CHECK(wrong == 0);
 }
 
-}  // namespace kds::collision
+}  // namespace kds::collision::test_kdop

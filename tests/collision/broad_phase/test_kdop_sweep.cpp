@@ -14,7 +14,7 @@
 #include <map>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_kdop_sweep {
 namespace {
 
 using namespace tests;
@@ -102,7 +102,7 @@ struct Dops {
   std::vector<KdopDirection> more;
   std::map<BodySlot, Body> bodies;
   KineticSweepAndPrune<Degree> broad_phase;
-  Pairs pairs;
+  ListedPairs pairs;
   double now = 0;
   std::size_t pruned = 0;
 };
@@ -154,7 +154,7 @@ TEST_CASE("The list may be in any direction", "[kdop][broad_phase]") {
   std::vector<KineticSweepAndPrune<1>::Entry> entries;
   for (BodySlot id = 0; id < 100; ++id) entries.push_back({id, &boxes[id]});
   KineticSweepAndPrune<1> broad_phase(0, {}, {more, [&](BodySlot id, std::size_t i, double) { return slabs[id][i]; }});
-  Pairs pairs;
+  ListedPairs pairs;
   broad_phase.insert(entries, 0, pairs);
   CHECK(broad_phase.listed_axes() == 1u << 4);
   broad_phase.audit(0);
@@ -168,8 +168,8 @@ TEST_CASE("A k-DOP that is not finite is refused by name", "[kdop]") {
                                                 return slab_around(path, -2, 2, directions(14)[i]);
                                               }});
   const KineticSweepAndPrune<1>::Entry entry{7, &box};
-  Pairs pairs;
+  ListedPairs pairs;
   CHECK_THROWS_WITH(broad_phase.insert({&entry, 1}, 0, pairs), Catch::Matchers::Contains("body 7"));
 }
 
-}  // namespace kds::collision
+}  // namespace kds::collision::test_kdop_sweep

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_kinetic_grid {
 namespace {
 
 using namespace tests;
@@ -73,7 +73,7 @@ KineticBox<1> cube(const Vector3d& at, const Vector3d& velocity, double now = 0)
 
 TEST_CASE("A body at rest costs nothing while time goes on, and starts when it is told to", "[broad_phase]") {
   KineticGrid<1> grid;
-  Pairs pairs;
+  ListedPairs pairs;
   const auto still = cube({0, 0, 0}, Vector3d::Zero());
   const auto other = cube({10, 0, 0}, Vector3d::Zero());
   const std::vector<KineticGrid<1>::Entry> entries{{0, &still}, {1, &other}};
@@ -90,7 +90,7 @@ TEST_CASE("A body at rest costs nothing while time goes on, and starts when it i
 
 TEST_CASE("Bodies that fly apart are soon left alone", "[broad_phase]") {
   KineticGrid<1> grid;
-  Pairs pairs;
+  ListedPairs pairs;
   std::vector<KineticBox<1>> boxes;
   for (int i = 0; i < 20; ++i) boxes.push_back(cube({2.0 * i, 0, 0}, {0.1 * i, 0, 0}));
   std::vector<KineticGrid<1>::Entry> entries;
@@ -107,7 +107,7 @@ TEST_CASE("Bodies that fly apart are soon left alone", "[broad_phase]") {
 TEST_CASE("Clocks so large that a body moves by its size between two doubles do not stop the kinetic grid",
           "[broad_phase]") {
   KineticGrid<1> grid;
-  Pairs pairs;
+  ListedPairs pairs;
   const double now = 0x1p60;  // where doubles are 256 apart
   const auto fast = cube({0, 0, 0}, {1, 0, 0}, now);
   const auto target = cube({5000, 0, 0}, Vector3d::Zero(), now);
@@ -121,7 +121,7 @@ TEST_CASE("Clocks so large that a body moves by its size between two doubles do 
 
 TEST_CASE("Boxes without extent move on in the kinetic grid too", "[broad_phase]") {
   KineticGrid<1> grid;
-  Pairs pairs;
+  ListedPairs pairs;
   certificates::PointMotion<1> path;
   path.coefficients = {Vector3d(0, 0, 0), Vector3d(1, 0, 0)};
   const KineticBox<1> point{path, path};
@@ -137,7 +137,7 @@ TEST_CASE("Boxes without extent move on in the kinetic grid too", "[broad_phase]
 
 TEST_CASE("An audit of the kinetic grid sees a body outside its fat box", "[broad_phase]") {
   KineticGrid<1> grid;
-  Pairs pairs;
+  ListedPairs pairs;
   const auto moving = cube({0, 0, 0}, {1, 0, 0});
   const std::vector<KineticGrid<1>::Entry> entries{{0, &moving}};
   grid.insert(entries, 0, pairs);
@@ -198,4 +198,4 @@ TEST_CASE("Thousands that come at once have the pairs of their fat boxes", "[bro
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_kinetic_grid

@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_kinetic_sweep_and_prune {
 namespace {
 
 using namespace tests;
@@ -203,7 +203,7 @@ TEST_CASE("Lists that change in the midst of a run lose nothing and report nothi
 
 TEST_CASE("An audit sees a box that is not where it was said to be", "[broad_phase]") {
   KineticSweepAndPrune<1> broad_phase(0);
-  Pairs pairs;
+  ListedPairs pairs;
   Random random(3);
   std::vector<KineticBox<1>> boxes;
   for (int i = 0; i < 5; ++i) boxes.push_back(random_box<1>(random, false, 0, 5));
@@ -232,4 +232,4 @@ TEST_CASE("Removing and inserting again under the same id", "[broad_phase]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_kinetic_sweep_and_prune

@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_queries {
 namespace {
 
 using namespace tests;
@@ -213,7 +213,7 @@ std::map<BodySlot, KineticBox<Degree>> crowd(Random& random, std::size_t count, 
 }
 
 template <int Degree>
-void insert(BroadPhase<Degree>& broad_phase, const std::map<BodySlot, KineticBox<Degree>>& boxes, Pairs& pairs) {
+void insert(BroadPhase<Degree>& broad_phase, const std::map<BodySlot, KineticBox<Degree>>& boxes, ListedPairs& pairs) {
   std::vector<typename BroadPhase<Degree>::Entry> entries;
   for (const auto& [id, box] : boxes) entries.push_back({id, &box});
   broad_phase.insert(entries, 0, pairs);
@@ -229,7 +229,7 @@ TEMPLATE_TEST_CASE_SIG("Questions about many boxes of many sizes look at few of 
       const double side = 18;
       const auto boxes = crowd<Degree>(random, 400, side);
       const auto broad_phase = make<Degree>(way);
-      Pairs pairs;
+      ListedPairs pairs;
       broad_phase->extend_horizon(0, window);
       insert(*broad_phase, boxes, pairs);
       Asked small, rods, moving;
@@ -281,7 +281,7 @@ TEST_CASE("Boxes that touch meet, and huge, infinite and empty ones are answered
         box.min.start = box.max.start = 0;
       }
       const auto broad_phase = make<1>(way);
-      Pairs pairs;
+      ListedPairs pairs;
       broad_phase->extend_horizon(0, never);
       insert(*broad_phase, boxes, pairs);
       const auto cube = [&](double x, double size) {
@@ -322,7 +322,7 @@ TEST_CASE("A body that leaves its fat box in time is named, wherever it goes", "
         boxes[id] = box_around<1>(centre, Vector3d::Constant(-0.5), Vector3d::Constant(0.5), 0.5);
       }
       const auto broad_phase = make<1>(way);
-      Pairs pairs;
+      ListedPairs pairs;
       broad_phase->extend_horizon(0, window);
       insert(*broad_phase, boxes, pairs);
       certificates::PointMotion<1> target;
@@ -345,7 +345,7 @@ TEST_CASE("Several threads may ask at a time", "[broad_phase]") {
     Random random(6);
     const auto boxes = crowd<1>(random, 300, 12);
     const auto broad_phase = make<1>(way);
-    Pairs pairs;
+    ListedPairs pairs;
     broad_phase->extend_horizon(0, never);
     insert(*broad_phase, boxes, pairs);
     const auto answers = [&] {
@@ -367,4 +367,4 @@ TEST_CASE("Several threads may ask at a time", "[broad_phase]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_queries

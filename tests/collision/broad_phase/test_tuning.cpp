@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_tuning {
 namespace {
 
 using namespace tests;
@@ -135,4 +135,4 @@ TEST_CASE("A tuning that is out of range is refused by name", "[broad_phase]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_tuning

@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+namespace test_capsule_contact {
 namespace {
 
 using namespace kds;
@@ -365,3 +366,5 @@ TEMPLATE_TEST_CASE_SIG("Contacts of capsules are where the distances are", "[cap
   CHECK(parted > 50);
   CHECK(passed > 50);
 }
+
+}  // namespace test_capsule_contact

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+namespace test_capsule_exact {
 namespace {
 
 using namespace kds;
@@ -191,7 +192,8 @@ TEST_CASE("capsule: against a face, an edge and a corner of a box", "[capsule]")
   CHECK(edge.contact() < edge_up.contact());
   // Its end on a corner, along the diagonal of a cube.
   const Vector3d diagonal = Vector3d::Ones() / std::sqrt(3.0);
-  const Quaterniond to_diagonal = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), diagonal);
+  // From z to the diagonal: about their cross product, by half of the angle. (FromTwoVectors compiles an SVD for this.)
+  const Quaterniond to_diagonal = Quaterniond(1 + diagonal.z(), -diagonal.y(), diagonal.x(), 0).normalized();
   const Flight corner{box(1, 1, 1), capsule(0.5, 2, to_diagonal), 10 * diagonal, -diagonal};
   CHECK(corner.contact() == Approx(10 - 2 - 0.5 - std::sqrt(3.0)).epsilon(1e-14));
   CHECK(to_string(corner.where(corner.contact()).feature_a) == "v7");
@@ -269,3 +271,5 @@ TEST_CASE("capsule: numbers that cannot be", "[capsule]") {
   CHECK(refusal(1, 1e70).find("half_length: 1e+70 is above") == 0);
   CHECK(refusal(1, 0) == "taken");
 }
+
+}  // namespace test_capsule_exact

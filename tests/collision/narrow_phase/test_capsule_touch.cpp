@@ -13,6 +13,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_capsule_touch {
 namespace {
 
 using namespace kds::collision;
@@ -227,3 +228,5 @@ TEST_CASE("capsule and mesh: one that rises and turns back meets again", "[capsu
   CHECK(again == Approx(2).epsilon(1e-12));
   CHECK(first_contact(a, TranslatingShape<2>{lying, down}, 0, 100, ContactMode::resolved) == 0);
 }
+
+}  // namespace test_capsule_touch

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+namespace test_convex_contact {
 namespace {
 
 using namespace kds;
@@ -211,3 +212,5 @@ TEMPLATE_TEST_CASE_SIG("Filtered contacts of boxes are those of exact signs alon
   CHECK(partings > 100);
   CHECK(estimates > 100);
 }
+
+}  // namespace test_convex_contact

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+namespace test_estimated_contact {
 namespace {
 
 using namespace kds;
@@ -55,3 +56,5 @@ TEMPLATE_TEST_CASE_SIG("Until its estimate a pair with a mesh needs no test", "[
   CHECK(met > 100);
   CHECK(none > 200);
 }
+
+}  // namespace test_estimated_contact

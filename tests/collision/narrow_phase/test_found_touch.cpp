@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_found_touch {
 namespace {
 
 using namespace kds;
@@ -109,3 +110,5 @@ TEST_CASE("Within a window two triangles touch as they do at all", "[found_touch
   CHECK(at_begin > 100);
   CHECK(apart > 500);
 }
+
+}  // namespace test_found_touch

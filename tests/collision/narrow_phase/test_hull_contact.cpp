@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_hull_contact {
 namespace {
 
 using namespace kds;
@@ -216,3 +217,5 @@ TEST_CASE("hulls that touch or slide on each other do not penetrate", "[narrow-p
   CHECK(first(ball, {0, 5, 0}, {0, -1, 0}) == 3);
   CHECK(first(b, {0, 5, 0}, {0, -1, 0}) == 3);
 }
+
+}  // namespace test_hull_contact

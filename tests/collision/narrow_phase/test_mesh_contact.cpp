@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_mesh_contact {
 namespace {
 
 using namespace kds::collision;
@@ -364,3 +365,5 @@ TEST_CASE("A contact near clock 0 of bodies that have begun long before") {
     }
   }
 }
+
+}  // namespace test_mesh_contact

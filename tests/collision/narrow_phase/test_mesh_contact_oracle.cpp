@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace test_mesh_contact_oracle {
+
 using namespace kds::collision::samples;
 
 TEST_CASE("Trees give what all pairs of triangles give, bit for bit") {
@@ -16,3 +18,5 @@ TEST_CASE("Before a contact surfaces are apart, and at it they are near") {
   against_distances<1>(11, 60);
   against_distances<2>(12, 60);
 }
+
+}  // namespace test_mesh_contact_oracle

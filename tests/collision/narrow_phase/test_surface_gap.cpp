@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace kds::collision {
+namespace kds::collision::test_surface_gap {
 namespace {
 
 using namespace tests;
@@ -52,4 +52,4 @@ TEST_CASE("Surface gap: of capsules, and of a capsule and a box") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_surface_gap

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+namespace test_watertight {
 namespace {
 
 using namespace kds::collision;
@@ -168,3 +169,5 @@ TEST_CASE("Mesh sizes of 1e-6 next to 1e6") {
     REQUIRE(found->tau >= distance - 1.1e-6 - 1e-8);
   }
 }
+
+}  // namespace test_watertight

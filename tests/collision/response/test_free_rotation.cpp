@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 
+namespace test_free_rotation {
 namespace {
 
 using namespace kds::collision;
@@ -198,3 +199,5 @@ TEST_CASE("free rotation: extreme bodies keep their energy") {
     CHECK(std::abs(state.orientation.norm() - 1) < 1e-13);
   }
 }
+
+}  // namespace test_free_rotation

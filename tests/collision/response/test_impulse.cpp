@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+namespace test_impulse {
 namespace {
 
 using Eigen::Vector3d;
@@ -96,3 +97,5 @@ TEST_CASE("Rounding of elastic impulses neither gains nor loses energy in the me
 }
 
 }  // namespace
+
+}  // namespace test_impulse

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+namespace test_inertia {
 namespace {
 
 using Eigen::Matrix3d;
@@ -131,3 +132,5 @@ TEST_CASE("Turned tensors are those of long doubles", "[inertia]") {
 }
 
 }  // namespace
+
+}  // namespace test_inertia

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_least_constraint {
 namespace {
 
 using Eigen::Vector3d;
@@ -67,7 +67,8 @@ TEST_CASE("least constraint: stacks rest exactly, pushes carry what is above", "
       p.touch(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + 1), up);
     }
     REQUIRE(least_constraint(p.rates, p.touches));
-    const bool rest = std::all_of(p.rates.begin(), p.rates.end(), [](const Vector3d& r) { return r == Vector3d::Zero(); });
+    const bool rest =
+        std::all_of(p.rates.begin(), p.rates.end(), [](const Vector3d& r) { return r == Vector3d::Zero(); });
     CHECK(rest);
     // Of equal masses: the relative rate that a touch gives is twice the force over the mass; the lowest has a fixed
     // partner, so once.
@@ -171,4 +172,4 @@ TEST_CASE("least constraint: random sets satisfy the conditions of the minimum",
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_least_constraint

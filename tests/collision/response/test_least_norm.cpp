@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_least_norm {
 namespace {
 
 using kds::tests::Random;
@@ -95,4 +95,4 @@ TEST_CASE("least norm: what contradicts itself is met as nearly as possible", "[
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_least_norm

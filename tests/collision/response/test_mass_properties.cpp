@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+namespace test_mass_properties {
 namespace {
 
 using namespace kds::collision;
@@ -371,3 +372,5 @@ TEST_CASE("What has no mass properties is refused in one line", "[mass propertie
 }
 
 }  // namespace
+
+}  // namespace test_mass_properties

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace test_principal_inertia {
 namespace {
 
 using namespace kds::collision;
@@ -67,3 +68,5 @@ TEST_CASE("principal inertia: a diagonal tensor is as it is, and equal moments m
   CHECK(nearly.symmetry == 2);
   CHECK(nearly.moments[0] == nearly.moments[1]);
 }
+
+}  // namespace test_principal_inertia

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+namespace test_rotation_piece {
 namespace {
 
 using namespace kds::collision;
@@ -121,3 +122,5 @@ TEST_CASE("rotation piece: a clock that is too coarse is refused") {
   const RotationState state{Vector3d(0x1p60, 0x1p60, 0), Quaterniond::Identity(), 1};
   CHECK_THROWS_AS(rotation_piece(inertia, state, 1, state.orientation, 1e-3), std::runtime_error);
 }
+
+}  // namespace test_rotation_piece

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+namespace test_turning_impulse {
 namespace {
 
 using namespace kds::collision;
@@ -481,3 +482,5 @@ TEST_CASE("Impulses at the ends of the range of numbers", "[turning impulse]") {
 }
 
 }  // namespace
+
+}  // namespace test_turning_impulse

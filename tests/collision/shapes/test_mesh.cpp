@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_mesh {
 namespace {
 
 using namespace kds::collision;
@@ -117,3 +118,5 @@ TEST_CASE("Features print as the event file wants them") {
   CHECK(to_string(Feature::face(40)) == "f40");
   CHECK(Feature::edge(1, 2) == Feature::edge(2, 1));
 }
+
+}  // namespace test_mesh

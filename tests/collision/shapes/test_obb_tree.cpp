@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+namespace test_obb_tree {
 namespace {
 
 using namespace kds::collision;
@@ -215,3 +216,5 @@ TEST_CASE("Windows of a moving ball and a box hold every time at which they over
     ball_windows<2>(seed);
   }
 }
+
+}  // namespace test_obb_tree

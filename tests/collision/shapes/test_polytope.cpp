@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+namespace test_polytope {
 namespace {
 
 using namespace kds;
@@ -151,3 +152,5 @@ TEST_CASE("a hull has the mass properties of its solid", "[polytope][mass]") {
   CHECK(tip.inertia(0, 0) == Approx(2 * 3.0 / 80));  // of each coordinate the variance is 3 / 80
   CHECK(tip.inertia(0, 1) == Approx(1.0 / 80));
 }
+
+}  // namespace test_polytope

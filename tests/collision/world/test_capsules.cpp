@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_capsules {
 namespace {
 
 using namespace tests;
@@ -145,4 +145,4 @@ TEST_CASE("capsules are saved and go on as they would have", "[world][capsule][s
   CHECK(std::get<Capsule>(other.shape(2).shape).half_length == 0.75);
 }
 
-}  // namespace kds::collision
+}  // namespace kds::collision::test_capsules

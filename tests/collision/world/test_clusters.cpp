@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_clusters {
 namespace {
 
 using namespace tests;
@@ -223,4 +223,4 @@ TEST_CASE("Clusters: bodies that exactly fill a box stay where they are", "[dege
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_clusters

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_damaged_snapshot {
 namespace {
 
 using namespace tests;
@@ -202,4 +202,4 @@ TEST_CASE("damaged: scripts and bodies still to come", "[world][snapshot][damage
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_damaged_snapshot

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace kds::collision {
+namespace kds::collision::test_earliest_wall_time {
 namespace {
 
 using Motion = certificates::PointMotion<1>;
@@ -109,4 +109,4 @@ TEST_CASE("What does not move, and walls that are nowhere, are left out", "[wall
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_earliest_wall_time

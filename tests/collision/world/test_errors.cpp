@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_errors {
 namespace {
 
 using namespace tests;
@@ -178,4 +178,4 @@ TEST_CASE("Removed bodies are unknown", "[world]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_errors

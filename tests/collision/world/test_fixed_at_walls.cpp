@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_fixed_at_walls {
 namespace {
 
 using namespace tests;
@@ -156,4 +156,4 @@ TEST_CASE("A fixed body that presses another against a wall passes through it, a
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_fixed_at_walls

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_guards {
 namespace {
 
 using namespace tests;
@@ -274,4 +274,4 @@ TEST_CASE("guards: what is refused before anything is changed leaves the world w
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_guards

@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_hulls {
 namespace {
 
 using namespace tests;
@@ -148,4 +148,4 @@ TEST_CASE("hulls are saved and go on as they would have", "[world][hull][snapsho
   CHECK(std::get<ConvexHull>(other.shape(2).shape).polytope->structure().faces.size() == 8);
 }
 
-}  // namespace kds::collision
+}  // namespace kds::collision::test_hulls

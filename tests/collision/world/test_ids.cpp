@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_ids {
 namespace {
 
 using namespace tests;
@@ -284,4 +284,4 @@ TEST_CASE("Ids: bodies that come and go at random, also in callbacks, are those 
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_ids

@@ -15,7 +15,7 @@
 #include <tuple>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_ids_told {
 namespace {
 
 using namespace tests;
@@ -163,4 +163,4 @@ TEST_CASE("Ids: what is removed and what is asked for is named by id in a world 
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_ids_told

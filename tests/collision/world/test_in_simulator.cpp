@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_in_simulator {
 namespace {
 
 using namespace tests;
@@ -185,4 +185,4 @@ TEST_CASE("A world and a triangulation are rolled back together", "[world][simul
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_in_simulator

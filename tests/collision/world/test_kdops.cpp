@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_kdops {
 namespace {
 
 using namespace tests;
@@ -150,4 +150,4 @@ TEST_CASE("k-DOPs are of four kinds, and for kinetic sweep and prune", "[kdop][w
   CHECK_THROWS_WITH(World<1>(grid), Catch::Matchers::Contains("kdop"));
 }
 
-}  // namespace kds::collision
+}  // namespace kds::collision::test_kdops

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_list_arena {
 namespace {
 
 TEST_CASE("An arena that is full says so, and keeps what it has", "[list_arena]") {
@@ -108,4 +108,4 @@ TEST_CASE("Lists stay where they are while there is reserved room", "[list_arena
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_list_arena

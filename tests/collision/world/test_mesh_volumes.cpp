@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_mesh_volumes {
 namespace {
 
 using namespace tests;
@@ -294,4 +294,4 @@ TEST_CASE("A caller's boxes have room for the gap, too", "[mesh]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_mesh_volumes

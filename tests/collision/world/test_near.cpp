@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_near {
 namespace {
 
 using Eigen::Vector3d;
@@ -222,4 +222,4 @@ TEST_CASE("Callbacks may ask, and visitors may change the world", "[world]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_near

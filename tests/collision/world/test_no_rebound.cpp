@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace kds::collision {
+namespace kds::collision::test_no_rebound {
 namespace {
 
 using namespace tests;
@@ -46,4 +46,4 @@ TEST_CASE("Balls that meet without rebound, and are pulled apart, do not pass th
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_no_rebound

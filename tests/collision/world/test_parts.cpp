@@ -12,7 +12,7 @@
 #include <array>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_parts {
 namespace {
 
 using namespace tests;
@@ -415,4 +415,4 @@ TEST_CASE("Resting contacts: a body that jumps has none any more") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_parts

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-namespace kds::collision {
+namespace kds::collision::test_queue_room {
 namespace {
 
 struct SmallQueue {
@@ -43,4 +43,4 @@ TEST_CASE("A calendar queue names the most slots it can have", "[queue_room]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_queue_room

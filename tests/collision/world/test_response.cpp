@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace kds::collision {
+namespace kds::collision::test_response {
 namespace {
 
 using namespace tests;
@@ -112,4 +112,4 @@ TEST_CASE("A ball thrown up falls back to the floor again and again", "[world]")
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_response

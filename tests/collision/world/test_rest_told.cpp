@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_rest_told {
 namespace {
 
 using namespace tests;
@@ -92,4 +92,4 @@ TEST_CASE("Rest told: what is squeezed passes", "[resting]") {
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_rest_told

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_resting {
 namespace {
 
 using namespace tests;
@@ -256,4 +256,4 @@ TEST_CASE("What is left along a normal is a rounding of the speeds there were, n
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_resting

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_resting_corners {
 namespace {
 
 using namespace tests;
@@ -123,4 +123,4 @@ TEST_CASE("Resting: a body goes that was to come to rest a little later, and the
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_resting_corners

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_sensors {
 namespace {
 
 using namespace tests;
@@ -130,4 +130,4 @@ TEST_CASE("A sensor that enters in overlap, jumps, or is removed: what begins en
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_sensors

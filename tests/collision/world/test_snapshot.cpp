@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_snapshot {
 namespace {
 
 using namespace tests;
@@ -280,4 +280,4 @@ TEST_CASE("Worlds refuse snapshots of other worlds, and keep what they have", "[
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_snapshot

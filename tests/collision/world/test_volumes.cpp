@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace kds::collision {
+namespace kds::collision::test_volumes {
 namespace {
 
 using namespace tests;
@@ -87,4 +87,4 @@ TEST_CASE("The volume of the bounding sphere holds the shape in any orientation"
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_volumes

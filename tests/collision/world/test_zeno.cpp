@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kds::collision {
+namespace kds::collision::test_zeno {
 namespace {
 
 using namespace tests;
@@ -169,4 +169,4 @@ TEST_CASE("Zeno: three balls without gravity collapse into a cluster, momentum i
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_zeno

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace kds::collision {
+namespace kds::collision::test_zeno_policy {
 namespace {
 
 using namespace tests;
@@ -84,4 +84,4 @@ TEST_CASE("A body crushed between a wall and a fixed body: the run ends", "[dege
 }
 
 }  // namespace
-}  // namespace kds::collision
+}  // namespace kds::collision::test_zeno_policy

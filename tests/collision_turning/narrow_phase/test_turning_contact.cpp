@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_turning_contact {
 namespace {
 
 using namespace kds;
@@ -235,3 +236,5 @@ TEMPLATE_TEST_CASE_SIG("bodies that turn meet when the definition says so", "[tu
   }
   CHECK(contacts > 60);
 }
+
+}  // namespace test_turning_contact

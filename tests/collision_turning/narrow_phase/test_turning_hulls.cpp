@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_turning_hulls {
 namespace {
 
 using namespace kds;
@@ -218,3 +219,5 @@ TEST_CASE("turning hulls: grazing, by gaps of any size", "[narrow-phase][turning
   const Solid<1> nearer{wall, motion_of<1>({-0x1p-50, 0, 0}, {0, 0, 0}, {-2, 0, 0})};
   CHECK(first(spinning, nearer, 0, 10) == 0);
 }
+
+}  // namespace test_turning_hulls

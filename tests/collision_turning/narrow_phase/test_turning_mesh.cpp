@@ -20,6 +20,7 @@
 #include <numbers>
 #include <vector>
 
+namespace test_turning_mesh {
 namespace {
 
 using namespace kds;
@@ -262,3 +263,5 @@ TEST_CASE("rings that are linked, and meshes of many triangles: what a contact c
     }
   }
 }
+
+}  // namespace test_turning_mesh

@@ -3,6 +3,7 @@
 
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/shape.hpp"
 
 #include <algorithm>
 #include <array>

@@ -29,7 +29,8 @@ certificates::RigidMotion<Degree> motion_of(const Eigen::Vector3d& position, con
 
 /// In the cube of coordinates from -size to size.
 inline Eigen::Vector3d random_vector(Random& random, double size) {
-  return size * Eigen::Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+  const double x = random.between(-size, size), y = random.between(-size, size), z = random.between(-size, size);
+  return {x, y, z};
 }
 
 }  // namespace kds::tests

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+namespace test_page {
+
 using namespace kds;
 using course::Page;
 using course::View;
@@ -46,8 +48,8 @@ TEST_CASE("a page is one file whose data cannot end its script", "[course]") {
   page.starts({.text = "s"});
   const std::string html = page.html();
   CHECK(html.find("alert(1)</script>") == std::string::npos);
-  CHECK(html.find("/*{") == std::string::npos);       // every part has been put in
-  CHECK(html.find("src=\"") == std::string::npos);    // nothing is fetched
+  CHECK(html.find("/*{") == std::string::npos);     // every part has been put in
+  CHECK(html.find("src=\"") == std::string::npos);  // nothing is fetched
   CHECK(html.find("http://www.w3.org/2000/svg") != std::string::npos);
   CHECK(html.find("https://") == std::string::npos);
 }
@@ -64,3 +66,5 @@ TEST_CASE("a page refuses what it could not show", "[course]") {
   page.element(0, "a");
   CHECK_THROWS_AS(page.json(), std::logic_error);  // it has no motion
 }
+
+}  // namespace test_page

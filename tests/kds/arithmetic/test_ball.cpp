@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_ball {
 namespace {
 
 using kds::Ball;
@@ -185,3 +186,5 @@ TEST_CASE("the absolute value of a ball contains that of the number", "[ball]") 
   }
   CHECK(absolute(Ball<DoubleDouble>(DoubleDouble(-1, 1e-20), 0)).middle.low == -1e-20);
 }
+
+}  // namespace test_ball

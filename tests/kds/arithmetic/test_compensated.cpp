@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+namespace test_compensated {
 namespace {
 
 using namespace kds;
@@ -142,3 +143,7 @@ TEMPLATE_TEST_CASE_SIG("shifted balls contain the shifted polynomial", "[compens
   CHECK(wrong == 0);
   CHECK(loose == 0);
 }
+
+#undef FOR_EACH_DEGREE
+
+}  // namespace test_compensated

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+namespace test_double_double {
 namespace {
 
 using kds::DoubleDouble;
@@ -147,3 +148,5 @@ TEST_CASE("a double is a double-double without a low part", "[double_double]") {
   CHECK(third.low != 0);
   CHECK(close(third, Rational(1) / Rational(3)));
 }
+
+}  // namespace test_double_double

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_exact {
 namespace {
 
 using kds::Exact;
@@ -157,3 +158,5 @@ TEST_CASE("what leaves the ring is truncated towards zero", "[exact]") {
   CHECK(truncated_quotient(Exact(-1.0), Exact(3.0), 2) == Exact(-0.25));
   CHECK(scaled(Exact(3.0), -2) == Exact(0.75));
 }
+
+}  // namespace test_exact

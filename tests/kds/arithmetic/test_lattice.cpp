@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_lattice {
 namespace {
 
 using namespace kds;
@@ -88,3 +89,5 @@ TEST_CASE("bisection on the lattice reaches any double within 64 halvings", "[la
     CHECK(above == target);
   }
 }
+
+}  // namespace test_lattice

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+namespace test_power_of_two {
+
 TEST_CASE("powers of two are what ldexp gives", "[power_of_two]") {
   for (int exponent = -1100; exponent <= 1100; ++exponent) {
     CAPTURE(exponent);
@@ -15,3 +17,5 @@ TEST_CASE("powers of two are what ldexp gives", "[power_of_two]") {
   CHECK(kds::power_of_two(-1075) == 0);
   CHECK(kds::power_of_two(1024) == std::numeric_limits<double>::infinity());
 }
+
+}  // namespace test_power_of_two

@@ -14,6 +14,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_sine_cosine {
 namespace {
 
 using namespace kds;
@@ -184,3 +185,5 @@ TEST_CASE("enclosures have signs, and roots", "[enclosure]") {
   CHECK(certain_sign(two + Enclosure(Exact(-2.0))) == 0);
   CHECK(certain_sign(two + Enclosure(Exact(-2.0) + scaled(Exact(1.0), -290))) == 1);
 }
+
+}  // namespace test_sine_cosine

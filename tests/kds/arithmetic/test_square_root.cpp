@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 
+namespace test_square_root {
 namespace {
 
 using namespace kds;
@@ -46,3 +47,5 @@ TEST_CASE("roots of squares are exact, and what is out of range has none", "[squ
   }
   CHECK(square_root(Ball<DoubleDouble>(DoubleDouble(1.0), 0.5)).radius == infinity);
 }
+
+}  // namespace test_square_root

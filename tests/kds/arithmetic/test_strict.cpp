@@ -13,7 +13,7 @@
 #include <xmmintrin.h>
 #endif
 
-namespace kds {
+namespace kds::test_strict {
 namespace {
 
 /// What is said in some mode; Catch calculates, too, so the mode lasts for this alone.
@@ -69,4 +69,4 @@ TEST_CASE("A simulator is not made where arithmetic is not exact", "[strict]") {
 }
 
 }  // namespace
-}  // namespace kds
+}  // namespace kds::test_strict

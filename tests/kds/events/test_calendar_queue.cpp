@@ -5,6 +5,8 @@
 
 #include <set>
 
+namespace test_calendar_queue {
+
 using namespace kds;
 using kds::tests::Random;
 
@@ -45,3 +47,5 @@ TEST_CASE("a calendar tells of all events up to a time, and rearranges nothing",
     CHECK(visited > 0);
   }
 }
+
+}  // namespace test_calendar_queue

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+namespace test_event_queue {
 namespace {
 
 using kds::QueuedEvent;
@@ -267,8 +268,8 @@ TEMPLATE_TEST_CASE("resizing keeps what is below and drops what is above", "[eve
   drain(queue, model);
 }
 
-TEMPLATE_TEST_CASE("a queue that grows by and by, between events, stays in order", "[event_queue]",
-                   kds::PairingQueue<>, kds::DaryQueue<>, kds::CalendarQueue<>) {
+TEMPLATE_TEST_CASE("a queue that grows by and by, between events, stays in order", "[event_queue]", kds::PairingQueue<>,
+                   kds::DaryQueue<>, kds::CalendarQueue<>) {
   for (std::uint64_t seed = 8; seed < 28; ++seed) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -353,3 +354,5 @@ TEST_CASE("a calendar queue refuses slots that it cannot number, and keeps what 
   REQUIRE(queue.slots() == 2);
   REQUIRE(queue.top() == QueuedEvent{3.0, 1});
 }
+
+}  // namespace test_event_queue

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+namespace test_place_queue {
 namespace {
 
 using kds::PlaceQueue;
@@ -158,3 +159,5 @@ TEST_CASE("a queue of places grows and shrinks with its events", "[place_queue]"
 }
 
 }  // namespace
+
+}  // namespace test_place_queue

@@ -97,4 +97,4 @@ void run(std::uint64_t seed, int rounds, Family&& family) {
 }  // namespace kds::tests
 
 /// The parameters of a test that is made for each degree.
-#define FOR_EACH_DEGREE ((int Degree), Degree), 1, 2, 3, 4, 5, 6, 7, 8
+#define FOR_DEGREES_TO_8 ((int Degree), Degree), 1, 2, 3, 4, 5, 6, 7, 8

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace kds::tests {
+namespace kds::tests::test_crossings_in_balls {
 namespace {
 
 constexpr std::array<double, 6> binomials{1, 5, 10, 10, 5, 1};
@@ -92,4 +92,4 @@ TEST_CASE("what first_crossing says of balls is true of polynomials within them"
   CHECK(met[1] > 300);
 }
 
-}  // namespace kds::tests
+}  // namespace kds::tests::test_crossings_in_balls

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+namespace test_failure_time {
 namespace {
 
 using namespace kds;
@@ -165,7 +166,7 @@ TEST_CASE("a slope that underflows in doubles has its root where it is", "[failu
 
 // --- the relatives of failure_time
 
-TEMPLATE_TEST_CASE_SIG("recovery is the failure of the negated certificate", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("recovery is the failure of the negated certificate", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(1300, 40, [](Random& random) {
     const auto f = random_motion<Degree>(random);
     const double now = random.between(-2, 2);
@@ -177,7 +178,7 @@ TEMPLATE_TEST_CASE_SIG("recovery is the failure of the negated certificate", "[f
 }
 
 TEMPLATE_TEST_CASE_SIG("after a turn from - to + the next failure is found without asking for the sign there",
-                       "[failure_time]", FOR_EACH_DEGREE) {
+                       "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(1400, 40, [](Random& random) {
     Motion<Degree> f;
     if (random.one_in(2)) {
@@ -195,7 +196,7 @@ TEMPLATE_TEST_CASE_SIG("after a turn from - to + the next failure is found witho
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("what is known to be positive now may be falling", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("what is known to be positive now may be falling", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(1450, 40, [](Random& random) {
     const Motion<Degree> f = random_motion<Degree>(random);
     const double now = random.coarse();
@@ -215,3 +216,5 @@ TEST_CASE("f with its sign turned has all signs turned", "[failure_time]") {
   CHECK(Negated<Value<2>>{zero}.vanishes());
   CHECK_FALSE(turned.vanishes());
 }
+
+}  // namespace test_failure_time

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+namespace test_failure_time_families {
 namespace {
 
 using namespace kds;
@@ -42,13 +43,13 @@ void for_all_families(std::uint64_t seed, int rounds, Check&& holds) {
 }  // namespace
 
 TEMPLATE_TEST_CASE_SIG("the quick and the slow solver agree bit for bit on every family", "[failure_time][families]",
-                       FOR_EACH_DEGREE, 9, 10) {
+                       FOR_DEGREES_TO_8, 9, 10) {
   for_all_families<Degree>(2000, Degree <= 4 ? 300 : 100, [](const FailureCase<Degree>& x) {
     return failure_time(PolynomialCertificate<Degree>{x.value}, x.now, x.horizon) == slow_failure_time(x);
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times are exact on every family", "[failure_time][families]", FOR_EACH_DEGREE, 9, 10) {
+TEMPLATE_TEST_CASE_SIG("failure times are exact on every family", "[failure_time][families]", FOR_DEGREES_TO_8, 9, 10) {
   for_all_families<Degree>(2100, 10, [](const FailureCase<Degree>& x) {
     const double expected =
         oracle::failure_time(exact(x.value.position), oracle::rational(x.value.start), x.now, x.horizon);
@@ -57,7 +58,7 @@ TEMPLATE_TEST_CASE_SIG("failure times are exact on every family", "[failure_time
 }
 
 TEMPLATE_TEST_CASE_SIG("after its failure a certificate recovers and fails again as the slow solver says",
-                       "[failure_time][families]", FOR_EACH_DEGREE) {
+                       "[failure_time][families]", FOR_DEGREES_TO_8) {
   for_all_families<Degree>(2200, 60, [](FailureCase<Degree> x) {
     const PolynomialCertificate<Degree> f{x.value};
     for (int turn = 0; turn < 3; ++turn) {
@@ -76,7 +77,7 @@ TEMPLATE_TEST_CASE_SIG("after its failure a certificate recovers and fails again
 }
 
 TEMPLATE_TEST_CASE_SIG("enclosures hold the root, and are as narrow as they say", "[failure_time][families]",
-                       FOR_EACH_DEGREE) {
+                       FOR_DEGREES_TO_8) {
   for_all_families<Degree>(2300, 60, [](const FailureCase<Degree>& x) {
     const PolynomialCertificate<Degree> f{x.value};
     const double t = failure_time(f, x.now, x.horizon);
@@ -100,7 +101,8 @@ TEMPLATE_TEST_CASE_SIG("enclosures hold the root, and are as narrow as they say"
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("the root lies in the enclosure, to the last bit", "[failure_time][families]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("the root lies in the enclosure, to the last bit", "[failure_time][families]",
+                       FOR_DEGREES_TO_8) {
   for_all_families<Degree>(2400, 4, [](const FailureCase<Degree>& x) {
     const PolynomialCertificate<Degree> f{x.value};
     const FailureTime found = enclosed_failure_time(f, x.now, x.horizon);
@@ -115,7 +117,7 @@ TEMPLATE_TEST_CASE_SIG("the root lies in the enclosure, to the last bit", "[fail
 }
 
 TEMPLATE_TEST_CASE_SIG("ordinary polynomials ask for one value in double-double and no exact sign", "[failure_time]",
-                       FOR_EACH_DEGREE) {
+                       FOR_DEGREES_TO_8) {
   const std::uint64_t seed = 2500;
   const int rounds = 10000;
   Random random(seed);
@@ -208,3 +210,5 @@ TEST_CASE("a horizon at, before and after the root, for results with enclosures"
   CHECK(certified_failure_time(f, 0).lower == next_down(t));
   CHECK(certified_failure_time(f, 0).upper == t);
 }
+
+}  // namespace test_failure_time_families

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+namespace test_failure_time_parabola {
 namespace {
 
 using namespace kds;
@@ -90,3 +91,5 @@ TEST_CASE("ordinary lines and parabolas are decided at once", "[failure_time]") 
   }
   CHECK(undecided < 30);
 }
+
+}  // namespace test_failure_time_parabola

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+namespace test_failure_time_random {
 namespace {
 
 using namespace kds;
@@ -13,7 +14,7 @@ using namespace kds::tests;
 
 }  // namespace
 
-TEMPLATE_TEST_CASE_SIG("failure times of random polynomials", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times of random polynomials", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(100, 60, [](Random& random) {
     const auto f = random_motion<Degree>(random);
     const double now = random.between(-2, 2);
@@ -27,7 +28,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of random polynomials", "[failure_time]", 
 }
 
 TEMPLATE_TEST_CASE_SIG("failure times where few bits make roots doubles and signs vanish", "[failure_time]",
-                       FOR_EACH_DEGREE) {
+                       FOR_DEGREES_TO_8) {
   run<Degree>(200, 60, [](Random& random) {
     Motion<Degree> f;
     if (random.one_in(2)) {
@@ -42,7 +43,7 @@ TEMPLATE_TEST_CASE_SIG("failure times where few bits make roots doubles and sign
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times of clustered roots", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times of clustered roots", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(300, 60, [](Random& random) {
     const double spread = std::pow(10.0, random.between(-12, -3));
     const double middle = random.one_in(2) ? 1 : random.between(-2, 2);
@@ -56,7 +57,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of clustered roots", "[failure_time]", FOR
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times of double, nearly double and triple roots", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times of double, nearly double and triple roots", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(400, 60, [](Random& random) {
     std::array<double, Degree> roots;
     for (double& root : roots) root = random.integer(-16, 16) / 8.0;
@@ -75,7 +76,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of double, nearly double and triple roots"
 }
 
 TEMPLATE_TEST_CASE_SIG("failure times where the leading coefficients are nearly zero", "[failure_time]",
-                       FOR_EACH_DEGREE) {
+                       FOR_DEGREES_TO_8) {
   run<Degree>(500, 40, [](Random& random) {
     auto f = random_motion<Degree>(random);
     const std::size_t vanishing = 1 + random.below(Degree);
@@ -88,7 +89,7 @@ TEMPLATE_TEST_CASE_SIG("failure times where the leading coefficients are nearly 
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times of huge, tiny and mixed numbers", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times of huge, tiny and mixed numbers", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(600, 25, [](Random& random) {
     Motion<Degree> f;
     const int scale = random.integer(-900, 900);
@@ -100,7 +101,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of huge, tiny and mixed numbers", "[failur
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times of numbers from the whole range of doubles", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times of numbers from the whole range of doubles", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(650, Degree < 4 ? 60 : 12, [](Random& random) {
     Motion<Degree> f;
     for (double& c : f.position.c) c = random.scaled(-1000, 1000);
@@ -111,7 +112,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of numbers from the whole range of doubles
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times among subnormal numbers", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times among subnormal numbers", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(700, 25, [](Random& random) {
     Motion<Degree> f;
     for (double& c : f.position.c) c = random.integer(-40, 40) * least;
@@ -123,7 +124,7 @@ TEMPLATE_TEST_CASE_SIG("failure times among subnormal numbers", "[failure_time]"
 }
 
 TEMPLATE_TEST_CASE_SIG("failure times with the clock at, just before and just after a root", "[failure_time]",
-                       FOR_EACH_DEGREE) {
+                       FOR_DEGREES_TO_8) {
   run<Degree>(800, 25, [](Random& random) {
     const auto f = random_motion<Degree>(random);
     check_around(f, -2);
@@ -132,7 +133,7 @@ TEMPLATE_TEST_CASE_SIG("failure times with the clock at, just before and just af
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times at clock 1e9", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times at clock 1e9", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(900, 30, [](Random& random) {
     auto f = random_motion<Degree>(random);
     f.start = 1e9 + random.between(-1, 1);
@@ -141,7 +142,7 @@ TEMPLATE_TEST_CASE_SIG("failure times at clock 1e9", "[failure_time]", FOR_EACH_
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times of a motion whose start is far away", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times of a motion whose start is far away", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(1000, 30, [](Random& random) {
     auto f = random_motion<Degree>(random);
     f.start = random.scaled(0, 40);
@@ -150,7 +151,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of a motion whose start is far away", "[fa
   });
 }
 
-TEMPLATE_TEST_CASE_SIG("failure times of roots a few steps of the lattice apart", "[failure_time]", FOR_EACH_DEGREE) {
+TEMPLATE_TEST_CASE_SIG("failure times of roots a few steps of the lattice apart", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(1100, 60, [](Random& random) {
     const double u = 0x1p-52;
     std::array<double, Degree> roots;
@@ -167,3 +168,5 @@ TEMPLATE_TEST_CASE_SIG("failure times of roots a few steps of the lattice apart"
     check(f, 0);
   });
 }
+
+}  // namespace test_failure_time_random

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+namespace test_first_crossing {
 namespace {
 
 using namespace kds;
@@ -129,3 +130,7 @@ TEMPLATE_TEST_CASE_SIG("ordinary polynomials are decided", "[first_crossing]", F
   CAPTURE(Degree, seed);
   CHECK(undecided <= 10);
 }
+
+#undef FOR_EACH_DEGREE
+
+}  // namespace test_first_crossing

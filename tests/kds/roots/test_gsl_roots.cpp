@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
+namespace test_gsl_roots {
 namespace {
 
 using namespace kds;
@@ -121,3 +122,5 @@ TEST_CASE("through the GSL: a double root comes out to half the digits", "[gsl]"
 }
 
 #endif
+
+}  // namespace test_gsl_roots

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+namespace test_hook_checks {
 namespace {
 
 using namespace kds;
@@ -102,3 +103,5 @@ TEST_CASE("without the checks hooks are believed", "[hooks]") {
 }
 
 #endif
+
+}  // namespace test_hook_checks

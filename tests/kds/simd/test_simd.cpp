@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 
+namespace test_simd {
 namespace {
 
 using namespace kds;
@@ -151,3 +152,5 @@ TEST_CASE("four doubles in two registers are four doubles", "[simd]") {
     REQUIRE(static_cast<double>(highest(f)) == highest(x));
   }
 }
+
+}  // namespace test_simd

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_exact_zero {
 namespace {
 
 using namespace kds;
@@ -127,3 +128,5 @@ TEST_CASE("relations of angles are told from what is next to them", "[exact_zero
   CHECK(relation_throughout(a, b).first_multiple == 1);
   CHECK_FALSE(relation_throughout(a, b).first_zero);
 }
+
+}  // namespace test_exact_zero

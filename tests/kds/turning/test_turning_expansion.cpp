@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 
+namespace test_turning_expansion {
 namespace {
 
 using namespace kds;
@@ -126,3 +127,5 @@ TEST_CASE("bounds of rates are above them, whatever their size", "[turning_expan
   }
   CHECK(kds::detail::rate_bound(Spin{}) == 0);
 }
+
+}  // namespace test_turning_expansion

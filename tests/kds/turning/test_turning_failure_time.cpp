@@ -14,6 +14,7 @@
 #include <limits>
 #include <stdexcept>
 
+namespace test_turning_failure_time {
 namespace {
 
 using namespace kds;
@@ -353,3 +354,5 @@ TEMPLATE_TEST_CASE_SIG("failure times of random sums are refuted by no sign", "[
   CHECK(wrong == 0);
   CHECK(found > rounds / 3);
 }
+
+}  // namespace test_turning_failure_time

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
+namespace test_turning_sum {
 namespace {
 
 using namespace kds;
@@ -108,3 +109,5 @@ TEST_CASE("a spin that is still, and one at its start, are exact", "[spin]") {
   CHECK(Spin{{3, 4, 12}, 0}.rate().middle.high == 13);
   CHECK(Spin{{1e-250, 0, 0}, 0}.rate().radius == never);  // nothing is said of it in doubles
 }
+
+}  // namespace test_turning_sum

@@ -1,0 +1,40 @@
+// Balls, boxes, capsules, hulls and meshes that keep their shape, as surfaces that may meet one that bends.
+#pragma once
+
+#include "certificates/point_motion.hpp"
+#include "collision/deforming/moving_surface.hpp"
+#include "collision/shapes/shape.hpp"
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <vector>
+
+namespace kds::collision {
+
+/// The surface of a placed shape about its centre: of a ball the centre, of a capsule its segment, both with a radius;
+/// of a box its faces as two triangles each, whose diagonals do not count; of a mesh or a hull its triangles, by whose
+/// names its features go. All but meshes are solid. Its vertices are those of the shape as it is placed, rounded (a
+/// box: as its rounded axes say).
+///
+/// Cost: building takes O(n log n), each move O(n).
+template <int Degree>
+class RigidSurface {
+ public:
+  explicit RigidSurface(const PlacedShape& shape);
+
+  /// Lets it move with the path over [t0, t1].
+  void move(const certificates::PointMotion<Degree>& path, double t0, double t1);
+
+  const MovingSurface<Degree>& surface() const { return surface_; }
+
+ private:
+  std::vector<Eigen::Vector3d> offsets_;     ///< of the vertices from the centre
+  std::unique_ptr<const SurfaceTree> tree_;  ///< in its place
+  MovingSurface<Degree> surface_;
+};
+
+extern template class RigidSurface<1>;
+extern template class RigidSurface<2>;
+
+}  // namespace kds::collision

@@ -1,0 +1,275 @@
+#include "collision/narrow_phase/bending_contact.hpp"
+
+#include "certificates/ball_separation.hpp"
+#include "collision/deforming/rigid_surface.hpp"
+#include "collision/deforming/surface_contact.hpp"
+#include "collision/deforming/surface_touching.hpp"
+#include "collision/shapes/bending_mesh.hpp"
+#include "collision/shapes/polytope.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+namespace kds::collision {
+namespace {
+
+template <int Degree>
+using Body = TranslatingShape<Degree>;
+
+const MeshScript* script_of(const PlacedShape& shape) {
+  const auto* const bending = std::get_if<BendingMesh>(&shape.shape);
+  return bending ? bending->script.get() : nullptr;
+}
+
+/// The surface of one of the two, over one piece after the other.
+template <int Degree>
+class PieceSurface {
+ public:
+  explicit PieceSurface(const Body<Degree>& body) : body_(body), script_(script_of(body.shape)) {
+    if (script_) {
+      bent_.emplace(script_->tree());
+    } else {
+      rigid_.emplace(body.shape);
+    }
+  }
+
+  const MovingSurface<Degree>& over(double t0, double t1) {
+    if (rigid_) {
+      rigid_->move(body_.motion, t0, t1);
+      return rigid_->surface();
+    }
+    const PathControls<Degree> path(body_.motion, t0, t1);
+    double farthest = 0;
+    for (std::size_t i = 0; i <= Degree; ++i) {
+      const auto points = bent_->change_control_points(i);
+      for (std::size_t v = 0; v < points.size(); ++v) {
+        points[v] = path.points[i] + placed_vertex(body_.shape.rotation, 1, offset(v, i, t0, t1));
+        farthest = std::max(farthest, points[v].cwiseAbs().maxCoeff());
+      }
+    }
+    // Roundings: three of a position between keyframes or of an average, five of its turn, one of the sum.
+    bent_->set_uncertainty(path.error + 0x1p-49 * (farthest + script_->bounding_radius()));
+    bent_->refit(t0, t1);
+    return *bent_;
+  }
+
+ private:
+  /// Control point i of a vertex, on its straight way, about the centre.
+  Eigen::Vector3d offset(std::size_t v, std::size_t i, double t0, double t1) const {
+    if (i == 0) return script_->position(v, t0);
+    if (i == Degree) return script_->position(v, t1);
+    return 0.5 * (script_->position(v, t0) + script_->position(v, t1));
+  }
+
+  const Body<Degree>& body_;
+  const MeshScript* script_;
+  std::optional<RigidSurface<Degree>> rigid_;
+  std::optional<MovingSurface<Degree>> bent_;
+};
+
+/// Pieces after the last keyframe grow up to this many times the first of them. Bodies whose balls still overlap then
+/// move alike, but for roundings of what they have flown: nothing more is told of them.
+constexpr double longest_piece = 0x1p40;
+
+/// Whether nothing changes between two motions.
+template <int Degree>
+bool move_alike(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b) {
+  bool alike = a.coefficients[1] == b.coefficients[1];
+  if constexpr (Degree == 2) {
+    alike = alike && a.coefficients[2] == b.coefficients[2] && (a.start == b.start || a.coefficients[2].isZero(0));
+  }
+  return alike;
+}
+
+/// A stretch of time in which the two are in contact.
+struct Touch {
+  double begin = never;
+  double end = never;
+};
+
+template <int Degree>
+class BendingPair {
+ public:
+  BendingPair(const Body<Degree>& a, const Body<Degree>& b)
+      : a_(a), b_(b), start_(std::max(a.motion.start, b.motion.start)), together_(move_alike(a.motion, b.motion)) {
+    const double radius = script_of(a.shape)->bounding_radius();
+    query_ = {.tolerance = 1, .absolute_tolerance = bending_tolerance * radius, .overlaps = false};
+    times_.push_back(start_);
+    for (const MeshScript* const script : {script_of(a.shape), script_of(b.shape)}) {
+      if (!script) continue;
+      for (const auto& keyframe : script->keyframes()) {
+        if (keyframe.time > start_) times_.push_back(keyframe.time);
+      }
+    }
+    std::sort(times_.begin(), times_.end());
+    times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
+    // After the last keyframe pieces begin with the time in which one of them goes as far as it is large.
+    const double speed = norm(a.motion.coefficients[1]) + norm(b.motion.coefficients[1]);
+    const double size = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+    unit_ = speed > 0 ? std::clamp(size / speed, 0x1p-100, 0x1p100) : 1.0;
+  }
+
+  /// The first stretch that ends after t, if it begins by the horizon. Of one that begins at t or later the end is left
+  /// out, unless it is asked for.
+  Touch touch_after(double t, double horizon, bool with_end) {
+    Touch touch;
+    bool open = false;
+    for (std::size_t k = piece_of(t);; ++k) {
+      const auto [w0, w1] = piece(k);
+      if (!(w0 <= horizon) || !(w0 < w1) || w1 - w0 > longest_piece * unit_) break;
+      if (together_ && w0 > times_.back()) break;  // nothing changes any more
+      if (!open) {
+        const double near = balls_meet(w0);
+        if (near > horizon) break;
+        if (near > w1) continue;
+      }
+      const MovingSurface<Degree>& a = surface_a().over(w0, w1);
+      const MovingSurface<Degree>& b = surface_b().over(w0, w1);
+      const SurfaceTouching<Degree> touching(a, b, query_);
+      double now = w0;
+      bool touches = touching.touches(w0);
+      if (open && !touches) {
+        touch.end = w0;
+        if (touch.end > t) return touch;
+        open = false;
+      }
+      for (;;) {
+        if (!open) {
+          if (!touches) {
+            SurfaceQuery query = query_;
+            query.from = now;
+            const auto contact = collision::first_contact(a, b, query);
+            if (!contact) break;
+            now = contact->contact.time;
+          }
+          touch = {now, never};
+          open = true;
+          if (now > horizon) return {};
+        }
+        if (touch.begin >= t && !with_end) return touch;
+        const double parts = touching.parts_at(now);
+        if (parts == never) break;
+        touch.end = std::max(parts, next_up(now));
+        if (touch.end > t) return touch;
+        now = touch.end;
+        open = touches = false;
+        if (!(now < w1)) break;
+      }
+    }
+    return open ? Touch{touch.begin, never} : Touch{};
+  }
+
+  Contact contact_at(double t) {
+    auto [w0, w1] = piece(piece_of(t));
+    if (w1 < t) w1 = (w0 = t) + unit_;  // they move together, as they did in the last piece
+    const SurfaceTouching<Degree> touching(surface_a().over(w0, w1), surface_b().over(w0, w1), query_);
+    // What has just parted is a little farther apart; what touches in no piece may be asked about, too.
+    const double farthest =
+        4 * (a_.shape.bounding_radius + b_.shape.bounding_radius + norm(b_.motion.position(t) - a_.motion.position(t)));
+    for (double distance = 4 * query_.absolute_tolerance;; distance *= 64) {
+      if (const auto found = touching.closest(t, distance)) {
+        Contact contact = found->contact;
+        contact.time = t;
+        if (const auto* const hull = std::get_if<ConvexHull>(&b_.shape.shape)) {
+          contact.feature_b = hull->polytope->feature_of(contact.feature_b);
+        }
+        return contact;
+      }
+      if (distance > farthest) throw std::logic_error("BendingContact: two surfaces without features");
+    }
+  }
+
+  /// When the balls around the two overlap next.
+  double balls_meet(double t) const {
+    const auto ball = [](double radius) { return radius * (1 + 0x1p-20); };
+    const double of_a = ball(a_.shape.bounding_radius), of_b = ball(b_.shape.bounding_radius);
+    const PlacedShape ball_a = placed_ball(of_a), ball_b = placed_ball(of_b);
+    return collision::first_contact(Body<Degree>{ball_a, a_.motion}, Body<Degree>{ball_b, b_.motion}, t, never,
+                                    ContactMode::transparent);
+  }
+
+ private:
+  struct Piece {
+    double begin, end;
+  };
+  /// Pieces between keyframes, and after them of the lengths unit, 2 unit, 4 unit...
+  Piece piece(std::size_t k) const {
+    if (k + 1 < times_.size()) return {times_[k], times_[k + 1]};
+    const double last = times_.back();
+    const int later = static_cast<int>(std::min<std::size_t>(k + 1 - times_.size(), 4000));
+    return {last + (std::ldexp(1.0, later) - 1) * unit_, last + (std::ldexp(1.0, later + 1) - 1) * unit_};
+  }
+  std::size_t piece_of(double t) const {
+    const auto after = std::upper_bound(times_.begin(), times_.end(), t);
+    std::size_t k = after == times_.begin() ? 0 : static_cast<std::size_t>(after - times_.begin()) - 1;
+    if (together_) return k;  // the last piece stands for all that follow
+    while (k + 1 >= times_.size() && piece(k).end <= t && piece(k).end < 0x1p500) ++k;
+    return k;
+  }
+
+  PieceSurface<Degree>& surface_a() { return made(surface_a_, a_); }
+  PieceSurface<Degree>& surface_b() { return made(surface_b_, b_); }
+  static PieceSurface<Degree>& made(std::optional<PieceSurface<Degree>>& surface, const Body<Degree>& body) {
+    if (!surface) surface.emplace(body);
+    return *surface;
+  }
+
+  const Body<Degree>& a_;
+  const Body<Degree>& b_;
+  double start_;
+  bool together_;
+  double unit_;
+  SurfaceQuery query_;
+  std::vector<double> times_;
+  std::optional<PieceSurface<Degree>> surface_a_, surface_b_;
+};
+
+void require_transparent(ContactMode mode) {
+  if (mode != ContactMode::transparent) {
+    throw std::logic_error("BendingContact: a mesh that bends passes through everything");
+  }
+}
+
+}  // namespace
+
+template <int Degree>
+double BendingContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
+                                             FoundTouch*) {
+  require_transparent(mode);
+  if (!(t0 <= horizon)) return never;
+  const double begin = BendingPair<Degree>(a, b).touch_after(t0, horizon, false).begin;
+  return begin <= horizon ? std::max(begin, t0) : never;
+}
+
+template <int Degree>
+double BendingContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
+  if (!(t0 <= horizon)) return never;
+  return BendingPair<Degree>(a, b).balls_meet(t0);
+}
+
+template <int Degree>
+bool BendingContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
+  return BendingPair<Degree>(a, b).touch_after(t, t, false).begin <= t;
+}
+
+template <int Degree>
+double BendingContact<Degree>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
+  if (!(t0 <= horizon)) return never;
+  const Touch touch = BendingPair<Degree>(a, b).touch_after(t0, horizon, true);
+  if (!(touch.begin <= t0)) return t0;
+  return touch.end <= horizon ? touch.end : never;
+}
+
+template <int Degree>
+Contact BendingContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch&) {
+  return BendingPair<Degree>(a, b).contact_at(t);
+}
+
+template struct BendingContact<1>;
+template struct BendingContact<2>;
+
+}  // namespace kds::collision

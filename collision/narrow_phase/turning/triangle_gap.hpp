@@ -1,0 +1,134 @@
+// Two triangles that turn: how long they are surely apart, three corners at a time.
+#pragma once
+
+#include "collision/narrow_phase/turning/hulls.hpp"
+#include "collision/narrow_phase/turning/jets.hpp"
+#include "collision/narrow_phase/turning/three_vectors.hpp"
+#include "collision/narrow_phase/turning/turning_view.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace kds::collision {
+
+/// Two triangles at the time of a view, about the origins of their bodies: along which of their 11 directions they are
+/// the farthest apart, and for how long along that one, as it turns with what it belongs to.
+template <int Degree>
+class TriangleGap {
+ public:
+  TriangleGap(const TurningView<Degree>& view, const TriangleHull& a, const TriangleHull& b)
+      : view_(view),
+        hull_a_(a),
+        hull_b_(b),
+        a_(turned(view.matrix_a, side_by_side(a.points))),
+        b_(turned(view.matrix_b, side_by_side(b.points))),
+        u_(turned(view.matrix_a, side_by_side(a.edges))),
+        v_(turned(view.matrix_b, side_by_side(b.edges))) {
+    find_widest();
+  }
+
+  /// The widest gap; less than nothing if there is none.
+  double width() const { return width_; }
+
+  /// How long all corners of b are beyond all corners of a, along the direction of the widest gap.
+  double open_for(double stretch) const {
+    const VectorJet n = direction();
+    const double rate = k_ == 0 ? view_.rate_a : (k_ == 1 ? view_.rate_b : view_.rate_a + view_.rate_b);
+    const TurningBounds bounds(view_, rate, hull_a_.radius, hull_b_.radius, stretch);
+    Jet base = dot(n, view_.way);
+    base.value -= bounds.rounding;
+    const Jets of_a = jets(n, view_.spin_a, a_), of_b = jets(n, view_.spin_b, b_);
+    // The pair of corners that is nearest is mostly the one that meets first, and then the others need one value each.
+    std::size_t near_a = 0, near_b = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+      if (of_a.value[i] > of_a.value[near_a]) near_a = i;
+      if (of_b.value[i] < of_b.value[near_b]) near_b = i;
+    }
+    const auto gap = [&](std::size_t i, std::size_t j) {
+      return Jet{base.value + of_b.value[j] - of_a.value[i], base.rate + of_b.rate[j] - of_a.rate[i],
+                 base.bend + of_b.bend[j] - of_a.bend[i]};
+    };
+    double wait = positive_for(gap(near_a, near_b), bounds.third, stretch);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) wait = std::min(wait, positive_for(gap(i, j), bounds.third, wait));
+    }
+    return wait;
+  }
+
+ private:
+  struct Jets {
+    FourDoubles value, rate, bend;
+  };
+
+  /// Of n . x for points x that turn: n . (w x x) is (n x w) . x.
+  static Jets jets(const VectorJet& n, const Eigen::Vector3d& w, const ThreeVectors& points) {
+    const Eigen::Vector3d once = cross(n.value, w);
+    const Eigen::Vector3d first = n.rate + once;
+    const Eigen::Vector3d second = n.bend + cross(n.rate + first, w);
+    return {dots(n.value, points), dots(first, points), dots(second, points)};
+  }
+
+  void find_widest() {
+    constexpr double least_square = 0x1p-20;  // of sines: edges that are nearly parallel make no direction
+    const auto note = [&](double gap, int k, double sense) {
+      if (gap > width_) width_ = gap, k_ = k, sense_ = sense;
+    };
+    for (const int k : {0, 1}) {
+      const Eigen::Vector3d n = normal(k);
+      const FourDoubles a = dots(n, a_), b = dots(n, b_);
+      const double between = dot(n, view_.way.value);
+      note(between + least(b) - most(a), k, 1);
+      note(least(a) - most(b) - between, k, -1);
+    }
+    // Along the product of two edges both ends of either are as far: the other corner tells on which side it lies.
+    const ThreeVectors other_b{last_first(b_[0]), last_first(b_[1]), last_first(b_[2])};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3d u = vector(u_, i), on = vector(a_, i), other = vector(a_, (i + 2) % 3);
+      const ThreeVectors n{FourDoubles(u[1]) * v_[2] - FourDoubles(u[2]) * v_[1],
+                           FourDoubles(u[2]) * v_[0] - FourDoubles(u[0]) * v_[2],
+                           FourDoubles(u[0]) * v_[1] - FourDoubles(u[1]) * v_[0]};
+      const FourDoubles square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+      const FourDoubles on_a = dots(on, n), other_a = dots(other, n), between = dots(view_.way.value, n);
+      const FourDoubles on_b = n[0] * b_[0] + n[1] * b_[1] + n[2] * b_[2];
+      const FourDoubles over_b = n[0] * other_b[0] + n[1] * other_b[1] + n[2] * other_b[2];
+      const FourDoubles forward = between + lesser(on_b, over_b) - greater(on_a, other_a);
+      const FourDoubles back = lesser(on_a, other_a) - greater(on_b, over_b) - between;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const double gap = std::max(forward[j], back[j]);
+        if (!(square[j] > least_square) || (width_ > 0 && !(gap > 0 && gap * gap > width_ * width_ * square[j])))
+          continue;
+        note(gap / std::sqrt(square[j]), static_cast<int>(2 + 3 * i + j), forward[j] >= back[j] ? 1 : -1);
+      }
+    }
+  }
+
+  Eigen::Vector3d normal(int k) const {
+    return k == 0 ? view_.in_world_a(hull_a_.normals[0]) : view_.in_world_b(hull_b_.normals[0]);
+  }
+
+  /// From a to b.
+  VectorJet direction() const {
+    if (k_ < 2) return sense_ * turning(normal(k_), k_ == 0 ? view_.spin_a : view_.spin_b);
+    const auto k = static_cast<std::size_t>(k_ - 2);
+    return sense_ * cross(turning(vector(u_, k / 3), view_.spin_a), turning(vector(v_, k % 3), view_.spin_b));
+  }
+
+  static double least(const FourDoubles& x) { return std::min({x[0], x[1], x[2]}); }
+  static double most(const FourDoubles& x) { return std::max({x[0], x[1], x[2]}); }
+  /// Lanes 2, 0, 1, 3.
+  static FourDoubles last_first(const FourDoubles& x) { return {x[2], x[0], x[1], x[3]}; }
+
+  const TurningView<Degree>& view_;
+  const TriangleHull& hull_a_;
+  const TriangleHull& hull_b_;
+  ThreeVectors a_, b_, u_, v_;
+  double width_ = -never;
+  int k_ = 0;         ///< the direction of the widest gap: normals of a and b, products of their edges
+  double sense_ = 1;  ///< 1 if it points from a to b
+};
+
+}  // namespace kds::collision

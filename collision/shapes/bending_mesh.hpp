@@ -1,0 +1,61 @@
+// Meshes that bend as shapes.
+#pragma once
+
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/shape_kind.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+
+/// Contact of a mesh that bends is reported while surfaces are no farther apart than this part of its bounding radius,
+/// beyond their own radii (BendingContact). Its bounding volume has room for that (`box_margin` is four times as much),
+/// so that contacts do not depend on the broad phase. Larger reports contact earlier.
+inline constexpr double bending_tolerance = 0x1p-26;
+
+namespace detail {
+
+template <>
+struct ShapeKind<BendingMesh> {
+  static constexpr const char* name = "bending mesh";
+  static constexpr bool has_half_axes = false;
+
+  /// Around all keyframes.
+  static void place(const BendingMesh& shape, PlacedShape& placed);
+  static std::array<double, 2> extent(const BendingMesh& shape, const PlacedShape& placed,
+                                      const Eigen::Vector3d& direction);
+
+  static Eigen::Vector3d measures(const BendingMesh&) { return Eigen::Vector3d::Ones(); }
+
+  /// The whole script, of each body for itself.
+  template <class Archive>
+  static void archive(Archive& archive, BendingMesh& shape, PlacedShape&, const NumberedMeshes&) {
+    std::vector<MeshScript::Keyframe> keyframes;
+    std::vector<Mesh::Triangle> triangles;
+    if (shape.script) {
+      keyframes.assign(shape.script->keyframes().begin(), shape.script->keyframes().end());
+      triangles.assign(shape.script->triangles().begin(), shape.script->triangles().end());
+    }
+    archive.each(keyframes, [&](MeshScript::Keyframe& keyframe) {
+      archive(keyframe.time);
+      archive.each(keyframe.positions, [&](Eigen::Vector3d& v) { archive_vector(archive, v); });
+    });
+    archive(triangles);
+    if constexpr (Archive::loading) {
+      try {
+        shape.script = std::make_shared<const MeshScript>(std::move(keyframes), std::move(triangles));
+      } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(std::string("snapshot: a mesh that bends: ") + error.what());
+      }
+    }
+  }
+};
+
+}  // namespace detail
+
+}  // namespace kds::collision

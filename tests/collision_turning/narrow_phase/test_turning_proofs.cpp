@@ -1,0 +1,151 @@
+// What doubles prove of parts of meshes that turn, and failure times that are remembered: against the definition.
+#include "collision/narrow_phase/turning/shared_failures.hpp"
+#include "collision/narrow_phase/turning/turning_nodes.hpp"
+#include "collision/narrow_phase/turning/turning_triangles.hpp"
+
+#include "tests/collision_turning/narrow_phase/turning_mesh_oracle.hpp"
+#include "tests/collision_turning/narrow_phase/turning_oracle.hpp"
+#include "tests/collision_turning/narrow_phase/turning_solids.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace test_turning_proofs {
+namespace {
+
+using namespace kds;
+using namespace kds::collision;
+using Eigen::Vector3d;
+using kds::tests::motion_of;
+using kds::tests::Random;
+using kds::tests::random_vector;
+using Motion = certificates::RigidMotion<2>;
+using EdgeEdge = certificates::EdgeEdgeSeparation<2>;
+using VertexFace = certificates::VertexFaceSeparation<2>;
+
+Motion random_motion(Random& random, const Vector3d& place) {
+  const double rate = std::pow(10.0, random.between(-2, 1.5));
+  auto motion = motion_of<2>(place, random_vector(random, 2), random_vector(random, rate), -random.between(0, 2));
+  motion.path.coefficients[2] = random_vector(random, 1);
+  motion.orientation =
+      Eigen::Quaterniond(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+  if (random.one_in(5)) motion.angular_velocity.setZero();
+  return motion;
+}
+
+std::array<Vector3d, 3> random_triangle(Random& random) {
+  const auto corner = [&] { return random_vector(random, 1); };
+  return {corner(), corner(), corner()};
+}
+
+}  // namespace
+
+TEST_CASE("nodes are apart for as long as is proven", "[turning]") {
+  const std::uint64_t seed = 560;
+  CAPTURE(seed);
+  Random random(seed);
+  int proven = 0, ended = 0;
+  for (int round = 0; round < 1500; ++round) {
+    const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 3));
+    const auto half = [&] { return Vector3d(random.between(0, 1), random.between(0, 1), random.between(0, 1)); };
+    const Box box_a{half()}, box_b{half()};
+    const BodyNode node_a = box_node(box_a.half_extents), node_b = box_node(box_b.half_extents);
+    const double t = random.between(0, 0.5), horizon = t + 1;
+    const NodesView<2> view(a, b, node_a.radius, node_b.radius, t, horizon);
+    CAPTURE(round);
+    const auto gap = [&](double when) {
+      return static_cast<double>(tests::TurningOracle::gap(a, box_a, b, box_b, when));
+    };
+    if (nodes_apart_by(0.25, view, node_a, node_b)) {
+      // Along an axis; the oracle knows more of them.
+      CHECK(gap(t) > 0.25 - 1e-12);
+    }
+    const NodeWait apart = nodes_apart(view, node_a, node_b);
+    if (!apart.worth_it) continue;
+    ++proven;
+    const double until = std::min(horizon, t + apart.wait);
+    for (int i = 0; i <= 20; ++i) CHECK(gap(t + (until - t) * i / 20) > 0);
+    ended += until < horizon;
+  }
+  CHECK(proven > 500);
+  CHECK(ended > 100);
+}
+
+TEST_CASE("triangles are apart for as long as is proven, and conditions that are sure hold", "[turning]") {
+  using Oracle = tests::TurningMeshOracle;
+  const std::uint64_t seed = 561;
+  CAPTURE(seed);
+  Random random(seed);
+  int proven = 0, sure = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 2));
+    const auto p = random_triangle(random), q = random_triangle(random);
+    const TurningTriangles<2> pair(a, p, b, q);
+    const double t = random.between(0, 0.5);
+    CAPTURE(round);
+    const auto placed = [](const Motion& motion, const std::array<Vector3d, 3>& corners, double when) {
+      Oracle::Triangle triangle;
+      for (std::size_t i = 0; i < 3; ++i) triangle[i] = Oracle::point(motion, corners[i], when);
+      return std::vector<Oracle::Triangle>{triangle};
+    };
+    const double until = std::min(t + 1, pair.apart_until(t, t + 1));
+    if (until > t) {
+      ++proven;
+      for (int i = 0; i <= 20; ++i) {
+        const double when = t + (until - t) * i / 20;
+        CHECK(Oracle::depth(placed(a, p, when), placed(b, q, when)) <= 0);
+      }
+    }
+    const auto view = pair.frame(t);
+    const double stretch = random.unit() * view.stretch(2, 1);
+    for (int way = 0; way < TurningTriangles<2>::ways; ++way) {
+      const auto unsure = pair.unsure(view, way, stretch);
+      for (unsigned number = 0; number < 3; ++number) {
+        if (unsure >> number & 1) continue;
+        ++sure;
+        pair.every_condition(way, 1u << number, [&](const auto& condition) {
+          for (int i = 0; i <= 4; ++i) CHECK(sign_after(condition, t + stretch * i / 4) == 1);
+          return true;
+        });
+      }
+    }
+  }
+  CHECK(proven > 300);
+  CHECK(sure > 3000);
+}
+
+TEST_CASE("failure times that are remembered are those that are found", "[turning]") {
+  const std::uint64_t seed = 562;
+  CAPTURE(seed);
+  Random random(seed);
+  int fail = 0;
+  for (int round = 0; round < 100; ++round) {
+    const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 1));
+    const auto p = random_triangle(random), q = random_triangle(random);
+    const EdgeEdge edges{a, b, {p[0], p[1]}, {q[0], q[1]}}, back{a, b, {p[1], p[0]}, {q[1], q[0]}};
+    const EdgeEdge other{a, b, {p[1], p[0]}, {q[0], q[1]}};  // the other sign
+    const VertexFace vertex{a, b, p[0], q}, of_b{b, a, q[0], p};
+    SharedFailures failures;
+    CAPTURE(round);
+    for (int ask = 0; ask < 20; ++ask) {
+      const double t = random.between(0, 1), until = t + random.between(0, 2);
+      const auto compare = [&](const auto& certificate) {
+        const double time = failure_time(certificate, t, until);
+        fail += time > t && time < never;
+        CHECK(failures.failure_time(certificate, t, until) == time);
+        CHECK(failures.sign_after(certificate, t) == sign_after(certificate, t));
+        if (time == never) return;
+        CHECK(failures.sign_after(certificate, time) == -1);
+        if (time > t) CHECK(failures.sign_after(certificate, next_down(time)) == 1);
+      };
+      compare(edges), compare(back), compare(other), compare(vertex), compare(of_b);
+    }
+  }
+  CHECK(fail > 500);
+}
+
+}  // namespace test_turning_proofs

@@ -1,0 +1,169 @@
+#include "tests/fuzz/turning_pairs/make_pair.hpp"
+
+#include "tests/collision/sample_meshes.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace turning_pairs {
+namespace {
+
+using Eigen::Vector3d;
+using kds::collision::Box;
+using kds::collision::Mesh;
+using kds::collision::MeshShape;
+using kds::collision::Shape;
+using kds::collision::Sphere;
+using kds::tests::Random;
+
+enum Family : std::size_t {
+  random_pair,
+  parallel,
+  shared_axis,
+  along_axis,
+  one_still,
+  flat,
+  grazing,
+  linked,
+  far_past
+};
+
+Vector3d direction(Random& random) {
+  return Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)).normalized();
+}
+
+/// From 1e-9 to 1e4 rad/s, more of them in the middle.
+double random_rate(Random& random) {
+  return std::pow(10.0, random.one_in(4) ? random.between(-9, 4) : random.between(-2, 2));
+}
+
+MeshShape triangle(Random& random, bool sliver) {
+  const Vector3d a = direction(random), b = sliver ? Vector3d(-a + 0.001 * direction(random)) : direction(random);
+  const Vector3d c = sliver ? Vector3d(a + 0.01 * direction(random)) : direction(random);
+  return {std::make_shared<const Mesh>(std::vector<Vector3d>{a, b, c}, std::vector<Mesh::Triangle>{{0, 1, 2}})};
+}
+
+/// Two balls do not turn, so that one of a pair is something else.
+Shape random_shape(Random& random, std::size_t family, bool ball) {
+  const Vector3d half(random.between(0.1, 1), random.between(0.1, 1), random.between(0.1, 1));
+  if (family == flat) {
+    if (random.one_in(2)) return triangle(random, random.one_in(2));
+    return Box{Vector3d(half[0], half[1], 1e-3 * half[2])};
+  }
+  if (family == parallel)
+    return random.one_in(4) ? Shape(MeshShape{kds::collision::samples::cuboid(half)}) : Shape(Box{half});
+  if (ball && random.one_in(4)) return Sphere{half[0]};
+  if (random.one_in(3)) return triangle(random, false);
+  if (random.one_in(10)) return MeshShape{kds::collision::samples::cuboid(half)};
+  return Box{half};
+}
+
+std::vector<Piece> pieces_of(const Shape& shape) {
+  if (const auto* const box = std::get_if<Box>(&shape)) return {box_piece(box->half_extents)};
+  if (const auto* const ball = std::get_if<Sphere>(&shape)) return {ball_piece(ball->radius)};
+  const auto& mesh = std::get<MeshShape>(shape);
+  std::vector<Piece> pieces;
+  for (const auto& corners : mesh.mesh->triangles()) {
+    std::array<Vector3d, 3> points;
+    for (std::size_t i = 0; i < 3; ++i) points[i] = mesh.scale * mesh.mesh->vertices()[corners[i]];
+    pieces.push_back(triangle_piece(points));
+  }
+  return pieces;
+}
+
+/// A corner of a box goes round past a plate at a distance from 0.1 to 1e-12, or as deep in it.
+void make_grazing(RandomPair& pair, Random& random) {
+  const Vector3d half(random.between(0.3, 1), random.between(0.3, 1), random.between(0.1, 0.5));
+  const double gap = (random.one_in(3) ? -1 : 1) * std::pow(10.0, -random.between(1, 12));
+  const double radius = std::sqrt(half[0] * half[0] + half[1] * half[1]);
+  pair.shape_a = Box{half};
+  pair.a.angular_velocity = Vector3d(0, 0, pair.a.angular_velocity.norm());
+  if (random.one_in(2)) {
+    pair.shape_b = Box{Vector3d(0.25, 2, 2)};
+    pair.b.path.coefficients[0] = Vector3d(radius + gap + 0.25, 0, 0);
+  } else {
+    const double x = radius + gap;
+    const std::vector<Vector3d> corners{{x, -3, -2}, {x, 3, -2}, {x, 0, 4}};
+    pair.shape_b = MeshShape{std::make_shared<const Mesh>(corners, std::vector<Mesh::Triangle>{{0, 1, 2}})};
+  }
+}
+
+void make_moving(RandomPair& pair, Random& random, double rate) {
+  const std::size_t family = pair.family;
+  pair.shape_a = random_shape(random, family, true);
+  pair.shape_b = random_shape(random, family, std::holds_alternative<Box>(pair.shape_a));
+  const Vector3d from = family == along_axis || family == shared_axis ? Vector3d(Vector3d::UnitZ()) : direction(random);
+  // On a lattice numbers agree exactly.
+  const auto rounded = [&](const Vector3d& v) -> Vector3d {
+    return family == parallel && random.one_in(2) ? Vector3d((4 * v).array().round() / 4) : v;
+  };
+  for (auto* motion : {&pair.a, &pair.b}) {
+    const double side = motion == &pair.a ? -1 : 1;
+    const Vector3d aside =
+        family == along_axis || family == shared_axis ? Vector3d(Vector3d::Zero()) : direction(random);
+    motion->path.coefficients[0] = rounded(side * random.between(0.8, 1.6) * from);
+    motion->path.coefficients[1] = rounded(-side * random.between(0.5, 2) * from + 0.5 * aside);
+    if (random.one_in(2)) motion->path.coefficients[2] = rounded(direction(random));
+    if (family == shared_axis || family == along_axis) motion->path.coefficients[2] = Vector3d::Zero();
+    motion->angular_velocity = rate * direction(random);
+    if (family == parallel) motion->angular_velocity = rate * Vector3d::Unit(static_cast<int>(random.below(3)));
+    if (family == shared_axis) motion->angular_velocity = Vector3d(0, 0, (random.one_in(2) ? 1 : -1) * rate);
+    if (family == along_axis) motion->angular_velocity = Vector3d(0, 0, random.one_in(3) ? 0 : rate);
+    if (family == one_still && motion == &pair.a) motion->angular_velocity = Vector3d::Zero();
+    if (family != parallel && !(family == along_axis && random.one_in(2))) {
+      motion->orientation.coeffs() =
+          Eigen::Vector4d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+    }
+  }
+}
+
+}  // namespace
+
+RandomPair make_pair(std::uint64_t seed) {
+  Random random(seed);
+  RandomPair pair;
+  // Meshes of many triangles take the oracle a thousand times as long.
+  pair.family = random.one_in(400) ? std::size_t{linked} : random.below(families);
+  if (pair.family == linked && !random.one_in(40)) pair.family = random_pair;
+  const double rate = random_rate(random);
+  // At most some thousand radians.
+  pair.horizon = std::min(1.0, 1000 / rate);
+  for (auto* motion : {&pair.a, &pair.b}) {
+    motion->path = {};
+    motion->path.coefficients = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+    motion->angular_velocity = rate * direction(random);
+  }
+  if (pair.family == grazing) {
+    make_grazing(pair, random);
+    pair.b.angular_velocity = Vector3d::Zero();
+  } else if (pair.family == linked) {
+    const MeshShape ring{kds::collision::samples::torus(5, 3)};
+    pair.shape_a = pair.shape_b = ring;
+    for (auto* motion : {&pair.a, &pair.b}) motion->path.coefficients[1] = 0.3 * direction(random);
+    pair.b.path.coefficients[0] = Vector3d(0.75, 0, 0);
+    pair.b.orientation = Eigen::Quaterniond(1, 1, 0, 0);
+  } else {
+    make_moving(pair, random, rate);
+  }
+  if (pair.family == far_past) {
+    // There by about the time 0.
+    for (auto* motion : {&pair.a, &pair.b}) {
+      motion->path.start = -std::pow(10.0, random.between(0, 6));
+      motion->path.coefficients[2] = Vector3d::Zero();
+      motion->path.coefficients[0] += motion->path.start * motion->path.coefficients[1];
+    }
+  }
+  pair.pieces_a = pieces_of(pair.shape_a);
+  pair.pieces_b = pieces_of(pair.shape_b);
+  return pair;
+}
+
+}  // namespace turning_pairs

@@ -1,0 +1,35 @@
+// Pairs of bodies that turn, at random and where errors are likely.
+#pragma once
+
+#include "certificates/turning/rigid_motion.hpp"
+#include "collision/shapes/shape.hpp"
+#include "tests/fuzz/turning_pairs/oracle.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace turning_pairs {
+
+inline constexpr std::array family_names{"random",
+                                         "parallel edges and faces",
+                                         "shared spin axis",
+                                         "separated along the spin axis",
+                                         "one without spin",
+                                         "flat",
+                                         "grazing",
+                                         "interlocked meshes",
+                                         "starts far in the past"};
+inline constexpr std::size_t families = family_names.size();
+
+struct RandomPair {
+  std::size_t family;
+  double horizon;
+  kds::collision::Shape shape_a, shape_b;
+  kds::certificates::RigidMotion<2> a, b;
+  std::vector<Piece> pieces_a, pieces_b;
+};
+
+/// A function of the seed alone.
+RandomPair make_pair(std::uint64_t seed);
+
+}  // namespace turning_pairs

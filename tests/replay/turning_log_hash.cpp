@@ -1,0 +1,135 @@
+// The event logs of worlds whose bodies turn, with each broad phase, in windows and with snapshots on the way: see
+// replay.hpp. The file in the repository is made by: turning_log_hash > tests/replay/golden_turning.txt
+#include "collision/world.hpp"
+#include "kds/framework/snapshot.hpp"
+#include "tests/replay/replay.hpp"
+#include "tests/replay/scenes.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kds::replay {
+namespace {
+
+template <int Degree>
+struct HashingListener final : TurningWorld<Degree>::Listener {
+  using W = TurningWorld<Degree>;
+  using Kind = collision::tests::Kind;
+
+  EventHash* hash;
+
+  explicit HashingListener(EventHash* into) : hash(into) {}
+  void contact(W&, const PairEvent& e) override { hash->event({Kind::contact, e.a, e.b, e.contact}); }
+  void separation(W&, const PairEvent& e) override { hash->event({Kind::separation, e.a, e.b, e.contact}); }
+  void overlap(W&, const PairEvent& e) override { hash->event({Kind::overlap, e.a, e.b, e.contact}); }
+  void wall(W&, const WallEvent& e) override {
+    hash->event({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
+  }
+  void pair_began(W&, BodyId a, BodyId b, double t) override { hash->event({Kind::pair_began, a, b, {.time = t}}); }
+  void pair_ended(W&, BodyId a, BodyId b, double t) override { hash->event({Kind::pair_ended, a, b, {.time = t}}); }
+};
+
+Vector3d random_vector(kds::tests::Random& random, double size) {
+  const double x = random.between(-size, size);
+  const double y = random.between(-size, size);
+  const double z = random.between(-size, size);
+  return {x, y, z};
+}
+
+/// What the bodies of a scene are.
+enum class Bodies { boxes, rods_and_balls, rings, mixture };
+
+constexpr double end_time = 2;
+constexpr int most_bodies = 64;  // on a lattice of 4 x 4 x 4
+
+template <int Degree>
+void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
+  kds::tests::Random random(seed);
+  const auto ring = rational_torus();
+  const int count = bodies == Bodies::rings ? 12 : 24;
+  for (int i = 0; i < count; ++i) {
+    const int place = (i * 37) % most_bodies;
+    typename TurningWorld<Degree>::Motion motion{};
+    motion.path.coefficients[0] = Vector3d(place % 4, place / 4 % 4, place / 16) * 1.5 + random_vector(random, 0.2);
+    motion.path.coefficients[1] = random_vector(random, 1.5);
+    if constexpr (Degree == 2) motion.path.coefficients[2] = Vector3d(0, 0, -1);
+    const double w = random.between(-1, 1);
+    const Vector3d q = random_vector(random, 1);
+    motion.orientation = Eigen::Quaterniond(w, q[0], q[1], q[2]);
+    motion.angular_velocity = random_vector(random, i % 4 == 0 ? 20 : 3);
+    typename TurningWorld<Degree>::Description body{.shape = Box{Vector3d(0.4, 0.4, 0.4)}, .motion = {motion}};
+    const bool mixed = bodies == Bodies::mixture;
+    if ((bodies == Bodies::rods_and_balls || mixed) && i % 2 == 0) {
+      body.shape = Box{Vector3d(0.8, 0.1, 0.15)}, body.inertia = 0.2;
+    } else if ((bodies == Bodies::rods_and_balls || mixed) && i % 4 == 1) {
+      body.shape = Sphere{0.4};
+    } else if (bodies == Bodies::rings || mixed) {
+      body.shape = MeshShape{ring, 0.5}, body.inertia = 0.1;
+    }
+    body.friction = i % 3 == 0 ? 0.25 : 0;
+    body.restitution = i % 5 == 0 ? 0.5 : 1;
+    body.fixed = i == 7;
+    world.add_body(body);
+  }
+}
+
+/// How a world is driven to the end.
+enum class Drive { at_once, in_windows, by_snapshots };
+
+template <int Degree>
+void run(Bodies bodies, const WorldOptions& options, Drive drive, EventHash& hash) {
+  HashingListener<Degree> listener(&hash);
+  auto world = std::make_unique<TurningWorld<Degree>>(options, &listener);
+  fill(*world, bodies, 11);
+  if (drive != Drive::at_once) {
+    for (int k = 1; k < 8; ++k) {
+      world->advance_to(end_time * k / 8);
+      if (drive != Drive::by_snapshots) continue;
+      const auto image = save(*world);
+      world = std::make_unique<TurningWorld<Degree>>(options, &listener);
+      restore(image, *world);
+    }
+  }
+  world->advance_to(end_time);
+}
+
+template <int Degree>
+void add_worlds(std::vector<Replay>& replays) {
+  constexpr std::array kinds{std::pair{Bodies::boxes, "boxes"}, std::pair{Bodies::rods_and_balls, "rods-and-balls"},
+                             std::pair{Bodies::rings, "rings"}, std::pair{Bodies::mixture, "mixture"}};
+  for (const auto& [bodies, name] : kinds) {
+    for (const Response response : {Response::none, Response::elastic}) {
+      Replay replay{
+          "turning/" + std::to_string(Degree) + '/' + name + (response == Response::elastic ? "/elastic" : "/none"),
+          {}};
+      const auto add = [&, what = bodies](std::string way, BroadPhaseKind broad_phase, Drive drive) {
+        WorldOptions options{.response = response, .broad_phase = broad_phase};
+        options.rate = broad_phase == BroadPhaseKind::sap ? 30 : 0;
+        options.report_pairs = true;
+        if (response == Response::elastic) options.walls = Walls{Vector3d::Constant(-1), Vector3d::Constant(6)};
+        replay.ways.push_back({std::move(way), [=](EventHash& hash) { run<Degree>(what, options, drive, hash); }});
+      };
+      for (const auto& [broad_phase, way, what] : broad_phases) add(std::string(way), broad_phase, Drive::at_once);
+      add("windows", BroadPhaseKind::automatic, Drive::in_windows);
+      add("snapshots", BroadPhaseKind::automatic, Drive::by_snapshots);
+      replays.push_back(std::move(replay));
+    }
+  }
+}
+
+std::vector<Replay> all_replays() {
+  std::vector<Replay> replays;
+  add_worlds<1>(replays);
+  add_worlds<2>(replays);
+  return replays;
+}
+
+}  // namespace
+}  // namespace kds::replay
+
+int main(int argc, char** argv) { return kds::replay::main_of(argc, argv, kds::replay::all_replays); }
