@@ -363,13 +363,13 @@ TEST_CASE("a plate that rocks on the floor stays within twice the option of its 
   const BodyId plate =
       world.add_body({.shape = Box{Vector3d(0.6, 0.5, 0.05)}, .motion = {falls}, .restitution = 0.3, .friction = 0.2});
   double farthest = 0;
-  for (int i = 1; i <= 150; ++i) {
+  for (int i = 1; i <= 100; ++i) {
     world.advance_to(0.01 * i);
     world.audit();
     farthest = std::max(farthest, off(world, plate));
     REQUIRE(world.motion(plate).path.position(world.now())[2] > 0.049);
   }
-  CHECK(world.counters().contacts > 20);
+  CHECK(world.counters().contacts > 10);
   CHECK(farthest <= 2e-3);
 }
 
