@@ -230,7 +230,7 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
     append_number(json, options.end_time * part);
     json += ", \"positions\": [";
     for (const Vector3d& v : mesh.vertices) {
-      append_vector(json, {v[0], v[1], height * (hump(v[0] / side - part) + 0.5 * hump(2 * v[1] / side + part))});
+      append_array(json, {v[0], v[1], height * (hump(v[0] / side - part) + 0.5 * hump(2 * v[1] / side + part))});
       json += ',';
     }
     json.back() = ']';
@@ -242,10 +242,10 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
     json += ",\n{\"name\": \"b" + std::to_string(i) + "\", \"shape\": " + sphere_shape(random.uniform(0.2, 0.6));
     json += ", \"motion\": [{\"start\": 0, \"position\": [";
     const double x = random.uniform(1, side - 1), y = random.uniform(1, side - 1);
-    append_vector(json, {x, y, from});
+    append_array(json, {x, y, from});
     json += ',';
     const double way = random.uniform(4, 10) / options.end_time;
-    append_vector(json, {0, 0, from > 0 ? -way : way});
+    append_array(json, {0, 0, from > 0 ? -way : way});
     json += "]}]}";
   }
   json += "\n]\n}\n";
