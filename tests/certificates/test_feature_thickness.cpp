@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+namespace test_feature_thickness {
 namespace {
 
 using namespace kds;
@@ -202,3 +203,5 @@ TEST_CASE("a ball that rolls over an edge, and a thickness that is none", "[feat
   // The faces of cloth of a thickness that holds everything: at the start.
   CHECK(certificates::edge_edge_contact(begin, end, {.thickness = 1e300}).status == FeatureContactStatus::at_start);
 }
+
+}  // namespace test_feature_thickness

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+namespace test_bending_scenes {
 using namespace kds_collide;
 using kds_collide::tests::TemporaryFolder;
 using nlohmann::json;
@@ -113,3 +114,5 @@ TEST_CASE("generator: a sheet on which waves run, and balls that meet it") {
   run(scene, {}, events);
   CHECK(events.all.size() > 10);
 }
+
+}  // namespace test_bending_scenes

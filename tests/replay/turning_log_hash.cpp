@@ -42,7 +42,7 @@ Vector3d random_vector(kds::tests::Random& random, double size) {
 }
 
 /// What the bodies of a scene are.
-enum class Bodies { boxes, rods_and_balls, rings, mixture };
+enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture };
 
 constexpr double end_time = 2;
 constexpr int most_bodies = 64;  // on a lattice of 4 x 4 x 4
@@ -71,6 +71,8 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
     } else if (bodies == Bodies::rings || mixed) {
       body.shape = MeshShape{ring, 0.5}, body.inertia = 0.1;
     }
+    // Three moments, or those of a top: which move such bodies in pieces where contacts are resolved.
+    if (bodies == Bodies::precessing) body.shape = Box{Vector3d(0.3, i % 2 == 0 ? 0.3 : 0.4, 0.6)};
     body.friction = i % 3 == 0 ? 0.25 : 0;
     body.restitution = i % 5 == 0 ? 0.5 : 1;
     body.fixed = i == 7;
@@ -101,7 +103,8 @@ void run(Bodies bodies, const WorldOptions& options, Drive drive, EventHash& has
 template <int Degree>
 void add_worlds(std::vector<Replay>& replays) {
   constexpr std::array kinds{std::pair{Bodies::boxes, "boxes"}, std::pair{Bodies::rods_and_balls, "rods-and-balls"},
-                             std::pair{Bodies::rings, "rings"}, std::pair{Bodies::mixture, "mixture"}};
+                             std::pair{Bodies::rings, "rings"}, std::pair{Bodies::precessing, "precessing"},
+                             std::pair{Bodies::mixture, "mixture"}};
   for (const auto& [bodies, name] : kinds) {
     for (const Response response : {Response::none, Response::elastic}) {
       Replay replay{

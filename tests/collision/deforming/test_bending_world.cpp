@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+namespace test_bending_world {
 namespace {
 
 using namespace kds;
@@ -251,3 +252,5 @@ TEST_CASE("what is refused of meshes that bend", "[deforming][world]") {
   CHECK_THROWS_WITH(script({{0, flat}, {1, bad}}),
                     "keyframes[1].positions[3]: must be finite, and at most 2^100 in magnitude");
 }
+
+}  // namespace test_bending_world

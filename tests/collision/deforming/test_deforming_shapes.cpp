@@ -14,6 +14,7 @@
 #include <tuple>
 #include <vector>
 
+namespace test_deforming_shapes {
 namespace {
 
 using namespace kds;
@@ -231,3 +232,5 @@ TEST_CASE("steps of a mesh that bends: what they begin with, and what is refused
   CHECK_THROWS_AS(first_contact(mesh.surface(), other.surface()), std::invalid_argument);
   CHECK_THROWS_AS(first_self_contact(mesh.surface(), {.from = 9}), std::invalid_argument);
 }
+
+}  // namespace test_deforming_shapes

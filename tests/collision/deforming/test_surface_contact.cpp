@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+namespace test_surface_contact {
 namespace {
 
 using namespace kds;
@@ -128,3 +129,5 @@ TEMPLATE_TEST_CASE_SIG("surfaces that bend: no contact is missed, late, or farth
   CHECK(tally.complaints.empty());
   CHECK(tally.touching > tally.asked / 4);
 }
+
+}  // namespace test_surface_contact
