@@ -231,7 +231,6 @@ TEST_CASE("descriptions of bodies that cannot turn are refused, and nothing is a
   refused({.shape = Sphere{1}, .motion = {bad}}, "motion[0].angular_velocity");
   bad = still, bad.path.coefficients[1][2] = nan;
   refused({.shape = Sphere{1}, .motion = {bad}}, "motion[0].path");
-  refused({.shape = Box{Vector3d(1, 2, 3)}, .motion = {still}}, "inertia");
   refused({.shape = Sphere{1}, .motion = {still}, .inertia = -1}, "inertia");
   refused({.shape = Sphere{1}, .motion = {still}, .inertia = nan}, "inertia");
   const auto tensor = [](double x, double y, double z) { return Eigen::Matrix3d(Vector3d(x, y, z).asDiagonal()); };
@@ -239,10 +238,7 @@ TEST_CASE("descriptions of bodies that cannot turn are refused, and nothing is a
   refused({.shape = Sphere{1}, .motion = {still}, .inertia = tensor(1, nan, 1)}, "inertia: must be finite");
   refused({.shape = Sphere{1}, .motion = {still}, .inertia = tensor(1, 1, -1)}, "inertia: must be positive definite");
   refused({.shape = Sphere{1}, .motion = {still}, .inertia = tensor(1, 1, 3), .fixed = true}, "inertia: is of no body");
-  refused({.shape = Sphere{1}, .motion = {still}, .inertia = tensor(1, 1, 1.5)}, "differ (1, 1, 1.5)");
-  Eigen::Matrix3d turned = tensor(1, 1, 1);
-  turned(0, 1) = turned(1, 0) = 0.25;
-  refused({.shape = Sphere{1}, .motion = {still}, .inertia = turned}, "differ (1, 1, 1 and entries beside them)");
+  refused({.shape = Sphere{1}, .motion = {still}, .inertia = tensor(1, 1, 0x1p-41)}, "inertia");  // too thin
   refused({.shape = Sphere{1}, .orientation = Quaterniond(0, 1, 0, 0), .motion = {still}}, "orientation");
   refused({.shape = Capsule{}, .motion = {still}}, "shape");
   // A cube whose corners are off its centre turns about the wrong point, unless its inertia is given as of this point.
