@@ -12,7 +12,7 @@ namespace {
   throw std::invalid_argument(std::string("DeformingMesh.") + function + ": " + what);
 }
 
-bool in_range(const Eigen::Vector3d& p) {
+bool within_limits(const Eigen::Vector3d& p) {
   bool all = true;
   for (int d = 0; d < 3; ++d) all = all && std::abs(p[d]) <= Mesh::largest_coordinate;
   return all;
@@ -47,7 +47,7 @@ void DeformingMesh<Degree>::check_positions(const char* function, Positions posi
   if (positions.size() != vertices()) {
     refuse(function, std::to_string(positions.size()) + " positions for " + std::to_string(vertices()) + " vertices");
   }
-  const auto bad = std::find_if_not(positions.begin(), positions.end(), in_range);
+  const auto bad = std::find_if_not(positions.begin(), positions.end(), within_limits);
   if (bad != positions.end()) {
     refuse(function, "vertex " + std::to_string(bad - positions.begin()) +
                          ": its position must be finite, and at most 2^100 in magnitude");

@@ -139,16 +139,16 @@ std::vector<std::size_t> planes_of(const std::vector<GrowingHull::Triangle>& tri
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     if (!triangles[i].there || plane[i] != unknown) continue;
     const auto& [a, b, c] = triangles[i].corners;
+    const auto in_plane = [&points, &p = points[a], &q = points[b], &r = points[c]](Index other) {
+      return side_of_plane(p, q, r, points[other]) == 0;
+    };
     std::vector<std::size_t> found{i};
     plane[i] = count;
     for (std::size_t k = 0; k < found.size(); ++k) {
       for (const std::size_t next : triangles[found[k]].neighbours) {
         if (plane[next] != unknown) continue;
         const auto& corners = triangles[next].corners;
-        const bool same = std::all_of(corners.begin(), corners.end(), [&](Index p) {
-          return side_of_plane(points[a], points[b], points[c], points[p]) == 0;
-        });
-        if (!same) continue;
+        if (!std::all_of(corners.begin(), corners.end(), in_plane)) continue;
         plane[next] = count;
         found.push_back(next);
       }
