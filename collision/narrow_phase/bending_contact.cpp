@@ -86,7 +86,7 @@ bool move_alike(const certificates::PointMotion<Degree>& a, const certificates::
 }
 
 /// A stretch of time in which the two are in contact.
-struct Touch {
+struct TouchSpan {
   double begin = never;
   double end = never;
 };
@@ -115,8 +115,8 @@ class BendingPair {
 
   /// The first stretch that ends after t, if it begins by the horizon. Of one that begins at t or later the end is left
   /// out, unless it is asked for.
-  Touch touch_after(double t, double horizon, bool with_end) {
-    Touch touch;
+  TouchSpan touch_after(double t, double horizon, bool with_end) {
+    TouchSpan touch;
     bool open = false;
     for (std::size_t k = piece_of(t);; ++k) {
       const auto [w0, w1] = piece(k);
@@ -160,7 +160,7 @@ class BendingPair {
         if (!(now < w1)) break;
       }
     }
-    return open ? Touch{touch.begin, never} : Touch{};
+    return open ? TouchSpan{touch.begin, never} : TouchSpan{};
   }
 
   Contact contact_at(double t) {
@@ -259,7 +259,7 @@ bool BendingContact<Degree>::in_contact(const Body& a, const Body& b, double t) 
 template <int Degree>
 double BendingContact<Degree>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
   if (!(t0 <= horizon)) return never;
-  const Touch touch = BendingPair<Degree>(a, b).touch_after(t0, horizon, true);
+  const TouchSpan touch = BendingPair<Degree>(a, b).touch_after(t0, horizon, true);
   if (!(touch.begin <= t0)) return t0;
   return touch.end <= horizon ? touch.end : never;
 }
