@@ -33,10 +33,15 @@ template <class Question>
 auto MeshPair<Degree>::ask(const Question& question) const {
   const auto with_motion = [&](const auto& motion, const auto& gap) {
     constexpr int degree = static_cast<int>(std::tuple_size_v<std::decay_t<decltype(gap.c)>>) - 1;
+    const auto with_partner = [&]<class Partner>(std::type_identity<Partner>) {
+      return question(Query<degree, Partner>(a_, b_, motion, gap));
+    };
+    using Answer = decltype(with_partner(std::type_identity<BallPartner>{}));
     return std::visit(
-        [&]<class Kind>(const Kind&) -> decltype(question(std::declval<const Query<degree, BallPartner>&>())) {
-          if constexpr (requires { typename PartnerOf<Kind>; }) {
-            return question(Query<degree, PartnerOf<Kind>>(a_, b_, motion, gap));
+        [&](const auto& shape) -> Answer {
+          using Kind = std::decay_t<decltype(shape)>;
+          if constexpr (has_partner<Kind>) {
+            return with_partner(std::type_identity<PartnerOf<Kind>>{});
           } else {
             throw std::logic_error(std::string("MeshPair: asked of a ") + kind_name(b_.shape));
           }
