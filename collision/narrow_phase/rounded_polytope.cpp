@@ -164,8 +164,8 @@ void RoundedPolytope<Degree>::add_planes() {
   for (const std::vector<std::uint32_t>& face : of_a.faces) {
     const auto [p, q, r] = spanning_corners(face);
     const std::array<DifferenceEdge, 2> edges{{{false, p, q}, {false, p, r}}};
-    const auto farthest = [&](const Vector3d& n) -> std::array<Points, 2> {
-      const Points on_face = one_point(p);
+    const auto farthest = [this, corner = p](const Vector3d& n) -> std::array<Points, 2> {
+      const Points on_face = one_point(corner);
       return {on_face, farthest_points(core_b_, places_[1], -n)};
     };
     if (!add_plane(edges, farthest)) return;
@@ -173,9 +173,9 @@ void RoundedPolytope<Degree>::add_planes() {
   for (const std::vector<std::uint32_t>& face : of_b.faces) {  // seen from outside of -B they turn the other way
     const auto [p, q, r] = spanning_corners(face);
     const std::array<DifferenceEdge, 2> edges{{{true, p, r}, {true, p, q}}};
-    const auto farthest = [&](const Vector3d& n) -> std::array<Points, 2> {
-      const Points of_a = farthest_points(core_a_, places_[0], n);
-      return {of_a, one_point(p)};
+    const auto farthest = [this, corner = p](const Vector3d& n) -> std::array<Points, 2> {
+      const Points on_a = farthest_points(core_a_, places_[0], n);
+      return {on_a, one_point(corner)};
     };
     if (!add_plane(edges, farthest)) return;
   }
