@@ -30,7 +30,7 @@ class ConservativeAdvancement {
   template <certificates::Patch kind>
   static std::optional<double> search(const std::array<Eigen::Vector3d, 4>& begin,
                                       const std::array<Eigen::Vector3d, 4>& end) {
-    const auto paths = certificates::patch_paths<kind>(begin, end);
+    const auto paths = certificates::patch_paths<kind, 1>({begin, end});
     std::array<Eigen::Vector3d, 4> step;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < 4; ++k) mean += 0.25 * (step[k] = end[k] - begin[k]);
