@@ -2,6 +2,7 @@
 #include "collision/response/free_rotation.hpp"
 
 #include "kds/arithmetic/lattice.hpp"
+#include "tests/collision/response/random_rotation.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -20,6 +21,7 @@ using namespace kds::collision;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using kds::collision::tests::random_rotation;
 using kds::tests::Random;
 using Long3 = Eigen::Matrix<long double, 3, 1>;
 using LongQuaternion = Eigen::Quaternion<long double>;
@@ -60,14 +62,6 @@ LongQuaternion by_small_steps(const PrincipalInertia& inertia, const RotationSta
 
 double angle_between(const Quaterniond& a, const LongQuaternion& b) {
   return static_cast<double>(a.cast<long double>().normalized().angularDistance(b));
-}
-
-Quaterniond random_rotation(Random& random) {
-  Quaterniond q(0, 0, 0, 0);
-  while (q.norm() < 0.1) {
-    for (int i = 0; i < 4; ++i) q.coeffs()[i] = random.between(-1, 1);
-  }
-  return q.normalized();
 }
 
 Vector3d random_vector(Random& random) { return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}; }

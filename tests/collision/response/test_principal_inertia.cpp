@@ -1,6 +1,7 @@
 #include "collision/response/principal_inertia.hpp"
 
 #include "collision/response/inertia.hpp"
+#include "tests/collision/response/random_rotation.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -17,15 +18,8 @@ using namespace kds::collision;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using kds::collision::tests::random_rotation;
 using kds::tests::Random;
-
-Quaterniond random_rotation(Random& random) {
-  Quaterniond q(0, 0, 0, 0);
-  while (q.norm() < 0.1) {
-    for (int i = 0; i < 4; ++i) q.coeffs()[i] = random.between(-1, 1);
-  }
-  return q.normalized();
-}
 
 Matrix3d put_together(const PrincipalInertia& inertia) {
   const Matrix3d axes = inertia.axes.toRotationMatrix();

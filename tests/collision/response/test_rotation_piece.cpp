@@ -2,6 +2,7 @@
 
 #include "collision/vectors.hpp"
 #include "kds/arithmetic/lattice.hpp"
+#include "tests/collision/response/random_rotation.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -21,15 +22,9 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using kds::never;
+using kds::collision::tests::random_rotation;
 using kds::tests::Random;
 
-Quaterniond random_rotation(Random& random) {
-  Quaterniond q(0, 0, 0, 0);
-  while (q.norm() < 0.1) {
-    for (int i = 0; i < 4; ++i) q.coeffs()[i] = random.between(-1, 1);
-  }
-  return q.normalized();
-}
 Vector3d random_vector(Random& random) { return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}; }
 
 /// How far a piece is off the free rotation at most, at 64 times.
