@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
-#include "collision/narrow_phase/turning/shared_failures.hpp"
+#include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_touch.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 
@@ -43,8 +43,9 @@ class TurningMeshSearch {
   double first_separation(double t0, double horizon) const {
     for (double t = t0; t <= horizon;) {
       double parts = t;
-      const bool penetrate = find(view(t), [&](Leaves, const Pair& pair) {
-        parts = WaysApart<Pair>(pair).first_parting(t, horizon);
+      const View view = this->view(t);
+      const bool penetrate = find(view, [&](Leaves, const Pair& pair) {
+        parts = ways(pair, view).first_parting(t, horizon);
         return true;
       });
       if (!penetrate) return t;
@@ -99,7 +100,6 @@ class TurningMeshSearch {
     double horizon_;  ///< in mode `transparent` no later than a contact that is known
     ContactMode mode_;
     View view_;  ///< at the time that is looked at, or not long before
-    SharedFailures failures_;
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
   };
 
@@ -108,6 +108,8 @@ class TurningMeshSearch {
   View view(double t) const { return view(t, t); }
 
   Pair pair(Leaves leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
+  /// As seen at the time of the view.
+  WaysApart<Pair, RememberedSigns&> ways(const Pair& pair, const View& view) const { return {pair, signs_, view}; }
   bool are_leaves(Leaves nodes) const { return a_.is_leaf(nodes.a) && b_.is_leaf(nodes.b); }
 
   /// Calls ask(child pair) for the halves of the larger node until it returns true.
@@ -136,7 +138,7 @@ class TurningMeshSearch {
   template <class Ask>
   bool find(const View& view, const Ask& ask) const {
     return every_near(view, 0, {0, 0}, [&](Leaves leaves, const Pair& pair) {
-      return WaysApart<Pair>(pair).penetrate(view.time) && ask(leaves, pair);
+      return ways(pair, view).penetrate(view.time) && ask(leaves, pair);
     });
   }
 
@@ -151,6 +153,7 @@ class TurningMeshSearch {
   const RigidMotion& motion_a_;
   const RigidMotion& motion_b_;
   double reach_a_, reach_b_;  ///< how far parts are from the origin of their body
+  mutable RememberedSigns signs_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -221,7 +224,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tri
   const double others = queue_.empty() ? never : queue_.top().time;
   const double step = std::max(next_up(t), t + std::ldexp(part_of_turn, 2 * tries) * pair.time_of_turning());
   const double until = std::min(horizon_, std::max(others, step));
-  const double contact = WaysApart<Pair, SharedFailures&>(pair, failures_).first_penetration(t, until);
+  const double contact = search_.ways(pair, view_).first_penetration(t, until);
   if (contact != never) {
     push(contact, nodes, Known::contact);
     if (mode_ == ContactMode::transparent) horizon_ = contact;
@@ -254,7 +257,7 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
   constexpr double short_time = 0x1p-20;
   const double sizes = a_.radius(0) + norm(view.way.value);
   deeper = std::max({deeper, next_up(t), t + short_time * view.stretch(sizes, horizon - t)});
-  return std::min(deeper, WaysApart<Pair>(pair).first_parting(t, std::min(deeper, horizon)));
+  return std::min(deeper, ways(pair, view).first_parting(t, std::min(deeper, horizon)));
 }
 
 template <int Degree, class Side>

@@ -1,5 +1,5 @@
 // What doubles prove of parts of meshes that turn, and failure times that are remembered: against the definition.
-#include "collision/narrow_phase/turning/shared_failures.hpp"
+#include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_nodes.hpp"
 #include "collision/narrow_phase/turning/turning_triangles.hpp"
 
@@ -129,18 +129,18 @@ TEST_CASE("failure times that are remembered are those that are found", "[turnin
     const EdgeEdge edges{a, b, {p[0], p[1]}, {q[0], q[1]}}, back{a, b, {p[1], p[0]}, {q[1], q[0]}};
     const EdgeEdge other{a, b, {p[1], p[0]}, {q[0], q[1]}};  // the other sign
     const VertexFace vertex{a, b, p[0], q}, of_b{b, a, q[0], p};
-    SharedFailures failures;
+    RememberedSigns signs;
     CAPTURE(round);
     for (int ask = 0; ask < 20; ++ask) {
       const double t = random.between(0, 1), until = t + random.between(0, 2);
       const auto compare = [&](const auto& certificate) {
         const double time = failure_time(certificate, t, until);
         fail += time > t && time < never;
-        CHECK(failures.failure_time(certificate, t, until) == time);
-        CHECK(failures.sign_after(certificate, t) == sign_after(certificate, t));
+        CHECK(signs.failure_time(certificate, t, until) == time);
+        CHECK(signs.sign_after(certificate, t) == sign_after(certificate, t));
         if (time == never) return;
-        CHECK(failures.sign_after(certificate, time) == -1);
-        if (time > t) CHECK(failures.sign_after(certificate, next_down(time)) == 1);
+        CHECK(signs.sign_after(certificate, time) == -1);
+        if (time > t) CHECK(signs.sign_after(certificate, next_down(time)) == 1);
       };
       compare(edges), compare(back), compare(other), compare(vertex), compare(of_b);
     }
