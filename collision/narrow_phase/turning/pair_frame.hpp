@@ -102,15 +102,18 @@ struct TurningBounds {
     const double bend = norm(frame.way.bend) * (1 + 0x1p-40);
     const double speed = norm(frame.way.rate) * (1 + 0x1p-40) + frame.rate_error + bend * stretch;
     const double distance = norm(frame.way.value) * (1 + 0x1p-40) + frame.way_error + speed * stretch;
-    const double wa = frame.rate_a, wb = frame.rate_b;
-    const double p = distance + of_a + of_b;
-    const double p1 = speed + wa * of_a + wb * of_b;
-    const double p2 = bend + wa * wa * of_a + wb * wb * of_b;
-    const double p3 = wa * wa * wa * of_a + wb * wb * wb * of_b;
-    third = rate_n > 0 || p3 > 0 ? rate_n * (rate_n * (rate_n * p + 3 * p1) + 3 * p2) + p3 : 0;
-    third *= 1 + 0x1p-40;
+    third = third_of(rate_n, frame.rate_a, frame.rate_b, {distance, speed, bend}, of_a, of_b) * (1 + 0x1p-40);
     lengths = norm(frame.way.value) + of_a + of_b + speed * stretch;
     rounding = PairFrame<Degree>::rounding * lengths + frame.way_error + frame.rate_error * stretch;
+  }
+
+  /// The first, but for roundings. `way`: bounds on its length, and those of its derivatives.
+  static double third_of(double rate_n, double rate_a, double rate_b, const Jet& way, double of_a, double of_b) {
+    const double p = way.value + of_a + of_b;
+    const double p1 = way.rate + rate_a * of_a + rate_b * of_b;
+    const double p2 = way.bend + rate_a * rate_a * of_a + rate_b * rate_b * of_b;
+    const double p3 = rate_a * rate_a * rate_a * of_a + rate_b * rate_b * rate_b * of_b;
+    return rate_n > 0 || p3 > 0 ? rate_n * (rate_n * (rate_n * p + 3 * p1) + 3 * p2) + p3 : 0;
   }
 };
 

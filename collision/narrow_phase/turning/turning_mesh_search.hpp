@@ -26,12 +26,7 @@ class TurningMeshSearch {
   using View = NodesView<Degree>;
 
   TurningMeshSearch(const MeshOfPair& a, const RigidMotion& motion_a, const Side& b, const RigidMotion& motion_b)
-      : a_(a),
-        b_(b),
-        motion_a_(motion_a),
-        motion_b_(motion_b),
-        reach_a_(reach(a.node(0))),
-        reach_b_(reach(b.node(0))) {}
+      : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), units_a_(a.units()), units_b_(b.units()) {}
 
   double first_contact(double t0, double horizon, ContactMode mode) const;
 
@@ -103,8 +98,7 @@ class TurningMeshSearch {
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
   };
 
-  static double reach(const BodyNode& root) { return (norm(root.centre) + root.radius) * (1 + 0x1p-40); }
-  View view(double t, double horizon) const { return {motion_a_, motion_b_, reach_a_, reach_b_, t, horizon}; }
+  View view(double t, double horizon) const { return {motion_a_, motion_b_, units_a_, units_b_, t, horizon}; }
   View view(double t) const { return view(t, t); }
 
   Pair pair(Leaves leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
@@ -152,7 +146,7 @@ class TurningMeshSearch {
   const Side& b_;
   const RigidMotion& motion_a_;
   const RigidMotion& motion_b_;
-  double reach_a_, reach_b_;  ///< how far parts are from the origin of their body
+  NodeUnits units_a_, units_b_;
   mutable RememberedSigns signs_;
 };
 

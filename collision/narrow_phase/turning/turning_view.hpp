@@ -25,6 +25,10 @@ struct TurningView : PairFrame<Degree> {
 
   Eigen::Vector3d in_world_a(const Eigen::Vector3d& x) const { return times(matrix_a, x); }
   Eigen::Vector3d in_world_b(const Eigen::Vector3d& x) const { return times(matrix_b, x); }
+  /// A vector of the world, in the axes of a.
+  Eigen::Vector3d seen_from_a(const Eigen::Vector3d& x) const {
+    return {dot(matrix_a.col(0), x), dot(matrix_a.col(1), x), dot(matrix_a.col(2), x)};
+  }
 
   Eigen::Matrix3d matrix_a, matrix_b;
 

@@ -53,16 +53,16 @@ TEST_CASE("nodes are apart for as long as is proven", "[turning]") {
     const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 3));
     const auto half = [&] { return Vector3d(random.between(0, 1), random.between(0, 1), random.between(0, 1)); };
     const Box box_a{half()}, box_b{half()};
-    const BodyNode node_a = box_node(box_a.half_extents), node_b = box_node(box_b.half_extents);
+    const ObbNode node_a = box_node(box_a.half_extents), node_b = box_node(box_b.half_extents);
     const double t = random.between(0, 0.5), horizon = t + 1;
-    const NodesView<2> view(a, b, node_a.radius, node_b.radius, t, horizon);
+    const NodesView<2> view(a, b, box_units(box_a.half_extents), box_units(box_b.half_extents), t, horizon);
     CAPTURE(round);
     const auto gap = [&](double when) {
       return static_cast<double>(tests::TurningOracle::gap(a, box_a, b, box_b, when));
     };
     if (nodes_apart_by(0.25, view, node_a, node_b)) {
       // Along an axis; the oracle knows more of them.
-      CHECK(gap(t) > 0.25 - 1e-12);
+      CHECK(gap(t) > 0.25);
     }
     const NodeWait apart = nodes_apart(view, node_a, node_b);
     if (!apart.worth_it) continue;
