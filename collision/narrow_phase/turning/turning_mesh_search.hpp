@@ -117,7 +117,7 @@ class TurningMeshSearch {
     return ask(Leaves{nodes.a, child}) || ask(Leaves{nodes.a, child + 1});
   }
 
-  /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than a margin, until it returns true.
+  /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than twice a margin, until it returns true.
   template <class Ask>
   bool every_near(const View& view, double margin, Leaves nodes, const Ask& ask) const {
     if (nodes_apart_by(margin, view, a_.node(nodes.a), b_.node(nodes.b))) return false;
@@ -125,7 +125,7 @@ class TurningMeshSearch {
       return of_halves(nodes, [&](Leaves halves) { return every_near(view, margin, halves, ask); });
     }
     const Pair pair = this->pair(nodes);
-    if (pair.gap(view) > pair.error(view) + margin) return false;
+    if (pair.quick_gap(view) > 2 * (pair.error(view) + margin)) return false;
     return ask(nodes, pair);
   }
   /// The same of those that penetrate just after the time of the view.
@@ -218,7 +218,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tri
   const double others = queue_.empty() ? never : queue_.top().time;
   const double step = std::max(next_up(t), t + std::ldexp(part_of_turn, 2 * tries) * pair.time_of_turning());
   const double until = std::min(horizon_, std::max(others, step));
-  const double contact = search_.ways(pair, view_).first_penetration(t, until);
+  const double contact = search_.ways(pair, view_).first_penetration(t, until, true);
   if (contact != never) {
     push(contact, nodes, Known::contact);
     if (mode_ == ContactMode::transparent) horizon_ = contact;
@@ -237,6 +237,13 @@ bool TurningMeshSearch<Degree, Side>::Front::counts(Leaves nodes) const {
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View& view, double horizon) const {
   const double t = view.time;
+  const auto ways = this->ways(pair, view);
+  // In so short a time they do not get deeper by more than 2^-40 of their distances, as they do not approach. Mostly
+  // they have parted by then.
+  constexpr double short_time = 0x1p-20;
+  const double sizes = a_.radius(0) + norm(view.way.value);
+  const double soon = std::max(next_up(t), t + short_time * view.stretch(sizes, horizon - t));
+  if (const double parts = ways.first_parting(t, std::min(soon, horizon)); parts != never) return parts;
   const double depth = std::max(0.0, -pair.gap(view));
   const double slack = (1 + 0x1p-10) * depth + pair.roundings(view);
   const Pair shallow = pair.with_slack(slack);
@@ -247,11 +254,8 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
     if (proven == deeper) break;
     deeper = proven;
   }
-  // In so short a time they do not get deeper by more than 2^-40 of their distances, as they do not approach.
-  constexpr double short_time = 0x1p-20;
-  const double sizes = a_.radius(0) + norm(view.way.value);
-  deeper = std::max({deeper, next_up(t), t + short_time * view.stretch(sizes, horizon - t)});
-  return std::min(deeper, ways(pair, view).first_parting(t, std::min(deeper, horizon)));
+  deeper = std::max(deeper, soon);
+  return std::min(deeper, ways.first_parting(t, std::min(deeper, horizon)));
 }
 
 template <int Degree, class Side>
@@ -274,7 +278,7 @@ TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   for (double margin = 0x1p-40 * (a_.radius(0) + norm(view.way.value));; margin *= 64) {
     double least = never;
     every_near(view, margin, {0, 0}, [&](Leaves leaves, const Pair& pair) {
-      if (const double gap = pair.gap(view); gap < least) {
+      if (const double gap = pair.gap(view); gap < least && gap <= pair.error(view) + margin) {
         least = gap;
         best = touch(leaves, pair, view);
       }

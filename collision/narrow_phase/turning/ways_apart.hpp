@@ -67,14 +67,17 @@ class WaysApart {
   /// Whether the two penetrate just after t.
   bool penetrate(double t) const { return open_way(t) == none; }
 
-  /// The first double in [t, horizon] just after which they do, or `never`.
-  double first_penetration(double t, double horizon) const {
+  /// The first double in [t, horizon] just after which they do, or `never`. `stuck`: proofs are known to tell nothing
+  /// more at t.
+  double first_penetration(double t, double horizon, bool stuck = false) const {
     while (t <= horizon) {
-      const double apart = apart_until(t, horizon);
-      if (apart > t) {
-        t = apart;
-        continue;
+      if (!stuck) {
+        if (const double apart = apart_until(t, horizon); apart > t) {
+          t = apart;
+          continue;
+        }
       }
+      stuck = false;
       const int way = open_way(t);
       if (way == none) return t;
       const double until = std::min(horizon, std::max(next_up(t), t + pair_.time_of_turning()));
