@@ -1,4 +1,4 @@
-// Signs of certificates that several pairs of triangles share, and when they change.
+// Signs of certificates that are asked for again and again, and when they change.
 #pragma once
 
 #include "certificates/turning/edge_edge_separation.hpp"
@@ -46,8 +46,10 @@ class RememberedSigns {
   }
 
  private:
+  enum class Kind : unsigned char { vertex_and_face, two_edges };
   /// What a certificate is made of, apart from the two motions of the pair.
   struct Key {
+    Kind kind;  ///< two bodies may have points of the same coordinates
     const void* first_motion;
     std::array<double, 12> coordinates;
     friend bool operator==(const Key&, const Key&) = default;
@@ -66,7 +68,7 @@ class RememberedSigns {
   }
   template <int Degree>
   static Key key_of(const certificates::VertexFaceSeparation<Degree>& c) {
-    Key key{&c.a, {}};
+    Key key{Kind::vertex_and_face, &c.a, {}};
     put(key, 0, c.vertex);
     for (std::size_t i = 0; i < 3; ++i) put(key, 1 + i, c.corners[i]);
     return key;
@@ -74,7 +76,7 @@ class RememberedSigns {
   /// With both edges the other way round it is the same function.
   template <int Degree>
   static Key key_of(const certificates::EdgeEdgeSeparation<Degree>& c) {
-    Key key{&c.a, {}};
+    Key key{Kind::two_edges, &c.a, {}};
     const auto& u = c.edge_a;
     const bool swap = std::lexicographical_compare(u[1].data(), u[1].data() + 3, u[0].data(), u[0].data() + 3);
     for (std::size_t i = 0; i < 2; ++i) {

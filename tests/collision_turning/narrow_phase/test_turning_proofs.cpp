@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace test_turning_proofs {
 namespace {
@@ -118,34 +119,47 @@ TEST_CASE("triangles are apart for as long as is proven, and conditions that are
   CHECK(sure > 3000);
 }
 
-TEST_CASE("failure times that are remembered are those that are found", "[turning]") {
+TEST_CASE("signs that are remembered are those that are found", "[turning]") {
   const std::uint64_t seed = 562;
   CAPTURE(seed);
   Random random(seed);
-  int fail = 0;
+  int fail = 0, recover = 0;
   for (int round = 0; round < 100; ++round) {
     const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 1));
     const auto p = random_triangle(random), q = random_triangle(random);
     const EdgeEdge edges{a, b, {p[0], p[1]}, {q[0], q[1]}}, back{a, b, {p[1], p[0]}, {q[1], q[0]}};
     const EdgeEdge other{a, b, {p[1], p[0]}, {q[0], q[1]}};  // the other sign
     const VertexFace vertex{a, b, p[0], q}, of_b{b, a, q[0], p};
+    // Bodies of the same shape have points of the same coordinates.
+    const VertexFace alike{a, b, p[0], {p[1], q[0], q[1]}};
+    const EdgeEdge fixed{a, a, {p[0], p[1]}, {p[0], p[1]}};  // zero at all times
     RememberedSigns signs;
     CAPTURE(round);
+    std::vector<double> times;
     for (int ask = 0; ask < 20; ++ask) {
-      const double t = random.between(0, 1), until = t + random.between(0, 2);
+      // Times at which signs have changed are asked for again.
+      const bool again = !times.empty() && random.one_in(3);
+      const double t = again ? times[random.below(times.size())] : random.between(0, 1);
+      const double until = t + random.between(0, 2);
       const auto compare = [&](const auto& certificate) {
-        const double time = failure_time(certificate, t, until);
-        fail += time > t && time < never;
-        CHECK(signs.failure_time(certificate, t, until) == time);
         CHECK(signs.sign_after(certificate, t) == sign_after(certificate, t));
-        if (time == never) return;
-        CHECK(signs.sign_after(certificate, time) == -1);
-        if (time > t) CHECK(signs.sign_after(certificate, next_down(time)) == 1);
+        const double fails = failure_time(certificate, t, until), recovers = recovery_time(certificate, t, until);
+        if (random.one_in(2)) CHECK(signs.failure_time(certificate, t, until) == fails);
+        CHECK(signs.recovery_time(certificate, t, until) == recovers);
+        CHECK(signs.failure_time(certificate, t, until) == fails);
+        fail += fails > t && fails<never, recover += recovers> t && recovers < never;
+        for (const double time : {fails, recovers}) {
+          if (time == never) continue;
+          times.push_back(time);
+          CHECK(signs.sign_after(certificate, time) == (time == fails ? -1 : 1));
+          if (time > t) CHECK(signs.sign_after(certificate, next_down(time)) == (time == fails ? 1 : -1));
+        }
       };
-      compare(edges), compare(back), compare(other), compare(vertex), compare(of_b);
+      compare(edges), compare(alike), compare(back), compare(other), compare(vertex), compare(of_b), compare(fixed);
     }
   }
   CHECK(fail > 500);
+  CHECK(recover > 500);
 }
 
 }  // namespace test_turning_proofs
