@@ -135,20 +135,17 @@ class NodeGap {
   }
 
   NodeWait wait() {
-    constexpr float worth = 0x1p-4F;  // of their sizes
-    const Lanes by_a = cross(view_.turn_a, in_a_), by_b = cross(view_.turn_b, in_b_);
-    rate_ = view_.way_rate + by_b - by_a;
-    bend_ = view_.way_bend + cross(view_.turn_b, by_b) - cross(view_.turn_a, by_a);
-    const float radii = radius_a_ + radius_b_;
-    const float speed = std::sqrt(dot(rate_, rate_)) + view_.angle_a * radius_a_ + view_.angle_b * radius_b_;
-    least_ = worth * radii < speed ? worth * radii / speed : 1;
-    if (const double balls = distance_ - radii - view_.margin; balls > 0) {
+    const double balls = distance_ - (radius_a_ + radius_b_) - view_.margin;
+    if (balls > 0) {
+      find_rates();
       const Lanes n = p_ / splat(distance_);
       const double wait = wait_of({balls, dot(n, rate_), dot(n, bend_)}, view_.third[0]);
       if (wait >= least_) return in_seconds(wait);
     }
     const Widest best = widest();
-    return best.gap > view_.margin ? in_seconds(wait_along(best.direction, best.turns_with)) : NodeWait{0, false};
+    if (!(best.gap > view_.margin)) return {0, false};
+    if (!(balls > 0)) find_rates();
+    return in_seconds(wait_along(best.direction, best.turns_with));
   }
 
   /// Whether they are surely farther apart than a margin.
@@ -164,6 +161,16 @@ class NodeGap {
   /// The products of a vector with three, whose coordinates are the rows.
   static Lanes dots(Lanes x, const std::array<Lanes, 3>& rows) {
     return splat(x[0]) * rows[0] + splat(x[1]) * rows[1] + splat(x[2]) * rows[2];
+  }
+
+  void find_rates() {
+    constexpr float worth = 0x1p-4F;  // of their sizes
+    const Lanes by_a = cross(view_.turn_a, in_a_), by_b = cross(view_.turn_b, in_b_);
+    rate_ = view_.way_rate + by_b - by_a;
+    bend_ = view_.way_bend + cross(view_.turn_b, by_b) - cross(view_.turn_a, by_a);
+    const float radii = radius_a_ + radius_b_;
+    const float speed = std::sqrt(dot(rate_, rate_)) + view_.angle_a * radius_a_ + view_.angle_b * radius_b_;
+    least_ = worth * radii < speed ? worth * radii / speed : 1;
   }
 
   struct Widest {
