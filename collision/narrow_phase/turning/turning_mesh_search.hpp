@@ -117,7 +117,8 @@ class TurningMeshSearch {
     return ask(Leaves{nodes.a, child}) || ask(Leaves{nodes.a, child + 1});
   }
 
-  /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than twice a margin, until it returns true.
+  /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than twice a margin, until it returns
+  /// true.
   template <class Ask>
   bool every_near(const View& view, double margin, Leaves nodes, const Ask& ask) const {
     if (nodes_apart_by(margin, view, a_.node(nodes.a), b_.node(nodes.b))) return false;
