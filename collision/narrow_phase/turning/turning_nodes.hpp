@@ -12,8 +12,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 
 namespace kds::collision {
 
@@ -24,7 +22,7 @@ struct NodeUnits {
   double reach;  ///< how far they reach from the origin of the body
 };
 
-/// The box of these half extents as a node. Its unit is the length of their sum.
+/// The box of these half extents as a node. Its unit is half its diagonal.
 inline ObbNode box_node(const Eigen::Vector3d& half) {
   ObbNode node{};
   for (std::size_t k = 0; k < 3; ++k) node.axes[k][k] = 1;
@@ -36,15 +34,16 @@ inline NodeUnits box_units(const Eigen::Vector3d& half) { return {norm(half), 0,
 /// Two bodies seen at one time, and what holds for all of their nodes.
 ///
 /// All is in the axes of body a. Lengths are divided by `size`, how far the bodies' parts may be from each other now,
-/// and times by `ahead`: up to a radian of both turns together, and no longer than the time in
-/// which the bodies come to be elsewhere. So all numbers are of order 1, and floats suffice.
+/// and times by `ahead`: up to a radian of both turns together, and no longer than the time in which the bodies come to
+/// be elsewhere. So all numbers are of order 1, and floats suffice.
 ///
 /// Margin. In roundings of a float, u = 2^-24: numbers that are converted are good to 1, so what is turned by the
 /// matrix to 7, axes of nodes as they are to 4, and the corners of a node are in the box of these axes to 8 (ObbTree
 /// grows nodes by 2^-20 of their unit for the products of exact axes). A gap is a product with the way (12), and with
-/// three half edges of each of two boxes, which are together no longer than 2^(1/2) times their radius (2 x 30); its
-/// rate the same once more, and twice that for the chords; its bend is made of up to 6 vectors of order 1 that are
-/// turned twice (60). That is some 330; `rounding` has room for 512. What is lost in doubles is added (TurningBounds).
+/// three half edges of each of two boxes, which are together no longer than 3^(1/2) times the size (60); its rate, of
+/// vectors that add up to 4 at most, 48, and twice the 60 for the chords; half of its bend, of vectors that add up to
+/// 13 and are turned twice, 60. That is some 300; `rounding` has room for 512: 3e-5 of the size. A larger one leaves
+/// more to the triangles. What is lost of the way in doubles is added.
 template <int Degree>
 struct NodesView : TurningView<Degree> {
   using RigidMotion = certificates::RigidMotion<Degree>;
@@ -54,8 +53,7 @@ struct NodesView : TurningView<Degree> {
             double horizon)
       : TurningView<Degree>(a, b, t),
         size(norm(this->way.value) + of_a.reach + of_b.reach),
-        limit((horizon - t) * (1 + 0x1p-40)),
-        ahead(std::max(0.0, this->stretch(of_a.reach + of_b.reach, limit))) {
+        ahead(std::max(0.0, this->stretch(of_a.reach + of_b.reach, (horizon - t) * (1 + 0x1p-40)))) {
     const auto in_a = [&](const Eigen::Vector3d& x) { return lanes(this->seen_from_a(x)); };
     const double s = ahead;
     for (int k = 0; k < 3; ++k) columns[static_cast<std::size_t>(k)] = in_a(this->matrix_b.col(k));
@@ -82,7 +80,6 @@ struct NodesView : TurningView<Degree> {
   }
 
   double size;                   ///< length
-  double limit;                  ///< as far as is asked for, s
   double ahead;                  ///< how far to look ahead, s
   std::array<Lanes, 3> columns;  ///< where the axes of b point
   Lanes way_now, way_rate, way_bend;
