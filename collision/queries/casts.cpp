@@ -108,11 +108,28 @@ class Cast {
   StraightPath path_;
 };
 
-/// Into as many pieces as there are bodies in a row, if they fill a cube: so most pieces meet the boxes of few.
+/// Into as many pieces as there are bodies in a row, if they fill a cube: so the boxes of most pieces meet few.
 template <class Motion>
 int pieces_of_way(const BasicWorld<Motion>& world) {
   constexpr double most = 256;
   return static_cast<int>(std::clamp(std::floor(std::cbrt(static_cast<double>(world.size()))), 1.0, most));
+}
+
+/// Calls visit(id) once for each accepted body whose box meets that of a piece of the way, piece by piece, as long as
+/// `wanted(from)` is true of the time at which the next piece begins: all that is met before that time has been
+/// visited.
+template <class Motion, class Wanted, class Visit>
+void visit_along(const BasicWorld<Motion>& world, const Cast& cast, const BodyFilter& filter, const Wanted& wanted,
+                 const Visit& visit) {
+  const int pieces = pieces_of_way(world);
+  std::unordered_set<BodyId> seen;
+  for (int i = 0; i < pieces; ++i) {
+    const double from = static_cast<double>(i) / pieces;
+    if (!wanted(from)) return;
+    cast.near(world, from, static_cast<double>(i + 1) / pieces, [&](BodyId id) {
+      if (seen.insert(id).second && detail::accepts(filter, id)) visit(id);
+    });
+  }
 }
 
 }  // namespace
@@ -122,19 +139,12 @@ std::optional<Hit> cast(const BasicWorld<Motion>& world, const PlacedShape& shap
                         const BodyFilter& filter) {
   require_way("cast", shape, way);
   const Cast cast(shape, way);
-  const int pieces = pieces_of_way(world);
   std::optional<Hit> first;
-  std::unordered_set<BodyId> seen;
-  for (int i = 0; i < pieces; ++i) {
-    const double from = static_cast<double>(i) / pieces;
-    // All that is met earlier has a box that meets an earlier piece.
-    if (first && first->contact.time < from) break;
-    cast.near(world, from, static_cast<double>(i + 1) / pieces, [&](BodyId id) {
-      if (!seen.insert(id).second || !detail::accepts(filter, id)) return;
-      const auto hit = cast.meets(world, id, first ? first->contact.time : 1);
-      if (hit && (!first || detail::sooner(*hit, *first))) first = hit;
-    });
-  }
+  const auto wanted = [&](double from) { return !first || first->contact.time >= from; };
+  visit_along(world, cast, filter, wanted, [&](BodyId id) {
+    const auto hit = cast.meets(world, id, first ? first->contact.time : 1);
+    if (hit && (!first || detail::sooner(*hit, *first))) first = hit;
+  });
   return first;
 }
 
@@ -149,10 +159,11 @@ std::vector<Hit> cast_all(const BasicWorld<Motion>& world, const PlacedShape& sh
   require_way("cast_all", shape, way);
   const Cast cast(shape, way);
   std::vector<Hit> hits;
-  cast.near(world, 0, 1, [&](BodyId id) {
-    if (!detail::accepts(filter, id)) return;
-    if (const auto hit = cast.meets(world, id, 1)) hits.push_back(*hit);
-  });
+  visit_along(
+      world, cast, filter, [](double) { return true; },
+      [&](BodyId id) {
+        if (const auto hit = cast.meets(world, id, 1)) hits.push_back(*hit);
+      });
   std::sort(hits.begin(), hits.end(), detail::sooner);
   return hits;
 }

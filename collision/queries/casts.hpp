@@ -40,7 +40,7 @@ template <class Motion>
 std::optional<Hit> cast(const BasicWorld<Motion>& world, const PlacedShape& shape, const Ray& way,
                         const BodyFilter& filter = {});
 
-/// All bodies that are met on the whole way, each once, by time. Cost: a test of each body in the box around the way.
+/// All bodies that are met on the whole way, each once, by time.
 template <class Motion>
 std::vector<Hit> cast_all(const BasicWorld<Motion>& world, const Ray& ray, const BodyFilter& filter = {});
 template <class Motion>
