@@ -5,6 +5,7 @@
 #include "collision/body_motion.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/bending_contact.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/profile.hpp"
 #include "collision/response/free_rotation.hpp"
@@ -275,6 +276,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
     return {bodies_.id_of(a), bodies_.id_of(b), contact};
   }
   void process_contact(BodySlot a, BodySlot b, const Contact& contact);
+  void let_through(BodySlot a, BodySlot b, const Contact& contact);
   std::uint64_t count_meeting(BodySlot a, BodySlot b);
   std::uint64_t count_meeting(BodySlot slot);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
@@ -290,6 +292,13 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   bool endless(std::uint64_t burst) const;
+
+  // world/bending_bounces.cpp: of meshes that bend
+  bool bends(BodySlot slot) const { return bodies_[slot].shape && collision::bends(bodies_[slot].shape->shape); }
+  bool bends(BodySlot a, BodySlot b) const { return bends(a) || bends(b); }
+  SurfaceRate surface_rate(BodySlot slot, const Contact& contact, bool is_a) const requires(!turns<Motion>);
+  double least_rebound(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>);
+  void bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(!turns<Motion>);
 
   // world/turning/turning_bounces.cpp: of bodies that turn
   double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>);

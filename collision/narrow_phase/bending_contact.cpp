@@ -6,8 +6,10 @@
 #include "collision/deforming/surface_touching.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/polytope.hpp"
+#include "collision/vectors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -163,6 +165,35 @@ class BendingPair {
     return open ? TouchSpan{touch.begin, never} : TouchSpan{};
   }
 
+  /// The first contact that has to be resolved, in [t, horizon].
+  double meeting_after(double t, double horizon) {
+    SurfaceQuery query = query_;
+    query.approaching = true;
+    for (std::size_t k = piece_of(t);; ++k) {
+      const auto [w0, w1] = piece(k);
+      if (!(w0 <= horizon) || !(w0 < w1) || w1 - w0 > longest_piece * unit_) break;
+      if (together_ && w0 > times_.back()) break;  // nothing changes any more
+      const double near = balls_meet(w0);
+      if (near > horizon) break;
+      if (near > w1) continue;
+      const MovingSurface<Degree>& a = surface_a().over(w0, w1);
+      const MovingSurface<Degree>& b = surface_b().over(w0, w1);
+      const SurfaceTouching<Degree> touching(a, b, query_);
+      for (double now = w0; now < w1;) {
+        // What is near stays below the levels of those that come from outside until all have parted.
+        const double parts = touching.touches(now) ? std::min(touching.parts_at(now), w1) : w1;
+        query.from = now;
+        query.until = parts;
+        const auto contact = collision::first_contact(a, b, query);
+        const double time = contact ? contact->contact.time : never;
+        if (time < w1 && time >= t) return time <= horizon ? time : never;
+        // One before t was passed over, and they go through each other.
+        now = !contact ? parts : time < w1 ? std::max(touching.parts_at(time), next_up(time)) : w1;
+      }
+    }
+    return never;
+  }
+
   Contact contact_at(double t) {
     auto [w0, w1] = piece(piece_of(t));
     if (w1 < t) w1 = (w0 = t) + unit_;  // they move together, as they did in the last piece
@@ -228,20 +259,15 @@ class BendingPair {
   std::optional<PieceSurface<Degree>> surface_a_, surface_b_;
 };
 
-void require_transparent(ContactMode mode) {
-  if (mode != ContactMode::transparent) {
-    throw std::logic_error("BendingContact: a mesh that bends passes through everything");
-  }
-}
-
 }  // namespace
 
 template <int Degree>
 double BendingContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                                              FoundTouch*) {
-  require_transparent(mode);
   if (!(t0 <= horizon)) return never;
-  const double begin = BendingPair<Degree>(a, b).touch_after(t0, horizon, false).begin;
+  BendingPair<Degree> pair(a, b);
+  if (mode == ContactMode::resolved) return pair.meeting_after(t0, horizon);
+  const double begin = pair.touch_after(t0, horizon, false).begin;
   return begin <= horizon ? std::max(begin, t0) : never;
 }
 
@@ -271,5 +297,50 @@ Contact BendingContact<Degree>::contact_at(const Body& a, const Body& b, double 
 
 template struct BendingContact<1>;
 template struct BendingContact<2>;
+
+namespace {
+
+/// The weights of the corners of a triangle that make up a point of it.
+std::array<double, 3> weights_in(const std::array<Eigen::Vector3d, 3>& corner, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d u = corner[1] - corner[0], v = corner[2] - corner[0], on = point - corner[0];
+  const Eigen::Vector3d n = cross(u, v);
+  const double area = squared_norm(n);
+  if (!(area > 0)) return {1.0 / 3, 1.0 / 3, 1.0 / 3};
+  const double wb = std::clamp(dot(n, cross(on, v)) / area, 0.0, 1.0);
+  const double wc = std::clamp(dot(n, cross(u, on)) / area, 0.0, 1 - wb);
+  return {1 - wb - wc, wb, wc};
+}
+
+}  // namespace
+
+SurfaceRate surface_rate(const PlacedShape& shape, const Feature& feature, const Eigen::Vector3d& point,
+                         const Eigen::Vector3d& normal, double t) {
+  const MeshScript* const script = script_of(shape);
+  if (!script || feature.kind == Feature::Kind::none) return {};
+  const auto place = [&](std::size_t v) { return placed_vertex(shape.rotation, 1, script->position(v, t)); };
+  const auto velocity = [&](std::size_t v) { return placed_vertex(shape.rotation, 1, script->velocity(v, t)); };
+  if (feature.kind == Feature::Kind::vertex) return {velocity(feature.first), Eigen::Vector3d::Zero()};
+  if (feature.kind == Feature::Kind::edge) {
+    const Eigen::Vector3d a = place(feature.first), along = place(feature.second) - a;
+    const Eigen::Vector3d of_a = velocity(feature.first), turns = velocity(feature.second) - of_a;
+    const double squared = squared_norm(along);
+    if (!(squared > 0)) return {of_a, Eigen::Vector3d::Zero()};
+    const double part = std::clamp(dot(point - a, along) / squared, 0.0, 1.0);
+    return {of_a + part * turns, -(dot(normal, turns) / squared) * along};  // it stays across the edge
+  }
+  const Mesh::Triangle& face = script->triangles()[feature.first];
+  const std::array<Eigen::Vector3d, 3> p{place(face[0]), place(face[1]), place(face[2])};
+  const std::array<Eigen::Vector3d, 3> rate{velocity(face[0]), velocity(face[1]), velocity(face[2])};
+  const auto w = weights_in(p, point);
+  const Eigen::Vector3d u = p[1] - p[0], v = p[2] - p[0];
+  const Eigen::Vector3d across = cross(u, v);
+  const Eigen::Vector3d turns = cross(rate[1] - rate[0], v) + cross(u, rate[2] - rate[0]);
+  SurfaceRate result{w[0] * rate[0] + w[1] * rate[1] + w[2] * rate[2], Eigen::Vector3d::Zero()};
+  const double squared = squared_norm(across);
+  if (!(squared > 0)) return result;
+  const Eigen::Vector3d unit_turns = (turns - (dot(across, turns) / squared) * across) / std::sqrt(squared);
+  result.normal_rate = dot(across, normal) < 0 ? Eigen::Vector3d(-unit_turns) : unit_turns;
+  return result;
+}
 
 }  // namespace kds::collision

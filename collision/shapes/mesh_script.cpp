@@ -66,4 +66,11 @@ Eigen::Vector3d MeshScript::position(std::size_t vertex, double t) const {
   return (1 - s) * before.positions[vertex] + s * after.positions[vertex];
 }
 
+Eigen::Vector3d MeshScript::velocity(std::size_t vertex, double t) const {
+  const std::size_t next = keyframes_until(t);
+  if (next == 0 || next == keyframes_.size()) return Eigen::Vector3d::Zero();
+  const Keyframe &before = keyframes_[next - 1], &after = keyframes_[next];
+  return (after.positions[vertex] - before.positions[vertex]) / (after.time - before.time);
+}
+
 }  // namespace kds::collision

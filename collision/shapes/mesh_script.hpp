@@ -39,6 +39,8 @@ class MeshScript {
   std::size_t keyframes_until(double t) const;
   /// The position of a vertex at t, rounded; exact at keyframes.
   Eigen::Vector3d position(std::size_t vertex, double t) const;
+  /// Its velocity from t on, rounded; units of length a second.
+  Eigen::Vector3d velocity(std::size_t vertex, double t) const;
 
  private:
   std::vector<Keyframe> keyframes_;

@@ -107,9 +107,9 @@ template <class Motion>
 BodyId BasicWorld<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
-  if (bends(description.shape) && options_.response != Response::none && !description.sensor) {
-    throw std::invalid_argument(
-        "shape: a mesh that bends only reports contacts: it has to be a sensor, or the response of the world `none`");
+  if (collision::bends(description.shape) && options_.response != Response::none && !description.sensor &&
+      !description.fixed) {
+    throw std::invalid_argument("fixed: contacts do not move a mesh that bends: it has to be fixed, or a sensor");
   }
   std::optional<PrincipalInertia> principal;  // of one that precesses
   if constexpr (turns<Motion>) {
