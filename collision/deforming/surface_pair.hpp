@@ -76,12 +76,15 @@ class SurfacePair {
   template <certificates::Patch patch>
   Nearness nearness(const certificates::ControlPoints<Degree>& control, double t) const;
 
-  /// Whether features that do not approach at `from` are nearer at one of some later times.
+  /// Whether features that do not approach at `from` come nearer before they have left: looked at at times that double
+  /// from one to the next, so that of a flight on a parabola three quarters of its height are seen.
   template <certificates::Patch patch>
   bool comes_nearer(const certificates::ControlPoints<Degree>& control, const Nearness& now) const {
-    for (const double part : {0x1p-10, 0x1p-5, 1.0}) {
-      const double t = query_.from + part * (query_.until - query_.from);
-      if (nearness<patch>(control, t).gap < now.gap - now.noise) return true;
+    constexpr double shortest = 0x1p-40;  // of the time there is; shorter flights do not count as leaving
+    for (double part = shortest; part <= 1; part *= 2) {
+      const double gap = nearness<patch>(control, query_.from + part * (query_.until - query_.from)).gap;
+      if (gap > 0.5 * band(now.size)) return false;
+      if (gap < now.gap - now.noise) return true;
     }
     return false;
   }

@@ -109,8 +109,8 @@ void SurfaceSearch<Degree>::all(const Found& found) const {
 /// Where features have to approach they count as touching at half of the tolerance already, so that they are apart by
 /// as much when they are turned back. Those that are within the tolerance then, and part, are watched at a lower level,
 /// half of the gap that they have or less: so they do not sink in, should they turn round before they have left. The
-/// levels end where roundings are no longer far below them: there features that neither part nor approach touch if they
-/// are seen to come nearer later, and those that part are left alone until the surfaces have parted.
+/// levels end where roundings are no longer far below them: there features touch unless they are seen to leave, or to
+/// stay as they are.
 template <int Degree>
 template <certificates::Patch patch>
 certificates::FeatureContact SurfaceSearch<Degree>::first_touch(const certificates::ControlPoints<Degree>& control,
@@ -131,8 +131,7 @@ certificates::FeatureContact SurfaceSearch<Degree>::first_touch(const certificat
     const double lowest = 0x1p-37 * near.size;
     while (level >= lowest && !(2 * level <= 0.5 * near.gap)) level *= 0.25;
     if (!(level >= lowest)) {
-      const bool stays = near.rate > near.noise || !this->template comes_nearer<patch>(control, near);
-      return stays ? certificates::FeatureContact{} : near.touch;
+      return this->template comes_nearer<patch>(control, near) ? near.touch : certificates::FeatureContact{};
     }
   }
   tolerance.thickness += level;

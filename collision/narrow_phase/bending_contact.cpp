@@ -4,6 +4,7 @@
 #include "collision/deforming/rigid_surface.hpp"
 #include "collision/deforming/surface_contact.hpp"
 #include "collision/deforming/surface_touching.hpp"
+#include "collision/narrow_phase/bending_pieces.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/vectors.hpp"
@@ -73,19 +74,9 @@ class PieceSurface {
   std::optional<MovingSurface<Degree>> bent_;
 };
 
-/// Pieces after the last keyframe grow up to this many times the first of them. Bodies whose balls still overlap then
-/// move alike, but for roundings of what they have flown: nothing more is told of them.
-constexpr double longest_piece = 0x1p40;
-
-/// Whether nothing changes between two motions.
-template <int Degree>
-bool move_alike(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b) {
-  bool alike = a.coefficients[1] == b.coefficients[1];
-  if constexpr (Degree == 2) {
-    alike = alike && a.coefficients[2] == b.coefficients[2] && (a.start == b.start || a.coefficients[2].isZero(0));
-  }
-  return alike;
-}
+/// Of the radius of the mesh: in a piece the two go no farther than this. Half of the tolerance is then several times
+/// 2^-38 of the size of a query, the least that counts (ContactTolerance).
+constexpr double longest_way = 0x1p8;
 
 /// A stretch of time in which the two are in contact.
 struct TouchSpan {
@@ -97,22 +88,12 @@ template <int Degree>
 class BendingPair {
  public:
   BendingPair(const Body<Degree>& a, const Body<Degree>& b)
-      : a_(a), b_(b), start_(std::max(a.motion.start, b.motion.start)), together_(move_alike(a.motion, b.motion)) {
+      : a_(a),
+        b_(b),
+        pieces_(a.motion, b.motion, keyframes_of(a, b), std::min(a.shape.bounding_radius, b.shape.bounding_radius),
+                longest_way * script_of(a.shape)->bounding_radius()) {
     const double radius = script_of(a.shape)->bounding_radius();
     query_ = {.tolerance = 1, .absolute_tolerance = bending_tolerance * radius, .overlaps = false};
-    times_.push_back(start_);
-    for (const MeshScript* const script : {script_of(a.shape), script_of(b.shape)}) {
-      if (!script) continue;
-      for (const auto& keyframe : script->keyframes()) {
-        if (keyframe.time > start_) times_.push_back(keyframe.time);
-      }
-    }
-    std::sort(times_.begin(), times_.end());
-    times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
-    // After the last keyframe pieces begin with the time in which one of them goes as far as it is large.
-    const double speed = norm(a.motion.coefficients[1]) + norm(b.motion.coefficients[1]);
-    const double size = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
-    unit_ = speed > 0 ? std::clamp(size / speed, 0x1p-100, 0x1p100) : 1.0;
   }
 
   /// The first stretch that ends after t, if it begins by the horizon. Of one that begins at t or later the end is left
@@ -120,14 +101,17 @@ class BendingPair {
   TouchSpan touch_after(double t, double horizon, bool with_end) {
     TouchSpan touch;
     bool open = false;
-    for (std::size_t k = piece_of(t);; ++k) {
-      const auto [w0, w1] = piece(k);
-      if (!(w0 <= horizon) || !(w0 < w1) || w1 - w0 > longest_piece * unit_) break;
-      if (together_ && w0 > times_.back()) break;  // nothing changes any more
+    for (double begin = first_begin(t); begin <= horizon;) {
+      const auto [w0, w1] = pieces_.at(begin);
+      if (!(begin < w1) || (pieces_.together() && w0 > pieces_.last())) break;  // nothing changes any more
+      begin = w1;
       if (!open) {
         const double near = balls_meet(w0);
-        if (near > horizon) break;
-        if (near > w1) continue;
+        if (near > horizon || near == never) break;
+        if (near > w1) {
+          begin = near;
+          continue;
+        }
       }
       const MovingSurface<Degree>& a = surface_a().over(w0, w1);
       const MovingSurface<Degree>& b = surface_b().over(w0, w1);
@@ -169,12 +153,12 @@ class BendingPair {
   double meeting_after(double t, double horizon) {
     SurfaceQuery query = query_;
     query.approaching = true;
-    for (std::size_t k = piece_of(t);; ++k) {
-      const auto [w0, w1] = piece(k);
-      if (!(w0 <= horizon) || !(w0 < w1) || w1 - w0 > longest_piece * unit_) break;
-      if (together_ && w0 > times_.back()) break;  // nothing changes any more
+    for (double begin = first_begin(t); begin <= horizon;) {
+      const auto [w0, w1] = pieces_.at(begin);
+      if (!(begin < w1) || (pieces_.together() && w0 > pieces_.last())) break;  // nothing changes any more
       const double near = balls_meet(w0);
-      if (near > horizon) break;
+      if (near > horizon || near == never) break;
+      begin = near > w1 ? near : w1;
       if (near > w1) continue;
       const MovingSurface<Degree>& a = surface_a().over(w0, w1);
       const MovingSurface<Degree>& b = surface_b().over(w0, w1);
@@ -195,8 +179,7 @@ class BendingPair {
   }
 
   Contact contact_at(double t) {
-    auto [w0, w1] = piece(piece_of(t));
-    if (w1 < t) w1 = (w0 = t) + unit_;  // they move together, as they did in the last piece
+    const auto [w0, w1] = pieces_.at(t);
     const SurfaceTouching<Degree> touching(surface_a().over(w0, w1), surface_b().over(w0, w1), query_);
     // What has just parted is a little farther apart; what touches in no piece may be asked about, too.
     const double farthest =
@@ -224,22 +207,17 @@ class BendingPair {
   }
 
  private:
-  struct Piece {
-    double begin, end;
-  };
-  /// Pieces between keyframes, and after them of the lengths unit, 2 unit, 4 unit...
-  Piece piece(std::size_t k) const {
-    if (k + 1 < times_.size()) return {times_[k], times_[k + 1]};
-    const double last = times_.back();
-    const int later = static_cast<int>(std::min<std::size_t>(k + 1 - times_.size(), 4000));
-    return {last + (std::ldexp(1.0, later) - 1) * unit_, last + (std::ldexp(1.0, later + 1) - 1) * unit_};
+  static std::vector<double> keyframes_of(const Body<Degree>& a, const Body<Degree>& b) {
+    std::vector<double> times;
+    for (const MeshScript* const script : {script_of(a.shape), script_of(b.shape)}) {
+      if (!script) continue;
+      for (const auto& keyframe : script->keyframes()) times.push_back(keyframe.time);
+    }
+    return times;
   }
-  std::size_t piece_of(double t) const {
-    const auto after = std::upper_bound(times_.begin(), times_.end(), t);
-    std::size_t k = after == times_.begin() ? 0 : static_cast<std::size_t>(after - times_.begin()) - 1;
-    if (together_) return k;  // the last piece stands for all that follow
-    while (k + 1 >= times_.size() && piece(k).end <= t && piece(k).end < 0x1p500) ++k;
-    return k;
+  /// A time in the piece with which a search from t on begins.
+  double first_begin(double t) const {
+    return pieces_.together() && t > pieces_.last() ? pieces_.last() : std::max(t, pieces_.start());
   }
 
   PieceSurface<Degree>& surface_a() { return made(surface_a_, a_); }
@@ -251,11 +229,8 @@ class BendingPair {
 
   const Body<Degree>& a_;
   const Body<Degree>& b_;
-  double start_;
-  bool together_;
-  double unit_;
+  BendingPieces<Degree> pieces_;
   SurfaceQuery query_;
-  std::vector<double> times_;
   std::optional<PieceSurface<Degree>> surface_a_, surface_b_;
 };
 

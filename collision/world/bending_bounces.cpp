@@ -53,40 +53,32 @@ double BasicWorld<Motion>::least_rebound(BodySlot a, BodySlot b, const Contact& 
                    0.5 * options_.shortest_flight * pressed, std::sqrt(4 * tolerance * std::max(pressed, 0.0))});
 }
 
-/// The mesh is fixed, so the other body leaves it with the velocity of the surface at the contact and the rebound. If
-/// bodies lean on that one, they take some of its velocity; it is then given more, until it parts as it should.
+/// The mesh is fixed, so the other body leaves it with the velocity of the surface at the contact and the rebound.
 template <class Motion>
 void BasicWorld<Motion>::bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact,
                                             std::uint64_t burst) requires(!turns<Motion>) {
   const BodySlot free = bodies_.fixed(a) ? b : a;
-  double rate = parting(a, b, contact);
-  double rebound =
-      std::max(std::min(bodies_[a].restitution, bodies_[b].restitution) * -rate, least_rebound(a, b, contact));
-  if (burst > options_.zeno.contacts) {  // It meets it again and again at one instant: out of the tolerance, then.
-    const double radius = bodies_[free == a ? b : a].bounding_radius;
-    rebound = std::max(rebound, bending_tolerance * radius / options_.shortest_flight);
+  const double rate = parting(a, b, contact);
+  const double restitution = std::min(bodies_[a].restitution, bodies_[b].restitution);
+  double rebound = std::max(restitution * -rate, least_rebound(a, b, contact));
+  if (burst > options_.zeno.contacts) {  // It meets others again and again at one instant: out of the tolerance, then.
+    rebound =
+        std::max(rebound, bending_tolerance * bodies_[free == a ? b : a].bounding_radius / options_.shortest_flight);
   }
-  resting_.leave(free);
-  constexpr int most_pushes = 16;  // two are enough where what leans on it goes on leaning
-  double given = rebound;
-  for (int pushes = 0; rate < 0.5 * rebound && pushes < most_pushes; ++pushes) {
-    Motion motion = bodies_.motion(free).restarted(contact.time);
+  if (!(rate < rebound)) return;
+  const Vector3d away = free == a ? Vector3d(-contact.normal) : contact.normal;
+  Motion motion = bodies_.motion(free).restarted(contact.time);
+  if (resting_.rests(free)) {
+    resting_.drive(free, away, dot(away, motion.coefficients[1]) + (rebound - rate));
+  } else {
     Vector3d none = Vector3d::Zero();
-    const double change = given - rate;
-    if (free == a) {
-      change_relative_velocity(motion.coefficients[1], none, contact.normal, change, bodies_[a].inverse_mass, 0);
-    } else {
-      change_relative_velocity(none, motion.coefficients[1], contact.normal, change, 0, bodies_[b].inverse_mass);
-    }
+    change_relative_velocity(none, motion.coefficients[1], away, rebound - rate, 0, bodies_[free].inverse_mass);
+    resting_.leave(free);
     ++counters_.motion_updates;
     set_motion(free, motion, false);
     resting_.disturb(free);
-    resting_.solve();
-    const double left = parting(a, b, contact);
-    const double share = std::max((left - rate) / change, 0x1p-20);
-    rate = left;
-    given = rate + (rebound - rate) / share;
   }
+  resting_.solve();
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
