@@ -9,6 +9,7 @@
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/profile.hpp"
 #include "collision/response/free_rotation.hpp"
+#include "collision/shapes/mesh_script.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/edit_limit.hpp"
@@ -29,6 +30,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace kds::collision {
 
@@ -90,6 +92,17 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   /// In mode `none`, and of sensors, a jump begins and ends contacts. Throws std::invalid_argument for a motion that is
   /// not finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
+
+  /// Replaces what is still to come of the vertices of a mesh that bends: from where they are at now() they move on
+  /// straight lines to the first of these keyframes, from there to the next, and stand still after the last; with none
+  /// they stand still from now() on. So a simulator of cloth gives the end of each of its steps:
+  ///
+  ///     world.update_vertices(cloth, {{t + h, positions}});
+  ///
+  /// Nothing jumps, and nothing in the past changes. The motion of the body goes on as it was. Throws
+  /// std::invalid_argument for a body that does not bend, and, naming the keyframe, unless each is later than now() and
+  /// than the one before, and has a position for each vertex, finite and in range.
+  void update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes);
 
   /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,
   /// std::logic_error if called from within a callback, and std::runtime_error as WorldOptions::most_edits says.

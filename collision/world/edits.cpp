@@ -5,6 +5,7 @@
 #include "collision/response/inertia.hpp"
 #include "collision/response/mass_properties.hpp"
 #include "collision/response/principal_inertia.hpp"
+#include "collision/shapes/mesh_script.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world.hpp"
 
@@ -18,6 +19,8 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace kds::collision {
 namespace {
@@ -220,7 +223,7 @@ void BasicWorld<Motion>::enter_new_bodies() {
   }
   pairs_.set_begin(Begin::moving);
   walls_.schedule(entries);
-  if (!volumes_.any_from_callers() && !volumes_.has_room_for_meshes()) return;
+  if (!volumes_.any_ends()) return;
   for (const Entry& entry : entries) volumes_.schedule(entry.slot);
 }
 
@@ -258,6 +261,32 @@ void BasicWorld<Motion>::give(BodySlot slot, const Motion& motion) {
   resting_.leave(slot);
   set_motion(slot, motion, jumped);
   resting_.disturb(slot);
+}
+
+template <class Motion>
+void BasicWorld<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
+  require_editable("World::update_vertices");
+  const BodySlot slot = bodies_.slot_of(id);
+  if (!bends(slot)) {
+    throw std::invalid_argument("World::update_vertices: body " + std::to_string(id) + " is a " +
+                                kind_name(bodies_.shape(slot).shape) + ", which does not bend");
+  }
+  const PlacedShape& before = *bodies_[slot].shape;
+  const MeshScript& script = *std::get<BendingMesh>(before.shape).script;
+  PlacedShape after;
+  try {
+    const BendingMesh bent{std::make_shared<const MeshScript>(script.continued(clock_.now, std::move(keyframes)))};
+    after = place_turned(bent, before.rotation);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("World::update_vertices: ") + error.what());
+  }
+  count_edit();
+  change_or_fail([&] {
+    ++counters_.motion_updates;
+    bodies_.set_shape(slot, std::move(after));
+    volumes_.shape_changed(slot);
+    if (bodies_[slot].entered) set_motion(slot, bodies_.motion(slot), false);
+  });
 }
 
 template <class Motion>
