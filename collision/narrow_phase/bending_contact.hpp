@@ -24,8 +24,7 @@ namespace kds::collision {
 /// the next. In each piece contacts and separations follow each other from its beginning, by SurfaceSearch and
 /// SurfaceTouching. Pieces during which the balls around the two shapes are apart are passed over.
 ///
-/// Cost: that of a step of the two surfaces, and a search, for each piece that is looked at; of a mesh that does not
-/// bend O(n log n) for its tree.
+/// Cost: that of a step of the two surfaces, and a search, for each piece that is looked at.
 template <int Degree>
 struct BendingContact {
   using Body = TranslatingShape<Degree>;

@@ -135,8 +135,8 @@ void read_vertices(const JsonNode& node, SceneBody& body, Response response) {
   const auto* const shape = std::get_if<kds::collision::MeshShape>(&body.shape);
   if (!shape) node.fail("is for meshes only");
   if (shape->scale != 1) node.fail("is for meshes without a scale: positions are as they are given");
-  if (response == Response::elastic && !body.sensor) {
-    node.fail("a mesh that bends only reports contacts: \"response\": \"none\", or \"sensor\": true for this body");
+  if (response == Response::elastic && !body.sensor && !body.fixed) {
+    node.fail("contacts do not move a mesh that bends: \"fixed\": true for this body, or \"sensor\": true");
   }
   const std::size_t count = shape->mesh->vertices().size();
   std::vector<kds::collision::MeshScript::Keyframe> keyframes;

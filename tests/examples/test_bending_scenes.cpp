@@ -76,6 +76,18 @@ TEST_CASE("scenes with meshes that bend: read, run and recorded") {
   CHECK_FALSE(data["bodies"][1].contains("frames"));
 }
 
+TEST_CASE("scenes with meshes that bend: a ball bounces off one") {
+  const TemporaryFolder folder;
+  json scene = rising_triangle();
+  scene["response"] = "elastic";
+  scene["bodies"][0]["fixed"] = true;
+  Events events;
+  run(read(scene, folder), {}, events);
+  REQUIRE(events.all.size() == 1);  // it is thrown off with twice the speed of the triangle
+  CHECK(events.all[0].kind == EventKind::contact);
+  CHECK(events.all[0].time == Approx(1).epsilon(0).margin(1e-6));
+}
+
 TEST_CASE("scenes with meshes that bend: what is wrong is named with its place") {
   const auto with = [](const char* pointer, const json& value) {
     json scene = rising_triangle();
@@ -94,8 +106,7 @@ TEST_CASE("scenes with meshes that bend: what is wrong is named with its place")
         "bodies[0].vertices: is for meshes without a scale: positions are as they are given");
   CHECK(with("/bodies/1/vertices", json::array()) == "bodies[1].vertices: is for meshes only");
   CHECK(with("/response", "elastic") ==
-        "bodies[0].vertices: a mesh that bends only reports contacts: \"response\": \"none\", or \"sensor\": true for "
-        "this body");
+        "bodies[0].vertices: contacts do not move a mesh that bends: \"fixed\": true for this body, or \"sensor\": true");
   CHECK(with("/bodies/1/motion/0/angular_velocity", json::parse("[0,0,1]")) ==
         "bodies[0].shape: a bending mesh cannot turn: balls, boxes, hulls and meshes can");
 }
