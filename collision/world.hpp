@@ -17,6 +17,7 @@
 #include "collision/world/reports.hpp"
 #include "collision/world/resting_contacts.hpp"
 #include "collision/world/scripts.hpp"
+#include "collision/world/self_contacts.hpp"
 #include "collision/world/turning/tumbling.hpp"
 #include "collision/world/volumes.hpp"
 #include "collision/world/wall_times.hpp"
@@ -39,8 +40,8 @@ namespace kds::collision {
 ///
 /// [Coming06] Figure 2. Events are, in this order where times are equal: pieces of motion that start (of scripts, then
 /// of bodies that precess), changes of the broad phase, bounding volumes that have to be renewed, walls, resting
-/// contacts that end, contacts and separations by (a, b). The broad phase makes no difference: WorldListener states the
-/// order of reports.
+/// contacts that end, contacts and separations by (a, b), those of meshes that bend with themselves. The broad phase
+/// makes no difference: WorldListener states the order of reports.
 ///
 /// It is made of parts (world/), which docs/design.md lists.
 ///
@@ -152,7 +153,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   bool fixed(BodyId id) const { return bodies_.fixed(bodies_.slot_of(id)); }
 
   /// Whether a and b are in contact; only for bodies that pass through each other (mode `none`, sensors), otherwise
-  /// false.
+  /// false. Of one body: whether it touches itself, if it reports that (BodyDescription::self_contacts).
   bool touching(BodyId a, BodyId b) const;
 
   /// Whether a and b rest on each other (mode `elastic` only), or a rests at a wall, numbered as in WallEvent (all
@@ -204,13 +205,14 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   // world.cpp: the clock
   /// The tasks of the parts of the world, in the order in which they are done if they are due at one time.
   enum class Task {
-    start_pieces,     ///< scripts_
-    turn_on,          ///< tumbling_
-    meet_boxes,       ///< pairs_
-    renew_volume,     ///< volumes_
-    meet_wall,        ///< walls_
-    end_resting,      ///< resting_
-    meet_or_separate  ///< pairs_
+    start_pieces,      ///< scripts_
+    turn_on,           ///< tumbling_
+    meet_boxes,        ///< pairs_
+    renew_volume,      ///< volumes_
+    meet_wall,         ///< walls_
+    end_resting,       ///< resting_
+    meet_or_separate,  ///< pairs_
+    meet_itself        ///< self_contacts_
   };
   struct Due {
     double time;
@@ -288,6 +290,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   PairEvent event_of(BodySlot a, BodySlot b, const Contact& contact) const {
     return {bodies_.id_of(a), bodies_.id_of(b), contact};
   }
+  void process_self_contact();
   void process_contact(BodySlot a, BodySlot b, const Contact& contact);
   void let_through(BodySlot a, BodySlot b, const Contact& contact);
   std::uint64_t count_meeting(BodySlot a, BodySlot b);
@@ -357,6 +360,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   Reports reports_;
   Resting resting_;
   Pairs<Motion> pairs_;
+  SelfContacts<Motion> self_contacts_;
   std::unique_ptr<BroadPhase<Motion::degree>> broad_phase_;
   EditLimit edits_;
   double callers_now_;          ///< the clock as callers know it

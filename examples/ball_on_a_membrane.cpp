@@ -1,6 +1,6 @@
 // You learn: how a simulator gives a world the next step of a membrane, on which a ball bounces.
 // How to run: build/dev/examples/ball_on_a_membrane
-// What you see: t = 0.XXX: the ball leaves f70 at X m/s
+// What you see: t = 0.59544: the ball leaves f72 at 1.7619 m/s
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
 
@@ -68,8 +68,8 @@ int main() {
   const BodyId sheet = world.add_body({.shape = shape, .motion = {at_rest}, .fixed = true, .restitution = 0.75});
   const Vector3d gravity(0, 0, -9.81);
   world.add_body(
-      {.shape = Sphere{0.25}, .motion = {Motion::parabola(Vector3d(0.1, 0.05, 2), Vector3d::Zero(), gravity)}});
-  while (world.now() < 1.5) {
+      {.shape = Sphere{0.25}, .motion = {Motion::parabola(Vector3d(0.03, 0.02, 1.5), Vector3d::Zero(), gravity)}});
+  while (world.now() < 3) {
     membrane.step();
     const double t1 = world.now() + Membrane::h;
     world.update_vertices(sheet, {{t1, membrane.positions}});

@@ -30,6 +30,9 @@ class SurfaceTouching : private SurfacePair<Degree> {
 
   SurfaceTouching(const Surface& a, const Surface& b, const SurfaceQuery& query)
       : SurfacePair<Degree>(a, b, query, false) {}
+  /// Of a surface with itself.
+  SurfaceTouching(const Surface& surface, const SurfaceQuery& query)
+      : SurfacePair<Degree>(surface, surface, query, true) {}
 
   bool touches(double t) const { return holds_until(a_.part(t), a_.part(t)) >= 0; }
 

@@ -5,6 +5,7 @@
 #include "collision/deforming/surface_contact.hpp"
 #include "collision/deforming/surface_touching.hpp"
 #include "collision/narrow_phase/bending_pieces.hpp"
+#include "collision/narrow_phase/touch_spans.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/vectors.hpp"
@@ -78,12 +79,6 @@ class PieceSurface {
 /// 2^-38 of the size of a query, the least that counts (ContactTolerance).
 constexpr double longest_way = 0x1p8;
 
-/// A stretch of time in which the two are in contact.
-struct TouchSpan {
-  double begin = never;
-  double end = never;
-};
-
 template <int Degree>
 class BendingPair {
  public:
@@ -96,57 +91,23 @@ class BendingPair {
     query_ = {.tolerance = 1, .absolute_tolerance = bending_tolerance * radius, .overlaps = false};
   }
 
-  /// The first stretch that ends after t, if it begins by the horizon. Of one that begins at t or later the end is left
-  /// out, unless it is asked for.
-  TouchSpan touch_after(double t, double horizon, bool with_end) {
-    TouchSpan touch;
-    bool open = false;
-    for (double begin = first_begin(t); begin <= horizon;) {
-      const auto [w0, w1] = pieces_.at(begin);
-      if (!(begin < w1) || (pieces_.together() && w0 > pieces_.last())) break;  // nothing changes any more
-      begin = w1;
-      if (!open) {
-        const double near = balls_meet(w0);
-        if (near > horizon || near == never) break;
-        if (near > w1) {
-          begin = near;
-          continue;
-        }
-      }
-      const MovingSurface<Degree>& a = surface_a().over(w0, w1);
-      const MovingSurface<Degree>& b = surface_b().over(w0, w1);
-      const SurfaceTouching<Degree> touching(a, b, query_);
-      double now = w0;
-      bool touches = touching.touches(w0);
-      if (open && !touches) {
-        touch.end = w0;
-        if (touch.end > t) return touch;
-        open = false;
-      }
-      for (;;) {
-        if (!open) {
-          if (!touches) {
-            SurfaceQuery query = query_;
-            query.from = now;
-            const auto contact = collision::first_contact(a, b, query);
-            if (!contact) break;
-            now = contact->contact.time;
-          }
-          touch = {now, never};
-          open = true;
-          if (now > horizon) return {};
-        }
-        if (touch.begin >= t && !with_end) return touch;
-        const double parts = touching.parts_at(now);
-        if (parts == never) break;
-        touch.end = std::max(parts, next_up(now));
-        if (touch.end > t) return touch;
-        now = touch.end;
-        open = touches = false;
-        if (!(now < w1)) break;
-      }
-    }
-    return open ? TouchSpan{touch.begin, never} : TouchSpan{};
+  // A course, for touch_after().
+  /// A time in the piece with which a search from t on begins.
+  double first_begin(double t) const {
+    return pieces_.together() && t > pieces_.last() ? pieces_.last() : std::max(t, pieces_.start());
+  }
+  auto piece(double t) const { return pieces_.at(t); }
+  bool over(double begin) const { return pieces_.together() && begin > pieces_.last(); }
+  double near(double t) const { return balls_meet(t); }
+  SurfaceTouching<Degree> touching(double t0, double t1) {
+    a_over_ = &surface_a().over(t0, t1);
+    b_over_ = &surface_b().over(t0, t1);
+    return SurfaceTouching<Degree>(*a_over_, *b_over_, query_);
+  }
+  std::optional<SurfaceContact> first_contact(double from) const {
+    SurfaceQuery query = query_;
+    query.from = from;
+    return collision::first_contact(*a_over_, *b_over_, query);
   }
 
   /// The first contact that has to be resolved, in [t, horizon].
@@ -155,20 +116,18 @@ class BendingPair {
     query.approaching = true;
     for (double begin = first_begin(t); begin <= horizon;) {
       const auto [w0, w1] = pieces_.at(begin);
-      if (!(begin < w1) || (pieces_.together() && w0 > pieces_.last())) break;  // nothing changes any more
+      if (!(begin < w1) || over(w0)) break;
       const double near = balls_meet(w0);
       if (near > horizon || near == never) break;
       begin = near > w1 ? near : w1;
       if (near > w1) continue;
-      const MovingSurface<Degree>& a = surface_a().over(w0, w1);
-      const MovingSurface<Degree>& b = surface_b().over(w0, w1);
-      const SurfaceTouching<Degree> touching(a, b, query_);
+      const SurfaceTouching<Degree> touching = this->touching(w0, w1);
       for (double now = w0; now < w1;) {
         // What is near stays below the levels of those that come from outside until all have parted.
         const double parts = touching.touches(now) ? std::min(touching.parts_at(now), w1) : w1;
         query.from = now;
         query.until = parts;
-        const auto contact = collision::first_contact(a, b, query);
+        const auto contact = collision::first_contact(*a_over_, *b_over_, query);
         const double time = contact ? contact->contact.time : never;
         if (time < w1 && time >= t) return time <= horizon ? time : never;
         // One before t was passed over, and they go through each other.
@@ -180,7 +139,7 @@ class BendingPair {
 
   Contact contact_at(double t) {
     const auto [w0, w1] = pieces_.at(t);
-    const SurfaceTouching<Degree> touching(surface_a().over(w0, w1), surface_b().over(w0, w1), query_);
+    const SurfaceTouching<Degree> touching = this->touching(w0, w1);
     // What has just parted is a little farther apart; what touches in no piece may be asked about, too.
     const double farthest =
         4 * (a_.shape.bounding_radius + b_.shape.bounding_radius + norm(b_.motion.position(t) - a_.motion.position(t)));
@@ -215,11 +174,6 @@ class BendingPair {
     }
     return times;
   }
-  /// A time in the piece with which a search from t on begins.
-  double first_begin(double t) const {
-    return pieces_.together() && t > pieces_.last() ? pieces_.last() : std::max(t, pieces_.start());
-  }
-
   PieceSurface<Degree>& surface_a() { return made(surface_a_, a_); }
   PieceSurface<Degree>& surface_b() { return made(surface_b_, b_); }
   static PieceSurface<Degree>& made(std::optional<PieceSurface<Degree>>& surface, const Body<Degree>& body) {
@@ -232,6 +186,8 @@ class BendingPair {
   BendingPieces<Degree> pieces_;
   SurfaceQuery query_;
   std::optional<PieceSurface<Degree>> surface_a_, surface_b_;
+  const MovingSurface<Degree>* a_over_ = nullptr;  ///< as they are in the piece that is looked at
+  const MovingSurface<Degree>* b_over_ = nullptr;
 };
 
 }  // namespace
@@ -242,7 +198,7 @@ double BendingContact<Degree>::first_contact(const Body& a, const Body& b, doubl
   if (!(t0 <= horizon)) return never;
   BendingPair<Degree> pair(a, b);
   if (mode == ContactMode::resolved) return pair.meeting_after(t0, horizon);
-  const double begin = pair.touch_after(t0, horizon, false).begin;
+  const double begin = touch_after(pair, t0, horizon, false).begin;
   return begin <= horizon ? std::max(begin, t0) : never;
 }
 
@@ -254,13 +210,15 @@ double BendingContact<Degree>::apart_until(const Body& a, const Body& b, double 
 
 template <int Degree>
 bool BendingContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
-  return BendingPair<Degree>(a, b).touch_after(t, t, false).begin <= t;
+  BendingPair<Degree> pair(a, b);
+  return touch_after(pair, t, t, false).begin <= t;
 }
 
 template <int Degree>
 double BendingContact<Degree>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
   if (!(t0 <= horizon)) return never;
-  const TouchSpan touch = BendingPair<Degree>(a, b).touch_after(t0, horizon, true);
+  BendingPair<Degree> pair(a, b);
+  const TouchSpan touch = touch_after(pair, t0, horizon, true);
   if (!(touch.begin <= t0)) return t0;
   return touch.end <= horizon ? touch.end : never;
 }

@@ -47,8 +47,8 @@ class BendingPieces {
   /// Whether nothing changes from the last keyframe on.
   bool together() const { return speed_ == 0 && acceleration_ == 0; }
 
-  /// The piece that holds t, with its begin; before the start the first one. At a clock whose doubles are too sparse for
-  /// more pieces, one that ends before.
+  /// The piece that holds t, with its begin; before the start the first one. At a clock whose doubles are too sparse
+  /// for more pieces, one that ends before.
   Piece at(double t) const {
     t = std::max(t, start());
     if (t >= last()) return after_last(t);

@@ -62,6 +62,7 @@ struct Body
   std::uint32_t collides_with = ~0u;
   BoundingVolume volume = BoundingVolume::shape;
   bool sensor = false;
+  bool self_contacts = false;
   bool alive = false;
   bool entered = false;        ///< its motion has begun; it is in the broad phase, if it collides with anything
   std::uint64_t meetings = 0;  ///< contacts since burst_start (ZenoPolicy)

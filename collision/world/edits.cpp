@@ -65,6 +65,9 @@ void validate(const BasicBodyDescription<Motion>& description) {
     default:
       fail("volume: unknown");
   }
+  if (description.self_contacts && !bends(description.shape)) {
+    fail(std::string("self_contacts: a ") + kind_name(description.shape) + " does not bend, and never meets itself");
+  }
   if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
 }
 
@@ -223,6 +226,11 @@ void BasicWorld<Motion>::enter_new_bodies() {
   }
   pairs_.set_begin(Begin::moving);
   walls_.schedule(entries);
+  for (const Entry& entry : entries) {
+    if (!self_contacts_.enter(entry.slot)) continue;
+    const BodyId id = bodies_.id_of(entry.slot);
+    reports_.add(Reports::Kind::overlap, id, id, self_contacts_.contact(entry.slot));
+  }
   if (!volumes_.any_ends()) return;
   for (const Entry& entry : entries) volumes_.schedule(entry.slot);
 }
@@ -286,6 +294,7 @@ void BasicWorld<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyf
     bodies_.set_shape(slot, std::move(after));
     volumes_.shape_changed(slot);
     if (bodies_[slot].entered) set_motion(slot, bodies_.motion(slot), false);
+    self_contacts_.changed(slot);
   });
 }
 
@@ -313,6 +322,13 @@ void BasicWorld<Motion>::remove_body(BodyId id) {
 template <class Motion>
 void BasicWorld<Motion>::take_out(BodySlot slot) {
   resting_.forget(slot);
+  if (self_contacts_.touching(slot)) {  // It ceases to, unless that it does has not been reported yet.
+    const BodyId id = bodies_.id_of(slot);
+    if (!reports_.take_back(Reports::Kind::overlap, id, id)) {
+      reports_.add(Reports::Kind::separation, id, id, self_contacts_.contact(slot));
+    }
+  }
+  self_contacts_.remove(slot);
   scripts_.clear(slot);
   tumbling_.remove(slot);
   walls_.remove(slot);

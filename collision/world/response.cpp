@@ -23,6 +23,16 @@ void BasicWorld<Motion>::process_meeting() {
 }
 
 template <class Motion>
+void BasicWorld<Motion>::process_self_contact() {
+  const auto meeting = self_contacts_.take_next();
+  const PairEvent event = event_of(meeting.slot, meeting.slot, self_contacts_.contact(meeting.slot));
+  ++(meeting.separates ? counters_.separations : counters_.contacts);
+  tell([&](Listener& listener) {
+    meeting.separates ? listener.separation(*this, event) : listener.contact(*this, event);
+  });
+}
+
+template <class Motion>
 void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& contact) {
   const PairEvent event = event_of(a, b, contact);
   ++counters_.contacts;
