@@ -12,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -44,8 +45,9 @@ class SurfaceTouching : private SurfacePair<Degree> {
   /// shorter than that may be passed over.
   double parts_at(double t) const;
 
-  /// The features that are closest at t, of those that approach within the tolerance, or else of all within `distance`
-  /// beyond the radii; or else ones that go through each other.
+  /// The features that approach fastest at t, or part most slowly, of those within the tolerance; if there are none,
+  /// the closest of those within `distance` beyond the radii; or else ones that go through each other. Of features that
+  /// move alike the closest come first.
   std::optional<SurfaceContact> closest(double t, double distance) const;
 
  private:
@@ -198,7 +200,8 @@ double SurfaceTouching<Degree>::through_until(Kind kind, const std::array<std::u
 template <int Degree>
 std::optional<SurfaceContact> SurfaceTouching<Degree>::closest(double t, double distance) const {
   std::optional<SurfaceContact> best, through;
-  bool best_approaches = false;
+  std::vector<std::pair<double, SurfaceContact>> within;  // the tolerance, and their rates
+  double least_rate = std::numeric_limits<double>::infinity(), noise = 0;
   const auto better = [](const std::optional<SurfaceContact>& old, const SurfaceContact& found) {
     if (!old || found.distance != old->distance) return !old || found.distance < old->distance;
     return std::tie(found.contact.feature_a, found.contact.feature_b) <
@@ -211,12 +214,14 @@ std::optional<SurfaceContact> SurfaceTouching<Degree>::closest(double t, double 
                             ? this->template nearness<certificates::Patch::parallelogram>(control, t)
                             : this->template nearness<certificates::Patch::triangle>(control, t);
       if (!(near.gap <= distance)) return;
-      const bool approaches = near.rate < -near.noise && near.gap <= this->band(near.size);
-      if (best_approaches && !approaches) return;
       const SurfaceContact found = this->described(kind, vertices, face, near.touch);
-      if (approaches == best_approaches && !better(best, found)) return;
-      best = found;
-      best_approaches = approaches;
+      if (near.gap <= this->band(near.size)) {
+        within.emplace_back(near.rate, found);
+        least_rate = std::min(least_rate, near.rate);
+        noise = std::max(noise, near.noise);
+      } else if (better(best, found)) {
+        best = found;
+      }
     });
     this->for_edges_and_faces(leaves, [&](Kind kind, const std::array<std::uint32_t, 5>& vertices, std::uint32_t face) {
       const auto found = this->crossing(kind, vertices, face, t);
@@ -224,6 +229,10 @@ std::optional<SurfaceContact> SurfaceTouching<Degree>::closest(double t, double 
     });
     return false;
   });
+  if (!within.empty()) best.reset();
+  for (const auto& [rate, found] : within) {
+    if (rate <= least_rate + noise && better(best, found)) best = found;
+  }
   if (best) return best;
   return through ? through : this->inside(t);
 }

@@ -34,7 +34,7 @@ struct BendingContact {
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&);
   static bool in_contact(const Body& a, const Body& b, double t);
   static double first_separation(const Body& a, const Body& b, double t0, double horizon);
-  /// Of several features within the tolerance those that approach come first, then the closest.
+  /// Of several features within the tolerance those that approach fastest, then the closest.
   static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch&);
 };
 

@@ -65,19 +65,20 @@ void BasicWorld<Motion>::bounce_off_surface(BodySlot a, BodySlot b, const Contac
     rebound =
         std::max(rebound, bending_tolerance * bodies_[free == a ? b : a].bounding_radius / options_.shortest_flight);
   }
-  if (!(rate < rebound)) return;
   const Vector3d away = free == a ? Vector3d(-contact.normal) : contact.normal;
+  const double change = std::max(rebound - rate, 0.0);
+  // Even a body that parts already begins a new piece: from here on what is near is looked at anew.
   Motion motion = bodies_.motion(free).restarted(contact.time);
   if (resting_.rests(free)) {
-    resting_.drive(free, away, dot(away, motion.coefficients[1]) + (rebound - rate));
+    motion.coefficients[1] = resting_.drive(free, away, dot(away, motion.coefficients[1]) + change);
   } else {
     Vector3d none = Vector3d::Zero();
-    change_relative_velocity(none, motion.coefficients[1], away, rebound - rate, 0, bodies_[free].inverse_mass);
-    resting_.leave(free);
-    ++counters_.motion_updates;
-    set_motion(free, motion, false);
-    resting_.disturb(free);
+    change_relative_velocity(none, motion.coefficients[1], away, change, 0, bodies_[free].inverse_mass);
   }
+  resting_.leave(free);
+  ++counters_.motion_updates;
+  set_motion(free, motion, false);
+  resting_.disturb(free);
   resting_.solve();
 }
 

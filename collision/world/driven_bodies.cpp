@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 /// The law of impacts [Moreau88]: of all velocities that no contact forbids those nearest to the ones before, measured
 /// by mass. The surface takes the place of a wall.
 template <class Motion>
-void RestingContacts<Motion>::drive(BodySlot id, const Vector3d& normal, double velocity) {
+Vector3d RestingContacts<Motion>::drive(BodySlot id, const Vector3d& normal, double velocity) {
   Island island = find_island(id);
   std::vector<Vector3d> velocities;
   for (const BodySlot each : island.bodies) velocities.push_back(bodies_.path(each).velocity(clock_.now));
@@ -25,6 +25,7 @@ void RestingContacts<Motion>::drive(BodySlot id, const Vector3d& normal, double 
   const double lacks = velocity - parting_rate(velocities, driven);
   if (lacks > 0) give_push(velocities, driven, lacks);
   for (std::size_t i = 0; i < island.free; ++i) {
+    if (island.bodies[i] == id) continue;
     leave(island.bodies[i]);
     Motion motion = bodies_.motion(island.bodies[i]).restarted(clock_.now);
     const bool changed = motion.coefficients[1] != velocities[i];
@@ -32,6 +33,7 @@ void RestingContacts<Motion>::drive(BodySlot id, const Vector3d& normal, double 
     if (changed) listener_.take_up(island.bodies[i], motion);
     disturb(island.bodies[i]);
   }
+  return velocities[of_[id].place];
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class RestingContacts<motion>;

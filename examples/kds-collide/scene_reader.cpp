@@ -225,8 +225,8 @@ bool speaks_of_turning(const JsonNode& node) {
 }
 
 SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbers& of_scene) {
-  node.object({"name", "shape", "vertices", "orientation", "mass", "inertia", "fixed", "sensor", "restitution",
-               "friction", "tangential_restitution", "motion"});
+  node.object({"name", "shape", "vertices", "orientation", "mass", "inertia", "fixed", "sensor", "self_contacts",
+               "restitution", "friction", "tangential_restitution", "motion"});
   SceneBody body;
   body.name = node["name"].string();
   body.shape = read_shape(node["shape"], scene.meshes);
@@ -239,6 +239,10 @@ SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbe
   }
   if (node.has("fixed")) body.fixed = node["fixed"].boolean();
   if (node.has("sensor")) body.sensor = node["sensor"].boolean();
+  if (node.has("self_contacts")) {
+    if (!node.has("vertices")) node["self_contacts"].fail("is for meshes that bend");
+    body.self_contacts = node["self_contacts"].boolean();
+  }
   if (node.has("vertices")) read_vertices(node["vertices"], body, scene.response);
   const SurfaceNumbers surface = read_surface(node, of_scene);
   body.restitution = surface.restitution, body.friction = surface.friction;
