@@ -159,6 +159,45 @@ TEST_CASE("what falls into a bowl that heaves never goes into it", "[deforming][
   }
 }
 
+TEST_CASE("a heap in a bowl that heaves stays above it", "[deforming][world][response]") {
+  struct Counter final : WorldListener<2> {
+    int passed = 0;
+    void passes(World<2>&, const PairEvent& e) override { passed += e.a == 0; }
+    void overlap(World<2>&, const PairEvent& e) override { passed += e.a == 0; }
+  };
+  const std::uint64_t seed = GENERATE(1, 2, 3, 4);
+  CAPTURE(seed);
+  samples::Random random(seed);
+  const Bowl bowl(random, seed % 2 == 0 ? 12 : 3, 1);
+  Counter counter;
+  World<2> world({.response = Response::elastic}, &counter);
+  world.add_body(fixed_sheet<2>(bowl.shape(), 0.25 * static_cast<double>(seed - 1)));
+  const auto all = solids();
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 5; ++i) {
+    Path<2> path = Path<2>::line(Vector3d(0, 0, 0.5 + 0.375 * i) + random.vector(0.125), random.vector(0.25));
+    path.coefficients[2] = Vector3d(0, 0, -5);
+    bodies.push_back(world.add_body({.shape = all[static_cast<std::size_t>(i)].shape,
+                                     .motion = {path},
+                                     .mass = i % 2 == 0 ? 1.0 : 8.0,
+                                     .restitution = i == 3 ? 1 : 0.5}));
+  }
+  for (int step = 1; step <= 40; ++step) {
+    const double t = step / 32.0;
+    world.advance_to(t);
+    const BruteSurface field = bowl.at(t);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const Vector3d place = world.motion(bodies[i]).position(t);
+      const BruteSurface placed = all[i].at(place.cast<Long>());
+      CAPTURE(t, i, place.transpose());
+      CHECK(brute_distance(field, placed) > all[i].radius);
+      CHECK_FALSE(go_through(field, placed));
+      CHECK(place[2] > height_at(field, place[0], place[1]));
+    }
+  }
+  CHECK(counter.passed == 0);
+}
+
 TEMPLATE_TEST_CASE_SIG("a contact gives a body the velocity of the surface and the rebound",
                        "[deforming][world][response]", ((int Degree), Degree), 1, 2) {
   const std::uint64_t seed = GENERATE(1, 2);
