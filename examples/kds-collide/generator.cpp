@@ -209,7 +209,7 @@ double hump(double x) {
   return from_middle < 0.5 ? 1 - 2 * from_middle * from_middle : 2 * (1 - from_middle) * (1 - from_middle);
 }
 
-/// A sheet on which two waves run, and balls that fly through it from above and below.
+/// A sheet on which two waves run, and balls that fly to it from above and below and bounce off.
 GeneratedScene sheet_scene(const GeneratorOptions& options) {
   constexpr std::uint32_t squares = 24;
   constexpr int steps = 24;  // of the sheet, between keyframes
@@ -220,10 +220,10 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
   std::string& json = scene.json;
   json = "{\n\"scene\": 1,\n\"end_time\": ";
   append_number(json, options.end_time);
-  json += ",\n\"response\": \"none\",\n\"meshes\": {\"sheet\": {\"file\": \"sheet.obj\"}},\n\"bodies\": [\n";
+  json += ",\n\"response\": \"elastic\",\n\"meshes\": {\"sheet\": {\"file\": \"sheet.obj\"}},\n\"bodies\": [\n";
   json +=
-      "{\"name\": \"sheet\", \"shape\": {\"mesh\": \"sheet\"}, \"motion\": [{\"start\": 0, \"position\": [[0,0,0]]}],";
-  json += " \"vertices\": [\n";
+      "{\"name\": \"sheet\", \"shape\": {\"mesh\": \"sheet\"}, \"fixed\": true,\n \"motion\": [{\"start\": 0, "
+      "\"position\": [[0,0,0]]}], \"vertices\": [\n";
   for (int step = 0; step <= steps; ++step) {
     const double part = static_cast<double>(step) / steps;
     json += "{\"time\": ";
