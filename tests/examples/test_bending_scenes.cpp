@@ -97,7 +97,7 @@ TEST_CASE("scenes with meshes that bend: what is wrong is named with its place")
         "bodies[0].vertices: a mesh that bends only reports contacts: \"response\": \"none\", or \"sensor\": true for "
         "this body");
   CHECK(with("/bodies/1/motion/0/angular_velocity", json::parse("[0,0,1]")) ==
-        "bodies[0].shape: a bending mesh cannot turn: balls, boxes, hulls and meshes can");
+        "bodies[0].shape: a bending mesh cannot turn: balls, boxes, capsules, hulls and meshes can");
 }
 
 TEST_CASE("generator: a sheet on which waves run, and balls that meet it") {

@@ -18,6 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 using kds::collision::Box;
+using kds::collision::Capsule;
 using kds::collision::Mesh;
 using kds::collision::MeshShape;
 using kds::collision::Shape;
@@ -69,6 +70,9 @@ Shape random_shape(Random& random, std::size_t family, bool ball) {
 std::vector<Piece> pieces_of(const Shape& shape) {
   if (const auto* const box = std::get_if<Box>(&shape)) return {box_piece(box->half_extents)};
   if (const auto* const ball = std::get_if<Sphere>(&shape)) return {ball_piece(ball->radius)};
+  if (const auto* const capsule = std::get_if<Capsule>(&shape)) {
+    return {capsule_piece(capsule->radius, capsule->half_length)};
+  }
   const auto& mesh = std::get<MeshShape>(shape);
   std::vector<Piece> pieces;
   for (const auto& corners : mesh.mesh->triangles()) {
@@ -125,9 +129,30 @@ void make_moving(RandomPair& pair, Random& random, double rate) {
   }
 }
 
+/// A capsule, thin or short, or as long as is wide; numbers of the lattice in the family that has one.
+Capsule random_capsule(Random& random, std::size_t family) {
+  if (family == parallel && random.one_in(2)) return {random.one_in(2) ? 0.25 : 0.5, random.one_in(2) ? 0.5 : 1.0};
+  return {random.between(0.05, 0.5) * (random.one_in(4) ? 0.02 : 1), random.between(0.05, 1)};
+}
+
+/// Its end goes round past the plate at the distance at which the corner of the box did, or as deep.
+void put_capsules(RandomPair& pair, Random& random) {
+  if (pair.family == grazing) {
+    const Vector3d half = std::get<Box>(pair.shape_a).half_extents;
+    const double reach = std::sqrt(half[0] * half[0] + half[1] * half[1]);
+    const double radius = reach * random.between(0.05, 0.5);
+    pair.shape_a = Capsule{radius, reach - radius};
+    pair.a.orientation = Eigen::Quaterniond(1, 1, 0, 0);  // across the axis about which it turns
+    return;
+  }
+  const bool both = random.one_in(2), first = random.one_in(2);
+  if (both || first) pair.shape_a = random_capsule(random, pair.family);
+  if (both || !first) pair.shape_b = random_capsule(random, pair.family);
+}
+
 }  // namespace
 
-RandomPair make_pair(std::uint64_t seed) {
+RandomPair make_pair(std::uint64_t seed, bool capsules) {
   Random random(seed);
   RandomPair pair;
   // Meshes of many triangles take the oracle a thousand times as long.
@@ -161,6 +186,7 @@ RandomPair make_pair(std::uint64_t seed) {
       motion->path.coefficients[0] += motion->path.start * motion->path.coefficients[1];
     }
   }
+  if (capsules) put_capsules(pair, random);
   pair.pieces_a = pieces_of(pair.shape_a);
   pair.pieces_b = pieces_of(pair.shape_b);
   return pair;
