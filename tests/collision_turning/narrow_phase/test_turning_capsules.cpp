@@ -2,6 +2,7 @@
 // doubles, and in cases in which geometry tells the time exactly.
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "tests/collision_turning/narrow_phase/check_meetings.hpp"
 #include "tests/collision_turning/narrow_phase/turning_solids.hpp"
 
@@ -11,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace test_turning_capsules {
@@ -185,6 +187,61 @@ TEST_CASE("turning capsules: grazing, by gaps of any size", "[narrow-phase][turn
         CHECK(first_meeting(a, other, 0.5, 20) != never);
       }
     }
+  }
+}
+
+TEST_CASE("a turning capsule meets the surface of a hull when it meets the hull, to the bit",
+          "[narrow-phase][turning][capsule]") {
+  Random random(15);
+  int meetings = 0, resolved = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Shape hull = kds::tests::random_hull(random), capsule = random_capsule(random);
+    const auto [a, b] = kds::tests::random_solids<1>(random, std::pow(10.0, random.between(-2, 1.2)), hull, capsule);
+    const Solid<1> surface{surface_of(hull), a.motion};
+    INFO("pair " << i);
+    const double found = first_meeting(a, b, 0, 2);
+    if (found == 0) continue;  // it might be inside of the surface
+    CHECK(first_meeting(surface, b, 0, 2) == found);
+    CHECK(first_meeting(b, surface, 0, 2) == found);
+    if (found == never) continue;
+    ++meetings;
+    CHECK(in_contact(surface.body(), b.body(), found));
+    CHECK_FALSE(in_contact(surface.body(), b.body(), next_down(found)));
+    if (first_meeting(a, b, 0, 2, ContactMode::resolved) != found) continue;
+    CHECK(first_meeting(surface, b, 0, 2, ContactMode::resolved) == found);
+    const Contact of_solid = contact_at(a.body(), b.body(), found),
+                  of_surface = contact_at(surface.body(), b.body(), found);
+    CHECK((of_solid.normal - of_surface.normal).norm() < 1e-6);
+    CHECK((of_solid.point - of_surface.point).norm() < 1e-6);
+    ++resolved;
+  }
+  CHECK(meetings > 15);
+  CHECK(resolved > 10);
+}
+
+TEST_CASE("a turning capsule and one triangle", "[narrow-phase][turning][capsule]") {
+  const auto mesh = std::make_shared<const Mesh>(std::vector<Vector3d>{{-2, -2, 0}, {3, -2, 0}, {0, 3, 0}},
+                                                 std::vector<Mesh::Triangle>{{0, 1, 2}});
+  for (const double spin : {0.0, 2.0}) {
+    const Solid<1> triangle{MeshShape{mesh}, motion_of<1>({0, 0, 0}, {0, 0, 0}, {0, 0, spin})};
+    // It comes down lying, from either side, and on end; what lies on it at its radius touches for good.
+    for (const double side : {1.0, -1.0}) {
+      CHECK(first_meeting(triangle, capsule_of(0.25, 0.5, 0, {0, 0, 2 * side}, {0, 0, -side}, {0, 0, 3}), 0, 2) ==
+            1.75);
+      CHECK(first_meeting(triangle, capsule_of(0.25, 0.5, 2, {0, 0, 2 * side}, {0, 0, -side}, {0, 0, 3}), 0, 2) ==
+            1.25);
+      CHECK(first_meeting(triangle, capsule_of(0.25, 0.5, 0, {0, 0, 0.25 * side}, {0, 0, 0}, {0, 0, 3}), 0, 20) ==
+            never);
+      CHECK(first_meeting(triangle, capsule_of(next_up(0.25), 0.5, 0, {0, 0, 0.25 * side}, {0, 0, 0}, {0, 0, 3}), 0,
+                          20) == 0);
+    }
+    // It goes through: apart again when all of it is beyond.
+    const Solid<1> through = capsule_of(0.25, 0.5, 2, {0, 0, 2}, {0, 0, -1}, {0, 0, 1});
+    CHECK(first_separation(triangle.body(), through.body(), 1.5, 9) == 2.75);
+    const Contact contact = contact_at(triangle.body(), through.body(), 1.25);
+    CHECK(contact.normal == Vector3d(0, 0, 1));
+    CHECK(contact.point.norm() < 1e-15);
+    CHECK(contact.feature_b == Feature::vertex(0));
   }
 }
 
