@@ -111,11 +111,9 @@ class SummedProducts {
   /// Adds f g.
   void add(Twice& sum, const Once& f, const Once& g) const { add_product(sum, f, g, rate_a_, rate_b_); }
   void subtract(Twice& sum, const Once& f, const Once& g) const {
-    Once minus = f;
-    for (auto& row : minus.p) {
-      for (auto& p : row) p = -p;
-    }
-    add(sum, minus, g);
+    Twice product{};
+    add(product, f, g);
+    add_multiple(sum, product, Number(-1.0));
   }
   /// Adds f times a number.
   static void add_multiple(Twice& sum, const Twice& f, const Number& factor) {

@@ -23,8 +23,14 @@ namespace kds::detail {
 template <class C>
 inline constexpr int turning_dimension = (2 * harmonics_of<C> + 1) * (2 * harmonics_of<C> + 1) * (C::degree + 1);
 
-template <class C>
-using PreciseTurningModel = TaylorModel<turning_dimension<C> - 1>;
+/// The order of models in exact coefficients, which decide in the end: with all of these derivatives. Of double-doubles
+/// those are enough that leave 2^-65 of the terms over a radian.
+template <class C, class Number>
+inline constexpr int precise_order = std::is_same_v<Number, Exact> ? turning_dimension<C> - 1
+                                                                   : std::min(turning_dimension<C> - 1, 20);
+
+template <class C, class Number>
+using PreciseTurningModel = TaylorModel<precise_order<C, Number>>;
 
 /// side * f about m with the unit of time 2^exponent: Number is Ball<DoubleDouble>; or it is Exact, for exact
 /// coefficients and sines to so many bits. Preconditions: the rates times 2^exponent and the harmonics add up to at
@@ -34,15 +40,17 @@ using PreciseTurningModel = TaylorModel<turning_dimension<C> - 1>;
 /// multiplied by a power of two before (the model is that of f up to this factor); double-doubles leave units of time
 /// beyond 2^+-200 to that, and their radii tell what else is too much for them.
 ///
-/// The terms of f may cancel to any degree, at all times, and then bounds by their magnitudes say nothing. But with N =
-/// turning_dimension the equation bounds f^(N) by the derivatives d_k below it. Its roots are at most theta, the sum of
-/// the rates times the unit and the harmonics, in magnitude, so its coefficients are at most those of (x + theta)^N,
-/// and |f^(N)| is at most q = (1 + theta)^N - 1 times Y, the greatest of |f|, |f'| ... |f^(N - 1)|. So Y grows by
-/// exp(max(1, q) |x|) at most, and for theta <= 1 / N, where q < e - 1, |f^(N)| is below 6 q max |d_k|.
+/// The terms of f may cancel to any degree, at all times, and then bounds by their magnitudes say nothing. But where N
+/// = turning_dimension derivatives are known the equation bounds f^(N) by the derivatives d_k below it. Its roots are
+/// at most theta, the sum of the rates times the unit and the harmonics, in magnitude, so its coefficients are at most
+/// those of (x + theta)^N, and |f^(N)| is at most q = (1 + theta)^N - 1 times Y, the greatest of |f|, |f'| ... |f^(N -
+/// 1)|. So Y grows by exp(max(1, q) |x|) at most, and for theta <= 1 / N, where q < e - 1, |f^(N)| is below 6 q max
+/// |d_k|.
 ///
 /// Cost: 0.05 ms in double-doubles, some milliseconds exactly, for degree 2 and one harmonic.
 template <class Number, class C>
-PreciseTurningModel<C> precise_turning_model(const C& certificate, int side, double m, int exponent, int bits = 0);
+PreciseTurningModel<C, Number> precise_turning_model(const C& certificate, int side, double m, int exponent,
+                                                     int bits = 0);
 
 // ---------------------------------------------------------------------------------------------------------------
 
@@ -100,8 +108,8 @@ struct SpinInUnits {
 };
 
 template <class Number, class C>
-PreciseTurningModel<C> precise_turning_model(const C& certificate, int side, double m, int exponent, int bits) {
-  PreciseTurningModel<C> model;
+PreciseTurningModel<C, Number> precise_turning_model(const C& certificate, int side, double m, int exponent, int bits) {
+  PreciseTurningModel<C, Number> model;
   if (!std::is_same_v<Number, Exact> && std::abs(exponent) > 200) {
     model.error.fill(std::numeric_limits<double>::infinity());
     return model;
@@ -125,7 +133,8 @@ PreciseTurningModel<C> precise_turning_model(const C& certificate, int side, dou
       }
     }
   }
-  constexpr std::size_t dimension = turning_dimension<C>;
+  constexpr int order = precise_order<C, Number>;
+  constexpr std::size_t dimension = order + 1;
   std::array<Value, dimension> derivatives;
   for (std::size_t k = 0;; ++k) {
     derivatives[k] = value_at_epoch(f, a.turn, b.turn);
@@ -150,8 +159,8 @@ PreciseTurningModel<C> precise_turning_model(const C& certificate, int side, dou
     const Ball<double> size = in_doubles(majorant[k], scale);
     sizes[k] = std::abs(size.middle) + size.radius;
   }
-  model.next = derivative_bound(sizes, theta, turning_dimension<C>);
-  if (theta * dimension <= 1) {
+  model.next = derivative_bound(sizes, theta, order + 1);
+  if (order + 1 == turning_dimension<C> && theta * dimension <= 1) {
     const double q = std::expm1(dimension * std::log1p(theta)) * (1 + 0x1p-40);
     const double by_equation = 6 * q * greatest * Ball<double>::slack;
     if (!(model.next <= by_equation)) model.next = by_equation;

@@ -109,58 +109,64 @@ bool is_known_zero(const Number& x) {
   }
 }
 
-/// A_i A_j as a sum of at most two of these functions: factor A_index, times w^2 where both are sines.
-struct HarmonicTerm {
+/// A_i A_j = factor (A_first + sign A_second), times w^2 where both are sines; the sign is -1, 0 or 1.
+struct HarmonicProduct {
   double factor;
-  std::size_t index;
+  std::size_t first, second;
+  int sign;
 };
-constexpr std::array<HarmonicTerm, 2> harmonic_product(std::size_t i, std::size_t j) {
-  if (i == 0 || j == 0) return {{{1, i + j}, {0, 0}}};
+constexpr HarmonicProduct harmonic_product(std::size_t i, std::size_t j) {
+  if (i == 0 || j == 0) return {1, i + j, 0, 0};
   const std::size_t k = multiple_of(i), l = multiple_of(j);
   const std::size_t sum = k + l, apart = k > l ? k - l : l - k;
   const auto cosine = [](std::size_t n) { return n == 0 ? std::size_t{0} : 2 * n - 1; };
-  if (is_sine(i) == is_sine(j)) return {{{0.5, cosine(apart)}, {is_sine(i) ? -0.5 : 0.5, cosine(sum)}}};
+  if (is_sine(i) == is_sine(j)) return {0.5, cosine(apart), cosine(sum), is_sine(i) ? -1 : 1};
   // sin k cos l = (sin (k + l) + sin (k - l)) / 2, where the sine has the greater multiple or not.
   const bool positive = (is_sine(i) ? k : l) > (is_sine(i) ? l : k);
-  return {{{0.5, 2 * sum}, {apart == 0 ? 0 : (positive ? 0.5 : -0.5), 2 * apart}}};
+  return {0.5, 2 * sum, 2 * apart, apart == 0 ? 0 : (positive ? 1 : -1)};
+}
+
+template <class Number, std::size_t Size>
+bool is_known_zero(const std::array<Number, Size>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](const Number& x) { return is_known_zero(x); });
+}
+
+template <int Degree, class Number>
+void add_signed(Polynomial<Degree, Number>& to, const Polynomial<Degree, Number>& p, int sign) {
+  if (sign != 0) to = sign > 0 ? to + p : to - p;
 }
 
 }  // namespace detail
 
-/// Adds f g up to the order that is kept. Halves are exact.
+/// Adds f g up to the order that is kept. Halves are exact. Of a square, where f and g are one object, each product of
+/// two different terms is made once.
 template <int Order, int OrderF, int OrderG, class Number, int Harmonics, int OfF, int OfG>
 void add_product(TurningSum<Order, Number, Harmonics>& sum, const TurningSum<OrderF, Number, OfF>& f,
                  const TurningSum<OrderG, Number, OfG>& g, const Number& squared_rate_a, const Number& squared_rate_b) {
   static_assert(OfF + OfG <= Harmonics);
-  const auto empty = [](const auto& p) {
-    return std::all_of(p.c.begin(), p.c.end(), [](const Number& x) { return detail::is_known_zero(x); });
-  };
-  for (std::size_t i = 0; i < f.size; ++i) {
-    for (std::size_t j = 0; j < f.size; ++j) {
-      if (empty(f.p[i][j])) continue;
-      for (std::size_t k = 0; k < g.size; ++k) {
-        for (std::size_t l = 0; l < g.size; ++l) {
-          if (empty(g.p[k][l])) continue;
-          Polynomial<Order, Number> product;
-          for (std::size_t n = 0; n <= Order; ++n) {
-            for (std::size_t m = n > OrderG ? n - OrderG : 0; m <= std::min<std::size_t>(n, OrderF); ++m) {
-              if (detail::is_known_zero(f.p[i][j].c[m]) || detail::is_known_zero(g.p[k][l].c[n - m])) continue;
-              product.c[n] = product.c[n] + f.p[i][j].c[m] * g.p[k][l].c[n - m];
-            }
-          }
-          const bool sines_a = is_sine(i) && is_sine(k), sines_b = is_sine(j) && is_sine(l);
-          for (const detail::HarmonicTerm& a : detail::harmonic_product(i, k)) {
-            for (const detail::HarmonicTerm& b : detail::harmonic_product(j, l)) {
-              if (a.factor * b.factor == 0) continue;
-              Number factor(a.factor * b.factor);
-              if (sines_a) factor = factor * squared_rate_a;
-              if (sines_b) factor = factor * squared_rate_b;
-              auto& to = sum.p[a.index][b.index];
-              for (std::size_t n = 0; n <= Order; ++n) to.c[n] = to.c[n] + product.c[n] * factor;
-            }
-          }
+  const bool square = static_cast<const void*>(&f) == static_cast<const void*>(&g);
+  for (std::size_t at_f = 0; at_f < f.size * f.size; ++at_f) {
+    const std::size_t i = at_f / f.size, j = at_f % f.size;
+    if (detail::is_known_zero(f.p[i][j].c)) continue;
+    for (std::size_t at_g = square ? at_f : 0; at_g < g.size * g.size; ++at_g) {
+      const std::size_t k = at_g / g.size, l = at_g % g.size;
+      if (detail::is_known_zero(g.p[k][l].c)) continue;
+      Polynomial<Order, Number> product;
+      for (std::size_t n = 0; n <= Order; ++n) {
+        for (std::size_t m = n > OrderG ? n - OrderG : 0; m <= std::min<std::size_t>(n, OrderF); ++m) {
+          if (detail::is_known_zero(f.p[i][j].c[m]) || detail::is_known_zero(g.p[k][l].c[n - m])) continue;
+          product.c[n] = product.c[n] + f.p[i][j].c[m] * g.p[k][l].c[n - m];
         }
       }
+      const detail::HarmonicProduct of_a = detail::harmonic_product(i, k), of_b = detail::harmonic_product(j, l);
+      Number factor(of_a.factor * of_b.factor * (square && at_g != at_f ? 2 : 1));
+      if (is_sine(i) && is_sine(k)) factor = factor * squared_rate_a;
+      if (is_sine(j) && is_sine(l)) factor = factor * squared_rate_b;
+      for (Number& x : product.c) x = x * factor;
+      detail::add_signed(sum.p[of_a.first][of_b.first], product, 1);
+      detail::add_signed(sum.p[of_a.first][of_b.second], product, of_b.sign);
+      detail::add_signed(sum.p[of_a.second][of_b.first], product, of_a.sign);
+      detail::add_signed(sum.p[of_a.second][of_b.second], product, of_a.sign * of_b.sign);
     }
   }
 }

@@ -147,6 +147,9 @@ class TurningPolytopes {
   /// As apart_until, but farther apart than `grown`.
   double farther_apart_until(double grown, double t, double horizon) const;
 
+  /// Whether two edges are known to be parallel at all times.
+  bool stay_parallel(std::size_t of_a, std::size_t of_b) const;
+
   /// In the order of every_condition.
   std::array<double, 5> edge_values(const Frame& frame, const EdgePair& pair) const;
   template <class Test>
@@ -327,14 +330,20 @@ double TurningPolytopes<Degree>::depth(double t) const {
   return std::max(0.0, least);
 }
 
-/// Of bodies that are turned alike at all times edges that are parallel in their bodies are so for good.
 template <int Degree>
 bool TurningPolytopes<Degree>::known_to_separate_nothing(int way) const {
-  if (!turned_alike_ || way < faces()) return false;
+  if (way < faces()) return false;
   const EdgePair pair = edge_pair(way);
+  return stay_parallel(pair.of_a, pair.of_b);
+}
+
+/// Of bodies that are turned alike at all times edges that are parallel in their bodies are so for good.
+template <int Degree>
+bool TurningPolytopes<Degree>::stay_parallel(std::size_t of_a, std::size_t of_b) const {
+  if (!turned_alike_) return false;
   constexpr double maybe_parallel = 0x1p-46;  // unit vectors are known to 2^-50
-  if (norm(cross(polytope_a_.edges[pair.of_a], polytope_b_.edges[pair.of_b])) > maybe_parallel) return false;
-  const auto u = polytope_a_.edge(pair.of_a), v = polytope_b_.edge(pair.of_b);
+  if (norm(cross(polytope_a_.edges[of_a], polytope_b_.edges[of_b])) > maybe_parallel) return false;
+  const auto u = polytope_a_.edge(of_a), v = polytope_b_.edge(of_b);
   const auto n = certificates::cross(certificates::difference_of<Exact>(u[0], u[1]),
                                      certificates::difference_of<Exact>(v[0], v[1]));
   return std::all_of(n.begin(), n.end(), [](const Exact& x) { return x.sign() == 0; });

@@ -205,7 +205,7 @@ bool TurningRoundedPolytopes<Degree>::every_side_and_end(const Sides& sides, std
   using certificates::EdgeEnds;
   const Side &first = sides.first, &second = sides.second;
   const HullEdge& of_first = first.polytope.structure->edges[edge];
-  const auto [from, to] = of_first.ends;
+  const std::uint32_t from = of_first.ends[0], to = of_first.ends[1];
   const EdgeEnds line = first.polytope.edge(edge);
   Eigen::Vector3d u, d, across;
   if (first.seen) {
@@ -230,7 +230,9 @@ bool TurningRoundedPolytopes<Degree>::every_side_and_end(const Sides& sides, std
                                                      : certificates::FaceCorners{line[1], line[0], third}};
     if (!test(between(sides, from, corner, formula))) return false;
   }
+  const bool of_a = &first.polytope == &this->polytope_a_;
   for (const std::uint32_t e : second.edges_at[corner]) {
+    if (of_a ? this->stay_parallel(edge, e) : this->stay_parallel(e, edge)) continue;  // zero at all times
     const std::uint32_t end = other_end(second, e, corner);
     if (first.seen) {
       const double sense = second.polytope.structure->edges[e].ends[0] == corner ? 1 : -1;
