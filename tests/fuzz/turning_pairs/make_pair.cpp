@@ -1,5 +1,7 @@
 #include "tests/fuzz/turning_pairs/make_pair.hpp"
 
+#include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -19,6 +21,7 @@ namespace {
 using Eigen::Vector3d;
 using kds::collision::Box;
 using kds::collision::Capsule;
+using kds::collision::ConvexHull;
 using kds::collision::Mesh;
 using kds::collision::MeshShape;
 using kds::collision::Shape;
@@ -72,6 +75,13 @@ std::vector<Piece> pieces_of(const Shape& shape) {
   if (const auto* const ball = std::get_if<Sphere>(&shape)) return {ball_piece(ball->radius)};
   if (const auto* const capsule = std::get_if<Capsule>(&shape)) {
     return {capsule_piece(capsule->radius, capsule->half_length)};
+  }
+  if (const auto* const hull = std::get_if<ConvexHull>(&shape)) {
+    const auto points = hull->polytope->points();
+    const auto normals = hull->polytope->normals();
+    std::vector<std::array<std::size_t, 2>> edges;
+    for (const auto& edge : hull->polytope->structure().edges) edges.push_back({edge.ends[0], edge.ends[1]});
+    return {polytope_piece({points.begin(), points.end()}, {normals.begin(), normals.end()}, edges)};
   }
   const auto& mesh = std::get<MeshShape>(shape);
   std::vector<Piece> pieces;
@@ -135,6 +145,16 @@ Capsule random_capsule(Random& random, std::size_t family) {
   return {random.between(0.05, 0.5) * (random.one_in(4) ? 0.02 : 1), random.between(0.05, 1)};
 }
 
+/// A tetrahedron, or with its corners reflected a body of parallel edges and faces.
+Shape random_hull(Random& random) {
+  std::vector<Vector3d> points;
+  for (int i = 0; i < 4; ++i) points.push_back(random.between(0.3, 1) * direction(random));
+  if (random.one_in(2)) {
+    for (std::size_t i = 0; i < 4; ++i) points.push_back(-points[i]);
+  }
+  return kds::collision::convex_hull(points);
+}
+
 /// Its end goes round past the plate at the distance at which the corner of the box did, or as deep.
 void put_capsules(RandomPair& pair, Random& random) {
   if (pair.family == grazing) {
@@ -148,6 +168,7 @@ void put_capsules(RandomPair& pair, Random& random) {
   const bool both = random.one_in(2), first = random.one_in(2);
   if (both || first) pair.shape_a = random_capsule(random, pair.family);
   if (both || !first) pair.shape_b = random_capsule(random, pair.family);
+  if (!both && random.one_in(3)) (first ? pair.shape_b : pair.shape_a) = random_hull(random);
 }
 
 }  // namespace

@@ -266,6 +266,16 @@ Piece box_piece(const Eigen::Vector3d& half) {
   return piece;
 }
 
+Piece polytope_piece(const std::vector<Eigen::Vector3d>& corners, const std::vector<Eigen::Vector3d>& normals,
+                     const std::vector<std::array<std::size_t, 2>>& edges) {
+  Piece piece;
+  for (const Eigen::Vector3d& x : corners) piece.points.push_back(vector(x));
+  for (const Eigen::Vector3d& n : normals) piece.normals.push_back(vector(n));
+  for (const auto& [i, j] : edges) piece.edges.push_back(unit(sum(piece.points[j], piece.points[i], -1)));
+  piece.segments = edges;
+  return piece;
+}
+
 Piece triangle_piece(const std::array<Eigen::Vector3d, 3>& corners) {
   Piece piece;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -24,6 +24,9 @@ struct Piece {
 Piece ball_piece(double radius);
 Piece capsule_piece(double radius, double half_length);
 Piece box_piece(const Eigen::Vector3d& half);
+/// The corners of a polytope, the normals of its faces, and its edges by their ends.
+Piece polytope_piece(const std::vector<Eigen::Vector3d>& corners, const std::vector<Eigen::Vector3d>& normals,
+                     const std::vector<std::array<std::size_t, 2>>& edges);
 Piece triangle_piece(const std::array<Eigen::Vector3d, 3>& corners);
 
 /// A body: its pieces, and its motion of degree 2 at most.
