@@ -90,6 +90,9 @@ struct BasicBodyDescription {
   /// Passes through all bodies and walls, and no other body changes its motion: its contacts and separations are
   /// reported as in mode `none`, whatever the response of the world.
   bool sensor = false;
+  /// Of a mesh that bends: its contacts with itself are reported, too, as contacts and separations of the body with the
+  /// same body, whatever the response of the world. They cost as much as many bodies (docs/deforming.md).
+  bool self_contacts = false;
   BoundingVolume volume = BoundingVolume::shape;
   BoxFunction box{};  ///< if given: the caller's own conservative boxes, instead of `volume`
 };

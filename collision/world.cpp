@@ -50,6 +50,7 @@ BasicWorld<Motion>::BasicWorld(const WorldOptions& options, Listener* listener)
       walls_(bodies_, options_.walls, clock_),
       resting_(bodies_, options_.walls, clock_, *this),
       pairs_(bodies_, volumes_, resting_, reports_, options_, clock_, counters_, profile()),
+      self_contacts_(bodies_, clock_),
       callers_now_(options.start_time) {
   make_broad_phase();
 }
@@ -104,6 +105,7 @@ void BasicWorld<Motion>::set_horizon(double limit) {
   walls_.extend_horizon();
   volumes_.extend_horizon();
   resting_.extend_horizon();
+  self_contacts_.extend_horizon();
 }
 
 template <class Motion>
@@ -157,6 +159,7 @@ inline typename BasicWorld<Motion>::Due BasicWorld<Motion>::next_due() const {
   consider(walls_.next_time(), Task::meet_wall);
   consider(resting_.next_time(), Task::end_resting);
   consider(pairs_.next_time(), Task::meet_or_separate);
+  consider(self_contacts_.next_time(), Task::meet_itself);
   return first;
 }
 
@@ -198,6 +201,9 @@ bool BasicWorld<Motion>::process(Task task) {
       return false;
     case Task::meet_or_separate:
       process_meeting();
+      return true;
+    case Task::meet_itself:
+      process_self_contact();
       return true;
   }
   return false;

@@ -5,9 +5,11 @@
 #include "collision/body_motion.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/bending_contact.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/profile.hpp"
 #include "collision/response/free_rotation.hpp"
+#include "collision/shapes/mesh_script.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/edit_limit.hpp"
@@ -15,6 +17,7 @@
 #include "collision/world/reports.hpp"
 #include "collision/world/resting_contacts.hpp"
 #include "collision/world/scripts.hpp"
+#include "collision/world/self_contacts.hpp"
 #include "collision/world/turning/tumbling.hpp"
 #include "collision/world/volumes.hpp"
 #include "collision/world/wall_times.hpp"
@@ -28,6 +31,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace kds::collision {
 
@@ -36,8 +40,8 @@ namespace kds::collision {
 ///
 /// [Coming06] Figure 2. Events are, in this order where times are equal: pieces of motion that start (of scripts, then
 /// of bodies that precess), changes of the broad phase, bounding volumes that have to be renewed, walls, resting
-/// contacts that end, contacts and separations by (a, b). The broad phase makes no difference: WorldListener states the
-/// order of reports.
+/// contacts that end, contacts and separations by (a, b), those of meshes that bend with themselves. The broad phase
+/// makes no difference: WorldListener states the order of reports.
 ///
 /// It is made of parts (world/), which docs/design.md lists.
 ///
@@ -90,6 +94,17 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   /// not finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
 
+  /// Replaces what is still to come of the vertices of a mesh that bends: from where they are at now() they move on
+  /// straight lines to the first of these keyframes, from there to the next, and stand still after the last; with none
+  /// they stand still from now() on. So a simulator of cloth gives the end of each of its steps:
+  ///
+  ///     world.update_vertices(cloth, {{t + h, positions}});
+  ///
+  /// Nothing jumps, and nothing in the past changes. The motion of the body goes on as it was. Throws
+  /// std::invalid_argument for a body that does not bend, and, naming the keyframe, unless each is later than now() and
+  /// than the one before, and has a position for each vertex, finite and in range.
+  void update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes);
+
   /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,
   /// std::logic_error if called from within a callback, and std::runtime_error as WorldOptions::most_edits says.
   void advance_to(double t);
@@ -138,7 +153,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   bool fixed(BodyId id) const { return bodies_.fixed(bodies_.slot_of(id)); }
 
   /// Whether a and b are in contact; only for bodies that pass through each other (mode `none`, sensors), otherwise
-  /// false.
+  /// false. Of one body: whether it touches itself, if it reports that (BodyDescription::self_contacts).
   bool touching(BodyId a, BodyId b) const;
 
   /// Whether a and b rest on each other (mode `elastic` only), or a rests at a wall, numbered as in WallEvent (all
@@ -190,13 +205,14 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   // world.cpp: the clock
   /// The tasks of the parts of the world, in the order in which they are done if they are due at one time.
   enum class Task {
-    start_pieces,     ///< scripts_
-    turn_on,          ///< tumbling_
-    meet_boxes,       ///< pairs_
-    renew_volume,     ///< volumes_
-    meet_wall,        ///< walls_
-    end_resting,      ///< resting_
-    meet_or_separate  ///< pairs_
+    start_pieces,      ///< scripts_
+    turn_on,           ///< tumbling_
+    meet_boxes,        ///< pairs_
+    renew_volume,      ///< volumes_
+    meet_wall,         ///< walls_
+    end_resting,       ///< resting_
+    meet_or_separate,  ///< pairs_
+    meet_itself        ///< self_contacts_
   };
   struct Due {
     double time;
@@ -274,7 +290,9 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   PairEvent event_of(BodySlot a, BodySlot b, const Contact& contact) const {
     return {bodies_.id_of(a), bodies_.id_of(b), contact};
   }
+  void process_self_contact();
   void process_contact(BodySlot a, BodySlot b, const Contact& contact);
+  void let_through(BodySlot a, BodySlot b, const Contact& contact);
   std::uint64_t count_meeting(BodySlot a, BodySlot b);
   std::uint64_t count_meeting(BodySlot slot);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
@@ -290,6 +308,13 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   void begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   bool endless(std::uint64_t burst) const;
+
+  // world/bending_bounces.cpp: of meshes that bend
+  bool bends(BodySlot slot) const { return bodies_[slot].shape && collision::bends(bodies_[slot].shape->shape); }
+  bool bends(BodySlot a, BodySlot b) const { return bends(a) || bends(b); }
+  SurfaceRate surface_rate(BodySlot slot, const Contact& contact, bool is_a) const requires(!turns<Motion>);
+  double least_rebound(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>);
+  void bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(!turns<Motion>);
 
   // world/turning/turning_bounces.cpp: of bodies that turn
   double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>);
@@ -335,6 +360,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   Reports reports_;
   Resting resting_;
   Pairs<Motion> pairs_;
+  SelfContacts<Motion> self_contacts_;
   std::unique_ptr<BroadPhase<Motion::degree>> broad_phase_;
   EditLimit edits_;
   double callers_now_;          ///< the clock as callers know it

@@ -7,7 +7,8 @@
 
 namespace kds::collision {
 
-/// An event of two bodies, a in the lower slot: a contact, an overlap, a separation, the start or end of rest ...
+/// An event of two bodies, a in the lower slot: a contact, an overlap, a separation, the start or end of rest ... Or of
+/// a mesh that bends and itself: then a is b.
 struct PairEvent {
   BodyId a;
   BodyId b;
@@ -33,7 +34,8 @@ class BasicWorld;
 /// 3. separations of bodies that have been removed, by (a, b);
 /// 4. overlaps, by (a, b).
 /// Events at one time are in this order: pairs that begin and end as the bodies move on, by (a, b), with all of the
-/// above; walls, by body; contacts and separations, by (a, b).
+/// above; walls, by body; contacts and separations, by (a, b);
+/// then those of meshes that bend with themselves, by body.
 ///
 /// Every callback may change motions, add and remove bodies, the ones concerned included; the world is consistent when
 /// it is called, and later reports of the same instant are made of the world as it is then. To advance, save or load

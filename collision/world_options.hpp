@@ -70,10 +70,10 @@ struct WorldOptions {
   /// Events and counters do not depend on it.
   std::size_t threads = 1;
   ZenoPolicy zeno{};
-  /// s, > 0. In worlds of bodies that turn contacts do not come to rest: bodies that are pressed together rebound fast
-  /// enough to fly for at least this time, so that a run always ends. Of bodies that press on each other with the
-  /// acceleration g it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1 ms), and costs a contact per
-  /// flight.
+  /// s, > 0. In worlds of bodies that turn, and on meshes that bend, contacts do not come to rest: bodies that are
+  /// pressed together rebound fast enough to fly for at least this time, so that a run always ends. Of bodies that
+  /// press on each other with the acceleration g it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1
+  /// ms), and costs a contact per flight.
   double shortest_flight = 1e-3;
   /// rad, from 2^-30 to 1/8. Bodies that turn freely and whose moments of inertia differ precess. Their motion consists
   /// of pieces with a constant angular velocity, so short that the orientation differs from the solution of Euler's

@@ -50,10 +50,15 @@ std::vector<Vector3d> offsets_of(const PlacedShape& shape) {
   return corners;
 }
 
-SurfaceTree tree_of(const PlacedShape& shape, const std::vector<Vector3d>& offsets) {
-  if (std::holds_alternative<Sphere>(shape.shape)) return SurfaceTree::point();
-  if (std::holds_alternative<Capsule>(shape.shape)) return SurfaceTree::segment();
-  if (is_surface(shape.shape)) return {offsets, surface_of(shape.shape).mesh->triangles()};
+/// That of a mesh stays with it.
+std::shared_ptr<const SurfaceTree> tree_of(const PlacedShape& shape, const std::vector<Vector3d>& offsets) {
+  if (is_surface(shape.shape)) {
+    const auto mesh = surface_of(shape.shape).mesh;
+    return {mesh, &mesh->surface_tree()};
+  }
+  const auto made = [](SurfaceTree tree) { return std::make_shared<const SurfaceTree>(std::move(tree)); };
+  if (std::holds_alternative<Sphere>(shape.shape)) return made(SurfaceTree::point());
+  if (std::holds_alternative<Capsule>(shape.shape)) return made(SurfaceTree::segment());
   std::vector<Mesh::Triangle> triangles;
   for (const auto& [a, b, c, d] : box_faces) {
     triangles.push_back({a, b, c});
@@ -61,16 +66,14 @@ SurfaceTree tree_of(const PlacedShape& shape, const std::vector<Vector3d>& offse
   }
   SurfaceTree tree(offsets, triangles);
   tree.join_pairs_of_triangles();
-  return tree;
+  return made(std::move(tree));
 }
 
 }  // namespace
 
 template <int Degree>
 RigidSurface<Degree>::RigidSurface(const PlacedShape& shape)
-    : offsets_(offsets_of(shape)),
-      tree_(std::make_unique<const SurfaceTree>(tree_of(shape, offsets_))),
-      surface_(*tree_) {
+    : offsets_(offsets_of(shape)), tree_(tree_of(shape, offsets_)), surface_(*tree_) {
   if (const auto* const ball = std::get_if<Sphere>(&shape.shape)) surface_.set_radius(ball->radius);
   if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) surface_.set_radius(capsule->radius);
   if (std::holds_alternative<Box>(shape.shape) || std::holds_alternative<ConvexHull>(shape.shape)) surface_.set_solid();

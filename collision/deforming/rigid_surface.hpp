@@ -17,7 +17,7 @@ namespace kds::collision {
 /// names its features go. All but meshes are solid. Its vertices are those of the shape as it is placed, rounded (a
 /// box: as its rounded axes say).
 ///
-/// Cost: building takes O(n log n), each move O(n).
+/// Cost: O(n) to make, and each move; O(n log n) where a mesh or a hull is used for the first time, for its tree.
 template <int Degree>
 class RigidSurface {
  public:
@@ -30,7 +30,7 @@ class RigidSurface {
 
  private:
   std::vector<Eigen::Vector3d> offsets_;     ///< of the vertices from the centre
-  std::unique_ptr<const SurfaceTree> tree_;  ///< in its place
+  std::shared_ptr<const SurfaceTree> tree_;  ///< in its place, or in a mesh
   MovingSurface<Degree> surface_;
 };
 

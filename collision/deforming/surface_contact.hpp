@@ -24,6 +24,11 @@ struct SurfaceQuery {
   /// Whether an overlap at `from` that is not one of features is looked for: an edge through a face, or parts inside a
   /// solid. A caller who knows that there is none, as after a step without contacts, saves the time.
   bool overlaps = true;
+  /// For surfaces that impulses turn back: features that are within the tolerance at `from` count only if they approach
+  /// there, or come nearer by another part of the tolerance (SurfaceSearch). Others count between one half of the
+  /// tolerance and all of it, so that what has been turned back there is still apart. With a finite
+  /// `absolute_tolerance`, and without `overlaps`.
+  bool approaching = false;
 };
 
 /// Two features in contact. Those of a are what it says; `contact.point` is on the surface of a.

@@ -40,6 +40,9 @@ class SurfaceSearch : private SurfacePair<Degree> {
     friend auto operator<=>(const Waiting&, const Waiting&) = default;
   };
 
+  /// The first contact of two features. `at_start`: they may be near at the beginning.
+  template <certificates::Patch patch>
+  certificates::FeatureContact first_touch(const certificates::ControlPoints<Degree>& control, bool at_start) const;
   /// Calls found(contact) for the pairs of features of two leaves.
   template <class Found>
   void test(NodePair leaves, bool at_start, const Found& found) const;
@@ -103,15 +106,47 @@ void SurfaceSearch<Degree>::all(const Found& found) const {
   }
 }
 
+/// Where features have to approach they count as touching at half of the tolerance already, so that they are apart by
+/// as much when they are turned back. Those that are within the tolerance then, and part, are watched at a lower level,
+/// half of the gap that they have or less: so they do not sink in, should they turn round before they have left. The
+/// levels end where roundings are no longer far below them: there features touch unless they are seen to leave, or to
+/// stay as they are.
+template <int Degree>
+template <certificates::Patch patch>
+certificates::FeatureContact SurfaceSearch<Degree>::first_touch(const certificates::ControlPoints<Degree>& control,
+                                                                bool at_start) const {
+  const auto search = [&](const certificates::ContactTolerance& tolerance) {
+    if constexpr (patch == certificates::Patch::parallelogram) {
+      return certificates::edge_edge_contact<Degree>(control, a_.begin(), a_.end(), query_.from, tolerance);
+    } else {
+      return certificates::vertex_face_contact<Degree>(control, a_.begin(), a_.end(), query_.from, tolerance);
+    }
+  };
+  if (!query_.approaching) return search(this->tolerance_);
+  const auto near = this->template nearness<patch>(control, query_.from);
+  certificates::ContactTolerance tolerance = this->tolerance_;
+  double level = 0.5 * this->band(near.size);
+  if (at_start && near.gap <= 2 * level) {
+    if (near.rate < -near.noise) return near.touch;
+    const double lowest = 0x1p-37 * near.size;
+    while (level >= lowest && !(2 * level <= 0.5 * near.gap)) level *= 0.25;
+    if (!(level >= lowest)) {
+      return this->template comes_nearer<patch>(control, near) ? near.touch : certificates::FeatureContact{};
+    }
+  }
+  tolerance.thickness += level;
+  tolerance.absolute = level;
+  tolerance.relative = 1;
+  return search(tolerance);
+}
+
 template <int Degree>
 template <class Found>
 void SurfaceSearch<Degree>::test(NodePair leaves, bool at_start, const Found& found) const {
   this->for_features(leaves, [&](Kind kind, const std::array<std::uint32_t, 4>& vertices, std::uint32_t face) {
     const auto control = this->control_points(kind, vertices, this->count_of_first(kind));
-    const auto touch =
-        kind == Kind::edge_edge
-            ? certificates::edge_edge_contact<Degree>(control, a_.begin(), a_.end(), query_.from, this->tolerance_)
-            : certificates::vertex_face_contact<Degree>(control, a_.begin(), a_.end(), query_.from, this->tolerance_);
+    const auto touch = kind == Kind::edge_edge ? first_touch<certificates::Patch::parallelogram>(control, at_start)
+                                               : first_touch<certificates::Patch::triangle>(control, at_start);
     if (touch && touch.time <= query_.until) found(this->described(kind, vertices, face, touch));
   });
   if (!at_start || !query_.overlaps) return;

@@ -12,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -30,6 +31,9 @@ class SurfaceTouching : private SurfacePair<Degree> {
 
   SurfaceTouching(const Surface& a, const Surface& b, const SurfaceQuery& query)
       : SurfacePair<Degree>(a, b, query, false) {}
+  /// Of a surface with itself.
+  SurfaceTouching(const Surface& surface, const SurfaceQuery& query)
+      : SurfacePair<Degree>(surface, surface, query, true) {}
 
   bool touches(double t) const { return holds_until(a_.part(t), a_.part(t)) >= 0; }
 
@@ -41,7 +45,9 @@ class SurfaceTouching : private SurfacePair<Degree> {
   /// shorter than that may be passed over.
   double parts_at(double t) const;
 
-  /// The features that are closest at t, or go through each other, of those within `distance` beyond the radii.
+  /// The features that approach fastest at t, or part most slowly, of those within the tolerance; if there are none,
+  /// the closest of those within `distance` beyond the radii; or else ones that go through each other. Of features that
+  /// move alike the closest come first.
   std::optional<SurfaceContact> closest(double t, double distance) const;
 
  private:
@@ -61,10 +67,8 @@ class SurfaceTouching : private SurfacePair<Degree> {
   template <certificates::Patch patch>
   double near_until(Kind kind, const std::array<std::uint32_t, 4>& vertices, double s) const;
   double through_until(Kind kind, const std::array<std::uint32_t, 5>& vertices, double s) const;
-  template <certificates::Patch patch>
-  std::optional<SurfaceContact> near_at(Kind kind, const std::array<std::uint32_t, 4>& vertices, std::uint32_t face,
-                                        double t, double distance) const;
-  double level(double size) const;
+  /// From how far features of a pair of this size count as touching.
+  double level(double size) const { return tolerance_.thickness + this->band(size); }
 
   using SurfacePair<Degree>::a_;
   using SurfacePair<Degree>::b_;
@@ -72,12 +76,6 @@ class SurfaceTouching : private SurfacePair<Degree> {
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
-
-/// From how far features count as touching: what feature_contact.cpp takes for the tolerance.
-template <int Degree>
-double SurfaceTouching<Degree>::level(double size) const {
-  return tolerance_.thickness + std::max(std::min(tolerance_.absolute, tolerance_.relative * size), 0x1p-38 * size);
-}
 
 template <int Degree>
 template <class Visit>
@@ -200,42 +198,10 @@ double SurfaceTouching<Degree>::through_until(Kind kind, const std::array<std::u
 }
 
 template <int Degree>
-template <certificates::Patch patch>
-std::optional<SurfaceContact> SurfaceTouching<Degree>::near_at(Kind kind, const std::array<std::uint32_t, 4>& vertices,
-                                                               std::uint32_t face, double t, double distance) const {
-  const auto control = this->control_points(kind, vertices, this->count_of_first(kind));
-  const auto paths = certificates::patch_paths<patch, Degree>(control);
-  const certificates::PlacedPatch<patch> placed(paths.at(a_.part(t)));
-  const auto point = placed.closest();
-  const double far = tolerance_.thickness + distance;
-  if (!(point.squared_distance <= far * far)) return std::nullopt;
-  const auto w = placed.weights(point);
-  certificates::FeatureContact touch;
-  touch.time = t;
-  touch.distance = std::sqrt(point.squared_distance);
-  if constexpr (patch == certificates::Patch::triangle) {
-    touch.weights = {1, w[0] + w[3], w[1], w[2]};
-  } else {
-    touch.weights = {w[0] + w[3], w[1] + w[2], w[0] + w[1], w[2] + w[3]};
-  }
-  // Of what touches the direction is lost in roundings: then it is across both features.
-  touch.normal = normalized(point.position);
-  if (!(touch.distance > 64 * certificates::axis_margin(paths, 0))) {
-    const Eigen::Vector3d n = normalized(placed.normal());
-    const auto rates = paths.velocity(a_.part(t));
-    double closing = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t d = 0; d < 3; ++d) closing += n[static_cast<Eigen::Index>(d)] * rates[d][k] * w[k];
-    }
-    touch.normal = closing > 0 ? Eigen::Vector3d(-n) : n;
-    if (!(squared_norm(n) > 0)) touch.normal = Eigen::Vector3d::UnitX();
-  }
-  return this->described(kind, vertices, face, touch);
-}
-
-template <int Degree>
 std::optional<SurfaceContact> SurfaceTouching<Degree>::closest(double t, double distance) const {
   std::optional<SurfaceContact> best, through;
+  std::vector<std::pair<double, SurfaceContact>> within;  // the tolerance, and their rates
+  double least_rate = std::numeric_limits<double>::infinity(), noise = 0;
   const auto better = [](const std::optional<SurfaceContact>& old, const SurfaceContact& found) {
     if (!old || found.distance != old->distance) return !old || found.distance < old->distance;
     return std::tie(found.contact.feature_a, found.contact.feature_b) <
@@ -243,10 +209,19 @@ std::optional<SurfaceContact> SurfaceTouching<Degree>::closest(double t, double 
   };
   for_leaves_near(a_.part(t), (tolerance_.thickness + distance) * (1 + 0x1p-40), [&](NodePair leaves) {
     this->for_features(leaves, [&](Kind kind, const std::array<std::uint32_t, 4>& vertices, std::uint32_t face) {
-      const auto found = kind == Kind::edge_edge
-                             ? near_at<certificates::Patch::parallelogram>(kind, vertices, face, t, distance)
-                             : near_at<certificates::Patch::triangle>(kind, vertices, face, t, distance);
-      if (found && better(best, *found)) best = found;
+      const auto control = this->control_points(kind, vertices, this->count_of_first(kind));
+      const auto near = kind == Kind::edge_edge
+                            ? this->template nearness<certificates::Patch::parallelogram>(control, t)
+                            : this->template nearness<certificates::Patch::triangle>(control, t);
+      if (!(near.gap <= distance)) return;
+      const SurfaceContact found = this->described(kind, vertices, face, near.touch);
+      if (near.gap <= this->band(near.size)) {
+        within.emplace_back(near.rate, found);
+        least_rate = std::min(least_rate, near.rate);
+        noise = std::max(noise, near.noise);
+      } else if (better(best, found)) {
+        best = found;
+      }
     });
     this->for_edges_and_faces(leaves, [&](Kind kind, const std::array<std::uint32_t, 5>& vertices, std::uint32_t face) {
       const auto found = this->crossing(kind, vertices, face, t);
@@ -254,6 +229,10 @@ std::optional<SurfaceContact> SurfaceTouching<Degree>::closest(double t, double 
     });
     return false;
   });
+  if (!within.empty()) best.reset();
+  for (const auto& [rate, found] : within) {
+    if (rate <= least_rate + noise && better(best, found)) best = found;
+  }
   if (best) return best;
   return through ? through : this->inside(t);
 }

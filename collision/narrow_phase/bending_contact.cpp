@@ -4,10 +4,14 @@
 #include "collision/deforming/rigid_surface.hpp"
 #include "collision/deforming/surface_contact.hpp"
 #include "collision/deforming/surface_touching.hpp"
+#include "collision/narrow_phase/bending_pieces.hpp"
+#include "collision/narrow_phase/touch_spans.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/polytope.hpp"
+#include "collision/vectors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -71,102 +75,71 @@ class PieceSurface {
   std::optional<MovingSurface<Degree>> bent_;
 };
 
-/// Pieces after the last keyframe grow up to this many times the first of them. Bodies whose balls still overlap then
-/// move alike, but for roundings of what they have flown: nothing more is told of them.
-constexpr double longest_piece = 0x1p40;
-
-/// Whether nothing changes between two motions.
-template <int Degree>
-bool move_alike(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b) {
-  bool alike = a.coefficients[1] == b.coefficients[1];
-  if constexpr (Degree == 2) {
-    alike = alike && a.coefficients[2] == b.coefficients[2] && (a.start == b.start || a.coefficients[2].isZero(0));
-  }
-  return alike;
-}
-
-/// A stretch of time in which the two are in contact.
-struct TouchSpan {
-  double begin = never;
-  double end = never;
-};
+/// Of the radius of the mesh: in a piece the two go no farther than this. Half of the tolerance is then several times
+/// 2^-38 of the size of a query, the least that counts (ContactTolerance).
+constexpr double longest_way = 0x1p8;
 
 template <int Degree>
 class BendingPair {
  public:
   BendingPair(const Body<Degree>& a, const Body<Degree>& b)
-      : a_(a), b_(b), start_(std::max(a.motion.start, b.motion.start)), together_(move_alike(a.motion, b.motion)) {
+      : a_(a),
+        b_(b),
+        pieces_(a.motion, b.motion, keyframes_of(a, b), std::min(a.shape.bounding_radius, b.shape.bounding_radius),
+                longest_way * script_of(a.shape)->bounding_radius()) {
     const double radius = script_of(a.shape)->bounding_radius();
     query_ = {.tolerance = 1, .absolute_tolerance = bending_tolerance * radius, .overlaps = false};
-    times_.push_back(start_);
-    for (const MeshScript* const script : {script_of(a.shape), script_of(b.shape)}) {
-      if (!script) continue;
-      for (const auto& keyframe : script->keyframes()) {
-        if (keyframe.time > start_) times_.push_back(keyframe.time);
-      }
-    }
-    std::sort(times_.begin(), times_.end());
-    times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
-    // After the last keyframe pieces begin with the time in which one of them goes as far as it is large.
-    const double speed = norm(a.motion.coefficients[1]) + norm(b.motion.coefficients[1]);
-    const double size = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
-    unit_ = speed > 0 ? std::clamp(size / speed, 0x1p-100, 0x1p100) : 1.0;
   }
 
-  /// The first stretch that ends after t, if it begins by the horizon. Of one that begins at t or later the end is left
-  /// out, unless it is asked for.
-  TouchSpan touch_after(double t, double horizon, bool with_end) {
-    TouchSpan touch;
-    bool open = false;
-    for (std::size_t k = piece_of(t);; ++k) {
-      const auto [w0, w1] = piece(k);
-      if (!(w0 <= horizon) || !(w0 < w1) || w1 - w0 > longest_piece * unit_) break;
-      if (together_ && w0 > times_.back()) break;  // nothing changes any more
-      if (!open) {
-        const double near = balls_meet(w0);
-        if (near > horizon) break;
-        if (near > w1) continue;
-      }
-      const MovingSurface<Degree>& a = surface_a().over(w0, w1);
-      const MovingSurface<Degree>& b = surface_b().over(w0, w1);
-      const SurfaceTouching<Degree> touching(a, b, query_);
-      double now = w0;
-      bool touches = touching.touches(w0);
-      if (open && !touches) {
-        touch.end = w0;
-        if (touch.end > t) return touch;
-        open = false;
-      }
-      for (;;) {
-        if (!open) {
-          if (!touches) {
-            SurfaceQuery query = query_;
-            query.from = now;
-            const auto contact = collision::first_contact(a, b, query);
-            if (!contact) break;
-            now = contact->contact.time;
-          }
-          touch = {now, never};
-          open = true;
-          if (now > horizon) return {};
-        }
-        if (touch.begin >= t && !with_end) return touch;
-        const double parts = touching.parts_at(now);
-        if (parts == never) break;
-        touch.end = std::max(parts, next_up(now));
-        if (touch.end > t) return touch;
-        now = touch.end;
-        open = touches = false;
-        if (!(now < w1)) break;
+  // A course, for touch_after().
+  /// A time in the piece with which a search from t on begins.
+  double first_begin(double t) const {
+    return pieces_.together() && t > pieces_.last() ? pieces_.last() : std::max(t, pieces_.start());
+  }
+  auto piece(double t) const { return pieces_.at(t); }
+  bool over(double begin) const { return pieces_.together() && begin > pieces_.last(); }
+  double near(double t) const { return balls_meet(t); }
+  SurfaceTouching<Degree> touching(double t0, double t1) {
+    a_over_ = &surface_a().over(t0, t1);
+    b_over_ = &surface_b().over(t0, t1);
+    return SurfaceTouching<Degree>(*a_over_, *b_over_, query_);
+  }
+  std::optional<SurfaceContact> first_contact(double from) const {
+    SurfaceQuery query = query_;
+    query.from = from;
+    return collision::first_contact(*a_over_, *b_over_, query);
+  }
+
+  /// The first contact that has to be resolved, in [t, horizon].
+  double meeting_after(double t, double horizon) {
+    SurfaceQuery query = query_;
+    query.approaching = true;
+    for (double begin = first_begin(t); begin <= horizon;) {
+      const auto [w0, w1] = pieces_.at(begin);
+      if (!(begin < w1) || over(w0)) break;
+      const double near = balls_meet(w0);
+      if (near > horizon || near == never) break;
+      begin = near > w1 ? near : w1;
+      if (near > w1) continue;
+      const SurfaceTouching<Degree> touching = this->touching(w0, w1);
+      for (double now = w0; now < w1;) {
+        // What is near stays below the levels of those that come from outside until all have parted.
+        const double parts = touching.touches(now) ? std::min(touching.parts_at(now), w1) : w1;
+        query.from = now;
+        query.until = parts;
+        const auto contact = collision::first_contact(*a_over_, *b_over_, query);
+        const double time = contact ? contact->contact.time : never;
+        if (time < w1 && time >= t) return time <= horizon ? time : never;
+        // One before t was passed over, and they go through each other.
+        now = !contact ? parts : time < w1 ? std::max(touching.parts_at(time), next_up(time)) : w1;
       }
     }
-    return open ? TouchSpan{touch.begin, never} : TouchSpan{};
+    return never;
   }
 
   Contact contact_at(double t) {
-    auto [w0, w1] = piece(piece_of(t));
-    if (w1 < t) w1 = (w0 = t) + unit_;  // they move together, as they did in the last piece
-    const SurfaceTouching<Degree> touching(surface_a().over(w0, w1), surface_b().over(w0, w1), query_);
+    const auto [w0, w1] = pieces_.at(t);
+    const SurfaceTouching<Degree> touching = this->touching(w0, w1);
     // What has just parted is a little farther apart; what touches in no piece may be asked about, too.
     const double farthest =
         4 * (a_.shape.bounding_radius + b_.shape.bounding_radius + norm(b_.motion.position(t) - a_.motion.position(t)));
@@ -193,24 +166,14 @@ class BendingPair {
   }
 
  private:
-  struct Piece {
-    double begin, end;
-  };
-  /// Pieces between keyframes, and after them of the lengths unit, 2 unit, 4 unit...
-  Piece piece(std::size_t k) const {
-    if (k + 1 < times_.size()) return {times_[k], times_[k + 1]};
-    const double last = times_.back();
-    const int later = static_cast<int>(std::min<std::size_t>(k + 1 - times_.size(), 4000));
-    return {last + (std::ldexp(1.0, later) - 1) * unit_, last + (std::ldexp(1.0, later + 1) - 1) * unit_};
+  static std::vector<double> keyframes_of(const Body<Degree>& a, const Body<Degree>& b) {
+    std::vector<double> times;
+    for (const MeshScript* const script : {script_of(a.shape), script_of(b.shape)}) {
+      if (!script) continue;
+      for (const auto& keyframe : script->keyframes()) times.push_back(keyframe.time);
+    }
+    return times;
   }
-  std::size_t piece_of(double t) const {
-    const auto after = std::upper_bound(times_.begin(), times_.end(), t);
-    std::size_t k = after == times_.begin() ? 0 : static_cast<std::size_t>(after - times_.begin()) - 1;
-    if (together_) return k;  // the last piece stands for all that follow
-    while (k + 1 >= times_.size() && piece(k).end <= t && piece(k).end < 0x1p500) ++k;
-    return k;
-  }
-
   PieceSurface<Degree>& surface_a() { return made(surface_a_, a_); }
   PieceSurface<Degree>& surface_b() { return made(surface_b_, b_); }
   static PieceSurface<Degree>& made(std::optional<PieceSurface<Degree>>& surface, const Body<Degree>& body) {
@@ -220,28 +183,22 @@ class BendingPair {
 
   const Body<Degree>& a_;
   const Body<Degree>& b_;
-  double start_;
-  bool together_;
-  double unit_;
+  BendingPieces<Degree> pieces_;
   SurfaceQuery query_;
-  std::vector<double> times_;
   std::optional<PieceSurface<Degree>> surface_a_, surface_b_;
+  const MovingSurface<Degree>* a_over_ = nullptr;  ///< as they are in the piece that is looked at
+  const MovingSurface<Degree>* b_over_ = nullptr;
 };
-
-void require_transparent(ContactMode mode) {
-  if (mode != ContactMode::transparent) {
-    throw std::logic_error("BendingContact: a mesh that bends passes through everything");
-  }
-}
 
 }  // namespace
 
 template <int Degree>
 double BendingContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                                              FoundTouch*) {
-  require_transparent(mode);
   if (!(t0 <= horizon)) return never;
-  const double begin = BendingPair<Degree>(a, b).touch_after(t0, horizon, false).begin;
+  BendingPair<Degree> pair(a, b);
+  if (mode == ContactMode::resolved) return pair.meeting_after(t0, horizon);
+  const double begin = touch_after(pair, t0, horizon, false).begin;
   return begin <= horizon ? std::max(begin, t0) : never;
 }
 
@@ -253,13 +210,15 @@ double BendingContact<Degree>::apart_until(const Body& a, const Body& b, double 
 
 template <int Degree>
 bool BendingContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
-  return BendingPair<Degree>(a, b).touch_after(t, t, false).begin <= t;
+  BendingPair<Degree> pair(a, b);
+  return touch_after(pair, t, t, false).begin <= t;
 }
 
 template <int Degree>
 double BendingContact<Degree>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
   if (!(t0 <= horizon)) return never;
-  const TouchSpan touch = BendingPair<Degree>(a, b).touch_after(t0, horizon, true);
+  BendingPair<Degree> pair(a, b);
+  const TouchSpan touch = touch_after(pair, t0, horizon, true);
   if (!(touch.begin <= t0)) return t0;
   return touch.end <= horizon ? touch.end : never;
 }
@@ -271,5 +230,50 @@ Contact BendingContact<Degree>::contact_at(const Body& a, const Body& b, double 
 
 template struct BendingContact<1>;
 template struct BendingContact<2>;
+
+namespace {
+
+/// The weights of the corners of a triangle that make up a point of it.
+std::array<double, 3> weights_in(const std::array<Eigen::Vector3d, 3>& corner, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d u = corner[1] - corner[0], v = corner[2] - corner[0], on = point - corner[0];
+  const Eigen::Vector3d n = cross(u, v);
+  const double area = squared_norm(n);
+  if (!(area > 0)) return {1.0 / 3, 1.0 / 3, 1.0 / 3};
+  const double wb = std::clamp(dot(n, cross(on, v)) / area, 0.0, 1.0);
+  const double wc = std::clamp(dot(n, cross(u, on)) / area, 0.0, 1 - wb);
+  return {1 - wb - wc, wb, wc};
+}
+
+}  // namespace
+
+SurfaceRate surface_rate(const PlacedShape& shape, const Feature& feature, const Eigen::Vector3d& point,
+                         const Eigen::Vector3d& normal, double t) {
+  const MeshScript* const script = script_of(shape);
+  if (!script || feature.kind == Feature::Kind::none) return {};
+  const auto place = [&](std::size_t v) { return placed_vertex(shape.rotation, 1, script->position(v, t)); };
+  const auto velocity = [&](std::size_t v) { return placed_vertex(shape.rotation, 1, script->velocity(v, t)); };
+  if (feature.kind == Feature::Kind::vertex) return {velocity(feature.first), Eigen::Vector3d::Zero()};
+  if (feature.kind == Feature::Kind::edge) {
+    const Eigen::Vector3d a = place(feature.first), along = place(feature.second) - a;
+    const Eigen::Vector3d of_a = velocity(feature.first), turns = velocity(feature.second) - of_a;
+    const double squared = squared_norm(along);
+    if (!(squared > 0)) return {of_a, Eigen::Vector3d::Zero()};
+    const double part = std::clamp(dot(point - a, along) / squared, 0.0, 1.0);
+    return {of_a + part * turns, -(dot(normal, turns) / squared) * along};  // it stays across the edge
+  }
+  const Mesh::Triangle& face = script->triangles()[feature.first];
+  const std::array<Eigen::Vector3d, 3> p{place(face[0]), place(face[1]), place(face[2])};
+  const std::array<Eigen::Vector3d, 3> rate{velocity(face[0]), velocity(face[1]), velocity(face[2])};
+  const auto w = weights_in(p, point);
+  const Eigen::Vector3d u = p[1] - p[0], v = p[2] - p[0];
+  const Eigen::Vector3d across = cross(u, v);
+  const Eigen::Vector3d turns = cross(rate[1] - rate[0], v) + cross(u, rate[2] - rate[0]);
+  SurfaceRate result{w[0] * rate[0] + w[1] * rate[1] + w[2] * rate[2], Eigen::Vector3d::Zero()};
+  const double squared = squared_norm(across);
+  if (!(squared > 0)) return result;
+  const Eigen::Vector3d unit_turns = (turns - (dot(across, turns) / squared) * across) / std::sqrt(squared);
+  result.normal_rate = dot(across, normal) < 0 ? Eigen::Vector3d(-unit_turns) : unit_turns;
+  return result;
+}
 
 }  // namespace kds::collision

@@ -18,6 +18,17 @@ namespace kds::collision {
 /// so that contacts do not depend on the broad phase. Larger reports contact earlier.
 inline constexpr double bending_tolerance = 0x1p-26;
 
+/// The bounding box of a placed mesh that bends, about its centre, while it moves from one keyframe to the next.
+struct BendingBounds {
+  Eigen::Vector3d low, high;
+  double until;  ///< s: the next keyframe; infinity after the last
+};
+
+/// From t on. Precondition, here and below: the shape is a BendingMesh.
+BendingBounds bending_bounds(const PlacedShape& placed, double t);
+/// What extent() tells of all keyframes.
+std::array<double, 2> bending_extent(const PlacedShape& placed, const Eigen::Vector3d& direction, double t);
+
 namespace detail {
 
 template <>
@@ -32,23 +43,33 @@ struct ShapeKind<BendingMesh> {
 
   static Eigen::Vector3d measures(const BendingMesh&) { return Eigen::Vector3d::Ones(); }
 
-  /// The whole script, of each body for itself.
+  /// The whole script, of each body for itself. What its tree was made from is written where it is not the first
+  /// keyframe: times of separations depend on the tree.
   template <class Archive>
   static void archive(Archive& archive, BendingMesh& shape, PlacedShape&, const NumberedMeshes&) {
     std::vector<MeshScript::Keyframe> keyframes;
     std::vector<Mesh::Triangle> triangles;
+    std::vector<Eigen::Vector3d> former;
     if (shape.script) {
       keyframes.assign(shape.script->keyframes().begin(), shape.script->keyframes().end());
       triangles.assign(shape.script->triangles().begin(), shape.script->triangles().end());
+      if (shape.script->form().positions != keyframes[0].positions) former = shape.script->form().positions;
     }
+    const auto each_vector = [&](Eigen::Vector3d& v) { archive_vector(archive, v); };
     archive.each(keyframes, [&](MeshScript::Keyframe& keyframe) {
       archive(keyframe.time);
-      archive.each(keyframe.positions, [&](Eigen::Vector3d& v) { archive_vector(archive, v); });
+      archive.each(keyframe.positions, each_vector);
     });
     archive(triangles);
+    archive.each(former, each_vector);
     if constexpr (Archive::loading) {
       try {
-        shape.script = std::make_shared<const MeshScript>(std::move(keyframes), std::move(triangles));
+        if (former.empty()) {
+          shape.script = std::make_shared<const MeshScript>(std::move(keyframes), std::move(triangles));
+        } else {
+          const MeshScript before({{0, std::move(former)}}, std::move(triangles));
+          shape.script = std::make_shared<const MeshScript>(before.with(std::move(keyframes)));
+        }
       } catch (const std::invalid_argument& error) {
         throw std::runtime_error(std::string("snapshot: a mesh that bends: ") + error.what());
       }

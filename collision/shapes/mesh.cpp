@@ -1,5 +1,6 @@
 #include "collision/shapes/mesh.hpp"
 
+#include "collision/shapes/surface_tree.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/Geometry>
@@ -7,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 namespace kds::collision {
@@ -78,10 +81,16 @@ void check_triangle_indices(std::size_t vertices, std::span<const Mesh::Triangle
   }
 }
 
+struct Mesh::TreeOnDemand {
+  std::once_flag made;
+  std::optional<SurfaceTree> tree;
+};
+
 Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
     : vertices_(std::move(vertices)),
       triangles_(checked(vertices_, std::move(triangles))),
-      tree_(vertices_, triangles_) {
+      tree_(vertices_, triangles_),
+      surface_tree_(std::make_shared<TreeOnDemand>()) {
   for (const Vector3d& v : vertices_) bounding_radius_ = std::max(bounding_radius_, norm(v));
   bounding_radius_ *= 1 + 0x1p-50;  // three roundings of the norm, upward
   shortest_edge_ = std::numeric_limits<double>::infinity();
@@ -111,6 +120,11 @@ Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
     }
   }
   used_.shrink_to_fit();
+}
+
+const SurfaceTree& Mesh::surface_tree() const {
+  std::call_once(surface_tree_->made, [this] { surface_tree_->tree.emplace(vertices_, triangles_); });
+  return *surface_tree_->tree;
 }
 
 std::vector<Vector3d> Mesh::placed_vertices(const Eigen::Matrix3d& rotation, double scale) const {

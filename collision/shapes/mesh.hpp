@@ -9,12 +9,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace kds::collision {
+
+class SurfaceTree;
 
 /// A mesh that cannot be used. The message names what is wrong and where.
 class InvalidMesh : public std::invalid_argument {
@@ -66,6 +69,9 @@ class Mesh {
   std::span<const Eigen::Vector3d> vertices() const { return vertices_; }
   std::span<const Triangle> triangles() const { return triangles_; }
   const ObbTree& tree() const { return tree_; }
+  /// The tree for contact with meshes that bend: made when it is first asked for, in O(n log n). Threads may ask at
+  /// once.
+  const SurfaceTree& surface_tree() const;
 
   /// Radius of the ball about the origin that holds all vertices, rounded up.
   double bounding_radius() const { return bounding_radius_; }
@@ -96,10 +102,13 @@ class Mesh {
   static constexpr double largest_coordinate = 0x1p100;
 
  private:
+  struct TreeOnDemand;
+
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<Triangle> triangles_;
   ObbTree tree_;
   std::vector<VertexPair> used_;  // vertices that triangles use, each once; of an odd number the last one twice
+  std::shared_ptr<TreeOnDemand> surface_tree_;
   double bounding_radius_ = 0;
   double shortest_edge_ = 0;
   bool sharp_ = false;

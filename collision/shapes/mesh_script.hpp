@@ -7,7 +7,9 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -22,15 +24,29 @@ class MeshScript {
     std::vector<Eigen::Vector3d> positions;
   };
 
+  /// What scripts that continue each other share: the triangles, and a tree made from where the vertices once were.
+  struct Form {
+    std::vector<Mesh::Triangle> triangles;
+    std::vector<Eigen::Vector3d> positions;
+    SurfaceTree tree;
+  };
+
   /// Triangles without area are welcome. Throws InvalidMesh for a mesh that cannot be (SurfaceTree), and
   /// std::invalid_argument, naming the keyframe, if there is none, times are not finite or do not ascend, or there is
   /// not a position for each vertex, each coordinate finite and at most Mesh::largest_coordinate in magnitude.
   MeshScript(std::vector<Keyframe> keyframes, std::vector<Mesh::Triangle> triangles);
+  /// The same triangles with other keyframes, and the same tree. Throws as the constructor does.
+  MeshScript with(std::vector<Keyframe> keyframes) const { return {std::move(keyframes), form_}; }
+  /// A script that goes on from where the vertices are at t, to other keyframes, each later than t; with none of them
+  /// they stand still from then on. What was before t is forgotten. Throws as the constructor does. Cost: O(n) a
+  /// keyframe, as the tree stays.
+  MeshScript continued(double t, std::vector<Keyframe> to_come) const;
 
   std::span<const Keyframe> keyframes() const { return keyframes_; }
-  std::span<const Mesh::Triangle> triangles() const { return triangles_; }
-  const SurfaceTree& tree() const { return tree_; }
-  std::size_t vertices() const { return tree_.vertices(); }
+  std::span<const Mesh::Triangle> triangles() const { return form_->triangles; }
+  const SurfaceTree& tree() const { return form_->tree; }
+  const Form& form() const { return *form_; }
+  std::size_t vertices() const { return form_->positions.size(); }
 
   /// Of the ball about the origin that holds all vertices at all times, rounded up.
   double bounding_radius() const { return bounding_radius_; }
@@ -39,11 +55,15 @@ class MeshScript {
   std::size_t keyframes_until(double t) const;
   /// The position of a vertex at t, rounded; exact at keyframes.
   Eigen::Vector3d position(std::size_t vertex, double t) const;
+  /// Its velocity from t on, rounded; units of length a second.
+  Eigen::Vector3d velocity(std::size_t vertex, double t) const;
 
  private:
+  MeshScript(std::vector<Keyframe> keyframes, std::shared_ptr<const Form> form);
+  void measure();
+
   std::vector<Keyframe> keyframes_;
-  std::vector<Mesh::Triangle> triangles_;
-  SurfaceTree tree_;
+  std::shared_ptr<const Form> form_;
   double bounding_radius_ = 0;
 };
 

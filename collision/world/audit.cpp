@@ -18,6 +18,7 @@ void BasicWorld<Motion>::audit(double t) const {
   tumbling_.audit(t);
   if (resting_.solved()) resting_.audit(t, options_.walls.has_value());
   pairs_.audit(t);
+  self_contacts_.audit(t);
   if (broad_phase_->next_time() <= t) return;
   for (BodySlot a = 0; a < bodies_.slots(); ++a) {
     for (BodySlot b = a + 1; b < bodies_.slots(); ++b) {

@@ -79,6 +79,7 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
   filters_ = filters_ || description.category != default_category || ~description.collides_with != 0;
   added.volume = description.volume;
   added.sensor = description.sensor;
+  added.self_contacts = description.self_contacts;
   sensors_ = sensors_ || description.sensor;
   added.alive = true;
   move(slot, motion);
@@ -140,6 +141,7 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
     to.motion = motion(slot);
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
     to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume, to.sensor = b.sensor;
+    to.self_contacts = b.self_contacts;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
     if constexpr (turns<Motion>) {
       to.inverse_inertia = b.inverse_inertia;
@@ -180,6 +182,7 @@ void Bodies<Motion>::become(const Image& image) {
     move(slot, from.motion);
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
     b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume, b.sensor = from.sensor;
+    b.self_contacts = from.self_contacts;
     if constexpr (turns<Motion>) {
       b.inverse_inertia = from.inverse_inertia;
       b.friction = from.friction, b.tangential_restitution = from.tangential_restitution;

@@ -62,6 +62,7 @@ struct Body
   std::uint32_t collides_with = ~0u;
   BoundingVolume volume = BoundingVolume::shape;
   bool sensor = false;
+  bool self_contacts = false;
   bool alive = false;
   bool entered = false;        ///< its motion has begun; it is in the broad phase, if it collides with anything
   std::uint64_t meetings = 0;  ///< contacts since burst_start (ZenoPolicy)
@@ -176,6 +177,7 @@ class Bodies {
 
   /// Adds a body with its first motion. A null `shape` stands for a ball that is not turned. Precondition: valid.
   BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion);
+  void set_shape(BodySlot slot, PlacedShape placed);
   void remove(BodySlot slot);
   void reserve(std::size_t bodies);
 
@@ -198,7 +200,6 @@ class Bodies {
   [[noreturn]] void refuse(BodyId id) const;
   std::uint32_t generation(BodySlot slot) const { return slot < generations_.size() ? generations_[slot] : 0; }
   BodySlot new_slot();
-  void set_shape(BodySlot slot, PlacedShape placed);
 
   std::vector<Mover> movers_;
   std::vector<Motion> motions_;  ///< by slot, where bodies turn

@@ -63,8 +63,8 @@ void Bodies<Motion>::Image::body(Archive& archive, One& body) const {
   archive(body.alive);
   if (!body.alive) return;
   archive_shape(archive, body.placed, body.mesh, meshes);
-  archive(body.entered, body.sensor, body.motion, body.mass, body.inverse_mass, body.restitution, body.category,
-          body.collides_with, body.volume, body.meetings, body.burst_start);
+  archive(body.entered, body.sensor, body.self_contacts, body.motion, body.mass, body.inverse_mass, body.restitution,
+          body.category, body.collides_with, body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
   if constexpr (turns<Motion>) archive(body.inverse_inertia, body.friction, body.tangential_restitution, body.tumbles);
   if constexpr (Motion::degree >= 3) archive(body.given);
@@ -91,6 +91,7 @@ void Bodies<Motion>::Image::check(double now) const {
     const auto need = [slot](bool right, const char* what) { image::require(right, "bodies", slot, what); };
     if (!body.alive) continue;
     check_shape(body.placed, slot);
+    need(!body.self_contacts || bends(body.placed.shape), "meets itself, and does not bend");
     need(body.motion.finite(), "its motion is not finite");
     need(!body.entered || path_of(body.motion).start <= now, "its motion begins after now");
     const bool has_mass = std::isfinite(body.mass) && body.mass > 0 && body.inverse_mass == 1 / body.mass;

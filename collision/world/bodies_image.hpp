@@ -17,6 +17,7 @@ struct Bodies<Motion>::Image {
     bool alive = false;
     bool entered = false;
     bool sensor = false;
+    bool self_contacts = false;
     PlacedShape placed;
     std::uint32_t mesh = 0;  ///< number in `meshes`, of a mesh
     Motion motion;

@@ -18,6 +18,9 @@ double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contac
   const auto& path_b = bodies_.path(b);
   const double t = contact.time;
   const double rate = dot(contact.normal, path_b.velocity(t) - path_a.velocity(t));
+  if (bends(a, b))
+    return rate +
+           dot(contact.normal, surface_rate(b, contact, false).velocity - surface_rate(a, contact, true).velocity);
   if constexpr (Motion::degree >= 3) {
     if (rate != 0) return rate;
     const auto at_a = path_a.restarted(t), at_b = path_b.restarted(t);
@@ -105,10 +108,12 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   const std::uint64_t burst = count_meeting(a, b);
   if (burst > patience()) {  // A resting contact would not last: the pair passes through.
     ++counters_.rebounds_suppressed;
-    pairs_.let_pass(a, b);
-    const PairEvent event = event_of(a, b, contact);
-    reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);
+    let_through(a, b, contact);
     return true;
+  }
+  if (bends(a, b)) {
+    bounce_off_surface(a, b, contact, burst);
+    return false;
   }
   const bool often = burst > options_.zeno.contacts;
   const double restitution = often ? 0 : std::min(bodies_[a].restitution, bodies_[b].restitution);

@@ -5,6 +5,7 @@
 #include "collision/response/inertia.hpp"
 #include "collision/response/mass_properties.hpp"
 #include "collision/response/principal_inertia.hpp"
+#include "collision/shapes/mesh_script.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world.hpp"
 
@@ -18,6 +19,8 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace kds::collision {
 namespace {
@@ -36,7 +39,7 @@ void validate(const BasicBodyDescription<Motion>& description) {
   if (!description.fixed) require_size(description.mass, "mass");
   if (!can_move_by<Motion>(description.shape)) {
     const std::string name = std::string("shape: a ") + kind_name(description.shape);
-    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes, hulls and meshes can");
+    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes, capsules, hulls and meshes can");
     fail(name + " cannot move on paths of degree " + std::to_string(Motion::degree) + ": at most 2");
   }
   if constexpr (turns<Motion>) {
@@ -61,6 +64,9 @@ void validate(const BasicBodyDescription<Motion>& description) {
       break;
     default:
       fail("volume: unknown");
+  }
+  if (description.self_contacts && !bends(description.shape)) {
+    fail(std::string("self_contacts: a ") + kind_name(description.shape) + " does not bend, and never meets itself");
   }
   if (!(description.restitution >= 0 && description.restitution <= 1)) fail("restitution: must be in [0, 1]");
 }
@@ -107,9 +113,9 @@ template <class Motion>
 BodyId BasicWorld<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
-  if (bends(description.shape) && options_.response != Response::none && !description.sensor) {
-    throw std::invalid_argument(
-        "shape: a mesh that bends only reports contacts: it has to be a sensor, or the response of the world `none`");
+  if (collision::bends(description.shape) && options_.response != Response::none && !description.sensor &&
+      !description.fixed) {
+    throw std::invalid_argument("fixed: contacts do not move a mesh that bends: it has to be fixed, or a sensor");
   }
   std::optional<PrincipalInertia> principal;  // of one that precesses
   if constexpr (turns<Motion>) {
@@ -220,7 +226,12 @@ void BasicWorld<Motion>::enter_new_bodies() {
   }
   pairs_.set_begin(Begin::moving);
   walls_.schedule(entries);
-  if (!volumes_.any_from_callers() && !volumes_.has_room_for_meshes()) return;
+  for (const Entry& entry : entries) {
+    if (!self_contacts_.enter(entry.slot)) continue;
+    const BodyId id = bodies_.id_of(entry.slot);
+    reports_.add(Reports::Kind::overlap, id, id, self_contacts_.contact(entry.slot));
+  }
+  if (!volumes_.any_ends()) return;
   for (const Entry& entry : entries) volumes_.schedule(entry.slot);
 }
 
@@ -261,6 +272,33 @@ void BasicWorld<Motion>::give(BodySlot slot, const Motion& motion) {
 }
 
 template <class Motion>
+void BasicWorld<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
+  require_editable("World::update_vertices");
+  const BodySlot slot = bodies_.slot_of(id);
+  if (!bends(slot)) {
+    throw std::invalid_argument("World::update_vertices: body " + std::to_string(id) + " is a " +
+                                kind_name(bodies_.shape(slot).shape) + ", which does not bend");
+  }
+  const PlacedShape& before = *bodies_[slot].shape;
+  const MeshScript& script = *std::get<BendingMesh>(before.shape).script;
+  PlacedShape after;
+  try {
+    const BendingMesh bent{std::make_shared<const MeshScript>(script.continued(clock_.now, std::move(keyframes)))};
+    after = place_turned(bent, before.rotation);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("World::update_vertices: ") + error.what());
+  }
+  count_edit();
+  change_or_fail([&] {
+    ++counters_.motion_updates;
+    bodies_.set_shape(slot, std::move(after));
+    volumes_.shape_changed(slot);
+    if (bodies_[slot].entered) set_motion(slot, bodies_.motion(slot), false);
+    self_contacts_.changed(slot);
+  });
+}
+
+template <class Motion>
 void BasicWorld<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   bodies_.move(slot, motion);
@@ -284,6 +322,13 @@ void BasicWorld<Motion>::remove_body(BodyId id) {
 template <class Motion>
 void BasicWorld<Motion>::take_out(BodySlot slot) {
   resting_.forget(slot);
+  if (self_contacts_.touching(slot)) {  // It ceases to, unless that it does has not been reported yet.
+    const BodyId id = bodies_.id_of(slot);
+    if (!reports_.take_back(Reports::Kind::overlap, id, id)) {
+      reports_.add(Reports::Kind::separation, id, id, self_contacts_.contact(slot));
+    }
+  }
+  self_contacts_.remove(slot);
   scripts_.clear(slot);
   tumbling_.remove(slot);
   walls_.remove(slot);

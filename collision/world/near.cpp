@@ -65,7 +65,13 @@ void BasicWorld<Motion>::visit_swept(const KineticBox<Motion::degree>& box, doub
                                 std::to_string(from) + ")");
   }
   const StaticBox swept = bounded_swept_box(box, from, until);
-  const auto ask = [&](const auto& look) { broad_phase_->visit_swept(box, from, until, look); };
+  const auto ask = [&](const auto& look) {
+    broad_phase_->visit_swept(box, from, until, look);
+    // Of meshes that bend it knows the present piece alone.
+    for (BodySlot slot = 0; slot < volumes_.end_of_bent(); ++slot) {
+      if (volumes_.bends(slot) && bodies_.entered(slot)) look(slot);
+    }
+  };
   answer(
       "World::visit_swept", ask, [&](BodySlot slot) { return volumes_.swept(slot, from, until).overlaps(swept); },
       visit);

@@ -5,6 +5,7 @@
 #include "collision/motions.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
+#include "collision/shapes/bending_mesh.hpp"
 #include "collision/world/pairs.hpp"
 
 #include <algorithm>
@@ -69,7 +70,12 @@ bool only_touching(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
   const auto largest = [t](const Motion& motion) { return path_of(motion).position(t).cwiseAbs().maxCoeff(); };
   const double size =
       largest(a.motion) + largest(b.motion) + std::min(a.shape.bounding_radius, b.shape.bounding_radius);
-  const Motion place_b = standing(b.motion, t, touch_rounding * size * contact.normal);
+  double apart = touch_rounding * size;
+  // A mesh that bends is in contact within its tolerance already; and a little more is not much of an overlap.
+  for (const PlacedShape* const shape : {&a.shape, &b.shape}) {
+    if (bends(shape->shape)) apart = std::max(apart, 1.25 * bending_tolerance * shape->bounding_radius);
+  }
+  const Motion place_b = standing(b.motion, t, apart * contact.normal);
   return !in_contact(MovingShape<Motion>{a.shape, place_a}, MovingShape<Motion>{b.shape, place_b}, t);
 }
 

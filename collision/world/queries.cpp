@@ -12,6 +12,7 @@ template <class Motion>
 bool BasicWorld<Motion>::touching(BodyId a, BodyId b) const {
   const BodySlot of_a = bodies_.slot_of(a);
   const BodySlot of_b = bodies_.slot_of(b);
+  if (a == b) return self_contacts_.touching(of_a);
   return pairs_.mode(of_a, of_b) == ContactMode::transparent && pairs_.overlapping(of_a, of_b);
 }
 

@@ -3,6 +3,8 @@
 #include "collision/world.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 namespace kds::collision {
@@ -21,12 +23,26 @@ void BasicWorld<Motion>::process_meeting() {
 }
 
 template <class Motion>
+void BasicWorld<Motion>::process_self_contact() {
+  const auto meeting = self_contacts_.take_next();
+  const PairEvent event = event_of(meeting.slot, meeting.slot, self_contacts_.contact(meeting.slot));
+  ++(meeting.separates ? counters_.separations : counters_.contacts);
+  tell([&](Listener& listener) {
+    meeting.separates ? listener.separation(*this, event) : listener.contact(*this, event);
+  });
+}
+
+template <class Motion>
 void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& contact) {
   const PairEvent event = event_of(a, b, contact);
   ++counters_.contacts;
   if (pairs_.mode(a, b) == ContactMode::transparent) {
     return tell([&](Listener& listener) { listener.contact(*this, event); });
   }
+  const auto state = [&] {
+    return std::tuple(bodies_.motion(a), bodies_.motion(b), bodies_[a].shape, bodies_[b].shape);
+  };
+  const auto before = bends(a, b) ? std::optional(state()) : std::nullopt;
   bool suppressed = false;
   bool passes = false;
   if (options_.response == Response::elastic) {
@@ -35,14 +51,14 @@ void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& 
     suppressed = passes = count_meeting(a, b) > patience();
     counters_.rebounds_suppressed += suppressed;
   }
-  // A pair that still approaches (two fixed bodies, or a callback that left them so) passes through.
   const auto after = [&] {
     if (!contains(event.a) || !contains(event.b) || resting_.find(a, b) != Resting::none) return;
+    // A pair that still approaches (two fixed bodies, or a callback that left them so) passes through. So does one with
+    // a mesh that bends if nothing has changed: contact is within a tolerance, and would be found again.
+    const bool again = before && *before == state();
     // Whether the broad phase still has the pair does not matter: the callback may have parted their boxes by a
     // rounding.
-    if (!passes && !(parting(a, b, contact) < 0)) return;
-    pairs_.let_pass(a, b);
-    reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);
+    if (passes || again || parting(a, b, contact) < 0) let_through(a, b, contact);
   };
   try {
     tell([&](Listener& listener) {
@@ -54,6 +70,12 @@ void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& 
     throw;
   }
   after();
+}
+
+template <class Motion>
+void BasicWorld<Motion>::let_through(BodySlot a, BodySlot b, const Contact& contact) {
+  pairs_.let_pass(a, b);
+  reports_.add(Reports::Kind::passes, bodies_.id_of(a), bodies_.id_of(b), contact);
 }
 
 /// How often both have met others within ZenoPolicy::interval; a fixed body's meetings count only with another fixed

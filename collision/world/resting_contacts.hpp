@@ -118,6 +118,11 @@ class RestingContacts {
     if (id < spans_.slots()) spans_.clear(id);
   }
 
+  /// A surface that moves on its own strikes a body. Returns the velocity that the body has from now on, along the
+  /// normal, a unit vector, at least this. What leans on it is driven with it, so that none of these contacts
+  /// approaches.
+  Eigen::Vector3d drive(BodySlot id, const Eigen::Vector3d& normal, double velocity);
+
   /// The motion of a body has changed: solve() is to look at those that rest on it or that it rests on.
   void disturb(BodySlot id) {
     if (!contacts_.empty()) note(id);

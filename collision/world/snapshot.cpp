@@ -16,7 +16,7 @@ namespace kds::collision {
 namespace {
 
 /// The version of the image's layout: it changes with the members, so that bytes of another layout are refused as such.
-constexpr int snapshot_form = 6;
+constexpr int snapshot_form = 7;
 
 /// Options that decide events. Broad phase, window, threads and profile may differ.
 template <class Archive>
@@ -36,6 +36,7 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact, 
   }
   same("zeno.contacts", options.zeno.contacts);
   same("zeno.interval", options.zeno.interval);
+  same("shortest_flight", options.shortest_flight);
   if (turns_bodies) same("orientation_error", options.orientation_error);
   same("report_pairs", std::uint32_t{options.report_pairs});
   if (!options.report_pairs) return;
@@ -58,6 +59,7 @@ struct BasicWorld<Motion>::Image {
   typename Scripts<Motion>::Image scripts;
   typename Tumbling<Motion>::Image tumbling;
   typename Pairs<Motion>::Image pairs;
+  typename SelfContacts<Motion>::Image self_contacts;
   typename Resting::Image resting;
   std::vector<Reports::Report> pending;
 
@@ -65,7 +67,7 @@ struct BasicWorld<Motion>::Image {
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
     archive(now, callers_now, horizon, room_for_meshes, counters, edits);
     bodies.archive(archive, known);
-    archive(scripts, tumbling, pairs, resting, pending);
+    archive(scripts, tumbling, pairs, self_contacts, resting, pending);
   }
 
   /// Throws std::runtime_error, naming what is wrong, unless it may be an image of a world with these options, which
@@ -86,6 +88,7 @@ struct BasicWorld<Motion>::Image {
                      "it never enters");
     }
     pairs.check(bodies, now, options);
+    self_contacts.check(bodies);
     resting.check(bodies, now, options);
     check_reports(pending, bodies, now);
   }
@@ -108,6 +111,7 @@ typename BasicWorld<Motion>::Image BasicWorld<Motion>::image() const {
           .scripts = scripts_.image(),
           .tumbling = tumbling_.image(),
           .pairs = pairs_.image(),
+          .self_contacts = self_contacts_.image(),
           .resting = resting_.image(),
           .pending = reports_.image()};
 }
@@ -125,6 +129,7 @@ void BasicWorld<Motion>::become(const Image& image) {
   reports_.become(image.pending);
   resting_.become(image.resting);
   pairs_.become(image.pairs);
+  self_contacts_.become(image.self_contacts);
   walls_.become();
   rebuild_broad_phase();
   counters_ = image.counters;

@@ -50,21 +50,35 @@ Kdops<Motion::degree> Volumes<Motion>::kdops() const {
 
 template <class Motion>
 void Volumes<Motion>::add(BodySlot slot, const BoxFunction& function) {
+  if (!function) return note_shape(slot);
   if (!directions_.empty()) place_extents(slot);
-  if (!function) return;
   make_room(ends_, bodies_.slots());
   if (given_.size() <= slot) given_.resize(slot + std::size_t{1});
   given_[slot] = std::make_unique<Given>(Given{function, {}});
 }
 
+/// The bounds of a body that is new, has another shape, or bends on. Its volume is not the caller's.
+template <class Motion>
+void Volumes<Motion>::note_shape(BodySlot slot) {
+  const detail::Body<Motion>& b = bodies_[slot];
+  if (b.shape && collision::bends(b.shape->shape) && b.volume == BoundingVolume::shape && !from_caller(slot)) {
+    if (bent_.size() <= slot) bent_.resize(slot + std::size_t{1});
+    bent_[slot] = bending_bounds(*b.shape, clock_.now);
+  }
+  if (!directions_.empty()) place_extents(slot);
+}
+
 template <class Motion>
 void Volumes<Motion>::remove(BodySlot slot) {
   clear(ends_, slot);
+  if (bends(slot)) bent_[slot].reset();
   if (from_caller(slot)) given_[slot] = nullptr;
 }
 
 template <class Motion>
 KineticBox<Motion::degree> Volumes<Motion>::renew(BodySlot slot) {
+  if (bends(slot)) [[unlikely]]
+    note_shape(slot);
   if (!from_caller(slot)) [[likely]]
     return box(slot);
   const Box made = [&] {
@@ -83,7 +97,8 @@ KineticBox<Motion::degree> Volumes<Motion>::renew(BodySlot slot) {
 
 template <class Motion>
 void Volumes<Motion>::set_end(BodySlot slot) {
-  const double until = from_caller(slot) ? given_[slot]->box.valid_until : clearance_until(slot);
+  double until = from_caller(slot) ? given_[slot]->box.valid_until : clearance_until(slot);
+  if (bends(slot)) until = std::min(until, bent_[slot]->until);
   if (until <= clock_.horizon && until < never) {
     make_room(ends_, bodies_.slots());
     ends_.set(slot, until);
@@ -94,7 +109,7 @@ void Volumes<Motion>::set_end(BodySlot slot) {
 
 template <class Motion>
 void Volumes<Motion>::extend_horizon() {
-  if (given_.empty() && !meshes_) return;
+  if (!any_ends()) return;
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (bodies_[slot].entered) schedule(slot);
   }
@@ -104,14 +119,15 @@ template <class Motion>
 void Volumes<Motion>::become(bool room_for_meshes) {
   meshes_ = room_for_meshes;
   given_.clear();
+  bent_.clear();
   ends_.resize(0);
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-    if (bodies_.alive(slot) && !directions_.empty()) place_extents(slot);
+    if (bodies_.alive(slot)) note_shape(slot);
   }
 }
 
-/// The extents of a new body in the directions beyond the axes: they do not change, since it does not turn or its
-/// volume is round.
+/// The extents of a body in the directions beyond the axes: unless it bends they do not change, since it does not turn
+/// or its volume is round.
 template <class Motion>
 void Volumes<Motion>::place_extents(BodySlot slot) {
   const detail::Body<Motion>& b = bodies_[slot];
@@ -123,7 +139,7 @@ void Volumes<Motion>::place_extents(BodySlot slot) {
       const double radius = b.bounding_radius * norm(direction) * (1 + 0x1p-48);
       half_extents = {-radius, radius};
     } else {
-      half_extents = extent(*b.shape, direction);
+      half_extents = bends(slot) ? bending_extent(*b.shape, direction, clock_.now) : extent(*b.shape, direction);
     }
   }
 }
@@ -186,7 +202,10 @@ bool Volumes<Motion>::meets(BodySlot slot, const StaticBox& box, double t) const
 
 template <class Motion>
 StaticBox Volumes<Motion>::swept(BodySlot slot, double from, double until) const {
-  return bounded_swept_box(box_or_ball(slot), from, until);
+  if (!bends(slot)) return bounded_swept_box(box_or_ball(slot), from, until);
+  const PlacedShape& shape = *bodies_[slot].shape;
+  return bounded_swept_box(grown(slot, box_around<Motion::degree>(bodies_.path(slot), shape.low, shape.high)), from,
+                           until);
 }
 
 #define KDS_INSTANTIATE(motion) template class Volumes<motion>;

@@ -6,6 +6,7 @@
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/motions.hpp"
+#include "collision/shapes/bending_mesh.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/turning/turning_extents.hpp"
@@ -15,6 +16,8 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -23,7 +26,8 @@ namespace kds::collision {
 /// and until when they contain the body.
 ///
 /// Boxes are made from shape and motion, or by the caller's function. From the first mesh on all include the contact
-/// gaps of meshes (mesh_margins.hpp). Most contain their body at all later times.
+/// gaps of meshes (mesh_margins.hpp). Most contain their body at all later times; those of meshes that bend until the
+/// next keyframe.
 ///
 /// Cost: O(1) a volume; nothing is stored for bodies whose volumes never end, except for k-DOPs.
 template <class Motion>
@@ -37,6 +41,12 @@ class Volumes {
 
   /// For the broad phase.
   Kdops<Motion::degree> kdops() const;
+
+  /// Whether some volumes have ends, after which they are renewed.
+  bool any_ends() const { return meshes_ || !given_.empty() || !bent_.empty(); }
+  /// Whether the body's volume is around the piece of a mesh that bends alone.
+  bool bends(BodySlot slot) const { return slot < bent_.size() && bent_[slot]; }
+  std::size_t end_of_bent() const { return bent_.size(); }  ///< no slot from this on bends
 
   /// Adds a body. `function`: the caller's, or an empty one. Throws std::length_error, before anything is changed, if
   /// there is no room.
@@ -55,6 +65,8 @@ class Volumes {
 
   /// The present box: the last one of the caller's function, or that of the motion.
   Box box(BodySlot slot) const { return meshes_ ? grown(slot, bare_box(slot)) : bare_box(slot); }
+  /// The body has another shape, which bends.
+  void shape_changed(BodySlot slot) { note_shape(slot); }
   /// A new box for the present motion. Throws what the caller's function throws, and std::invalid_argument if its box
   /// is not valid. If there are no such functions, several threads may call it at once.
   Box renew(BodySlot slot);
@@ -68,7 +80,7 @@ class Volumes {
 
   /// Notes until when the body's box contains it.
   void schedule(BodySlot slot) {
-    if (meshes_ || from_caller(slot)) set_end(slot);
+    if (meshes_ || from_caller(slot) || bends(slot)) set_end(slot);
   }
   /// When the next box has to be renewed, and of which body. Precondition of next_body(): next_time() < never.
   double next_time() const { return ends_.empty() ? never : ends_.top().time; }
@@ -89,6 +101,7 @@ class Volumes {
   Box bare_box(BodySlot slot) const;
   bool is_round(BodySlot slot) const;
   void set_end(BodySlot slot);
+  void note_shape(BodySlot slot);
   void place_extents(BodySlot slot);
   KineticSlab<Motion::degree> slab(BodySlot slot, std::size_t i, double now) const;
 
@@ -100,16 +113,17 @@ class Volumes {
   const Bodies<Motion>& bodies_;
   const WorldOptions& options_;
   const Clock& clock_;
-  std::vector<std::unique_ptr<Given>> given_;   ///< by body, up to the last that has had one
-  std::vector<KdopDirection> directions_;       ///< beyond the axes
-  std::vector<std::array<double, 2>> extents_;  ///< by body and direction
-  DaryQueue<> ends_;                            ///< slots are bodies
-  bool meshes_ = false;                         ///< there is or has been one
+  std::vector<std::unique_ptr<Given>> given_;       ///< by body, up to the last that has had one
+  std::vector<std::optional<BendingBounds>> bent_;  ///< by body, up to the last that bends: of the present piece
+  std::vector<KdopDirection> directions_;           ///< beyond the axes
+  std::vector<std::array<double, 2>> extents_;      ///< by body and direction
+  DaryQueue<> ends_;                                ///< slots are bodies
+  bool meshes_ = false;                             ///< there is or has been one
   bool calling_ = false;
 };
 
 /// Whether the volume is around the bounding sphere, which contains the body in every orientation. If not, it is around
-/// the shape as it is placed, or (boxes) as it turns (turning_half_extents()).
+/// the shape as it is placed, or (boxes and capsules) as it turns (turning_half_extents()).
 template <class Motion>
 inline bool Volumes<Motion>::is_round(BodySlot slot) const {
   return turns<Motion> || !bodies_[slot].shape || bodies_[slot].volume == BoundingVolume::sphere;
@@ -127,6 +141,7 @@ inline KineticBox<Motion::degree> Volumes<Motion>::bare_box(BodySlot slot) const
       return box_around<Motion::degree>(bodies_.path(slot), -half_extents, half_extents);
     }
   }
+  if (bends(slot)) return box_around<Motion::degree>(bodies_.path(slot), bent_[slot]->low, bent_[slot]->high);
   const bool sphere = is_round(slot);
   const Eigen::Vector3d half_extents = Eigen::Vector3d::Constant(b.bounding_radius);
   // Not if pairs are reported: these are pairs whose boxes overlap unrounded.

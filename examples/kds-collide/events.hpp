@@ -36,7 +36,7 @@ struct Event {
   double time = 0;
   EventKind kind = EventKind::contact;
   std::uint32_t a = 0;  ///< place of the body in the scene
-  std::uint32_t b = 0;  ///< the same, greater than a; of a wall its place in wall_names
+  std::uint32_t b = 0;  ///< the same, greater than a, or a itself; of a wall its place in wall_names
   /// Not used by pair_begin and pair_end, which have neither point nor normal nor features.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();

@@ -38,6 +38,7 @@ struct SceneBody {
   std::optional<Eigen::Matrix3d> inertia_tensor{};  ///< in place of it, in the axes of the body; checked where it turns
   bool fixed = false;                               ///< infinite mass
   bool sensor = false;                              ///< only reports
+  bool self_contacts = false;                       ///< of a mesh that bends: those with itself are events
   double restitution = 1;                           ///< in [0, 1]; of two bodies the lower counts
   double friction = 0;                              ///< and here; 0 where nothing turns
   double tangential_restitution = 0;

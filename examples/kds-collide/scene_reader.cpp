@@ -135,8 +135,8 @@ void read_vertices(const JsonNode& node, SceneBody& body, Response response) {
   const auto* const shape = std::get_if<kds::collision::MeshShape>(&body.shape);
   if (!shape) node.fail("is for meshes only");
   if (shape->scale != 1) node.fail("is for meshes without a scale: positions are as they are given");
-  if (response == Response::elastic && !body.sensor) {
-    node.fail("a mesh that bends only reports contacts: \"response\": \"none\", or \"sensor\": true for this body");
+  if (response == Response::elastic && !body.sensor && !body.fixed) {
+    node.fail("contacts do not move a mesh that bends: \"fixed\": true for this body, or \"sensor\": true");
   }
   const std::size_t count = shape->mesh->vertices().size();
   std::vector<kds::collision::MeshScript::Keyframe> keyframes;
@@ -225,8 +225,8 @@ bool speaks_of_turning(const JsonNode& node) {
 }
 
 SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbers& of_scene) {
-  node.object({"name", "shape", "vertices", "orientation", "mass", "inertia", "fixed", "sensor", "restitution",
-               "friction", "tangential_restitution", "motion"});
+  node.object({"name", "shape", "vertices", "orientation", "mass", "inertia", "fixed", "sensor", "self_contacts",
+               "restitution", "friction", "tangential_restitution", "motion"});
   SceneBody body;
   body.name = node["name"].string();
   body.shape = read_shape(node["shape"], scene.meshes);
@@ -239,6 +239,10 @@ SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbe
   }
   if (node.has("fixed")) body.fixed = node["fixed"].boolean();
   if (node.has("sensor")) body.sensor = node["sensor"].boolean();
+  if (node.has("self_contacts")) {
+    if (!node.has("vertices")) node["self_contacts"].fail("is for meshes that bend");
+    body.self_contacts = node["self_contacts"].boolean();
+  }
   if (node.has("vertices")) read_vertices(node["vertices"], body, scene.response);
   const SurfaceNumbers surface = read_surface(node, of_scene);
   body.restitution = surface.restitution, body.friction = surface.friction;

@@ -45,6 +45,7 @@ kds::collision::BasicBodyDescription<Motion> describe(const SceneBody& body) {
   description.mass = body.mass;
   description.fixed = body.fixed;
   description.sensor = body.sensor;
+  description.self_contacts = body.self_contacts;
   description.restitution = body.restitution;
   for (const MotionPiece& piece : body.motion) description.motion.push_back(to_motion<Motion>(piece));
   if constexpr (kds::collision::turns<Motion>) {

@@ -118,6 +118,13 @@ void add_bounces(std::vector<Replay>& replays) {
   replays.push_back(with_each_broad_phase<2>("capsules", options, [] { return capsule_scene(); }));
 }
 
+void add_bending(std::vector<Replay>& replays) {
+  WorldOptions options;
+  replays.push_back(with_each_broad_phase<1>("bending/none", options, [] { return bending_scene<1>(false); }));
+  options.response = Response::elastic;
+  replays.push_back(with_each_broad_phase<2>("bending/elastic", options, [] { return bending_scene<2>(true); }));
+}
+
 std::vector<Replay> all_replays() {
   std::vector<Replay> replays;
   add_lists<1>(replays);
@@ -125,6 +132,7 @@ std::vector<Replay> all_replays() {
   add_worlds<1>(replays);
   add_worlds<2>(replays);
   add_bounces(replays);
+  add_bending(replays);
   return replays;
 }
 

@@ -2,8 +2,11 @@
 // sin and cos give depends on the C library, and with it on the processor.
 #pragma once
 
+#include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
 #include "tests/collision/random_scenes.hpp"
+#include "tests/collision/sample_sheets.hpp"
 
 #include <array>
 #include <cstdint>
@@ -106,6 +109,48 @@ inline Scene<2> capsule_scene() {
     if (i % 4 >= 2) capsule.orientation = unit_quaternion(0.9, 0.1 * i, 0.3, -0.3);
     capsule.restitution = i % 2 == 0 ? 1 : 0.5;
     scene.bodies.push_back(capsule);
+  }
+  return scene;
+}
+
+/// A sheet that is a bowl, and heaves: from keyframe to keyframe it has another depth and tilt.
+inline BendingMesh bowl(const std::array<std::array<double, 2>, 4>& forms, double duration) {
+  const samples::Sheet sheet(6, 2);
+  std::vector<MeshScript::Keyframe> keyframes;
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    keyframes.push_back({0.375 * duration * static_cast<double>(i), sheet.positions});
+    for (Vector3d& p : keyframes.back().positions) {
+      p[2] = forms[i][0] * (p[0] * p[0] + p[1] * p[1]) + forms[i][1] * p[0];
+    }
+  }
+  return {std::make_shared<const MeshScript>(std::move(keyframes), sheet.triangles)};
+}
+
+/// Bodies of all kinds that fall into one; or fly through two that pass through each other, and fold.
+template <int Degree>
+Scene<Degree> bending_scene(bool falls) {
+  Scene<Degree> scene;
+  scene.end_time = 1;
+  const auto sheet = bowl({{{0.25, 0}, {0.375, 0.125}, {0.25, -0.125}, {0.3125, 0}}}, 1);
+  scene.bodies.push_back(fixed_body<Degree>(sheet, motion<Degree>({0, 0, 0})));
+  scene.bodies.back().restitution = 0.5;
+  if (!falls) {
+    auto other =
+        body<Degree>(bowl({{{0.25, 0}, {-0.5, 0.25}, {2, 1}, {-2, 0}}}, 0.75), motion<Degree>({0, 0, 1}, {0, 0, -1}));
+    other.orientation = unit_quaternion(0.5, 0.5, 0.5, 0.5);
+    other.self_contacts = true;
+    scene.bodies.push_back(other);
+  }
+  const auto hull = convex_hull({{0.25, 0, 0}, {-0.125, 0.25, 0}, {-0.125, -0.25, 0}, {0, 0, 0.25}, {0, 0, -0.125}});
+  const std::array<Shape, 5> shapes{Sphere{0.25}, Box{{0.25, 0.2, 0.15}}, Capsule{0.125, 0.25},
+                                    MeshShape{rational_torus(), 0.25}, hull};
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const double x = static_cast<double>(i % 3), y = static_cast<double>(i / 3);
+    auto falling = body<Degree>(shapes[i], motion<Degree>({0.75 * x - 0.7, y - 0.6, 1}, {0.125, 0.25, -2}));
+    if constexpr (Degree == 2) falling.motion[0].coefficients[2] = Vector3d(0, 0, -4.905);
+    falling.orientation = unit_quaternion(0.9, -0.4, 0.1, 0.1);
+    falling.restitution = 0.75;
+    scene.bodies.push_back(falling);
   }
   return scene;
 }

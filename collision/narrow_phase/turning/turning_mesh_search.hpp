@@ -12,12 +12,13 @@
 #include <cstdint>
 #include <functional>
 #include <queue>
+#include <type_traits>
 #include <vector>
 
 namespace kds::collision {
 
-/// A mesh (a) and a MeshOfPair, BoxOfPair or BallOfPair (b), and their motions. See TurningMeshContact for laws and
-/// method.
+/// A mesh (a) and a MeshOfPair, BoxOfPair, BallOfPair or CapsuleOfPair (b), and their motions. See TurningMeshContact
+/// for laws and method.
 template <int Degree, class Side>
 class TurningMeshSearch {
  public:
@@ -103,7 +104,14 @@ class TurningMeshSearch {
 
   Pair pair(Leaves leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
   /// As seen at the time of the view.
-  WaysApart<Pair, RememberedSigns&> ways(const Pair& pair, const View& view) const { return {pair, signs_, view}; }
+  WaysApart<Pair, RememberedSigns&> ways(const Pair& pair, const View& view) const {
+    using Ways = WaysApart<Pair, RememberedSigns&>;
+    if constexpr (std::is_base_of_v<typename Ways::Frame, View>) {
+      return Ways(pair, signs_, view);
+    } else {
+      return Ways(pair, signs_);
+    }
+  }
   bool are_leaves(Leaves nodes) const { return a_.is_leaf(nodes.a) && b_.is_leaf(nodes.b); }
 
   /// Calls ask(child pair) for the halves of the larger node until it returns true.

@@ -37,9 +37,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
   if (count_meeting(a, b) > patience()) {  // No rebound helps: between fixed bodies that close in, say.
     ++counters_.rebounds_suppressed;
-    pairs_.let_pass(a, b);
-    const PairEvent event = event_of(a, b, contact);
-    reports_.add(Reports::Kind::passes, event.a, event.b, event.contact);
+    let_through(a, b, contact);
     return true;
   }
   Motion motion_a = met(a, contact.time);

@@ -3,6 +3,7 @@
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
+#include "tests/collision/deforming/brute_sheets.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/collision/sample_sheets.hpp"
@@ -66,23 +67,6 @@ std::vector<BodyDescription<Degree>> random_bodies(samples::Random& random) {
   return bodies;
 }
 
-/// The least distance of a point from the triangles of a sheet, by the barycentric grid of each: not below the truth.
-double brute_distance(const Vector3d& p, const std::vector<Vector3d>& v, const std::vector<Mesh::Triangle>& triangles) {
-  double least = 1e9;
-  const auto to_segment = [&](const Vector3d& a, const Vector3d& b) {
-    const double x = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (a + x * (b - a) - p).norm());
-  };
-  for (const auto& [i, j, k] : triangles) {
-    to_segment(v[i], v[j]), to_segment(v[j], v[k]), to_segment(v[k], v[i]);
-    Eigen::Matrix<double, 3, 2> sides;
-    sides << v[j] - v[i], v[k] - v[i];
-    const Eigen::Vector2d x = (sides.transpose() * sides).inverse() * (sides.transpose() * (p - v[i]));
-    if (x[0] >= 0 && x[1] >= 0 && x[0] + x[1] <= 1) least = std::min(least, (v[i] + sides * x - p).norm());
-  }
-  return least;
-}
-
 }  // namespace
 
 TEST_CASE("a ball above a sheet that bulges: contact and separation", "[deforming][world]") {
@@ -130,9 +114,13 @@ TEST_CASE("a ball is in contact with a sheet that bends while it is near, and no
       for (const Event& event : log.events) {
         if (event.time() <= t) touching = event.kind != Kind::separation;
       }
-      std::vector<Vector3d> v;
-      for (std::size_t k = 0; k < sheet.script->vertices(); ++k) v.push_back(sheet.script->position(k, t));
-      const double distance = brute_distance(path.position(t), v, samples::Sheet(3).triangles);
+      BruteSurface surface;
+      for (std::size_t k = 0; k < sheet.script->vertices(); ++k) {
+        surface.corners.push_back(sheet.script->position(k, t).cast<Long>());
+      }
+      surface.faces = samples::Sheet(3).triangles;
+      surface.add_edges_of_faces();
+      const auto distance = static_cast<double>(brute_distance(surface, {{path.position(t).cast<Long>()}, {}, {}}));
       CAPTURE(i, t, distance);
       if (touching ? distance > 0.25 + 2.01 * tolerance : distance < 0.25) FAIL_CHECK("wrong state");
     }
@@ -231,11 +219,11 @@ TEST_CASE("what is refused of meshes that bend", "[deforming][world]") {
                                  .motion = {Path<1>::line(Vector3d::Zero(), Vector3d::Zero())}};
   World<1> elastic({.response = Response::elastic});
   CHECK_THROWS_WITH(elastic.add_body(sheet),
-                    "shape: a mesh that bends only reports contacts: it has to be a sensor, or the response of the "
-                    "world `none`");
-  BodyDescription<1> sensor = sheet;
-  sensor.sensor = true;
+                    "fixed: contacts do not move a mesh that bends: it has to be fixed, or a sensor");
+  BodyDescription<1> sensor = sheet, fixed = sheet;
+  sensor.sensor = true, fixed.fixed = true;
   CHECK_NOTHROW(elastic.add_body(sensor));
+  CHECK_NOTHROW(elastic.add_body(fixed));
   World<1> world({.response = Response::none});
   CHECK_THROWS_WITH(world.add_body({.shape = BendingMesh{}, .motion = sheet.motion}), "script: is missing");
   const auto flat = samples::Sheet(4).positions;

@@ -1,0 +1,72 @@
+// Stretches of time in which surfaces touch, looked for piece by piece.
+#pragma once
+
+#include "kds/arithmetic/lattice.hpp"
+
+#include <algorithm>
+
+namespace kds::collision {
+
+/// A stretch of time in which two surfaces, or parts of one, are in contact.
+struct TouchSpan {
+  double begin = never;
+  double end = never;
+};
+
+/// The first stretch that ends after t, if it begins by the horizon. Of one that begins at t or later the end is left
+/// out, unless it is asked for.
+///
+/// Contacts and separations follow each other from the begin of each piece, so that they do not depend on t. `course`
+/// has the pieces of the time and the surfaces: `first_begin(t)`, a time in the first piece; `piece(t)`, the one that
+/// holds t; `over(t)`, whether nothing changes any more in a piece that begins at t; `near(t)`, a time from t on before
+/// which nothing touches; `touching(begin, end)`, a SurfaceTouching over a piece, to which the others then refer;
+/// `first_contact(from)`.
+template <class Course>
+TouchSpan touch_after(Course& course, double t, double horizon, bool with_end) {
+  TouchSpan touch;
+  bool open = false;
+  for (double begin = course.first_begin(t); begin <= horizon;) {
+    const auto [w0, w1] = course.piece(begin);
+    if (!(begin < w1) || course.over(w0)) break;
+    begin = w1;
+    if (!open) {
+      const double near = course.near(w0);
+      if (near > horizon || near == never) break;
+      if (near > w1) {
+        begin = near;
+        continue;
+      }
+    }
+    const auto touching = course.touching(w0, w1);
+    double now = w0;
+    bool touches = touching.touches(w0);
+    if (open && !touches) {
+      touch.end = w0;
+      if (touch.end > t) return touch;
+      open = false;
+    }
+    for (;;) {
+      if (!open) {
+        if (!touches) {
+          const auto contact = course.first_contact(now);
+          if (!contact) break;
+          now = contact->contact.time;
+        }
+        touch = {now, never};
+        open = true;
+        if (now > horizon) return {};
+      }
+      if (touch.begin >= t && !with_end) return touch;
+      const double parts = touching.parts_at(now);
+      if (parts == never) break;
+      touch.end = std::max(parts, next_up(now));
+      if (touch.end > t) return touch;
+      now = touch.end;
+      open = touches = false;
+      if (!(now < w1)) break;
+    }
+  }
+  return open ? TouchSpan{touch.begin, never} : TouchSpan{};
+}
+
+}  // namespace kds::collision
