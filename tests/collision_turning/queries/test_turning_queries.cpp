@@ -85,7 +85,7 @@ TEST_CASE("a shape that turns and is in no world meets what it would meet as a b
     CHECK(hit->body == (record.met->a == record.of ? record.met->b : record.met->a));
     CHECK(hit->contact.time == record.met->contact.time);
   }
-  CHECK(met > 10);
+  CHECK(met > 5);
 }
 
 }  // namespace kds::collision::test_turning_queries
