@@ -6,7 +6,7 @@
 #include "kds/arithmetic/unrolled.hpp"
 #include "kds/certificate.hpp"
 #include "kds/motion.hpp"
-#include "kds/roots/compiled_once.hpp"
+#include "kds/roots/failure_time.hpp"
 
 #include <cmath>
 #include <limits>

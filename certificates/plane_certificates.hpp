@@ -6,7 +6,7 @@
 #include "certificates/in_circle.hpp"
 #include "certificates/orientation.hpp"
 #include "certificates/plane_motion.hpp"
-#include "kds/roots/compiled_once.hpp"
+#include "kds/roots/failure_time.hpp"
 
 namespace kds {
 

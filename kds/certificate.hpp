@@ -5,6 +5,7 @@
 #include "kds/arithmetic/compensated.hpp"
 #include "kds/arithmetic/exact.hpp"
 #include "kds/certificate_hooks.hpp"
+#include "kds/certificate_reference.hpp"
 #include "kds/hook_checks.hpp"
 #include "kds/motion.hpp"
 #include "kds/polynomial.hpp"
@@ -146,11 +147,11 @@ Ball<DoubleDouble> extended_value(const C& certificate, double t) {
   return certificate.template polynomial<Ball<DoubleDouble>>(t).c[0];
 }
 
-template <class C>
-int exact_sign_after(const C& certificate, double t, int derivative) {
+template <int Degree>
+int exact_sign_after(const CertificateReference<Degree>& certificate, double t, int derivative) {
   ++sign_counters.exact;
   const auto f = certificate.template polynomial<Exact>(t);
-  for (std::size_t i = static_cast<std::size_t>(derivative); i <= C::degree; ++i) {
+  for (std::size_t i = static_cast<std::size_t>(derivative); i <= Degree; ++i) {
     if (const int s = f.c[i].sign()) return s;
   }
   return 0;
@@ -170,8 +171,8 @@ int certain_sign_after(const Polynomial<Degree, Ball<T>>& f, int derivative, boo
 }
 
 /// Skips the rung of doubles: for times that are roots up to rounding, where it cannot decide.
-template <class C>
-int extended_sign_after(const C& certificate, double t, int derivative) {
+template <int Degree>
+int extended_sign_after(const CertificateReference<Degree>& certificate, double t, int derivative) {
   if (known_to_vanish(certificate)) return 0;
   ++sign_counters.extended;
   bool zero = false;
@@ -187,7 +188,7 @@ int sign_after(const C& certificate, double t, int derivative) {
   bool zero = false;
   const auto f = certificate.template polynomial<Ball<double>>(t);
   const int s = detail::certain_sign_after(f, derivative, zero);
-  return s != 0 || zero ? s : detail::extended_sign_after(certificate, t, derivative);
+  return s != 0 || zero ? s : detail::extended_sign_after(CertificateReference(certificate), t, derivative);
 }
 
 }  // namespace kds

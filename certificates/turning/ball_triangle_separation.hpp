@@ -97,11 +97,11 @@ struct CentreBeyondPart : detail::BallAndTriangle<Degree> {
 
 /// The distance of the centre from the plane of a face, the line of an edge or a corner is at least the radius, as a
 /// sum of squares: (N . d)^2 >= r^2 |N|^2, |e x d|^2 >= r^2 |e|^2, |d|^2 >= r^2; times the square of the scale of the
-/// body.
+/// body. r is the sum of two radii, that of the ball and one that the triangle is grown by, which is not rounded.
 template <int Degree>
 struct BallBeyondPart : detail::BallAndTriangle<Degree> {
   static constexpr int degree = 2 * Degree;
-  double radius;
+  std::array<double, 2> radii;
 
   template <class Number, int Order>
   TurningSum<Order, Number> turning_sum(double epoch) const {
@@ -129,7 +129,7 @@ struct BallBeyondPart : detail::BallAndTriangle<Degree> {
       add({zero, one, zero});
       add({zero, zero, one});
     }
-    const Number scaled_radius = turn.scale() * Number(radius);
+    const Number scaled_radius = turn.scale() * (Number(radii[0]) + Number(radii[1]));
     f.p[0][0].c[0] = f.p[0][0].c[0] - scaled_radius * scaled_radius * length;
     return f;
   }

@@ -40,8 +40,9 @@ constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   PairTable<certificates::RigidMotion<Degree>> table;
   table.template add<Sphere, Sphere>(TurningContact<Degree>{});
   table.template add<Box, Sphere, Box>(TurningContact<Degree>{});
-  table.template add<ConvexHull, Sphere, Box, ConvexHull>(TurningContact<Degree>{});
-  table.template add<MeshShape, Sphere, Box, ConvexHull, MeshShape>(TurningMeshContact<Degree>{});
+  table.template add<Capsule, Sphere, Box, Capsule>(TurningContact<Degree>{});
+  table.template add<ConvexHull, Sphere, Box, Capsule, ConvexHull>(TurningContact<Degree>{});
+  table.template add<MeshShape, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningMeshContact<Degree>{});
   return table;
 }
 

@@ -39,7 +39,7 @@ void validate(const BasicBodyDescription<Motion>& description) {
   if (!description.fixed) require_size(description.mass, "mass");
   if (!can_move_by<Motion>(description.shape)) {
     const std::string name = std::string("shape: a ") + kind_name(description.shape);
-    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes, hulls and meshes can");
+    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes, capsules, hulls and meshes can");
     fail(name + " cannot move on paths of degree " + std::to_string(Motion::degree) + ": at most 2");
   }
   if constexpr (turns<Motion>) {

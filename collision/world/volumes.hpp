@@ -123,7 +123,7 @@ class Volumes {
 };
 
 /// Whether the volume is around the bounding sphere, which contains the body in every orientation. If not, it is around
-/// the shape as it is placed, or (boxes) as it turns (turning_half_extents()).
+/// the shape as it is placed, or (boxes and capsules) as it turns (turning_half_extents()).
 template <class Motion>
 inline bool Volumes<Motion>::is_round(BodySlot slot) const {
   return turns<Motion> || !bodies_[slot].shape || bodies_[slot].volume == BoundingVolume::sphere;

@@ -119,7 +119,7 @@ void describe(CLI::App& app, Arguments& arguments) {
 
   const std::string group = "Making a scene instead of running one";
   auto* kind = app.add_option("--generate", arguments.generator.kind,
-                              "rings, models, spheres, boxes, spinners, spinning-rings, rods, plates or sheet")
+                              "rings, models, spheres, boxes, spinners, spinning-rings, rods, plates, capsules or sheet")
                    ->type_name("KIND")
                    ->group(group);
   const auto add = [&]<class Number>(const char* name, const char* type, Number& value, const char* what) {

@@ -146,6 +146,16 @@ std::string slender_shape(double radius, bool rod, Random& random) {
   return text + "}}";
 }
 
+/// A rod that is round, as long as one of slender_shape().
+std::string capsule_shape(double radius, Random& random) {
+  const double thickness = random.uniform(0.08, 0.16) * radius;
+  std::string text = "{\"capsule\": {\"radius\": ";
+  append_number(text, thickness);
+  text += ", \"half_length\": ";
+  append_number(text, radius - thickness);
+  return text + "}}";
+}
+
 std::string sphere_shape(double radius) {
   std::string text = "{\"sphere\": {\"radius\": ";
   append_number(text, radius);
@@ -169,7 +179,7 @@ void check(const GeneratorOptions& options) {
   if (std::find(kinds.begin(), kinds.end(), options.kind) == kinds.end()) {
     throw std::invalid_argument(
         "--generate: there is no \"" + options.kind +
-        "\"; use rings, models, spheres, boxes, spinners, spinning-rings, rods, plates or sheet");
+        "\"; use rings, models, spheres, boxes, spinners, spinning-rings, rods, plates, capsules or sheet");
   }
   constexpr std::size_t most_bodies = 10'000'000;  // about 3 GB of text
   if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
@@ -255,7 +265,7 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
 }  // namespace
 
 std::vector<std::string_view> generator_kinds() {
-  return {"rings", "models", "spheres", "boxes", "spinners", "spinning-rings", "rods", "plates", "sheet"};
+  return {"rings", "models", "spheres", "boxes", "spinners", "spinning-rings", "rods", "plates", "capsules", "sheet"};
 }
 
 GeneratedScene generate_scene(const GeneratorOptions& options) {
@@ -274,7 +284,8 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
   }
 
   const bool rods = options.kind == "rods", plates = options.kind == "plates";
-  const bool spins = rods || plates || options.kind == "spinners" || options.kind == "spinning-rings";
+  const bool capsules = options.kind == "capsules";
+  const bool spins = rods || plates || capsules || options.kind == "spinners" || options.kind == "spinning-rings";
 
   Random random(options.seed);
   std::vector<double> radii(options.bodies);
@@ -326,6 +337,8 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
       json += mesh_shape(mesh.name, radii[i] / mesh.radius);
     } else if (rods || plates) {
       json += slender_shape(radii[i], rods, random);
+    } else if (capsules) {
+      json += capsule_shape(radii[i], random);
     } else if (spins) {
       json += spinner_shape(radii[i], i);
     } else {

@@ -33,15 +33,15 @@ struct GeneratedScene {
 
 /// rings: [Coming06] section 5, tori of 64 triangles. models: [Coming06] Figure 6, closed models of over 6 000
 /// triangles. spheres; boxes. spinners: cubes, rods and plates that turn about fixed axes, as bodies of equal moments
-/// of inertia do. spinning-rings, rods, plates: these precess, since their moments are those of their shapes. sheet:
-/// one of 1 152 triangles on which waves run, and the bodies, balls that fly through it.
+/// of inertia do. spinning-rings, rods, plates, capsules: these precess, since their moments are those of their shapes.
+/// sheet: one of 1 152 triangles on which waves run, and the bodies, balls that fly through it.
 std::vector<std::string_view> generator_kinds();
 
 /// The scene of [Coming06] section 5 with any shape: bounding radii uniform in 0.5-1.5, speeds uniform in 0.5-1.5 times
 /// their mean in random directions, random orientations, positions uniform where bounding balls do not overlap, in a
-/// cube with reflecting walls. The last four kinds turn besides, at up to most_turning about axes in random directions.
-/// One seed gives one text, on every compiler and machine. Throws std::invalid_argument for options out of range, and
-/// where no room is left for a body.
+/// cube with reflecting walls. The kinds from spinners to capsules turn besides, at up to most_turning about axes in
+/// random directions. One seed gives one text, on every compiler and machine. Throws std::invalid_argument for options
+/// out of range, and where no room is left for a body.
 GeneratedScene generate_scene(const GeneratorOptions& options);
 
 }  // namespace kds_collide

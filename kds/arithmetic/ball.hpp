@@ -54,7 +54,7 @@ struct Ball {
     return {sum, a.radius + rounding_unit<T> * magnitude(sum)};
   }
   friend Ball operator-(const Ball& a, double b) { return a + (-b); }
-  friend Ball operator*(const Ball& a, const Ball& b) {
+  [[gnu::always_inline]] friend Ball operator*(const Ball& a, const Ball& b) {
     const T product = a.middle * b.middle;
     double bound = magnitude(a.middle) * b.radius + magnitude(b.middle) * a.radius + a.radius * b.radius +
                    rounding_unit<T> * magnitude(product);

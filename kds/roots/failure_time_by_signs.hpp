@@ -27,29 +27,29 @@ namespace kds::detail {
 ///
 /// Cost: O(degree^2) searches of a few values in double-double each: 2 us for a parabola, up to 70 us for clustered
 /// roots of degree 8.
-template <class C>
+template <int Degree>
 class DerivativeIntervals {
  public:
-  DerivativeIntervals(const C& certificate, double now, double horizon)
+  DerivativeIntervals(const CertificateReference<Degree>& certificate, double now, double horizon)
       : certificate_(certificate), now_(now), horizon_(horizon) {
     const auto p = certificate.template polynomial<Ball<double>>(now);
-    for (std::size_t i = 0; i <= C::degree; ++i) guide_.c[i] = p.c[i].middle;
+    for (std::size_t i = 0; i <= Degree; ++i) guide_.c[i] = p.c[i].middle;
   }
 
   /// First double in [now, horizon] with f < 0 just after, or `never`.
   double first_negative() {
-    for (int order = C::degree - 1; order > 0; --order) refine(order);
+    for (int order = Degree - 1; order > 0; --order) refine(order);
     return first_negative_between_cells();
   }
 
  private:
-  static constexpr std::size_t most_cells = C::degree * (C::degree + 1) / 2;
+  static constexpr std::size_t most_cells = Degree * (Degree + 1) / 2;
 
   /// The doubles `before` and `at` are neighbours.
   struct Cell {
     double before;
     double at;
-    Polynomial<C::degree, Ball<double>> f;  ///< about `before`
+    Polynomial<Degree, Ball<double>> f;  ///< about `before`
   };
 
   /// From a set complete for f^(order+1) to one complete for f^(order).
@@ -94,7 +94,7 @@ class DerivativeIntervals {
     double change = 0;
     double binomial = 1;
     double power = 1;
-    for (int i = order + 1; i <= C::degree; ++i) {
+    for (int i = order + 1; i <= Degree; ++i) {
       binomial = binomial * i / (i - order);
       power *= width;
       const Ball<double>& c = cell.f.c[static_cast<std::size_t>(i)];
@@ -118,7 +118,7 @@ class DerivativeIntervals {
       if (!(start < above)) return never;
     }
     const double guess = now_ + approximate_root(scaled_derivative(order), start - now_, above - now_, after > 0);
-    const double t = LatticeCrossing<C>(certificate_, order)(start, above, after, guess);
+    const double t = LatticeCrossing<Degree>(certificate_, order)(start, above, after, guess);
     if (stop == never && t == above && sign_after(certificate_, t, order) != after) {
       horizon_ = above;  // The sign changes beyond all doubles.
       return never;
@@ -128,17 +128,17 @@ class DerivativeIntervals {
 
   /// The leading term decides.
   int sign_at_infinity(int order) const {
-    for (int i = C::degree; i >= order; --i) {
+    for (int i = Degree; i >= order; --i) {
       if (const int s = sign_after(certificate_, now_, i)) return s;
     }
     return 0;
   }
 
   /// f^(order) about now in doubles, up to a factor.
-  Polynomial<C::degree> scaled_derivative(int order) const {
-    Polynomial<C::degree> result;
+  Polynomial<Degree> scaled_derivative(int order) const {
+    Polynomial<Degree> result;
     double binomial = 1;
-    for (int i = order; i <= C::degree; ++i) {
+    for (int i = order; i <= Degree; ++i) {
       if (i > order) binomial = binomial * i / (i - order);
       result.c[static_cast<std::size_t>(i - order)] = guide_.c[static_cast<std::size_t>(i)] * binomial;
     }
@@ -146,7 +146,7 @@ class DerivativeIntervals {
   }
 
   /// A root of p between lower and upper, to a few ulps: Newton's method and bisection. A guess.
-  static double approximate_root(const Polynomial<C::degree>& p, double lower, double upper, bool rising) {
+  static double approximate_root(const Polynomial<Degree>& p, double lower, double upper, bool rising) {
     const auto slope = derivative(p);
     if (!(upper < 0x1p1000)) {  // Unbounded: double the step until the sign turns.
       double step = 1;
@@ -165,8 +165,8 @@ class DerivativeIntervals {
     return x;
   }
 
-  const C& certificate_;
-  Polynomial<C::degree> guide_;  ///< f about now, rounded
+  CertificateReference<Degree> certificate_;
+  Polynomial<Degree> guide_;  ///< f about now, rounded
   double now_;
   double horizon_;
   std::array<Cell, most_cells> cells_;  ///< in order of time
@@ -174,10 +174,11 @@ class DerivativeIntervals {
 };
 
 /// The last rung. Not inlined, so that it takes no registers from the ones before.
-template <class C>
-[[gnu::noinline, gnu::cold]] double failure_time_by_signs(const C& certificate, double now, double horizon) {
+template <int Degree>
+[[gnu::noinline, gnu::cold]] double failure_time_by_signs(const CertificateReference<Degree>& certificate, double now,
+                                                          double horizon) {
   ++sign_counters.searches;
-  return DerivativeIntervals<C>(certificate, now, horizon).first_negative();
+  return DerivativeIntervals<Degree>(certificate, now, horizon).first_negative();
 }
 
 }  // namespace kds::detail

@@ -33,14 +33,14 @@ double refined_root(const Polynomial<Degree, Ball<double>>& p, double x, double 
 }
 
 /// p is f about now, without its leading zeros. Precondition: f > 0 just after now.
-template <class C, int Degree>
-double isolated_failure_time(const C& certificate, const Polynomial<Degree, Ball<double>>& p, double now,
-                             double horizon) {
+template <int FormalDegree, int Degree>
+double isolated_failure_time(const CertificateReference<FormalDegree>& certificate,
+                             const Polynomial<Degree, Ball<double>>& p, double now, double horizon) {
   const Crossing crossing = first_crossing(p, (horizon - now) * (1 + 0x1p-50));
   if (crossing.status == Crossing::Status::none) return never;
   if (crossing.status == Crossing::Status::isolated) {
     const double x = refined_root(p, crossing.guess, crossing.after, crossing.before);
-    const double t = RootRounding<C>(certificate, now)(p, x, crossing.after, crossing.before);
+    const double t = RootRounding(certificate, now)(p, x, crossing.after, crossing.before);
     if (t <= horizon) return t;
     if (t > horizon) return never;
   }

@@ -39,7 +39,7 @@ double linear_failure_time(const C& certificate, const Polynomial<1, Ball<double
       if (t > horizon) return never;
     }
   }
-  return failure_time_by_signs(certificate, now, horizon);
+  return failure_time_by_signs(CertificateReference(certificate), now, horizon);
 }
 
 }  // namespace kds::detail

@@ -74,7 +74,7 @@ double quadratic_failure_time(const C& certificate, const Polynomial<2, Ball<dou
       if (t > horizon) return never;
     }
   }
-  return failure_time_by_signs(certificate, now, horizon);
+  return failure_time_by_signs(CertificateReference(certificate), now, horizon);
 }
 
 }  // namespace kds::detail

@@ -11,10 +11,10 @@
 namespace kds::detail {
 
 /// Finds where derivative number `order` of f changes sign, on a stretch with exactly one change.
-template <class C>
+template <int Degree>
 class LatticeCrossing {
  public:
-  LatticeCrossing(const C& certificate, int order)
+  LatticeCrossing(const CertificateReference<Degree>& certificate, int order)
       : certificate_(certificate), order_(static_cast<std::size_t>(order)) {}
 
   /// The first double in (below, above] whose sign is that of `above`. Precondition: the sign at `below` differs, and
@@ -61,7 +61,7 @@ class LatticeCrossing {
     return {s, root.low > 0 ? next_up(root.high) : root.high};
   }
 
-  const C& certificate_;
+  CertificateReference<Degree> certificate_;
   std::size_t order_;
 };
 

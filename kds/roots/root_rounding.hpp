@@ -53,7 +53,7 @@ template <class C>
 double first_double_not_before(const C& certificate, const DoubleDouble& root, double error) {
   if (std::abs(root.low) > error) return root.low > 0 ? next_up(root.high) : root.high;
   if (!(error <= 0x1p-5 * spacing(root.high) && std::abs(root.high) < never)) return undecided;
-  return exact_sign_after(certificate, root.high, 0) < 0 ? root.high : next_up(root.high);
+  return exact_sign_after(CertificateReference(certificate), root.high, 0) < 0 ? root.high : next_up(root.high);
 }
 
 /// The first double not before the one root of f near now + x, where f falls; p is f about now. A NaN where the numbers

@@ -1,13 +1,14 @@
 #include "kds/turning/exact_zero.hpp"
 
 #include <cstdlib>
+#include <numeric>
 
 namespace kds {
 
 namespace {
 
 AngleRelation relation(const Exact& squared_rate_a, const Exact& squared_rate_b, const Exact& time_a,
-                       const Exact& time_b) {
+                       const Exact& time_b, int harmonics) {
   AngleRelation r;
   r.first_zero = squared_rate_a.sign() == 0 || time_a.sign() == 0;
   r.second_zero = squared_rate_b.sign() == 0 || time_b.sign() == 0;
@@ -17,90 +18,100 @@ AngleRelation relation(const Exact& squared_rate_a, const Exact& squared_rate_b,
   if (r.first_zero || r.second_zero) return r;
   const Exact first = squared_rate_a * time_a * time_a;
   const Exact second = squared_rate_b * time_b * time_b;
-  if (first == second) {
-    r.first_multiple = r.second_multiple = 1;
-  } else if (first == scaled(second, 2)) {
-    r.first_multiple = 2;
-    r.second_multiple = 1;
-  } else if (scaled(first, 2) == second) {
-    r.first_multiple = 1;
-    r.second_multiple = 2;
+  const int most = 2 * harmonics;
+  for (int m = 1; m <= most; ++m) {
+    for (int n = 1; n <= most; ++n) {
+      if (std::gcd(m, n) != 1) continue;
+      if (!(first * Exact(static_cast<double>(n * n)) == second * Exact(static_cast<double>(m * m)))) continue;
+      r.first_multiple = m;
+      r.second_multiple = n;
+      return r;
+    }
   }
   return r;
 }
 
-/// A sum of cos(m c) and sin(m c), m = 0 ... 3, for an angle c that is not zero.
-struct Harmonics {
-  std::array<Exact, 4> cosines, sines;
+/// A sum of cos(m c) and sin(m c), m = 0 ... Most, for an angle c that is not zero.
+template <int Most>
+struct AngleSum {
+  std::array<Exact, Most + 1> cosines, sines;
 
   void add_cosine(int m, const Exact& x) { add(cosines, std::abs(m), x); }
   void add_sine(int m, const Exact& x) { m < 0 ? add(sines, -m, -x) : add(sines, m, x); }
 
   bool vanishes() const {
     bool zero = cosines[0].sign() == 0;
-    for (std::size_t m = 1; m < 4; ++m) zero = zero && cosines[m].sign() == 0 && sines[m].sign() == 0;
+    for (std::size_t m = 1; m <= Most; ++m) zero = zero && cosines[m].sign() == 0 && sines[m].sign() == 0;
     return zero;
   }
 
  private:
-  static void add(std::array<Exact, 4>& sums, int m, const Exact& x) {
+  static void add(std::array<Exact, Most + 1>& sums, int m, const Exact& x) {
     sums[static_cast<std::size_t>(m)] = sums[static_cast<std::size_t>(m)] + x;
   }
 };
 
-/// The nine terms as harmonics of the common angle c: a = m c, b = n c, n of the sign that b has relative to a.
+/// The terms as multiples of the common angle c: a = m c, b = n c, n of the sign that b has relative to a.
 ///
-/// Of the rates w, v the angles are w s and v t, so v = w g / h with g = n s, h = m t. Terms with a cosine or with two
-/// sines (w v = w^2 g / h) are multiplied by 2 h, those with one sine by 2 h / w: so no quotient and no root is left.
-bool vanish_related(const TurningCoefficients& p, const AngleRelation& r) {
+/// Of the rates w, v the angles are w s and v t, so v = w g / h with g = n s, h = m t. Terms without a sine or with two
+/// (w v = w^2 g / h) are multiplied by 2 h, those with one by 2 h / w: so no quotient and no root is left.
+template <std::size_t Size>
+bool vanish_related(const TurningCoefficients<Size>& p, const AngleRelation& r) {
+  constexpr int harmonics = (static_cast<int>(Size) - 1) / 2;
   const int m = r.first_multiple;
   const int n = r.first_time.sign() == r.second_time.sign() ? r.second_multiple : -r.second_multiple;
   const Exact g = r.first_time * Exact(static_cast<double>(n));
   const Exact h = r.second_time * Exact(static_cast<double>(m));
-  Harmonics sum;
-  sum.add_cosine(0, scaled(p[0][0] * h, 1));
-  sum.add_cosine(m, scaled(p[1][0] * h, 1));
-  sum.add_cosine(n, scaled(p[0][1] * h, 1));
-  const Exact cosines = p[1][1] * h;
-  const Exact sines = p[2][2] * r.first_squared_rate * g;
-  sum.add_cosine(m - n, cosines + sines);
-  sum.add_cosine(m + n, cosines - sines);
-  sum.add_sine(m, scaled(p[2][0] * h, 1));
-  sum.add_sine(n, scaled(p[0][2] * g, 1));
-  const Exact first = p[2][1] * h;
-  const Exact second = p[1][2] * g;
-  sum.add_sine(m + n, first + second);
-  sum.add_sine(m - n, first - second);
+  AngleSum<harmonics*(4 * harmonics - 1)> sum;  // the multiples of a and b are different, or both 1
+  for (int k = 0; k <= harmonics; ++k) {
+    for (int l = 0; l <= harmonics; ++l) {
+      const std::size_t i = k == 0 ? 0 : static_cast<std::size_t>(2 * k - 1);  // the sines are next, if there are any
+      const std::size_t j = l == 0 ? 0 : static_cast<std::size_t>(2 * l - 1);
+      const int ma = k * m, nb = l * n;
+      const Exact cosines = p[i][j] * h;
+      const Exact sines = k > 0 && l > 0 ? p[i + 1][j + 1] * r.first_squared_rate * g : Exact();
+      sum.add_cosine(ma - nb, cosines + sines);
+      sum.add_cosine(ma + nb, cosines - sines);
+      const Exact first = k > 0 ? p[i + 1][j] * h : Exact();
+      const Exact second = l > 0 ? p[i][j + 1] * g : Exact();
+      sum.add_sine(ma + nb, first + second);
+      sum.add_sine(ma - nb, first - second);
+    }
+  }
   return sum.vanishes();
+}
+
+/// What a spin of the angle 0 adds up: its cosines are 1, its sines 0.
+template <std::size_t Size, class At>
+void add_up_cosines(const At& at) {
+  for (std::size_t i = 1; i < Size; ++i) {
+    if (!is_sine(i)) at(0) = at(0) + at(i);
+    at(i) = Exact();
+  }
 }
 
 }  // namespace
 
-AngleRelation relation_at(const Spin& a, const Spin& b, double t) {
+AngleRelation relation_at(const Spin& a, const Spin& b, double t, int harmonics) {
   return relation(a.squared_rate<Exact>(), b.squared_rate<Exact>(), Exact(t) - Exact(a.start),
-                  Exact(t) - Exact(b.start));
+                  Exact(t) - Exact(b.start), harmonics);
 }
 
-AngleRelation relation_throughout(const Spin& a, const Spin& b) {
-  AngleRelation r = relation(a.squared_rate<Exact>(), b.squared_rate<Exact>(), Exact(1.0), Exact(1.0));
+AngleRelation relation_throughout(const Spin& a, const Spin& b, int harmonics) {
+  AngleRelation r = relation(a.squared_rate<Exact>(), b.squared_rate<Exact>(), Exact(1.0), Exact(1.0), harmonics);
   if (a.start != b.start) r.first_multiple = r.second_multiple = 0;
   return r;
 }
 
-bool vanishes(const TurningCoefficients& p, const AngleRelation& relation) {
+template <std::size_t Size>
+bool vanishes(const TurningCoefficients<Size>& p, const AngleRelation& relation) {
   if (relation.first_multiple != 0) return vanish_related(p, relation);
-  TurningCoefficients q = p;
-  if (relation.first_zero) {  // cosine 1, sine 0
-    for (std::size_t j = 0; j < 3; ++j) {
-      q[0][j] = q[0][j] + q[1][j];
-      q[1][j] = q[2][j] = Exact();
-    }
+  TurningCoefficients<Size> q = p;
+  for (std::size_t k = 0; k < Size; ++k) {
+    if (relation.first_zero) add_up_cosines<Size>([&](std::size_t i) -> Exact& { return q[i][k]; });
   }
-  if (relation.second_zero) {
-    for (auto& row : q) {
-      row[0] = row[0] + row[1];
-      row[1] = row[2] = Exact();
-    }
+  for (std::size_t k = 0; k < Size; ++k) {
+    if (relation.second_zero) add_up_cosines<Size>([&](std::size_t j) -> Exact& { return q[k][j]; });
   }
   for (const auto& row : q) {
     for (const Exact& x : row) {
@@ -109,5 +120,8 @@ bool vanishes(const TurningCoefficients& p, const AngleRelation& relation) {
   }
   return true;
 }
+
+template bool vanishes(const TurningCoefficients<3>&, const AngleRelation&);
+template bool vanishes(const TurningCoefficients<5>&, const AngleRelation&);
 
 }  // namespace kds

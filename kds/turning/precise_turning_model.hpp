@@ -18,31 +18,38 @@
 namespace kds::detail {
 
 /// f solves a linear differential equation of this order with constant coefficients, for it is a sum of so many
-/// solutions of one: powers of t up to Degree, times nine products of cosines and sines. So of f and its derivatives
-/// below this one not all are zero at any time, unless f is zero throughout.
-template <int Degree>
-inline constexpr int turning_dimension = 9 * (Degree + 1);
+/// solutions of one: powers of t up to the degree, times nine products of cosines and sines, of two harmonics 25. So of
+/// f and its derivatives below this one not all are zero at any time, unless f is zero throughout.
+template <class C>
+inline constexpr int turning_dimension = (2 * harmonics_of<C> + 1) * (2 * harmonics_of<C> + 1) * (C::degree + 1);
 
-template <int Degree>
-using PreciseTurningModel = TaylorModel<turning_dimension<Degree> - 1>;
+/// The order of models in exact coefficients, which decide in the end: with all of these derivatives. Of double-doubles
+/// those are enough that leave 2^-65 of the terms over a radian.
+template <class C, class Number>
+inline constexpr int precise_order = std::is_same_v<Number, Exact> ? turning_dimension<C> - 1
+                                                                   : std::min(turning_dimension<C> - 1, 20);
+
+template <class C, class Number>
+using PreciseTurningModel = TaylorModel<precise_order<C, Number>>;
 
 /// side * f about m with the unit of time 2^exponent: Number is Ball<DoubleDouble>; or it is Exact, for exact
-/// coefficients and sines to so many bits. Preconditions: the rates times 2^exponent add up to at most 1; f is not zero
-/// throughout.
+/// coefficients and sines to so many bits. Preconditions: the rates times 2^exponent and the harmonics add up to at
+/// most 1; f is not zero throughout.
 ///
 /// All derivatives are computed as such, and rounded to doubles in the end. For numbers of any size: what is exact is
 /// multiplied by a power of two before (the model is that of f up to this factor); double-doubles leave units of time
 /// beyond 2^+-200 to that, and their radii tell what else is too much for them.
 ///
-/// The terms of f may cancel to any degree, at all times, and then bounds by their magnitudes say nothing. But with N =
-/// turning_dimension the equation bounds f^(N) by the derivatives d_k below it. Its roots are at most theta, the sum of
-/// the rates times the unit, in magnitude, so its coefficients are at most those of (x + theta)^N, and |f^(N)| is at
-/// most q = (1 + theta)^N - 1 times Y, the greatest of |f|, |f'| ... |f^(N - 1)|. So Y grows by exp(max(1, q) |x|) at
-/// most, and for theta <= 1 / N, where q < e - 1, |f^(N)| is below 6 q max |d_k|.
+/// The terms of f may cancel to any degree, at all times, and then bounds by their magnitudes say nothing. But where N
+/// = turning_dimension derivatives are known the equation bounds f^(N) by the derivatives d_k below it. Its roots are
+/// at most theta, the sum of the rates times the unit and the harmonics, in magnitude, so its coefficients are at most
+/// those of (x + theta)^N, and |f^(N)| is at most q = (1 + theta)^N - 1 times Y, the greatest of |f|, |f'| ... |f^(N -
+/// 1)|. So Y grows by exp(max(1, q) |x|) at most, and for theta <= 1 / N, where q < e - 1, |f^(N)| is below 6 q max
+/// |d_k|.
 ///
-/// Cost: 0.05 ms in double-doubles, some milliseconds exactly, for degree 2.
+/// Cost: 0.05 ms in double-doubles, some milliseconds exactly, for degree 2 and one harmonic.
 template <class Number, class C>
-PreciseTurningModel<C::degree> precise_turning_model(const C& certificate, int side, double m, int exponent,
+PreciseTurningModel<C, Number> precise_turning_model(const C& certificate, int side, double m, int exponent,
                                                      int bits = 0);
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -101,8 +108,8 @@ struct SpinInUnits {
 };
 
 template <class Number, class C>
-PreciseTurningModel<C::degree> precise_turning_model(const C& certificate, int side, double m, int exponent, int bits) {
-  PreciseTurningModel<C::degree> model;
+PreciseTurningModel<C, Number> precise_turning_model(const C& certificate, int side, double m, int exponent, int bits) {
+  PreciseTurningModel<C, Number> model;
   if (!std::is_same_v<Number, Exact> && std::abs(exponent) > 200) {
     model.error.fill(std::numeric_limits<double>::infinity());
     return model;
@@ -110,15 +117,15 @@ PreciseTurningModel<C::degree> precise_turning_model(const C& certificate, int s
   const std::array<Spin, 2> spins = certificate.spins();
   const SpinInUnits<Number> a(spins[0], m, exponent, bits);
   const SpinInUnits<Number> b(spins[1], m, exponent, bits);
-  const double theta = (a.angle + b.angle) * Ball<double>::slack;
+  const double theta = harmonics_of<C> * (a.angle + b.angle) * Ball<double>::slack;
 
   auto f = certificate.template turning_sum<Number, C::degree>(m);
   using Value = typename SpinInUnits<Number>::Value;
   std::array<Value, C::degree + 1> majorant{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const int sines = (i == 2) + (j == 2);
-      const Number bound = Number(i == 2 ? a.angle : 1) * Number(j == 2 ? b.angle : 1);
+  for (std::size_t i = 0; i < f.size; ++i) {
+    for (std::size_t j = 0; j < f.size; ++j) {
+      const int sines = is_sine(i) + is_sine(j);
+      const Number bound = Number(is_sine(i) ? a.angle : 1) * Number(is_sine(j) ? b.angle : 1);
       for (std::size_t k = 0; k <= C::degree; ++k) {
         Number& c = f.p[i][j].c[k];
         c = times_power_of_two(c, exponent * (static_cast<int>(k) - sines));
@@ -126,7 +133,8 @@ PreciseTurningModel<C::degree> precise_turning_model(const C& certificate, int s
       }
     }
   }
-  constexpr std::size_t dimension = turning_dimension<C::degree>;
+  constexpr int order = precise_order<C, Number>;
+  constexpr std::size_t dimension = order + 1;
   std::array<Value, dimension> derivatives;
   for (std::size_t k = 0;; ++k) {
     derivatives[k] = value_at_epoch(f, a.turn, b.turn);
@@ -151,8 +159,8 @@ PreciseTurningModel<C::degree> precise_turning_model(const C& certificate, int s
     const Ball<double> size = in_doubles(majorant[k], scale);
     sizes[k] = std::abs(size.middle) + size.radius;
   }
-  model.next = derivative_bound(sizes, theta, turning_dimension<C::degree>);
-  if (theta * dimension <= 1) {
+  model.next = derivative_bound(sizes, theta, order + 1);
+  if (order + 1 == turning_dimension<C> && theta * dimension <= 1) {
     const double q = std::expm1(dimension * std::log1p(theta)) * (1 + 0x1p-40);
     const double by_equation = 6 * q * greatest * Ball<double>::slack;
     if (!(model.next <= by_equation)) model.next = by_equation;

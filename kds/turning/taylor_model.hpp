@@ -46,21 +46,22 @@ struct TaylorModel {
 
   /// Derivative number n of the polynomial, with the bound on what it is off by.
   ///
-  /// Horner's rule rounds each term 2 Order times at most, and one rounding of x changes it by Order roundings: for
-  /// orders up to 27, 2^-45 of all terms is more than that.
+  /// Horner's rule rounds each term 2 Order times at most, its weight Order times, and one rounding of x changes it by
+  /// Order roundings: 2^-53 of all terms each.
   Ball<double> derivative(int n, double x) const {
     double weight = factorial(Order) / factorial(Order - n);
     double value = 0;
     double bound = 0;
     for (int k = Order; k >= n; --k) {
       value = value * x + weight * c[at(k)];
-      bound += weight * (error[at(k)] + 0x1p-45 * std::abs(c[at(k)]));
+      bound += weight * (error[at(k)] + roundings * std::abs(c[at(k)]));
       if (k > n) weight *= (k - n) / static_cast<double>(k);
     }
     return {value, bound + tail(n)};
   }
 
  private:
+  static constexpr double roundings = std::max(0x1p-45, 4 * Order * 0x1p-53);
   static constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
   static constexpr double factorial(int n) {
     double product = 1;

@@ -19,17 +19,30 @@ namespace kds {
 /// A fact about motions that turn: f(t) >= 0 while it holds.
 ///
 /// A certificate names the degree of its polynomials and its two spins, and gives f as a TurningSum about any epoch, in
-/// any number type. Order cuts the polynomials off: of order 0 is f at the epoch alone.
+/// any number type. Order cuts the polynomials off: of order 0 is f at the epoch alone. If its harmonics are more than
+/// 1 it names them, too: `static constexpr int harmonics`.
 ///
 /// Semantic laws: those of Certificate, with `turning_sum` in place of `polynomial`: ring operations on finite doubles
 /// alone; about all epochs the same function of t, to the order that is asked for.
 template <class C>
+inline constexpr int harmonics_of = 1;
+template <class C>
+requires requires { C::harmonics; }
+inline constexpr int harmonics_of<C> = C::harmonics;
+
+template <class C>
 concept TurningCertificate = requires(const C& certificate, double epoch) {
   { C::degree } -> std::convertible_to<int>;
   { certificate.spins() } -> std::same_as<std::array<Spin, 2>>;
-  { certificate.template turning_sum<Exact, C::degree>(epoch) } -> std::same_as<TurningSum<C::degree, Exact>>;
-  { certificate.template turning_sum<Ball<double>, 0>(epoch) } -> std::same_as<TurningSum<0, Ball<double>>>;
-  { certificate.template turning_sum<Ball<DoubleDouble>, 0>(epoch) } -> std::same_as<TurningSum<0, Ball<DoubleDouble>>>;
+  {
+    certificate.template turning_sum<Exact, C::degree>(epoch)
+    } -> std::same_as<TurningSum<C::degree, Exact, harmonics_of<C>>>;
+  {
+    certificate.template turning_sum<Ball<double>, 0>(epoch)
+    } -> std::same_as<TurningSum<0, Ball<double>, harmonics_of<C>>>;
+  {
+    certificate.template turning_sum<Ball<DoubleDouble>, 0>(epoch)
+    } -> std::same_as<TurningSum<0, Ball<DoubleDouble>, harmonics_of<C>>>;
 };
 
 /// Hook: `Ball<double> quick_value(double t) const`, a ball that holds f(t) times any positive number, got for less
@@ -106,8 +119,8 @@ Ball<DoubleDouble> extended_turning_value(const C& certificate, double t) {
 }
 
 /// Of a sum that is not zero at its epoch t.
-template <int Degree>
-int enclosed_sign(const TurningSum<Degree, Exact>& f, const std::array<Spin, 2>& spins, double t) {
+template <int Degree, int Harmonics>
+int enclosed_sign(const TurningSum<Degree, Exact, Harmonics>& f, const std::array<Spin, 2>& spins, double t) {
   for (int bits = 160;; bits *= 2) {
     ++turning_sign_counters.enclosed;
     if (const int s =
@@ -123,7 +136,7 @@ int exact_turning_sign(const C& certificate, double t, int derivative) {
   ++turning_sign_counters.exact;
   const std::array<Spin, 2> spins = certificate.spins();
   const auto f = derived_sum<Exact>(certificate, t, derivative);
-  if (vanishes_at_epoch(f, relation_at(spins[0], spins[1], t))) {
+  if (vanishes_at_epoch(f, relation_at(spins[0], spins[1], t, f.harmonics))) {
     ++turning_sign_counters.zeros;
     return 0;
   }

@@ -24,8 +24,10 @@ inline double rate_bound(const Spin& spin) {
 }
 
 /// f in doubles: its polynomials about an epoch, from which it is expanded about other times.
-template <int Degree>
+template <int Degree, int Harmonics = 1>
 class TurningExpansion {
+  static constexpr std::size_t size = 2 * Harmonics + 1;
+
  public:
   static constexpr int order = 10;
   using Model = TaylorModel<order>;
@@ -38,10 +40,10 @@ class TurningExpansion {
       rate_bounds_[s] = rate_bound(spins_[s]);
     }
     const auto f = certificate.template turning_sum<Ball<double>, Degree>(epoch);
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        const double w = (i == 2 ? rates_[0].middle.high : 1.0) * (j == 2 ? rates_[1].middle.high : 1.0);
-        const double bound = (i == 2 ? rate_bounds_[0] : 1.0) * (j == 2 ? rate_bounds_[1] : 1.0);
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = 0; j < size; ++j) {
+        const double w = (is_sine(i) ? rates_[0].middle.high : 1.0) * (is_sine(j) ? rates_[1].middle.high : 1.0);
+        const double bound = (is_sine(i) ? rate_bounds_[0] : 1.0) * (is_sine(j) ? rate_bounds_[1] : 1.0);
         for (std::size_t k = 0; k <= Degree; ++k) {
           const Ball<double>& c = f.p[i][j].c[k];
           p_[i][j][k] = side * c.middle * w;
@@ -56,55 +58,71 @@ class TurningExpansion {
     }
   }
 
-  /// About m, for times up to rho away. Precondition: the sum of the rates times rho is at most 1.
+  /// About m, for times up to rho away. Precondition: the sum of the rates times rho and the harmonics is at most 1.
   ///
   /// The factors of p[i][j] are taken as cos and sin, the rates being multiplied to p. p is shifted to m, then turned:
-  /// cos(a + w h) = cos a cos(w h) - sin a sin(w h), sin(a + w h) = sin a cos(w h) + cos a sin(w h). What is left are
-  /// products of polynomials with the series of cos(w h) and sin(w h).
+  /// cos(a + w h) = cos a cos(w h) - sin a sin(w h), sin(a + w h) = sin a cos(w h) + cos a sin(w h), and so for
+  /// multiples of a. What is left are products of polynomials with the series of cos(k w h) and sin(k w h).
   ///
-  /// Error bound, with u = 2^-53. Written out, coefficient k is a sum of terms of which the magnitudes add up to that
+  /// Error bound, with u = 2^-53. Written out, coefficient n is a sum of terms of which the magnitudes add up to that
   /// of S(|m - epoch| + rho x) exp(theta x) at most, S being made of the sums of the magnitudes of p's coefficients. A
-  /// term has two rates (4 u), the shift (6 u), a cosine or sine of each spin (4 u, besides their own errors), two
-  /// series' coefficients, each with up to ten times an angle and a divisor (50 u each), a power of rho (4 u) and the
-  /// sums of two convolutions (26 u): less than 160 u, and 2^-45 = 256 u is charged.
+  /// term has two rates (4 u), the shift (6 u), a cosine or sine of each spin (4 u, besides their own errors, which
+  /// grow by 4 with the second harmonic, and 8 u for that), two series' coefficients, each with up to ten times an
+  /// angle and a divisor (50 u each), a power of rho (4 u) and the sums of two convolutions (26 u; 44 u with two
+  /// harmonics): less than 190 u, and 2^-45 = 256 u is charged.
   Model about(double m, double rho) const {
+    static_assert(Harmonics <= 2);
     double unsure = roundings;
-    std::array<SineCosine<Ball<double>>, 2> turn{};
-    std::array<std::array<double, order + 1>, 2> series;
+    using Turned = std::array<std::array<double, 2>, Harmonics>;  // cosine and sine, by harmonics
+    std::array<Turned, 2> turn;
+    std::array<std::array<std::array<double, order + 1>, Harmonics>, 2> series;
     for (std::size_t s = 0; s < 2; ++s) {
-      turn[s].cosine = Ball<double>(1.0);
-      if (!spins_[s].still()) turn[s] = sine_cosine<Ball<double>>(spins_[s].angle(rates_[s], m));
-      unsure += std::max(turn[s].cosine.radius, turn[s].sine.radius);
+      SineCosine<Ball<double>> a{};
+      a.cosine = Ball<double>(1.0);
+      if (!spins_[s].still()) a = sine_cosine<Ball<double>>(spins_[s].angle(rates_[s], m));
+      const double cosine = a.cosine.middle, sine = a.sine.middle;
+      turn[s][0] = {cosine, sine};
+      if constexpr (Harmonics == 2) turn[s][1] = {2 * cosine * cosine - 1, 2 * cosine * sine};
+      unsure += error_growth * std::max(a.cosine.radius, a.sine.radius);
       // The coefficients of cos at even, of sin at odd places.
-      const double angle = rates_[s].middle.high * rho;
-      double power = 1;
-      for (std::size_t k = 0; k <= order; ++k) {
-        series[s][k] = k % 4 < 2 ? power : -power;
-        power *= angle * reciprocals[k + 1];
+      for (std::size_t h = 0; h < Harmonics; ++h) {
+        const double angle = static_cast<double>(h + 1) * rates_[s].middle.high * rho;
+        double power = 1;
+        for (std::size_t k = 0; k <= order; ++k) {
+          series[s][h][k] = k % 4 < 2 ? power : -power;
+          power *= angle * reciprocals[k + 1];
+        }
       }
     }
     Parts q = shifted(m - epoch_, rho);
-    const auto rotate = [](Coefficients& even, Coefficients& odd, const SineCosine<Ball<double>>& a) {
+    const auto rotate = [](Coefficients& even, Coefficients& odd, const std::array<double, 2>& a) {
       for (std::size_t k = 0; k <= Degree; ++k) {
-        const double x = even[k] * a.cosine.middle + odd[k] * a.sine.middle;
-        odd[k] = odd[k] * a.cosine.middle - even[k] * a.sine.middle;
+        const double x = even[k] * a[0] + odd[k] * a[1];
+        odd[k] = odd[k] * a[0] - even[k] * a[1];
         even[k] = x;
       }
     };
-    for (std::size_t j = 0; j < 3; ++j) rotate(q[1][j], q[2][j], turn[0]);
-    for (std::size_t i = 0; i < 3; ++i) rotate(q[i][1], q[i][2], turn[1]);
-
-    std::array<std::array<double, order + 1>, 3> rows{};
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t h = 0; h < Harmonics; ++h) {
+      for (std::size_t j = 0; j < size; ++j) rotate(q[2 * h + 1][j], q[2 * h + 2][j], turn[0][h]);
+      for (std::size_t i = 0; i < size; ++i) rotate(q[i][2 * h + 1], q[i][2 * h + 2], turn[1][h]);
+    }
+    std::array<std::array<double, order + 1>, size> rows{};
+    for (std::size_t i = 0; i < size; ++i) {
       for (std::size_t j = 0; j <= Degree; ++j) {
         rows[i][j] += q[i][0][j];
-        for (std::size_t k = j; k <= order; ++k) rows[i][k] += q[i][1 + (k - j) % 2][j] * series[1][k - j];
+        for (std::size_t h = 0; h < Harmonics; ++h) {
+          for (std::size_t k = j; k <= order; ++k) {
+            rows[i][k] += q[i][2 * h + 1 + (k - j) % 2][j] * series[1][h][k - j];
+          }
+        }
       }
     }
     Model model;
     for (std::size_t k = 0; k <= order; ++k) {
       double sum = rows[0][k];
-      for (std::size_t l = 0; l <= k; ++l) sum += series[0][l] * rows[1 + l % 2][k - l];
+      for (std::size_t h = 0; h < Harmonics; ++h) {
+        for (std::size_t l = 0; l <= k; ++l) sum += series[0][h][l] * rows[2 * h + 1 + l % 2][k - l];
+      }
       model.c[k] = sum;
     }
     bound(model, m, rho, unsure);
@@ -116,25 +134,36 @@ class TurningExpansion {
   /// their squares, of two of them likewise.
   bool outweighs(double m, double rho) const {
     const Parts q = shifted(m - epoch_, rho);
-    const auto size = [&q](std::size_t i, std::size_t j) {
+    const auto square = [&q](std::size_t i, std::size_t j) {
       double sum = 0;
       for (const double c : q[i][j]) sum += std::abs(c);
-      return sum;
+      return sum * sum;
     };
-    const auto squares = [&size](std::size_t i, std::size_t j) { return size(i, j) * size(i, j); };
-    const double turning = std::sqrt(squares(1, 0) + squares(2, 0)) + std::sqrt(squares(0, 1) + squares(0, 2)) +
-                           std::sqrt(squares(1, 1) + squares(1, 2) + squares(2, 1) + squares(2, 2));
+    double turning = 0;
+    for (std::size_t i = 0; i < size; i += i == 0 ? 1 : 2) {
+      for (std::size_t j = i == 0 ? 1 : 0; j < size; j += j == 0 ? 1 : 2) {
+        double squares = square(i, j);
+        if (i > 0) squares += square(i + 1, j);
+        if (j > 0) squares += square(i, j + 1);
+        if (i > 0 && j > 0) squares += square(i + 1, j + 1);
+        turning += std::sqrt(squares);
+      }
+    }
+    double still = 0;
+    for (const double c : q[0][0]) still += std::abs(c);
     const double span = std::abs(m - epoch_) + rho;
     double unsure = 0;
     for (std::size_t k = Degree + 1; k-- > 0;) unsure = unsure * span + roundings * size_[k] + radius_[k];
-    return 2 * q[0][0][0] - size(0, 0) - turning > unsure * Ball<double>::slack;
+    return 2 * q[0][0][0] - still - turning > unsure * Ball<double>::slack;
   }
 
  private:
   using Coefficients = std::array<double, std::size_t{Degree} + 1>;
-  using Parts = std::array<std::array<Coefficients, 3>, 3>;
+  using Parts = std::array<std::array<Coefficients, size>, size>;
 
   static constexpr double roundings = 0x1p-45;
+  /// Of the cosine and the sine of twice an angle that are made of those of the angle.
+  static constexpr double error_growth = Harmonics == 1 ? 1 : 4;
   static constexpr double underflow = 0x1p-900;  ///< more than all products here lose by it
   static constexpr auto reciprocals = [] {
     std::array<double, order + 2> r{};
@@ -157,14 +186,14 @@ class TurningExpansion {
   }
   Parts shifted(double tau, double rho) const {
     Parts q;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) q[i][j] = shifted(p_[i][j], tau, rho);
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = 0; j < size; ++j) q[i][j] = shifted(p_[i][j], tau, rho);
     }
     return q;
   }
 
   void bound(Model& model, double m, double rho, double unsure) const {
-    const double theta = (rate_bounds_[0] + rate_bounds_[1]) * rho * Ball<double>::slack;
+    const double theta = Harmonics * (rate_bounds_[0] + rate_bounds_[1]) * rho * Ball<double>::slack;
     const double tau = std::abs(m - epoch_) * Ball<double>::slack;
     Coefficients sizes = shifted(size_, tau, rho);
     Coefficients radii = shifted(radius_, tau, rho);

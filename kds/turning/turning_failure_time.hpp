@@ -35,8 +35,9 @@ namespace kds {
 /// 3. *A root.* One value in double-doubles where the polynomial has its root most often tells which double is next to
 ///    it (TurningCrossing::next_to_root); else exact signs do, three or four of them.
 /// 4. *Undecided* stretches are halved; where no derivative is told from zero they are expanded in double-doubles, and
-///    then of exact coefficients, with 160, 320 ... bits. One of the first 9 (degree + 1) derivatives is not zero
-///    (turning_dimension), so some stretch about any time comes to know one that keeps its sign.
+///    then of exact coefficients, with 160, 320 ... bits. One of the first 9 (degree + 1) derivatives, or 25 (degree +
+///    1) of two harmonics, is not zero (turning_dimension), so some stretch about any time comes to know one that keeps
+///    its sign.
 /// 5. *Where f touches zero*, or nearly, exact signs of the derivatives below that one isolate the roots among the
 ///    doubles (first_negative_by_signs). Nothing is assumed of their order or number.
 ///
@@ -59,7 +60,7 @@ class TurningSearch {
  public:
   TurningSearch(const C& certificate, int side)
       : certificate_(certificate), side_(side), crossing_(certificate, side), spins_(certificate.spins()) {
-    rate_ = rate_bound(spins_[0]) + rate_bound(spins_[1]);
+    rate_ = harmonics_of<C> * (rate_bound(spins_[0]) + rate_bound(spins_[1]));
   }
 
   /// Precondition: now <= horizon, both finite.
@@ -84,7 +85,7 @@ class TurningSearch {
   }
 
  private:
-  using Expansion = TurningExpansion<C::degree>;
+  using Expansion = TurningExpansion<C::degree, harmonics_of<C>>;
 
   /// How many radians are looked at before f is written about another epoch, and strides are tried again: costs of
   /// either are small beside those of as many models.
@@ -261,7 +262,7 @@ class TurningSearch {
   int side_;
   TurningCrossing<C> crossing_;
   std::array<Spin, 2> spins_;
-  double rate_;  ///< of both spins together, rad/s
+  double rate_;  ///< of both spins together, rad/s: of the fastest of the harmonics
 };
 
 template <class C>

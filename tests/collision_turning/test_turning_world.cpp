@@ -1,7 +1,9 @@
 // Worlds of bodies that turn.
 #include "collision/world.hpp"
 
+#include "collision/response/mass_properties.hpp"
 #include "collision/shapes/convex_hull.hpp"
+#include "collision/world/turning/turning_extents.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -187,6 +189,84 @@ TEST_CASE("turning worlds with hulls find the same contacts whichever broad phas
   const auto logs = logs_by_broad_phase(2, fill);
   CHECK(logs.front().size() > 15);
   for (const auto& lines : logs) CHECK(lines == logs.front());
+}
+
+TEST_CASE("turning worlds with capsules find the same contacts whichever broad phase they have", "[turning][capsule]") {
+  const Shape wedge = convex_hull({{0.6, 0, 0}, {-0.6, 0, 0}, {0, 0.6, 0.4}, {0, -0.6, 0.4}, {0, 0, -0.2}});
+  const auto ring = samples::torus(6, 4);
+  const auto fill = [&](Turning& world) {
+    tests::Random random(80);
+    for (std::size_t i = 0; i < 27; ++i) {
+      const Vector3d place(static_cast<double>(i % 3) * 2.4 - 2.4, static_cast<double>(i / 3 % 3) * 2.4 - 2.4,
+                           static_cast<double>(i / 9) * 2.4 - 2.4);
+      const auto between = [&] { return random.between(-1, 1); };
+      Turning::Description body{.shape = Capsule{0.25, 0.6},
+                                .motion = {motion(place, 3 * Vector3d(between(), between(), between()),
+                                                  5 * Vector3d(between(), between(), between()))}};
+      if (i % 5 == 0) body.shape = Sphere{0.5};
+      if (i % 7 == 1) body.shape = Box{Vector3d(0.5, 0.5, 0.5)};
+      if (i % 9 == 2) body.shape = wedge, body.inertia = 0.3;
+      if (i % 13 == 3) body.shape = MeshShape{ring, 0.5}, body.inertia = 0.3;
+      world.add_body(body);
+    }
+  };
+  const auto logs = logs_by_broad_phase(2, fill);
+  CHECK(logs.front().size() > 15);
+  for (const auto& lines : logs) CHECK(lines == logs.front());
+}
+
+TEST_CASE("a capsule that tumbles bounces, with its energy and momenta, and precesses as a top", "[turning][capsule]") {
+  Turning world({.response = Response::elastic});
+  const Capsule shape{0.25, 1};
+  const BodyId capsule = world.add_body({.shape = shape, .motion = {motion({0, 0, 0}, {0, 0, 0}, {1, 0, 0})}});
+  const BodyId ball = world.add_body({.shape = Sphere{0.25}, .motion = {motion({0, -2, 0.75}, {0, 1, 0}, {0, 0, 0})}});
+  const auto momentum = [&](double t) {
+    return Vector3d(world.motion(capsule).path.velocity(t) + world.motion(ball).path.velocity(t));
+  };
+  const auto angular_momentum = [&](double t) {
+    Vector3d sum = world.free_turning(capsule).angular_momentum;
+    for (const BodyId id : {capsule, ball}) {
+      sum += world.motion(id).path.position(t).cross(world.motion(id).path.velocity(t));
+    }
+    return sum;
+  };
+  const Eigen::Matrix3d inertia = mass_properties(shape, 1).inertia;
+  const auto energy = [&](double t) {
+    const auto turning = world.free_turning(capsule);
+    const Vector3d of_body = turning.orientation.normalized().inverse() * turning.angular_momentum;
+    return 0.5 * (world.motion(capsule).path.velocity(t).squaredNorm() +
+                  world.motion(ball).path.velocity(t).squaredNorm() + of_body.dot(inertia.inverse() * of_body));
+  };
+  const Vector3d momentum_before = momentum(0), angular_before = angular_momentum(0);
+  const double energy_before = energy(0);
+  world.advance_to(4);
+  CHECK(world.counters().contacts == 1);
+  CHECK((world.motion(ball).path.velocity(4) - Vector3d(0, 1, 0)).norm() > 0.1);
+  CHECK((momentum(4) - momentum_before).norm() < 1e-14);
+  CHECK((angular_momentum(4) - angular_before).norm() < 1e-14);
+  CHECK(std::abs(energy(4) - energy_before) < 1e-14);
+}
+
+TEST_CASE("the volume of a capsule holds it however far it turns, and is no larger than its ball", "[turning]") {
+  tests::Random random(81);
+  const auto between = [&] { return random.between(-1, 1); };
+  for (int round = 0; round < 200; ++round) {
+    const Capsule capsule{random.between(0.01, 1), random.between(0.01, 2)};
+    auto m =
+        motion({0, 0, 0}, {0, 0, 0}, round % 5 == 0 ? Vector3d(0, 0, 0) : Vector3d(between(), between(), between()));
+    if (round % 7 == 0) m.angular_velocity = Vector3d(0, 0, 2);
+    m.orientation = Eigen::Quaterniond(between(), between(), between(), between());
+    const PlacedShape placed = place(capsule, Eigen::Quaterniond::Identity());
+    const Vector3d half = turning_half_extents(placed, m);
+    Vector3d reached = Vector3d::Zero();
+    for (int i = 0; i <= 400; ++i) {
+      const Vector3d end = m.direction(Vector3d(0, 0, capsule.half_length), 0.05 * i).vector;
+      reached = reached.cwiseMax(Vector3d(end.cwiseAbs() + Vector3d::Constant(capsule.radius)));
+    }
+    CHECK((half - reached).minCoeff() >= 0);
+    CHECK(half.maxCoeff() <= placed.bounding_radius);
+    if (m.spin().still()) CHECK((half - reached).maxCoeff() < 1e-9);
+  }
 }
 
 TEST_CASE("a cube that is a hull bounces as the box does", "[turning][hull]") {

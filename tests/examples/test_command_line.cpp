@@ -82,7 +82,7 @@ TEST_CASE("command line: a ball that bounces ever lower comes to rest, which the
 TEST_CASE("command line: all broad phases write the same events of generated scenes") {
   const TemporaryFolder folder;
   const auto kind = std::string(GENERATE(as<std::string>(), "rings", "spheres", "boxes", "models", "spinners",
-                                         "spinning-rings", "rods", "plates"));
+                                         "spinning-rings", "rods", "plates", "capsules"));
   INFO(kind);
   const std::string size = kind == "models" ? " --bodies 12 --density 0.1" : " --bodies 60 --density 0.2";
   REQUIRE(kds_collide_in(folder, "--generate " + kind + size + " --seed 5").code == 0);

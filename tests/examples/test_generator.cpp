@@ -104,9 +104,9 @@ TEST_CASE("generator: spinners are cubes, rods and plates that turn, and only th
   CHECK_FALSE(read(generate_scene({.kind = "boxes", .bodies = 3}), folder).turning);
 }
 
-TEST_CASE("generator: spinning rings, rods and plates turn, with the inertia of their shapes") {
+TEST_CASE("generator: spinning rings, rods, plates and capsules turn, with the inertia of their shapes") {
   const TemporaryFolder folder;
-  const auto kind = std::string(GENERATE(as<std::string>(), "spinning-rings", "rods", "plates"));
+  const auto kind = std::string(GENERATE(as<std::string>(), "spinning-rings", "rods", "plates", "capsules"));
   INFO(kind);
   const Scene scene = read(generate_scene({.kind = kind, .bodies = 30, .seed = 3}), folder);
   CHECK(scene.turning);
@@ -115,6 +115,11 @@ TEST_CASE("generator: spinning rings, rods and plates turn, with the inertia of 
     CHECK_FALSE(body.inertia_tensor);
     CHECK(body.motion.front().angular_velocity.norm() > 0);
     if (kind == "spinning-rings") continue;
+    if (kind == "capsules") {
+      const auto& capsule = std::get<kds::collision::Capsule>(body.shape);
+      CHECK(capsule.radius < 0.2 * capsule.half_length);
+      continue;
+    }
     const Eigen::Vector3d& half = std::get<kds::collision::Box>(body.shape).half_extents;
     CHECK(half[0] < 0.17 * half[2]);
     CHECK((kind == "rods" ? half[1] < 0.17 * half[2] : half[1] > 0.59 * half[2]));
@@ -164,7 +169,7 @@ TEST_CASE("generator: options out of range are refused") {
   };
   CHECK(error({.kind = "cubes"}) ==
         "--generate: there is no \"cubes\"; use rings, models, spheres, boxes, spinners, "
-        "spinning-rings, rods, plates or sheet");
+        "spinning-rings, rods, plates, capsules or sheet");
   CHECK(error({.bodies = 0}) == "--bodies: must be > 0");
   for (const double density : {0.0, 1e-100, 0.9, static_cast<double>(NAN)}) {
     CHECK(error({.density = density}) == "--density: must be from 1e-12 to 0.3");

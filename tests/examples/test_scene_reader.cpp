@@ -184,15 +184,14 @@ TEST_CASE("scene reader: friction is the scene's where a body of a scene that tu
   CHECK(scene.bodies[1].tangential_restitution == 1);
 }
 
-TEST_CASE("scene reader: what cannot turn is refused where it stands") {
-  const auto read = [](const std::string& shape) {
-    parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic", "bodies": [{"name": "a", "shape": )" + shape +
-                    R"(, "motion": [{"start": 0, "position": [[0,0,0]], "angular_velocity": [0,0,0]}]}]})",
-                "scene.json");
-  };
-  CHECK_NOTHROW(read(R"({"box": {"half_extents": [1,1,1]}})"));
-  CHECK_THROWS_WITH(read(R"({"capsule": {"radius": 1, "half_length": 1}})"),
-                    "scene.json: bodies[0].shape: a capsule cannot turn: balls, boxes, hulls and meshes can");
+TEST_CASE("scene reader: capsules turn") {
+  const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic", "bodies": [{"name": "a",
+    "shape": {"capsule": {"radius": 1, "half_length": 2}}, "orientation": [0,1,0,0],
+    "motion": [{"start": 0, "position": [[0,0,0]], "angular_velocity": [0,0,3]}]}]})",
+                                  "scene.json");
+  CHECK(scene.turning);
+  CHECK(std::get<kds::collision::Capsule>(scene.bodies[0].shape).half_length == 2);
+  CHECK(scene.bodies[0].motion[0].angular_velocity == Eigen::Vector3d(0, 0, 3));
 }
 
 TEST_CASE("scene reader: a hull of points, some of which are inside") {

@@ -1,5 +1,6 @@
 // The event logs of worlds whose bodies turn, with each broad phase, in windows and with snapshots on the way: see
 // replay.hpp. The file in the repository is made by: turning_log_hash > tests/replay/golden_turning.txt
+#include "collision/shapes/convex_hull.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/replay/replay.hpp"
@@ -42,7 +43,7 @@ Vector3d random_vector(kds::tests::Random& random, double size) {
 }
 
 /// What the bodies of a scene are.
-enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture };
+enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture, capsules };
 
 constexpr double end_time = 2;
 constexpr int most_bodies = 64;  // on a lattice of 4 x 4 x 4
@@ -51,6 +52,7 @@ template <int Degree>
 void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
   kds::tests::Random random(seed);
   const auto ring = rational_torus();
+  const Shape tetrahedron = convex_hull({{0.5, 0.5, 0.5}, {0.5, -0.5, -0.5}, {-0.5, 0.5, -0.5}, {-0.5, -0.5, 0.5}});
   const int count = bodies == Bodies::rings ? 12 : 24;
   for (int i = 0; i < count; ++i) {
     const int place = (i * 37) % most_bodies;
@@ -73,6 +75,13 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
     }
     // Three moments, or those of a top: which move such bodies in pieces where contacts are resolved.
     if (bodies == Bodies::precessing) body.shape = Box{Vector3d(0.3, i % 2 == 0 ? 0.3 : 0.4, 0.6)};
+    // All kinds meet capsules, which precess as tops where contacts are resolved.
+    if (bodies == Bodies::capsules) {
+      if (i % 2 == 0) body.shape = Capsule{i % 4 == 0 ? 0.25 : 0.125, i % 3 == 0 ? 0.25 : 0.5};
+      if (i % 8 == 1) body.shape = Sphere{0.4};
+      if (i % 8 == 3) body.shape = tetrahedron, body.inertia = 0.05;
+      if (i % 8 == 5) body.shape = MeshShape{ring, 0.5}, body.inertia = 0.1;
+    }
     body.friction = i % 3 == 0 ? 0.25 : 0;
     body.restitution = i % 5 == 0 ? 0.5 : 1;
     body.fixed = i == 7;
@@ -102,9 +111,9 @@ void run(Bodies bodies, const WorldOptions& options, Drive drive, EventHash& has
 
 template <int Degree>
 void add_worlds(std::vector<Replay>& replays) {
-  constexpr std::array kinds{std::pair{Bodies::boxes, "boxes"}, std::pair{Bodies::rods_and_balls, "rods-and-balls"},
-                             std::pair{Bodies::rings, "rings"}, std::pair{Bodies::precessing, "precessing"},
-                             std::pair{Bodies::mixture, "mixture"}};
+  constexpr std::array kinds{std::pair{Bodies::boxes, "boxes"},     std::pair{Bodies::rods_and_balls, "rods-and-balls"},
+                             std::pair{Bodies::rings, "rings"},     std::pair{Bodies::precessing, "precessing"},
+                             std::pair{Bodies::mixture, "mixture"}, std::pair{Bodies::capsules, "capsules"}};
   for (const auto& [bodies, name] : kinds) {
     for (const Response response : {Response::none, Response::elastic}) {
       Replay replay{

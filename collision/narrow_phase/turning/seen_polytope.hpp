@@ -20,8 +20,9 @@ namespace kds::collision {
 /// A convex core in the coordinates of its body, with what is calculated of it once. A copy of its points, so that it
 /// may be another, smaller one.
 struct TurningPolytope {
-  explicit TurningPolytope(const ConvexCore& core) : structure(&core.structure()) {
-    points.assign(core.points().begin(), core.points().end());
+  explicit TurningPolytope(const ConvexCore& core) : TurningPolytope(core.structure(), core.points()) {}
+  TurningPolytope(const HullStructure& of_points, std::span<const Eigen::Vector3d> places) : structure(&of_points) {
+    points.assign(places.begin(), places.end());
     set_directions();
   }
 

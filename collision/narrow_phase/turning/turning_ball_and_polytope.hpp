@@ -19,7 +19,8 @@
 
 namespace kds::collision {
 
-/// A convex core (a) and a ball (b) are apart while the centre is no nearer to the core than the radius: to the plane
+/// A convex core (a) and a ball (b) are apart while the centre is no nearer to the core than the radius, or of a core
+/// that is grown by a radius of its own than the sum of the two: to the plane
 /// of a face, or to the line of an edge where the centre is on the far side of it from both faces, or to a corner from
 /// which all edges lead away. Where one of these *ways* holds, the half space, the wedge or the cone that holds the
 /// core is no nearer; and whichever part of it is the nearest, its way holds if they are apart. (Compare
@@ -30,7 +31,7 @@ class TurningBallAndPolytope {
   using RigidMotion = certificates::RigidMotion<Degree>;
 
   TurningBallAndPolytope(const RigidMotion& a, const ConvexCore& core, const RigidMotion& b, double radius)
-      : ways(number_of_ways(core.structure())), a_(a), b_(b), polytope_(core), radius_(radius) {
+      : ways(number_of_ways(core.structure())), a_(a), b_(b), polytope_(core), radii_{core.radius(), radius} {
     edges_at_.resize(polytope_.points.size());
     for (std::uint32_t e = 0; e < polytope_.structure->edges.size(); ++e) {
       for (const std::uint32_t end : polytope_.structure->edges[e].ends) edges_at_[end].push_back(e);
@@ -68,14 +69,14 @@ class TurningBallAndPolytope {
   /// How deep the ball is in the core, if its centre is not.
   double depth(double t) const {
     const double distance = norm(way_from_core(frame(t)));
-    return distance > 0 ? std::max(0.0, radius_ - distance) : never;
+    return distance > 0 ? std::max(0.0, radius() - distance) : never;
   }
 
   /// The same pair with a smaller ball; none where nothing of it is left.
   std::optional<TurningBallAndPolytope> smaller(double margin) const {
-    if (!(radius_ > margin)) return std::nullopt;
+    if (!(radius() > margin)) return std::nullopt;
     TurningBallAndPolytope pair = *this;
-    pair.radius_ -= margin;
+    pair.radii_ = {radius() - margin, 0};
     return pair;
   }
 
@@ -88,6 +89,7 @@ class TurningBallAndPolytope {
   using Part = certificates::TrianglePart;
   using Triangle = certificates::detail::BallAndTriangle<Degree>;
 
+  double radius() const { return radii_[0] + radii_[1]; }
   std::size_t face_count() const { return polytope_.normals.size(); }
   std::size_t edge_count() const { return polytope_.edges.size(); }
   static int number_of_ways(const HullStructure& core) {
@@ -95,7 +97,7 @@ class TurningBallAndPolytope {
   }
   double error(const PairFrame<Degree>& frame) const {
     if (!frame.certain) return never;
-    return 4 * frame.way_error + PairFrame<Degree>::rounding * (norm(frame.way.value) + polytope_.radius + radius_);
+    return 4 * frame.way_error + PairFrame<Degree>::rounding * (norm(frame.way.value) + polytope_.radius + radius());
   }
   std::uint32_t other_end(std::uint32_t edge, std::uint32_t end) const {
     const auto& ends = polytope_.structure->edges[edge].ends;
@@ -122,7 +124,7 @@ class TurningBallAndPolytope {
   const RigidMotion& a_;
   const RigidMotion& b_;
   TurningPolytope polytope_;
-  double radius_;
+  std::array<double, 2> radii_;
   std::vector<std::vector<std::uint32_t>> edges_at_;  ///< by points
 };
 
@@ -138,7 +140,7 @@ bool TurningBallAndPolytope<Degree>::every_condition(int way, Conditions, const 
   if (k < face_count()) {
     const auto [p, q, r] = polytope_.face(k);
     const Triangle face = part(p, q, r, Part::Kind::face);
-    return test(CentreBeyondPart<Degree>{face, 0}) && test(BallBeyondPart<Degree>{face, radius_});
+    return test(CentreBeyondPart<Degree>{face, 0}) && test(BallBeyondPart<Degree>{face, radii_});
   }
   if (k < face_count() + edge_count()) {
     const HullEdge& edge = structure.edges[k - face_count()];
@@ -149,7 +151,7 @@ bool TurningBallAndPolytope<Degree>::every_condition(int way, Conditions, const 
       const Triangle right = part(q, p, next_corner(edge.faces[1], from), Part::Kind::edge);
       if (!test(CentreBeyondPart<Degree>{left, 0}) || !test(CentreBeyondPart<Degree>{right, 0})) return false;
     }
-    return test(BallBeyondPart<Degree>{part(p, q, q, Part::Kind::edge), radius_});
+    return test(BallBeyondPart<Degree>{part(p, q, q, Part::Kind::edge), radii_});
   }
   const std::uint32_t corner = structure.corners[k - face_count() - edge_count()];
   const Eigen::Vector3d& p = polytope_.points[corner];
@@ -157,7 +159,7 @@ bool TurningBallAndPolytope<Degree>::every_condition(int way, Conditions, const 
     const Eigen::Vector3d& q = polytope_.points[other_end(e, corner)];
     if (!test(CentreBeyondPart<Degree>{part(p, q, q, Part::Kind::corner), 0})) return false;
   }
-  return test(BallBeyondPart<Degree>{part(p, p, p, Part::Kind::corner), radius_});
+  return test(BallBeyondPart<Degree>{part(p, p, p, Part::Kind::corner), radii_});
 }
 
 template <int Degree>
@@ -166,13 +168,13 @@ double TurningBallAndPolytope<Degree>::gaps(const Frame& frame, std::vector<doub
   const Eigen::Vector3d& centre = frame.way.value;
   std::size_t way = 0;
   for (std::size_t f = 0; f < face_count(); ++f) {
-    gap[way++] = dot(frame.a.normals[f], centre - frame.a.points[structure.faces[f][0]]) - radius_;
+    gap[way++] = dot(frame.a.normals[f], centre - frame.a.points[structure.faces[f][0]]) - radius();
   }
   for (std::size_t e = 0; e < edge_count(); ++e) {
     const HullEdge& edge = structure.edges[e];
     const Eigen::Vector3d d = centre - frame.a.points[edge.ends[0]];
     const Eigen::Vector3d& u = frame.a.edges[e];
-    double width = norm(cross(u, d)) - radius_;
+    double width = norm(cross(u, d)) - radius();
     if (edge.faces[0] != HullStructure::no_face) {
       width = std::min(
           {width, dot(cross(u, frame.a.normals[edge.faces[0]]), d), dot(cross(frame.a.normals[edge.faces[1]], u), d)});
@@ -181,7 +183,7 @@ double TurningBallAndPolytope<Degree>::gaps(const Frame& frame, std::vector<doub
   }
   for (const std::uint32_t i : structure.corners) {
     const Eigen::Vector3d d = centre - frame.a.points[i];
-    double width = norm(d) - radius_;
+    double width = norm(d) - radius();
     for (const std::uint32_t e : edges_at_[i]) {
       width = std::min(width, (structure.edges[e].ends[0] == i ? -1 : 1) * dot(frame.a.edges[e], d));
     }
@@ -192,22 +194,22 @@ double TurningBallAndPolytope<Degree>::gaps(const Frame& frame, std::vector<doub
 
 template <int Degree>
 double TurningBallAndPolytope<Degree>::apart_until(double t, double horizon) const {
-  t = balls_apart_until(a_, b_, polytope_.radius, radius_, t, horizon);
+  t = balls_apart_until(a_, b_, polytope_.radius, radius(), t, horizon);
   if (t == never) return never;
   const Frame frame = this->frame(t);
   const Eigen::Vector3d apart = way_from_core(frame);
-  if (!frame.certain || !(norm(apart) - radius_ > error(frame))) return t;
+  if (!frame.certain || !(norm(apart) - radius() > error(frame))) return t;
   const Eigen::Vector3d n = normalized(apart);
   const double all = (horizon - t) * (1 + 0x1p-40);
-  const double stretch = frame.stretch(polytope_.radius + radius_, all);
+  const double stretch = frame.stretch(polytope_.radius + radius(), all);
   // The direction from the nearest point, with which it turns; the ball's own spin is nothing to it.
   const TurningBounds bounds(frame, frame.rate_a, polytope_.radius, 0, stretch);
   Jet f = dot(turning(n, frame.spin_a), frame.way);
-  f.value -= dot(n, frame.a.farthest(n)) + radius_ + PairFrame<Degree>::rounding * radius_ + bounds.rounding;
+  f.value -= dot(n, frame.a.farthest(n)) + radius() + PairFrame<Degree>::rounding * radius() + bounds.rounding;
   double wait = positive_for(f, bounds.third, stretch);
   if (stretch < all && time_of_turning() != never) {
     for (const Eigen::Vector3d& along : {n, normalized(frame.way.value)}) {
-      const double covered = frame.a.revolving_reach(along, frame.spin_a) + radius_;
+      const double covered = frame.a.revolving_reach(along, frame.spin_a) + radius();
       wait = std::max(wait, revolving_apart_for(frame, along, covered));
     }
   }

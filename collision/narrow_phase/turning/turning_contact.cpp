@@ -6,6 +6,7 @@
 #include "collision/narrow_phase/turning/turning_ball_and_polytope.hpp"
 #include "collision/narrow_phase/turning/turning_boxes.hpp"
 #include "collision/narrow_phase/turning/turning_polytopes.hpp"
+#include "collision/narrow_phase/turning/turning_rounded_polytopes.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 #include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
@@ -27,14 +28,19 @@ using Body = typename TurningContact<Degree>::Body;
 double radius(const PlacedShape& shape) { return std::get<Sphere>(shape.shape).radius; }
 const Vector3d& half_extents(const PlacedShape& shape) { return std::get<Box>(shape.shape).half_extents; }
 bool is_ball(const PlacedShape& shape) { return std::holds_alternative<Sphere>(shape.shape); }
+bool is_capsule(const PlacedShape& shape) { return std::holds_alternative<Capsule>(shape.shape); }
 
-/// Calls ask(pair) with what WaysApart takes. Precondition: not two balls; a hull comes first.
+/// Calls ask(pair) with what WaysApart takes. Precondition: not two balls; a hull comes first, or else a capsule.
 template <int Degree, class Ask>
 auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
-  if (std::holds_alternative<ConvexHull>(a.shape.shape)) {
+  if (std::holds_alternative<ConvexHull>(a.shape.shape) || is_capsule(a.shape)) {
     const ConvexCore core(a.shape.shape);
     if (is_ball(b.shape)) return ask(TurningBallAndPolytope<Degree>(a.motion, core, b.motion, radius(b.shape)));
-    return ask(TurningPolytopes<Degree>(a.motion, core, b.motion, ConvexCore(b.shape.shape)));
+    const ConvexCore other(b.shape.shape);
+    if (is_capsule(a.shape) || is_capsule(b.shape)) {
+      return ask(TurningRoundedPolytopes<Degree>(a.motion, core, b.motion, other));
+    }
+    return ask(TurningPolytopes<Degree>(a.motion, core, b.motion, other));
   }
   if (is_ball(a.shape)) {
     return ask(TurningBallAndBox<Degree>(b.motion, half_extents(b.shape), a.motion, radius(a.shape)));

@@ -25,6 +25,7 @@ auto with_search(const MeshBody<Degree>& a, const MeshBody<Degree>& b, const Ask
     const MeshShape surface = surface_of(b.shape.shape);
     return with(MeshOfPair(surface));
   }
+  if (std::holds_alternative<Capsule>(b.shape.shape)) return with(CapsuleOfPair(b.shape.shape));
   if (const auto* const box = std::get_if<Box>(&b.shape.shape)) return with(BoxOfPair(*box));
   return with(BallOfPair(std::get<Sphere>(b.shape.shape)));
 }

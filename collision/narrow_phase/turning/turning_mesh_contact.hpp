@@ -1,4 +1,4 @@
-// Contacts of meshes that turn, with meshes, boxes and balls.
+// Contacts of meshes that turn, with meshes, boxes, balls and capsules.
 #pragma once
 
 #include "certificates/turning/rigid_motion.hpp"
@@ -6,12 +6,13 @@
 
 namespace kds::collision {
 
-/// The tests of a mesh (a) with a mesh, a box or a ball (b) of bodies that turn.
+/// The tests of a mesh (a) with a mesh, a box, a ball or a capsule (b) of bodies that turn.
 ///
-/// Law. A mesh is its surface, a set of triangles; a ball or a box is solid. Contact is the first double just after
-/// which a triangle of a penetrates b, or a triangle of b, by exact signs (see TurningTriangles, TurningTriangleAndBox,
-/// TurningTriangleAndBall for what penetrates). What touches, or slides in one plane, is not in contact. Two surfaces
-/// that go through each other face on face, with outlines that agree exactly, only touch, at all times.
+/// Law. A mesh is its surface, a set of triangles; a ball, a box or a capsule is solid. Contact is the first double
+/// just after which a triangle of a penetrates b, or a triangle of b, by exact signs (see TurningTriangles,
+/// TurningTriangleAndBox, TurningTriangleAndBall, TurningTriangleAndCapsule for what penetrates). What touches, or
+/// slides in one plane, is not in contact. Two surfaces that go through each other face on face, with outlines that
+/// agree exactly, only touch, at all times.
 ///
 /// What is exact of a mesh are its vertices times its scale, each coordinate rounded to a double (scaled_vertex), as
 /// points of the body, turned by the exact rotation of its motion. All parts use these numbers.

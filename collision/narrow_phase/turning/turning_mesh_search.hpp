@@ -16,8 +16,8 @@
 
 namespace kds::collision {
 
-/// A mesh (a) and a MeshOfPair, BoxOfPair or BallOfPair (b), and their motions. See TurningMeshContact for laws and
-/// method.
+/// A mesh (a) and a MeshOfPair, BoxOfPair, BallOfPair or CapsuleOfPair (b), and their motions. See TurningMeshContact
+/// for laws and method.
 template <int Degree, class Side>
 class TurningMeshSearch {
  public:

@@ -4,6 +4,7 @@
 #include "collision/narrow_phase/turning/turning_nodes.hpp"
 #include "collision/narrow_phase/turning/turning_triangle_and_ball.hpp"
 #include "collision/narrow_phase/turning/turning_triangle_and_box.hpp"
+#include "collision/narrow_phase/turning/turning_triangle_and_capsule.hpp"
 #include "collision/narrow_phase/turning/turning_triangles.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
@@ -13,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <variant>
 
 namespace kds::collision {
 
@@ -99,6 +101,27 @@ class BallOfPair : public SolidSide {
 
  private:
   double radius_;
+};
+
+class CapsuleOfPair : public SolidSide {
+ public:
+  /// Refers to it.
+  explicit CapsuleOfPair(const Shape& capsule) : capsule_(std::get<Capsule>(capsule)), core_(capsule) {}
+
+  BodyNode node(std::uint32_t) const { return capsule_node(capsule_); }
+  const Capsule& capsule() const { return capsule_; }
+
+  template <int Degree>
+  using PairWith = TurningTriangleAndCapsule<Degree>;
+  template <int Degree>
+  PairWith<Degree> pair(const MeshOfPair& a, std::uint32_t leaf_a, const certificates::RigidMotion<Degree>& motion_a,
+                        std::uint32_t, const certificates::RigidMotion<Degree>& motion) const {
+    return {motion_a, a.corners(leaf_a), motion, core_};
+  }
+
+ private:
+  Capsule capsule_;
+  ConvexCore core_;
 };
 
 }  // namespace kds::collision

@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/turning/three_vectors.hpp"
 #include "collision/narrow_phase/turning/turning_view.hpp"
 #include "collision/shapes/obb_tree.hpp"
+#include "collision/shapes/shape.hpp"
 #include "kds/simd/four_doubles.hpp"
 
 #include <Eigen/Core>
@@ -59,6 +60,13 @@ inline BodyNode box_node(const Eigen::Vector3d& half) {
 inline BodyNode ball_node(double radius) {
   BodyNode result = box_node(Eigen::Vector3d::Zero());
   result.round = result.radius = radius;
+  return result;
+}
+
+inline BodyNode capsule_node(const Capsule& capsule) {
+  BodyNode result = box_node(Eigen::Vector3d(0, 0, capsule.half_length));
+  result.round = capsule.radius;
+  result.radius += capsule.radius;
   return result;
 }
 

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -41,11 +42,13 @@ class TurningPolytopes {
   using RigidMotion = certificates::RigidMotion<Degree>;
 
   TurningPolytopes(const RigidMotion& a, const ConvexCore& core_a, const RigidMotion& b, const ConvexCore& core_b)
-      : ways(number_of_ways(core_a.structure(), core_b.structure())),
+      : TurningPolytopes(a, TurningPolytope(core_a), b, TurningPolytope(core_b)) {}
+  TurningPolytopes(const RigidMotion& a, TurningPolytope core_a, const RigidMotion& b, TurningPolytope core_b)
+      : ways(number_of_ways(*core_a.structure, *core_b.structure)),
         a_(a),
         b_(b),
-        polytope_a_(core_a),
-        polytope_b_(core_b),
+        polytope_a_(std::move(core_a)),
+        polytope_b_(std::move(core_b)),
         turned_alike_(turned_alike()) {}
 
   /// Faces of a, faces of b, pairs of edges with either sense of their product.
@@ -87,7 +90,7 @@ class TurningPolytopes {
   }
 
   /// A time from t on until which they are apart; t where doubles do not tell, or where it would be hardly later.
-  double apart_until(double t, double horizon) const;
+  double apart_until(double t, double horizon) const { return farther_apart_until(0, t, horizon); }
 
   /// How deep the two are in each other at t, in doubles: along the way that is the least blocked.
   double depth(double t) const;
@@ -109,12 +112,13 @@ class TurningPolytopes {
     return rates > 0 ? 0.5 / rates : never;
   }
 
- private:
+ protected:
   struct EdgePair {
     std::size_t of_a, of_b;
     bool forward;  ///< the product of the edges, lower end to higher, points from a to b
   };
 
+  static bool has_face(std::uint32_t face) { return face != HullStructure::no_face; }
   int faces_a() const { return static_cast<int>(polytope_a_.normals.size()); }
   int faces() const { return faces_a() + static_cast<int>(polytope_b_.normals.size()); }
   static int number_of_ways(const HullStructure& a, const HullStructure& b) {
@@ -133,6 +137,18 @@ class TurningPolytopes {
     const double lengths = norm(frame.way.value) + polytope_a_.radius + polytope_b_.radius;
     return frame.way_error + PairFrame<Degree>::rounding * lengths;
   }
+  /// The vector from the nearest point of a to that of b; zero if they overlap.
+  Eigen::Vector3d way_between_nearest(const Frame& frame) const {
+    const auto farthest = [&](const Eigen::Vector3d& along) {
+      return Eigen::Vector3d(frame.way.value + frame.b.farthest(along) - frame.a.farthest(-along));
+    };
+    return nearest_to_origin(farthest, frame.way.value);
+  }
+  /// As apart_until, but farther apart than `grown`.
+  double farther_apart_until(double grown, double t, double horizon) const;
+
+  /// Whether two edges are known to be parallel at all times.
+  bool stay_parallel(std::size_t of_a, std::size_t of_b) const;
 
   /// In the order of every_condition.
   std::array<double, 5> edge_values(const Frame& frame, const EdgePair& pair) const;
@@ -140,11 +156,13 @@ class TurningPolytopes {
   static bool every_corner(const RigidMotion& of_face, const TurningPolytope& polytope, std::size_t face,
                            const RigidMotion& of_corner, const TurningPolytope& other, const SeenPolytope* seen_face,
                            const SeenPolytope* seen_other, const Eigen::Vector3d& way, double reach, const Test& test);
-  double wait_along(const Frame& frame, const Eigen::Vector3d& n, bool with_a, double stretch) const;
+  double wait_along(const Frame& frame, const Eigen::Vector3d& n, double grown, bool with_a, double stretch) const;
 
   const RigidMotion& a_;
   const RigidMotion& b_;
   TurningPolytope polytope_a_, polytope_b_;
+
+ private:
   bool turned_alike_;
 };
 
@@ -187,11 +205,13 @@ bool TurningPolytopes<Degree>::every_condition(int way, const Conditions& which,
   const EdgePair pair = edge_pair(way);
   std::array<double, 5> value{};
   if (frame) value = edge_values(*frame, pair);
-  const auto matters = [&](std::size_t k) { return !frame || !(value[k] > which.reach); };
-  const std::array<Eigen::Vector3d, 2> u = polytope_a_.edge(pair.of_a), u_back{u[1], u[0]};
-  const std::array<Eigen::Vector3d, 2> v = polytope_b_.edge(pair.of_b), v_back{v[1], v[0]};
   const auto& faces_at_u = polytope_a_.structure->edges[pair.of_a].faces;
   const auto& faces_at_v = polytope_b_.structure->edges[pair.of_b].faces;
+  const std::array<bool, 5> given{true, has_face(faces_at_u[0]), has_face(faces_at_u[1]), has_face(faces_at_v[0]),
+                                  has_face(faces_at_v[1])};
+  const auto matters = [&](std::size_t k) { return given[k] && (!frame || !(value[k] > which.reach)); };
+  const std::array<Eigen::Vector3d, 2> u = polytope_a_.edge(pair.of_a), u_back{u[1], u[0]};
+  const std::array<Eigen::Vector3d, 2> v = polytope_b_.edge(pair.of_b), v_back{v[1], v[0]};
   using certificates::NormalAlongEdge;
   // An edge from a to b: the product has to point from b to a for EdgeEdgeSeparation.
   return (!matters(0) || test(certificates::EdgeEdgeSeparation<Degree>{a_, b_, pair.forward ? u_back : u, v})) &&
@@ -206,7 +226,7 @@ bool TurningPolytopes<Degree>::every_condition(int way, const Conditions& which,
 }
 
 /// The products of normals and edges are times the radii, which are less than what `fastest` takes for lengths: so they
-/// change no faster than that.
+/// change no faster than that. Edges without faces are outermost.
 template <int Degree>
 std::array<double, 5> TurningPolytopes<Degree>::edge_values(const Frame& frame, const EdgePair& pair) const {
   const HullEdge& edge_a = polytope_a_.structure->edges[pair.of_a];
@@ -216,9 +236,11 @@ std::array<double, 5> TurningPolytopes<Degree>::edge_values(const Frame& frame, 
   const double sense = pair.forward ? 1 : -1;
   const double size = sense * (polytope_a_.radius + polytope_b_.radius);
   const Eigen::Vector3d apart = frame.way.value + frame.b.points[edge_b.ends[0]] - frame.a.points[edge_a.ends[0]];
-  return {sense * dot(cross(u, v), apart), size * dot(frame.a.normals[edge_a.faces[0]], v),
-          -size * dot(frame.a.normals[edge_a.faces[1]], v), size * dot(frame.b.normals[edge_b.faces[0]], u),
-          -size * dot(frame.b.normals[edge_b.faces[1]], u)};
+  const auto along = [size](const SeenPolytope& of, std::uint32_t face, const Eigen::Vector3d& edge) {
+    return has_face(face) ? size * dot(of.normals[face], edge) : never;
+  };
+  return {sense * dot(cross(u, v), apart), along(frame.a, edge_a.faces[0], v), along(frame.a, edge_a.faces[1], -v),
+          along(frame.b, edge_b.faces[0], u), along(frame.b, edge_b.faces[1], -u)};
 }
 
 template <int Degree>
@@ -243,16 +265,17 @@ double TurningPolytopes<Degree>::gaps(const Frame& frame, std::vector<double>& g
   return error(frame);
 }
 
-/// How long all of b is beyond all of a along a direction that turns with one of them: that one then reaches as far as
-/// it does now.
+/// How long all of b is beyond all of a by more than `grown`, along a direction that turns with one of them: that one
+/// then reaches as far as it does now.
 template <int Degree>
-double TurningPolytopes<Degree>::wait_along(const Frame& frame, const Eigen::Vector3d& n, bool with_a,
+double TurningPolytopes<Degree>::wait_along(const Frame& frame, const Eigen::Vector3d& n, double grown, bool with_a,
                                             double stretch) const {
   const VectorJet jet = turning(n, with_a ? frame.spin_a : frame.spin_b);
   const TurningBounds bounds(frame, with_a ? frame.rate_a : frame.rate_b, polytope_a_.radius, polytope_b_.radius,
                              stretch);
   Jet base = dot(jet, frame.way);
-  base.value -= bounds.rounding + (with_a ? dot(n, frame.a.farthest(n)) : -dot(n, frame.b.farthest(-n)));
+  base.value -= bounds.rounding + (1 + PairFrame<Degree>::rounding) * grown;
+  base.value -= (with_a ? dot(n, frame.a.farthest(n)) : -dot(n, frame.b.farthest(-n)));
   const SeenPolytope& other = with_a ? frame.b : frame.a;
   double wait = stretch;
   for (const std::uint32_t i : other.structure->corners) {
@@ -263,24 +286,22 @@ double TurningPolytopes<Degree>::wait_along(const Frame& frame, const Eigen::Vec
 }
 
 template <int Degree>
-double TurningPolytopes<Degree>::apart_until(double t, double horizon) const {
-  t = balls_apart_until(a_, b_, polytope_a_.radius, polytope_b_.radius, t, horizon);
+double TurningPolytopes<Degree>::farther_apart_until(double grown, double t, double horizon) const {
+  t = balls_apart_until(a_, b_, polytope_a_.radius + grown, polytope_b_.radius, t, horizon);
   if (t == never) return never;
   const Frame frame = this->frame(t);
-  const auto farthest = [&](const Eigen::Vector3d& along) {
-    return Eigen::Vector3d(frame.way.value + frame.b.farthest(along) - frame.a.farthest(-along));
-  };
-  const Eigen::Vector3d apart = nearest_to_origin(farthest, frame.way.value);
-  if (!frame.certain || !(norm(apart) > error(frame))) return t;
+  const Eigen::Vector3d apart = way_between_nearest(frame);
+  const double roundings = error(frame) + PairFrame<Degree>::rounding * grown;
+  if (!frame.certain || !(norm(apart) - grown > roundings)) return t;
   const Eigen::Vector3d n = normalized(apart);
   const double all = (horizon - t) * (1 + 0x1p-40);
-  const double stretch = frame.stretch(polytope_a_.radius + polytope_b_.radius, all);
-  double wait = wait_along(frame, n, true, stretch);
-  if (wait < stretch) wait = std::max(wait, wait_along(frame, n, false, stretch));
-  if (stretch < all && time_of_turning() != never) {
+  const double stretch = frame.stretch(polytope_a_.radius + polytope_b_.radius + grown, all);
+  double wait = wait_along(frame, n, grown, true, stretch);
+  if (wait < stretch) wait = std::max(wait, wait_along(frame, n, grown, false, stretch));
+  if (stretch < all && this->time_of_turning() != never) {
     for (const Eigen::Vector3d& along : {n, normalized(frame.way.value)}) {
       const double covered =
-          frame.a.revolving_reach(along, frame.spin_a) + frame.b.revolving_reach(-along, frame.spin_b);
+          grown + frame.a.revolving_reach(along, frame.spin_a) + frame.b.revolving_reach(-along, frame.spin_b);
       wait = std::max(wait, revolving_apart_for(frame, along, covered));
     }
   }
@@ -309,14 +330,20 @@ double TurningPolytopes<Degree>::depth(double t) const {
   return std::max(0.0, least);
 }
 
-/// Of bodies that are turned alike at all times edges that are parallel in their bodies are so for good.
 template <int Degree>
 bool TurningPolytopes<Degree>::known_to_separate_nothing(int way) const {
-  if (!turned_alike_ || way < faces()) return false;
+  if (way < faces()) return false;
   const EdgePair pair = edge_pair(way);
+  return stay_parallel(pair.of_a, pair.of_b);
+}
+
+/// Of bodies that are turned alike at all times edges that are parallel in their bodies are so for good.
+template <int Degree>
+bool TurningPolytopes<Degree>::stay_parallel(std::size_t of_a, std::size_t of_b) const {
+  if (!turned_alike_) return false;
   constexpr double maybe_parallel = 0x1p-46;  // unit vectors are known to 2^-50
-  if (norm(cross(polytope_a_.edges[pair.of_a], polytope_b_.edges[pair.of_b])) > maybe_parallel) return false;
-  const auto u = polytope_a_.edge(pair.of_a), v = polytope_b_.edge(pair.of_b);
+  if (norm(cross(polytope_a_.edges[of_a], polytope_b_.edges[of_b])) > maybe_parallel) return false;
+  const auto u = polytope_a_.edge(of_a), v = polytope_b_.edge(of_b);
   const auto n = certificates::cross(certificates::difference_of<Exact>(u[0], u[1]),
                                      certificates::difference_of<Exact>(v[0], v[1]));
   return std::all_of(n.begin(), n.end(), [](const Exact& x) { return x.sign() == 0; });

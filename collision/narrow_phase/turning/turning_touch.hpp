@@ -2,6 +2,9 @@
 #pragma once
 
 #include "collision/narrow_phase/contact_patch.hpp"
+#include "collision/narrow_phase/mesh_partners.hpp"
+#include "collision/narrow_phase/nearest_point.hpp"
+#include "collision/narrow_phase/segment_ways.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/narrow_phase/turning/turning_mesh_sides.hpp"
 #include "collision/shapes/support.hpp"
@@ -148,6 +151,38 @@ TurningTouch touch_of(const TurningTriangleAndBall<Degree>& pair, const MeshOfPa
                     : part < 6 ? Feature::edge(triangle.vertices[k], triangle.vertices[(k + 1) % 3])
                                : Feature::face(triangle.index);
   touch.approach = detail::approach_at(rates, touch.normal, origin + touch.point);
+  return touch;
+}
+
+/// Of a triangle and a capsule: where the capsule's segment is nearest to the triangle, in the middle of that; of one
+/// that goes through it across its plane.
+template <int Degree>
+TurningTouch touch_of(const TurningTriangleAndCapsule<Degree>&, const MeshOfPair& a, std::uint32_t leaf_a,
+                      const CapsuleOfPair& b, std::uint32_t, const TurningView<Degree>& view,
+                      const PointRates<Degree>& rates, const Eigen::Vector3d& origin) {
+  const LeafTriangle& leaf = a.triangle(leaf_a);
+  PlacedTriangle triangle{a.corners(leaf_a)};
+  for (Eigen::Vector3d& x : triangle.vertices) x = view.in_world_a(x);
+  const Eigen::Vector3d half = view.in_world_b({0, 0, b.capsule().half_length});
+  const double tolerance = parallel_sine * b.capsule().half_length;
+  const NearestStretch nearest = nearest_stretch(triangle, view.way.value, half, tolerance);
+  const Eigen::Vector3d apart = nearest.core - nearest.point;
+  const double distance = norm(apart);
+  Eigen::Vector3d normal = normalized(cross(triangle.edge(0), triangle.edge(1)));
+  if (dot(normal, view.way.value - triangle.vertices[0]) < 0) normal = -normal;
+  TurningTouch touch;
+  touch.point = nearest.point;
+  touch.normal = distance > 0 ? Eigen::Vector3d(apart / distance) : normal;
+  touch.feature_a = detail::nearest_feature(nearest_point(triangle, nearest.core), leaf);
+  touch.feature_b = detail::capsule_feature(nearest);
+  touch.approach = detail::approach_at(rates, touch.normal, origin + touch.point);
+  for (const double part :
+       {nearest.low, nearest.high}) {  // one end of the stretch may approach where the middle does not
+    if (touch.approach > 0) break;
+    const Eigen::Vector3d on = view.way.value + part * half - distance * touch.normal;
+    const double approach = detail::approach_at(rates, touch.normal, origin + on);
+    if (approach > touch.approach) touch.approach = approach, touch.point = on;
+  }
   return touch;
 }
 

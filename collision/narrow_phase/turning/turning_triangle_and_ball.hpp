@@ -49,7 +49,7 @@ class TurningTriangleAndBall {
     for (std::size_t i = 0; i < (part.kind == certificates::TrianglePart::Kind::corner ? 2 : 1); ++i) {
       if (!test(certificates::CentreBeyondPart<Degree>{pair, i})) return false;
     }
-    return test(certificates::BallBeyondPart<Degree>{pair, radius_});
+    return test(certificates::BallBeyondPart<Degree>{pair, {radius_, 0}});
   }
 
   double gaps(const TurningView<Degree>& view, std::array<double, ways>& gap) const {

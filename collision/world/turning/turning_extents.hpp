@@ -21,23 +21,33 @@ namespace kds::collision {
 /// A point of the body keeps its height c along the axis n of the turning, and its distance rho from it. So along an
 /// axis of the world it is never farther from the centre than |c n_d| + rho sqrt(1 - n_d^2): these are the bounds of
 /// the body of revolution, which are never beyond those of the bounding ball. A body that does not turn reaches as far
-/// as it does as it is.
+/// as it does as it is. A capsule is a box without width, grown by its radius.
 ///
 /// Error bound: an axis that is turned is off by 2^-46 of its length, and what is added up by some roundings more:
 /// 2^-40 of the bounding radius is charged.
 template <int Degree>
 Eigen::Vector3d turning_half_extents(const PlacedShape& shape, const certificates::RigidMotion<Degree>& motion) {
   const double radius = shape.bounding_radius;
-  const auto* const box = std::get_if<Box>(&shape.shape);
-  if (!box) return Eigen::Vector3d::Constant(radius);
+  Eigen::Vector3d edges;  // half of the box that the body is
+  double grown_by = 0;
+  if (const auto* const box = std::get_if<Box>(&shape.shape)) {
+    edges = box->half_extents;
+  } else if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
+    edges = Eigen::Vector3d(0, 0, capsule->half_length);
+    grown_by = capsule->radius;
+  } else {
+    return Eigen::Vector3d::Constant(radius);
+  }
+  const double rate = norm(motion.angular_velocity);
+  const bool still = motion.spin().still();
+  if (!still && !(rate >= 0x1p-400 && rate <= 0x1p400)) return Eigen::Vector3d::Constant(radius);
   const certificates::Rotation turn = motion.rotation(motion.path.start);
   std::array<Eigen::Vector3d, 3> half;
   for (int k = 0; k < 3; ++k) {
-    half[static_cast<std::size_t>(k)] = box->half_extents[k] * turn(Eigen::Vector3d::Unit(k));
+    half[static_cast<std::size_t>(k)] = edges[k] * turn(Eigen::Vector3d::Unit(k));
   }
-  const double rate = norm(motion.angular_velocity);
   Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();
-  if (motion.spin().still()) {
+  if (still) {
     for (const Eigen::Vector3d& h : half) half_extents += h.cwiseAbs();
   } else {
     const Eigen::Vector3d n = motion.angular_velocity / rate;
@@ -52,8 +62,8 @@ Eigen::Vector3d turning_half_extents(const PlacedShape& shape, const certificate
     }
   }
   for (int d = 0; d < 3; ++d) {
-    const double grown = half_extents[d] + 0x1p-40 * radius;
-    half_extents[d] = grown < radius ? grown : radius;  // and where the rate is out of the range of squares
+    const double grown = half_extents[d] + grown_by + 0x1p-40 * radius;
+    half_extents[d] = grown < radius ? grown : radius;
   }
   return half_extents;
 }

@@ -32,12 +32,19 @@ Query rod_and_plate(Random& random, double turn) {
   return query;
 }
 
-double here(const Query& query) {
-  const PlacedShape a = place(Box{query.half_a}, Eigen::Quaterniond::Identity());
-  const PlacedShape b = place(Box{query.half_b}, Eigen::Quaterniond::Identity());
+double contact_of(const Shape& shape_a, const Shape& shape_b, const Query& query) {
+  const PlacedShape a = place(shape_a, Eigen::Quaterniond::Identity());
+  const PlacedShape b = place(shape_b, Eigen::Quaterniond::Identity());
   const MovingShape<certificates::RigidMotion<1>> of_a{a, query.a}, of_b{b, query.b};
   return std::min(2.0, first_contact(of_a, of_b, 0, 1, ContactMode::transparent));
 }
+
+double here(const Query& query) { return contact_of(Box{query.half_a}, Box{query.half_b}, query); }
+
+/// The rounded rod in a box as it were: as long as its third edge, and as thick as the first.
+Capsule rod_in(const Vector3d& half) { return {half[0], half[2]}; }
+double capsules_here(const Query& query) { return contact_of(rod_in(query.half_a), rod_in(query.half_b), query); }
+double capsule_and_box_here(const Query& query) { return contact_of(rod_in(query.half_a), Box{query.half_b}, query); }
 
 struct Row {
   double microseconds;  ///< median
@@ -82,19 +89,26 @@ int main(int argc, char** argv) {
   std::FILE* const csv = std::fopen((folder + "/turning.csv").c_str(), "w");
   if (!csv) return std::perror("turning.csv"), 1;
   std::fprintf(csv, "scene,turn_rad,method,median_us,contacts,missed\n");
-  using Make = Query (*)(Random&, double);
-  for (const auto& [scene, make] :
-       {std::pair<const char*, Make>{"boxes", random_boxes}, {"rod and plate", rod_and_plate}}) {
+  struct Scene {
+    const char* name;
+    Query (*make)(Random&, double);
+    double (*here)(const Query&);
+    bool peers;
+  };
+  for (const auto& [scene, make, find, peers] :
+       {Scene{"boxes", random_boxes, here, true}, Scene{"rod and plate", rod_and_plate, here, true},
+        Scene{"capsules", random_boxes, capsules_here, false},
+        Scene{"capsule, box", random_boxes, capsule_and_box_here, false}}) {
     for (const double turn : {0.01, 0.1, 1.0, 10.0, 100.0, 1000.0}) {
       Random random(1);
       std::vector<Query> queries;
       for (int i = 0; i < count; ++i) queries.push_back(make(random, turn));
       std::vector<double> truth;
-      for (const Query& query : queries) truth.push_back(here(query));
+      for (const Query& query : queries) truth.push_back(find(query));
       std::printf("%-14s %7g rad", scene, turn);
       for (const auto& [name, method] : methods) {
-        if (turn > 100 && name != "here") continue;
-        const Row row = run(queries, truth, method);
+        if (name != "here" && (turn > 100 || !peers)) continue;
+        const Row row = run(queries, truth, name == "here" ? find : method);
         std::printf("   %s %8.2f us, %3d contacts, %3d missed", name.c_str(), row.microseconds, row.contacts,
                     row.missed);
         std::fprintf(csv, "%s,%g,%s,%.3f,%d,%d\n", scene, turn, name.c_str(), row.microseconds, row.contacts,

@@ -1,6 +1,7 @@
 // Bodies that turn, in numbers of some 330 bits, written down from the definition of their motion.
 #pragma once
 
+#include "certificates/turning/distance_of_parts.hpp"
 #include "certificates/turning/edge_edge_separation.hpp"
 #include "certificates/turning/rigid_motion.hpp"
 #include "certificates/turning/vertex_face_separation.hpp"
@@ -11,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace kds::tests {
 
@@ -123,6 +125,72 @@ TrueValue true_value(const certificates::EdgeEdgeSeparation<Degree>& f, const Tr
           (size_of(u) + size_of(x)) * (size_of(v) + size_of(y)) * (size_of(x) + size_of(y) + size_of(a.origin()))};
 }
 
+/// Of what a formula of distance_of_parts.hpp names: where the points are, and what is known of them.
+template <int Degree>
+struct TrueParts {
+  const TrueMotion<Degree>& a;
+  const TrueMotion<Degree>& b;
+  RealVector x, y, d;
+
+  RealVector of_a(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+    return a.position(to) - a.position(from);
+  }
+  RealVector of_b(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+    return b.position(to) - b.position(from);
+  }
+  Real lengths() const { return size_of(x) + size_of(y) + size_of(d) + size_of(a.origin()) + 1; }
+};
+
+template <int Degree>
+Real true_value(const certificates::PastEnd& f, const TrueParts<Degree>& parts) {
+  return inner(parts.of_a(f.edge[0], f.edge[1]), parts.d);
+}
+template <int Degree>
+Real true_value(const certificates::AcrossSide& f, const TrueParts<Degree>& parts) {
+  // From the side away from the third corner: what of d is across the edge, in the plane.
+  const RealVector e = parts.of_a(f.face[0], f.face[1]), third = parts.of_a(f.face[0], f.face[2]);
+  const RealVector inward = third * inner(e, e) - e * inner(e, third);
+  return -inner(inward, parts.d);
+}
+inline Real squared_radius(const std::array<double, 2>& radii) {
+  const Real sum = Real(radii[0]) + Real(radii[1]);
+  return sum * sum;
+}
+template <int Degree>
+Real true_value(const certificates::PointsApart& f, const TrueParts<Degree>& parts) {
+  return inner(parts.d, parts.d) - squared_radius(f.radii);
+}
+template <int Degree>
+Real true_value(const certificates::LineApart& f, const TrueParts<Degree>& parts) {
+  const RealVector u = parts.of_a(f.edge[0], f.edge[1]), across = outer(u, parts.d);
+  return inner(across, across) - squared_radius(f.radii) * inner(u, u);
+}
+template <int Degree>
+Real true_value(const certificates::AwayFromLine& f, const TrueParts<Degree>& parts) {
+  const RealVector u = parts.of_a(f.line[0], f.line[1]);
+  return inner(parts.of_b(f.edge[0], f.edge[1]), outer(outer(u, parts.d), u));
+}
+template <int Degree>
+Real true_value(const certificates::PlaneApart& f, const TrueParts<Degree>& parts) {
+  const RealVector n = outer(parts.of_a(f.face[0], f.face[1]), parts.of_a(f.face[0], f.face[2]));
+  const Real height = inner(n, parts.d);
+  return height * height - squared_radius(f.radii) * inner(n, n);
+}
+template <int Degree>
+Real true_value(const certificates::LinesApart& f, const TrueParts<Degree>& parts) {
+  const RealVector n = outer(parts.of_a(f.edge_a[0], f.edge_a[1]), parts.of_b(f.edge_b[0], f.edge_b[1]));
+  const Real height = inner(n, parts.d);
+  return height * height - squared_radius(f.radii) * inner(n, n);
+}
+template <int Degree, class Formula>
+TrueValue true_value(const certificates::BetweenParts<Degree, Formula>& f, const TrueMotion<Degree>& a,
+                     const TrueMotion<Degree>& b) {
+  const RealVector x = a.position(f.x), y = b.position(f.y);
+  const TrueParts<Degree> parts{a, b, x, y, y - x};
+  const Real lengths = parts.lengths();  // with numbers of up to 3, all products are less than the sixth power
+  return {true_value(f.formula, parts), lengths * lengths * lengths * lengths * lengths * lengths};
+}
+
 /// The true signs of a certificate at times near one time.
 template <class Certificate>
 class TrueSigns {
@@ -163,7 +231,7 @@ class TrueSigns {
 
   const Certificate& f_;
   double near_;
-  TrueMotion<Certificate::degree> a_, b_;
+  TrueMotion<std::decay_t<decltype(Certificate::a)>::degree> a_, b_;
 };
 
 }  // namespace kds::tests

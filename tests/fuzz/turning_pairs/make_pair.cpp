@@ -1,5 +1,7 @@
 #include "tests/fuzz/turning_pairs/make_pair.hpp"
 
+#include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -18,6 +20,8 @@ namespace {
 
 using Eigen::Vector3d;
 using kds::collision::Box;
+using kds::collision::Capsule;
+using kds::collision::ConvexHull;
 using kds::collision::Mesh;
 using kds::collision::MeshShape;
 using kds::collision::Shape;
@@ -69,6 +73,16 @@ Shape random_shape(Random& random, std::size_t family, bool ball) {
 std::vector<Piece> pieces_of(const Shape& shape) {
   if (const auto* const box = std::get_if<Box>(&shape)) return {box_piece(box->half_extents)};
   if (const auto* const ball = std::get_if<Sphere>(&shape)) return {ball_piece(ball->radius)};
+  if (const auto* const capsule = std::get_if<Capsule>(&shape)) {
+    return {capsule_piece(capsule->radius, capsule->half_length)};
+  }
+  if (const auto* const hull = std::get_if<ConvexHull>(&shape)) {
+    const auto points = hull->polytope->points();
+    const auto normals = hull->polytope->normals();
+    std::vector<std::array<std::size_t, 2>> edges;
+    for (const auto& edge : hull->polytope->structure().edges) edges.push_back({edge.ends[0], edge.ends[1]});
+    return {polytope_piece({points.begin(), points.end()}, {normals.begin(), normals.end()}, edges)};
+  }
   const auto& mesh = std::get<MeshShape>(shape);
   std::vector<Piece> pieces;
   for (const auto& corners : mesh.mesh->triangles()) {
@@ -125,9 +139,41 @@ void make_moving(RandomPair& pair, Random& random, double rate) {
   }
 }
 
+/// A capsule, thin or short, or as long as is wide; numbers of the lattice in the family that has one.
+Capsule random_capsule(Random& random, std::size_t family) {
+  if (family == parallel && random.one_in(2)) return {random.one_in(2) ? 0.25 : 0.5, random.one_in(2) ? 0.5 : 1.0};
+  return {random.between(0.05, 0.5) * (random.one_in(4) ? 0.02 : 1), random.between(0.05, 1)};
+}
+
+/// A tetrahedron, or with its corners reflected a body of parallel edges and faces.
+Shape random_hull(Random& random) {
+  std::vector<Vector3d> points;
+  for (int i = 0; i < 4; ++i) points.push_back(random.between(0.3, 1) * direction(random));
+  if (random.one_in(2)) {
+    for (std::size_t i = 0; i < 4; ++i) points.push_back(-points[i]);
+  }
+  return kds::collision::convex_hull(points);
+}
+
+/// Its end goes round past the plate at the distance at which the corner of the box did, or as deep.
+void put_capsules(RandomPair& pair, Random& random) {
+  if (pair.family == grazing) {
+    const Vector3d half = std::get<Box>(pair.shape_a).half_extents;
+    const double reach = std::sqrt(half[0] * half[0] + half[1] * half[1]);
+    const double radius = reach * random.between(0.05, 0.5);
+    pair.shape_a = Capsule{radius, reach - radius};
+    pair.a.orientation = Eigen::Quaterniond(1, 1, 0, 0);  // across the axis about which it turns
+    return;
+  }
+  const bool both = random.one_in(2), first = random.one_in(2);
+  if (both || first) pair.shape_a = random_capsule(random, pair.family);
+  if (both || !first) pair.shape_b = random_capsule(random, pair.family);
+  if (!both && random.one_in(3)) (first ? pair.shape_b : pair.shape_a) = random_hull(random);
+}
+
 }  // namespace
 
-RandomPair make_pair(std::uint64_t seed) {
+RandomPair make_pair(std::uint64_t seed, bool capsules) {
   Random random(seed);
   RandomPair pair;
   // Meshes of many triangles take the oracle a thousand times as long.
@@ -161,6 +207,7 @@ RandomPair make_pair(std::uint64_t seed) {
       motion->path.coefficients[0] += motion->path.start * motion->path.coefficients[1];
     }
   }
+  if (capsules) put_capsules(pair, random);
   pair.pieces_a = pieces_of(pair.shape_a);
   pair.pieces_b = pieces_of(pair.shape_b);
   return pair;

@@ -29,7 +29,8 @@ struct RandomPair {
   std::vector<Piece> pieces_a, pieces_b;
 };
 
-/// A function of the seed alone.
-RandomPair make_pair(std::uint64_t seed);
+/// A function of the seed alone. With capsules, one of the two is one in place of what it would have been, or both are,
+/// and some of the others are hulls: in the family "grazing" what turns is, in place of a box.
+RandomPair make_pair(std::uint64_t seed, bool capsules = false);
 
 }  // namespace turning_pairs

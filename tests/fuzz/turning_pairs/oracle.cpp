@@ -150,7 +150,9 @@ class Pair {
     for (const Vector& u : seen_a_.edges) {
       for (const Vector& v : seen_b_.edges) consider(cross(u, v));
     }
-    if (b.points.size() == 1) {
+    if (a.points.size() == 2 || b.points.size() == 2) {
+      consider_ways(a, b);
+    } else if (b.points.size() == 1) {
       const Vector centre = sum(way_, seen_b_.points[0]);
       consider(a.points.size() == 1 ? centre : sum(centre, nearest(seen_a_, centre), -1));
     } else if (a.points.size() == 1) {
@@ -195,6 +197,27 @@ class Pair {
     if (const Number width = std::max(forward, back); width > best_.width) best_ = {width, n};
   }
 
+  /// Between corners, and between corners and edges.
+  void consider_ways(const Piece& a, const Piece& b) {
+    for (const Vector& x : seen_a_.points) {
+      const Vector from = sum(way_, x, -1);
+      for (const Vector& y : seen_b_.points) consider(sum(from, y));
+      for (const auto& [i, j] : b.segments)
+        consider(across(sum(from, seen_b_.points[i]), sum(from, seen_b_.points[j])));
+    }
+    for (const Vector& y : seen_b_.points) {
+      const Vector to = sum(way_, y);
+      for (const auto& [i, j] : a.segments) {
+        consider(across(sum(to, seen_a_.points[i], -1), sum(to, seen_a_.points[j], -1)));
+      }
+    }
+  }
+  /// The point of the line through p and q that is nearest to the origin.
+  static Vector across(const Vector& p, const Vector& q) {
+    const Vector u = sum(q, p, -1);
+    return sum(p, u, -dot(p, u) / dot(u, u));
+  }
+
   Number wait_along(const Vector& n, Number limit) const {
     const Number base = dot(n, way_) - radii_ + error_;
     const Number rate = dot(n, sum(b_.velocity, a_.velocity, -1));
@@ -223,7 +246,11 @@ class Pair {
 
 }  // namespace
 
-Piece ball_piece(double radius) { return {{{0, 0, 0}}, {}, {}, radius}; }
+Piece ball_piece(double radius) { return {{{0, 0, 0}}, {}, {}, radius, {}}; }
+
+Piece capsule_piece(double radius, double half_length) {
+  return {{{0, 0, -half_length}, {0, 0, half_length}}, {}, {{0, 0, 1}}, radius, {{0, 1}}};
+}
 
 Piece box_piece(const Eigen::Vector3d& half) {
   Piece piece;
@@ -231,6 +258,21 @@ Piece box_piece(const Eigen::Vector3d& half) {
     piece.points.push_back({i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], i & 4 ? half[2] : -half[2]});
   }
   piece.normals = piece.edges = {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
+  for (std::size_t i = 0; i < 8; ++i) {
+    for (const std::size_t bit : {1, 2, 4}) {
+      if (!(i & bit)) piece.segments.push_back({i, i | bit});
+    }
+  }
+  return piece;
+}
+
+Piece polytope_piece(const std::vector<Eigen::Vector3d>& corners, const std::vector<Eigen::Vector3d>& normals,
+                     const std::vector<std::array<std::size_t, 2>>& edges) {
+  Piece piece;
+  for (const Eigen::Vector3d& x : corners) piece.points.push_back(vector(x));
+  for (const Eigen::Vector3d& n : normals) piece.normals.push_back(vector(n));
+  for (const auto& [i, j] : edges) piece.edges.push_back(unit(sum(piece.points[j], piece.points[i], -1)));
+  piece.segments = edges;
   return piece;
 }
 
@@ -239,6 +281,7 @@ Piece triangle_piece(const std::array<Eigen::Vector3d, 3>& corners) {
   for (std::size_t k = 0; k < 3; ++k) {
     piece.points.push_back(vector(corners[k]));
     piece.edges.push_back(unit(sum(vector(corners[(k + 1) % 3]), vector(corners[k]), -1)));
+    piece.segments.push_back({k, (k + 1) % 3});
   }
   piece.normals = {unit(cross(piece.edges[0], piece.edges[1]))};
   return piece;

@@ -4,6 +4,7 @@
 #include "certificates/turning/rigid_motion.hpp"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace turning_pairs {
@@ -17,10 +18,15 @@ struct Piece {
   std::vector<Vector> normals;  ///< of faces
   std::vector<Vector> edges;    ///< directions
   Number radius = 0;
+  std::vector<std::array<std::size_t, 2>> segments;  ///< edges by their ends, of pieces that may be near a capsule
 };
 
 Piece ball_piece(double radius);
+Piece capsule_piece(double radius, double half_length);
 Piece box_piece(const Eigen::Vector3d& half);
+/// The corners of a polytope, the normals of its faces, and its edges by their ends.
+Piece polytope_piece(const std::vector<Eigen::Vector3d>& corners, const std::vector<Eigen::Vector3d>& normals,
+                     const std::vector<std::array<std::size_t, 2>>& edges);
 Piece triangle_piece(const std::array<Eigen::Vector3d, 3>& corners);
 
 /// A body: its pieces, and its motion of degree 2 at most.
@@ -54,10 +60,11 @@ enum class Verdict {
 /// which is 2^-50 of the lengths.
 ///
 /// Method. Two convex pieces are apart by the greatest of their gaps along the normals of faces and the products of
-/// edges. (With a ball, also along the way to its nearest point.) Along that direction n, which stays as it is, the
-/// distance of each point of b from each of a is at least g + r s - B s^2 / 2 after s, where B bounds accelerations:
-/// until the first of these reaches -error they are no deeper than that, and then they are looked at again. It is a
-/// proof, so nothing can be passed over; with an error that is not zero it comes to an end.
+/// edges. (With a ball, also along the way to its nearest point; with a capsule, along the ways between corners, and
+/// from corners to edges.) Along that direction n, which stays as it is, the distance of each point of b from each of a
+/// is at least g + r s - B s^2 / 2 after s, where B bounds accelerations: until the first of these reaches -error they
+/// are no deeper than that, and then they are looked at again. It is a proof, so nothing can be passed over; with an
+/// error that is not zero it comes to an end.
 Verdict check(const Body& a, const Body& b, double t0, double horizon, double contact, int* steps);
 
 }  // namespace turning_pairs

@@ -19,7 +19,7 @@ using namespace kds::tests;
 template <int Degree>
 double slow_failure_time(const FailureCase<Degree>& x) {
   const PolynomialCertificate<Degree> f{x.value};
-  return detail::DerivativeIntervals<PolynomialCertificate<Degree>>(f, x.now, x.horizon).first_negative();
+  return detail::DerivativeIntervals<Degree>(CertificateReference(f), x.now, x.horizon).first_negative();
 }
 
 /// Runs `holds` on cases of every family and reports the first that it refuses, if any.

@@ -32,6 +32,11 @@ std::array<Number, 3> factors(const Spin& spin, double t) {
   return {Number(1), Number(cos(angle)), Number(rate * sin(angle))};
 }
 
+std::array<Real, 5> two_harmonics(const Spin& spin, double t) {
+  const std::array<Real, 3> once = factors<Real>(spin, t);
+  return {1, once[1], once[2], 2 * once[1] * once[1] - 1, 2 * once[1] * once[2]};
+}
+
 template <class Number>
 Number value(const std::array<int, 9>& p, const Factors<Number>& f) {
   Number sum = 0;
@@ -43,8 +48,8 @@ Number value(const std::array<int, 9>& p, const Factors<Number>& f) {
   return sum;
 }
 
-TurningCoefficients exact(const std::array<int, 9>& p) {
-  TurningCoefficients result;
+TurningCoefficients<3> exact(const std::array<int, 9>& p) {
+  TurningCoefficients<3> result;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) result[i][j] = Exact(static_cast<double>(p[3 * i + j]));
   }
@@ -112,6 +117,50 @@ TEST_CASE("a sum of sines is zero where its value is", "[exact_zero]") {
   CHECK(zeros > 100);
 }
 
+TEST_CASE("sums of two harmonics are zero where their values are", "[exact_zero]") {
+  const std::uint64_t seed = 341;
+  CAPTURE(seed);
+  Random random(seed);
+  int wrong = 0, zeros = 0, others = 0;
+  for (int round = 0; round < 1000; ++round) {
+    // |a| : |b| = m : n, with the same sign or not, and with starts of their own.
+    const int m = random.integer(1, 5), n = random.integer(1, 5);
+    const double t = random.one_in(2) ? 1 : -1;
+    Spin a{{static_cast<double>(m), 0, 0}, 0}, b{{0, static_cast<double>(n), 0}, 0};
+    if (random.one_in(3)) b.start = 2 * t;  // as much before as after its start
+    if (random.one_in(8)) a.velocity = {0, 0, 0};
+    if (random.one_in(8)) b.start = t;
+    const bool related = !random.one_in(4);
+    if (!related) b.velocity[2] = 1;
+    const std::array<std::array<Real, 5>, 2> fine{two_harmonics(a, t), two_harmonics(b, t)};
+    // Sums that vanish where multiples of the angles agree, and else do not.
+    TurningCoefficients<5> p;
+    Real sum = 0;
+    const auto add = [&](std::size_t i, std::size_t j, double c) {
+      p[i][j] = p[i][j] + Exact(c);
+      sum += c * fine[0][i] * fine[1][j];
+    };
+    const auto cosine = [&] { return static_cast<std::size_t>(2 * random.integer(1, 2) - 1); };
+    const std::size_t k = cosine(), l = cosine(), other = cosine();
+    const double c = random.integer(1, 3), sense = random.one_in(2) ? 1 : -1;
+    switch (random.integer(0, 2)) {
+      case 0:
+        add(k, 0, c), add(0, l, -c);
+        break;
+      case 1:
+        add(k + 1, 0, c * n), add(0, l + 1, sense * c * m);
+        break;
+      default:
+        add(k, l, c * m * n), add(k + 1, l + 1, sense * c), add(random.one_in(2) ? 0 : other, 0, -c * m * n);
+    }
+    const bool zero = abs(sum) < Real("1e-80");
+    wrong += vanishes(p, relation_at(a, b, t, 2)) != zero;
+    (zero ? zeros : others) += 1;
+  }
+  CHECK(wrong == 0);
+  CHECK((zeros > 50 && others > 50));
+}
+
 TEST_CASE("relations of angles are told from what is next to them", "[exact_zero]") {
   const Spin a{{1, 0, 0}, 0};
   const Spin b{{0, 1, 0}, 0};
@@ -119,6 +168,10 @@ TEST_CASE("relations of angles are told from what is next to them", "[exact_zero
   CHECK(relation_at(a, Spin{{0, 1 + 0x1p-52, 0}, 0}, 1).first_multiple == 0);
   CHECK(relation_at(a, Spin{{0, 1, 0x1p-500}, 0}, 1).first_multiple == 0);  // the rate is no double
   CHECK(relation_at(a, Spin{{0, 0, 2}, 0}, 1).second_multiple == 2);
+  CHECK(relation_at(a, Spin{{0, 0, 3}, 0}, 1).second_multiple == 0);
+  CHECK(relation_at(a, Spin{{0, 0, 3}, 0}, 1, 2).second_multiple == 3);
+  CHECK(relation_at(a, Spin{{0, 0, 0.75}, 0}, 1, 2).first_multiple == 4);
+  CHECK(relation_at(a, Spin{{0, 0, 5}, 0}, 1, 2).second_multiple == 0);
   CHECK(relation_at(a, b, 0).first_zero);
   CHECK(relation_at(Spin{{3, 4, 0}, 0}, Spin{{0, 0, 5}, 0}, 1).first_multiple == 1);
   // At all times: started apart nothing is related, though it is at one time.

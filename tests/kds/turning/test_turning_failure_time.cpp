@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace test_turning_failure_time {
 namespace {
@@ -23,8 +24,9 @@ using namespace kds::tests;
 constexpr double pi = 3.14159265358979323846;
 
 /// Adds (c0 + c1 t + c2 t^2) A_i B_j.
-template <int Degree>
-void add(WrittenSum<Degree>& f, std::size_t i, std::size_t j, const std::array<double, std::size_t{Degree} + 1>& c) {
+template <int Degree, int Harmonics>
+void add(WrittenSum<Degree, Harmonics>& f, std::size_t i, std::size_t j,
+         const std::array<double, std::size_t{Degree} + 1>& c) {
   f.p[i][j].position.c = c;
 }
 
@@ -259,6 +261,37 @@ TEST_CASE("second harmonics of one spin fail where they should", "[turning_failu
   CHECK(std::abs(failure_time(f, 0.5, 100) - (0.5 + pi / 6 - 0x1p-40 / 3)) < 1e-15);
 }
 
+TEST_CASE("second harmonics of two spins fail where they should", "[turning_failure_time]") {
+  WrittenSum<1, 2> f;  // 1/2 + cos 2 a cos 2 b, at rates of 3 and 1 rad/s
+  f.spin[0] = Spin{{1, 2, 2}, 0.5};
+  f.spin[1] = Spin{{0, 1, 0}, 0.5};
+  add<1>(f, 0, 0, {0.5, 0});
+  add<1>(f, 3, 3, {1, 0});
+  const double t = failure_time(f, 0.5, 100);  // cos 8 x + cos 4 x = -1: cos 4 x = 0
+  CHECK(std::abs(t - (0.5 + pi / 8)) < 1e-15);
+  CHECK(std::abs(recovery_time(f, t, 100) - (0.5 + pi / 6)) < 1e-15);  // cos 4 x = -1/2
+  CHECK(refutations_of_failure(f, 0.5, 100) == 0);
+  WrittenSum<1, 2> g;  // (cos a - cos b)^2 with b = 3 a: zero where a or 2 a is a half turn, doubly, never negative
+  g.spin = f.spin;
+  std::swap(g.spin[0], g.spin[1]);
+  add<1>(g, 0, 0, {1, 0});
+  add<1>(g, 3, 0, {0.5, 0});
+  add<1>(g, 0, 3, {0.5, 0});
+  add<1>(g, 1, 1, {-2, 0});
+  CHECK(failure_time(g, 0, 40) == never);
+  add<1>(g, 0, 0, {1 - 0x1p-53, 0});
+  CHECK(failure_time(g, 0.5, 40) == 0.5);
+  CHECK(refutations_of_failure(g, 1, 10) == 0);
+  // cos^2 and sin^2 of twice the angle, of two spins that are equal: zero at all times.
+  WrittenSum<1, 2> h;
+  h.spin = {f.spin[0], Spin{{-3, 0, 0}, 0.5}};
+  add<1>(h, 0, 0, {-9, 0});
+  add<1>(h, 3, 3, {9, 0});
+  add<1>(h, 4, 4, {1, 0});
+  CHECK(vanishes(h));
+  CHECK(failure_time(h, 0.7, 1e9) == never);
+}
+
 TEST_CASE("lines and parabolas without a turn are those of polynomials", "[turning_failure_time]") {
   const std::uint64_t seed = 360;
   CAPTURE(seed);
@@ -282,20 +315,20 @@ TEST_CASE("lines and parabolas without a turn are those of polynomials", "[turni
 }
 
 TEMPLATE_TEST_CASE_SIG("failure times of random sums are refuted by no sign", "[turning_failure_time]",
-                       ((int Degree), Degree), 1, 2) {
-  const std::uint64_t seed = 361 + Degree;
-  CAPTURE(Degree, seed);
+                       ((int Degree, int Harmonics), Degree, Harmonics), (1, 1), (2, 1), (1, 2), (2, 2), (4, 2)) {
+  const std::uint64_t seed = 351 + Degree + 10 * Harmonics;
+  CAPTURE(Degree, Harmonics, seed);
   Random random(seed);
   turning_search_counters = {};
   int wrong = 0;
   int found = 0;
   int touching = 0;
-  constexpr int rounds = 400;
+  constexpr int rounds = Harmonics == 1 ? 400 : 60;
   for (int round = 0; round < rounds; ++round) {
     const bool coarse = random.one_in(3);
     const double rate = coarse ? 1 : (random.one_in(2) ? 1.0 : std::pow(10.0, random.between(-9, 4)));
     const double long_ago = random.one_in(4) ? -1e6 : 0;
-    WrittenSum<Degree> f;
+    WrittenSum<Degree, Harmonics> f;
     for (Spin& spin : f.spin) {
       for (double& v : spin.velocity) v = rate * (coarse ? random.integer(-1, 1) : random.between(-1, 1));
       if (random.one_in(8)) spin.velocity = {};
@@ -303,10 +336,10 @@ TEMPLATE_TEST_CASE_SIG("failure times of random sums are refuted by no sign", "[
     }
     if (random.one_in(3)) f.spin[1] = f.spin[0];
     const double now = coarse ? random.integer(-1, 1) : random.between(-1, 1) / rate;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t i = 0; i < f.size; ++i) {
+      for (std::size_t j = 0; j < f.size; ++j) {
         if (random.one_in(3)) continue;
-        const double scale = (i == 2 ? 1 / rate : 1) * (j == 2 ? 1 / rate : 1);
+        const double scale = (is_sine(i) ? 1 / rate : 1) * (is_sine(j) ? 1 / rate : 1);
         f.p[i][j].start = now;
         for (std::size_t k = 0; k <= Degree; ++k) {
           const double x = coarse ? random.integer(-2, 2) : random.between(-1, 1);
@@ -345,9 +378,10 @@ TEMPLATE_TEST_CASE_SIG("failure times of random sums are refuted by no sign", "[
   }
   const TurningSearchCounters& n = turning_search_counters;
   std::printf(
-      "failure times, degree %d, seed %llu: %d searches, %d roots, %d nearly touching; models in doubles %llu, "
+      "failure times, degree %d, harmonics %d, seed %llu: %d searches, %d roots, %d nearly touching; models in doubles "
+      "%llu, "
       "double-doubles %llu, exact %llu; signs %llu, by signs alone %llu\n",
-      Degree, static_cast<unsigned long long>(seed), rounds, found, touching,
+      Degree, Harmonics, static_cast<unsigned long long>(seed), rounds, found, touching,
       static_cast<unsigned long long>(n.expansions), static_cast<unsigned long long>(n.extended),
       static_cast<unsigned long long>(n.enclosed), static_cast<unsigned long long>(n.signs),
       static_cast<unsigned long long>(n.searches));

@@ -32,10 +32,12 @@ Turn<Real> true_turn(const Spin& spin, const Real& t) {
 }
 
 /// f at epoch + elapsed.
-Real value(const TurningSum<2, Real>& f, const Spin& a, const Spin& b, double epoch, const Real& elapsed) {
-  TurningSum<0, Real> now;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) now.p[i][j].c[0] = f.p[i][j](elapsed);
+template <int Degree, int Harmonics>
+Real value(const TurningSum<Degree, Real, Harmonics>& f, const Spin& a, const Spin& b, double epoch,
+           const Real& elapsed) {
+  TurningSum<0, Real, Harmonics> now;
+  for (std::size_t i = 0; i < f.size; ++i) {
+    for (std::size_t j = 0; j < f.size; ++j) now.p[i][j].c[0] = f.p[i][j](elapsed);
   }
   return value_at_epoch(now, true_turn(a, Real(epoch) + elapsed), true_turn(b, Real(epoch) + elapsed));
 }
@@ -48,14 +50,15 @@ Spin random_spin(Random& random) {
 
 }  // namespace
 
-TEST_CASE("the derivative of a turning sum is what it grows by", "[turning_sum]") {
+TEMPLATE_TEST_CASE_SIG("the derivative of a turning sum is what it grows by", "[turning_sum]",
+                       ((int Harmonics), Harmonics), 1, 2, 3) {
   const std::uint64_t seed = 350;
   CAPTURE(seed);
   Random random(seed);
   for (int round = 0; round < 30; ++round) {
     const Spin a = random_spin(random);
     const Spin b = random_spin(random);
-    TurningSum<2, Real> f;
+    TurningSum<2, Real, Harmonics> f;
     for (auto& row : f.p) {
       for (auto& p : row) p.c = {Real(random.between(-1, 1)), Real(random.between(-1, 1)), Real(random.between(-1, 1))};
     }
@@ -64,6 +67,34 @@ TEST_CASE("the derivative of a turning sum is what it grows by", "[turning_sum]"
     const Real h("1e-30");
     const Real growth = (value(f, a, b, t, h) - value(f, a, b, t, -h)) / (2 * h);
     CHECK(abs(growth - value(g, a, b, t, Real(0))) < Real("1e-50"));
+  }
+}
+
+TEST_CASE("products of turning sums have the products of their values", "[turning_sum]") {
+  const std::uint64_t seed = 352;
+  CAPTURE(seed);
+  Random random(seed);
+  for (int round = 0; round < 30; ++round) {
+    const Spin a = random_spin(random);
+    const Spin b = random_spin(random);
+    TurningSum<2, Real> f, g;
+    for (auto* sum : {&f, &g}) {
+      for (auto& row : sum->p) {
+        for (auto& p : row) {
+          if (!random.one_in(3)) p.c = {Real(random.between(-1, 1)), Real(random.between(-1, 1)), Real(1)};
+        }
+      }
+    }
+    const Real squared_rate_a = rate_of(a) * rate_of(a), squared_rate_b = rate_of(b) * rate_of(b);
+    TurningSum<4, Real, 2> product;
+    add_product(product, f, g, squared_rate_a, squared_rate_b);
+    const double t = random.between(-2, 2), later = random.between(-1, 1);
+    CHECK(abs(value(product, a, b, t, Real(later)) - value(f, a, b, t, Real(later)) * value(g, a, b, t, Real(later))) <
+          Real("1e-80"));
+    TurningSum<1, Real, 3> cut;  // of a product with one of two harmonics, up to the first order
+    add_product(cut, product, f, squared_rate_a, squared_rate_b);
+    const Real whole = value(product, a, b, t, Real(0)) * value(f, a, b, t, Real(0));
+    CHECK(abs(value(cut, a, b, t, Real(0)) - whole) < Real("1e-80"));
   }
 }
 

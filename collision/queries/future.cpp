@@ -1,0 +1,104 @@
+#include "collision/queries/future.hpp"
+
+#include "collision/broad_phase/kinetic_box.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Throws unless a query can look from now until then.
+template <class Motion>
+void require_span(const BasicWorld<Motion>& world, double until) {
+  if (until >= world.now() && until < never) return;
+  throw std::invalid_argument("next_contact: " + std::to_string(until) + " is not a finite time from now on (" +
+                              std::to_string(world.now()) + ")");
+}
+
+/// A box that moves with a shape and contains it in any orientation that it takes.
+template <class Motion>
+KineticBox<Motion::degree> box_of(const MovingShape<Motion>& body) {
+  if constexpr (turns<Motion>) {
+    const Vector3d reach = Vector3d::Constant(body.shape.bounding_radius);
+    return box_around(path_of(body.motion), -reach, reach);
+  } else {
+    return box_around(body.motion, body.shape.low, body.shape.high);
+  }
+}
+
+template <class Motion>
+std::optional<Contact> meeting(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double now, double until,
+                               ContactMode mode) {
+  FoundTouch found;
+  const double t = first_contact(a, b, now, until, mode, &found);
+  if (t == never) return std::nullopt;
+  return contact_at(a, b, t, found);
+}
+
+/// The first of the bodies that are accepted.
+template <class Motion, class Accept>
+std::optional<Hit> first_met(const BasicWorld<Motion>& world, const MovingShape<Motion>& mover, double until,
+                             ContactMode mode, const Accept& accept) {
+  std::optional<Hit> first;
+  world.visit_swept(box_of(mover), until, [&](BodyId id) {
+    if (!accept(id)) return;
+    const PlacedShape shape = world.shape(id);
+    const MovingShape<Motion> body{shape, world.motion(id)};
+    const auto contact = meeting(mover, body, world.now(), first ? first->contact.time : until, mode);
+    if (!contact) return;
+    const Hit hit{id, *contact};
+    if (!first || detail::sooner(hit, *first)) first = hit;
+  });
+  return first;
+}
+
+}  // namespace
+
+template <class Motion>
+std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion,
+                                double until, const BodyFilter& filter) {
+  require_span(world, until);
+  if (!motion.finite() || !(path_of(motion).start <= world.now())) {
+    throw std::invalid_argument("next_contact: the motion is not finite, or begins after now (" +
+                                std::to_string(world.now()) + ")");
+  }
+  if (!can_move_by<Motion>(shape.shape)) {
+    throw std::invalid_argument(std::string("next_contact: no shape of this kind moves so: ") + kind_name(shape.shape));
+  }
+  return first_met(world, MovingShape<Motion>{shape, motion}, until, ContactMode::transparent,
+                   [&](BodyId id) { return detail::accepts(filter, id); });
+}
+
+template <class Motion>
+std::optional<Hit> next_contact_of(const BasicWorld<Motion>& world, BodyId body, double until, const BodyFilter& filter,
+                                   ContactMode mode) {
+  require_span(world, until);
+  const PlacedShape shape = world.shape(body);
+  return first_met(world, MovingShape<Motion>{shape, world.motion(body)}, until, mode,
+                   [&](BodyId id) { return id != body && detail::accepts(filter, id); });
+}
+
+template <class Motion>
+std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until,
+                                            ContactMode mode) {
+  require_span(world, until);
+  if (a == b) throw std::invalid_argument("next_contact: a body does not meet itself");
+  const PlacedShape shape_a = world.shape(a);
+  const PlacedShape shape_b = world.shape(b);
+  return meeting(MovingShape<Motion>{shape_a, world.motion(a)}, MovingShape<Motion>{shape_b, world.motion(b)},
+                 world.now(), until, mode);
+}
+
+#define KDS_INSTANTIATE(motion)                                                                                  \
+  template std::optional<Hit> next_contact(const BasicWorld<motion>&, const PlacedShape&, const motion&, double, \
+                                           const BodyFilter&);                                                   \
+  template std::optional<Hit> next_contact_of(const BasicWorld<motion>&, BodyId, double, const BodyFilter&,      \
+                                              ContactMode);                                                      \
+  template std::optional<Contact> next_contact_between(const BasicWorld<motion>&, BodyId, BodyId, double, ContactMode);
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision

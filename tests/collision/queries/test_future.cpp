@@ -1,0 +1,134 @@
+// What will meet what: the same times as the world's own contacts.
+#include "collision/queries/future.hpp"
+
+#include "tests/collision/sample_meshes.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+namespace kds::collision::test_future {
+namespace {
+
+using Eigen::Vector3d;
+using samples::Random;
+
+template <int Degree>
+BodyDescription<Degree> body(const Shape& shape, const certificates::PointMotion<Degree>& motion) {
+  BodyDescription<Degree> description;
+  description.shape = shape;
+  description.motion = {motion};
+  return description;
+}
+
+template <int Degree>
+certificates::PointMotion<Degree> random_motion(Random& random, double start) {
+  certificates::PointMotion<Degree> motion{};
+  motion.coefficients[0] = random.vector(2);
+  for (std::size_t i = 1; i <= Degree; ++i) motion.coefficients[i] = random.vector(1);
+  motion.start = start;
+  return motion;
+}
+
+Shape random_shape(Random& random) {
+  if (random.below(2) == 0) return Sphere{random.uniform(0.1, 0.5)};
+  return Box{Vector3d(random.uniform(0.1, 0.5), random.uniform(0.1, 0.5), random.uniform(0.1, 0.5))};
+}
+
+/// The first contact of a body.
+template <int Degree>
+struct FirstMeeting final : WorldListener<Degree> {
+  void contact(World<Degree>&, const PairEvent& event) override { note(event); }
+  void overlap(World<Degree>&, const PairEvent& event) override { note(event); }
+  void note(const PairEvent& event) {
+    if (!met && (event.a == of || event.b == of)) met = event;
+  }
+  BodyId of = ~BodyId{0};
+  std::optional<PairEvent> met;
+};
+
+template <int Degree>
+void require_same_as_world(std::uint64_t seed, int& met) {
+  Random random(seed);
+  World<Degree> world(WorldOptions{});
+  FirstMeeting<Degree> record;
+  World<Degree> other(WorldOptions{}, &record);
+  for (int i = 0; i < 12; ++i) {
+    const auto description = body<Degree>(random_shape(random), random_motion<Degree>(random, 0));
+    world.add_body(description);
+    other.add_body(description);
+  }
+  world.advance_to(0.25);
+  other.advance_to(0.25);
+  const Shape shape = random_shape(random);
+  const auto motion = random_motion<Degree>(random, random.uniform(0, 0.25));
+  const auto hit = next_contact(world, place(shape, Eigen::Quaterniond::Identity()), motion, 3);
+  const BodyId added = other.add_body(body<Degree>(shape, motion));
+  record.of = added;
+  // The same of what has become a body.
+  const auto of_body = next_contact_of(other, added, 3, {}, ContactMode::transparent);
+  other.advance_to(3);
+  REQUIRE(hit.has_value() == record.met.has_value());
+  REQUIRE(of_body.has_value() == hit.has_value());
+  if (!hit) return;
+  ++met;
+  CHECK(hit->body == (record.met->a == added ? record.met->b : record.met->a));
+  CHECK(hit->contact.time == record.met->contact.time);
+  CHECK(of_body->body == hit->body);
+  CHECK(of_body->contact.time == hit->contact.time);
+}
+
+}  // namespace
+
+TEST_CASE("a shape that is in no world meets what it would meet as a body, at the same double") {
+  int met = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    INFO("seed " << seed);
+    require_same_as_world<1>(seed, met);
+    require_same_as_world<2>(seed, met);
+  }
+  CHECK(met > 40);
+}
+
+TEST_CASE("two balls that have bounced off each other do not meet again, and will meet a third") {
+  WorldOptions options;
+  options.response = Response::elastic;
+  World<1> world(options);
+  const auto ball = [&](double x, double v) {
+    return world.add_body(body<1>(Sphere{0.5}, {{Vector3d(x, 0, 0), Vector3d(v, 0, 0)}}));
+  };
+  const BodyId a = ball(0, 1);
+  const BodyId b = ball(3, -1);
+  const BodyId wall = ball(10, 0);
+  CHECK(next_contact_between(world, a, b, 10)->time == 1);
+  CHECK(next_contact_of(world, wall, 10)->body == a);  // as if b were not in the way of a: by the motions of now
+  CHECK(next_contact_of(world, wall, 10, [&](BodyId id) { return id != a; }) == std::nullopt);
+  world.advance_to(1);
+  CHECK(!next_contact_between(world, a, b, 100));
+  const auto next = next_contact_of(world, b, 100);
+  REQUIRE(next);
+  CHECK(next->body == wall);
+  CHECK(next->contact.time == 8);  // from 2 at 1 by 7
+}
+
+TEST_CASE("what will happen is refused for times that are none and motions that have not begun") {
+  World<1> world(WorldOptions{});
+  const BodyId a = world.add_body(body<1>(Sphere{1}, {{Vector3d(0, 0, 0)}}));
+  world.advance_to(5);
+  const PlacedShape ball = place(Sphere{1}, Eigen::Quaterniond::Identity());
+  certificates::PointMotion<1> motion{{Vector3d(0, 0, 9), Vector3d(0, 0, -1)}, 5};
+  CHECK(next_contact(world, ball, motion, 20)->contact.time == 12);
+  CHECK_THROWS_AS(next_contact(world, ball, motion, 4), std::invalid_argument);
+  CHECK_THROWS_AS(next_contact(world, ball, motion, never), std::invalid_argument);
+  CHECK_THROWS_AS(next_contact_between(world, a, a, 6), std::invalid_argument);
+  CHECK_THROWS(next_contact_between(world, a, a + 1, 6));
+  motion.start = 6;
+  CHECK_THROWS_AS(next_contact(world, ball, motion, 20), std::invalid_argument);
+  motion.start = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(next_contact(world, ball, motion, 20), std::invalid_argument);
+}
+
+}  // namespace kds::collision::test_future
