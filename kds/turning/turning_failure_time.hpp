@@ -50,6 +50,11 @@ double failure_time(const C& certificate, double now, double horizon);
 template <TurningCertificate C>
 double recovery_time(const C& certificate, double now, double horizon);
 
+/// The first double t in (now, horizon] just after which f has the other sign than `sign`, or `never`. Precondition: it
+/// has that sign just after now, 1 or -1; now is finite. Throws as failure_time() does.
+template <TurningCertificate C>
+double change_of_sign(const C& certificate, int sign, double now, double horizon);
+
 // ---------------------------------------------------------------------------------------------------------------
 
 namespace detail {
@@ -64,10 +69,15 @@ class TurningSearch {
   }
 
   /// Precondition: now <= horizon, both finite.
-  double operator()(double now, double horizon) const {
+  double from_any(double now, double horizon) const {
     const int sign_now = crossing_.sign(now);
     if (sign_now < 0) return now;
     if (sign_now == 0) return never;  // at all times
+    return from_positive(now, horizon);
+  }
+
+  /// Precondition: both finite, and side * f > 0 just after now.
+  double from_positive(double now, double horizon) const {
     double l = now;
     while (l < horizon) {
       Expansion f(certificate_, side_, l);
@@ -265,14 +275,18 @@ class TurningSearch {
   double rate_;  ///< of both spins together, rad/s: of the fastest of the harmonics
 };
 
-template <class C>
-double turning_failure_time(const C& certificate, int side, double now, double horizon) {
-  if (!(now <= horizon)) return never;
+inline void check_turning_horizon(double horizon) {
   if (!std::isfinite(horizon)) {
     throw std::invalid_argument("failure_time of a turning certificate: the horizon is " + std::to_string(horizon) +
                                 ", and has to be finite");
   }
-  return TurningSearch<C>(certificate, side)(now, horizon);
+}
+
+template <class C>
+double turning_failure_time(const C& certificate, int side, double now, double horizon) {
+  if (!(now <= horizon)) return never;
+  check_turning_horizon(horizon);
+  return TurningSearch<C>(certificate, side).from_any(now, horizon);
 }
 
 }  // namespace detail
@@ -285,6 +299,12 @@ double failure_time(const C& certificate, double now, double horizon) {
 template <TurningCertificate C>
 double recovery_time(const C& certificate, double now, double horizon) {
   return detail::turning_failure_time(certificate, -1, now, horizon);
+}
+
+template <TurningCertificate C>
+double change_of_sign(const C& certificate, int sign, double now, double horizon) {
+  detail::check_turning_horizon(horizon);
+  return detail::TurningSearch<C>(certificate, sign).from_positive(now, horizon);
 }
 
 }  // namespace kds

@@ -39,6 +39,10 @@ class PairFrame {
         spin_b(b.angular_velocity),
         rate_a(norm(spin_a) * (1 + 0x1p-40)),
         rate_b(norm(spin_b) * (1 + 0x1p-40)) {
+    for (int k = 0; k < 3; ++k) {
+      matrix_a.col(k) = turn_a(Eigen::Vector3d::Unit(k));
+      matrix_b.col(k) = turn_b(Eigen::Vector3d::Unit(k));
+    }
     const auto origin_a = a.origin(t);
     const auto origin_b = b.origin(t);
     way.value = origin_b.vector - origin_a.vector;
@@ -49,8 +53,8 @@ class PairFrame {
     certain = turn_a.error() + turn_b.error() <= 0x1p-44 && rate_a + rate_b <= 0x1p200 && way_error < 0x1p200;
   }
 
-  VectorJet axis_a(int i) const { return turning(turn_a(Eigen::Vector3d::Unit(i)), spin_a); }
-  VectorJet axis_b(int i) const { return turning(turn_b(Eigen::Vector3d::Unit(i)), spin_b); }
+  Eigen::Vector3d axis_a(int i) const { return matrix_a.col(i); }
+  Eigen::Vector3d axis_b(int i) const { return matrix_b.col(i); }
 
   /// How far to look ahead, s: no more than a radian of both turns together, nor than the time in which the bodies, of
   /// the sizes given, come to be elsewhere.
@@ -74,6 +78,7 @@ class PairFrame {
 
   double time;
   certificates::Rotation turn_a, turn_b;
+  Eigen::Matrix3d matrix_a, matrix_b;  ///< the same: columns are the axes
   Eigen::Vector3d spin_a, spin_b;
   double rate_a, rate_b;  ///< rad/s, rounded up
   VectorJet way;          ///< from the centre of a to that of b
@@ -102,15 +107,18 @@ struct TurningBounds {
     const double bend = norm(frame.way.bend) * (1 + 0x1p-40);
     const double speed = norm(frame.way.rate) * (1 + 0x1p-40) + frame.rate_error + bend * stretch;
     const double distance = norm(frame.way.value) * (1 + 0x1p-40) + frame.way_error + speed * stretch;
-    const double wa = frame.rate_a, wb = frame.rate_b;
-    const double p = distance + of_a + of_b;
-    const double p1 = speed + wa * of_a + wb * of_b;
-    const double p2 = bend + wa * wa * of_a + wb * wb * of_b;
-    const double p3 = wa * wa * wa * of_a + wb * wb * wb * of_b;
-    third = rate_n > 0 || p3 > 0 ? rate_n * (rate_n * (rate_n * p + 3 * p1) + 3 * p2) + p3 : 0;
-    third *= 1 + 0x1p-40;
+    third = third_of(rate_n, frame.rate_a, frame.rate_b, {distance, speed, bend}, of_a, of_b) * (1 + 0x1p-40);
     lengths = norm(frame.way.value) + of_a + of_b + speed * stretch;
     rounding = PairFrame<Degree>::rounding * lengths + frame.way_error + frame.rate_error * stretch;
+  }
+
+  /// The first, but for roundings. `way`: bounds on its length, and those of its derivatives.
+  static double third_of(double rate_n, double rate_a, double rate_b, const Jet& way, double of_a, double of_b) {
+    const double p = way.value + of_a + of_b;
+    const double p1 = way.rate + rate_a * of_a + rate_b * of_b;
+    const double p2 = way.bend + rate_a * rate_a * of_a + rate_b * rate_b * of_b;
+    const double p3 = rate_a * rate_a * rate_a * of_a + rate_b * rate_b * rate_b * of_b;
+    return rate_n > 0 || p3 > 0 ? rate_n * (rate_n * (rate_n * p + 3 * p1) + 3 * p2) + p3 : 0;
   }
 };
 

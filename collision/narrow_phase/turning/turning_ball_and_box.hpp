@@ -51,7 +51,7 @@ class TurningBallAndBox {
   double gaps(const PairFrame<Degree>& frame, std::array<double, ways>& gap) const {
     Eigen::Vector3d x;
     for (int axis = 0; axis < 3; ++axis) {
-      x[axis] = dot(frame.turn_a(Eigen::Vector3d::Unit(axis)), frame.way.value);
+      x[axis] = dot(frame.axis_a(axis), frame.way.value);
     }
     for (int way = 0; way < ways; ++way) {
       const certificates::BoxSides sides = sides_of(way);
@@ -80,7 +80,7 @@ class TurningBallAndBox {
     // The direction from the nearest point of the box to the centre, in the box, with which it turns.
     Eigen::Vector3d nearest, beyond;
     for (int axis = 0; axis < 3; ++axis) {
-      const double x = dot(frame.turn_a(Eigen::Vector3d::Unit(axis)), frame.way.value);
+      const double x = dot(frame.axis_a(axis), frame.way.value);
       nearest[axis] = std::min(std::max(x, -half_[axis]), half_[axis]);
       beyond[axis] = x - nearest[axis];
     }
@@ -104,7 +104,7 @@ class TurningBallAndBox {
     const PairFrame<Degree> frame(box_, ball_, t);
     double square = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double x = dot(frame.turn_a(Eigen::Vector3d::Unit(axis)), frame.way.value);
+      const double x = dot(frame.axis_a(axis), frame.way.value);
       const double beyond = std::max(0.0, std::abs(x) - half_[axis]);
       square += beyond * beyond;
     }

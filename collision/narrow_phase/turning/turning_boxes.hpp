@@ -199,8 +199,8 @@ template <int Degree>
 double TurningBoxes<Degree>::gaps(const PairFrame<Degree>& frame, std::array<double, ways>& gap) const {
   std::array<Eigen::Vector3d, 3> u, v;
   for (int i = 0; i < 3; ++i) {
-    u[static_cast<std::size_t>(i)] = frame.turn_a(Eigen::Vector3d::Unit(i));
-    v[static_cast<std::size_t>(i)] = frame.turn_b(Eigen::Vector3d::Unit(i));
+    u[static_cast<std::size_t>(i)] = frame.axis_a(i);
+    v[static_cast<std::size_t>(i)] = frame.axis_b(i);
   }
   const auto note = [&](std::size_t way, double distance, double size) {
     gap[way] = -distance - size;  // towards the negative side of the axis, then towards the positive one
@@ -238,8 +238,7 @@ int TurningBoxes<Degree>::widest(const PairFrame<Degree>& frame, const std::arra
     double width = gap[static_cast<std::size_t>(way)];
     if (way >= 12 && width > 0) {
       const int pair = (way - 12) / 2;
-      const double sine =
-          norm(cross(frame.turn_a(Eigen::Vector3d::Unit(pair / 3)), frame.turn_b(Eigen::Vector3d::Unit(pair % 3))));
+      const double sine = norm(cross(frame.axis_a(pair / 3), frame.axis_b(pair % 3)));
       width = sine > 0x1p-10 ? width / sine : -never;
     }
     if (width > widest) widest = width, best = way;
@@ -259,7 +258,7 @@ double TurningBoxes<Degree>::depth(double t) const {
     double sine = 1;
     if (way >= 12) {
       const int pair = (way - 12) / 2;
-      sine = norm(cross(frame.turn_a(Eigen::Vector3d::Unit(pair / 3)), frame.turn_b(Eigen::Vector3d::Unit(pair % 3))));
+      sine = norm(cross(frame.axis_a(pair / 3), frame.axis_b(pair % 3)));
     }
     if (sine > 0x1p-20) least = std::min(least, -gap[static_cast<std::size_t>(way)] / sine);
   }
@@ -271,8 +270,8 @@ template <int Degree>
 double TurningBoxes<Degree>::revolving_apart_for(const PairFrame<Degree>& frame, int way) const {
   std::array<Eigen::Vector3d, 3> of_a, of_b;
   for (int k = 0; k < 3; ++k) {
-    of_a[static_cast<std::size_t>(k)] = half_a_[k] * frame.turn_a(Eigen::Vector3d::Unit(k));
-    of_b[static_cast<std::size_t>(k)] = half_b_[k] * frame.turn_b(Eigen::Vector3d::Unit(k));
+    of_a[static_cast<std::size_t>(k)] = half_a_[k] * frame.axis_a(k);
+    of_b[static_cast<std::size_t>(k)] = half_b_[k] * frame.axis_b(k);
   }
   const auto along = [&](const Eigen::Vector3d& n) {
     const double covered = revolving_support(n, frame.spin_a, of_a) + revolving_support(n, frame.spin_b, of_b);
@@ -297,21 +296,24 @@ void TurningBoxes<Degree>::every_jet(const PairFrame<Degree>& frame, int way, do
   std::size_t count = 0;
   double of_a = 0, of_b = 0, rate = 0, offset = 0;
   VectorJet n;
+  const auto turned_axis = [&](bool of_a, int axis) {
+    return of_a ? turning(frame.axis_a(axis), frame.spin_a) : turning(frame.axis_b(axis), frame.spin_b);
+  };
   const auto add = [&](bool from_a, int axis, int sign) {
     const double length = (from_a ? half_a_ : half_b_)[axis];
-    half[count++] = sign * length * (from_a ? frame.axis_a(axis) : frame.axis_b(axis));
+    half[count++] = sign * length * turned_axis(from_a, axis);
     (from_a ? of_a : of_b) += length;
   };
   if (way < 12) {
     const bool of_face_a = way < 6;
     const int axis = (way % 6) / 2;
-    n = of_face_a ? frame.axis_a(axis) : frame.axis_b(axis);
+    n = turned_axis(of_face_a, axis);
     rate = of_face_a ? frame.rate_a : frame.rate_b;
     offset = (of_face_a ? half_a_ : half_b_)[axis];
     for (int k = 0; k < 3; ++k) add(!of_face_a, k, of_face_a ? 1 : -1);
   } else {
     const int i = (way - 12) / 6, j = (way - 12) / 2 % 3;
-    n = cross(frame.axis_a(i), frame.axis_b(j));
+    n = cross(turned_axis(true, i), turned_axis(false, j));
     rate = frame.rate_a + frame.rate_b;
     add(false, (j + 1) % 3, -1), add(false, (j + 2) % 3, -1);
     add(true, (i + 1) % 3, 1), add(true, (i + 2) % 3, 1);

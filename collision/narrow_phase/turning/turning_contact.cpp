@@ -2,6 +2,7 @@
 
 #include "collision/narrow_phase/contact_patch.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
+#include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_ball_and_box.hpp"
 #include "collision/narrow_phase/turning/turning_ball_and_polytope.hpp"
 #include "collision/narrow_phase/turning/turning_boxes.hpp"
@@ -88,7 +89,7 @@ PlacedShape placed_at(const Body<Degree>& body, double t) {
 
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b) {
-  constexpr double radians = 0.5;     // Motions mostly change before the bodies have turned farther.
+  constexpr double radians = 0.25;    // Motions mostly change before the bodies have turned farther.
   constexpr double longest = 0x1p20;  // s, of bodies that hardly turn
   const double rates = norm(a.angular_velocity) + norm(b.angular_velocity);
   return rates > 0 ? std::min(longest, radians / rates) : longest;
@@ -127,9 +128,9 @@ bool approach_at(const Body<Degree>& a, const Body<Degree>& b, double t) {
 
 /// The first contact in [t, horizon] of two bodies that penetrate just after t, or `never`. Those that do not approach
 /// are looked at next when they are deeper in each other by more than roundings, or again after they have parted.
-template <class Pair, int Degree>
-double first_approach(const WaysApart<Pair>& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b,
-                      double t, double horizon) {
+template <class Ways, class Pair, int Degree>
+double first_approach(const Ways& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t,
+                      double horizon) {
   while (t <= horizon && !approach_at<Degree>(a, b, t)) {
     // Mostly they have parted at once.
     double parts = ways.first_parting(t, std::min(horizon, t + 0x1p-10 * std::min(pair.time_of_turning(), 1.0)));
@@ -151,7 +152,9 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
   }
   return with_ways<Degree>(a, b, [&](const auto& pair) {
     using Pair = std::decay_t<decltype(pair)>;
-    const WaysApart<Pair> ways(pair);
+    using Ways = WaysApart<Pair, RememberedSigns&>;
+    RememberedSigns signs;
+    const Ways ways(pair, signs);
     const double first = ways.first_penetration(t0, horizon);
     if (first == never || mode == ContactMode::transparent) return first;
     if (first == t0) {
@@ -159,11 +162,11 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
       const double begun = std::max(a.motion.start(), b.motion.start());
       if (begun < t0 && ways.penetrate(next_down(t0))) {
         const double met = ways.first_penetration(begun, t0);
-        const double t = first_approach<Pair, Degree>(ways, pair, a, b, met, horizon);
+        const double t = first_approach<Ways, Pair, Degree>(ways, pair, a, b, met, horizon);
         if (t >= t0) return t;
       }
     }
-    return first_approach<Pair, Degree>(ways, pair, a, b, first, horizon);
+    return first_approach<Ways, Pair, Degree>(ways, pair, a, b, first, horizon);
   });
 }
 

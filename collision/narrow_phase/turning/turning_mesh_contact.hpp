@@ -18,8 +18,8 @@ namespace kds::collision {
 /// points of the body, turned by the exact rotation of its motion. All parts use these numbers.
 ///
 /// Method. Pairs of nodes of the trees wait in a queue, each until the time up to which they are proven to be apart, in
-/// doubles. The pair whose time is the earliest is looked at then: proven again, if that lasts for a while, or else
-/// split. Pairs of triangles are proven apart by doubles, too (TurningHulls), and only where that does not help on, by
+/// floats. The pair whose time is the earliest is looked at then: proven again, if that lasts for a while, or else
+/// split. Pairs of triangles are proven apart by doubles (TurningHulls), and only where that does not help on, by
 /// exact signs (WaysApart). So the time that is found does not depend on what doubles prove.
 ///
 /// Mode `resolved`: a pair of triangles that penetrates counts if it approaches where it touches, faster than roundings

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
-#include "collision/narrow_phase/turning/shared_failures.hpp"
+#include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_touch.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 
@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <queue>
+#include <type_traits>
 #include <vector>
 
 namespace kds::collision {
@@ -26,12 +27,7 @@ class TurningMeshSearch {
   using View = NodesView<Degree>;
 
   TurningMeshSearch(const MeshOfPair& a, const RigidMotion& motion_a, const Side& b, const RigidMotion& motion_b)
-      : a_(a),
-        b_(b),
-        motion_a_(motion_a),
-        motion_b_(motion_b),
-        reach_a_(reach(a.node(0))),
-        reach_b_(reach(b.node(0))) {}
+      : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), units_a_(a.units()), units_b_(b.units()) {}
 
   double first_contact(double t0, double horizon, ContactMode mode) const;
 
@@ -43,8 +39,9 @@ class TurningMeshSearch {
   double first_separation(double t0, double horizon) const {
     for (double t = t0; t <= horizon;) {
       double parts = t;
-      const bool penetrate = find(view(t), [&](Leaves, const Pair& pair) {
-        parts = WaysApart<Pair>(pair).first_parting(t, horizon);
+      const View view = this->view(t);
+      const bool penetrate = find(view, [&](Leaves, const Pair& pair) {
+        parts = ways(pair, view).first_parting(t, horizon);
         return true;
       });
       if (!penetrate) return t;
@@ -99,15 +96,22 @@ class TurningMeshSearch {
     double horizon_;  ///< in mode `transparent` no later than a contact that is known
     ContactMode mode_;
     View view_;  ///< at the time that is looked at, or not long before
-    SharedFailures failures_;
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
   };
 
-  static double reach(const BodyNode& root) { return (norm(root.centre) + root.radius) * (1 + 0x1p-40); }
-  View view(double t, double horizon) const { return {motion_a_, motion_b_, reach_a_, reach_b_, t, horizon}; }
+  View view(double t, double horizon) const { return {motion_a_, motion_b_, units_a_, units_b_, t, horizon}; }
   View view(double t) const { return view(t, t); }
 
   Pair pair(Leaves leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
+  /// As seen at the time of the view.
+  WaysApart<Pair, RememberedSigns&> ways(const Pair& pair, const View& view) const {
+    using Ways = WaysApart<Pair, RememberedSigns&>;
+    if constexpr (std::is_base_of_v<typename Ways::Frame, View>) {
+      return Ways(pair, signs_, view);
+    } else {
+      return Ways(pair, signs_);
+    }
+  }
   bool are_leaves(Leaves nodes) const { return a_.is_leaf(nodes.a) && b_.is_leaf(nodes.b); }
 
   /// Calls ask(child pair) for the halves of the larger node until it returns true.
@@ -121,7 +125,8 @@ class TurningMeshSearch {
     return ask(Leaves{nodes.a, child}) || ask(Leaves{nodes.a, child + 1});
   }
 
-  /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than a margin, until it returns true.
+  /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than twice a margin, until it returns
+  /// true.
   template <class Ask>
   bool every_near(const View& view, double margin, Leaves nodes, const Ask& ask) const {
     if (nodes_apart_by(margin, view, a_.node(nodes.a), b_.node(nodes.b))) return false;
@@ -129,14 +134,14 @@ class TurningMeshSearch {
       return of_halves(nodes, [&](Leaves halves) { return every_near(view, margin, halves, ask); });
     }
     const Pair pair = this->pair(nodes);
-    if (pair.gap(view) > pair.error(view) + margin) return false;
+    if (pair.quick_gap(view) > 2 * (pair.error(view) + margin)) return false;
     return ask(nodes, pair);
   }
   /// The same of those that penetrate just after the time of the view.
   template <class Ask>
   bool find(const View& view, const Ask& ask) const {
     return every_near(view, 0, {0, 0}, [&](Leaves leaves, const Pair& pair) {
-      return WaysApart<Pair>(pair).penetrate(view.time) && ask(leaves, pair);
+      return ways(pair, view).penetrate(view.time) && ask(leaves, pair);
     });
   }
 
@@ -150,7 +155,8 @@ class TurningMeshSearch {
   const Side& b_;
   const RigidMotion& motion_a_;
   const RigidMotion& motion_b_;
-  double reach_a_, reach_b_;  ///< how far parts are from the origin of their body
+  NodeUnits units_a_, units_b_;
+  mutable RememberedSigns signs_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -221,7 +227,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tri
   const double others = queue_.empty() ? never : queue_.top().time;
   const double step = std::max(next_up(t), t + std::ldexp(part_of_turn, 2 * tries) * pair.time_of_turning());
   const double until = std::min(horizon_, std::max(others, step));
-  const double contact = WaysApart<Pair, SharedFailures&>(pair, failures_).first_penetration(t, until);
+  const double contact = search_.ways(pair, view_).first_penetration(t, until, true);
   if (contact != never) {
     push(contact, nodes, Known::contact);
     if (mode_ == ContactMode::transparent) horizon_ = contact;
@@ -240,6 +246,13 @@ bool TurningMeshSearch<Degree, Side>::Front::counts(Leaves nodes) const {
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View& view, double horizon) const {
   const double t = view.time;
+  const auto ways = this->ways(pair, view);
+  // In so short a time they do not get deeper by more than 2^-40 of their distances, as they do not approach. Mostly
+  // they have parted by then.
+  constexpr double short_time = 0x1p-20;
+  const double sizes = a_.radius(0) + norm(view.way.value);
+  const double soon = std::max(next_up(t), t + short_time * view.stretch(sizes, horizon - t));
+  if (const double parts = ways.first_parting(t, std::min(soon, horizon)); parts != never) return parts;
   const double depth = std::max(0.0, -pair.gap(view));
   const double slack = (1 + 0x1p-10) * depth + pair.roundings(view);
   const Pair shallow = pair.with_slack(slack);
@@ -250,11 +263,8 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
     if (proven == deeper) break;
     deeper = proven;
   }
-  // In so short a time they do not get deeper by more than 2^-40 of their distances, as they do not approach.
-  constexpr double short_time = 0x1p-20;
-  const double sizes = a_.radius(0) + norm(view.way.value);
-  deeper = std::max({deeper, next_up(t), t + short_time * view.stretch(sizes, horizon - t)});
-  return std::min(deeper, WaysApart<Pair>(pair).first_parting(t, std::min(deeper, horizon)));
+  deeper = std::max(deeper, soon);
+  return std::min(deeper, ways.first_parting(t, std::min(deeper, horizon)));
 }
 
 template <int Degree, class Side>
@@ -277,7 +287,7 @@ TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   for (double margin = 0x1p-40 * (a_.radius(0) + norm(view.way.value));; margin *= 64) {
     double least = never;
     every_near(view, margin, {0, 0}, [&](Leaves leaves, const Pair& pair) {
-      if (const double gap = pair.gap(view); gap < least) {
+      if (const double gap = pair.gap(view); gap < least && gap <= pair.error(view) + margin) {
         least = gap;
         best = touch(leaves, pair, view);
       }

@@ -30,7 +30,12 @@ class MeshOfPair {
   explicit MeshOfPair(const MeshShape& shape)
       : shape_(shape), nodes_(shape.mesh->tree().nodes()), unit_(shape.mesh->tree().unit() * shape.scale) {}
 
-  BodyNode node(std::uint32_t i) const { return body_node(nodes_[i], unit_); }
+  const ObbNode& node(std::uint32_t i) const { return nodes_[i]; }
+  NodeUnits units() const {
+    const Lanes centre = nodes_[0].centre;
+    const double reach = norm(Eigen::Vector3d(centre[0], centre[1], centre[2])) + static_cast<double>(nodes_[0].radius);
+    return {unit_, 0, unit_ * reach * (1 + 0x1p-40)};
+  }
   bool is_leaf(std::uint32_t i) const { return nodes_[i].is_leaf(); }
   std::uint32_t first_child(std::uint32_t i) const { return nodes_[i].first; }
   double radius(std::uint32_t i) const { return unit_ * static_cast<double>(nodes_[i].radius); }
@@ -69,9 +74,10 @@ class SolidSide {
 
 class BoxOfPair : public SolidSide {
  public:
-  explicit BoxOfPair(const Box& box) : half_(box.half_extents) {}
+  explicit BoxOfPair(const Box& box) : half_(box.half_extents), node_(box_node(half_)) {}
 
-  BodyNode node(std::uint32_t) const { return box_node(half_); }
+  const ObbNode& node(std::uint32_t) const { return node_; }
+  NodeUnits units() const { return box_units(half_); }
 
   template <int Degree>
   using PairWith = TurningTriangleAndBox<Degree>;
@@ -83,13 +89,15 @@ class BoxOfPair : public SolidSide {
 
  private:
   Eigen::Vector3d half_;
+  ObbNode node_;
 };
 
 class BallOfPair : public SolidSide {
  public:
-  explicit BallOfPair(const Sphere& ball) : radius_(ball.radius) {}
+  explicit BallOfPair(const Sphere& ball) : radius_(ball.radius), node_(box_node(Eigen::Vector3d::Zero())) {}
 
-  BodyNode node(std::uint32_t) const { return ball_node(radius_); }
+  const ObbNode& node(std::uint32_t) const { return node_; }
+  NodeUnits units() const { return {0, radius_, radius_}; }
 
   template <int Degree>
   using PairWith = TurningTriangleAndBall<Degree>;
@@ -101,14 +109,22 @@ class BallOfPair : public SolidSide {
 
  private:
   double radius_;
+  ObbNode node_;
 };
 
 class CapsuleOfPair : public SolidSide {
  public:
   /// Refers to it.
-  explicit CapsuleOfPair(const Shape& capsule) : capsule_(std::get<Capsule>(capsule)), core_(capsule) {}
+  explicit CapsuleOfPair(const Shape& capsule)
+      : capsule_(std::get<Capsule>(capsule)),
+        core_(capsule),
+        node_(box_node(Eigen::Vector3d(0, 0, capsule_.half_length))) {}
 
-  BodyNode node(std::uint32_t) const { return capsule_node(capsule_); }
+  const ObbNode& node(std::uint32_t) const { return node_; }
+  NodeUnits units() const {
+    const double reach = (capsule_.half_length + capsule_.radius) * (1 + 0x1p-50);
+    return {capsule_.half_length, capsule_.radius, reach};
+  }
   const Capsule& capsule() const { return capsule_; }
 
   template <int Degree>
@@ -122,6 +138,7 @@ class CapsuleOfPair : public SolidSide {
  private:
   Capsule capsule_;
   ConvexCore core_;
+  ObbNode node_;
 };
 
 }  // namespace kds::collision

@@ -74,6 +74,7 @@ class TurningTriangleAndBall {
 
   double gap(double t) const { return gap(TurningView<Degree>(a_, b_, t)); }
   double gap(const TurningView<Degree>& view) const { return norm(Seen(*this, view).apart()) - radius_; }
+  double quick_gap(const TurningView<Degree>& view) const { return gap(view); }
 
   double error(const PairFrame<Degree>& frame) const {
     if (!frame.certain) return never;

@@ -42,6 +42,7 @@ class TurningTriangleAndCapsule : public TurningRoundedPolytopes<Degree> {
 
   double gap(double t) const { return gap(this->frame(t)); }
   double gap(const TurningView<Degree>& view) const { return gap(view.time); }
+  double quick_gap(const TurningView<Degree>& view) const { return gap(view); }
   double error(const PairFrame<Degree>& frame) const { return Base::error(frame); }
   /// How deep they are in each other counts as nothing, where they do not approach: some times what is known.
   double roundings(const PairFrame<Degree>& frame) const { return 4 * error(frame); }

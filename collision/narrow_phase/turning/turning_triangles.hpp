@@ -76,6 +76,11 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     return wait > horizon - view.time ? never : after_wait(view.time, wait, stretch);
   }
 
+  /// As gap(), but for roundings.
+  double quick_gap(const TurningView<Degree>& view) const {
+    return TriangleGap<Degree>(view, this->hull_a_, this->hull_b_).width();
+  }
+
   /// The conditions of a way that do not hold for certain, and are positive, for so long from now on.
   Conditions unsure(const TurningView<Degree>& view, int way, double stretch) const;
 

@@ -1,4 +1,4 @@
-// Two bodies that turn, seen at one time, with their turns as matrices: for many points of each.
+// Two bodies that turn, seen at one time: for many points of each.
 #pragma once
 
 #include "collision/narrow_phase/turning/pair_frame.hpp"
@@ -16,17 +16,14 @@ template <int Degree>
 struct TurningView : PairFrame<Degree> {
   using RigidMotion = certificates::RigidMotion<Degree>;
 
-  TurningView(const RigidMotion& a, const RigidMotion& b, double t) : PairFrame<Degree>(a, b, t) {
-    for (int k = 0; k < 3; ++k) {
-      matrix_a.col(k) = this->turn_a(Eigen::Vector3d::Unit(k));
-      matrix_b.col(k) = this->turn_b(Eigen::Vector3d::Unit(k));
-    }
+  using PairFrame<Degree>::PairFrame;
+
+  Eigen::Vector3d in_world_a(const Eigen::Vector3d& x) const { return times(this->matrix_a, x); }
+  Eigen::Vector3d in_world_b(const Eigen::Vector3d& x) const { return times(this->matrix_b, x); }
+  /// A vector of the world, in the axes of a.
+  Eigen::Vector3d seen_from_a(const Eigen::Vector3d& x) const {
+    return {dot(this->axis_a(0), x), dot(this->axis_a(1), x), dot(this->axis_a(2), x)};
   }
-
-  Eigen::Vector3d in_world_a(const Eigen::Vector3d& x) const { return times(matrix_a, x); }
-  Eigen::Vector3d in_world_b(const Eigen::Vector3d& x) const { return times(matrix_b, x); }
-
-  Eigen::Matrix3d matrix_a, matrix_b;
 
  private:
   /// In one fixed order.

@@ -8,17 +8,22 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace kds::collision {
 
-/// Failure times and signs as they are, each found when it is asked for.
-struct ExactFailures {
+/// Signs and failure times as they are, each found when it is asked for.
+struct ExactSigns {
   template <class C>
   double failure_time(const C& certificate, double t, double until) const {
     return kds::failure_time(certificate, t, until);
+  }
+  template <class C>
+  double recovery_time(const C& certificate, double t, double until) const {
+    return kds::recovery_time(certificate, t, until);
   }
   template <class C>
   int sign_after(const C& certificate, double t) const {
@@ -43,28 +48,36 @@ struct ExactFailures {
 /// Method: a way that is open just after t stays so until the first of its conditions fails. Then another may be open,
 /// just after that time; if none is, they penetrate. Before that, as far as they get, proofs in doubles.
 ///
-/// `Failures` finds failure times and signs: kds::failure_time and kds::sign_after, or what remembers them.
-template <class Pair, class Failures = ExactFailures>
+/// `Signs` finds signs and when they change: kds::sign_after, failure_time and recovery_time, or what remembers them.
+template <class Pair, class Signs = ExactSigns>
 class WaysApart {
  public:
-  explicit WaysApart(const Pair& pair, Failures failures = Failures())
-      : pair_(pair), failures_(failures), nothing_(by_way<signed char>()) {
+  using Frame = std::decay_t<decltype(std::declval<const Pair&>().frame(0.0))>;
+
+  explicit WaysApart(const Pair& pair, Signs signs = Signs())
+      : pair_(pair), signs_(signs), nothing_(by_way<signed char>()) {
     for (int way = 0; way < pair_.ways; ++way) {
       nothing_[static_cast<std::size_t>(way)] = pair.known_to_separate_nothing(way) ? 1 : -1;
     }
   }
 
+  /// The same, with a frame that is known.
+  WaysApart(const Pair& pair, Signs signs, const Frame& frame) : WaysApart(pair, signs) { frame_.emplace(frame); }
+
   /// Whether the two penetrate just after t.
   bool penetrate(double t) const { return open_way(t) == none; }
 
-  /// The first double in [t, horizon] just after which they do, or `never`.
-  double first_penetration(double t, double horizon) const {
+  /// The first double in [t, horizon] just after which they do, or `never`. `stuck`: proofs are known to tell nothing
+  /// more at t.
+  double first_penetration(double t, double horizon, bool stuck = false) const {
     while (t <= horizon) {
-      const double apart = pair_.apart_until(t, horizon);
-      if (apart > t) {
-        t = apart;
-        continue;
+      if (!stuck) {
+        if (const double apart = apart_until(t, horizon); apart > t) {
+          t = apart;
+          continue;
+        }
       }
+      stuck = false;
       const int way = open_way(t);
       if (way == none) return t;
       const double until = std::min(horizon, std::max(next_up(t), t + pair_.time_of_turning()));
@@ -108,21 +121,32 @@ class WaysApart {
     return values<T>(pair_);
   }
 
+  /// The last one is kept.
+  const Frame& frame(double t) const {
+    if (!frame_ || frame_->time != t) frame_.emplace(pair_.frame(t));
+    return *frame_;
+  }
+  double apart_until(double t, double horizon) const {
+    if constexpr (requires(const Frame& frame) { pair_.apart_until(frame, horizon); }) {
+      return pair_.apart_until(frame(t), horizon);
+    } else {
+      return pair_.apart_until(t, horizon);
+    }
+  }
+
   /// Of a stretch: what is likely to be all that is needed of it.
   static constexpr double soon_part = 0x1p-10;
 
   /// Whether all conditions of a way hold just after the time of the frame.
-  template <class Frame>
   bool open(int way, const Frame& frame) const {
     if (nothing_[static_cast<std::size_t>(way)] > 0) return false;
     return pair_.every_condition(way, pair_.unsure(frame, way, 0), [&](const auto& condition) {
-      const int sign = failures_.sign_after(condition, frame.time);
+      const int sign = signs_.sign_after(condition, frame.time);
       return sign > 0 || (sign == 0 && !separates_nothing(way));
     });
   }
 
   /// As those of the pair, but for ways that are known to separate nothing.
-  template <class Frame>
   double gaps(const Frame& frame, ByWay<double>& gap) const {
     const double error = pair_.gaps(frame, gap);
     for (int way = 0; way < pair_.ways; ++way) {
@@ -134,7 +158,7 @@ class WaysApart {
   /// One that is open just after t, or `none`; the widest first.
   int open_way(double t) const {
     ByWay<double> gap = by_way<double>();
-    const auto frame = pair_.frame(t);
+    const Frame& frame = this->frame(t);
     const double error = gaps(frame, gap);
     for (;;) {
       const auto widest = std::max_element(gap.begin(), gap.end());
@@ -148,12 +172,12 @@ class WaysApart {
   /// The first double in [t, until] just after which a condition of a way is broken, or `never`. Mostly it is soon, and
   /// then few conditions have to be looked at.
   double closes(int way, double t, double until) const {
-    const auto frame = pair_.frame(t);
+    const Frame& frame = this->frame(t);
     const double soon = t + soon_part * (until - t);
     for (const double end : {soon, until}) {
       double first = never;
       pair_.every_condition(way, pair_.unsure(frame, way, (end - t) * (1 + 0x1p-40)), [&](const auto& condition) {
-        first = std::min(first, failures_.failure_time(condition, t, std::min(first, end)));
+        first = std::min(first, signs_.failure_time(condition, t, std::min(first, end)));
         return true;
       });
       if (first != never) return first;
@@ -164,7 +188,7 @@ class WaysApart {
   /// The first double in [t, until] just after which a way is open. Precondition: none is open just after t.
   double first_opening(double t, double until) const {
     ByWay<double> gap = by_way<double>();
-    const auto frame = pair_.frame(t);
+    const Frame& frame = this->frame(t);
     const double error = gaps(frame, gap);
     const double fastest = pair_.fastest(frame, (until - t) * (1 + 0x1p-40));
     double first = never;
@@ -184,15 +208,15 @@ class WaysApart {
     for (bool waited = true; waited;) {
       waited = false;
       pair_.every_condition(way, pair_.all(way), [&](const auto& condition) {
-        if (sign_after(condition, t) >= 0) return true;
-        t = recovery_time(condition, t, until);
+        if (signs_.sign_after(condition, t) >= 0) return true;
+        t = signs_.recovery_time(condition, t, until);
         waited = true;
         return t != never;
       });
       if (t == never) return never;
     }
     // Conditions that are zero just after t are zero at all times.
-    const auto zero = [&](const auto& condition) { return sign_after(condition, t) == 0; };
+    const auto zero = [&](const auto& condition) { return signs_.sign_after(condition, t) == 0; };
     return pair_.every_condition(way, pair_.all(way), zero) ? never : t;
   }
 
@@ -204,7 +228,8 @@ class WaysApart {
   }
 
   const Pair& pair_;
-  Failures failures_;
+  Signs signs_;
+  mutable std::optional<Frame> frame_;
   mutable ByWay<signed char> nothing_;  ///< by way: whether it separates nothing; -1: not known
 };
 

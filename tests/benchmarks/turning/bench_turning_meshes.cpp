@@ -8,12 +8,15 @@
 #include "tests/support/random_numbers.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace {
@@ -58,6 +61,41 @@ Query linked_rings(Random& random, double turn) {
   return query;
 }
 
+/// A wheel about z of the radius 1, with teeth as of a cosine on its rim.
+std::shared_ptr<const Mesh> gear(std::uint32_t teeth, std::uint32_t corners_a_tooth, double height) {
+  std::vector<Vector3d> vertices;
+  std::vector<Mesh::Triangle> triangles;
+  const std::uint32_t corners = teeth * corners_a_tooth;
+  for (std::uint32_t i = 0; i < corners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corners;
+    const double radius = 1 + 0.5 * height * std::cos(teeth * angle);
+    for (const double z : {-0.1, 0.1}) vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+  }
+  const std::uint32_t below = 2 * corners, above = below + 1;
+  vertices.emplace_back(0, 0, -0.1), vertices.emplace_back(0, 0, 0.1);
+  for (std::uint32_t i = 0; i < corners; ++i) {
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % corners);
+    triangles.insert(triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}, {below, b, a}, {above, a + 1, b + 1}});
+  }
+  return std::make_shared<Mesh>(vertices, triangles);
+}
+
+/// One radian after the other of two gears with an even number of teeth, each between those of the other, that turn
+/// against each other at 1 rad/s. They never touch.
+std::vector<Query> interlocked_gears(std::uint32_t teeth, double distance, int radians) {
+  std::vector<Query> queries;
+  for (int i = 0; i < radians; ++i) {
+    Query query;
+    query.a.path.coefficients = {Vector3d::Zero(), Vector3d::Zero()};
+    query.b.path.coefficients = {Vector3d(distance, 0, 0.01), Vector3d::Zero()};
+    query.a.angular_velocity = Vector3d::UnitZ(), query.b.angular_velocity = -Vector3d::UnitZ();
+    query.b.orientation = Eigen::AngleAxisd(std::numbers::pi / teeth, Vector3d::UnitZ());
+    query.a.path.start = query.b.path.start = -i;
+    queries.push_back(query);
+  }
+  return queries;
+}
+
 struct Row {
   double microseconds;  ///< median
   int contacts;
@@ -96,15 +134,33 @@ int main(int argc, char** argv) {
   [[maybe_unused]] const int of_fcl = argc > 3 ? std::stoi(argv[3]) : 5;
   std::ofstream csv = benchmarks::open_csv(folder, "turning-meshes.csv");
   benchmarks::tell(csv, "triangles,rings,turn_rad,method,pairs,median_us,contacts,missed\n");
+  const auto tell = [&](std::uint32_t triangles, const char* name, double turn, const char* method, std::size_t asked,
+                        const Row& row) {
+    char line[160];
+    std::snprintf(line, sizeof line, "%u,%s,%g,%s,%zu,%.1f,%d,%d\n", triangles, name, turn, method, asked,
+                  row.microseconds, row.contacts, row.missed);
+    benchmarks::tell(csv, line);
+  };
+  const auto here = [](const std::shared_ptr<const Mesh>& mesh) {
+    const PlacedShape shape = place(MeshShape{mesh, 1}, Eigen::Quaterniond::Identity());
+    return [shape](const Query& query) {
+      const MovingShape<RigidMotion> a{shape, query.a}, b{shape, query.b};
+      return first_contact(a, b, 0, 1, ContactMode::transparent);
+    };
+  };
+  for (const auto& [teeth, corners, height] : {std::tuple(20u, 8u, 0.1), {40u, 16u, 0.05}}) {
+    for (const double play : {0.4, 0.2}) {  // of the height
+      const auto mesh = gear(teeth, corners, height);
+      const auto queries = interlocked_gears(teeth, 2 + play * height, 6);
+      const Row row = run(queries, std::vector<double>(queries.size(), never), 3, here(mesh));
+      tell(4 * teeth * corners, play == 0.4 ? "gears" : "tight gears", 1, "here", queries.size(), row);
+    }
+  }
   using Make = Query (*)(Random&, double);
   for (const std::uint32_t around : {8u, 80u}) {
     const std::uint32_t across = around == 8 ? 4 : 38;
     const auto mesh = samples::torus(around, across);
-    const PlacedShape ring = place(MeshShape{mesh, 1}, Eigen::Quaterniond::Identity());
-    const auto here = [&](const Query& query) {
-      const MovingShape<RigidMotion> a{ring, query.a}, b{ring, query.b};
-      return first_contact(a, b, 0, 1, ContactMode::transparent);
-    };
+    const auto method = here(mesh);
 #ifdef KDS_PEER_FCL
     const turning::FclMesh of_peer(*mesh);
 #endif
@@ -114,19 +170,13 @@ int main(int argc, char** argv) {
         std::vector<Query> queries;
         for (int i = 0; i < count; ++i) queries.push_back(make(random, turn));
         std::vector<double> truth;
-        for (const Query& query : queries) truth.push_back(here(query));
-        const auto tell = [&](const char* method, const std::vector<Query>& asked, const Row& row) {
-          char line[160];
-          std::snprintf(line, sizeof line, "%u,%s,%g,%s,%zu,%.1f,%d,%d\n", 2 * around * across, name, turn, method,
-                        asked.size(), row.microseconds, row.contacts, row.missed);
-          benchmarks::tell(csv, line);
-        };
-        tell("here", queries, run(queries, truth, 3, here));
+        for (const Query& query : queries) truth.push_back(method(query));
+        tell(2 * around * across, name, turn, "here", queries.size(), run(queries, truth, 3, method));
 #ifdef KDS_PEER_FCL
         if (turn > 10) continue;
         queries.resize(static_cast<std::size_t>(std::min(count, of_fcl)));
-        tell("here", queries, run(queries, truth, 3, here));
-        tell("FCL", queries,
+        tell(2 * around * across, name, turn, "here", queries.size(), run(queries, truth, 3, method));
+        tell(2 * around * across, name, turn, "FCL", queries.size(),
              run(queries, truth, 1, [&](const Query& query) { return of_peer.contact(query.a, query.b, 1e-6); }));
 #endif
       }

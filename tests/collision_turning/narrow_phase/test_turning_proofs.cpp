@@ -1,8 +1,10 @@
 // What doubles prove of parts of meshes that turn, and failure times that are remembered: against the definition.
-#include "collision/narrow_phase/turning/shared_failures.hpp"
+#include "collision/narrow_phase/turning/remembered_signs.hpp"
+#include "collision/narrow_phase/turning/turning_mesh_sides.hpp"
 #include "collision/narrow_phase/turning/turning_nodes.hpp"
 #include "collision/narrow_phase/turning/turning_triangles.hpp"
 
+#include "tests/collision/sample_meshes.hpp"
 #include "tests/collision_turning/narrow_phase/turning_mesh_oracle.hpp"
 #include "tests/collision_turning/narrow_phase/turning_oracle.hpp"
 #include "tests/collision_turning/narrow_phase/turning_solids.hpp"
@@ -12,7 +14,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
 
 namespace test_turning_proofs {
 namespace {
@@ -42,6 +48,49 @@ std::array<Vector3d, 3> random_triangle(Random& random) {
   return {corner(), corner(), corner()};
 }
 
+using Wide = Eigen::Matrix<long double, 3, 1>;
+using Corners = std::array<Wide, 8>;
+
+/// Where the corners of a node are at a time; the first three bits of a number say on which side of each axis.
+Corners corners_of(const ObbNode& node, double unit, const Motion& motion, double when) {
+  Corners corners;
+  for (std::size_t k = 0; k < 8; ++k) {
+    Vector3d corner(node.centre[0], node.centre[1], node.centre[2]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Vector3d direction(node.axes[0][axis], node.axes[1][axis], node.axes[2][axis]);
+      corner += (k >> axis & 1 ? 1 : -1) * static_cast<double>(node.half_extents[axis]) * direction;
+    }
+    const auto place = tests::TurningMeshOracle::point(motion, unit * corner, when);
+    corners[k] = Wide(place[0], place[1], place[2]);
+  }
+  return corners;
+}
+
+/// The widest gap of two boxes along axes and products of axes.
+long double gap_of(const Corners& a, const Corners& b) {
+  std::vector<Wide> directions;
+  for (const int i : {1, 2, 4}) {
+    for (const int j : {1, 2, 4}) {
+      const auto u = static_cast<std::size_t>(i), v = static_cast<std::size_t>(j);
+      directions.insert(directions.end(), {a[u] - a[0], b[v] - b[0], (a[u] - a[0]).cross(b[v] - b[0])});
+    }
+  }
+  long double widest = -std::numeric_limits<long double>::infinity();
+  for (const Wide& direction : directions) {
+    if (!(direction.norm() > 0)) continue;
+    const Wide n = direction / direction.norm();
+    const auto range = [&](const Corners& corners) {
+      long double low = n.dot(corners[0]), high = low;
+      for (const Wide& x : corners) low = std::min(low, n.dot(x)), high = std::max(high, n.dot(x));
+      return std::pair(low, high);
+    };
+    const auto [low_a, high_a] = range(a);
+    const auto [low_b, high_b] = range(b);
+    widest = std::max({widest, low_a - high_b, low_b - high_a});
+  }
+  return widest;
+}
+
 }  // namespace
 
 TEST_CASE("nodes are apart for as long as is proven", "[turning]") {
@@ -53,22 +102,56 @@ TEST_CASE("nodes are apart for as long as is proven", "[turning]") {
     const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 3));
     const auto half = [&] { return Vector3d(random.between(0, 1), random.between(0, 1), random.between(0, 1)); };
     const Box box_a{half()}, box_b{half()};
-    const BodyNode node_a = box_node(box_a.half_extents), node_b = box_node(box_b.half_extents);
+    const ObbNode node_a = box_node(box_a.half_extents), node_b = box_node(box_b.half_extents);
     const double t = random.between(0, 0.5), horizon = t + 1;
-    const NodesView<2> view(a, b, node_a.radius, node_b.radius, t, horizon);
+    const NodesView<2> view(a, b, box_units(box_a.half_extents), box_units(box_b.half_extents), t, horizon);
     CAPTURE(round);
     const auto gap = [&](double when) {
       return static_cast<double>(tests::TurningOracle::gap(a, box_a, b, box_b, when));
     };
     if (nodes_apart_by(0.25, view, node_a, node_b)) {
       // Along an axis; the oracle knows more of them.
-      CHECK(gap(t) > 0.25 - 1e-12);
+      CHECK(gap(t) > 0.25);
     }
     const NodeWait apart = nodes_apart(view, node_a, node_b);
     if (!apart.worth_it) continue;
     ++proven;
     const double until = std::min(horizon, t + apart.wait);
     for (int i = 0; i <= 20; ++i) CHECK(gap(t + (until - t) * i / 20) > 0);
+    ended += until < horizon;
+  }
+  CHECK(proven > 500);
+  CHECK(ended > 100);
+}
+
+TEST_CASE("nodes of meshes of any size are apart for as long as is proven", "[turning]") {
+  const std::uint64_t seed = 563;
+  CAPTURE(seed);
+  Random random(seed);
+  const auto mesh = samples::torus(8, 4);
+  const auto nodes = mesh->tree().nodes();
+  int proven = 0, ended = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const double size = std::ldexp(1.0, random.integer(-40, 40)), other = random.one_in(3) ? 0x1p-6 : 1;
+    const MeshShape shape_a{mesh, size}, shape_b{mesh, size * other};
+    const NodeUnits units_a = MeshOfPair(shape_a).units(), units_b = MeshOfPair(shape_b).units();
+    Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 2));
+    for (Motion* const motion : {&a, &b}) {
+      for (Vector3d& coefficient : motion->path.coefficients) coefficient *= size;
+    }
+    const ObbNode& node_a = nodes[random.below(nodes.size())];
+    const ObbNode& node_b = nodes[random.below(nodes.size())];
+    const double t = random.between(0, 0.5), horizon = t + 1;
+    const NodesView<2> view(a, b, units_a, units_b, t, horizon);
+    const NodeWait apart = nodes_apart(view, node_a, node_b);
+    if (!apart.worth_it) continue;
+    ++proven;
+    CAPTURE(round);
+    const double until = std::min(horizon, t + apart.wait);
+    for (int i = 0; i <= 20; ++i) {
+      const double when = t + (until - t) * i / 20;
+      CHECK(gap_of(corners_of(node_a, units_a.unit, a, when), corners_of(node_b, units_b.unit, b, when)) > 0);
+    }
     ended += until < horizon;
   }
   CHECK(proven > 500);
@@ -118,34 +201,47 @@ TEST_CASE("triangles are apart for as long as is proven, and conditions that are
   CHECK(sure > 3000);
 }
 
-TEST_CASE("failure times that are remembered are those that are found", "[turning]") {
+TEST_CASE("signs that are remembered are those that are found", "[turning]") {
   const std::uint64_t seed = 562;
   CAPTURE(seed);
   Random random(seed);
-  int fail = 0;
+  int fail = 0, recover = 0;
   for (int round = 0; round < 100; ++round) {
     const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 1));
     const auto p = random_triangle(random), q = random_triangle(random);
     const EdgeEdge edges{a, b, {p[0], p[1]}, {q[0], q[1]}}, back{a, b, {p[1], p[0]}, {q[1], q[0]}};
     const EdgeEdge other{a, b, {p[1], p[0]}, {q[0], q[1]}};  // the other sign
     const VertexFace vertex{a, b, p[0], q}, of_b{b, a, q[0], p};
-    SharedFailures failures;
+    // Bodies of the same shape have points of the same coordinates.
+    const VertexFace alike{a, b, p[0], {p[1], q[0], q[1]}};
+    const EdgeEdge fixed{a, a, {p[0], p[1]}, {p[0], p[1]}};  // zero at all times
+    RememberedSigns signs;
     CAPTURE(round);
+    std::vector<double> times;
     for (int ask = 0; ask < 20; ++ask) {
-      const double t = random.between(0, 1), until = t + random.between(0, 2);
+      // Times at which signs have changed are asked for again.
+      const bool again = !times.empty() && random.one_in(3);
+      const double t = again ? times[random.below(times.size())] : random.between(0, 1);
+      const double until = t + random.between(0, 2);
       const auto compare = [&](const auto& certificate) {
-        const double time = failure_time(certificate, t, until);
-        fail += time > t && time < never;
-        CHECK(failures.failure_time(certificate, t, until) == time);
-        CHECK(failures.sign_after(certificate, t) == sign_after(certificate, t));
-        if (time == never) return;
-        CHECK(failures.sign_after(certificate, time) == -1);
-        if (time > t) CHECK(failures.sign_after(certificate, next_down(time)) == 1);
+        CHECK(signs.sign_after(certificate, t) == sign_after(certificate, t));
+        const double fails = failure_time(certificate, t, until), recovers = recovery_time(certificate, t, until);
+        if (random.one_in(2)) CHECK(signs.failure_time(certificate, t, until) == fails);
+        CHECK(signs.recovery_time(certificate, t, until) == recovers);
+        CHECK(signs.failure_time(certificate, t, until) == fails);
+        fail += fails > t && fails<never, recover += recovers> t && recovers < never;
+        for (const double time : {fails, recovers}) {
+          if (time == never) continue;
+          times.push_back(time);
+          CHECK(signs.sign_after(certificate, time) == (time == fails ? -1 : 1));
+          if (time > t) CHECK(signs.sign_after(certificate, next_down(time)) == (time == fails ? 1 : -1));
+        }
       };
-      compare(edges), compare(back), compare(other), compare(vertex), compare(of_b);
+      compare(edges), compare(alike), compare(back), compare(other), compare(vertex), compare(of_b), compare(fixed);
     }
   }
   CHECK(fail > 500);
+  CHECK(recover > 500);
 }
 
 }  // namespace test_turning_proofs

@@ -72,6 +72,10 @@ TEST_CASE("a sine fails and recovers where it crosses", "[turning_failure_time]"
   CHECK(std::abs(again - 5 * pi / 6) < 1e-15);
   CHECK(sign_after(f, again) == 1);
   CHECK(sign_after(f, next_down(again)) == -1);
+  CHECK(change_of_sign(f, 1, 0, 100) == t);
+  CHECK(change_of_sign(f, 1, 0, next_down(t)) == never);
+  CHECK(change_of_sign(f, -1, t, 100) == again);
+  CHECK_THROWS_AS(change_of_sign(f, 1, 0, never), std::invalid_argument);
   CHECK(recovery_time(f, 1, 2) == never);
   CHECK(recovery_time(f, 0, 2) == 0);
   CHECK(std::abs(failure_time(f, 3, 100) - 13 * pi / 6) < 1e-15);

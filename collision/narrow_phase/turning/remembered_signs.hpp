@@ -1,0 +1,135 @@
+// Signs of certificates that are asked for again and again, and when they change.
+#pragma once
+
+#include "certificates/turning/edge_edge_separation.hpp"
+#include "certificates/turning/vertex_face_separation.hpp"
+#include "kds/turning/turning_failure_time.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace kds::collision {
+
+/// Remembers what was asked. Where two edges of meshes meet the two triangles on either side of each do, too, and with
+/// a vertex all that are around it: of all these pairs one certificate says when. It is asked more than once of each,
+/// too: whether they penetrate, when they part, where they touch.
+///
+/// Law: answers are those of kds::sign_after, failure_time and recovery_time. These say of all doubles from one to
+/// another which sign a certificate has just after them. All certificates are of the same two motions, which stay where
+/// they are.
+class RememberedSigns {
+ public:
+  template <class C>
+  int sign_after(const C& certificate, double t) {
+    if constexpr (!is_shared<C>()) {
+      return kds::sign_after(certificate, t);
+    } else {
+      const Key key = key_of(certificate);
+      if (const Stretch* const known = find(key, t)) return known->sign;
+      const int sign = kds::sign_after(certificate, t);
+      remember({key, t, t, sign, false});
+      return sign;
+    }
+  }
+
+  template <class C>
+  double failure_time(const C& certificate, double t, double until) {
+    return change(certificate, 1, t, until);
+  }
+  template <class C>
+  double recovery_time(const C& certificate, double t, double until) {
+    return change(certificate, -1, t, until);
+  }
+
+ private:
+  enum class Kind : unsigned char { vertex_and_face, two_edges };
+  /// What a certificate is made of, apart from the two motions of the pair.
+  struct Key {
+    Kind kind;  ///< two bodies may have points of the same coordinates
+    const void* first_motion;
+    std::array<double, 12> coordinates;
+    friend bool operator==(const Key&, const Key&) = default;
+  };
+  /// Of a certificate from one time to another.
+  struct Stretch {
+    Key key;
+    double from, to;
+    int sign;      ///< just after each double before the last
+    bool changes;  ///< just after the last it is the other; else it is this, too
+    bool holds(double t) const { return from <= t && (changes ? t < to : t <= to); }
+  };
+
+  static void put(Key& key, std::size_t place, const Eigen::Vector3d& x) {
+    for (std::size_t d = 0; d < 3; ++d) key.coordinates[3 * place + d] = x[static_cast<Eigen::Index>(d)];
+  }
+  template <int Degree>
+  static Key key_of(const certificates::VertexFaceSeparation<Degree>& c) {
+    Key key{Kind::vertex_and_face, &c.a, {}};
+    put(key, 0, c.vertex);
+    for (std::size_t i = 0; i < 3; ++i) put(key, 1 + i, c.corners[i]);
+    return key;
+  }
+  /// With both edges the other way round it is the same function.
+  template <int Degree>
+  static Key key_of(const certificates::EdgeEdgeSeparation<Degree>& c) {
+    Key key{Kind::two_edges, &c.a, {}};
+    const auto& u = c.edge_a;
+    const bool swap = std::lexicographical_compare(u[1].data(), u[1].data() + 3, u[0].data(), u[0].data() + 3);
+    for (std::size_t i = 0; i < 2; ++i) {
+      put(key, i, c.edge_a[swap ? 1 - i : i]);
+      put(key, 2 + i, c.edge_b[swap ? 1 - i : i]);
+    }
+    return key;
+  }
+
+  template <class C>
+  static constexpr bool is_shared() {
+    return requires(const C& certificate) { key_of(certificate); };
+  }
+
+  Stretch* find(const Key& key, double t) {
+    for (Stretch& known : known_) {
+      if (known.holds(t) && known.key == key) return &known;
+    }
+    return nullptr;
+  }
+
+  void remember(const Stretch& stretch) {
+    constexpr std::size_t most = 16;
+    if (known_.size() < most) {
+      known_.push_back(stretch);
+    } else {
+      known_[oldest_++ % most] = stretch;
+    }
+  }
+
+  /// The first double in [t, until] just after which the sign is not `side`, but the other; or `never`.
+  template <class C>
+  double change(const C& certificate, int side, double t, double until) {
+    if (!(t <= until)) return never;
+    const int sign = sign_after(certificate, t);
+    if (sign != side) return sign == 0 ? never : t;
+    if constexpr (!is_shared<C>()) {
+      return kds::change_of_sign(certificate, side, t, until);
+    } else {
+      const Key key = key_of(certificate);
+      Stretch& known = *find(key, t);
+      if (known.changes) return known.to <= until ? known.to : never;
+      if (known.to >= until) return never;
+      const double time = kds::change_of_sign(certificate, side, known.to, until);
+      known.to = std::min(time, until);
+      known.changes = time != never;
+      if (known.changes) remember({key, time, time, -side, false});
+      return time;
+    }
+  }
+
+  std::vector<Stretch> known_;
+  std::size_t oldest_ = 0;
+};
+
+}  // namespace kds::collision
