@@ -1,10 +1,9 @@
 // Two surfaces, or one twice, over a stretch of time: what their leaves have in features.
 #pragma once
 
-#include "certificates/features/closest_point.hpp"
-#include "certificates/features/fixed_axis.hpp"
 #include "collision/deforming/box_overlap.hpp"
 #include "collision/deforming/crossing_features.hpp"
+#include "collision/deforming/feature_nearness.hpp"
 #include "collision/deforming/surface_contact.hpp"
 #include "collision/vectors.hpp"
 
@@ -66,20 +65,16 @@ class SurfacePair {
   SurfaceContact described(Kind kind, const std::array<std::uint32_t, 4>& vertices, std::uint32_t face,
                            const certificates::FeatureContact& touch) const;
   /// Two features at a time, as if they touched there.
-  struct Nearness {
-    certificates::FeatureContact touch;
-    double gap;    ///< beyond the radii, rounded; units of length
-    double rate;   ///< of the gap, as the stretch of time goes by: units of length
-    double noise;  ///< a greater rate, of either sign, has the sign of the rate meant
-    double size;   ///< of the pair (ContactTolerance)
-  };
   template <certificates::Patch patch>
-  Nearness nearness(const certificates::ControlPoints<Degree>& control, double t) const;
+  FeatureNearness nearness(const certificates::ControlPoints<Degree>& control, double t) const {
+    return nearness_at<patch, Degree>(control, a_.part(t), t, tolerance_.thickness,
+                                      a_.uncertainty() + b_.uncertainty());
+  }
 
   /// Whether features that do not approach at `from` come nearer before they have left: looked at at times that double
   /// from one to the next, so that of a flight on a parabola three quarters of its height are seen.
   template <certificates::Patch patch>
-  bool comes_nearer(const certificates::ControlPoints<Degree>& control, const Nearness& now) const {
+  bool comes_nearer(const certificates::ControlPoints<Degree>& control, const FeatureNearness& now) const {
     constexpr double shortest = 0x1p-40;  // of the time there is; shorter flights do not count as leaving
     for (double part = shortest; part <= 1; part *= 2) {
       const double gap = nearness<patch>(control, query_.from + part * (query_.until - query_.from)).gap;
@@ -241,47 +236,6 @@ certificates::ControlPoints<Degree> SurfacePair<Degree>::control_points(Kind kin
     for (std::size_t k = 0; k < 4; ++k) control[i][k] = k < of_first ? points[vertices[k]] : others[vertices[k]];
   }
   return control;
-}
-
-template <int Degree>
-template <certificates::Patch patch>
-typename SurfacePair<Degree>::Nearness SurfacePair<Degree>::nearness(const certificates::ControlPoints<Degree>& control,
-                                                                     double t) const {
-  const auto paths = certificates::patch_paths<patch, Degree>(control);
-  const certificates::PlacedPatch<patch> placed(paths.at(a_.part(t)));
-  const auto point = placed.closest();
-  const auto w = placed.weights(point);
-  Nearness result{};
-  certificates::FeatureContact& touch = result.touch;
-  touch.status = certificates::FeatureContactStatus::at_start;
-  touch.time = t;
-  touch.distance = std::sqrt(point.squared_distance);
-  if constexpr (patch == certificates::Patch::triangle) {
-    touch.weights = {1, w[0] + w[3], w[1], w[2]};
-  } else {
-    touch.weights = {w[0] + w[3], w[1] + w[2], w[0] + w[1], w[2] + w[3]};
-  }
-  const auto rates = paths.velocity(a_.part(t));
-  const auto rate_along = [&](const Eigen::Vector3d& n) {
-    double rate = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t d = 0; d < 3; ++d) rate += n[static_cast<Eigen::Index>(d)] * rates[d][k] * w[k];
-    }
-    return rate;
-  };
-  // Of what touches the direction is lost in roundings: then it is across both features.
-  touch.normal = normalized(point.position);
-  if (!(touch.distance > 64 * certificates::axis_margin(paths, 0))) {
-    const Eigen::Vector3d n = normalized(placed.normal());
-    touch.normal = rate_along(n) > 0 ? Eigen::Vector3d(-n) : n;
-    if (!(squared_norm(n) > 0)) touch.normal = Eigen::Vector3d::UnitX();
-  }
-  result.gap = touch.distance - tolerance_.thickness;
-  result.rate = rate_along(touch.normal);
-  // Some tens of roundings of coordinates, and what both ends of the paths may be off.
-  result.noise = 0x1p-46 * paths.size + 4 * (paths.error + 1.74 * (a_.uncertainty() + b_.uncertainty()));
-  result.size = paths.size;
-  return result;
 }
 
 template <int Degree>

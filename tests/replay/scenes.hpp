@@ -130,11 +130,10 @@ inline BendingMesh bowl(const std::array<std::array<double, 2>, 4>& forms, doubl
 template <int Degree>
 Scene<Degree> bending_scene(bool falls) {
   Scene<Degree> scene;
-  scene.end_time = 1;
+  scene.end_time = 0.75;
   const auto sheet = bowl({{{0.25, 0}, {0.375, 0.125}, {0.25, -0.125}, {0.3125, 0}}}, 1);
   scene.bodies.push_back(fixed_body<Degree>(sheet, motion<Degree>({0, 0, 0})));
-  scene.bodies.back().restitution = 0.5;
-  if (!falls) {
+    if (!falls) {
     auto other =
         body<Degree>(bowl({{{0.25, 0}, {-0.5, 0.25}, {2, 1}, {-2, 0}}}, 0.75), motion<Degree>({0, 0, 1}, {0, 0, -1}));
     other.orientation = unit_quaternion(0.5, 0.5, 0.5, 0.5);
@@ -149,7 +148,7 @@ Scene<Degree> bending_scene(bool falls) {
     auto falling = body<Degree>(shapes[i], motion<Degree>({0.75 * x - 0.7, y - 0.6, 1}, {0.125, 0.25, -2}));
     if constexpr (Degree == 2) falling.motion[0].coefficients[2] = Vector3d(0, 0, -4.905);
     falling.orientation = unit_quaternion(0.9, -0.4, 0.1, 0.1);
-    falling.restitution = 0.75;
+    falling.restitution = i == 0 ? 0.25 : 1;
     scene.bodies.push_back(falling);
   }
   return scene;
