@@ -27,6 +27,31 @@ if(NOT output MATCHES "the balls meet at t = 1 ")
   message(FATAL_ERROR "two_balls says: ${output}")
 endif()
 
+# The same by pkg-config, and from the Debian package as it is unpacked.
+find_program(pkg_config pkg-config)
+if(pkg_config)
+  file(GLOB_RECURSE packages "${FOLDER}/prefix/*/kds.pc")
+  cmake_path(GET packages PARENT_PATH packages)
+  set(ENV{PKG_CONFIG_PATH} "${packages}")
+  run("${pkg_config}" "--define-variable=prefix=${FOLDER}/prefix" --cflags --libs kds)
+  separate_arguments(flags UNIX_COMMAND "${output}")
+  run("${COMPILER}" "${ROOT}/examples/00_two_balls.cpp" ${flags} -o "${FOLDER}/by_pkg_config")
+  run("${FOLDER}/by_pkg_config")
+  if(NOT output MATCHES "the balls meet at t = 1 ")
+    message(FATAL_ERROR "two_balls, found by pkg-config, says: ${output}")
+  endif()
+endif()
+find_program(dpkg_deb dpkg-deb)
+if(dpkg_deb)
+  run("${CMAKE_CPACK_COMMAND}" --config "${BUILD}/CPackConfig.cmake" -B "${FOLDER}/packages" -D CPACK_COMPONENTS_ALL=kds)
+  file(GLOB package "${FOLDER}/packages/libkds-dev_*.deb")
+  run("${dpkg_deb}" --extract "${package}" "${FOLDER}/unpacked")
+  run("${CMAKE_COMMAND}" -S "${ROOT}/tests/install" "-DCMAKE_PREFIX_PATH=${FOLDER}/unpacked/usr"
+    "-DCMAKE_CXX_COMPILER=${COMPILER}" -B "${FOLDER}/build_of_package")
+  run("${CMAKE_COMMAND}" --build "${FOLDER}/build_of_package")
+  run("${FOLDER}/build_of_package/two_balls")
+endif()
+
 # A component that is not there is refused where it is required, and only there.
 execute_process(COMMAND ${configure} -B "${FOLDER}/refused" -DCOMPONENT=gsl
   OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
