@@ -1,6 +1,9 @@
 #include "collision/queries/future.hpp"
 
+#include "certificates/ball_separation.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/vectors.hpp"
+#include "kds/roots/failure_time.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -12,10 +15,10 @@ using Eigen::Vector3d;
 
 /// Throws unless a query can look from now until then.
 template <class Motion>
-void require_span(const BasicWorld<Motion>& world, double until) {
+void require_span(const char* function, const BasicWorld<Motion>& world, double until) {
   if (until >= world.now() && until < never) return;
-  throw std::invalid_argument("next_contact: " + std::to_string(until) + " is not a finite time from now on (" +
-                              std::to_string(world.now()) + ")");
+  throw std::invalid_argument(std::string(function) + ": " + std::to_string(until) +
+                              " is not a finite time from now on (" + std::to_string(world.now()) + ")");
 }
 
 /// A box that moves with a shape and contains it in any orientation that it takes.
@@ -60,7 +63,7 @@ std::optional<Hit> first_met(const BasicWorld<Motion>& world, const MovingShape<
 template <class Motion>
 std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion,
                                 double until, const BodyFilter& filter) {
-  require_span(world, until);
+  require_span("next_contact", world, until);
   if (!motion.finite() || !(path_of(motion).start <= world.now())) {
     throw std::invalid_argument("next_contact: the motion is not finite, or begins after now (" +
                                 std::to_string(world.now()) + ")");
@@ -75,7 +78,7 @@ std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedSha
 template <class Motion>
 std::optional<Hit> next_contact_of(const BasicWorld<Motion>& world, BodyId body, double until, const BodyFilter& filter,
                                    ContactMode mode) {
-  require_span(world, until);
+  require_span("next_contact_of", world, until);
   const PlacedShape shape = world.shape(body);
   return first_met(world, MovingShape<Motion>{shape, world.motion(body)}, until, mode,
                    [&](BodyId id) { return id != body && detail::accepts(filter, id); });
@@ -84,12 +87,31 @@ std::optional<Hit> next_contact_of(const BasicWorld<Motion>& world, BodyId body,
 template <class Motion>
 std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until,
                                             ContactMode mode) {
-  require_span(world, until);
-  if (a == b) throw std::invalid_argument("next_contact: a body does not meet itself");
+  require_span("next_contact_between", world, until);
+  if (a == b) throw std::invalid_argument("next_contact_between: a body does not meet itself");
   const PlacedShape shape_a = world.shape(a);
   const PlacedShape shape_b = world.shape(b);
   return meeting(MovingShape<Motion>{shape_a, world.motion(a)}, MovingShape<Motion>{shape_b, world.motion(b)},
                  world.now(), until, mode);
+}
+
+template <class Motion>
+Approach closest_approach(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until) {
+  require_span("closest_approach", world, until);
+  const auto& path_a = path_of(world.motion(a));
+  const auto& path_b = path_of(world.motion(b));
+  const auto at = [&](double t) { return Approach{t, norm(Vector3d(path_b.position(t) - path_a.position(t)))}; };
+  using SquaredDistance = certificates::BallSeparation<Motion::degree>;
+  const DerivativeCertificate<SquaredDistance> parting{SquaredDistance{path_a, path_b, 0, 0}};
+
+  Approach nearest = at(world.now());
+  for (double t = world.now(); t != never;) {
+    t = recovery_time(parting, t, until);
+    const Approach here = at(t == never ? until : t);
+    if (here.distance < nearest.distance) nearest = here;
+    if (t != never) t = failure_time(parting, t, until);
+  }
+  return nearest;
 }
 
 #define KDS_INSTANTIATE(motion)                                                                                  \
@@ -97,7 +119,9 @@ std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, Bod
                                            const BodyFilter&);                                                   \
   template std::optional<Hit> next_contact_of(const BasicWorld<motion>&, BodyId, double, const BodyFilter&,      \
                                               ContactMode);                                                      \
-  template std::optional<Contact> next_contact_between(const BasicWorld<motion>&, BodyId, BodyId, double, ContactMode);
+  template std::optional<Contact> next_contact_between(const BasicWorld<motion>&, BodyId, BodyId, double,        \
+                                                       ContactMode);                                             \
+  template Approach closest_approach(const BasicWorld<motion>&, BodyId, BodyId, double);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -129,6 +130,51 @@ TEST_CASE("what will happen is refused for times that are none and motions that 
   CHECK_THROWS_AS(next_contact(world, ball, motion, 20), std::invalid_argument);
   motion.start = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(next_contact(world, ball, motion, 20), std::invalid_argument);
+}
+
+TEST_CASE("the closest approach of two centres: of lines by the formula, of others not missed by samples") {
+  double least = never;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    INFO("seed " << seed);
+    Random random(seed);
+    World<2> world(WorldOptions{});
+    const bool lines = seed % 2 == 0;
+    certificates::PointMotion<2> motion[2];
+    for (auto& m : motion) {
+      m = random_motion<2>(random, 0);
+      if (lines) m.coefficients[2].setZero();
+    }
+    const BodyId a = world.add_body(body<2>(Sphere{0.1}, motion[0]));
+    const BodyId b = world.add_body(body<2>(Box{Vector3d(0.1, 0.2, 0.3)}, motion[1]));
+    world.advance_to(0.125);
+    const auto nearest = closest_approach(world, a, b, 4);
+    const auto distance = [&](double t) { return (motion[1].position(t) - motion[0].position(t)).norm(); };
+    CHECK(nearest.time >= 0.125);
+    CHECK(nearest.time <= 4);
+    CHECK(nearest.distance == Approx(distance(nearest.time)).epsilon(1e-14));
+    for (int i = 0; i <= 1000; ++i) CHECK(distance(0.125 + i * (4 - 0.125) / 1000) >= nearest.distance - 1e-12);
+    if (lines) {
+      const Vector3d d = motion[1].coefficients[0] - motion[0].coefficients[0];
+      const Vector3d v = motion[1].coefficients[1] - motion[0].coefficients[1];
+      CHECK(nearest.time == Approx(std::clamp(-d.dot(v) / v.squaredNorm(), 0.125, 4.0)).epsilon(1e-10));
+    }
+    least = std::min(least, nearest.distance);
+  }
+  CHECK(least < 0.5);
+}
+
+TEST_CASE("the closest approach of centres that keep their distance is at once") {
+  World<1> world(WorldOptions{});
+  const BodyId a = world.add_body(body<1>(Sphere{1}, {{Vector3d(0, 0, 0), Vector3d(1, 2, 3)}}));
+  const BodyId b = world.add_body(body<1>(Sphere{1}, {{Vector3d(5, 0, 0), Vector3d(1, 2, 3)}}));
+  const BodyId c = world.add_body(body<1>(Sphere{1}, {{Vector3d(5, 0, 0), Vector3d(0, 2, 3)}}));
+  world.advance_to(1);
+  CHECK(closest_approach(world, a, b, 9).time == 1);
+  CHECK(closest_approach(world, a, b, 9).distance == 5);
+  CHECK(closest_approach(world, a, c, 3).time == 3);
+  CHECK(closest_approach(world, a, c, 9).time == 5);
+  CHECK(closest_approach(world, a, c, 9).distance == 0);
+  CHECK_THROWS_AS(closest_approach(world, a, b, 0.5), std::invalid_argument);
 }
 
 }  // namespace kds::collision::test_future
