@@ -111,8 +111,9 @@ void BasicWorld<Motion>::set_horizon(double limit) {
 template <class Motion>
 bool BasicWorld<Motion>::step(double limit) {
   require_idle("World::step");
-  if (limit < idle_until_ || (limit == never && idle_until_ == never)) {
-    if (limit < never) callers_now_ = std::max(callers_now_, limit);
+  if (limit == never && idle_for_ever_) return false;
+  if (limit < idle_until_) {
+    callers_now_ = std::max(callers_now_, limit);
     clock_.now = std::max(clock_.now, callers_now_);
     return false;
   }
@@ -213,8 +214,11 @@ template <class Motion>
 bool BasicWorld<Motion>::next_event(double limit, Search search) {
   const bool looks = search == Search::looks;
   idle_until_ = -never;
+  idle_for_ever_ = false;
   bool looked_ahead = false;
   double reached = callers_now_;  // the clock if no event follows
+  // Where it is not known that anything will happen, the broad phase runs ahead of the clock.
+  double broad_phase_reached = clock_.now;
   for (;;) {
     if (bodies_.any_waits()) enter_new_bodies();
     if (!resting_.solved()) resting_.solve();
@@ -230,13 +234,14 @@ bool BasicWorld<Motion>::next_event(double limit, Search search) {
     const bool piece = is_due && due.task <= Task::turn_on;
     const double until = next == never ? broad_phase_->next_time() : piece ? next_down(next) : next;
     if (until == never) {
-      if (looks) return false;
-      idle_until_ = never;
+      clock_.now = std::max(clock_.now, broad_phase_reached);
       go_back(reached);
+      idle_for_ever_ = true;
       return false;
     }
     {
       const Stopwatch watch(profile(), Work::sort);
+      if (next == never) broad_phase_reached = until;
       if (broad_phase_->advance(until, pairs_) || next == never) continue;
     }
     clock_.now = std::max(clock_.now, next);
@@ -284,6 +289,7 @@ void BasicWorld<Motion>::extend_horizon(double now, double horizon) {
   require_idle("World::extend_horizon");
   if (now > callers_now_) advance_to(now);
   idle_until_ = next_time_ = -never;
+  idle_for_ever_ = false;
   change_or_fail([&] { set_horizon(horizon); });
 }
 
@@ -387,6 +393,7 @@ void BasicWorld<Motion>::report_resting(const Reports::Report& event) {
 template <class Motion>
 void BasicWorld<Motion>::count_edit() {
   idle_until_ = next_time_ = -never;
+  idle_for_ever_ = false;
   if (stepping_)
     edits_.count(clock_.now, options_.zeno.interval, std::max<std::uint64_t>(options_.most_edits, 64 * bodies_.size()));
 }

@@ -365,6 +365,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   EditLimit edits_;
   double callers_now_;          ///< the clock as callers know it
   double idle_until_ = -never;  ///< nothing is due before it; an edit resets it
+  bool idle_for_ever_ = false;  ///< no event comes at all; an edit resets it
   double next_time_ = -never;   ///< the result of next_time(); -never if there is none
   bool stepping_ = false;
   bool telling_ = false;        ///< a listener is being told, or has thrown

@@ -121,6 +121,7 @@ void BasicWorld<Motion>::become(const Image& image) {
   clock_ = {image.now, image.horizon};
   callers_now_ = image.callers_now;
   idle_until_ = next_time_ = -never;
+  idle_for_ever_ = false;
   edits_ = image.edits;
   bodies_.become(image.bodies);
   scripts_.become(image.scripts);

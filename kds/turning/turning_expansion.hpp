@@ -73,9 +73,9 @@ class TurningExpansion {
   Model about(double m, double rho) const {
     static_assert(Harmonics <= 2);
     double unsure = roundings;
-    using Turned = std::array<std::array<double, 2>, Harmonics>;  // cosine and sine, by harmonics
+    using Turned = std::array<std::array<double, 2>, std::size_t{Harmonics}>;  // cosine and sine, by harmonics
     std::array<Turned, 2> turn;
-    std::array<std::array<std::array<double, order + 1>, Harmonics>, 2> series;
+    std::array<std::array<std::array<double, order + 1>, std::size_t{Harmonics}>, 2> series;
     for (std::size_t s = 0; s < 2; ++s) {
       SineCosine<Ball<double>> a{};
       a.cosine = Ball<double>(1.0);

@@ -37,8 +37,8 @@ constexpr bool is_sine(std::size_t i) { return i > 0 && i % 2 == 0; }
 
 /// A_1, A_2 ... of a turn, by the rule of the cosine of sums of angles.
 template <int Harmonics, class Value>
-std::array<Value, 2 * Harmonics> harmonics_of_turn(const Turn<Value>& a) {
-  std::array<Value, 2 * Harmonics> factors;
+auto harmonics_of_turn(const Turn<Value>& a) {
+  std::array<Value, 2 * std::size_t{Harmonics}> factors;
   factors[0] = a.cosine;
   factors[1] = a.rate_sine;
   if constexpr (Harmonics > 1) {

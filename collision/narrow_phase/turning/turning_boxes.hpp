@@ -296,8 +296,8 @@ void TurningBoxes<Degree>::every_jet(const PairFrame<Degree>& frame, int way, do
   std::size_t count = 0;
   double of_a = 0, of_b = 0, rate = 0, offset = 0;
   VectorJet n;
-  const auto turned_axis = [&](bool of_a, int axis) {
-    return of_a ? turning(frame.axis_a(axis), frame.spin_a) : turning(frame.axis_b(axis), frame.spin_b);
+  const auto turned_axis = [&](bool from_a, int axis) {
+    return from_a ? turning(frame.axis_a(axis), frame.spin_a) : turning(frame.axis_b(axis), frame.spin_b);
   };
   const auto add = [&](bool from_a, int axis, int sign) {
     const double length = (from_a ? half_a_ : half_b_)[axis];

@@ -161,6 +161,56 @@ TEST_CASE("A world that nothing happens in has no next event, and its clock stay
   }
 }
 
+TEST_CASE("To look for what never comes, or to run until nothing comes, changes nothing of what is added later",
+          "[world][simulator]") {
+  struct Log final : WorldListener<1> {
+    void contact(World<1>&, const PairEvent& event) override { times.push_back(event.contact.time); }
+    void overlap(World<1>&, const PairEvent& event) override { times.push_back(event.contact.time); }
+    std::vector<double> times;
+  };
+  for (const auto method : {BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap}) {
+    WorldOptions options;
+    options.broad_phase = method;
+    std::size_t met = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      INFO("seed " << seed);
+      Log log_plain, log_looked, log_run;
+      World<1> plain(options, &log_plain), looked(options, &log_looked), run(options, &log_run);
+      Random random(seed);
+      double t = 0;
+      for (int i = 0; i < 12; ++i) {
+        const auto vector = [&](double size) {
+          return Vector3d(random.between(-size, size), random.between(-size, size), random.between(-size, size));
+        };
+        const Vector3d at = vector(2);
+        const BodyDescription<1> body{.shape = Sphere{0.3}, .motion = {motion<1>(at, vector(3), zero, t)}};
+        for (World<1>* world : {&plain, &looked, &run}) world->add_body(body);
+        looked.next_time();
+        if (random.one_in(2)) {  // its events are then told early, those of others at t
+          while (run.step()) {
+          }
+          t = run.now();
+        }
+        t += random.between(0, 0.2);
+        for (World<1>* world : {&plain, &looked, &run}) {
+          world->advance_to(t);
+          looked.next_time();
+          INFO("world " << (world == &plain ? 0 : world == &looked ? 1 : 2) << ", body " << i);
+          world->audit();
+          std::size_t near = 0;
+          const Vector3d first = world->motion(0).position(t);
+          world->visit_overlapping(first, first, [&](BodyId) { ++near; });
+          CHECK(near > 0);
+        }
+      }
+      CHECK(log_looked.times == log_plain.times);
+      CHECK(log_run.times == log_plain.times);
+      met += log_plain.times.size();
+    }
+    CHECK(met > 40);
+  }
+}
+
 TEST_CASE("A world and a triangulation are rolled back together", "[world][simulator][history]") {
   for (const auto method : {BroadPhaseKind::automatic, BroadPhaseKind::kinetic_sap}) {
     BouncingPoints points(method, 3);
