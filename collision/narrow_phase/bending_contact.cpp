@@ -110,6 +110,12 @@ class BendingPair {
     return collision::first_contact(*a_over_, *b_over_, query);
   }
 
+  /// Searches of one piece, each until all has parted that is near at its begin. At a late clock, with coarse doubles,
+  /// surfaces part and meet by roundings alone, double by double: after so many searches each covers at least twice the
+  /// time of the one before. Larger takes longer there; smaller may, before the time that is asked about, take two
+  /// contacts for one, and after it resolve a contact of what is still near.
+  static constexpr int most_searches = 64;
+
   /// The first contact that has to be resolved, in [t, horizon].
   double meeting_after(double t, double horizon) {
     SurfaceQuery query = query_;
@@ -122,16 +128,20 @@ class BendingPair {
       begin = near > w1 ? near : w1;
       if (near > w1) continue;
       const SurfaceTouching<Degree> touching = this->touching(w0, w1);
+      double stride = 0;
+      int searches = 0;
       for (double now = w0; now < w1;) {
+        if (++searches > most_searches) stride = std::max(2 * stride, next_up(now) - now);
         // What is near stays below the levels of those that come from outside until all have parted.
         const double parts = touching.touches(now) ? std::min(touching.parts_at(now), w1) : w1;
         query.from = now;
-        query.until = parts;
+        query.until = std::max(parts, std::min(now + stride, w1));
         const auto contact = collision::first_contact(*a_over_, *b_over_, query);
         const double time = contact ? contact->contact.time : never;
         if (time < w1 && time >= t) return time <= horizon ? time : never;
         // One before t was passed over, and they go through each other.
-        now = !contact ? parts : time < w1 ? std::max(touching.parts_at(time), next_up(time)) : w1;
+        now = !contact ? query.until : time < w1 ? std::max(touching.parts_at(time), next_up(time)) : w1;
+        now = std::max(now, std::min(query.from + stride, t));
       }
     }
     return never;

@@ -1,5 +1,6 @@
 #include "collision/queries/casts.hpp"
 
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/mesh_script.hpp"
 
@@ -31,6 +32,8 @@ void require_in_range(const char* function, const Vector3d& at) {
 void require_way(const char* function, const PlacedShape& shape, const Ray& way) {
   require_in_range(function, way.from);
   require_in_range(function, way.to);
+  if (!is_placed(shape))
+    throw std::invalid_argument(std::string(function) + ": the shape is not what place() makes of it");
   if (bends(shape.shape)) throw std::invalid_argument(std::string(function) + ": a mesh that bends cannot be cast");
 }
 
@@ -75,7 +78,11 @@ StandingBody standing_body(const BasicWorld<Motion>& world, BodyId id) {
 /// A shape on its way, at times from 0 to 1.
 class Cast {
  public:
-  Cast(const PlacedShape& shape, const Ray& way) : shape_(shape) { path_.coefficients = {way.from, way.to - way.from}; }
+  Cast(const PlacedShape& shape, const Ray& way) : shape_(shape) {
+    path_.coefficients = {way.from, way.to - way.from};
+    const auto growth = MeshClearance<1>(path_, shape.bounding_radius).growing();
+    margin_ = growth[0] + growth[1];
+  }
 
   /// Calls visit(id) for each body whose box meets that of the way from one time to another.
   template <class Motion, class Visit>
@@ -83,7 +90,7 @@ class Cast {
     const auto& [start, way] = path_.coefficients;
     const Vector3d a = start + from * way;
     const Vector3d b = start + to * way;
-    const Vector3d room = rounding * (start.cwiseAbs() + way.cwiseAbs());
+    const Vector3d room = (rounding * (start.cwiseAbs() + way.cwiseAbs())).array() + margin_;
     world.visit_overlapping(a.cwiseMin(b) + shape_.low - room, a.cwiseMax(b) + shape_.high + room, visit);
   }
 
@@ -106,6 +113,7 @@ class Cast {
 
   const PlacedShape& shape_;
   StraightPath path_;
+  double margin_;  ///< within which a mesh is met, at most, on the whole way
 };
 
 /// Into as many pieces as there are bodies in a row, if they fill a cube: so the boxes of most pieces meet few.

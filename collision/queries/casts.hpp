@@ -19,8 +19,9 @@ namespace kds::collision {
 // after which it penetrates it, and a mesh early by at most the margin of its contacts (narrow_phase.hpp); and it meets
 // at 0 what it overlaps there. Meshes are surfaces, all others solid. Bodies that are only touched are not met.
 //
-// They throw std::invalid_argument where coordinates are not finite or out of the range of shape.hpp, and what
-// World::visit_overlapping throws. Several threads may ask at once while none does anything else.
+// They throw std::invalid_argument where coordinates are not finite or out of the range of shape.hpp, for shapes that
+// were not made by place(), and what World::visit_overlapping throws. Several threads may ask at once while none does
+// anything else.
 
 /// A way from one point to another, straight.
 struct Ray {

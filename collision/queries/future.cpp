@@ -1,7 +1,10 @@
 #include "collision/queries/future.hpp"
 
 #include "certificates/ball_separation.hpp"
+#include "collision/body_description.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/broad_phase/swept_box.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/vectors.hpp"
 #include "kds/roots/failure_time.hpp"
 
@@ -21,14 +24,38 @@ void require_span(const char* function, const BasicWorld<Motion>& world, double 
                               " is not a finite time from now on (" + std::to_string(world.now()) + ")");
 }
 
-/// A box that moves with a shape and contains it in any orientation that it takes.
+/// Bodies that enter later are not there.
+template <class Motion>
+bool entered(const BasicWorld<Motion>& world, BodyId body) {
+  return path_of(world.motion(body)).start <= world.now();
+}
+
+/// A box that moves with a shape and contains it in any orientation that it takes, with room for the margin within
+/// which a mesh meets it.
 template <class Motion>
 KineticBox<Motion::degree> box_of(const MovingShape<Motion>& body) {
+  const auto& path = path_of(body.motion);
+  const double radius = body.shape.bounding_radius;
+  KineticBox<Motion::degree> box;
   if constexpr (turns<Motion>) {
-    const Vector3d reach = Vector3d::Constant(body.shape.bounding_radius);
-    return box_around(path_of(body.motion), -reach, reach);
+    box = box_around(path, Vector3d::Constant(-radius), Vector3d::Constant(radius));
   } else {
-    return box_around(body.motion, body.shape.low, body.shape.high);
+    box = box_around(path, body.shape.low, body.shape.high);
+  }
+  grow(box, MeshClearance<Motion::degree>(path, radius).growing(), path.start);
+  return box;
+}
+
+/// Throws unless the shape is placed, and can move so.
+template <class Motion>
+void require_shape(const PlacedShape& shape) {
+  if (!is_placed(shape)) throw std::invalid_argument("next_contact: the shape is not what place() makes of it");
+  if (!can_move_by<Motion>(shape.shape)) {
+    throw std::invalid_argument(std::string("next_contact: no shape of this kind moves so: ") + kind_name(shape.shape));
+  }
+  if (turns<Motion> && shape.rotation != Eigen::Matrix3d::Identity()) {
+    throw std::invalid_argument(
+        "next_contact: the shape is turned; of bodies that turn the motion has the orientation");
   }
 }
 
@@ -64,12 +91,10 @@ template <class Motion>
 std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion,
                                 double until, const BodyFilter& filter) {
   require_span("next_contact", world, until);
-  if (!motion.finite() || !(path_of(motion).start <= world.now())) {
-    throw std::invalid_argument("next_contact: the motion is not finite, or begins after now (" +
+  require_shape<Motion>(shape);
+  if (!in_range(motion) || !(path_of(motion).start <= world.now())) {
+    throw std::invalid_argument("next_contact: the motion is out of the range of shape.hpp, or begins after now (" +
                                 std::to_string(world.now()) + ")");
-  }
-  if (!can_move_by<Motion>(shape.shape)) {
-    throw std::invalid_argument(std::string("next_contact: no shape of this kind moves so: ") + kind_name(shape.shape));
   }
   return first_met(world, MovingShape<Motion>{shape, motion}, until, ContactMode::transparent,
                    [&](BodyId id) { return detail::accepts(filter, id); });
@@ -79,6 +104,7 @@ template <class Motion>
 std::optional<Hit> next_contact_of(const BasicWorld<Motion>& world, BodyId body, double until, const BodyFilter& filter,
                                    ContactMode mode) {
   require_span("next_contact_of", world, until);
+  if (!entered(world, body)) return std::nullopt;
   const PlacedShape shape = world.shape(body);
   return first_met(world, MovingShape<Motion>{shape, world.motion(body)}, until, mode,
                    [&](BodyId id) { return id != body && detail::accepts(filter, id); });
@@ -89,6 +115,7 @@ std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, Bod
                                             ContactMode mode) {
   require_span("next_contact_between", world, until);
   if (a == b) throw std::invalid_argument("next_contact_between: a body does not meet itself");
+  if (!entered(world, a) || !entered(world, b)) return std::nullopt;
   const PlacedShape shape_a = world.shape(a);
   const PlacedShape shape_b = world.shape(b);
   return meeting(MovingShape<Motion>{shape_a, world.motion(a)}, MovingShape<Motion>{shape_b, world.motion(b)},

@@ -17,19 +17,21 @@ namespace kds::collision {
 // Several threads may ask at once while none does anything else.
 
 /// The first body, in [now(), until], that a shape meets which is in no world: a bullet before it is fired, or a place
-/// that is to be kept free. Bodies that overlap it at now() are met at now(). The motion must have begun by now().
-/// Cost: as a ray's (casts.hpp) in one piece, with tests that take as long as the pairs' of a world.
+/// that is to be kept free. Bodies that overlap it at now() are met at now(). The motion must have begun by now();
+/// where bodies turn it has the orientation, and the shape is placed without one. Throws std::invalid_argument for a
+/// shape that was not made by place(), and a motion out of range. Cost: as a ray's (casts.hpp) in one piece, with tests
+/// that take as long as the pairs' of a world.
 template <class Motion>
 std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion,
                                 double until, const BodyFilter& filter = {});
 
-/// The first body that a body of the world meets. Mode `resolved`: what it touches at now() is met only if the two
-/// approach each other; `transparent`: what it overlaps is met at now().
+/// The first body that a body of the world meets; none if it has not entered. Mode `resolved`: what it touches at now()
+/// is met only if the two approach each other; `transparent`: what it overlaps is met at now().
 template <class Motion>
 std::optional<Hit> next_contact_of(const BasicWorld<Motion>& world, BodyId body, double until,
                                    const BodyFilter& filter = {}, ContactMode mode = ContactMode::resolved);
 
-/// When and where two bodies of the world meet, if they do; the normal points from a to b.
+/// When and where two bodies of the world meet, if they do and both have entered; the normal points from a to b.
 template <class Motion>
 std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until,
                                             ContactMode mode = ContactMode::resolved);

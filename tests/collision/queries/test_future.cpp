@@ -1,12 +1,14 @@
 // What will meet what: the same times as the world's own contacts.
 #include "collision/queries/future.hpp"
 
+#include "collision/shapes/mesh_script.hpp"
 #include "tests/collision/sample_meshes.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -175,6 +177,73 @@ TEST_CASE("the closest approach of centres that keep their distance is at once")
   CHECK(closest_approach(world, a, c, 9).time == 5);
   CHECK(closest_approach(world, a, c, 9).distance == 0);
   CHECK_THROWS_AS(closest_approach(world, a, b, 0.5), std::invalid_argument);
+}
+
+TEST_CASE("bodies that enter later are not there, neither of a pair nor for others") {
+  World<1> world(WorldOptions{});
+  const BodyId a = world.add_body(body<1>(Sphere{1}, {{Vector3d(0, 0, 0)}}));
+  const BodyId b = world.add_body(body<1>(Sphere{1}, {{Vector3d(3, 0, 0), Vector3d(1, 0, 0)}, 5}));
+  world.advance_to(1);
+  CHECK(!next_contact_between(world, a, b, 4));
+  CHECK(!next_contact_of(world, b, 4));
+  CHECK(!next_contact_of(world, a, 4));
+}
+
+TEST_CASE("a shape passes a mesh within the margin of its contacts: met as in a world") {
+  struct Log final : WorldListener<1> {
+    void contact(World<1>&, const PairEvent& event) override { time = std::min(time, event.contact.time); }
+    double time = never;
+  };
+  for (const double start : {0.0, 1e9}) {
+    for (const double gap : {1e-9, 5e-7}) {
+      INFO("start " << start << ", gap " << gap);
+      const MeshShape cube{samples::cuboid(), 1};
+      const certificates::PointMotion<1> still{{Vector3d(0, 0, 0)}, start};
+      const certificates::PointMotion<1> fly{{Vector3d(-8, 0.1, 2 + gap), Vector3d(1, 0, 0)}, start};
+      Log log;
+      WorldOptions options;
+      options.start_time = start;
+      World<1> world(options, &log), other(options);
+      world.add_body(body<1>(cube, still));
+      world.add_body(body<1>(Sphere{1}, fly));
+      world.advance_to(start + 16);
+      other.add_body(body<1>(cube, still));
+      const auto hit = next_contact(other, place(Sphere{1}, Eigen::Quaterniond::Identity()), fly, start + 16);
+      CHECK((hit ? hit->contact.time : never) == log.time);
+    }
+  }
+}
+
+TEST_CASE("queries take only what place() has made, and motions that a world takes") {
+  World<1> world(WorldOptions{});
+  world.add_body(body<1>(Sphere{1}, {{Vector3d(0, 0, 0)}}));
+  const certificates::PointMotion<1> motion{{Vector3d(3, 0, 0), Vector3d(-1, 0, 0)}};
+  for (const Shape& shape : {Shape{Sphere{1}}, Shape{MeshShape{}}, Shape{Sphere{-1}}}) {
+    PlacedShape never_placed;
+    never_placed.shape = shape;
+    CHECK_THROWS_AS(next_contact(world, never_placed, motion, 5), std::invalid_argument);
+  }
+  const PlacedShape ball = place(Sphere{1}, Eigen::Quaterniond::Identity());
+  CHECK_THROWS_AS(next_contact(world, ball, {{Vector3d(1e300, 0, 0)}}, 5), std::invalid_argument);
+  CHECK(next_contact(world, ball, motion, 5)->contact.time == 1);
+}
+
+TEST_CASE("at a late clock, with coarse doubles, a ball that has gone through a sheet has no further meeting with it") {
+  constexpr double start = 1e9;
+  const std::vector<Vector3d> below{{-3, -3, 0}, {3, -3, 0}, {0, 4, 0}};
+  std::vector<Vector3d> above = below;
+  for (Vector3d& position : above) position[2] += 0.1;
+  const auto script = std::make_shared<const MeshScript>(
+      std::vector<MeshScript::Keyframe>{{start, below}, {start + 2, above}}, std::vector<Mesh::Triangle>{{0, 1, 2}});
+  WorldOptions options;
+  options.start_time = start;
+  World<2> world(options);
+  const BodyId sheet = world.add_body(body<2>(BendingMesh{script}, {{Vector3d(0, 0, 0)}, start}));
+  const BodyId ball = world.add_body(
+      body<2>(Sphere{0.3}, {{Vector3d(0.1, 0.2, 0.6), Vector3d(0.1, 0.3, -3), Vector3d(0, 0.1, 0)}, start}));
+  CHECK(next_contact_between(world, sheet, ball, start + 20)->time - start == Approx(0.1).margin(0.02));
+  world.advance_to(start + 0.8);
+  CHECK(!next_contact_between(world, sheet, ball, start + 20));
 }
 
 }  // namespace kds::collision::test_future
