@@ -29,6 +29,8 @@ if(TARGET kds_gsl)
 endif()
 
 # For programs that are not built by CMake: `pkg-config --cflags --libs kds`, or kds-turning.
+# They may be moved with their folder.
+file(RELATIVE_PATH to_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 foreach(package IN ITEMS kds kds-turning)
   configure_file("${CMAKE_CURRENT_LIST_DIR}/${package}.pc.in" "${PROJECT_BINARY_DIR}/${package}.pc" @ONLY)
   install(FILES "${PROJECT_BINARY_DIR}/${package}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT kds)
