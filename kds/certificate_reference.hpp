@@ -21,8 +21,8 @@ Ball<DoubleDouble> extended_value(const C& certificate, double t);
 }  // namespace detail
 
 /// A certificate that is another one, of whatever type, of the same degree: five pointers to its functions stand for
-/// its type. The other one must outlive it. It costs an indirect call each time, 2 ns where the call itself takes 50 or
-/// more, so the rungs of the ladder (failure_time.hpp) that are longer than that take certificates in this form.
+/// its type. The other one must outlive it. It costs an indirect call each time, so only the longer rungs of the ladder
+/// take certificates in this form; failure_time.hpp says what that costs.
 template <int Degree>
 class CertificateReference {
  public:

@@ -32,7 +32,7 @@ struct Ray {
 /// The first body that the ray meets, or nothing. contact.time is the part of the way to it, from 0 to 1.
 ///
 /// Cost: the way is followed in cbrt(n) pieces, n being the number of bodies, until one is met; the boxes of each are
-/// asked for, and each body whose box is met is tested: a ball in a tenth of a microsecond, a mesh in some.
+/// asked for, and each body whose box is met is tested (figures in docs/queries.md).
 template <class Motion>
 std::optional<Hit> cast(const BasicWorld<Motion>& world, const Ray& ray, const BodyFilter& filter = {});
 

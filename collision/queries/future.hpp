@@ -45,7 +45,7 @@ struct Approach {
 /// Of two bodies of the world in [now(), until]. The time is now(), `until`, or the first double just after which the
 /// centres part, by the exact sign of the derivative of their distance; where there are several such, that of the least
 /// distance as doubles tell it, the first of equal ones. Two that keep their distance are nearest at once. Cost: some
-/// failure times, 0.1 to 1 us each.
+/// failure times of degree 2 Degree - 1 (kds/roots/failure_time.hpp).
 template <class Motion>
 Approach closest_approach(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until);
 

@@ -54,6 +54,8 @@ struct Ball {
     return {sum, a.radius + rounding_unit<T> * magnitude(sum)};
   }
   friend Ball operator-(const Ball& a, double b) { return a + (-b); }
+  // Whether compilers inline this by themselves depends on what else a file has. Where it always is, in-circle tests of
+  // lines and of parabolas take 6 % fewer instructions, and failure times of random parabolas 2 % more (callgrind).
   [[gnu::always_inline]] friend Ball operator*(const Ball& a, const Ball& b) {
     const T product = a.middle * b.middle;
     double bound = magnitude(a.middle) * b.radius + magnitude(b.middle) * a.radius + a.radius * b.radius +

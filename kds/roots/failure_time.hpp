@@ -46,7 +46,8 @@ namespace kds {
 ///
 /// From degree 3 on, and in rung 3, the certificate is a CertificateReference (certificate_reference.hpp), so these are
 /// compiled once for a degree. By instructions, calls cost 5 % more at degree 3 and 1 % at degree 8 than where they are
-/// compiled for each certificate (callgrind, random polynomials); programs are compiled in two thirds of the time.
+/// compiled for each certificate (callgrind, random polynomials); the narrow phase for splines, which has the most
+/// kinds of certificates, is compiled in two thirds of the time.
 ///
 /// What each special form gains: by how much the instruction count of a sorted list that runs for a second, or of a
 /// loop over random polynomials, grows without it (callgrind; forms that gain less than 3 % are left out).
