@@ -8,6 +8,7 @@
 #include "kds/certificate_hooks.hpp"
 #include "kds/turning/exact_zero.hpp"
 #include "kds/turning/spin.hpp"
+#include "kds/turning/turning_reference.hpp"
 #include "kds/turning/turning_sum.hpp"
 
 #include <array>
@@ -24,12 +25,6 @@ namespace kds {
 ///
 /// Semantic laws: those of Certificate, with `turning_sum` in place of `polynomial`: ring operations on finite doubles
 /// alone; about all epochs the same function of t, to the order that is asked for.
-template <class C>
-inline constexpr int harmonics_of = 1;
-template <class C>
-requires requires { C::harmonics; }
-inline constexpr int harmonics_of<C> = C::harmonics;
-
 template <class C>
 concept TurningCertificate = requires(const C& certificate, double epoch) {
   { C::degree } -> std::convertible_to<int>;
@@ -85,10 +80,19 @@ bool vanishes(const C& certificate, int derivative = 0);
 
 namespace detail {
 
-/// f, or its derivative, with all its polynomials or of order 0 only.
+/// The value of f at t, in balls.
 template <class Number, class C>
-auto derived_sum(const C& certificate, double t, int derivative) {
-  auto f = certificate.template turning_sum<Number, C::degree>(t);
+Number turning_value(const C& certificate, double t) {
+  const std::array<Spin, 2> spins = certificate.spins();
+  return value_at_epoch(certificate.template turning_sum<Number, 0>(t), spins[0].template turn<Number>(t),
+                        spins[1].template turn<Number>(t));
+}
+
+/// A derivative of f, or f itself, with all its polynomials.
+template <class Number, int Degree, int Harmonics>
+TurningSum<Degree, Number, Harmonics> derived_sum(const TurningReference<Degree, Harmonics>& certificate, double t,
+                                                  int derivative) {
+  auto f = certificate.template turning_sum<Number, Degree>(t);
   if (derivative > 0) {
     const std::array<Spin, 2> spins = certificate.spins();
     const Number a = spins[0].template squared_rate<Number>();
@@ -98,14 +102,22 @@ auto derived_sum(const C& certificate, double t, int derivative) {
   return f;
 }
 
-/// The value of f, or of its derivative, at t, in balls.
-template <class Number, class C>
-Number turning_value(const C& certificate, double t, int derivative) {
+/// The value of a derivative of f at t, in balls. Precondition: derivative > 0.
+template <class Number, int Degree, int Harmonics>
+Number turning_derivative(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
   const std::array<Spin, 2> spins = certificate.spins();
-  const Turn<Number> a = spins[0].template turn<Number>(t);
-  const Turn<Number> b = spins[1].template turn<Number>(t);
-  if (derivative == 0) return value_at_epoch(certificate.template turning_sum<Number, 0>(t), a, b);
-  return value_at_epoch(derived_sum<Number>(certificate, t, derivative), a, b);
+  return value_at_epoch(derived_sum<Number>(certificate, t, derivative), spins[0].template turn<Number>(t),
+                        spins[1].template turn<Number>(t));
+}
+
+/// f at t, times any positive number, got the cheapest way.
+template <class C>
+Ball<double> turning_value_in_doubles(const C& certificate, double t) {
+  if constexpr (GivesQuickValue<C>) {
+    return certificate.quick_value(t);
+  } else {
+    return turning_value<Ball<double>>(certificate, t);
+  }
 }
 
 /// f at t in double-doubles, got the cheapest way in which its sign is certain, if there is one.
@@ -115,7 +127,7 @@ Ball<DoubleDouble> extended_turning_value(const C& certificate, double t) {
     const Ball<DoubleDouble> value = certificate.extended_value(t);
     if (certain_sign(value) != 0) return value;
   }
-  return turning_value<Ball<DoubleDouble>>(certificate, t, 0);
+  return turning_value<Ball<DoubleDouble>>(certificate, t);
 }
 
 /// Of a sum that is not zero at its epoch t.
@@ -131,8 +143,8 @@ int enclosed_sign(const TurningSum<Degree, Exact, Harmonics>& f, const std::arra
 }
 
 /// The last rungs.
-template <class C>
-int exact_turning_sign(const C& certificate, double t, int derivative) {
+template <int Degree, int Harmonics>
+int exact_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
   ++turning_sign_counters.exact;
   const std::array<Spin, 2> spins = certificate.spins();
   const auto f = derived_sum<Exact>(certificate, t, derivative);
@@ -143,40 +155,65 @@ int exact_turning_sign(const C& certificate, double t, int derivative) {
   return enclosed_sign(f, spins, t);
 }
 
-}  // namespace detail
-
-template <TurningCertificate C>
-int sign_at(const C& certificate, double t, int derivative) {
-  if constexpr (GivesQuickValue<C>) {
-    if (derivative == 0) {
-      if (const int s = certain_sign(certificate.quick_value(t))) return s;
-    }
-  }
-  if (!GivesQuickValue<C> || derivative > 0) {
-    const auto value = detail::turning_value<Ball<double>>(certificate, t, derivative);
+/// sign_at() of f where doubles do not tell, and of its derivatives.
+template <int Degree, int Harmonics>
+int longer_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
+  if (derivative > 0) {
+    const auto value = turning_derivative<Ball<double>>(certificate, t, derivative);
     if (const int s = certain_sign(value)) return s;
     if (value.is_zero()) return 0;
   }
   ++turning_sign_counters.extended;
-  const auto value = derivative == 0 ? detail::extended_turning_value(certificate, t)
-                                     : detail::turning_value<Ball<DoubleDouble>>(certificate, t, derivative);
+  const auto value = derivative == 0 ? extended_turning_value(certificate, t)
+                                     : turning_derivative<Ball<DoubleDouble>>(certificate, t, derivative);
   if (const int s = certain_sign(value)) return s;
-  return value.is_zero() ? 0 : detail::exact_turning_sign(certificate, t, derivative);
+  return value.is_zero() ? 0 : exact_turning_sign(certificate, t, derivative);
+}
+
+template <int Degree, int Harmonics>
+bool vanishes(const TurningReference<Degree, Harmonics>& certificate, int derivative) {
+  const std::array<Spin, 2> spins = certificate.spins();
+  return vanishes_throughout(derived_sum<Exact>(certificate, spins[0].start, derivative), spins[0], spins[1]);
+}
+
+/// sign_after() where the derivative itself is zero at t.
+template <int Degree, int Harmonics>
+int turning_sign_after_zero(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
+  if (vanishes(certificate, derivative)) return 0;
+  for (int k = derivative + 1;; ++k) {
+    if (const int s = longer_turning_sign(certificate, t, k)) return s;
+  }
+}
+
+}  // namespace detail
+
+template <TurningCertificate C>
+int sign_at(const C& certificate, double t, int derivative) {
+  if (derivative == 0) {
+    const Ball<double> value = detail::turning_value_in_doubles(certificate, t);
+    if (const int s = certain_sign(value)) return s;
+    if (value.is_zero()) return 0;
+  }
+  return detail::longer_turning_sign(TurningReference(certificate), t, derivative);
 }
 
 template <TurningCertificate C>
 bool vanishes(const C& certificate, int derivative) {
-  const std::array<Spin, 2> spins = certificate.spins();
-  return vanishes_throughout(detail::derived_sum<Exact>(certificate, spins[0].start, derivative), spins[0], spins[1]);
+  return detail::vanishes(TurningReference(certificate), derivative);
 }
 
 template <TurningCertificate C>
 int sign_after(const C& certificate, double t, int derivative) {
   if (const int s = sign_at(certificate, t, derivative)) return s;
-  if (vanishes(certificate, derivative)) return 0;
-  for (int k = derivative + 1;; ++k) {
-    if (const int s = sign_at(certificate, t, k)) return s;
-  }
+  return detail::turning_sign_after_zero(TurningReference(certificate), t, derivative);
 }
+
+#define KDS_TURNING_SIGNS(prefix, ...)                                                           \
+  prefix int detail::longer_turning_sign(const TurningReference<__VA_ARGS__>&, double, int);     \
+  prefix int detail::turning_sign_after_zero(const TurningReference<__VA_ARGS__>&, double, int); \
+  prefix bool detail::vanishes(const TurningReference<__VA_ARGS__>&, int);
+#define KDS_TURNING_SIGNS_ELSEWHERE(...) KDS_TURNING_SIGNS(extern template, __VA_ARGS__)
+KDS_FOR_EACH_TURNING_SUM(KDS_TURNING_SIGNS_ELSEWHERE)
+#undef KDS_TURNING_SIGNS_ELSEWHERE
 
 }  // namespace kds

@@ -84,7 +84,7 @@ class TurningCrossing {
       }
       candidate = std::clamp(candidate, next_up(below), next_down(above));
       const auto value = order == 0 ? extended_turning_value(certificate_, candidate)
-                                    : turning_value<Ball<DoubleDouble>>(certificate_, candidate, order);
+                                    : turning_derivative<Ball<DoubleDouble>>(certificate_, candidate, order);
       int s = side_ * certain_sign(value);
       const bool certain = s != 0;
       if (certain) {
@@ -96,7 +96,7 @@ class TurningCrossing {
       const std::uint64_t left = lattice_distance(below, above);
       if (certain) {
         if (left > width / 2) ++without_progress;
-        if (slope == 0) slope = turning_value<Ball<double>>(certificate_, candidate, order + 1).middle;
+        if (slope == 0) slope = turning_derivative<Ball<double>>(certificate_, candidate, order + 1).middle;
         const DoubleDouble root = -value.middle / DoubleDouble(slope) + candidate;
         // The first double not before Newton's root; once that is known to be past the root, the one before it.
         candidate = root.low > 0 ? next_up(root.high) : root.high;

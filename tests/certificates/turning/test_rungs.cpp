@@ -62,13 +62,14 @@ struct Rungs {
     const Real scale = scale_of(f.a) * scale_of(f.b);
     const Real value = truth.value * scale;
     const Real size = truth.size * scale;
-    doubles.take(kds::detail::turning_value<Ball<double>>(f, t, 0), value, size);
+    doubles.take(kds::detail::turning_value<Ball<double>>(f, t), value, size);
     turned.take(f.extended_value(t), value, size);
-    extended.take(kds::detail::turning_value<Ball<DoubleDouble>>(f, t, 0), value, size);
+    extended.take(kds::detail::turning_value<Ball<DoubleDouble>>(f, t), value, size);
     const Real rate = 1 + length(real(f.a.angular_velocity)) + length(real(f.b.angular_velocity));
     const Real h = Real("1e-30") / rate;
     const Real growth = (signs.value_after(t, h).value - signs.value_after(t, -h).value) / (2 * h);
-    slope.take(kds::detail::turning_value<Ball<DoubleDouble>>(f, t, 1), growth * scale, size * rate);
+    slope.take(kds::detail::turning_derivative<Ball<DoubleDouble>>(TurningReference(f), t, 1), growth * scale,
+               size * rate);
   }
 };
 
@@ -93,7 +94,7 @@ TEST_CASE("each rung holds the truth", "[turning]") {
     // Of the third kind the two values in double-doubles have to agree.
     const NormalAlongEdge<2> leaning{scene.a, scene.b, f.corners, {f.vertex, turning_vector(random, coarse)}};
     const Ball<DoubleDouble> turned = leaning.extended_value(t);
-    const auto added = kds::detail::turning_value<Ball<DoubleDouble>>(leaning, t, 0);
+    const auto added = kds::detail::turning_value<Ball<DoubleDouble>>(leaning, t);
     const double apart = std::abs((turned.middle - added.middle).high);
     CHECK_FALSE(apart > (turned.radius + added.radius) * Ball<double>::slack);
   }

@@ -30,7 +30,7 @@ struct Tally {
 template <class Certificate>
 void check(const Certificate& f, double now, double horizon, Tally& tally) {
   const auto value = [&](long double t) {
-    const auto ball = kds::detail::turning_value<Ball<DoubleDouble>>(f, static_cast<double>(t), 0);
+    const auto ball = kds::detail::turning_value<Ball<DoubleDouble>>(f, static_cast<double>(t));
     return static_cast<long double>(ball.middle.high) + static_cast<long double>(ball.middle.low);
   };
   if (vanishes(f)) {
