@@ -2,7 +2,7 @@
 
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
-#include "collision/shapes/mesh_script.hpp"
+#include "collision/queries/standing_body.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,44 +37,6 @@ void require_way(const char* function, const PlacedShape& shape, const Ray& way)
   if (bends(shape.shape)) throw std::invalid_argument(std::string(function) + ": a mesh that bends cannot be cast");
 }
 
-/// A body as it is at a time: where its centre is, and its shape as it is turned and bent.
-struct StandingBody {
-  PlacedShape shape;
-  StraightPath place;
-};
-
-/// Turned as the motion says at t.
-template <int Degree>
-PlacedShape turned_shape(const PlacedShape& shape, const certificates::PointMotion<Degree>&, double) {
-  return shape;
-}
-template <int Degree>
-PlacedShape turned_shape(const PlacedShape& shape, const certificates::RigidMotion<Degree>& motion, double t) {
-  return place(shape.shape, motion.restarted(t).orientation.normalized());
-}
-
-/// A mesh that bends, as it is at t and stays.
-Shape bent_shape(const BendingMesh& mesh, double t) {
-  MeshScript::Keyframe now{0, {}};
-  for (std::size_t i = 0; i < mesh.script->vertices(); ++i) now.positions.push_back(mesh.script->position(i, t));
-  const auto triangles = mesh.script->triangles();
-  return BendingMesh{
-      std::make_shared<const MeshScript>(std::vector<MeshScript::Keyframe>{std::move(now)},
-                                         std::vector<Mesh::Triangle>(triangles.begin(), triangles.end()))};
-}
-
-template <class Motion>
-StandingBody standing_body(const BasicWorld<Motion>& world, BodyId id) {
-  const double t = world.now();
-  const Motion& motion = world.motion(id);
-  StandingBody body{turned_shape(world.shape(id), motion, t), {}};
-  if (const auto* const bending = std::get_if<BendingMesh>(&body.shape.shape)) {
-    body.shape.shape = bent_shape(*bending, t);
-  }
-  body.place.coefficients = {path_of(motion).position(t)};
-  return body;
-}
-
 /// A shape on its way, at times from 0 to 1.
 class Cast {
  public:
@@ -97,9 +59,9 @@ class Cast {
   /// Where it first meets a body, until a time.
   template <class Motion>
   std::optional<Hit> meets(const BasicWorld<Motion>& world, BodyId id, double until) const {
-    const StandingBody body = standing_body(world, id);
+    const detail::StandingBody body = detail::standing_body(world, id);
     const CastShape a{shape_, path_};
-    const CastShape b{body.shape, body.place};
+    const CastShape b{body.shape, StraightPath{{body.centre}}};
     FoundTouch found;
     const double t = first_contact(a, b, 0, until, ContactMode::transparent, &found);
     if (t == never) return std::nullopt;
@@ -190,8 +152,8 @@ std::vector<BodyId> overlapping(const BasicWorld<Motion>& world, const PlacedSha
   std::vector<BodyId> found;
   Cast(shape, {at, at}).near(world, 0, 0, [&](BodyId id) {
     if (!detail::accepts(filter, id)) return;
-    const StandingBody body = standing_body(world, id);
-    if (in_contact(CastShape{shape, place}, CastShape{body.shape, body.place}, 0)) found.push_back(id);
+    const detail::StandingBody body = detail::standing_body(world, id);
+    if (in_contact(CastShape{shape, place}, CastShape{body.shape, StraightPath{{body.centre}}}, 0)) found.push_back(id);
   });
   return found;
 }

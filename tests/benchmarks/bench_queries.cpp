@@ -8,6 +8,7 @@
 
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
+#include "collision/queries/nearest.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/collision/sample_meshes.hpp"
@@ -92,8 +93,13 @@ void balls(std::ofstream& csv, int bodies) {
                  kds::certificates::PointMotion<1>{{way.from, (way.to - way.from).normalized()}, world.now()},
                  world.now() + 4);
   });
+  next = 0;
+  const double near = microseconds_each(rays, [&] { nearest(world, ways[next++].from, 1); });
+  next = 0;
+  const double eight = microseconds_each(rays, [&] { nearest(world, ways[next++].from, 8); });
   if (std::abs(sum - sum_by_force) > 1e-6 * rays) throw std::runtime_error("rays meet something else by brute force");
-  tell(csv, "balls,%d,%.2f,%.2f,%.2f,%.2f,%.3f\n", bodies, first, all, future, by_force, double(met) / rays);
+  tell(csv, "balls,%d,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.3f\n", bodies, first, all, future, near, eight, by_force,
+       double(met) / rays);
 }
 
 void mesh(std::ofstream& csv, std::uint32_t around, std::uint32_t across) {
@@ -109,14 +115,16 @@ void mesh(std::ofstream& csv, std::uint32_t around, std::uint32_t across) {
   const double first = microseconds_each(rays, [&] {
     met += cast(world, Ray{3 * random.direction(), random.vector(0.9)}).has_value();
   });
-  tell(csv, "mesh,%u,%.2f,,,,%.3f\n", 2 * around * across, first, double(met) / rays);
+  tell(csv, "mesh,%u,%.2f,,,,,,%.3f\n", 2 * around * across, first, double(met) / rays);
 }
 
 }  // namespace
 
 int main(int count, char** arguments) try {
   std::ofstream csv = kds::benchmarks::open_csv(count > 1 ? arguments[1] : ".", "queries.csv");
-  tell(csv, "of,bodies or triangles,first us,all us,next contact within 4 us,brute force us,part that meets\n");
+  tell(csv,
+       "of,bodies or triangles,first us,all us,next contact within 4 us,nearest us,nearest eight us,brute force "
+       "us,part that meets\n");
   for (const int bodies : {100, 1000, 10000, 100000}) balls(csv, bodies);
   mesh(csv, 8, 4);
   mesh(csv, 76, 40);

@@ -1,6 +1,7 @@
 // Queries of worlds whose bodies turn.
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
+#include "collision/queries/nearest.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -86,6 +87,22 @@ TEST_CASE("a shape that turns and is in no world meets what it would meet as a b
     CHECK(hit->contact.time == record.met->contact.time);
   }
   CHECK(met > 5);
+}
+
+TEST_CASE("what is nearest, where it has turned to") {
+  TurningWorld<1> world(WorldOptions{});
+  // Along x, then after a quarter of a turn along y: its end is at the height 4.
+  const BodyId rod = world.add_body(body(Box{Vector3d(4, 0.5, 0.5)}, motion({0, 0, 0}, {0, 0, 0}, {0, 0, 1})));
+  const BodyId ball = world.add_body(body(Sphere{1}, motion({6, 6, 0}, {0, 0, 0}, {0, 3, 0})));
+  CHECK(nearest(world, Vector3d(0, 6, 0), 1).front().body == ball);
+  world.advance_to(std::numbers::pi / 2);
+  const auto near = nearest(world, Vector3d(0, 6, 0), 2);
+  REQUIRE(near.size() == 2);
+  CHECK(near[0].body == rod);
+  CHECK(std::abs(near[0].distance - 2) < 1e-14);
+  CHECK((near[0].point - Vector3d(0, 4, 0)).norm() < 1e-14);
+  CHECK(near[1].body == ball);
+  CHECK(std::abs(near[1].distance - 5) < 1e-14);
 }
 
 }  // namespace kds::collision::test_turning_queries

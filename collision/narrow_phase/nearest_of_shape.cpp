@@ -1,0 +1,158 @@
+#include "collision/narrow_phase/nearest_of_shape.hpp"
+
+#include "collision/narrow_phase/nearest_point.hpp"
+#include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/polytope.hpp"
+#include "collision/vectors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+NearestOfShape found(const Vector3d& point, const Vector3d& to) { return {norm(point - to), point}; }
+
+/// Nearest of what is no farther than a radius from a point that is itself nearest of a core.
+NearestOfShape grown(const Vector3d& of_core, double radius, const Vector3d& to) {
+  const Vector3d way = to - of_core;
+  const double distance = norm(way);
+  if (distance <= radius) return {0, to};
+  return {distance - radius, of_core + (radius / distance) * way};
+}
+
+NearestOfShape nearest_of_box(const PlacedShape& box, const Vector3d& to) {
+  Vector3d point = Vector3d::Zero();
+  bool inside = true;
+  for (const Vector3d& half : box.half_axes) {
+    const double part = dot(to, half) / squared_norm(half);
+    inside = inside && std::abs(part) <= 1;
+    point += std::clamp(part, -1.0, 1.0) * half;
+  }
+  return inside ? NearestOfShape{0, to} : found(point, to);
+}
+
+NearestOfShape nearest_of_capsule(const Capsule& capsule, const Matrix3d& rotation, const Vector3d& to) {
+  const Vector3d axis = rotation.col(2);
+  return grown(std::clamp(dot(axis, to), -capsule.half_length, capsule.half_length) * axis, capsule.radius, to);
+}
+
+/// Keeps the nearest of many.
+class Nearest {
+ public:
+  explicit Nearest(const Vector3d& to) : to_(to) {}
+
+  void take(const PlacedTriangle& triangle) {
+    const NearestOfShape of_triangle = found(nearest_point(triangle, to_).point, to_);
+    if (of_triangle.distance < best_.distance) best_ = of_triangle;
+  }
+  const NearestOfShape& best() const { return best_; }
+
+ private:
+  Vector3d to_;
+  NearestOfShape best_{std::numeric_limits<double>::infinity(), Vector3d::Zero()};
+};
+
+NearestOfShape nearest_of_hull(const Polytope& hull, const Matrix3d& rotation, const Vector3d& to) {
+  const Vector3d local = rotation.transpose() * to;
+  const auto points = hull.points();
+  Nearest nearest(to);
+  bool inside = true;
+  for (const std::vector<std::uint32_t>& face : hull.structure().faces) {
+    if (side_of_plane(points[face[0]], points[face[1]], points[face[2]], local) <= 0) continue;
+    inside = false;  // and the nearest point is on a face that sees it
+    for (std::size_t i = 2; i < face.size(); ++i) {
+      nearest.take({{placed_vertex(rotation, 1, points[face[0]]), placed_vertex(rotation, 1, points[face[i - 1]]),
+                     placed_vertex(rotation, 1, points[face[i]])}});
+    }
+  }
+  return inside ? NearestOfShape{0, to} : nearest.best();
+}
+
+/// At most the distance of a point, in the coordinates of the tree, from what is in a node.
+double least_distance(const ObbNode& node, const Vector3d& point) {
+  double square = 0, size = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double along = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double difference = point[static_cast<Eigen::Index>(d)] - static_cast<double>(node.centre[d]);
+      along += difference * static_cast<double>(node.axes[d][axis]);
+      size += std::abs(difference);
+    }
+    const double beyond = std::max(0.0, std::abs(along) - static_cast<double>(node.half_extents[axis]));
+    square += beyond * beyond;
+  }
+  constexpr double roundings = 0x1p-18;  // of axes in floats, which are orthonormal to some units of 2^-24
+  return std::sqrt(square) - roundings * size;
+}
+
+NearestOfShape nearest_of_mesh(const MeshShape& shape, const Matrix3d& rotation, const Vector3d& to) {
+  const ObbTree& tree = shape.mesh->tree();
+  const double unit = tree.unit() * shape.scale;
+  const Vector3d local = (rotation.transpose() * to) / unit;
+  const auto bound = [&](std::uint32_t node) { return unit * least_distance(tree.nodes()[node], local); };
+  Nearest nearest(to);
+  std::vector<std::pair<double, std::uint32_t>> waiting{{bound(0), 0}};
+  while (!waiting.empty()) {
+    const auto [least, index] = waiting.back();
+    waiting.pop_back();
+    if (least > nearest.best().distance) continue;
+    const ObbNode& node = tree.nodes()[index];
+    if (node.is_leaf()) {
+      for (const LeafTriangle& triangle : tree.leaf_triangles().subspan(node.first, node.count)) {
+        PlacedTriangle placed;
+        for (std::size_t i = 0; i < 3; ++i) {
+          placed.vertices[i] = placed_vertex(rotation, shape.scale, shape.mesh->vertices()[triangle.vertices[i]]);
+        }
+        nearest.take(placed);
+      }
+      continue;
+    }
+    std::array<std::pair<double, std::uint32_t>, 2> children{
+        {{bound(node.first), node.first}, {bound(node.first + 1), node.first + 1}}};
+    if (children[0].first < children[1].first) std::swap(children[0], children[1]);  // the nearer comes next
+    waiting.insert(waiting.end(), children.begin(), children.end());
+  }
+  return nearest.best();
+}
+
+NearestOfShape nearest_of_bending_mesh(const MeshScript& script, const Matrix3d& rotation, const Vector3d& to,
+                                       double t) {
+  Nearest nearest(to);
+  for (const Mesh::Triangle& triangle : script.triangles()) {
+    PlacedTriangle placed;
+    for (std::size_t i = 0; i < 3; ++i)
+      placed.vertices[i] = placed_vertex(rotation, 1, script.position(triangle[i], t));
+    nearest.take(placed);
+  }
+  return nearest.best();
+}
+
+}  // namespace
+
+NearestOfShape nearest_of_shape(const PlacedShape& shape, const Vector3d& to, double t) {
+  if (const auto* const ball = std::get_if<Sphere>(&shape.shape)) return grown(Vector3d::Zero(), ball->radius, to);
+  if (std::holds_alternative<Box>(shape.shape)) return nearest_of_box(shape, to);
+  if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
+    return nearest_of_capsule(*capsule, shape.rotation, to);
+  }
+  if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
+    return nearest_of_hull(*hull->polytope, shape.rotation, to);
+  }
+  if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) return nearest_of_mesh(*mesh, shape.rotation, to);
+  return nearest_of_bending_mesh(*std::get<BendingMesh>(shape.shape).script, shape.rotation, to, t);
+}
+
+}  // namespace kds::collision

@@ -1,0 +1,55 @@
+// A body as it stands at now(): where it is, and its shape as it is turned and bent.
+#pragma once
+
+#include "collision/motions.hpp"
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/shape.hpp"
+#include "collision/world.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace kds::collision::detail {
+
+struct StandingBody {
+  PlacedShape shape;
+  Eigen::Vector3d centre;  ///< rounded
+};
+
+/// Turned as the motion says at t.
+template <int Degree>
+PlacedShape turned_shape(const PlacedShape& shape, const certificates::PointMotion<Degree>&, double) {
+  return shape;
+}
+template <int Degree>
+PlacedShape turned_shape(const PlacedShape& shape, const certificates::RigidMotion<Degree>& motion, double t) {
+  return place(shape.shape, motion.restarted(t).orientation.normalized());
+}
+
+/// A mesh that bends, as it is at t and stays.
+inline Shape bent_shape(const BendingMesh& mesh, double t) {
+  MeshScript::Keyframe now{0, {}};
+  for (std::size_t i = 0; i < mesh.script->vertices(); ++i) now.positions.push_back(mesh.script->position(i, t));
+  const auto triangles = mesh.script->triangles();
+  return BendingMesh{
+      std::make_shared<const MeshScript>(std::vector<MeshScript::Keyframe>{std::move(now)},
+                                         std::vector<Mesh::Triangle>(triangles.begin(), triangles.end()))};
+}
+
+template <class Motion>
+StandingBody standing_body(const BasicWorld<Motion>& world, BodyId id) {
+  const double t = world.now();
+  const Motion& motion = world.motion(id);
+  StandingBody body{turned_shape(world.shape(id), motion, t), path_of(motion).position(t)};
+  if (const auto* const bending = std::get_if<BendingMesh>(&body.shape.shape)) {
+    body.shape.shape = bent_shape(*bending, t);
+  }
+  return body;
+}
+
+}  // namespace kds::collision::detail
