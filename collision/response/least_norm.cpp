@@ -13,7 +13,7 @@ namespace {
 constexpr double rest_of_diagonal = 4 * 0x1p-52;
 
 /// Four sums side by side, in a fixed order whether or not the processor adds them at once.
-double dot(const double* a, const double* b, std::size_t n) {
+double inner_product(const double* a, const double* b, std::size_t n) {
   double sum[4] = {0, 0, 0, 0};
   std::size_t i = 0;
   for (; i + 4 <= n; i += 4) {
@@ -45,7 +45,7 @@ std::size_t factor(std::span<const double> matrix, std::vector<double>& rows, st
     const double diagonal = std::sqrt(rest[k]);
     rows[k * n + k] = diagonal;
     for (std::size_t i = k + 1; i < n; ++i) {
-      const double entry = (matrix[order[i] * n + order[k]] - dot(&rows[i * n], row, k)) / diagonal;
+      const double entry = (matrix[order[i] * n + order[k]] - inner_product(&rows[i * n], row, k)) / diagonal;
       rows[i * n + k] = entry;
       rest[i] -= entry * entry;
     }
@@ -61,12 +61,12 @@ void make_orthonormal(std::vector<std::vector<double>>& columns, std::vector<dou
     std::vector<double>& column = columns[k];
     for (int pass = 0; pass < 2; ++pass) {
       for (std::size_t j = 0; j < k; ++j) {
-        const double part = dot(columns[j].data(), column.data(), column.size());
+        const double part = inner_product(columns[j].data(), column.data(), column.size());
         r[j * rank + k] += part;
         add(-part, columns[j].data(), column.data(), column.size());
       }
     }
-    const double length = std::sqrt(dot(column.data(), column.data(), column.size()));
+    const double length = std::sqrt(inner_product(column.data(), column.data(), column.size()));
     r[k * rank + k] = length;
     for (double& x : column) x /= length;
   }
@@ -75,7 +75,7 @@ void make_orthonormal(std::vector<std::vector<double>>& columns, std::vector<dou
 /// x := L^-T L^-1 x for the first n rows of L.
 void solve_both(const std::vector<double>& rows, std::vector<double>& x) {
   const std::size_t n = x.size();
-  for (std::size_t i = 0; i < n; ++i) x[i] = (x[i] - dot(&rows[i * n], x.data(), i)) / rows[i * n + i];
+  for (std::size_t i = 0; i < n; ++i) x[i] = (x[i] - inner_product(&rows[i * n], x.data(), i)) / rows[i * n + i];
   for (std::size_t i = n; i-- > 0;) {
     x[i] /= rows[i * n + i];
     add(-x[i], &rows[i * n], x.data(), i);
@@ -86,7 +86,7 @@ void solve_both(const std::vector<double>& rows, std::vector<double>& x) {
 void solve_with_triangle(const std::vector<double>& r, std::vector<double>& x) {
   const std::size_t n = x.size();
   for (std::size_t i = n; i-- > 0;) {
-    x[i] = (x[i] - dot(&r[i * n + i] + 1, x.data() + i + 1, n - i - 1)) / r[i * n + i];
+    x[i] = (x[i] - inner_product(&r[i * n + i] + 1, x.data() + i + 1, n - i - 1)) / r[i * n + i];
   }
   for (std::size_t i = 0; i < n; ++i) {
     x[i] /= r[i * n + i];
@@ -114,7 +114,7 @@ std::vector<double> least_norm_solution(std::span<const double> matrix, std::spa
     std::vector<double> r(rank * rank, 0.0);
     make_orthonormal(columns, r);
     std::vector<double> along(rank);
-    for (std::size_t k = 0; k < rank; ++k) along[k] = dot(columns[k].data(), sides.data(), n);
+    for (std::size_t k = 0; k < rank; ++k) along[k] = inner_product(columns[k].data(), sides.data(), n);
     solve_with_triangle(r, along);
     std::fill(sides.begin(), sides.end(), 0.0);
     for (std::size_t k = 0; k < rank; ++k) add(along[k], columns[k].data(), sides.data(), n);

@@ -81,6 +81,11 @@ void check_triangle_indices(std::size_t vertices, std::span<const Mesh::Triangle
   }
 }
 
+bool is_degenerate(std::span<const Vector3d> vertices, const Mesh::Triangle& triangle) {
+  const auto& [a, b, c] = triangle;
+  return a == b || b == c || c == a || in_a_line(vertices[a], vertices[b], vertices[c]);
+}
+
 struct Mesh::TreeOnDemand {
   std::once_flag made;
   std::optional<SurfaceTree> tree;

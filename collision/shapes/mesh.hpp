@@ -39,6 +39,9 @@ class InvalidMesh : public std::invalid_argument {
 void check_vertices(std::span<const Eigen::Vector3d> vertices);
 /// Throws InvalidMesh if there is no triangle, an index is out of range, or a triangle names a vertex twice.
 void check_triangle_indices(std::size_t vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
+/// Whether a mesh refuses the triangle for its form: it names a vertex twice, or its corners lie in a line, up to
+/// Mesh::thinnest_sine. Precondition: finite coordinates; its indices are in range.
+bool is_degenerate(std::span<const Eigen::Vector3d> vertices, const std::array<std::uint32_t, 3>& triangle);
 
 /// Where a body's rotation and scale put a vertex of its mesh, about the body's centre. Every part of the module that
 /// needs a turned vertex gets it from here, so that triangles with a common vertex agree on it bit for bit.

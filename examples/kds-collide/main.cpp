@@ -94,6 +94,9 @@ int simulate(Arguments arguments) {
   const Scene scene = read_scene(arguments.scene, arguments.until);
   const double read_seconds = static_cast<double>(std::clock() - read_start) / CLOCKS_PER_SEC;
 
+  if (!arguments.quiet) {
+    for (const std::string& warning : scene.warnings) std::fprintf(stderr, "%s\n", one_line(warning).c_str());
+  }
   check(arguments, scene);
   // All that can go wrong outside the run goes wrong before it: outputs are opened, three.js is read.
   EventSinks sinks;

@@ -1,5 +1,6 @@
 #include "examples/kds-collide/mesh_file.hpp"
 
+#include "collision/shapes/mesh.hpp"
 #include "examples/kds-collide/number_text.hpp"
 
 #define TINYOBJLOADER_USE_DOUBLE
@@ -19,6 +20,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace kds_collide {
 namespace {
@@ -190,6 +192,21 @@ MeshData read_mesh_file(const std::filesystem::path& file) {
   MeshData mesh = extension == ".obj" ? read_obj(file) : read_stl(file);
   if (mesh.triangles.empty()) throw MeshFileError("has no triangles");
   return mesh;
+}
+
+std::vector<std::size_t> leave_out_degenerate(MeshData& mesh) {
+  std::vector<std::size_t> left_out;
+  std::vector<std::array<std::uint32_t, 3>> kept;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (kds::collision::is_degenerate(mesh.vertices, mesh.triangles[i])) {
+      left_out.push_back(i);
+    } else {
+      kept.push_back(mesh.triangles[i]);
+    }
+  }
+  if (kept.empty()) return {};
+  mesh.triangles = std::move(kept);
+  return left_out;
 }
 
 std::string to_obj(const MeshData& mesh) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>
@@ -26,6 +27,12 @@ struct MeshFileError : std::runtime_error {
 /// every triangle, become one. Throws MeshFileError, and std::filesystem::filesystem_error for a file that cannot be
 /// looked at; whether the triangles make a sound mesh is not checked here.
 MeshData read_mesh_file(const std::filesystem::path& file);
+
+/// Removes the triangles that no mesh can have (collision::is_degenerate), which ordinary files contain: they have no
+/// area, so that at most a crack as wide as roundings is left. The others keep their order; where there are none,
+/// nothing is removed. Returns which they were, by their places among all triangles, from 0. Precondition: what
+/// read_mesh_file() gives.
+std::vector<std::size_t> leave_out_degenerate(MeshData& mesh);
 
 /// The text of an OBJ file that read_mesh_file gives back bit for bit.
 std::string to_obj(const MeshData& mesh);

@@ -71,6 +71,8 @@ struct Scene {
   std::optional<Domain> domain;
   std::vector<SceneMesh> meshes;
   std::vector<SceneBody> bodies;
+  /// What was mended in what the scene names, each as one line `FILE: WHERE: what`.
+  std::vector<std::string> warnings;
 
   /// 2 where any piece accelerates, else 1.
   int degree() const;

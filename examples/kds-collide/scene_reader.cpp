@@ -6,7 +6,7 @@
 #include "collision/world.hpp"
 #include "examples/kds-collide/json_node.hpp"
 #include "examples/kds-collide/material_reader.hpp"
-#include "examples/kds-collide/mesh_file.hpp"
+#include "examples/kds-collide/mesh_reader.hpp"
 #include "examples/kds-collide/number_text.hpp"
 #include "examples/kds-collide/pivot.hpp"
 #include "examples/kds-collide/scene_world.hpp"
@@ -34,20 +34,6 @@ std::string about(double value) {
   char digits[32];
   const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 6);
   return {digits, end};
-}
-
-std::shared_ptr<const kds::collision::Mesh> read_mesh(const JsonNode& node, const std::string& name,
-                                                      const std::filesystem::path& folder) {
-  try {
-    MeshData data = read_mesh_file(folder / name);
-    return std::make_shared<const kds::collision::Mesh>(std::move(data.vertices), std::move(data.triangles));
-  } catch (const MeshFileError& error) {
-    node.fail(name + ": " + error.what());
-  } catch (const kds::collision::InvalidMesh& error) {
-    node.fail(name + ": " + error.what());
-  } catch (const std::filesystem::filesystem_error& error) {
-    node.fail(name + ": " + error.code().message());
-  }
 }
 
 using kds::collision::Shape;
@@ -335,13 +321,7 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
   }
   const SurfaceNumbers surface = read_surface(root, {});
   if (root.has("domain")) scene.domain = read_domain(root["domain"], surface);
-  if (root.has("meshes")) {
-    for (const auto& [name, node] : root["meshes"].members()) {
-      const JsonNode file = node.object({"file"})["file"];
-      const std::string file_name = file.string();
-      scene.meshes.push_back({name, file_name, read_mesh(file, file_name, folder)});
-    }
-  }
+  if (root.has("meshes")) read_meshes(root["meshes"], folder, scene);
   const std::vector<JsonNode> bodies = root["bodies"].elements();
   std::map<std::string, std::string> names;
   for (const JsonNode& node : bodies) {
@@ -382,7 +362,9 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
 Scene parse_scene(std::string_view json_text, const std::filesystem::path& file, std::optional<double> until) {
   try {
     const json document = parse_json(json_text);
-    return read_document(JsonNode(document, ""), file.parent_path(), until);
+    Scene scene = read_document(JsonNode(document, ""), file.parent_path(), until);
+    for (std::string& warning : scene.warnings) warning.insert(0, file.string() + ": ");
+    return scene;
   } catch (const JsonError& error) {
     throw SceneError(file.string(), error.where, error.what());
   }

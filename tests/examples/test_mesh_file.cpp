@@ -97,6 +97,23 @@ TEST_CASE("mesh file: coordinates of an STL file that are not finite are refused
   CHECK_THROWS_WITH(read_mesh_file(file), "triangle 1: has a coordinate that is not finite");
 }
 
+TEST_CASE("mesh file: degenerate triangles are left out") {
+  const TemporaryFolder folder;
+  MeshData mesh = read_mesh_file(folder.write("a.obj",
+                                              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 0 0 0\nv 0.5 1e-18 0\n"
+                                              "f 1 1 2\n"  // a vertex twice
+                                              "f 1 2 3\n"
+                                              "f 1 2 4\n"  // in a line
+                                              "f 1 5 3\n"  // two vertices in one place
+                                              "f 1 6 2\n"  // in a line, up to roundings
+                                              "f 3 2 4\n"));
+  CHECK(leave_out_degenerate(mesh) == std::vector<std::size_t>{0, 2, 3, 4});
+  using Triangle = std::array<std::uint32_t, 3>;
+  CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}});
+  CHECK(mesh.vertices.size() == 6);
+  CHECK(leave_out_degenerate(mesh).empty());
+}
+
 TEST_CASE("mesh file: files that are no mesh") {
   const TemporaryFolder folder;
   const auto error = [&](const std::filesystem::path& file) {

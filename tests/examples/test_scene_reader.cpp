@@ -145,6 +145,24 @@ TEST_CASE("scene reader: a solid that is open has no inertia of its own, and one
                       "more than a radian between two doubles of the clock"));
 }
 
+TEST_CASE("scene reader: degenerate triangles of a mesh file are left out, and warned of") {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& faces) {
+    folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\n" + faces);
+    return parse_scene(R"({"scene": 1, "end_time": 2, "meshes": {"m": {"file": "m.obj"}},
+                           "bodies": [{"name": "a", "shape": {"mesh": "m"}, "motion": [{"start": 0, "position": [[0,0,0]]}]}]})",
+                       folder / "scene.json");
+  };
+  CHECK(read("f 1 2 3\n").warnings.empty());
+  const Scene one = read("f 1 2 3\nf 1 2 4\n");
+  CHECK(one.meshes[0].mesh->triangles().size() == 1);
+  const std::string where = (folder / "scene.json").string() + ": meshes.m.file: m.obj: ";
+  CHECK(one.warnings == std::vector<std::string>{where + "1 of 2 triangles is degenerate and left out, triangle 1"});
+  CHECK(read("f 1 2 3\nf 1 1 2\nf 2 3 4\nf 1 2 4\n").warnings ==
+        std::vector<std::string>{where + "2 of 4 triangles are degenerate and left out, the first is triangle 1"});
+  CHECK_THROWS_WITH(read("f 1 2 4\n"), where + "triangle 0: is degenerate, its corners lie in a line");
+}
+
 TEST_CASE("scene reader: a shape is placed about its pivot") {
   const auto read = [](const std::string& of_body, const std::string& response) {
     return parse_scene(R"({"scene": 1, "end_time": 2, "response": ")" + response +
