@@ -243,10 +243,11 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
     if (failure_) [[unlikely]]
       refuse(function);
   }
-  /// For functions that change bodies, which callbacks may call.
-  void require_editable(const char* function) {
+  /// For functions that change bodies, which callbacks may call. `body`: the one that is removed, if one is.
+  void require_editable(const char* function, BodySlot body = no_body) {
     if (failure_ || volumes_.calling()) [[unlikely]]
       refuse(function);
+    if (bounced_ != no_body && bounced_ != body) change_or_fail([&] { take_up_bounce(); });
     if (!stepping_ && clock_.now > callers_now_) [[unlikely]]
       change_or_fail([&] { go_back(callers_now_); });
   }
@@ -301,6 +302,8 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   /// Rate at which b parts from a along the normal just after the contact.
   double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>);
   void process_wall() requires(!turns<Motion>);
+  void bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>);
+  void take_up_bounce();
   bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
   bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>);
   bool bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
@@ -367,6 +370,9 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   double idle_until_ = -never;  ///< nothing is due before it; an edit resets it
   bool idle_for_ever_ = false;  ///< no event comes at all; an edit resets it
   double next_time_ = -never;   ///< the result of next_time(); -never if there is none
+  /// The body that has bounced off a wall and whose motion the parts have not taken up yet, while that is reported: it
+  /// is often removed then.
+  BodySlot bounced_ = no_body;
   bool stepping_ = false;
   bool telling_ = false;        ///< a listener is being told, or has thrown
   std::exception_ptr failure_;  ///< the exception that has left the world broken

@@ -14,6 +14,8 @@ class NoListener final : public PairListener {
   explicit NoListener(const PairListener& told) : told_(told) {}
   bool filters() const override { return told_.filters(); }
   bool may_collide(BodySlot a, BodySlot b) const override { return told_.may_collide(a, b); }
+  std::uint64_t filter_of(BodySlot body) const override { return told_.filter_of(body); }
+  bool filters_meet(std::uint64_t a, std::uint64_t b) const override { return told_.filters_meet(a, b); }
   void pair_began(BodySlot, BodySlot, double) override {}
   void pair_ended(BodySlot, BodySlot, double) override {}
 

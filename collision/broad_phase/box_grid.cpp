@@ -10,22 +10,39 @@
 
 namespace kds::collision {
 
-void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding) {
+namespace {
+
+/// Calls visit(kind) for each of a set.
+template <class Visit>
+inline void for_each_kind(std::uint8_t set, Visit&& visit) {
+  for (unsigned left = set; left != 0; left &= left - 1) visit(static_cast<BoxGrid::Kind>(std::countr_zero(left)));
+}
+
+}  // namespace
+
+void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding, bool alone, const BoxSlant* slant) {
   if (id >= items_.size()) items_.resize(std::max<std::size_t>(id + 1, items_.size() + items_.size() / 2));
   const Exponent before = items_[id].level;
   const double extent = box.extent();
   Exponent level = level_for(extent);
   // A box that has become a little smaller stays at its level.
   if (before != absent && level < before && level_for(1.125 * extent) == before) level = before;
-  const Item to{BoxBounds(box), kept_rounding(rounding), 0, level, false};
-  if (level == before) return move(id, to, changes);
+  const Item to{BoxBounds(box), kept_rounding(rounding), 0, level, false, items_[id].kind, slant != nullptr};
+  if (level == before) return move(id, to, slant, changes, alone);
   const std::size_t levels = levels_.size();
   use_level(level);
   if (levels_.size() > levels) restart_guests();
-  if (before != absent) return put_anew(id, to, changes);
+  if (before != absent) return put_anew(id, to, slant, changes, alone);
   ++size_;
-  items_[id] = to;
+  set_item(id, to, slant);
   enter(id, changes);
+}
+
+void BoxGrid::set_item(Id id, const Item& item, const BoxSlant* slant) {
+  items_[id] = item;
+  if (!slant) return;
+  if (slants_.size() < items_.size()) slants_.resize(items_.size());
+  slants_[id] = *slant;
 }
 
 /// Cells of two levels may share a bucket, so a box may be found twice, or find itself.
@@ -51,19 +68,23 @@ void BoxGrid::enter(Id id, Changes& changes) {
   for (Level& level : levels_) {
     if (level.exponent < item.level) continue;
     const Ends ends(item.bounds, level.scale);
-    search(natives_, level, level.natives, ends, found);
-    if (level.exponent == item.level) {
+    const bool native = level.exponent == item.level;
+    for_each_kind(meetings_[item.kind], [&](Kind kind) {
+      search_natives(level, kind, ends, found);
+      if (native) search_guests(level, kind, item.bounds, ends, found);
+    });
+    if (native) {
       level.idle = 0;
-      search(guests_, level, level.guests, ends, found);
-      add(natives_, level, level.natives, ends, id);
+      add_native(level, ends, id, item.kind);
     } else {
       count_guest(level);
-      add(guests_, level, level.guests, ends, id);
+      add_guest(level, ends, id, item.kind);
     }
   }
   for (const Id other : found.numbers()) {
     const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
-    if (overlap && report_once(other)) changes.began.push_back(other);
+    if (!overlap || !meets(item.kind, other) || apart(item.bounds, slant(id), other)) continue;
+    if (report_once(other)) changes.began.push_back(other);
   }
   tidy();
 }
@@ -104,7 +125,7 @@ void BoxGrid::enter_all(std::span<const Id> ids) {
   };
   constexpr std::size_t ahead = 16;
   std::array<Ready, ahead> ready;
-  std::vector<Census> censuses(levels_.size());
+  std::vector<std::array<Census, kinds>> censuses(levels_.size());
   std::size_t level = 0;
   for (std::size_t i = 0; i < ids.size() + ahead; ++i) {
     Ready& slot = ready[i % ahead];
@@ -117,86 +138,116 @@ void BoxGrid::enter_all(std::span<const Id> ids) {
       level = static_cast<std::size_t>(find_level(item.level) - levels_.begin());
     }
     const Ends ends(item.bounds, levels_[level].scale);
-    censuses[level].add(item.bounds, ends);
-    slot = {ends.place(natives_, levels_[level]), ends.in_cell()};
+    censuses[level][item.kind].add(item.bounds, ends);
+    slot = {ends.place(natives_, levels_[level].family_of(item.kind)), ends.in_cell()};
     natives_.fetch(slot.place);
   }
-  for (std::size_t i = 0; i < levels_.size(); ++i) levels_[i].natives = censuses[i].population(levels_[i].scale);
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    levels_[i].natives = 0;
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+      levels_[i].of[kind].natives = censuses[i][kind].population(levels_[i].scale);
+      levels_[i].natives += censuses[i][kind].count;
+    }
+  }
   restart_guests();
 }
 
 /// Takes a box out of all cells and appends what it overlapped to changes.ended.
-void BoxGrid::leave(Id id, Changes& changes) {
+void BoxGrid::leave(Id id, Changes& changes, bool alone) {
   items_[id].entered = false;
   const Item item = items_[id];
-  const BoxOverlaps overlaps = overlaps_with(item);
   CellTable::Found found;
-  begin_search(id);
   for (Level& level : levels_) {
     if (level.exponent < item.level) continue;
     const Ends ends(item.bounds, level.scale);
-    if (level.exponent == item.level) {
-      remove(natives_, level, level.natives, ends, id);
-      search(guests_, level, level.guests, ends, found);
+    const bool native = level.exponent == item.level;
+    if (native) {
+      --level.natives;
+      remove(natives_, level.family_of(item.kind), level.of[item.kind].natives, ends, id);
     } else {
-      remove(guests_, level, level.guests, ends, id);
+      remove(guests_, level.family_of(item.kind), level.of[item.kind].guests, ends, id);
     }
-    search(natives_, level, level.natives, ends, found);
+    if (alone) continue;
+    for_each_kind(meetings_[item.kind], [&](Kind kind) {
+      search_natives(level, kind, ends, found);
+      if (native) search_guests(level, kind, item.bounds, ends, found);
+    });
   }
+  if (alone) return;
+  begin_search(id);
+  const BoxOverlaps overlaps = overlaps_with(item);
   for (const Id other : found.numbers()) {
     const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
-    if (overlap && report_once(other)) changes.ended.push_back(other);
+    if (!overlap || !meets(item.kind, other) || apart(item.bounds, slant(id), other)) continue;
+    if (report_once(other)) changes.ended.push_back(other);
   }
 }
 
-void BoxGrid::remove(Id id, Changes& changes) {
-  leave(id, changes);
+void BoxGrid::remove(Id id, Changes& changes, bool alone) {
+  leave(id, changes, alone);
   --size_;
   items_[id].level = absent;
 }
 
 /// Replaces a box by one of the same level: if they are near each other, one search finds all boxes that overlap
 /// either.
-void BoxGrid::move(Id id, const Item& to, Changes& changes) {
+void BoxGrid::move(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone) {
   const Item from = items_[id];
   auto level = find_level(to.level);
   constexpr double near = 2 * units_per_cell;  // units of the lattice: then searches are small at all levels
-  if (from.bounds.joined(to.bounds).extent() * level->scale > near) return put_anew(id, to, changes);
-  const Ends own_before(from.bounds, level->scale);
-  const Ends own_after(to.bounds, level->scale);
-  const Ends own_either = own_before.joined(own_after);
-  items_[id] = to;
+  if (from.bounds.joined(to.bounds).extent() * level->scale > near) return put_anew(id, to, slant, changes, alone);
+  BoxSlant slant_before;
+  if (from.slanted) slant_before = slants_[id];
+  set_item(id, to, slant);
   items_[id].entered = true;
   CellTable::Found found;
   begin_search(id);
-  level->idle = 0;
-  search(natives_, *level, level->natives, own_either, found);
-  search(guests_, *level, level->guests, own_either, found);
-  replace(natives_, *level, level->natives, own_before, own_after, id);
+  const Kind own = to.kind;
+  const std::uint8_t met = meetings_[own];
+  const auto sought = [&](const Ends& before, const Ends& after) { return alone ? after : before.joined(after); };
+  {
+    const Ends before(from.bounds, level->scale);
+    const Ends after(to.bounds, level->scale);
+    const Ends searched = sought(before, after);
+    const BoxBounds bounds = alone ? to.bounds : from.bounds.joined(to.bounds);
+    level->idle = 0;
+    for_each_kind(met, [&](Kind kind) {
+      search_natives(*level, kind, searched, found);
+      search_guests(*level, kind, bounds, searched, found);
+    });
+    replace(natives_, level->family_of(own), level->of[own].natives, before, after, id);
+  }
   while (++level != levels_.end()) {
     const Ends before(from.bounds, level->scale);
     const Ends after(to.bounds, level->scale);
-    search(natives_, *level, level->natives, before.joined(after), found);
+    const Ends searched = sought(before, after);
+    for_each_kind(met, [&](Kind kind) { search_natives(*level, kind, searched, found); });
     count_guest(*level);
-    replace(guests_, *level, level->guests, before, after, id);
+    replace(guests_, level->family_of(own), level->of[own].guests, before, after, id);
   }
   const BoxOverlaps overlaps(from.bounds, from.rounding, to.bounds, to.rounding);
   constexpr unsigned only_before = 1, only_after = 2;
+  const bool any_slants = !slants_.empty();
   for (const Id other : found.numbers()) {
-    const unsigned overlap = overlaps.with(items_[other].bounds, items_[other].rounding);
-    if ((overlap != only_before && overlap != only_after) || !report_once(other)) continue;
+    unsigned overlap = overlaps.with(items_[other].bounds, items_[other].rounding);
+    if (any_slants && overlap != 0) {
+      if (apart(from.bounds, from.slanted ? &slant_before : nullptr, other)) overlap &= ~only_before;
+      if (apart(to.bounds, slant, other)) overlap &= ~only_after;
+    }
+    if ((overlap != only_before && overlap != only_after) || !meets(own, other) || !report_once(other)) continue;
     (overlap == only_after ? changes.began : changes.ended).push_back(other);
   }
   tidy();
 }
 
 /// Takes a box out and inserts it again; boxes that overlap both before and after are not changes.
-void BoxGrid::put_anew(Id id, const Item& to, Changes& changes) {
+void BoxGrid::put_anew(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone) {
   const auto ended = static_cast<std::ptrdiff_t>(changes.ended.size());
   const auto began = static_cast<std::ptrdiff_t>(changes.began.size());
-  leave(id, changes);
-  items_[id] = to;
+  leave(id, changes, alone);
+  set_item(id, to, slant);
   enter(id, changes);
+  if (alone) return;
   std::sort(changes.ended.begin() + ended, changes.ended.end());
   std::sort(changes.began.begin() + began, changes.began.end());
   std::vector<Id> both;

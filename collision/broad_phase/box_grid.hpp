@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/box_bounds.hpp"
+#include "collision/broad_phase/box_slant.hpp"
 #include "collision/broad_phase/cell_table.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/broad_phase/tuning.hpp"
@@ -38,11 +39,20 @@ namespace kds::collision {
 /// Sources: [Ericson05] section 7.2 for hierarchical grids, [Teschner03] for hashing cells. Differs: guests have
 /// separate lists; ends on a lattice are stored in the cells.
 ///
-/// Cost: O(1) a change at bounded density, for each level in use from the box's own; a first native of a level makes
-/// all smaller boxes its guests, O(n). Memory O(n).
+/// Boxes may be of several *kinds*, each with cells of its own in every level, so that a box is compared only with
+/// those of the kinds that its own meets.
+///
+/// Cost: O(1) a change at bounded density, for each level in use from the box's own and each kind that is met; a first
+/// native of a level makes all smaller boxes its guests, O(n). Memory O(n).
 class BoxGrid {
  public:
   using Id = std::uint32_t;
+
+  /// Kinds are below `kinds`.
+  using Kind = std::uint8_t;
+  static constexpr std::size_t kinds = 4;
+  /// By kind: bit k is set if it meets kind k. Symmetric. At first all meet all.
+  using Meetings = std::array<std::uint8_t, kinds>;
 
   /// Changes with more, which are few, allocate memory.
   using Ids = boost::container::small_vector<Id, 16>;
@@ -91,11 +101,34 @@ class BoxGrid {
   double least_cell() const { return cell_side(finest_); }
 
   /// Inserts a box, or replaces the one of that number, with edges rounded by a radius (box_bounds.hpp). Appends to
-  /// `changes`.
-  void put(Id id, const StaticBox& box, Changes& changes, double rounding = 0);
+  /// `changes`. `alone`: whether the box that it replaces is known to overlap none of those that it meets. `slant`: of
+  /// the box only what is in that prism counts; null if all of it does.
+  void put(Id id, const StaticBox& box, Changes& changes, double rounding = 0, bool alone = false,
+           const BoxSlant* slant = nullptr);
 
-  /// Whether two boxes overlap. Precondition: both are here.
-  bool overlap(Id a, Id b) const { return overlaps_with(items_[a]).with(items_[b].bounds, items_[b].rounding) != 0; }
+  /// Chooses the kind of a box that is to be inserted; without it, the kind is 0.
+  void set_kind(Id id, Kind kind) { items_[id].kind = kind; }
+  Kind kind(Id id) const { return items_[id].kind; }
+  /// Changes which kinds meet, and the kinds of boxes that are here: new_kind(id) is called for each. Reports nothing:
+  /// overlaps of boxes that no longer meet are forgotten. O(n). Precondition: boxes of two kinds that have not met
+  /// before do not overlap.
+  template <class NewKind>
+  void change_kinds(const Meetings& meetings, NewKind&& new_kind) {
+    meetings_ = meetings;
+    for (Id id = 0; id < items_.size(); ++id) {
+      if (contains(id)) items_[id].kind = new_kind(id);
+    }
+    restart(natives_.room());
+  }
+
+  /// Whether two boxes overlap, of whatever kinds. Precondition: both are here.
+  bool overlap(Id a, Id b) const {
+    return overlaps_with(items_[a]).with(items_[b].bounds, items_[b].rounding) != 0 &&
+           !apart(items_[a].bounds, slant(a), b);
+  }
+
+  /// Whether only a part of the box counts. Precondition: contains(id).
+  bool slanted(Id id) const { return items_[id].slanted; }
 
   /// For inserting many into an empty grid in an order that suits the cache: first all are announced, then each one
   /// enters. No other function may be called in between. Precondition: id below the end reserved; none has entered.
@@ -114,8 +147,8 @@ class BoxGrid {
   /// x fastest.
   void enter_all(std::span<const Id> ids);
 
-  /// Precondition: contains(id). Appends to `changes`.
-  void remove(Id id, Changes& changes);
+  /// Precondition: contains(id). Appends to `changes`. `alone`: see put().
+  void remove(Id id, Changes& changes, bool alone = false);
 
   /// Appends the boxes that overlap this one, without rounded edges, each once, in no particular order. Changes
   /// nothing. Precondition: all that have been announced have entered.
@@ -146,9 +179,11 @@ class BoxGrid {
     std::uint32_t reported = 0;  ///< the last search that has reported it
     Exponent level = absent;
     bool entered = false;  ///< is in the cells; false while it is only announced
+    Kind kind = 0;
+    bool slanted = false;
   };
 
-  /// The natives or the guests of a level, and bounds for searches of them.
+  /// The natives or the guests of a level that are of one kind, and bounds for searches of them.
   struct Population {
     std::size_t count = 0;
     std::int64_t span = 0;                      ///< of the largest since it was last empty, in units of the lattice
@@ -157,11 +192,16 @@ class BoxGrid {
 
   struct Level {
     Exponent exponent;
-    double scale;          ///< units of the lattice per unit of length
-    std::uint64_t family;  ///< of its cells
-    Population natives{};
-    Population guests{};
-    std::size_t idle = 0;  ///< registrations of guests since the last native was removed
+    double scale;             ///< units of the lattice per unit of length
+    std::uint64_t family;     ///< of its cells
+    std::size_t natives = 0;  ///< of all kinds
+    std::size_t idle = 0;     ///< registrations of guests since the last native was removed
+    struct Populations {
+      Population natives{}, guests{};
+    };
+    std::array<Populations, kinds> of{};
+
+    std::uint64_t family_of(Kind kind) const { return family + kind * 0xD6E8FEB86659FD93; }
   };
 
   static BoxOverlaps overlaps_with(const Item& item) {
@@ -183,29 +223,42 @@ class BoxGrid {
   std::vector<Level>::iterator find_level(Exponent exponent);
   Level& use_level(Exponent exponent);
   static void count_in(Population& population, const Ends& ends);
-  static void add(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id);
-  static void remove(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id);
-  static void replace(CellTable& table, const Level& level, Population& population, const Ends& from, const Ends& to,
+  static void add(CellTable& table, std::uint64_t family, Population& population, const Ends& ends, Id id);
+  static void remove(CellTable& table, std::uint64_t family, Population& population, const Ends& ends, Id id);
+  static void replace(CellTable& table, std::uint64_t family, Population& population, const Ends& from, const Ends& to,
                       Id id);
+  void add_native(Level& level, const Ends& ends, Id id, Kind kind);
+  void add_guest(Level& level, const Ends& ends, Id id, Kind kind);
   void count_guest(Level& level);
   void begin_search(Id id);
   bool report_once(Id id);
-  void leave(Id id, Changes& changes);
-  void move(Id id, const Item& to, Changes& changes);
-  void put_anew(Id id, const Item& to, Changes& changes);
+  bool meets(Kind kind, Id id) const { return meetings_[kind] >> items_[id].kind & 1; }
+  const BoxSlant* slant(Id id) const { return items_[id].slanted ? &slants_[id] : nullptr; }
+  /// Whether the slants of two boxes keep them apart; the first is given by its bounds and its slant.
+  bool apart(const BoxBounds& bounds, const BoxSlant* slant, Id other) const {
+    return (slant && slant->apart(items_[other].bounds)) || (items_[other].slanted && slants_[other].apart(bounds));
+  }
+  void set_item(Id id, const Item& item, const BoxSlant* slant);
+  void leave(Id id, Changes& changes, bool alone);
+  void move(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone);
+  void put_anew(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone);
   void drop_idle_level();
   void restart_guests();
   void tidy();
   void grow();
   void restart(std::size_t room);
   void refine();
-  bool search_in(const Level& level, const StaticBox& box, Ids& found) const;
-  void search(const CellTable& table, const Level& level, const Population& population, const Ends& box,
+  bool search_in(const Level& level, Kind kind, const StaticBox& box, Ids& found) const;
+  void search_natives(const Level& level, Kind kind, const Ends& box, CellTable::Found& found);
+  void search_guests(const Level& level, Kind kind, const BoxBounds& bounds, const Ends& box, CellTable::Found& found);
+  bool search_finer(const Level& level, Kind kind, const BoxBounds& bounds, CellTable::Found& found);
+  void search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,
               CellTable::Found& found);
 
   CellTuning tuning_;
-  std::vector<Item> items_;    // by id
-  std::vector<Level> levels_;  // finest first
+  std::vector<Item> items_;       // by id
+  std::vector<BoxSlant> slants_;  // by id; empty as long as there has been none
+  std::vector<Level> levels_;     // finest first
   CellTable natives_;
   CellTable guests_;
   std::uint32_t search_ = 0;
@@ -216,6 +269,7 @@ class BoxGrid {
   Exponent finest_ = least;    ///< no box is native of a finer level
   std::int64_t crowding_ = 0;  ///< buckets on chains that searches have visited, minus an allowance for each cell
   bool idle_ = false;          ///< some level has had too much idle work
+  Meetings meetings_{0xF, 0xF, 0xF, 0xF};
 };
 
 }  // namespace kds::collision

@@ -62,8 +62,8 @@ struct BoxGrid::Ends {
     return (((values[0] ^ other.values[0]) | (values[1] ^ other.values[1]) | (values[2] ^ other.values[2])) >>
             lattice_bits) == 0;
   }
-  std::size_t place(const CellTable& table, const Level& level) const {
-    return table.place(table.row(level.family, cell(1), cell(2)), cell(0));
+  std::size_t place(const CellTable& table, std::uint64_t family) const {
+    return table.place(table.row(family, cell(1), cell(2)), cell(0));
   }
 
   std::int64_t span() const {

@@ -51,7 +51,7 @@ void BoxGrid::tidy() {
 /// Levels are added and removed with the sizes of boxes; one without natives is given up.
 void BoxGrid::drop_idle_level() {
   idle_ = false;
-  std::erase_if(levels_, [&](const Level& level) { return level.natives.count == 0 && level.idle > size_; });
+  std::erase_if(levels_, [&](const Level& level) { return level.natives == 0 && level.idle > size_; });
   restart_guests();
 }
 
@@ -64,7 +64,7 @@ void BoxGrid::restart(std::size_t room) {
     if (item.level == absent) continue;
     item.level = level_for(item.bounds.extent());
     Level& level = use_level(item.level);
-    if (item.entered) add(natives_, level, level.natives, Ends(item.bounds, level.scale), id);
+    if (item.entered) add_native(level, Ends(item.bounds, level.scale), id, item.kind);
   }
   restart_guests();
 }
@@ -94,9 +94,9 @@ void BoxGrid::restart_guests() {
   std::size_t guests = 0;
   std::size_t finer = 0;
   for (Level& level : levels_) {
-    level.guests = {};
+    for (Level::Populations& populations : level.of) populations.guests = {};
     guests += finer;
-    finer += level.natives.count;
+    finer += level.natives;
   }
   guests_.restart(guests + guests / 2 + levels_.size());
   if (guests == 0) return;
@@ -104,13 +104,13 @@ void BoxGrid::restart_guests() {
     if (!items_[id].entered) continue;
     for (Level& level : levels_) {
       if (level.exponent <= items_[id].level) continue;
-      add(guests_, level, level.guests, Ends(items_[id].bounds, level.scale), id);
+      add_guest(level, Ends(items_[id].bounds, level.scale), id, items_[id].kind);
     }
   }
 }
 
 void BoxGrid::count_guest(Level& level) {
-  if (level.natives.count == 0 && ++level.idle > size_) idle_ = true;
+  if (level.natives == 0 && ++level.idle > size_) idle_ = true;
 }
 
 void BoxGrid::count_in(Population& population, const Ends& ends) {
@@ -125,34 +125,86 @@ void BoxGrid::count_in(Population& population, const Ends& ends) {
   }
 }
 
-void BoxGrid::add(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id) {
+void BoxGrid::add(CellTable& table, std::uint64_t family, Population& population, const Ends& ends, Id id) {
   count_in(population, ends);
-  table.add(ends.place(table, level), ends.in_cell(), id);
+  table.add(ends.place(table, family), ends.in_cell(), id);
 }
 
-void BoxGrid::remove(CellTable& table, const Level& level, Population& population, const Ends& ends, Id id) {
+void BoxGrid::add_native(Level& level, const Ends& ends, Id id, Kind kind) {
+  ++level.natives;
+  add(natives_, level.family_of(kind), level.of[kind].natives, ends, id);
+}
+
+void BoxGrid::add_guest(Level& level, const Ends& ends, Id id, Kind kind) {
+  add(guests_, level.family_of(kind), level.of[kind].guests, ends, id);
+}
+
+void BoxGrid::remove(CellTable& table, std::uint64_t family, Population& population, const Ends& ends, Id id) {
   --population.count;
-  table.remove(ends.place(table, level), ends.in_cell(), id);
+  table.remove(ends.place(table, family), ends.in_cell(), id);
 }
 
-void BoxGrid::replace(CellTable& table, const Level& level, Population& population, const Ends& from, const Ends& to,
+void BoxGrid::replace(CellTable& table, std::uint64_t family, Population& population, const Ends& from, const Ends& to,
                       Id id) {
   if (from.same_cell(to)) {
     population.span = std::max(population.span, to.span());
-    table.replace(to.place(table, level), from.in_cell(), to.in_cell(), id);
+    table.replace(to.place(table, family), from.in_cell(), to.in_cell(), id);
   } else {
-    remove(table, level, population, from, id);
-    add(table, level, population, to, id);
+    remove(table, family, population, from, id);
+    add(table, family, population, to, id);
   }
+}
+
+void BoxGrid::search_natives(const Level& level, Kind kind, const Ends& box, CellTable::Found& found) {
+  const Population& natives = level.of[kind].natives;
+  if (natives.count != 0) search(natives_, level.family_of(kind), natives, box, found);
+}
+
+void BoxGrid::search_guests(const Level& level, Kind kind, const BoxBounds& bounds, const Ends& box,
+                            CellTable::Found& found) {
+  const Population& guests = level.of[kind].guests;
+  if (guests.count == 0 || search_finer(level, kind, bounds, found)) return;
+  search(guests_, level.family_of(kind), guests, box, found);
+}
+
+/// Instead of the guests of a level, searches the natives of all finer ones, if their cells in the box are few: in a
+/// large cell there are many guests, and most are outside a box that is flat. False, without a search, if it does not
+/// pay.
+bool BoxGrid::search_finer(const Level& level, Kind kind, const BoxBounds& bounds, CellTable::Found& found) {
+  constexpr std::size_t guests_per_cell = 4;  // of which a search compares as many in the time for one cell
+  const std::size_t most = level.of[kind].guests.count / guests_per_cell;
+  std::size_t cells = 0;
+  const auto each_finer = [&](const auto& visit) {
+    for (const Level& finer : levels_) {
+      if (&finer == &level) return true;
+      const Population& natives = finer.of[kind].natives;
+      if (natives.count != 0 && !visit(finer, natives, Ends(bounds, finer.scale))) return false;
+    }
+    return true;
+  };
+  const bool few = each_finer([&](const Level&, const Population& natives, const Ends& box) {
+    std::size_t here = 1;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const std::int64_t low = Ends::cell_of(std::max(box.values[d] - natives.span, natives.low[d]));
+      const std::int64_t high = Ends::cell_of(std::min(-box.values[d + 3], natives.high[d]));
+      if (low > high) return true;
+      if (high - low >= static_cast<std::int64_t>(CellTable::Block::longest)) return false;
+      here *= static_cast<std::size_t>(high - low + 1);
+    }
+    return (cells += here) <= most;
+  });
+  return few && each_finer([&](const Level& finer, const Population& natives, const Ends& box) {
+           search(natives_, finer.family_of(kind), natives, box, found);
+           return true;
+         });
 }
 
 /// Appends to `found` the boxes that overlap on the lattice, and maybe some others. Precondition: the box is at most a
 /// few cells large, or the population is in few.
-void BoxGrid::search(const CellTable& table, const Level& level, const Population& population, const Ends& box,
+void BoxGrid::search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,
                      CellTable::Found& found) {
-  if (population.count == 0) return;
   CellTable::Block block;
-  block.family = level.family;
+  block.family = family;
   for (std::size_t d = 0; d < 3; ++d) {
     const std::int64_t low = Ends::cell_of(std::max(box.values[d] - population.span, population.low[d]));
     const std::int64_t high = Ends::cell_of(std::min(-box.values[d + 3], population.high[d]));

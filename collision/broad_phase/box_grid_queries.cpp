@@ -8,7 +8,11 @@ namespace kds::collision {
 
 void BoxGrid::find_overlapping(const StaticBox& box, Ids& found) const {
   for (const Level& level : levels_) {
-    if (search_in(level, box, found)) continue;
+    const std::size_t before = found.size();
+    Kind kind = 0;
+    while (kind < kinds && search_in(level, kind, box, found)) ++kind;
+    if (kind == kinds) continue;
+    found.resize(before);
     // All boxes of this level, and with them those of coarser ones.
     for (Id id = 0; id < items_.size(); ++id) {
       const Item& item = items_[id];
@@ -18,12 +22,12 @@ void BoxGrid::find_overlapping(const StaticBox& box, Ids& found) const {
   }
 }
 
-/// Searches the cells of a level; false, without a search, if they are more than there are boxes.
+/// Searches the cells of a level for boxes of one kind; false, without a search, if they are more than there are boxes.
 ///
 /// An overlapping box is found in the cell that contains its corner. It may be found through other cells too, of other
 /// levels, or so far away that the marks of rows repeat; so it counts only in its own cell.
-bool BoxGrid::search_in(const Level& level, const StaticBox& box, Ids& found) const {
-  const Population& natives = level.natives;
+bool BoxGrid::search_in(const Level& level, Kind kind, const StaticBox& box, Ids& found) const {
+  const Population& natives = level.of[kind].natives;
   if (natives.count == 0) return true;
   const Ends ends(BoxBounds(box), level.scale);
   std::array<std::int64_t, 3> low, high;  // cells
@@ -38,14 +42,14 @@ bool BoxGrid::search_in(const Level& level, const StaticBox& box, Ids& found) co
   // (If the table has fewer buckets, cells of one row share them.)
   if (cells > static_cast<double>(items_.size()) || natives_.room() < CellTable::Block::longest) return false;
   CellTable::Block block;
-  block.family = level.family;
+  block.family = level.family_of(kind);
   CellTable::Found numbers;
   const auto take = [&] {
     numbers.clear();
     natives_.find(block, numbers);
     for (const Id id : numbers.numbers()) {
       const Item& item = items_[id];
-      if (item.level != level.exponent || !item.bounds.box().overlaps(box)) continue;
+      if (item.level != level.exponent || item.kind != kind || !item.bounds.box().overlaps(box)) continue;
       const Ends its(item.bounds, level.scale);
       bool here = true;
       for (std::size_t d = 0; d < 3; ++d) {

@@ -7,6 +7,12 @@
 #include <string>
 
 namespace kds::collision {
+namespace {
+
+constexpr double much_slower = 0.25;
+
+}  // namespace
+
 /// Sorts changes in the order of bodies, independent of the cells in which they were found.
 template <int Degree>
 void KineticGrid<Degree>::report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener) {
@@ -23,18 +29,26 @@ void KineticGrid<Degree>::report(BodySlot id, BoxGrid::Changes& changes, double 
   for (const BodySlot other : changes.began) {
     if (filters && !listener.may_collide(id, other)) {
       ++bodies_[id].in_vain;
+      Filter& filter = filters_[bodies_[id].filter];
+      if (bodies_[other].filter != bodies_[id].filter || filter.kind != 0) continue;
+      ++filter.in_vain;
+      in_vain_ = in_vain_ || much_in_vain(filter);
     } else {
       report_pair(id, other, now, listener);
     }
   }
 }
 
+/// `a`: the body whose fat box is new. The pair does not count for the travel of the other one if that is far slower:
+/// it would begin whatever that is.
 template <int Degree>
 void KineticGrid<Degree>::report_pair(BodySlot a, BodySlot b, double now, PairListener& listener) {
-  for (const BodySlot id : {a, b}) {
-    ++bodies_[id].begun;
-    ++bodies_[id].partners;
-  }
+  Body& first = bodies_[a];
+  Body& second = bodies_[b];
+  ++first.partners;
+  ++second.partners;
+  ++first.begun;
+  ++(second.speed >= much_slower * first.speed ? second.begun : second.in_vain);
   listener.pair_began(std::min(a, b), std::max(a, b), now);
 }
 
@@ -57,20 +71,25 @@ template <int Degree>
 bool KineticGrid<Degree>::renew(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
                                 PairListener& listener) {
   ++counters_.box_updates;
+  Body& body = bodies_[id];
+  ++filters_[body.filter].boxes;
   const FatBox fat = fat_box(id, sweep, present, now);
   set_expiry(id, fat.expiry, now);
   BoxGrid::Changes changes;
-  fat_boxes_.put(id, fat.box, changes, bodies_[id].box.rounding);
+  const std::optional<BoxSlant> part = slant(body, present);
+  fat_boxes_.put(id, fat.box, changes, body.box.rounding, body.partners == 0, part ? &*part : nullptr);
   report(id, changes, now, listener);
+  if (in_vain_) separate(listener);
   return !changes.empty();
 }
 
 template <int Degree>
 void KineticGrid<Degree>::remove(BodySlot id, double now, PairListener& listener) {
   BoxGrid::Changes changes;
-  fat_boxes_.remove(id, changes);
+  fat_boxes_.remove(id, changes, bodies_[id].partners == 0);
   expiry_.clear(id);
   report(id, changes, now, listener);
+  leave_filter(id, now);
 }
 
 template <int Degree>

@@ -7,7 +7,9 @@
 #include "collision/degrees.hpp"
 #include "kds/events/calendar_queue.hpp"
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +25,10 @@ namespace kds::collision {
 /// of renewals against that of pairs, at every density, size and speed. A body whose motion changes again and again
 /// before it has left its fat box gets one with a margin on all sides, the largest one ahead, so that it stays inside
 /// after most changes. The travel changes the cost, never the contacts.
+///
+/// Bodies that ignore each other, and are found near each other in vain, get cells of their own (a kind of BoxGrid), in
+/// which only those search that may collide with them. The travel of a new body is that which earlier bodies of its
+/// filter had when they were removed.
 ///
 /// The time at which a fat box ends is not a root: a time is chosen, and the box is then the swept AABB until that
 /// time, rounded outward. So scheduled times need not be exact.
@@ -68,12 +74,16 @@ class KineticGrid final : public BroadPhase<Degree> {
   }
 
  private:
+  /// A box with this travel on both sides still has a finite extent.
+  static constexpr double greatest_travel = 0x1p1020;
+
   struct Body {
     Body() {}  // the implicit one would set all to zero first
 
     /// Resets it to the state of a new body.
-    void begin(const KineticBox<Degree>& its_box, double its_travel) {
+    void begin(const KineticBox<Degree>& its_box, double its_travel, double now) {
       box = its_box;
+      entered = now;
       travel = its_travel;
       expiry = never;
       begun = in_vain = partners = changes = tests = 0;
@@ -81,6 +91,7 @@ class KineticGrid final : public BroadPhase<Degree> {
     }
 
     KineticBox<Degree> box;
+    double entered = 0;
     double travel = 0;           ///< how far it may move in its fat box
     double fattened = 0;         ///< when its fat box was made
     double expiry = never;       ///< until when it is valid
@@ -89,7 +100,20 @@ class KineticGrid final : public BroadPhase<Degree> {
     std::uint32_t partners = 0;  ///< bodies with which it forms pairs
     std::uint32_t changes = 0;   ///< of its motion since its last renewal
     std::uint32_t tests = 0;     ///< of its pairs for these
+    std::uint32_t filter = 0;    ///< index in filters_
+    double speed = 0;            ///< when its fat box was made
     int jostled = 0;             ///< boxes in which its motion changed minus those in which it did not, bounded
+  };
+  /// Bodies with the same filter, and what is known of them.
+  struct Filter {
+    std::uint64_t number = 0;
+    bool used = false;
+    BoxGrid::Kind kind = 0;
+    std::uint32_t bodies = 0;
+    double travel = 0;        ///< of a new body; 0 if none has been removed
+    std::uint64_t boxes = 0;  ///< made for them
+    /// Found near these, with the same filter, where that excludes itself.
+    std::uint64_t in_vain = 0;
   };
   struct FatBox {
     StaticBox box;
@@ -108,10 +132,19 @@ class KineticGrid final : public BroadPhase<Degree> {
   void report_pair(BodySlot a, BodySlot b, double now, PairListener& listener);
   template <class Sweep>
   static double lifetime(const Body& body, const Sweep& sweep);
+  std::optional<BoxSlant> slant(const Body& body, const StaticBox& present) const;
   double kept_until(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
   void adapt_travel(BodySlot id, double now);
   bool renew(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
   void set_expiry(BodySlot id, double expiry, double now);
+  double travel_factor(std::uint32_t begun) const;
+  bool much_in_vain(const Filter& filter) const {
+    constexpr std::uint64_t little = 256;
+    return filter.in_vain > little + tuning_.in_vain_per_box * filter.boxes;
+  }
+  void join_filter(BodySlot id, const PairListener& listener);
+  void leave_filter(BodySlot id, double now);
+  void separate(const PairListener& listener);
   void report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener);
 
   GridTuning tuning_;
@@ -122,6 +155,9 @@ class KineticGrid final : public BroadPhase<Degree> {
   double horizon_ = never;
   double first_travel_ = 0;   ///< of a new body
   std::uint64_t wishes_ = 0;  ///< how often a coarser level was wanted since the last was begun
+  /// The first is of all bodies whose filters are not told apart; it has kind 0.
+  std::array<Filter, 8> filters_{};
+  bool in_vain_ = false;  ///< some filter should have a kind of its own
   BroadPhaseCounters counters_;
 };
 

@@ -11,10 +11,7 @@ namespace {
 
 constexpr double largest = std::numeric_limits<double>::max();
 
-/// The most: a box with this travel on both sides still has a finite extent.
-constexpr double greatest_travel = 0x1p1020;
-
-/// The least, over its coordinates: boxes without extent have a travel too, which then adapts.
+/// The least travel, over its coordinates: boxes without extent have a travel too, which then adapts.
 constexpr double least_part_of_coordinates = 0x1p-40;
 constexpr double least_travel_at_all = 0x1p-500;
 
@@ -61,6 +58,7 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
   body.travel = std::max(
       {body.travel, tuning_.least_travel * size, least_part_of_coordinates * coordinates, least_travel_at_all});
   double time = lifetime(body, sweep);
+  body.speed = body.travel / time;
   if (time == never) return {present, never};
   // A jostled body may go anywhere next; a margin larger than its size would mostly be in vain.
   double margin = body.jostled >= tuning_.jostled_at && body.travel <= 0.5 * size ? body.travel : 0;
@@ -104,6 +102,19 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
   }
 }
 
+/// The part of its fat box that a body uses, if it is small: the box is long, and nothing has changed the motion of the
+/// body for some time.
+template <int Degree>
+std::optional<BoxSlant> KineticGrid<Degree>::slant(const Body& body, const StaticBox& present) const {
+  if constexpr (Degree == 1) {
+    if (body.jostled == 0 && body.travel > tuning_.slanted_at * present.extent() && corners_move_alike(body.box) &&
+        BoxSlant::pays(present, body.box.min.coefficients[1])) {
+      return BoxSlant(present, body.box.min.coefficients[1]);
+    }
+  }
+  return std::nullopt;
+}
+
 template <int Degree>
 auto KineticGrid<Degree>::fat_box(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now)
     -> FatBox {
@@ -131,6 +142,21 @@ std::uint32_t KineticGrid<Degree>::fit(Body& body, StaticBox& box, double now, d
   return fit(BoxSweep<Degree>(body.box, now));
 }
 
+/// The factor of the travel of a body that has not been jostled, if its box has lasted its time.
+template <int Degree>
+double KineticGrid<Degree>::travel_factor(std::uint32_t begun) const {
+  switch (begun) {
+    case 0:
+      return tuning_.grow_after_none;
+    case 1:
+      return tuning_.grow_after_one;
+    case 2:
+      return 1;
+    default:
+      return begun < tuning_.many ? tuning_.shrink_after_some : tuning_.shrink_after_many;
+  }
+}
+
 /// The travel of a jostled body is chosen so that its renewals cost about as much as its pairs and their tests. For
 /// other bodies it depends on how the last box ended. A renewal costs about as much as two pairs, so if a box that has
 /// lasted its time had one or two pairs, including those begun by others' renewals, a longer travel and a shorter one
@@ -146,18 +172,7 @@ void KineticGrid<Degree>::adapt_travel(BodySlot id, double now) {
     if (spent < tuning_.little_spent) body.travel = std::min(tuning_.grow_jostled * body.travel, greatest_travel);
     if (spent > tuning_.much_spent) body.travel *= tuning_.shrink_jostled;
   } else if (lasted) {
-    switch (body.begun) {
-      case 0:
-        body.travel = std::min(tuning_.grow_after_none * body.travel, greatest_travel);
-        break;
-      case 1:
-        body.travel = std::min(tuning_.grow_after_one * body.travel, greatest_travel);
-        break;
-      case 2:
-        break;
-      default:
-        body.travel *= body.begun < tuning_.many ? tuning_.shrink_after_some : tuning_.shrink_after_many;
-    }
+    body.travel = std::min(travel_factor(body.begun) * body.travel, greatest_travel);
   } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
     body.travel *= tuning_.shrink_after_turn;
   }
@@ -179,7 +194,7 @@ double KineticGrid<Degree>::kept_until(BodySlot id, const BoxSweep<Degree>& swee
   const Body& body = bodies_[id];
   const BoxBounds& fat = fat_boxes_.bounds(id);
   const BoxBounds bounds(present);
-  if (!fat.contains(bounds)) return now;
+  if (!fat.contains(bounds) || fat_boxes_.slanted(id)) return now;
   const double time = lifetime(body, sweep);
   if (time == never) return never;
   const double expiry = now + std::max((Degree == 1 ? tuning_.kept_share_straight : tuning_.kept_share_curved) * time,

@@ -68,11 +68,14 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   if (fat_boxes_.size() == 0 && !bodies.empty()) {
     const double spacing = typical_spacing(bodies.size(), [&](std::size_t i) { return box_at(*bodies[i].box, now); });
     first_travel_ = tuning_.first_travel * spacing;
+    for (Filter& filter : filters_) filter.travel = 0;
     fat_boxes_.choose_cells(spacing);
     return insert_first(bodies, now, listener);
   }
   for (const Entry& entry : bodies) {
-    bodies_[entry.slot].begin(*entry.box, first_travel_);
+    join_filter(entry.slot, listener);
+    const double travel = filters_[bodies_[entry.slot].filter].travel;
+    bodies_[entry.slot].begin(*entry.box, travel > 0 ? travel : first_travel_, now);
     const BoxSweep<Degree> sweep(bodies_[entry.slot].box, now);
     renew(entry.slot, sweep, sweep.begin(), now, listener);
   }
@@ -85,6 +88,7 @@ void KineticGrid<Degree>::insert_first(std::span<const Entry> bodies, double now
   const std::span<StaticBox> boxes(made.get(), bodies.size());
   const std::size_t threads = threads_for(bodies.size(), threads_);
   counters_.box_updates += bodies.size();
+  for (const Entry& entry : bodies) join_filter(entry.slot, listener);
   make_boxes(bodies, boxes, threads, now);
   cut_to_levels(bodies, boxes, now);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -128,7 +132,7 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
     std::uint64_t tries = 0;
     for (std::size_t i = first; i < last; ++i) {
       Body& body = bodies_[bodies[i].slot];
-      body.begin(*bodies[i].box, first_travel_);
+      body.begin(*bodies[i].box, first_travel_, now);
       tries += fit(body, boxes[i], now, std::numeric_limits<double>::max());
     }
     certificates[part] = tries;

@@ -40,6 +40,7 @@ void check(const GridTuning& tuning) {
   require_part(tuning.shrink_after_many, "GridTuning.shrink_after_many");
   require_part(tuning.shrink_after_turn, "GridTuning.shrink_after_turn");
   require_cost(tuning.found_per_pair, "GridTuning.found_per_pair");
+  require_cost(tuning.in_vain_per_box, "GridTuning.in_vain_per_box");
   require_part(tuning.kept_share_straight, "GridTuning.kept_share_straight");
   require_part(tuning.kept_share_curved, "GridTuning.kept_share_curved");
   require_cost(tuning.share_for_level, "GridTuning.share_for_level");

@@ -63,6 +63,13 @@ struct GridTuning {
   /// This many pairs found whose bodies may not collide count as one that begins, > 0.
   /// [Not measured: it matters where pairs are filtered.]
   std::uint32_t found_per_pair = 4;
+  /// A body whose travel is more than so many times its size uses a small part of its fat box, and pairs are sought in
+  /// that only, > 0.
+  double slanted_at = 4;
+  /// Bodies that ignore each other get cells of their own if more than so many of them are found in a fat box of one of
+  /// them. These cells are a further search for all others.
+  /// [Not measured: it matters where pairs are filtered.]
+  std::uint64_t in_vain_per_box = 2;
   /// After a change of motion the old fat box is kept if it lasts this share of a new one's lifetime, in (0, 1]: on
   /// straight paths, and on others.
   /// [+0.4, +1.3 %; +0.2, +0.3 %; the second, at degree 2: +0.9, +1.4 %; +1.3, +2.0 %]

@@ -21,6 +21,22 @@
 
 namespace kds::collision {
 
+/// With what a body may collide.
+struct CollisionFilter {
+  CollisionFilter(std::uint32_t its_category, std::uint32_t with) : category(its_category), collides_with(with) {}
+  explicit CollisionFilter(std::uint64_t number)
+      : CollisionFilter(static_cast<std::uint32_t>(number >> 32), static_cast<std::uint32_t>(number)) {}
+
+  /// Both masks as one number.
+  std::uint64_t number() const { return std::uint64_t{category} << 32 | collides_with; }
+  bool meets(const CollisionFilter& other) const {
+    return (category & other.collides_with) != 0 && (other.category & collides_with) != 0;
+  }
+
+  std::uint32_t category;
+  std::uint32_t collides_with;
+};
+
 /// The generation of the last body that a slot can have.
 inline constexpr std::uint32_t last_generation = ~std::uint32_t{0};
 
@@ -170,10 +186,8 @@ class Bodies {
   bool filters() const { return filters_; }
   /// Whether there is anything that it may collide with. Bodies that collide with nothing are not in the broad phase.
   bool collides(BodySlot slot) const { return bodies_[slot].category != 0 && bodies_[slot].collides_with != 0; }
-  bool may_collide(BodySlot a, BodySlot b) const {
-    return (bodies_[a].category & bodies_[b].collides_with) != 0 &&
-           (bodies_[b].category & bodies_[a].collides_with) != 0;
-  }
+  CollisionFilter filter(BodySlot slot) const { return {bodies_[slot].category, bodies_[slot].collides_with}; }
+  bool may_collide(BodySlot a, BodySlot b) const { return filter(a).meets(filter(b)); }
 
   /// Adds a body with its first motion. A null `shape` stands for a ball that is not turned. Precondition: valid.
   BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion);

@@ -68,15 +68,31 @@ void BasicWorld<Motion>::process_wall() requires(!turns<Motion>) {
     resting_.add({.a = id, .wall = wall, .normal = event.contact.normal, .point = point});
   } else {
     motion.coefficients[1][axis] = -rebound * out;
-    ++counters_.motion_updates;
-    set_motion(id, motion, false);
+    bounce_off_wall(id, motion);
   }
   if (!clustered) resting_.disturb(id);
   resting_.solve();
-  tell([&](Listener& listener) {
+  const auto report = [&](Listener& listener) {
     listener.wall(*this, event);
     if (suppressed) listener.rebound_suppressed_at_wall(*this, event);
-  });
+  };
+  try {
+    tell(report);
+  } catch (...) {
+    take_up_bounce();
+    throw;
+  }
+  take_up_bounce();
+}
+
+/// If only this body is concerned, its new motion is taken up by the parts of the world after it has been reported, or
+/// before the next change if a callback makes one.
+template <class Motion>
+void BasicWorld<Motion>::bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>) {
+  ++counters_.motion_updates;
+  if (!resting_.empty() || volumes_.any_ends()) return set_motion(slot, motion, false);
+  bodies_.move(slot, motion);
+  bounced_ = slot;
 }
 
 /// Whether the two that meet rest on each other from now on, without rebound: see ZenoPolicy. `pressed`: relative

@@ -312,8 +312,15 @@ void BasicWorld<Motion>::set_motion(BodySlot slot, const Motion& motion, bool ju
 }
 
 template <class Motion>
+void BasicWorld<Motion>::take_up_bounce() {
+  if (bounced_ == no_body) return;
+  const BodySlot slot = std::exchange(bounced_, no_body);
+  set_motion(slot, Motion(bodies_.motion(slot)), false);
+}
+
+template <class Motion>
 void BasicWorld<Motion>::remove_body(BodyId id) {
-  require_editable("World::remove_body");
+  require_editable("World::remove_body", bodies_.contains(id) ? body_slot(id) : no_body);
   const BodySlot slot = bodies_.slot_of(id);
   count_edit();
   change_or_fail([&] { take_out(slot); });
@@ -321,6 +328,7 @@ void BasicWorld<Motion>::remove_body(BodyId id) {
 
 template <class Motion>
 void BasicWorld<Motion>::take_out(BodySlot slot) {
+  if (bounced_ == slot) bounced_ = no_body;
   resting_.forget(slot);
   if (self_contacts_.touching(slot)) {  // It ceases to, unless that it does has not been reported yet.
     const BodyId id = bodies_.id_of(slot);

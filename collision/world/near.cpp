@@ -30,6 +30,7 @@ void BasicWorld<Motion>::answer(const char* function, const Ask& ask, const Meet
       if (bodies_.entered(slot) && (broad_phase_is_ahead || !bodies_.collides(slot))) look(slot);
     }
   }
+  if (bounced_ != no_body) look(bounced_);  // The broad phase knows the motion before.
   for (const BodySlot slot : bodies_.waiting()) {
     if (bodies_.alive(slot) && !bodies_.entered(slot)) look(slot);
   }

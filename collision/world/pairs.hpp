@@ -88,6 +88,10 @@ class Pairs final : public PairListener {
   void pairs_to_come(std::size_t pairs) override;
   bool filters() const override { return bodies_.filters(); }
   bool may_collide(BodySlot a, BodySlot b) const override { return bodies_.may_collide(a, b); }
+  std::uint64_t filter_of(BodySlot slot) const override { return bodies_.filter(slot).number(); }
+  bool filters_meet(std::uint64_t a, std::uint64_t b) const override {
+    return CollisionFilter(a).meets(CollisionFilter(b));
+  }
   void pair_began(BodySlot a, BodySlot b, double t) override;
   void pair_ended(BodySlot a, BodySlot b, double t) override;
   /// A new broad phase has been made, and these are all the pairs that it lists, in order.

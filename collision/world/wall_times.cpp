@@ -14,14 +14,14 @@ namespace kds::collision {
 template <class Motion>
 inline void WallTimes<Motion>::make_room(std::size_t slots) {
   collision::make_room(times_, slots);
-  if (is_bound_.size() < times_.slots()) is_bound_.resize(times_.slots());
+  if (wall_.size() < times_.slots()) wall_.resize(times_.slots());
 }
 
 /// Notes that a body meets no wall before a time. Precondition: there is room for it.
 template <class Motion>
 inline void WallTimes<Motion>::note(BodySlot slot, double earliest) {
   if (bodies_[slot].sensor) return;
-  is_bound_[slot] = true;
+  wall_[slot] = none_yet;
   // An earlier one is a lower bound as well: most are replaced again before they are due.
   if (times_.contains(slot) && times_.time(slot) > clock_.now && times_.time(slot) <= earliest) return;
   if (earliest <= clock_.horizon) {
@@ -81,22 +81,25 @@ void WallTimes<Motion>::extend_horizon() {
 template <class Motion>
 void WallTimes<Motion>::become() {
   times_.resize(0);
-  is_bound_.clear();
+  wall_.clear();
   extend_horizon();
 }
 
 template <class Motion>
 bool WallTimes<Motion>::certify() {
   const BodySlot slot = times_.top().slot;
-  if (!is_bound_[slot]) return false;
-  is_bound_[slot] = false;
+  if (wall_[slot] != none_yet) return false;
   double first = never;
+  wall_[slot] = 0;
   for (int wall = 0; wall < 6; ++wall) {
     const double horizon = std::min(first, clock_.horizon);
     if (earliest_wall_time(bodies_.path(slot), bodies_[slot].bounding_radius, *walls_, wall, clock_.now) > horizon) {
       continue;
     }
-    first = std::min(first, exact_time(slot, wall, horizon));
+    const double time = exact_time(slot, wall, horizon);
+    if (!(time < first)) continue;
+    first = time;
+    wall_[slot] = static_cast<signed char>(wall);
   }
   times_.set(slot, first);
   return true;
@@ -123,14 +126,6 @@ double WallTimes<Motion>::exact_time(BodySlot slot, int wall, double horizon) co
     return certificates::first_all_broken<Wall, DerivativeCertificate<Wall>>(clock_.now, horizon, {&wall_inside, 1},
                                                                              {&leaving, 1});
   }
-}
-
-template <class Motion>
-int WallTimes<Motion>::next_wall() const {
-  const double t = next_time();
-  int wall = 0;
-  while (wall < 6 && exact_time(next_body(), wall, t) != t) ++wall;
-  return wall;
 }
 
 #define KDS_INSTANTIATE(motion) template class WallTimes<motion>;

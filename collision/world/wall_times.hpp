@@ -42,13 +42,15 @@ class WallTimes {
   /// If next_time() is only a bound, replaces it by the exact time, which may be later; true if it was one.
   bool certify();
   /// The wall that the next body reaches then. Precondition: certify() has returned false.
-  int next_wall() const;
+  int next_wall() const { return wall_[next_body()]; }
   void extend_horizon();
 
   /// All bodies have been replaced. Times are not saved or loaded: they are functions of the motions.
   void become();
 
  private:
+  static constexpr signed char none_yet = -1;
+
   void make_room(std::size_t slots);
   void note(BodySlot slot, double earliest);
   double exact_time(BodySlot slot, int wall, double horizon) const;
@@ -56,8 +58,9 @@ class WallTimes {
   const Bodies<Motion>& bodies_;
   const std::optional<Walls>& walls_;
   const Clock& clock_;
-  CalendarQueue<> times_;       ///< slots are bodies
-  std::vector<char> is_bound_;  ///< by body: its time is a lower bound
+  CalendarQueue<> times_;  ///< slots are bodies
+  /// By body: the wall that it reaches at its time, or `none_yet` if that is only a bound.
+  std::vector<signed char> wall_;
 };
 
 #define KDS_DECLARE(motion) extern template class WallTimes<motion>;

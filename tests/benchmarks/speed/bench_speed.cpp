@@ -29,10 +29,10 @@ struct Part {
 };
 
 const std::vector<Part> parts{
-    {"peers", measure_peers},        {"rings", measure_rings},   {"cells", measure_cells},
-    {"growth", measure_growth},      {"gas", measure_gas},       {"models", measure_models},
-    {"threads", measure_threads},    {"bodies", measure_bodies}, {"frequency", measure_frequency},
-    {"one-hertz", measure_one_hertz}};
+    {"peers", measure_peers},         {"arena", measure_arena},        {"rings", measure_rings},
+    {"cells", measure_cells},         {"growth", measure_growth},      {"gas", measure_gas},
+    {"models", measure_models},       {"threads", measure_threads},    {"bodies", measure_bodies},
+    {"frequency", measure_frequency}, {"one-hertz", measure_one_hertz}};
 
 const Part& part(std::string_view name) {
   for (const Part& p : parts) {

@@ -27,6 +27,7 @@ struct Target {
 
 /// Parts of the benchmark; each writes its CSV, prints it, and returns its rows of the table.
 std::vector<Target> measure_peers(const Settings& settings);
+std::vector<Target> measure_arena(const Settings& settings);
 std::vector<Target> measure_rings(const Settings& settings);
 std::vector<Target> measure_cells(const Settings& settings);
 std::vector<Target> measure_growth(const Settings& settings);
