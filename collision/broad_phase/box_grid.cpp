@@ -38,13 +38,6 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding
   enter(id, changes);
 }
 
-void BoxGrid::set_item(Id id, const Item& item, const BoxSlant* slant) {
-  items_[id] = item;
-  if (!slant) return;
-  if (slants_.size() < items_.size()) slants_.resize(items_.size());
-  slants_[id] = *slant;
-}
-
 /// Cells of two levels may share a bucket, so a box may be found twice, or find itself.
 void BoxGrid::begin_search(Id id) {
   if (++search_ == 0) {  // the counter has wrapped round
@@ -57,12 +50,45 @@ void BoxGrid::begin_search(Id id) {
 /// False if the box has been reported in this search already.
 bool BoxGrid::report_once(Id id) { return std::exchange(items_[id].reported, search_) != search_; }
 
+/// Appends what overlaps just one of two places of a box. Without slants nothing is called in the loop, so that what it
+/// compares with stays in registers.
+template <bool slants>
+inline void BoxGrid::compare(const Places& places, const CellTable::Found& found, Changes& changes) {
+  const auto& [from, slant_from, to, slant_to] = places;
+  const BoxOverlaps overlaps(from.bounds, from.rounding, to.bounds, to.rounding);
+  constexpr unsigned only_before = 1, only_after = 2;
+  const unsigned met = meetings_[to.kind];
+  for (const Id number : found.numbers()) {
+    Item& other = items_[number];
+    unsigned overlap = overlaps.with(other.bounds, other.rounding);
+    if constexpr (slants) {
+      if ((overlap & only_before) != 0 && apart(from.bounds, slant_from, number)) overlap &= ~only_before;
+      if ((overlap & only_after) != 0 && apart(to.bounds, slant_to, number)) overlap &= ~only_after;
+    }
+    if (overlap != only_before && overlap != only_after) continue;
+    if ((met >> other.kind & 1) == 0 || !report_once(number)) continue;
+    (overlap == only_after ? changes.began : changes.ended).push_back(number);
+  }
+}
+
+/// Appends what overlaps a box.
+inline void BoxGrid::take_overlapping(Id id, const Item& item, const CellTable::Found& found, Ids& overlapping) {
+  const BoxOverlaps overlaps = overlaps_with(item);
+  const auto before = static_cast<std::ptrdiff_t>(overlapping.size());
+  for (const Id other : found.numbers()) {
+    const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
+    if (overlap && meets(item.kind, other) && report_once(other)) overlapping.push_back(other);
+  }
+  if (slants_.empty()) return;
+  const auto is_apart = [&](Id other) { return apart(item.bounds, slant(id), other); };
+  overlapping.erase(std::remove_if(overlapping.begin() + before, overlapping.end(), is_apart), overlapping.end());
+}
+
 void BoxGrid::enter(Id id, Changes& changes) {
   if (natives_.size() == natives_.room()) grow();
   if (guests_.size() + levels_.size() > guests_.room()) restart_guests();
   items_[id].entered = true;
   const Item item = items_[id];
-  const BoxOverlaps overlaps = overlaps_with(item);
   CellTable::Found found;
   begin_search(id);
   for (Level& level : levels_) {
@@ -81,11 +107,7 @@ void BoxGrid::enter(Id id, Changes& changes) {
       add_guest(level, ends, id, item.kind);
     }
   }
-  for (const Id other : found.numbers()) {
-    const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
-    if (!overlap || !meets(item.kind, other) || apart(item.bounds, slant(id), other)) continue;
-    if (report_once(other)) changes.began.push_back(other);
-  }
+  take_overlapping(id, item, found, changes.began);
   tidy();
 }
 
@@ -175,12 +197,7 @@ void BoxGrid::leave(Id id, Changes& changes, bool alone) {
   }
   if (alone) return;
   begin_search(id);
-  const BoxOverlaps overlaps = overlaps_with(item);
-  for (const Id other : found.numbers()) {
-    const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
-    if (!overlap || !meets(item.kind, other) || apart(item.bounds, slant(id), other)) continue;
-    if (report_once(other)) changes.ended.push_back(other);
-  }
+  take_overlapping(id, item, found, changes.ended);
 }
 
 void BoxGrid::remove(Id id, Changes& changes, bool alone) {
@@ -195,7 +212,8 @@ void BoxGrid::move(Id id, const Item& to, const BoxSlant* slant, Changes& change
   const Item from = items_[id];
   auto level = find_level(to.level);
   constexpr double near = 2 * units_per_cell;  // units of the lattice: then searches are small at all levels
-  if (from.bounds.joined(to.bounds).extent() * level->scale > near) return put_anew(id, to, slant, changes, alone);
+  const BoxBounds both = from.bounds.joined(to.bounds);
+  if (both.extent() * level->scale > near) return put_anew(id, to, slant, changes, alone);
   BoxSlant slant_before;
   if (from.slanted) slant_before = slants_[id];
   set_item(id, to, slant);
@@ -209,11 +227,10 @@ void BoxGrid::move(Id id, const Item& to, const BoxSlant* slant, Changes& change
     const Ends before(from.bounds, level->scale);
     const Ends after(to.bounds, level->scale);
     const Ends searched = sought(before, after);
-    const BoxBounds bounds = alone ? to.bounds : from.bounds.joined(to.bounds);
     level->idle = 0;
     for_each_kind(met, [&](Kind kind) {
       search_natives(*level, kind, searched, found);
-      search_guests(*level, kind, bounds, searched, found);
+      search_guests(*level, kind, alone ? to.bounds : both, searched, found);
     });
     replace(natives_, level->family_of(own), level->of[own].natives, before, after, id);
   }
@@ -225,18 +242,8 @@ void BoxGrid::move(Id id, const Item& to, const BoxSlant* slant, Changes& change
     count_guest(*level);
     replace(guests_, level->family_of(own), level->of[own].guests, before, after, id);
   }
-  const BoxOverlaps overlaps(from.bounds, from.rounding, to.bounds, to.rounding);
-  constexpr unsigned only_before = 1, only_after = 2;
-  const bool any_slants = !slants_.empty();
-  for (const Id other : found.numbers()) {
-    unsigned overlap = overlaps.with(items_[other].bounds, items_[other].rounding);
-    if (any_slants && overlap != 0) {
-      if (apart(from.bounds, from.slanted ? &slant_before : nullptr, other)) overlap &= ~only_before;
-      if (apart(to.bounds, slant, other)) overlap &= ~only_after;
-    }
-    if ((overlap != only_before && overlap != only_after) || !meets(own, other) || !report_once(other)) continue;
-    (overlap == only_after ? changes.began : changes.ended).push_back(other);
-  }
+  const Places places{from, from.slanted ? &slant_before : nullptr, to, slant};
+  slants_.empty() ? compare<false>(places, found, changes) : compare<true>(places, found, changes);
   tidy();
 }
 

@@ -51,7 +51,7 @@ class BoxGrid {
   /// Kinds are below `kinds`.
   using Kind = std::uint8_t;
   static constexpr std::size_t kinds = 4;
-  /// By kind: bit k is set if it meets kind k. Symmetric. At first all meet all.
+  /// By kind: bit k is set if it meets kind k. Symmetric. At first there is only kind 0, which meets itself.
   using Meetings = std::array<std::uint8_t, kinds>;
 
   /// Changes with more, which are few, allocate memory.
@@ -238,7 +238,23 @@ class BoxGrid {
   bool apart(const BoxBounds& bounds, const BoxSlant* slant, Id other) const {
     return (slant && slant->apart(items_[other].bounds)) || (items_[other].slanted && slants_[other].apart(bounds));
   }
-  void set_item(Id id, const Item& item, const BoxSlant* slant);
+  struct Places {
+    const Item& from;
+    const BoxSlant* slant_from;
+    const Item& to;
+    const BoxSlant* slant_to;
+  };
+  template <bool slants>
+  void compare(const Places& places, const CellTable::Found& found, Changes& changes);
+  void take_overlapping(Id id, const Item& item, const CellTable::Found& found, Ids& overlapping);
+  void set_item(Id id, const Item& item, const BoxSlant* slant) {
+    items_[id] = item;
+    if (slant) set_slant(id, *slant);
+  }
+  void set_slant(Id id, const BoxSlant& slant) {
+    if (slants_.size() < items_.size()) slants_.resize(items_.size());
+    slants_[id] = slant;
+  }
   void leave(Id id, Changes& changes, bool alone);
   void move(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone);
   void put_anew(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone);
@@ -249,8 +265,15 @@ class BoxGrid {
   void restart(std::size_t room);
   void refine();
   bool search_in(const Level& level, Kind kind, const StaticBox& box, Ids& found) const;
-  void search_natives(const Level& level, Kind kind, const Ends& box, CellTable::Found& found);
-  void search_guests(const Level& level, Kind kind, const BoxBounds& bounds, const Ends& box, CellTable::Found& found);
+  void search_natives(const Level& level, Kind kind, const Ends& box, CellTable::Found& found) {
+    const Population& natives = level.of[kind].natives;
+    if (natives.count != 0) search(natives_, level.family_of(kind), natives, box, found);
+  }
+  void search_guests(const Level& level, Kind kind, const BoxBounds& bounds, const Ends& box, CellTable::Found& found) {
+    const Population& guests = level.of[kind].guests;
+    if (guests.count == 0 || search_finer(level, kind, bounds, found)) return;
+    search(guests_, level.family_of(kind), guests, box, found);
+  }
   bool search_finer(const Level& level, Kind kind, const BoxBounds& bounds, CellTable::Found& found);
   void search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,
               CellTable::Found& found);
@@ -269,7 +292,7 @@ class BoxGrid {
   Exponent finest_ = least;    ///< no box is native of a finer level
   std::int64_t crowding_ = 0;  ///< buckets on chains that searches have visited, minus an allowance for each cell
   bool idle_ = false;          ///< some level has had too much idle work
-  Meetings meetings_{0xF, 0xF, 0xF, 0xF};
+  Meetings meetings_{1};
 };
 
 }  // namespace kds::collision

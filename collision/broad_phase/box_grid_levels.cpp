@@ -155,23 +155,11 @@ void BoxGrid::replace(CellTable& table, std::uint64_t family, Population& popula
   }
 }
 
-void BoxGrid::search_natives(const Level& level, Kind kind, const Ends& box, CellTable::Found& found) {
-  const Population& natives = level.of[kind].natives;
-  if (natives.count != 0) search(natives_, level.family_of(kind), natives, box, found);
-}
-
-void BoxGrid::search_guests(const Level& level, Kind kind, const BoxBounds& bounds, const Ends& box,
-                            CellTable::Found& found) {
-  const Population& guests = level.of[kind].guests;
-  if (guests.count == 0 || search_finer(level, kind, bounds, found)) return;
-  search(guests_, level.family_of(kind), guests, box, found);
-}
-
 /// Instead of the guests of a level, searches the natives of all finer ones, if their cells in the box are few: in a
 /// large cell there are many guests, and most are outside a box that is flat. False, without a search, if it does not
 /// pay.
 bool BoxGrid::search_finer(const Level& level, Kind kind, const BoxBounds& bounds, CellTable::Found& found) {
-  constexpr std::size_t guests_per_cell = 4;  // of which a search compares as many in the time for one cell
+  constexpr std::size_t guests_per_cell = 16;  // of which a search compares so many in the time for one cell
   const std::size_t most = level.of[kind].guests.count / guests_per_cell;
   std::size_t cells = 0;
   const auto each_finer = [&](const auto& visit) {
@@ -200,7 +188,7 @@ bool BoxGrid::search_finer(const Level& level, Kind kind, const BoxBounds& bound
 }
 
 /// Appends to `found` the boxes that overlap on the lattice, and maybe some others. Precondition: the box is at most a
-/// few cells large, or the population is in few.
+/// few cells large, or the population is in few; the population is not empty.
 void BoxGrid::search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,
                      CellTable::Found& found) {
   CellTable::Block block;

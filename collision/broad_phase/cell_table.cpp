@@ -109,16 +109,22 @@ std::size_t CellTable::find(const Block& block, Found& found) const {
   return walked;
 }
 
+/// Most are in the first bucket; further ones are full but for one, and are compared four numbers at a time.
 CellTable::Where CellTable::where(std::size_t place, Ends ends, std::uint32_t number) {
-  for (Bucket* bucket = &buckets_[place];; bucket = &chained_[bucket->next]) {
+  Bucket* bucket = &buckets_[place];
+  for (std::size_t i = 0; i < bucket->count; ++i) {
+    if (bucket->numbers[i] == number && bucket->ends[i] == ends) return {bucket, i};
+  }
+  while (bucket->next != none) {
+    bucket = &chained_[bucket->next];
     unsigned same = 0;
     for (std::size_t i = 0; i < most; ++i) same |= unsigned{bucket->numbers[i] == number} << i;
     for (; same != 0; same &= same - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(same));
       if (bucket->ends[i] == ends) return {bucket, i};
     }
-    if (bucket->next == none) return {nullptr, 0};
   }
+  return {nullptr, 0};
 }
 
 bool CellTable::replace(std::size_t place, Ends from, Ends to, std::uint32_t number) {

@@ -13,6 +13,19 @@ constexpr double much_slower = 0.25;
 
 }  // namespace
 
+/// `a`: the body whose fat box is new. The pair does not count for the travel of the other one if that is far slower:
+/// it would begin whatever that is.
+template <int Degree>
+inline void KineticGrid<Degree>::report_pair(BodySlot a, BodySlot b, double now, PairListener& listener) {
+  Body& first = bodies_[a];
+  Body& second = bodies_[b];
+  ++first.partners;
+  ++second.partners;
+  ++first.begun;
+  ++(second.speed >= much_slower * first.speed ? second.begun : second.in_vain);
+  listener.pair_began(std::min(a, b), std::max(a, b), now);
+}
+
 /// Sorts changes in the order of bodies, independent of the cells in which they were found.
 template <int Degree>
 void KineticGrid<Degree>::report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener) {
@@ -39,19 +52,6 @@ void KineticGrid<Degree>::report(BodySlot id, BoxGrid::Changes& changes, double 
   }
 }
 
-/// `a`: the body whose fat box is new. The pair does not count for the travel of the other one if that is far slower:
-/// it would begin whatever that is.
-template <int Degree>
-void KineticGrid<Degree>::report_pair(BodySlot a, BodySlot b, double now, PairListener& listener) {
-  Body& first = bodies_[a];
-  Body& second = bodies_[b];
-  ++first.partners;
-  ++second.partners;
-  ++first.begun;
-  ++(second.speed >= much_slower * first.speed ? second.begun : second.in_vain);
-  listener.pair_began(std::min(a, b), std::max(a, b), now);
-}
-
 /// An earlier entry stays in the queue: most boxes are replaced again before it is due.
 template <int Degree>
 void KineticGrid<Degree>::set_expiry(BodySlot id, double expiry, double now) {
@@ -64,6 +64,19 @@ template <int Degree>
 void KineticGrid<Degree>::extend_horizon(double now, double horizon) {
   horizon_ = horizon;
   visit([&](BodySlot id, const KineticBox<Degree>&) { set_expiry(id, bodies_[id].expiry, now); });
+}
+
+/// The part of its fat box that a body uses, if it is small: the box is long, and nothing has changed the motion of the
+/// body for some time.
+template <int Degree>
+inline std::optional<BoxSlant> KineticGrid<Degree>::slant(const Body& body, const StaticBox& present) const {
+  if constexpr (Degree == 1) {
+    if (body.jostled == 0 && body.travel > tuning_.slanted_at * present.extent() && corners_move_alike(body.box) &&
+        BoxSlant::pays(present, body.box.min.coefficients[1])) {
+      return BoxSlant(present, body.box.min.coefficients[1]);
+    }
+  }
+  return std::nullopt;
 }
 
 /// True if its fat box has begun or ceased to overlap others.

@@ -102,19 +102,6 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
   }
 }
 
-/// The part of its fat box that a body uses, if it is small: the box is long, and nothing has changed the motion of the
-/// body for some time.
-template <int Degree>
-std::optional<BoxSlant> KineticGrid<Degree>::slant(const Body& body, const StaticBox& present) const {
-  if constexpr (Degree == 1) {
-    if (body.jostled == 0 && body.travel > tuning_.slanted_at * present.extent() && corners_move_alike(body.box) &&
-        BoxSlant::pays(present, body.box.min.coefficients[1])) {
-      return BoxSlant(present, body.box.min.coefficients[1]);
-    }
-  }
-  return std::nullopt;
-}
-
 template <int Degree>
 auto KineticGrid<Degree>::fat_box(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now)
     -> FatBox {

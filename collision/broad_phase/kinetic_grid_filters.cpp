@@ -63,8 +63,10 @@ void KineticGrid<Degree>::separate(const PairListener& listener) {
     changed = true;
   }
   if (!changed) return;
-  BoxGrid::Meetings meetings;
-  meetings.fill((1 << BoxGrid::kinds) - 1);
+  std::uint8_t used = 1;
+  for (const Filter& filter : filters_) used |= static_cast<std::uint8_t>(1u << filter.kind);
+  BoxGrid::Meetings meetings{};
+  for (BoxGrid::Kind kind = 0; kind < BoxGrid::kinds; ++kind) meetings[kind] = (used >> kind & 1) != 0 ? used : 0;
   for (const Filter& a : filters_) {
     for (const Filter& b : filters_) {
       if (a.kind == 0 || b.kind == 0 || listener.filters_meet(a.number, b.number)) continue;

@@ -38,7 +38,7 @@ template <class Motion>
 void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
   const Stopwatch watch(profile_, Work::prune);
   clock_.now = t;
-  if (!bodies_.may_collide(a, b)) return;
+  if (bodies_.filters() && !bodies_.may_collide(a, b)) return;
   const Slot overlapping = unlisted_ > 0 ? find(a, b) : none;
   if (overlapping != none) --unlisted_;
   const Slot slot = overlapping != none ? overlapping : add(a, b);

@@ -77,10 +77,10 @@ void Volumes<Motion>::remove(BodySlot slot) {
 
 template <class Motion>
 KineticBox<Motion::degree> Volumes<Motion>::renew(BodySlot slot) {
-  if (bends(slot)) [[unlikely]]
-    note_shape(slot);
-  if (!from_caller(slot)) [[likely]]
-    return box(slot);
+  if (!any_ends()) [[likely]]
+    return rigid_box(slot);
+  if (bends(slot)) note_shape(slot);
+  if (!from_caller(slot)) return box(slot);
   const Box made = [&] {
     const kds::detail::RaisedFlag calling(calling_);
     return given_[slot]->function(clock_.now, bodies_.motion(slot));

@@ -99,6 +99,7 @@ class Volumes {
   bool asked(BodySlot slot) const { return bodies_[slot].entered || !from_caller(slot); }
   Box box_or_ball(BodySlot slot) const;
   Box bare_box(BodySlot slot) const;
+  Box rigid_box(BodySlot slot) const;
   bool is_round(BodySlot slot) const;
   void set_end(BodySlot slot);
   void note_shape(BodySlot slot);
@@ -133,6 +134,13 @@ inline bool Volumes<Motion>::is_round(BodySlot slot) const {
 template <class Motion>
 inline KineticBox<Motion::degree> Volumes<Motion>::bare_box(BodySlot slot) const {
   if (from_caller(slot)) return given_[slot]->box;
+  if (bends(slot)) return box_around<Motion::degree>(bodies_.path(slot), bent_[slot]->low, bent_[slot]->high);
+  return rigid_box(slot);
+}
+
+/// The same of a body that does not bend and whose volume is not the caller's.
+template <class Motion>
+inline KineticBox<Motion::degree> Volumes<Motion>::rigid_box(BodySlot slot) const {
   const detail::Body<Motion>& b = bodies_[slot];
   if constexpr (turns<Motion>) {
     // Each piece of a body that precesses has another axis, so its volume is the bounding ball.
@@ -141,7 +149,6 @@ inline KineticBox<Motion::degree> Volumes<Motion>::bare_box(BodySlot slot) const
       return box_around<Motion::degree>(bodies_.path(slot), -half_extents, half_extents);
     }
   }
-  if (bends(slot)) return box_around<Motion::degree>(bodies_.path(slot), bent_[slot]->low, bent_[slot]->high);
   const bool sphere = is_round(slot);
   const Eigen::Vector3d half_extents = Eigen::Vector3d::Constant(b.bounding_radius);
   // Not if pairs are reported: these are pairs whose boxes overlap unrounded.

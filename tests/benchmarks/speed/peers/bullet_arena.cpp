@@ -33,8 +33,8 @@ class FrameArena {
 
   void run_frame(double until) {
     for (Target& target : targets_) {
-      btDbvtVolume volume = box(target, until);
-      tree_.update(target.leaf, volume);
+      btDbvtVolume now = box(target, until);
+      tree_.update(target.leaf, now);
     }
     for (std::uint32_t i = 0; i < bullets_.size(); ++i) ask(i, until);
     process();
@@ -119,24 +119,41 @@ class FrameArena {
     predict_wall(target, Arena::target_radius);
   }
 
-  btDbvtVolume swept(const Vector3d& p, const Vector3d& q, double radius) const {
-    const Eigen::Array3d low = p.cwiseMin(q).array() - (radius + margin_);
-    const Eigen::Array3d high = p.cwiseMax(q).array() + (radius + margin_);
-    const auto vector = [](const Eigen::Array3d& v) {
-      return btVector3(static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2]));
+  /// Of places on the way of a body, rounded outward.
+  struct Places {
+    Vector3d low, high;
+    void add(const Vector3d& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
+  };
+  btDbvtVolume volume(const Places& places, double radius) const {
+    const auto vector = [&](const Vector3d& v, double margin) {
+      return btVector3(static_cast<btScalar>(v[0] + margin), static_cast<btScalar>(v[1] + margin),
+                       static_cast<btScalar>(v[2] + margin));
     };
-    return btDbvtVolume::FromMM(vector(low), vector(high));
+    return btDbvtVolume::FromMM(vector(places.low, -radius - margin_), vector(places.high, radius + margin_));
   }
-  /// Until the end of the frame, reflections included: it stays inside the box that it would sweep through the wall.
+  /// Until the end of the frame, with reflections.
   btDbvtVolume box(const Target& target, double until) const {
-    return swept(target.at(target.from), target.at(until), Arena::target_radius);
+    Places places{target.at(target.from), target.at(target.from)};
+    if (target.wall <= until) {
+      Body later = target;
+      while (later.wall <= until) {
+        reflect(later);
+        places.add(later.position);
+      }
+      places.add(later.at(until));
+    } else {
+      places.add(target.at(until));
+    }
+    return volume(places, Arena::target_radius);
   }
 
   void ask(std::uint32_t i, double until) {
     const Bullet& bullet = bullets_[i];
     const double end = std::min(until, bullet.wall);
     finder_.found.clear();
-    tree_.collideTV(tree_.m_root, swept(bullet.at(bullet.from), bullet.at(end), Arena::bullet_radius), finder_);
+    Places way{bullet.at(bullet.from), bullet.at(bullet.from)};
+    way.add(bullet.at(end));
+    tree_.collideTV(tree_.m_root, volume(way, Arena::bullet_radius), finder_);
     for (const std::uint32_t t : finder_.found) {
       Body target = targets_[t];
       for (double from = bullet.from; from < end;) {
