@@ -72,16 +72,16 @@ inline void BoxGrid::compare(const Places& places, const CellTable::Found& found
 }
 
 /// Appends what overlaps a box.
+template <bool slants>
 inline void BoxGrid::take_overlapping(Id id, const Item& item, const CellTable::Found& found, Ids& overlapping) {
   const BoxOverlaps overlaps = overlaps_with(item);
-  const auto before = static_cast<std::ptrdiff_t>(overlapping.size());
   for (const Id other : found.numbers()) {
-    const bool overlap = overlaps.with(items_[other].bounds, items_[other].rounding) != 0;
-    if (overlap && meets(item.kind, other) && report_once(other)) overlapping.push_back(other);
+    if (overlaps.with(items_[other].bounds, items_[other].rounding) == 0 || !meets(item.kind, other)) continue;
+    if constexpr (slants) {
+      if (apart(item.bounds, slant(id), other)) continue;
+    }
+    if (report_once(other)) overlapping.push_back(other);
   }
-  if (slants_.empty()) return;
-  const auto is_apart = [&](Id other) { return apart(item.bounds, slant(id), other); };
-  overlapping.erase(std::remove_if(overlapping.begin() + before, overlapping.end(), is_apart), overlapping.end());
 }
 
 void BoxGrid::enter(Id id, Changes& changes) {
@@ -97,7 +97,7 @@ void BoxGrid::enter(Id id, Changes& changes) {
     const bool native = level.exponent == item.level;
     for_each_kind(meetings_[item.kind], [&](Kind kind) {
       search_natives(level, kind, ends, found);
-      if (native) search_guests(level, kind, item.bounds, ends, found);
+      if (native) search_guests(level, kind, ends, found);
     });
     if (native) {
       level.idle = 0;
@@ -107,7 +107,8 @@ void BoxGrid::enter(Id id, Changes& changes) {
       add_guest(level, ends, id, item.kind);
     }
   }
-  take_overlapping(id, item, found, changes.began);
+  slants_.empty() ? take_overlapping<false>(id, item, found, changes.began)
+                  : take_overlapping<true>(id, item, found, changes.began);
   tidy();
 }
 
@@ -192,12 +193,13 @@ void BoxGrid::leave(Id id, Changes& changes, bool alone) {
     if (alone) continue;
     for_each_kind(meetings_[item.kind], [&](Kind kind) {
       search_natives(level, kind, ends, found);
-      if (native) search_guests(level, kind, item.bounds, ends, found);
+      if (native) search_guests(level, kind, ends, found);
     });
   }
   if (alone) return;
   begin_search(id);
-  take_overlapping(id, item, found, changes.ended);
+  slants_.empty() ? take_overlapping<false>(id, item, found, changes.ended)
+                  : take_overlapping<true>(id, item, found, changes.ended);
 }
 
 void BoxGrid::remove(Id id, Changes& changes, bool alone) {
@@ -212,8 +214,7 @@ void BoxGrid::move(Id id, const Item& to, const BoxSlant* slant, Changes& change
   const Item from = items_[id];
   auto level = find_level(to.level);
   constexpr double near = 2 * units_per_cell;  // units of the lattice: then searches are small at all levels
-  const BoxBounds both = from.bounds.joined(to.bounds);
-  if (both.extent() * level->scale > near) return put_anew(id, to, slant, changes, alone);
+  if (from.bounds.joined(to.bounds).extent() * level->scale > near) return put_anew(id, to, slant, changes, alone);
   BoxSlant slant_before;
   if (from.slanted) slant_before = slants_[id];
   set_item(id, to, slant);
@@ -230,7 +231,7 @@ void BoxGrid::move(Id id, const Item& to, const BoxSlant* slant, Changes& change
     level->idle = 0;
     for_each_kind(met, [&](Kind kind) {
       search_natives(*level, kind, searched, found);
-      search_guests(*level, kind, alone ? to.bounds : both, searched, found);
+      search_guests(*level, kind, searched, found);
     });
     replace(natives_, level->family_of(own), level->of[own].natives, before, after, id);
   }

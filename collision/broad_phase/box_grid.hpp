@@ -246,6 +246,7 @@ class BoxGrid {
   };
   template <bool slants>
   void compare(const Places& places, const CellTable::Found& found, Changes& changes);
+  template <bool slants>
   void take_overlapping(Id id, const Item& item, const CellTable::Found& found, Ids& overlapping);
   void set_item(Id id, const Item& item, const BoxSlant* slant) {
     items_[id] = item;
@@ -269,12 +270,10 @@ class BoxGrid {
     const Population& natives = level.of[kind].natives;
     if (natives.count != 0) search(natives_, level.family_of(kind), natives, box, found);
   }
-  void search_guests(const Level& level, Kind kind, const BoxBounds& bounds, const Ends& box, CellTable::Found& found) {
+  void search_guests(const Level& level, Kind kind, const Ends& box, CellTable::Found& found) {
     const Population& guests = level.of[kind].guests;
-    if (guests.count == 0 || search_finer(level, kind, bounds, found)) return;
-    search(guests_, level.family_of(kind), guests, box, found);
+    if (guests.count != 0) search(guests_, level.family_of(kind), guests, box, found);
   }
-  bool search_finer(const Level& level, Kind kind, const BoxBounds& bounds, CellTable::Found& found);
   void search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,
               CellTable::Found& found);
 

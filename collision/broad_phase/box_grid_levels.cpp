@@ -155,38 +155,6 @@ void BoxGrid::replace(CellTable& table, std::uint64_t family, Population& popula
   }
 }
 
-/// Instead of the guests of a level, searches the natives of all finer ones, if their cells in the box are few: in a
-/// large cell there are many guests, and most are outside a box that is flat. False, without a search, if it does not
-/// pay.
-bool BoxGrid::search_finer(const Level& level, Kind kind, const BoxBounds& bounds, CellTable::Found& found) {
-  constexpr std::size_t guests_per_cell = 16;  // of which a search compares so many in the time for one cell
-  const std::size_t most = level.of[kind].guests.count / guests_per_cell;
-  std::size_t cells = 0;
-  const auto each_finer = [&](const auto& visit) {
-    for (const Level& finer : levels_) {
-      if (&finer == &level) return true;
-      const Population& natives = finer.of[kind].natives;
-      if (natives.count != 0 && !visit(finer, natives, Ends(bounds, finer.scale))) return false;
-    }
-    return true;
-  };
-  const bool few = each_finer([&](const Level&, const Population& natives, const Ends& box) {
-    std::size_t here = 1;
-    for (std::size_t d = 0; d < 3; ++d) {
-      const std::int64_t low = Ends::cell_of(std::max(box.values[d] - natives.span, natives.low[d]));
-      const std::int64_t high = Ends::cell_of(std::min(-box.values[d + 3], natives.high[d]));
-      if (low > high) return true;
-      if (high - low >= static_cast<std::int64_t>(CellTable::Block::longest)) return false;
-      here *= static_cast<std::size_t>(high - low + 1);
-    }
-    return (cells += here) <= most;
-  });
-  return few && each_finer([&](const Level& finer, const Population& natives, const Ends& box) {
-           search(natives_, finer.family_of(kind), natives, box, found);
-           return true;
-         });
-}
-
 /// Appends to `found` the boxes that overlap on the lattice, and maybe some others. Precondition: the box is at most a
 /// few cells large, or the population is in few; the population is not empty.
 void BoxGrid::search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,

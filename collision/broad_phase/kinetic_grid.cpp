@@ -71,7 +71,9 @@ void KineticGrid<Degree>::extend_horizon(double now, double horizon) {
 template <int Degree>
 inline std::optional<BoxSlant> KineticGrid<Degree>::slant(const Body& body, const StaticBox& present) const {
   if constexpr (Degree == 1) {
-    if (body.jostled == 0 && body.travel > tuning_.slanted_at * present.extent() && corners_move_alike(body.box) &&
+    // (The second condition follows from the next, and costs less.)
+    if (body.jostled == 0 && body.travel > tuning_.slanted_at * 2 * body.box.rounding &&
+        body.travel > tuning_.slanted_at * present.extent() && corners_move_alike(body.box) &&
         BoxSlant::pays(present, body.box.min.coefficients[1])) {
       return BoxSlant(present, body.box.min.coefficients[1]);
     }

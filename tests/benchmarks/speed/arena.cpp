@@ -3,7 +3,9 @@
 
 #include "collision/world.hpp"
 
+#include <cstddef>
 #include <ranges>
+#include <stdexcept>
 
 namespace speed {
 
@@ -88,7 +90,6 @@ ArenaOutcome run_arena(const Arena& arena, std::vector<Hit>& hits) {
   World<1> world({.response = Response::none, .walls = Walls{arena.low, arena.high}}, &game);
   for (std::uint32_t body = 0; body < arena.bodies(); ++body) game.add(world, body);
   world.advance_to(0);
-  game.replace_the_dead(world);
   const double set_up = kds::benchmarks::thread_seconds();
   for (std::uint64_t frame = 1; frame <= arena.frames(); ++frame) {
     world.advance_to(arena.end_of(frame));
