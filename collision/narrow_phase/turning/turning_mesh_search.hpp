@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/turning/four_triangles.hpp"
 #include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_touch.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
@@ -58,6 +59,9 @@ class TurningMeshSearch {
     std::uint32_t a, b;
     friend auto operator<=>(const Leaves&, const Leaves&) = default;
   };
+  /// Whether floats tell of four pairs of leaves more than their boxes do.
+  static constexpr bool tells_triangles = std::is_same_v<Side, MeshOfPair>;
+
   enum class Known : std::uint8_t {
     apart_until,  ///< by doubles
     stuck,        ///< doubles do not tell more: exact signs have to
@@ -69,7 +73,8 @@ class TurningMeshSearch {
     Leaves nodes;
     Known known;
     int tries = 0;  ///< by exact signs, one after the other
-    friend auto operator<=>(const Item&, const Item&) = default;
+    /// Which one of the same time is first makes no difference.
+    friend bool operator>(const Item& x, const Item& y) { return x.time > y.time; }
   };
 
   /// The search of one first contact.
@@ -77,7 +82,8 @@ class TurningMeshSearch {
    public:
     Front(const TurningMeshSearch& search, double t0, double horizon, ContactMode mode)
         : search_(search), horizon_(horizon), mode_(mode), view_(search.view(t0, horizon)) {
-      visit({0, 0}, t0);
+      visits_.push_back({{0, 0}, t0});
+      visit_all();
     }
     double next();
 
@@ -85,10 +91,23 @@ class TurningMeshSearch {
     void push(double t, Leaves nodes, Known known, int tries = 0) {
       if (t <= horizon_) queue_.push({t, view_.time, nodes, known, tries});
     }
+    /// The time until which a part of the time ahead lasts.
+    double apart_until(float part) const {
+      const double wait = part >= 1 ? view_.ahead : static_cast<double>(part) * view_.ahead * (1 - 0x1p-30);
+      return wait > horizon_ - view_.time ? never : next_down(view_.time + wait);
+    }
     void look(double t) {
       if (t != view_.time) view_ = search_.view(t, horizon_);
     }
-    void visit(Leaves nodes, double from, int tries = 0);
+    /// What waits to be looked at in the same view.
+    struct Visit {
+      Leaves nodes;
+      double from;  ///< they are known to be apart up to then, which is not before the view
+      int tries = 0;
+    };
+    void visit_all();
+    void visit_triangles(const Visit& visit);
+    void visit_four_triangles();
     void visit_exactly(Leaves nodes, int tries);
     bool counts(Leaves nodes) const;
 
@@ -97,6 +116,7 @@ class TurningMeshSearch {
     ContactMode mode_;
     View view_;  ///< at the time that is looked at, or not long before
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
+    std::vector<Visit> visits_, leaves_;  ///< of visit_all()
   };
 
   View view(double t, double horizon) const { return {motion_a_, motion_b_, units_a_, units_b_, t, horizon}; }
@@ -114,33 +134,69 @@ class TurningMeshSearch {
   }
   bool are_leaves(Leaves nodes) const { return a_.is_leaf(nodes.a) && b_.is_leaf(nodes.b); }
 
-  /// Calls ask(child pair) for the halves of the larger node until it returns true.
-  template <class Ask>
-  bool of_halves(Leaves nodes, const Ask& ask) const {
+  /// Calls take(child pair) for the halves of the larger node.
+  template <class Take>
+  void open(Leaves nodes, const Take& take) const {
     if (b_.is_leaf(nodes.b) || (!a_.is_leaf(nodes.a) && a_.radius(nodes.a) >= b_.radius(nodes.b))) {
       const std::uint32_t child = a_.first_child(nodes.a);
-      return ask(Leaves{child, nodes.b}) || ask(Leaves{child + 1, nodes.b});
+      take(Leaves{child + 1, nodes.b}), take(Leaves{child, nodes.b});
+    } else {
+      const std::uint32_t child = b_.first_child(nodes.b);
+      take(Leaves{nodes.a, child + 1}), take(Leaves{nodes.a, child});
     }
-    const std::uint32_t child = b_.first_child(nodes.b);
-    return ask(Leaves{nodes.a, child}) || ask(Leaves{nodes.a, child + 1});
+  }
+
+  /// Up to four pairs of nodes, taken from the end of a list; where there are less the last one more than once.
+  template <class Pairs>
+  struct Four {
+    std::array<Pairs, 4> pairs;
+    FourNodes a, b;
+    std::size_t count = 0;
+  };
+  static const Leaves& nodes_of(const Leaves& pair) { return pair; }
+  template <class Visit>
+  static const Leaves& nodes_of(const Visit& visit) {
+    return visit.nodes;
+  }
+  template <class Pairs>
+  Four<Pairs> take_four(std::vector<Pairs>& list) const {
+    Four<Pairs> four;
+    four.count = std::min<std::size_t>(4, list.size());
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t taken = std::min(i, four.count - 1);
+      const Leaves& pair = nodes_of(four.pairs[i] = list[list.size() - 1 - taken]);
+      four.a[i] = &a_.node(pair.a), four.b[i] = &b_.node(pair.b);
+    }
+    list.resize(list.size() - four.count);
+    return four;
   }
 
   /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than twice a margin, until it returns
   /// true.
   template <class Ask>
-  bool every_near(const View& view, double margin, Leaves nodes, const Ask& ask) const {
-    if (nodes_apart_by(margin, view, a_.node(nodes.a), b_.node(nodes.b))) return false;
-    if (!are_leaves(nodes)) {
-      return of_halves(nodes, [&](Leaves halves) { return every_near(view, margin, halves, ask); });
+  bool every_near(const View& view, double margin, const Ask& ask) const {
+    std::vector<Leaves> list{{0, 0}};
+    while (!list.empty()) {
+      const auto four = take_four(list);
+      const unsigned apart = nodes_apart_by(margin, view, four.a, four.b);
+      for (std::size_t i = four.count; i-- > 0;) {
+        if (apart >> i & 1) continue;
+        const Leaves& nodes = four.pairs[i];
+        if (!are_leaves(nodes)) {
+          open(nodes, [&](Leaves halves) { list.push_back(halves); });
+          continue;
+        }
+        const Pair pair = this->pair(nodes);
+        if (pair.quick_gap(view) > 2 * (pair.error(view) + margin)) continue;
+        if (ask(nodes, pair)) return true;
+      }
     }
-    const Pair pair = this->pair(nodes);
-    if (pair.quick_gap(view) > 2 * (pair.error(view) + margin)) return false;
-    return ask(nodes, pair);
+    return false;
   }
   /// The same of those that penetrate just after the time of the view.
   template <class Ask>
   bool find(const View& view, const Ask& ask) const {
-    return every_near(view, 0, {0, 0}, [&](Leaves leaves, const Pair& pair) {
+    return every_near(view, 0, [&](Leaves leaves, const Pair& pair) {
       return ways(pair, view).penetrate(view.time) && ask(leaves, pair);
     });
   }
@@ -171,14 +227,26 @@ double TurningMeshSearch<Degree, Side>::first_contact(double t0, double horizon,
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::Front::next() {
   constexpr double part = 0.25;
+  constexpr std::size_t most_together = 8;
+  const auto soon_enough = [&](const Item& item) {
+    return item.time - view_.time <= part * (item.time - item.seen);
+  };
   while (!queue_.empty()) {
     const Item item = queue_.top();
     queue_.pop();
     switch (item.known) {
       case Known::apart_until:
         if (item.time > horizon_) return never;
-        if (!(item.time - view_.time <= part * (item.time - item.seen))) look(item.time);
-        visit(item.nodes, item.time, item.tries);
+        if (!soon_enough(item)) look(item.time);
+        visits_.push_back({item.nodes, item.time, item.tries});
+        // Others that this view is good for, too, so that four are looked at together.
+        while (!queue_.empty() && visits_.size() < most_together) {
+          const Item& other = queue_.top();
+          if (other.known != Known::apart_until || other.time > horizon_ || !soon_enough(other)) break;
+          visits_.push_back({other.nodes, other.time, other.tries});
+          queue_.pop();
+        }
+        visit_all();
         break;
       case Known::stuck:
         look(item.time);
@@ -193,27 +261,70 @@ double TurningMeshSearch<Degree, Side>::Front::next() {
   return never;
 }
 
-/// By doubles, of two that are known to be apart up to a time not before that of the view.
+/// By floats, and triangles by doubles.
 template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit(Leaves nodes, double from, int tries) {
-  const NodeWait apart = nodes_apart(view_, search_.a_.node(nodes.a), search_.b_.node(nodes.b));
-  if (apart.wait > horizon_ - view_.time) return;
-  if (apart.worth_it) {
-    if (const double until = next_down(view_.time + apart.wait); until > from) {
-      return push(until, nodes, Known::apart_until);
+void TurningMeshSearch<Degree, Side>::Front::visit_all() {
+  while (!visits_.empty()) {
+    const auto four = search_.take_four(visits_);
+    const FourWaits apart = nodes_apart(view_, four.a, four.b);
+    for (std::size_t i = 0; i < four.count; ++i) {
+      const Visit& visit = four.pairs[i];
+      const double until = apart_until(apart.part[i]);
+      if (until > horizon_) continue;
+      if ((apart.worth_it >> i & 1) && until > visit.from) {
+        push(until, visit.nodes, Known::apart_until);
+      } else if (search_.are_leaves(visit.nodes)) {
+        leaves_.push_back(visit);
+      } else {
+        search_.open(visit.nodes, [&](Leaves halves) { visits_.push_back({halves, visit.from}); });
+      }
     }
   }
-  if (!search_.are_leaves(nodes)) {
-    search_.of_halves(nodes, [&](Leaves halves) { return visit(halves, from), false; });
-    return;
+  if constexpr (tells_triangles) visit_four_triangles();
+  // Those that come first first, since the view may have to be renewed.
+  std::sort(leaves_.begin(), leaves_.end(), [](const Visit& x, const Visit& y) { return x.from < y.from; });
+  for (const Visit& visit : leaves_) visit_triangles(visit);
+  leaves_.clear();
+}
+
+/// By floats. Those that need more are left in the list.
+template <int Degree, class Side>
+void TurningMeshSearch<Degree, Side>::Front::visit_four_triangles() {
+  constexpr float worth = 0x1p-8F;
+  if (!view_.certain || !(view_.ahead > 0)) return;
+  std::size_t left = 0;
+  for (std::size_t first = 0; first < leaves_.size(); first += 4) {
+    const std::size_t count = std::min<std::size_t>(4, leaves_.size() - first);
+    FourTriangles a, b;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Leaves& leaves = leaves_[first + std::min(i, count - 1)].nodes;
+      a[i] = search_.a_.corners(leaves.a), b[i] = search_.b_.corners(leaves.b);
+    }
+    const FourFloats parts = TriangleGaps<Degree>(view_, a, b).parts();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Visit visit = leaves_[first + i];
+      const double until = apart_until(parts[i]);
+      if (until > horizon_) continue;
+      if (parts[i] >= worth && until > visit.from) {
+        push(until, visit.nodes, Known::apart_until);
+      } else {
+        leaves_[left++] = visit;
+      }
+    }
   }
-  const Pair pair = search_.pair(nodes);
+  leaves_.resize(left);
+}
+
+template <int Degree, class Side>
+void TurningMeshSearch<Degree, Side>::Front::visit_triangles(const Visit& visit) {
+  const Pair pair = search_.pair(visit.nodes);
   double until = pair.apart_until(view_, horizon_);
-  if (until <= from && view_.time < from) {
-    look(from);
+  if (until <= visit.from && view_.time < visit.from) {
+    look(visit.from);
     until = pair.apart_until(view_, horizon_);
   }
-  until > from ? push(until, nodes, Known::apart_until) : push(from, nodes, Known::stuck, tries);
+  until > visit.from ? push(until, visit.nodes, Known::apart_until)
+                     : push(visit.from, visit.nodes, Known::stuck, visit.tries);
 }
 
 /// By exact signs: for a while, or to where other pairs may come first. What slides on each other has nothing else: the
@@ -286,9 +397,10 @@ TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   }
   for (double margin = 0x1p-40 * (a_.radius(0) + norm(view.way.value));; margin *= 64) {
     double least = never;
-    every_near(view, margin, {0, 0}, [&](Leaves leaves, const Pair& pair) {
-      if (const double gap = pair.gap(view); gap < least && gap <= pair.error(view) + margin) {
-        least = gap;
+    every_near(view, margin, [&](Leaves leaves, const Pair& pair) {
+      const double gap = pair.gap(view);
+      if (gap <= pair.error(view) + margin && (gap < least || (gap == least && leaves < of_best))) {
+        least = gap, of_best = leaves;
         best = touch(leaves, pair, view);
       }
       return false;
