@@ -9,12 +9,8 @@ namespace kds::collision {
 struct FourVectors {
   FourFloats x, y, z;
 
-  friend FourVectors operator+(const FourVectors& a, const FourVectors& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-  }
-  friend FourVectors operator-(const FourVectors& a, const FourVectors& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-  }
+  friend FourVectors operator+(const FourVectors& a, const FourVectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend FourVectors operator-(const FourVectors& a, const FourVectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend FourVectors operator*(FourFloats factor, const FourVectors& a) {
     return {factor * a.x, factor * a.y, factor * a.z};
   }

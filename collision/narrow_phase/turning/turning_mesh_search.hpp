@@ -28,7 +28,13 @@ class TurningMeshSearch {
   using View = NodesView<Degree>;
 
   TurningMeshSearch(const MeshOfPair& a, const RigidMotion& motion_a, const Side& b, const RigidMotion& motion_b)
-      : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), units_a_(a.units()), units_b_(b.units()) {}
+      : a_(a),
+        b_(b),
+        motion_a_(motion_a),
+        motion_b_(motion_b),
+        rates_(motion_a, motion_b),
+        units_a_(a.units()),
+        units_b_(b.units()) {}
 
   double first_contact(double t0, double horizon, ContactMode mode) const;
 
@@ -82,7 +88,7 @@ class TurningMeshSearch {
    public:
     Front(const TurningMeshSearch& search, double t0, double horizon, ContactMode mode)
         : search_(search), horizon_(horizon), mode_(mode), view_(search.view(t0, horizon)) {
-      visits_.push_back({{0, 0}, t0});
+      search_.each_of_four({0, 0}, [&](Leaves nodes) { visits_.push_back({nodes, t0}); });
       visit_all();
     }
     double next();
@@ -119,7 +125,7 @@ class TurningMeshSearch {
     std::vector<Visit> visits_, leaves_;  ///< of visit_all()
   };
 
-  View view(double t, double horizon) const { return {motion_a_, motion_b_, units_a_, units_b_, t, horizon}; }
+  View view(double t, double horizon) const { return {motion_a_, motion_b_, rates_, units_a_, units_b_, t, horizon}; }
   View view(double t) const { return view(t, t); }
 
   Pair pair(Leaves leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
@@ -144,6 +150,13 @@ class TurningMeshSearch {
       const std::uint32_t child = b_.first_child(nodes.b);
       take(Leaves{nodes.a, child + 1}), take(Leaves{nodes.a, child});
     }
+  }
+
+  /// The same for their halves, so that there are up to four: to look at these costs as much as to look at one.
+  template <class Take>
+  void each_of_four(Leaves nodes, const Take& take) const {
+    const auto take_halves = [&](Leaves halves) { are_leaves(halves) ? take(halves) : open(halves, take); };
+    are_leaves(nodes) ? take(nodes) : open(nodes, take_halves);
   }
 
   /// Up to four pairs of nodes, taken from the end of a list; where there are less the last one more than once.
@@ -175,7 +188,8 @@ class TurningMeshSearch {
   /// true.
   template <class Ask>
   bool every_near(const View& view, double margin, const Ask& ask) const {
-    std::vector<Leaves> list{{0, 0}};
+    std::vector<Leaves> list;
+    each_of_four({0, 0}, [&](Leaves nodes) { list.push_back(nodes); });
     while (!list.empty()) {
       const auto four = take_four(list);
       const unsigned apart = nodes_apart_by(margin, view, four.a, four.b);
@@ -211,6 +225,7 @@ class TurningMeshSearch {
   const Side& b_;
   const RigidMotion& motion_a_;
   const RigidMotion& motion_b_;
+  PairRates rates_;
   NodeUnits units_a_, units_b_;
   mutable RememberedSigns signs_;
 };
@@ -226,11 +241,9 @@ double TurningMeshSearch<Degree, Side>::first_contact(double t0, double horizon,
 /// was good for.
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::Front::next() {
-  constexpr double part = 0.25;
-  constexpr std::size_t most_together = 8;
-  const auto soon_enough = [&](const Item& item) {
-    return item.time - view_.time <= part * (item.time - item.seen);
-  };
+  constexpr double part = 0.375;
+  constexpr std::size_t most_together = 16;
+  const auto soon_enough = [&](const Item& item) { return item.time - view_.time <= part * (item.time - item.seen); };
   while (!queue_.empty()) {
     const Item item = queue_.top();
     queue_.pop();
@@ -281,8 +294,6 @@ void TurningMeshSearch<Degree, Side>::Front::visit_all() {
     }
   }
   if constexpr (tells_triangles) visit_four_triangles();
-  // Those that come first first, since the view may have to be renewed.
-  std::sort(leaves_.begin(), leaves_.end(), [](const Visit& x, const Visit& y) { return x.from < y.from; });
   for (const Visit& visit : leaves_) visit_triangles(visit);
   leaves_.clear();
 }
@@ -315,16 +326,16 @@ void TurningMeshSearch<Degree, Side>::Front::visit_four_triangles() {
   leaves_.resize(left);
 }
 
+/// By doubles. Where they tell nothing new it is looked at again in a view of its own time: the view is never later than
+/// what waits in the queue.
 template <int Degree, class Side>
 void TurningMeshSearch<Degree, Side>::Front::visit_triangles(const Visit& visit) {
-  const Pair pair = search_.pair(visit.nodes);
-  double until = pair.apart_until(view_, horizon_);
-  if (until <= visit.from && view_.time < visit.from) {
-    look(visit.from);
-    until = pair.apart_until(view_, horizon_);
+  const double until = search_.pair(visit.nodes).apart_until(view_, horizon_);
+  if (until > visit.from) {
+    push(until, visit.nodes, Known::apart_until);
+  } else {
+    push(visit.from, visit.nodes, view_.time < visit.from ? Known::apart_until : Known::stuck, visit.tries);
   }
-  until > visit.from ? push(until, visit.nodes, Known::apart_until)
-                     : push(visit.from, visit.nodes, Known::stuck, visit.tries);
 }
 
 /// By exact signs: for a while, or to where other pairs may come first. What slides on each other has nothing else: the

@@ -50,9 +50,9 @@ struct NodesView : TurningView<Degree> {
   using RigidMotion = certificates::RigidMotion<Degree>;
   static constexpr double rounding = 512 * 0x1p-24;
 
-  NodesView(const RigidMotion& a, const RigidMotion& b, const NodeUnits& of_a, const NodeUnits& of_b, double t,
-            double horizon)
-      : TurningView<Degree>(a, b, t),
+  NodesView(const RigidMotion& a, const RigidMotion& b, const PairRates& rates, const NodeUnits& of_a,
+            const NodeUnits& of_b, double t, double horizon)
+      : TurningView<Degree>(a, b, rates, t),
         size(norm(this->way.value) + of_a.reach + of_b.reach),
         ahead(std::max(0.0, this->stretch(of_a.reach + of_b.reach, (horizon - t) * (1 + 0x1p-40)))) {
     const auto in_a = [&](const Eigen::Vector3d& x) { return four_times(lanes(this->seen_from_a(x))); };
@@ -81,9 +81,9 @@ struct NodesView : TurningView<Degree> {
     margin = in_floats((rounding + (this->way_error + this->rate_error * s) / size) * (1 + 0x1p-20));
   }
 
-  double size;                        ///< length
-  double ahead;                       ///< how far to look ahead, s
-  std::array<FourVectors, 3> columns; ///< where the axes of b point; here and below the same four times
+  double size;                         ///< length
+  double ahead;                        ///< how far to look ahead, s
+  std::array<FourVectors, 3> columns;  ///< where the axes of b point; here and below the same four times
   FourVectors way_now, way_rate, way_bend;
   FourVectors turn_a, turn_b;  ///< in that time, as vectors
   FourFloats angle_a, angle_b;
@@ -110,8 +110,7 @@ struct FourWaits {
   unsigned worth_it;  ///< bit i: the pair gets near each other by then, for its size
 };
 
-/// The balls around them, along the line between their centres; or where that does not last, the boxes, along that line
-/// or along an axis of one of them that turns with it.
+/// Along the line between their centres, or along an axis of one of them that turns with it.
 ///
 /// Method: along a unit vector n, from a to b, their gap is n . p - sum_k h_k |n . u_k|, with the half edges of both.
 /// An n . u_k = x with its rate x' is at most |x| + s (|e| - |x|) / S + s^2 / 2 max |x''| until S, e = x + S x': a
@@ -153,39 +152,30 @@ class NodeGaps {
         b_(b),
         in_a_(view.unit_a * side_by_side(a, &ObbNode::centre)),
         in_b_(view.seen_from_a(view.unit_b * side_by_side(b, &ObbNode::centre))),
-        radius_a_(view.unit_a * radii(a)),
-        radius_b_(view.unit_b * radii(b) + view.round),
         p_(view.way_now + in_b_ - in_a_),
-        distance_(square_root(dot(p_, p_))),
-        over_distance_(where(distance_ > splat(0), splat(1) / distance_)) {}
+        by_a_(cross(view.turn_a, in_a_)),
+        by_b_(cross(view.turn_b, in_b_)),
+        rate_(view.way_rate + by_b_ - by_a_) {}
 
   FourWaits waits() {
-    find_rates();
-    const FourFloats balls = distance_ - (radius_a_ + radius_b_) - view_.margin;
-    const FourFloats rate = over_distance_ * dot(p_, rate_), bend = over_distance_ * dot(p_, bend_);
-    FourFloats part = positive_part(balls, rate, bend, view_.third[0]);
-    if (all_set(part >= least_)) return {part, 0xF};
     const Widest best = widest();
-    part = greater(part, where(best.gap > view_.margin, part_along(best)));
-    return {part, set_of_four(part >= least_)};
+    const FourFloats part = where(best.gap > view_.margin, part_along(best));
+    return {part, set_of_four(part >= least_part())};
   }
 
   /// Whether they are surely farther apart than a margin.
   unsigned exceed(double margin) {
     const FourFloats least = splat(static_cast<float>(margin / view_.size * (1 + 0x1p-20))) + view_.margin;
-    const unsigned balls = set_of_four(distance_ - radius_a_ - radius_b_ > least);
-    return balls == 0xF ? balls : balls | set_of_four(widest().gap > least);
+    return set_of_four(widest().gap > least);
   }
 
  private:
-  void find_rates() {
-    const FourFloats worth = splat(0x1p-4F);  // of their sizes
-    const FourVectors by_a = cross(view_.turn_a, in_a_), by_b = cross(view_.turn_b, in_b_);
-    rate_ = view_.way_rate + by_b - by_a;
-    bend_ = view_.way_bend + cross(view_.turn_b, by_b) - cross(view_.turn_a, by_a);
-    const FourFloats speed =
-        square_root(dot(rate_, rate_)) + view_.angle_a * radius_a_ + view_.angle_b * radius_b_;
-    least_ = lesser(worth * (radius_a_ + radius_b_) / speed, splat(1));
+  /// The part of the time that is worth it: until they have moved by some part of their sizes.
+  FourFloats least_part() const {
+    const FourFloats worth = splat(1.0F / 24);
+    const FourFloats radius_a = view_.unit_a * radii(a_), radius_b = view_.unit_b * radii(b_) + view_.round;
+    const FourFloats speed = square_root(dot(rate_, rate_)) + view_.angle_a * radius_a + view_.angle_b * radius_b;
+    return lesser(worth * (radius_a + radius_b) / speed, splat(1));
   }
 
   struct Widest {
@@ -204,8 +194,10 @@ class NodeGaps {
     for (std::size_t i = 0; i < 3; ++i) x[i] = heights(u_[i], v_);
     const FourVectors along_a{dot(p_, u_[0]), dot(p_, u_[1]), dot(p_, u_[2])};
     const FourVectors along_b{dot(p_, v_[0]), dot(p_, v_[1]), dot(p_, v_[2])};
+    const FourFloats distance = square_root(dot(p_, p_)),
+                     over_distance = where(distance > splat(0), splat(1) / distance);
     const FourFloats widths = dot(half_a_, magnitudes(along_a)) + dot(half_b_, magnitudes(along_b));
-    Widest best{distance_ - over_distance_ * widths, over_distance_ * p_, {}, {}};
+    Widest best{distance - over_distance * widths, over_distance * p_, {}, {}};
     const auto note = [&](FourFloats along, FourFloats reach, const FourVectors& axis, FourFloatsBits& with,
                           FourFloatsBits& other) {
       const FourFloats gap = magnitude(along) - reach;
@@ -241,7 +233,8 @@ class NodeGaps {
     const FourVectors turn = where(widest.with_a, view_.turn_a, where(widest.with_b, view_.turn_b));
     const FourVectors turned = cross(turn, p_);
     const FourVectors rate = rate_ - turned;  // as seen from n, as all that follows
-    const FourVectors bend = bend_ + cross(turn, turned - rate_ - rate_);
+    const FourVectors bend =
+        view_.way_bend + cross(view_.turn_b, by_b_) - cross(view_.turn_a, by_a_) + cross(turn, turned - rate_ - rate_);
     FourFloats f0 = dot(n, p_) - view_.margin - view_.round, f1 = dot(n, rate), f2 = dot(n, bend);
     const auto take = [&](const FourVectors& half, const std::array<FourVectors, 3>& axes, const FourVectors& turn_of,
                           FourFloats angle) {
@@ -256,19 +249,16 @@ class NodeGaps {
     const FourFloats both = view_.angle_a + view_.angle_b;
     take(half_a_, u_, view_.turn_a, where(~widest.with_a, where(turns, both, view_.angle_a)));
     take(half_b_, v_, view_.turn_b, where(~widest.with_b, where(turns, both, view_.angle_b)));
-    const FourFloats third =
-        where(widest.with_a, view_.third[1], where(widest.with_b, view_.third[2], view_.third[0]));
+    const FourFloats third = where(widest.with_a, view_.third[1], where(widest.with_b, view_.third[2], view_.third[0]));
     return positive_part(f0, f1, f2, third);
   }
 
   const NodesView<Degree>& view_;
   const FourNodes& a_;
   const FourNodes& b_;
-  FourVectors in_a_, in_b_;  ///< from the origins of the bodies to the centres
-  FourFloats radius_a_, radius_b_;
-  FourVectors p_, rate_, bend_;  ///< from the centre of a to that of b
-  FourFloats distance_, over_distance_;
-  FourFloats least_;                 ///< the part that is worth it
+  FourVectors in_a_, in_b_;           ///< from the origins of the bodies to the centres
+  FourVectors p_;                     ///< from the centre of a to that of b
+  FourVectors by_a_, by_b_, rate_;    ///< how fast the centres turn, and p changes
   std::array<FourVectors, 3> u_, v_;  ///< the axes of either
   FourVectors half_a_, half_b_;
 };
