@@ -3,13 +3,13 @@
 
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/turning/four_triangles.hpp"
+#include "collision/narrow_phase/turning/node_pairs.hpp"
 #include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_touch.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <cstdint>
 #include <functional>
 #include <queue>
@@ -30,6 +30,7 @@ class TurningMeshSearch {
   TurningMeshSearch(const MeshOfPair& a, const RigidMotion& motion_a, const Side& b, const RigidMotion& motion_b)
       : a_(a),
         b_(b),
+        nodes_(a, b),
         motion_a_(motion_a),
         motion_b_(motion_b),
         rates_(motion_a, motion_b),
@@ -39,7 +40,7 @@ class TurningMeshSearch {
   double first_contact(double t0, double horizon, ContactMode mode) const;
 
   bool in_contact(double t) const {
-    return find(view(t), [](Leaves, const Pair&) { return true; });
+    return find(view(t), [](NodePair, const Pair&) { return true; });
   }
 
   /// The pair of triangles that penetrates just after t is followed until it parts, then the next one.
@@ -47,7 +48,7 @@ class TurningMeshSearch {
     for (double t = t0; t <= horizon;) {
       double parts = t;
       const View view = this->view(t);
-      const bool penetrate = find(view, [&](Leaves, const Pair& pair) {
+      const bool penetrate = find(view, [&](NodePair, const Pair& pair) {
         parts = ways(pair, view).first_parting(t, horizon);
         return true;
       });
@@ -60,23 +61,18 @@ class TurningMeshSearch {
   TurningTouch touch_at(double t) const;
 
  private:
-  /// A node of each.
-  struct Leaves {
-    std::uint32_t a, b;
-    friend auto operator<=>(const Leaves&, const Leaves&) = default;
-  };
   /// Whether floats tell of four pairs of leaves more than their boxes do.
   static constexpr bool tells_triangles = std::is_same_v<Side, MeshOfPair>;
 
   enum class Known : std::uint8_t {
-    apart_until,  ///< by doubles
+    apart_until,  ///< by floats or doubles
     stuck,        ///< doubles do not tell more: exact signs have to
     contact       ///< they penetrate just after that time
   };
   struct Item {
     double time;
     double seen;  ///< the time of the view that has told so
-    Leaves nodes;
+    NodePair nodes;
     Known known;
     int tries = 0;  ///< by exact signs, one after the other
     /// Which one of the same time is first makes no difference.
@@ -88,13 +84,13 @@ class TurningMeshSearch {
    public:
     Front(const TurningMeshSearch& search, double t0, double horizon, ContactMode mode)
         : search_(search), horizon_(horizon), mode_(mode), view_(search.view(t0, horizon)) {
-      search_.each_of_four({0, 0}, [&](Leaves nodes) { visits_.push_back({nodes, t0}); });
+      search_.nodes_.first_four([&](NodePair nodes) { visits_.push_back({nodes, t0}); });
       visit_all();
     }
     double next();
 
    private:
-    void push(double t, Leaves nodes, Known known, int tries = 0) {
+    void push(double t, NodePair nodes, Known known, int tries = 0) {
       if (t <= horizon_) queue_.push({t, view_.time, nodes, known, tries});
     }
     /// The time until which a part of the time ahead lasts.
@@ -107,15 +103,15 @@ class TurningMeshSearch {
     }
     /// What waits to be looked at in the same view.
     struct Visit {
-      Leaves nodes;
+      NodePair nodes;
       double from;  ///< they are known to be apart up to then, which is not before the view
       int tries = 0;
     };
     void visit_all();
     void visit_triangles(const Visit& visit);
     void visit_four_triangles();
-    void visit_exactly(Leaves nodes, int tries);
-    bool counts(Leaves nodes) const;
+    void visit_exactly(NodePair nodes, int tries);
+    bool counts(NodePair nodes) const;
 
     const TurningMeshSearch& search_;
     double horizon_;  ///< in mode `transparent` no later than a contact that is known
@@ -128,7 +124,7 @@ class TurningMeshSearch {
   View view(double t, double horizon) const { return {motion_a_, motion_b_, rates_, units_a_, units_b_, t, horizon}; }
   View view(double t) const { return view(t, t); }
 
-  Pair pair(Leaves leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
+  Pair pair(NodePair leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
   /// As seen at the time of the view.
   WaysApart<Pair, RememberedSigns&> ways(const Pair& pair, const View& view) const {
     using Ways = WaysApart<Pair, RememberedSigns&>;
@@ -138,66 +134,21 @@ class TurningMeshSearch {
       return Ways(pair, signs_);
     }
   }
-  bool are_leaves(Leaves nodes) const { return a_.is_leaf(nodes.a) && b_.is_leaf(nodes.b); }
-
-  /// Calls take(child pair) for the halves of the larger node.
-  template <class Take>
-  void open(Leaves nodes, const Take& take) const {
-    if (b_.is_leaf(nodes.b) || (!a_.is_leaf(nodes.a) && a_.radius(nodes.a) >= b_.radius(nodes.b))) {
-      const std::uint32_t child = a_.first_child(nodes.a);
-      take(Leaves{child + 1, nodes.b}), take(Leaves{child, nodes.b});
-    } else {
-      const std::uint32_t child = b_.first_child(nodes.b);
-      take(Leaves{nodes.a, child + 1}), take(Leaves{nodes.a, child});
-    }
-  }
-
-  /// The same for their halves, so that there are up to four: to look at these costs as much as to look at one.
-  template <class Take>
-  void each_of_four(Leaves nodes, const Take& take) const {
-    const auto take_halves = [&](Leaves halves) { are_leaves(halves) ? take(halves) : open(halves, take); };
-    are_leaves(nodes) ? take(nodes) : open(nodes, take_halves);
-  }
-
-  /// Up to four pairs of nodes, taken from the end of a list; where there are less the last one more than once.
-  template <class Pairs>
-  struct Four {
-    std::array<Pairs, 4> pairs;
-    FourNodes a, b;
-    std::size_t count = 0;
-  };
-  static const Leaves& nodes_of(const Leaves& pair) { return pair; }
-  template <class Visit>
-  static const Leaves& nodes_of(const Visit& visit) {
-    return visit.nodes;
-  }
-  template <class Pairs>
-  Four<Pairs> take_four(std::vector<Pairs>& list) const {
-    Four<Pairs> four;
-    four.count = std::min<std::size_t>(4, list.size());
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::size_t taken = std::min(i, four.count - 1);
-      const Leaves& pair = nodes_of(four.pairs[i] = list[list.size() - 1 - taken]);
-      four.a[i] = &a_.node(pair.a), four.b[i] = &b_.node(pair.b);
-    }
-    list.resize(list.size() - four.count);
-    return four;
-  }
-
   /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than twice a margin, until it returns
   /// true.
   template <class Ask>
   bool every_near(const View& view, double margin, const Ask& ask) const {
-    std::vector<Leaves> list;
-    each_of_four({0, 0}, [&](Leaves nodes) { list.push_back(nodes); });
+    std::vector<NodePair> list;
+    const auto put = [&](NodePair nodes) { list.push_back(nodes); };
+    nodes_.first_four(put);
     while (!list.empty()) {
-      const auto four = take_four(list);
+      const auto four = nodes_.take_four(list, std::identity());
       const unsigned apart = nodes_apart_by(margin, view, four.a, four.b);
       for (std::size_t i = four.count; i-- > 0;) {
         if (apart >> i & 1) continue;
-        const Leaves& nodes = four.pairs[i];
-        if (!are_leaves(nodes)) {
-          open(nodes, [&](Leaves halves) { list.push_back(halves); });
+        const NodePair nodes = four.items[i];
+        if (!nodes_.are_leaves(nodes)) {
+          nodes_.open(nodes, put);
           continue;
         }
         const Pair pair = this->pair(nodes);
@@ -210,12 +161,12 @@ class TurningMeshSearch {
   /// The same of those that penetrate just after the time of the view.
   template <class Ask>
   bool find(const View& view, const Ask& ask) const {
-    return every_near(view, 0, [&](Leaves leaves, const Pair& pair) {
+    return every_near(view, 0, [&](NodePair leaves, const Pair& pair) {
       return ways(pair, view).penetrate(view.time) && ask(leaves, pair);
     });
   }
 
-  TurningTouch touch(Leaves leaves, const Pair& pair, const View& view) const {
+  TurningTouch touch(NodePair leaves, const Pair& pair, const View& view) const {
     const PointRates<Degree> rates(motion_a_, motion_b_, view.time);
     return touch_of(pair, a_, leaves.a, b_, leaves.b, view, rates, motion_a_.path.position(view.time));
   }
@@ -223,6 +174,7 @@ class TurningMeshSearch {
 
   const MeshOfPair& a_;
   const Side& b_;
+  NodePairs<Side> nodes_;
   const RigidMotion& motion_a_;
   const RigidMotion& motion_b_;
   PairRates rates_;
@@ -278,18 +230,18 @@ double TurningMeshSearch<Degree, Side>::Front::next() {
 template <int Degree, class Side>
 void TurningMeshSearch<Degree, Side>::Front::visit_all() {
   while (!visits_.empty()) {
-    const auto four = search_.take_four(visits_);
+    const auto four = search_.nodes_.take_four(visits_, &Visit::nodes);
     const FourWaits apart = nodes_apart(view_, four.a, four.b);
     for (std::size_t i = 0; i < four.count; ++i) {
-      const Visit& visit = four.pairs[i];
+      const Visit& visit = four.items[i];
       const double until = apart_until(apart.part[i]);
       if (until > horizon_) continue;
       if ((apart.worth_it >> i & 1) && until > visit.from) {
         push(until, visit.nodes, Known::apart_until);
-      } else if (search_.are_leaves(visit.nodes)) {
+      } else if (search_.nodes_.are_leaves(visit.nodes)) {
         leaves_.push_back(visit);
       } else {
-        search_.open(visit.nodes, [&](Leaves halves) { visits_.push_back({halves, visit.from}); });
+        search_.nodes_.open(visit.nodes, [&](NodePair halves) { visits_.push_back({halves, visit.from}); });
       }
     }
   }
@@ -308,7 +260,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_four_triangles() {
     const std::size_t count = std::min<std::size_t>(4, leaves_.size() - first);
     FourTriangles a, b;
     for (std::size_t i = 0; i < 4; ++i) {
-      const Leaves& leaves = leaves_[first + std::min(i, count - 1)].nodes;
+      const NodePair& leaves = leaves_[first + std::min(i, count - 1)].nodes;
       a[i] = search_.a_.corners(leaves.a), b[i] = search_.b_.corners(leaves.b);
     }
     const FourFloats parts = TriangleGaps<Degree>(view_, a, b).parts();
@@ -326,8 +278,8 @@ void TurningMeshSearch<Degree, Side>::Front::visit_four_triangles() {
   leaves_.resize(left);
 }
 
-/// By doubles. Where they tell nothing new it is looked at again in a view of its own time: the view is never later than
-/// what waits in the queue.
+/// By doubles. Where they tell nothing new it is looked at again in a view of its own time: the view is never later
+/// than what waits in the queue.
 template <int Degree, class Side>
 void TurningMeshSearch<Degree, Side>::Front::visit_triangles(const Visit& visit) {
   const double until = search_.pair(visit.nodes).apart_until(view_, horizon_);
@@ -341,7 +293,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_triangles(const Visit& visit)
 /// By exact signs: for a while, or to where other pairs may come first. What slides on each other has nothing else: the
 /// while grows from try to try.
 template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tries) {
+void TurningMeshSearch<Degree, Side>::Front::visit_exactly(NodePair nodes, int tries) {
   constexpr double part_of_turn = 0x1p-6;
   constexpr int most_tries = 20;
   const double t = view_.time;
@@ -359,7 +311,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tri
 }
 
 template <int Degree, class Side>
-bool TurningMeshSearch<Degree, Side>::Front::counts(Leaves nodes) const {
+bool TurningMeshSearch<Degree, Side>::Front::counts(NodePair nodes) const {
   return search_.touch(nodes, search_.pair(nodes), view_).approach > 0;
 }
 
@@ -392,11 +344,11 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
 template <int Degree, class Side>
 TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   TurningTouch best;
-  Leaves of_best{};
+  NodePair of_best{};
   const View view = this->view(t);
   for (const double when : {t, next_down(t)}) {
     bool any = false;
-    find(this->view(when), [&](Leaves leaves, const Pair& pair) {
+    find(this->view(when), [&](NodePair leaves, const Pair& pair) {
       const TurningTouch each = touch(leaves, pair, view);
       if (!any || each.approach > best.approach || (each.approach == best.approach && leaves < of_best)) {
         best = each, of_best = leaves;
@@ -408,7 +360,7 @@ TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   }
   for (double margin = 0x1p-40 * (a_.radius(0) + norm(view.way.value));; margin *= 64) {
     double least = never;
-    every_near(view, margin, [&](Leaves leaves, const Pair& pair) {
+    every_near(view, margin, [&](NodePair leaves, const Pair& pair) {
       const double gap = pair.gap(view);
       if (gap <= pair.error(view) + margin && (gap < least || (gap == least && leaves < of_best))) {
         least = gap, of_best = leaves;
