@@ -45,6 +45,8 @@ struct RigidMotion {
 
   /// The rotation at t, for as many vectors of the body as wanted.
   Rotation rotation(double t) const { return {orientation, spin(), t}; }
+  /// The same where the rate of the spin is known already.
+  Rotation rotation(const Ball<DoubleDouble>& rate, double t) const { return {orientation, spin(), rate, t}; }
 
   /// Where the origin is at t.
   BoundedVector origin(double t) const;

@@ -13,6 +13,9 @@
 namespace kds::simd::portable {
 
 inline Two square_root(Two x) { return Two{std::sqrt(x[0]), std::sqrt(x[1])}; }
+inline FourFloats square_root(FourFloats x) {
+  return FourFloats{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+}
 
 /// Lane by lane; where one is not a number, or both are zero, the second.
 inline Two lesser(Two x, Two y) { return x < y ? x : y; }

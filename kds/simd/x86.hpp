@@ -16,6 +16,7 @@
 namespace kds::simd::x86 {
 
 [[gnu::always_inline]] inline Two square_root(Two x) { return _mm_sqrt_pd(x); }
+[[gnu::always_inline]] inline FourFloats square_root(FourFloats x) { return _mm_sqrt_ps(x); }
 
 [[gnu::always_inline]] inline Two lesser(Two x, Two y) { return _mm_min_pd(x, y); }
 [[gnu::always_inline]] inline Two greater(Two x, Two y) { return _mm_max_pd(x, y); }

@@ -17,6 +17,15 @@
 
 namespace kds::collision {
 
+/// The rates of two spins, of which frames at many times can be made.
+struct PairRates {
+  template <int Degree>
+  PairRates(const certificates::RigidMotion<Degree>& of_a, const certificates::RigidMotion<Degree>& of_b)
+      : a(of_a.spin().rate()), b(of_b.spin().rate()) {}
+
+  Ball<DoubleDouble> a, b;
+};
+
 /// The axes of two bodies and the way from one to the other at one time, with bounds on what they do in the time to
 /// come.
 ///
@@ -31,10 +40,11 @@ class PairFrame {
   using RigidMotion = certificates::RigidMotion<Degree>;
   static constexpr double rounding = 0x1p-40;
 
-  PairFrame(const RigidMotion& a, const RigidMotion& b, double t)
+  PairFrame(const RigidMotion& a, const RigidMotion& b, double t) : PairFrame(a, b, PairRates(a, b), t) {}
+  PairFrame(const RigidMotion& a, const RigidMotion& b, const PairRates& rates, double t)
       : time(t),
-        turn_a(a.rotation(t)),
-        turn_b(b.rotation(t)),
+        turn_a(a.rotation(rates.a, t)),
+        turn_b(b.rotation(rates.b, t)),
         spin_a(a.angular_velocity),
         spin_b(b.angular_velocity),
         rate_a(norm(spin_a) * (1 + 0x1p-40)),

@@ -2,13 +2,14 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/turning/four_triangles.hpp"
+#include "collision/narrow_phase/turning/node_pairs.hpp"
 #include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_touch.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <cstdint>
 #include <functional>
 #include <queue>
@@ -27,12 +28,19 @@ class TurningMeshSearch {
   using View = NodesView<Degree>;
 
   TurningMeshSearch(const MeshOfPair& a, const RigidMotion& motion_a, const Side& b, const RigidMotion& motion_b)
-      : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), units_a_(a.units()), units_b_(b.units()) {}
+      : a_(a),
+        b_(b),
+        nodes_(a, b),
+        motion_a_(motion_a),
+        motion_b_(motion_b),
+        rates_(motion_a, motion_b),
+        units_a_(a.units()),
+        units_b_(b.units()) {}
 
   double first_contact(double t0, double horizon, ContactMode mode) const;
 
   bool in_contact(double t) const {
-    return find(view(t), [](Leaves, const Pair&) { return true; });
+    return find(view(t), [](NodePair, const Pair&) { return true; });
   }
 
   /// The pair of triangles that penetrates just after t is followed until it parts, then the next one.
@@ -40,7 +48,7 @@ class TurningMeshSearch {
     for (double t = t0; t <= horizon;) {
       double parts = t;
       const View view = this->view(t);
-      const bool penetrate = find(view, [&](Leaves, const Pair& pair) {
+      const bool penetrate = find(view, [&](NodePair, const Pair& pair) {
         parts = ways(pair, view).first_parting(t, horizon);
         return true;
       });
@@ -53,23 +61,22 @@ class TurningMeshSearch {
   TurningTouch touch_at(double t) const;
 
  private:
-  /// A node of each.
-  struct Leaves {
-    std::uint32_t a, b;
-    friend auto operator<=>(const Leaves&, const Leaves&) = default;
-  };
+  /// Whether floats tell of four pairs of leaves more than their boxes do.
+  static constexpr bool tells_triangles = std::is_same_v<Side, MeshOfPair>;
+
   enum class Known : std::uint8_t {
-    apart_until,  ///< by doubles
+    apart_until,  ///< by floats or doubles
     stuck,        ///< doubles do not tell more: exact signs have to
     contact       ///< they penetrate just after that time
   };
   struct Item {
     double time;
     double seen;  ///< the time of the view that has told so
-    Leaves nodes;
+    NodePair nodes;
     Known known;
     int tries = 0;  ///< by exact signs, one after the other
-    friend auto operator<=>(const Item&, const Item&) = default;
+    /// Which one of the same time is first makes no difference.
+    friend bool operator>(const Item& x, const Item& y) { return x.time > y.time; }
   };
 
   /// The search of one first contact.
@@ -77,32 +84,47 @@ class TurningMeshSearch {
    public:
     Front(const TurningMeshSearch& search, double t0, double horizon, ContactMode mode)
         : search_(search), horizon_(horizon), mode_(mode), view_(search.view(t0, horizon)) {
-      visit({0, 0}, t0);
+      search_.nodes_.first_four([&](NodePair nodes) { visits_.push_back({nodes, t0}); });
+      visit_all();
     }
     double next();
 
    private:
-    void push(double t, Leaves nodes, Known known, int tries = 0) {
+    void push(double t, NodePair nodes, Known known, int tries = 0) {
       if (t <= horizon_) queue_.push({t, view_.time, nodes, known, tries});
+    }
+    /// The time until which a part of the time ahead lasts.
+    double apart_until(float part) const {
+      const double wait = part >= 1 ? view_.ahead : static_cast<double>(part) * view_.ahead * (1 - 0x1p-30);
+      return wait > horizon_ - view_.time ? never : next_down(view_.time + wait);
     }
     void look(double t) {
       if (t != view_.time) view_ = search_.view(t, horizon_);
     }
-    void visit(Leaves nodes, double from, int tries = 0);
-    void visit_exactly(Leaves nodes, int tries);
-    bool counts(Leaves nodes) const;
+    /// What waits to be looked at in the same view.
+    struct Visit {
+      NodePair nodes;
+      double from;  ///< they are known to be apart up to then, which is not before the view
+      int tries = 0;
+    };
+    void visit_all();
+    void visit_triangles(const Visit& visit);
+    void visit_four_triangles();
+    void visit_exactly(NodePair nodes, int tries);
+    bool counts(NodePair nodes) const;
 
     const TurningMeshSearch& search_;
     double horizon_;  ///< in mode `transparent` no later than a contact that is known
     ContactMode mode_;
     View view_;  ///< at the time that is looked at, or not long before
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
+    std::vector<Visit> visits_, leaves_;  ///< of visit_all()
   };
 
-  View view(double t, double horizon) const { return {motion_a_, motion_b_, units_a_, units_b_, t, horizon}; }
+  View view(double t, double horizon) const { return {motion_a_, motion_b_, rates_, units_a_, units_b_, t, horizon}; }
   View view(double t) const { return view(t, t); }
 
-  Pair pair(Leaves leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
+  Pair pair(NodePair leaves) const { return b_.pair(a_, leaves.a, motion_a_, leaves.b, motion_b_); }
   /// As seen at the time of the view.
   WaysApart<Pair, RememberedSigns&> ways(const Pair& pair, const View& view) const {
     using Ways = WaysApart<Pair, RememberedSigns&>;
@@ -112,40 +134,39 @@ class TurningMeshSearch {
       return Ways(pair, signs_);
     }
   }
-  bool are_leaves(Leaves nodes) const { return a_.is_leaf(nodes.a) && b_.is_leaf(nodes.b); }
-
-  /// Calls ask(child pair) for the halves of the larger node until it returns true.
-  template <class Ask>
-  bool of_halves(Leaves nodes, const Ask& ask) const {
-    if (b_.is_leaf(nodes.b) || (!a_.is_leaf(nodes.a) && a_.radius(nodes.a) >= b_.radius(nodes.b))) {
-      const std::uint32_t child = a_.first_child(nodes.a);
-      return ask(Leaves{child, nodes.b}) || ask(Leaves{child + 1, nodes.b});
-    }
-    const std::uint32_t child = b_.first_child(nodes.b);
-    return ask(Leaves{nodes.a, child}) || ask(Leaves{nodes.a, child + 1});
-  }
-
   /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than twice a margin, until it returns
   /// true.
   template <class Ask>
-  bool every_near(const View& view, double margin, Leaves nodes, const Ask& ask) const {
-    if (nodes_apart_by(margin, view, a_.node(nodes.a), b_.node(nodes.b))) return false;
-    if (!are_leaves(nodes)) {
-      return of_halves(nodes, [&](Leaves halves) { return every_near(view, margin, halves, ask); });
+  bool every_near(const View& view, double margin, const Ask& ask) const {
+    std::vector<NodePair> list;
+    const auto put = [&](NodePair nodes) { list.push_back(nodes); };
+    nodes_.first_four(put);
+    while (!list.empty()) {
+      const auto four = nodes_.take_four(list, std::identity());
+      const unsigned apart = nodes_apart_by(margin, view, four.a, four.b);
+      for (std::size_t i = four.count; i-- > 0;) {
+        if (apart >> i & 1) continue;
+        const NodePair nodes = four.items[i];
+        if (!nodes_.are_leaves(nodes)) {
+          nodes_.open(nodes, put);
+          continue;
+        }
+        const Pair pair = this->pair(nodes);
+        if (pair.quick_gap(view) > 2 * (pair.error(view) + margin)) continue;
+        if (ask(nodes, pair)) return true;
+      }
     }
-    const Pair pair = this->pair(nodes);
-    if (pair.quick_gap(view) > 2 * (pair.error(view) + margin)) return false;
-    return ask(nodes, pair);
+    return false;
   }
   /// The same of those that penetrate just after the time of the view.
   template <class Ask>
   bool find(const View& view, const Ask& ask) const {
-    return every_near(view, 0, {0, 0}, [&](Leaves leaves, const Pair& pair) {
+    return every_near(view, 0, [&](NodePair leaves, const Pair& pair) {
       return ways(pair, view).penetrate(view.time) && ask(leaves, pair);
     });
   }
 
-  TurningTouch touch(Leaves leaves, const Pair& pair, const View& view) const {
+  TurningTouch touch(NodePair leaves, const Pair& pair, const View& view) const {
     const PointRates<Degree> rates(motion_a_, motion_b_, view.time);
     return touch_of(pair, a_, leaves.a, b_, leaves.b, view, rates, motion_a_.path.position(view.time));
   }
@@ -153,8 +174,10 @@ class TurningMeshSearch {
 
   const MeshOfPair& a_;
   const Side& b_;
+  NodePairs<Side> nodes_;
   const RigidMotion& motion_a_;
   const RigidMotion& motion_b_;
+  PairRates rates_;
   NodeUnits units_a_, units_b_;
   mutable RememberedSigns signs_;
 };
@@ -170,15 +193,25 @@ double TurningMeshSearch<Degree, Side>::first_contact(double t0, double horizon,
 /// was good for.
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::Front::next() {
-  constexpr double part = 0.25;
+  constexpr double part = 0.375;
+  constexpr std::size_t most_together = 16;
+  const auto soon_enough = [&](const Item& item) { return item.time - view_.time <= part * (item.time - item.seen); };
   while (!queue_.empty()) {
     const Item item = queue_.top();
     queue_.pop();
     switch (item.known) {
       case Known::apart_until:
         if (item.time > horizon_) return never;
-        if (!(item.time - view_.time <= part * (item.time - item.seen))) look(item.time);
-        visit(item.nodes, item.time, item.tries);
+        if (!soon_enough(item)) look(item.time);
+        visits_.push_back({item.nodes, item.time, item.tries});
+        // Others that this view is good for, too, so that four are looked at together.
+        while (!queue_.empty() && visits_.size() < most_together) {
+          const Item& other = queue_.top();
+          if (other.known != Known::apart_until || other.time > horizon_ || !soon_enough(other)) break;
+          visits_.push_back({other.nodes, other.time, other.tries});
+          queue_.pop();
+        }
+        visit_all();
         break;
       case Known::stuck:
         look(item.time);
@@ -193,33 +226,74 @@ double TurningMeshSearch<Degree, Side>::Front::next() {
   return never;
 }
 
-/// By doubles, of two that are known to be apart up to a time not before that of the view.
+/// By floats, and triangles by doubles.
 template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit(Leaves nodes, double from, int tries) {
-  const NodeWait apart = nodes_apart(view_, search_.a_.node(nodes.a), search_.b_.node(nodes.b));
-  if (apart.wait > horizon_ - view_.time) return;
-  if (apart.worth_it) {
-    if (const double until = next_down(view_.time + apart.wait); until > from) {
-      return push(until, nodes, Known::apart_until);
+void TurningMeshSearch<Degree, Side>::Front::visit_all() {
+  while (!visits_.empty()) {
+    const auto four = search_.nodes_.take_four(visits_, &Visit::nodes);
+    const FourWaits apart = nodes_apart(view_, four.a, four.b);
+    for (std::size_t i = 0; i < four.count; ++i) {
+      const Visit& visit = four.items[i];
+      const double until = apart_until(apart.part[i]);
+      if (until > horizon_) continue;
+      if ((apart.worth_it >> i & 1) && until > visit.from) {
+        push(until, visit.nodes, Known::apart_until);
+      } else if (search_.nodes_.are_leaves(visit.nodes)) {
+        leaves_.push_back(visit);
+      } else {
+        search_.nodes_.open(visit.nodes, [&](NodePair halves) { visits_.push_back({halves, visit.from}); });
+      }
     }
   }
-  if (!search_.are_leaves(nodes)) {
-    search_.of_halves(nodes, [&](Leaves halves) { return visit(halves, from), false; });
-    return;
+  if constexpr (tells_triangles) visit_four_triangles();
+  for (const Visit& visit : leaves_) visit_triangles(visit);
+  leaves_.clear();
+}
+
+/// By floats. Those that need more are left in the list.
+template <int Degree, class Side>
+void TurningMeshSearch<Degree, Side>::Front::visit_four_triangles() {
+  constexpr float worth = 0x1p-8F;
+  if (!view_.certain || !(view_.ahead > 0)) return;
+  std::size_t left = 0;
+  for (std::size_t first = 0; first < leaves_.size(); first += 4) {
+    const std::size_t count = std::min<std::size_t>(4, leaves_.size() - first);
+    FourTriangles a, b;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const NodePair& leaves = leaves_[first + std::min(i, count - 1)].nodes;
+      a[i] = search_.a_.corners(leaves.a), b[i] = search_.b_.corners(leaves.b);
+    }
+    const FourFloats parts = TriangleGaps<Degree>(view_, a, b).parts();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Visit visit = leaves_[first + i];
+      const double until = apart_until(parts[i]);
+      if (until > horizon_) continue;
+      if (parts[i] >= worth && until > visit.from) {
+        push(until, visit.nodes, Known::apart_until);
+      } else {
+        leaves_[left++] = visit;
+      }
+    }
   }
-  const Pair pair = search_.pair(nodes);
-  double until = pair.apart_until(view_, horizon_);
-  if (until <= from && view_.time < from) {
-    look(from);
-    until = pair.apart_until(view_, horizon_);
+  leaves_.resize(left);
+}
+
+/// By doubles. Where they tell nothing new it is looked at again in a view of its own time: the view is never later
+/// than what waits in the queue.
+template <int Degree, class Side>
+void TurningMeshSearch<Degree, Side>::Front::visit_triangles(const Visit& visit) {
+  const double until = search_.pair(visit.nodes).apart_until(view_, horizon_);
+  if (until > visit.from) {
+    push(until, visit.nodes, Known::apart_until);
+  } else {
+    push(visit.from, visit.nodes, view_.time < visit.from ? Known::apart_until : Known::stuck, visit.tries);
   }
-  until > from ? push(until, nodes, Known::apart_until) : push(from, nodes, Known::stuck, tries);
 }
 
 /// By exact signs: for a while, or to where other pairs may come first. What slides on each other has nothing else: the
 /// while grows from try to try.
 template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tries) {
+void TurningMeshSearch<Degree, Side>::Front::visit_exactly(NodePair nodes, int tries) {
   constexpr double part_of_turn = 0x1p-6;
   constexpr int most_tries = 20;
   const double t = view_.time;
@@ -237,7 +311,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_exactly(Leaves nodes, int tri
 }
 
 template <int Degree, class Side>
-bool TurningMeshSearch<Degree, Side>::Front::counts(Leaves nodes) const {
+bool TurningMeshSearch<Degree, Side>::Front::counts(NodePair nodes) const {
   return search_.touch(nodes, search_.pair(nodes), view_).approach > 0;
 }
 
@@ -270,11 +344,11 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
 template <int Degree, class Side>
 TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   TurningTouch best;
-  Leaves of_best{};
+  NodePair of_best{};
   const View view = this->view(t);
   for (const double when : {t, next_down(t)}) {
     bool any = false;
-    find(this->view(when), [&](Leaves leaves, const Pair& pair) {
+    find(this->view(when), [&](NodePair leaves, const Pair& pair) {
       const TurningTouch each = touch(leaves, pair, view);
       if (!any || each.approach > best.approach || (each.approach == best.approach && leaves < of_best)) {
         best = each, of_best = leaves;
@@ -286,9 +360,10 @@ TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   }
   for (double margin = 0x1p-40 * (a_.radius(0) + norm(view.way.value));; margin *= 64) {
     double least = never;
-    every_near(view, margin, {0, 0}, [&](Leaves leaves, const Pair& pair) {
-      if (const double gap = pair.gap(view); gap < least && gap <= pair.error(view) + margin) {
-        least = gap;
+    every_near(view, margin, [&](NodePair leaves, const Pair& pair) {
+      const double gap = pair.gap(view);
+      if (gap <= pair.error(view) + margin && (gap < least || (gap == least && leaves < of_best))) {
+        least = gap, of_best = leaves;
         best = touch(leaves, pair, view);
       }
       return false;

@@ -234,6 +234,26 @@ TEMPLATE_TEST_CASE_SIG("meshes that turn meet when the definition says so", "[tu
   CHECK(contacts > 3);
 }
 
+TEST_CASE("a search through all of the time finds what searches through its parts find", "[turning]") {
+  const std::uint64_t seed = 545;
+  CAPTURE(seed);
+  Random random(seed);
+  const auto ring = samples::torus(8, 4);
+  constexpr double horizon = 3, part = 1.0 / 16;
+  int contacts = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const double rate = random.between(0.5, 4);
+    const Solid<1> a{MeshShape{ring}, random_motion<1>(random, Vector3d::Zero(), rate)};
+    const Solid<1> b{MeshShape{ring}, random_motion<1>(random, random_vector(random, 2), rate)};
+    CAPTURE(round);
+    double met = never;
+    for (double t = 0; t < horizon && met == never; t += part) met = meet(a, b, t, t + part);
+    CHECK(meet(a, b, 0, horizon) == met);
+    contacts += met > 0 && met < never;
+  }
+  CHECK(contacts > 300);
+}
+
 TEST_CASE("rings that are linked, and meshes of many triangles: what a contact costs", "[turning]") {
   const auto small = samples::torus(8, 4), large = samples::torus(100, 30);
   REQUIRE(small->triangles().size() == 64);

@@ -1,4 +1,5 @@
 // What doubles prove of parts of meshes that turn, and failure times that are remembered: against the definition.
+#include "collision/narrow_phase/turning/four_triangles.hpp"
 #include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_mesh_sides.hpp"
 #include "collision/narrow_phase/turning/turning_nodes.hpp"
@@ -104,19 +105,22 @@ TEST_CASE("nodes are apart for as long as is proven", "[turning]") {
     const Box box_a{half()}, box_b{half()};
     const ObbNode node_a = box_node(box_a.half_extents), node_b = box_node(box_b.half_extents);
     const double t = random.between(0, 0.5), horizon = t + 1;
-    const NodesView<2> view(a, b, box_units(box_a.half_extents), box_units(box_b.half_extents), t, horizon);
+    const NodesView<2> view(a, b, {a, b}, box_units(box_a.half_extents), box_units(box_b.half_extents), t, horizon);
+    const FourNodes four_a{&node_a, &node_a, &node_a, &node_a}, four_b{&node_b, &node_b, &node_b, &node_b};
     CAPTURE(round);
     const auto gap = [&](double when) {
       return static_cast<double>(tests::TurningOracle::gap(a, box_a, b, box_b, when));
     };
-    if (nodes_apart_by(0.25, view, node_a, node_b)) {
+    if (const unsigned apart = nodes_apart_by(0.25, view, four_a, four_b); apart != 0) {
+      CHECK(apart == 0xF);
       // Along an axis; the oracle knows more of them.
       CHECK(gap(t) > 0.25);
     }
-    const NodeWait apart = nodes_apart(view, node_a, node_b);
+    const FourWaits apart = nodes_apart(view, four_a, four_b);
+    CHECK(all_set(apart.part == splat(apart.part[0])));
     if (!apart.worth_it) continue;
     ++proven;
-    const double until = std::min(horizon, t + apart.wait);
+    const double until = std::min(horizon, t + view.ahead * static_cast<double>(apart.part[0]));
     for (int i = 0; i <= 20; ++i) CHECK(gap(t + (until - t) * i / 20) > 0);
     ended += until < horizon;
   }
@@ -131,7 +135,7 @@ TEST_CASE("nodes of meshes of any size are apart for as long as is proven", "[tu
   const auto mesh = samples::torus(8, 4);
   const auto nodes = mesh->tree().nodes();
   int proven = 0, ended = 0;
-  for (int round = 0; round < 2000; ++round) {
+  for (int round = 0; round < 500; ++round) {
     const double size = std::ldexp(1.0, random.integer(-40, 40)), other = random.one_in(3) ? 0x1p-6 : 1;
     const MeshShape shape_a{mesh, size}, shape_b{mesh, size * other};
     const NodeUnits units_a = MeshOfPair(shape_a).units(), units_b = MeshOfPair(shape_b).units();
@@ -139,20 +143,24 @@ TEST_CASE("nodes of meshes of any size are apart for as long as is proven", "[tu
     for (Motion* const motion : {&a, &b}) {
       for (Vector3d& coefficient : motion->path.coefficients) coefficient *= size;
     }
-    const ObbNode& node_a = nodes[random.below(nodes.size())];
-    const ObbNode& node_b = nodes[random.below(nodes.size())];
+    FourNodes nodes_a, nodes_b;
+    for (const ObbNode*& node : nodes_a) node = &nodes[random.below(nodes.size())];
+    for (const ObbNode*& node : nodes_b) node = &nodes[random.below(nodes.size())];
     const double t = random.between(0, 0.5), horizon = t + 1;
-    const NodesView<2> view(a, b, units_a, units_b, t, horizon);
-    const NodeWait apart = nodes_apart(view, node_a, node_b);
-    if (!apart.worth_it) continue;
-    ++proven;
-    CAPTURE(round);
-    const double until = std::min(horizon, t + apart.wait);
-    for (int i = 0; i <= 20; ++i) {
-      const double when = t + (until - t) * i / 20;
-      CHECK(gap_of(corners_of(node_a, units_a.unit, a, when), corners_of(node_b, units_b.unit, b, when)) > 0);
+    const NodesView<2> view(a, b, {a, b}, units_a, units_b, t, horizon);
+    const FourWaits apart = nodes_apart(view, nodes_a, nodes_b);
+    for (std::size_t pair = 0; pair < 4; ++pair) {
+      if (!(apart.worth_it >> pair & 1)) continue;
+      ++proven;
+      CAPTURE(round, pair);
+      const double until = std::min(horizon, t + view.ahead * static_cast<double>(apart.part[pair]));
+      for (int i = 0; i <= 20; ++i) {
+        const double when = t + (until - t) * i / 20;
+        CHECK(gap_of(corners_of(*nodes_a[pair], units_a.unit, a, when),
+                     corners_of(*nodes_b[pair], units_b.unit, b, when)) > 0);
+      }
+      ended += until < horizon;
     }
-    ended += until < horizon;
   }
   CHECK(proven > 500);
   CHECK(ended > 100);
@@ -199,6 +207,79 @@ TEST_CASE("triangles are apart for as long as is proven, and conditions that are
   }
   CHECK(proven > 300);
   CHECK(sure > 3000);
+}
+
+TEST_CASE("four pairs of triangles are apart for as long as floats prove", "[turning]") {
+  using Oracle = tests::TurningMeshOracle;
+  const std::uint64_t seed = 564;
+  CAPTURE(seed);
+  Random random(seed);
+  int proven = 0, ended = 0;
+  for (int round = 0; round < 300; ++round) {
+    const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 2));
+    FourTriangles p, q;
+    const double small = random.one_in(2) ? 1 : 0x1p-8;  // about the same point, so that they are near each other
+    for (std::size_t pair = 0; pair < 4; ++pair) {
+      p[pair] = random_triangle(random), q[pair] = random_triangle(random);
+      for (Vector3d& corner : p[pair]) corner *= small;
+      if (random.one_in(4)) q[pair][2] = q[pair][1];  // a needle
+    }
+    const double t = random.between(0, 0.5), horizon = t + 1, reach = 1.75;
+    const NodesView<2> view(a, b, {a, b}, {1, 0, reach}, {1, 0, reach}, t, horizon);
+    const FourFloats parts = TriangleGaps<2>(view, p, q).parts();
+    const auto placed = [](const Motion& motion, const std::array<Vector3d, 3>& corners, double when) {
+      Oracle::Triangle triangle;
+      for (std::size_t i = 0; i < 3; ++i) triangle[i] = Oracle::point(motion, corners[i], when);
+      return std::vector<Oracle::Triangle>{triangle};
+    };
+    for (std::size_t pair = 0; pair < 4; ++pair) {
+      if (!(parts[pair] > 0)) continue;
+      ++proven;
+      CAPTURE(round, pair);
+      const double until = std::min(horizon, t + view.ahead * static_cast<double>(parts[pair]));
+      for (int i = 0; i <= 20; ++i) {
+        const double when = t + (until - t) * i / 20;
+        CHECK(Oracle::depth(placed(a, p[pair], when), placed(b, q[pair], when)) <= 0);
+      }
+      ended += parts[pair] < 1;
+    }
+  }
+  CHECK(proven > 400);
+  CHECK(ended > 200);
+}
+
+TEST_CASE("functions are positive for the part of the time that is said", "[turning]") {
+  const std::uint64_t seed = 565;
+  CAPTURE(seed);
+  Random random(seed);
+  int ended = 0, all = 0;
+  for (int round = 0; round < 2000; ++round) {
+    FourFloats f0, f1, bend, third;
+    for (int i = 0; i < 4; ++i) {
+      const auto number = [&](double size) {
+        return random.one_in(5) ? 0.0F : static_cast<float>(size * std::pow(10.0, random.between(-6, 0)));
+      };
+      f0[i] = number(1), f1[i] = number(2) * (random.one_in(3) ? 1.0F : -1.0F);
+      bend[i] = number(4) * (random.one_in(3) ? 1.0F : -1.0F), third[i] = number(8);
+    }
+    const FourFloats part = positive_part(f0, f1, bend, third);
+    for (int i = 0; i < 4; ++i) {
+      CAPTURE(round, i, f0[i], f1[i], bend[i], third[i], part[i]);
+      if (!(f0[i] > 0)) {
+        CHECK(part[i] == 0);
+        continue;
+      }
+      CHECK((part[i] > 0 && part[i] <= 1));
+      const auto at = [&](long double s) {
+        return f0[i] + s * (f1[i] + s * (std::min(bend[i], 0.0F) / 2 - s * third[i] / 6));
+      };
+      CHECK(at(part[i]) >= 0);                                                     // concave: so it is before
+      if (part[i] < 1 && third[i] == 0) CHECK(at(part[i] * (1 + 0x1p-14L)) <= 0);  // as long as can be said
+      part[i] < 1 ? ++ended : ++all;
+    }
+  }
+  CHECK(ended > 500);
+  CHECK(all > 500);
 }
 
 TEST_CASE("signs that are remembered are those that are found", "[turning]") {

@@ -67,6 +67,10 @@ TEST_CASE("lanes give what a number alone does", "[simd]") {
       REQUIRE(same(lesser(u, v)[lane], u[lane] < v[lane] ? u[lane] : v[lane]));
       REQUIRE(same(greater(u, v)[lane], u[lane] > v[lane] ? u[lane] : v[lane]));
       REQUIRE(same(magnitude(u)[lane], std::abs(u[lane])));
+      if (u[lane] >= 0) REQUIRE(same(square_root(u)[lane], std::sqrt(u[lane])));
+      REQUIRE(same(where(u < v, u, v)[lane], u[lane] < v[lane] ? u[lane] : v[lane]));
+      REQUIRE(same(where(u < v, u)[lane], u[lane] < v[lane] ? u[lane] : 0.0F));
+      if (!std::isnan(u[lane])) REQUIRE(same(signed_by(u, v)[lane], std::signbit(u[lane]) ? -v[lane] : v[lane]));
       below_of_four |= unsigned{u[lane] < v[lane]} << lane;
     }
     REQUIRE(set_of_two(x < y) == below);
@@ -92,6 +96,10 @@ TEST_CASE("intrinsics and what is portable give the same bits", "[simd]") {
     REQUIRE(same(simd::target::greater(u, v), simd::portable::greater(u, v)));
     REQUIRE(simd::target::set_of_two(x < y) == simd::portable::set_of_two(x < y));
     REQUIRE(simd::target::set_of_four(u <= v) == simd::portable::set_of_four(u <= v));
+    const FourFloats lengths = magnitude(u);
+    if (all_set(lengths >= splat(0))) {
+      REQUIRE(same(simd::target::square_root(lengths), simd::portable::square_root(lengths)));
+    }
     const Two positive = magnitude(x);
     if (positive[0] >= 0 && positive[1] >= 0) {
       REQUIRE(same(simd::target::square_root(positive), simd::portable::square_root(positive)));
