@@ -35,11 +35,13 @@ double BasicWorld<Motion>::rebound(double approach, double pressed, double resti
 template <class Motion>
 bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
   if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
-  if (count_meeting(a, b) > patience()) {  // No rebound helps: between fixed bodies that close in, say.
+  const std::uint64_t burst = count_meeting(a, b);
+  if (burst > patience()) {  // No rebound helps: between fixed bodies that close in, say.
     ++counters_.rebounds_suppressed;
     let_through(a, b, contact);
     return true;
   }
+  resting_.meet(a, b);
   Motion motion_a = met(a, contact.time);
   Motion motion_b = met(b, contact.time);
   const Vector3d& n = contact.normal;
@@ -68,7 +70,9 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   for (const Motion* motion : {&motion_a, &motion_b}) {
     pressed = std::max(pressed, std::abs(dot(n, motion->path.acceleration(contact.time))));
   }
-  const double restitution = std::min(bodies_[a].restitution, bodies_[b].restitution);
+  // Losses may make infinitely many contacts of three bodies in a line: so too many at one time lose nothing any more.
+  const bool often = burst > options_.zeno.contacts;
+  const double restitution = often ? 1 : std::min(bodies_[a].restitution, bodies_[b].restitution);
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
   const auto mobility = [&](BodySlot slot) {
@@ -78,7 +82,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   // Of two bodies the lower counts, as of restitutions.
   const Surfaces surfaces{
       .restitution = rebound(approach, pressed, restitution) / approach,
-      .friction = std::min(bodies_[a].friction, bodies_[b].friction),
+      .friction = often ? 0 : std::min(bodies_[a].friction, bodies_[b].friction),
       .tangential_restitution = std::min(bodies_[a].tangential_restitution, bodies_[b].tangential_restitution)};
   // A ball is turned by nothing that acts along its normal.
   const auto arm = [&](BodySlot slot, const Motion& motion) {
@@ -103,7 +107,9 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
     ++counters_.motion_updates;
     set_motion(slot, motion, false);
   }
-  return false;
+  const bool rests = resting_.settle(a, b, contact);
+  counters_.rebounds_suppressed += rests;
+  return rests;
 }
 
 /// The motion of a body just before a contact, for one that precesses with the angular velocity of its free rotation.
