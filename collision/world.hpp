@@ -321,6 +321,7 @@ class BasicWorld final : private RestingListener<BodyMotionType> {
   double rebound(double approach, double pressed, double restitution) const requires(turns<Motion>);
   void process_wall() requires(turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
+  bool precesses(BodySlot slot) const { return tumbling_.has(slot) && !resting_.carries(slot); }
   Motion met(BodySlot slot, double t) requires(turns<Motion>);
   void turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                  const Contact& contact) requires(turns<Motion>);

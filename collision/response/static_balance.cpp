@@ -14,66 +14,88 @@ using Eigen::Vector3d;
 
 /// What is not balanced of a body: its acceleration, and its angular acceleration if its moment of inertia were mass
 /// times size squared. Which moment it has does not matter: both are to be zero.
-struct Rest {
+struct Unbalanced {
   Vector3d linear, angular;
 };
 
+/// [Nesterov83]: each step is from a point beyond the last one, in the direction of the last step, by ever more of it;
+/// from the start again where that leads uphill [ODonoghue15].
 class Descent {
  public:
   Descent(std::span<const Load> loads, std::span<const Foothold> footholds)
-      : loads_(loads), footholds_(footholds), forces_(footholds.size(), Vector3d::Zero()) {
+      : loads_(loads),
+        footholds_(footholds),
+        forces_(footholds.size(), Vector3d::Zero()),
+        ahead_(forces_),
+        steps_(footholds.size()) {
     for (const Load& load : loads) greatest_ = std::max(greatest_, norm(load.acceleration));
-    start();
+    std::vector<double> held(loads.size(), 0);  // by how many footholds
+    for (const Foothold& at : footholds) {
+      for (const std::uint32_t i : {at.a, at.b}) {
+        if (i != Foothold::fixed) ++held[i];
+      }
+    }
+    // The square of a sum of n vectors is at most n times the sum of their squares: so no step is too long.
+    for (std::size_t k = 0; k < footholds.size(); ++k) {
+      double mobility = 0;
+      const auto add = [&](std::uint32_t i, const Vector3d& arm) {
+        if (i == Foothold::fixed) return;
+        mobility += held[i] * (1 + squared_norm(arm) / (loads[i].size * loads[i].size)) / loads[i].mass;
+      };
+      add(footholds[k].a, footholds[k].arm_a), add(footholds[k].b, footholds[k].arm_b);
+      steps_[k] = 1 / mobility;
+    }
   }
 
-  void sweep() {
-    for (std::size_t k = 0; k < footholds_.size(); ++k) step(k);
-    for (std::size_t k = footholds_.size(); k-- > 0;) step(k);
+  void step() {
+    balance(ahead_);
+    double uphill = 0;
+    const double next = (1 + std::sqrt(1 + 4 * pace_ * pace_)) / 2;
+    const double beyond = (pace_ - 1) / next;
+    for (std::size_t k = 0; k < footholds_.size(); ++k) {
+      const Vector3d force = in_cone(ahead_[k] - steps_[k] * approach(footholds_[k]), footholds_[k]);
+      const Vector3d change = force - forces_[k];
+      uphill += dot(ahead_[k] - force, change) / steps_[k];
+      ahead_[k] = force + beyond * change;
+      forces_[k] = force;
+    }
+    pace_ = next;
+    if (uphill > 0) pace_ = 1, ahead_ = forces_;
   }
 
   /// The greatest of what is left, over the greatest acceleration.
-  double left() const {
+  double left() {
+    balance(forces_);
     double most = 0;
     for (std::size_t i = 0; i < loads_.size(); ++i) {
-      most = std::max({most, norm(rest_[i].linear), norm(rest_[i].angular) * loads_[i].size});
+      most = std::max({most, norm(unbalanced_[i].linear), norm(unbalanced_[i].angular) * loads_[i].size});
     }
     return greatest_ > 0 ? most / greatest_ : 0;
   }
 
-  /// Calculates what is left from the forces, without what sweeps have added up of roundings.
-  void start() {
-    rest_.clear();
-    for (const Load& load : loads_) rest_.push_back({load.acceleration, Vector3d::Zero()});
-    for (std::size_t k = 0; k < footholds_.size(); ++k) push(footholds_[k], forces_[k]);
-  }
-
  private:
-  void push(const Foothold& at, const Vector3d& force) {
-    const auto give = [&](std::uint32_t i, const Vector3d& arm, const Vector3d& f) {
+  /// What these forces leave.
+  void balance(std::span<const Vector3d> forces) {
+    unbalanced_.clear();
+    for (const Load& load : loads_) unbalanced_.push_back({load.acceleration, Vector3d::Zero()});
+    const auto give = [&](std::uint32_t i, const Vector3d& arm, const Vector3d& force) {
       if (i == Foothold::fixed) return;
       const Load& load = loads_[i];
-      rest_[i].linear += f / load.mass;
-      rest_[i].angular += cross(arm, f) / (load.mass * load.size * load.size);
+      unbalanced_[i].linear += force / load.mass;
+      unbalanced_[i].angular += cross(arm, force) / (load.mass * load.size * load.size);
     };
-    give(at.a, at.arm_a, -force);
-    give(at.b, at.arm_b, force);
+    for (std::size_t k = 0; k < footholds_.size(); ++k) {
+      give(footholds_[k].a, footholds_[k].arm_a, -forces[k]);
+      give(footholds_[k].b, footholds_[k].arm_b, forces[k]);
+    }
   }
 
-  void step(std::size_t k) {
-    constexpr double relaxation = 1.5;  // below 2, so that the sum of squares cannot grow
-    const Foothold& at = footholds_[k];
-    Vector3d approach = Vector3d::Zero();
-    double mobility = 0;  // at least the acceleration along it that a force of 1 gives
-    const auto look = [&](std::uint32_t i, const Vector3d& arm, double sign) {
-      if (i == Foothold::fixed) return;
-      approach += sign * (rest_[i].linear + cross(rest_[i].angular, arm));
-      mobility += (1 + squared_norm(arm) / (loads_[i].size * loads_[i].size)) / loads_[i].mass;
-    };
-    look(at.a, at.arm_a, -1);
-    look(at.b, at.arm_b, 1);
-    const Vector3d force = in_cone(forces_[k] - (relaxation / mobility) * approach, at);
-    push(at, force - forces_[k]);
-    forces_[k] = force;
+  /// The acceleration of b's point seen from a's.
+  Vector3d approach(const Foothold& at) const {
+    Vector3d relative = Vector3d::Zero();
+    if (at.b != Foothold::fixed) relative += unbalanced_[at.b].linear + cross(unbalanced_[at.b].angular, at.arm_b);
+    if (at.a != Foothold::fixed) relative -= unbalanced_[at.a].linear + cross(unbalanced_[at.a].angular, at.arm_a);
+    return relative;
   }
 
   /// The nearest force that the foothold can give.
@@ -92,29 +114,30 @@ class Descent {
   std::span<const Load> loads_;
   std::span<const Foothold> footholds_;
   std::vector<Vector3d> forces_;
-  std::vector<Rest> rest_;
+  std::vector<Vector3d> ahead_;  ///< where the next step begins
+  std::vector<double> steps_;
+  std::vector<Unbalanced> unbalanced_;
   double greatest_ = 0;
+  double pace_ = 1;
 };
 
 }  // namespace
 
 bool balanced(std::span<const Load> loads, std::span<const Foothold> footholds) {
-  constexpr int most_sweeps = 512;  // to and fro
-  constexpr int pause = 8;
+  constexpr int most_steps = 2048;
+  constexpr int pause = 32;
   constexpr double progress = 0.875;  // in a pause, or there is little hope
   Descent descent(loads, footholds);
-  double before = descent.left();
-  for (int sweeps = 1; sweeps <= most_sweeps; ++sweeps) {
-    descent.sweep();
-    const bool enough = descent.left() <= balance_rounding / 2;
-    if (!enough && sweeps % pause != 0) continue;
-    descent.start();
+  double least = descent.left();
+  int hopeless = 0;
+  for (int steps = 0; steps < most_steps && least > balance_rounding; steps += pause) {
+    for (int k = 0; k < pause; ++k) descent.step();
     const double left = descent.left();
-    if (left <= balance_rounding) return true;
-    if (sweeps % pause == 0 && !(left <= progress * before)) return false;
-    if (sweeps % pause == 0) before = left;
+    hopeless = left <= progress * least ? 0 : hopeless + 1;
+    if (hopeless >= 4) return false;
+    least = std::min(least, left);
   }
-  return false;
+  return least <= balance_rounding;
 }
 
 }  // namespace kds::collision

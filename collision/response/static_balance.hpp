@@ -28,13 +28,13 @@ struct Foothold {
 /// Whether there are forces, each within the cone of friction of its foothold, that hold all bodies: that add up to the
 /// opposite of their weights, and have no torque.
 ///
-/// Block descent over the footholds, in sweeps to and fro, on the sum of the squares of what is not balanced: each
-/// force takes a step against the acceleration that is left at its point, and is projected on its cone, which is the
-/// circular one. What is left in the end is measured anew from the forces: so `true` is never wrong by more than
-/// balance_rounding. `false` is given too where it is not known after some sweeps, at the limits of friction above all.
+/// Accelerated gradient descent [Nesterov83] on the sum of the squares of what is not balanced: each force takes a step
+/// against the acceleration that is left at its point, and is projected on its cone, which is the circular one. What is
+/// left in the end is measured from the forces: so `true` is never wrong by more than balance_rounding. `false` is
+/// given too where it is not known after some steps, at the limits of friction above all.
 ///
-/// The arithmetic is the same bits everywhere. Cost: 60 ns a foothold and sweep; some 50 sweeps for a body on four
-/// points, 1 024 at most.
+/// The arithmetic is the same bits everywhere. Cost: 30 ns a foothold and step; 32 steps for a body on four points, 200
+/// for a stack of five, 2 048 at most.
 bool balanced(std::span<const Load> loads, std::span<const Foothold> footholds);
 
 /// What may be left of an acceleration, and of an angular acceleration times the size of its body, relative to the

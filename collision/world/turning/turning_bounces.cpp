@@ -50,7 +50,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   if (!(approach > 0)) {  // The pieces of their motions approach, their free rotations do not.
     turn_back(a, b, motion_a, motion_b, contact);
     for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
-      if (tumbling_.has(slot)) set_motion(slot, motion, false);
+      if (precesses(slot)) set_motion(slot, motion, false);
     }
     return false;
   }
@@ -76,6 +76,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
   const auto mobility = [&](BodySlot slot) {
+    if (resting_.carries(slot)) return Mobility::fixed();
     if (tumbling_.has(slot)) return Mobility::of(bodies_[slot].inverse_mass, tumbling_.inverse_inertia(slot));
     return Mobility::of_spherical(bodies_[slot].inverse_mass, bodies_[slot].inverse_inertia);
   };
@@ -94,7 +95,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   motion_a.path.coefficients[1] = velocity_a.velocity, motion_a.angular_velocity = velocity_a.angular_velocity;
   motion_b.path.coefficients[1] = velocity_b.velocity, motion_b.angular_velocity = velocity_b.angular_velocity;
   const auto push = [&](BodySlot slot, Motion& motion, const Vector3d& angular_impulse) {
-    if (!tumbling_.has(slot)) return;
+    if (!precesses(slot)) return;
     tumbling_.push(slot, angular_impulse);
     tumbling_.set_path(slot, motion.path);
     motion.angular_velocity = tumbling_.angular_velocity(slot);
@@ -103,7 +104,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   push(b, motion_b, cross(arms.b, impulse));
   turn_back(a, b, motion_a, motion_b, contact);
   for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
-    if (bodies_.fixed(slot)) continue;
+    if (bodies_.fixed(slot) || resting_.carries(slot)) continue;
     ++counters_.motion_updates;
     set_motion(slot, motion, false);
   }
@@ -116,7 +117,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
 template <class Motion>
 Motion BasicWorld<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
   Motion motion = bodies_.motion(slot).restarted(t);
-  if (!tumbling_.has(slot)) return motion;
+  if (!precesses(slot)) return motion;
   tumbling_.meet(slot, motion.orientation, t);
   motion.angular_velocity = tumbling_.angular_velocity(slot);
   return motion;
@@ -128,7 +129,7 @@ Motion BasicWorld<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) 
 template <class Motion>
 void BasicWorld<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                                    const Contact& contact) requires(turns<Motion>) {
-  if (!tumbling_.has(a) && !tumbling_.has(b)) return;
+  if (!precesses(a) && !precesses(b)) return;
   const double t = contact.time;
   const auto parting = [&](const Motion& of_a, const Motion& of_b) {
     return dot(contact.normal, PointRates<Motion::degree>(of_a, of_b, t).velocity(contact.point));
@@ -136,15 +137,20 @@ void BasicWorld<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Mot
   std::optional<RotationPiece> piece_a, piece_b;
   Motion back_a = motion_a, back_b = motion_b;
   const auto look = [&](BodySlot slot, Motion& back, std::optional<RotationPiece>& piece) {
-    if (!tumbling_.has(slot)) return;
+    if (!precesses(slot)) return;
     piece = tumbling_.way_back(slot, back.orientation, t);
     back.angular_velocity = piece->angular_velocity;
   };
   look(a, back_a, piece_a), look(b, back_b, piece_b);
   const double free = parting(motion_a, motion_b);
   const double led = parting(back_a, back_b);
-  const bool whole = free > 0 && led >= free / 2;
-  const double share = whole ? 1 : free > 0 ? free / 2 / (free - led) : 0;
+  // Ways back that differ for two neighbours of a body would lead it to and fro: after many contacts at once, none.
+  const auto often = [&](BodySlot slot) {
+    return bodies_.fixed(slot) || bodies_[slot].meetings > options_.zeno.contacts;
+  };
+  const bool goes_on = often(a) && often(b);
+  const bool whole = !goes_on && free > 0 && led >= free / 2;
+  const double share = whole ? 1 : free > 0 && !goes_on ? free / 2 / (free - led) : 0;
   const auto lead = [&](BodySlot slot, Motion& motion, const std::optional<RotationPiece>& piece) {
     if (!piece) return;
     const Vector3d more = piece->angular_velocity - motion.angular_velocity;

@@ -128,6 +128,11 @@ void TurningRest<Motion>::wake(BodySlot slot) {
 template <class Motion>
 void TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
   if (resting_ == 0 || !(carries(a) || carries(b))) return;
+  // What touches it gently is to lie on it, perhaps: until that is known it stays as it is.
+  const bool gentle = std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 &&
+                      (carries(a) || !bodies_.fixed(a)) && (carries(b) || !bodies_.fixed(b)) &&
+                      calm(a, scale({a, b}).acceleration) && calm(b, scale({a, b}).acceleration);
+  if (gentle) return;
   if (carries(a)) wake(a);
   if (carries(b)) wake(b);
   solve();
@@ -139,7 +144,7 @@ void TurningRest<Motion>::drop_all(BodySlot slot) {
   if (carries(slot)) wake(slot);
   const std::vector<BodySlot> others = of_[slot].others;  // which leave it when they wake
   for (const BodySlot other : others) {
-    if (carries(other)) wake(other);
+    if (carries(other) && pairs_[std::minmax(slot, other)].rests) wake(other);
   }
   erase_all(slot);
   of_[slot].since = never;
@@ -213,7 +218,7 @@ bool TurningRest<Motion>::settle(BodySlot a, BodySlot b, const collision::Contac
   const double t = clock_.now;
   if (!(g > 0 && std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 && calm(a, g) && calm(b, g))) {
     for (const BodySlot slot : {a, b}) {
-      if (slot >= of_.size() || bodies_.fixed(slot)) continue;
+      if (slot >= of_.size() || bodies_.fixed(slot) || carries(slot)) continue;
       erase_all(slot);
       of_[slot].since = never;
     }
@@ -222,7 +227,7 @@ bool TurningRest<Motion>::settle(BodySlot a, BodySlot b, const collision::Contac
   note({a, b}, contact);
   bool long_enough = true;
   for (const BodySlot slot : {a, b}) {
-    if (bodies_.fixed(slot)) continue;
+    if (bodies_.fixed(slot) || carries(slot)) continue;
     Member& body = member(slot);
     body.since = std::min(body.since, t);
     long_enough = long_enough && t - std::max(body.since, body.looked) >= calm_flights * flight_;
@@ -238,6 +243,10 @@ bool TurningRest<Motion>::settle(BodySlot a, BodySlot b, const collision::Contac
   }
   if (!balanced(group.loads, group.footholds)) {
     for (const BodySlot slot : group.bodies) look(slot);
+    for (const BodySlot slot : group.bodies) {
+      if (carries(slot)) wake(slot);  // It cannot carry the others.
+    }
+    solve();
     return false;
   }
   stop(group, contact, {a, b});
@@ -271,10 +280,11 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
       const double friction = std::min(bodies_[key.first].friction, bodies_[key.second].friction);
       const bool smooth =
           std::min(bodies_[key.first].tangential_restitution, bodies_[key.second].tangential_restitution) == -1;
+      const bool rests = pairs_[key].rests;
       bool links = false;
       for (const detail::TouchedPlace& place : pairs_[key].places) {
         const Vector3d on_a = a.out(place.on_a), on_b = b.out(place.on_b);
-        if (t - place.time > memory * flight_ || norm(on_b - on_a) > far) continue;
+        if (!rests && (t - place.time > memory * flight_ || norm(on_b - on_a) > far)) continue;
         if (!std::exchange(links, true)) {
           if (!bodies_.fixed(other)) visit(other);
           group.pairs.push_back(key);
@@ -297,7 +307,7 @@ bool TurningRest<Motion>::quiet(const Group& group) const {
   double g = 0;
   for (const BodySlot slot : group.bodies) g = std::max(g, acceleration(slot));
   const auto ready = [&](BodySlot slot) {
-    return clock_.now - of_[slot].since >= calm_flights * flight_ && calm(slot, g);
+    return of_[slot].rests || (clock_.now - of_[slot].since >= calm_flights * flight_ && calm(slot, g));
   };
   return std::all_of(group.bodies.begin(), group.bodies.end(), ready) &&
          std::all_of(group.pairs.begin(), group.pairs.end(), [&](const Key& key) {
@@ -311,16 +321,17 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
   const double t = clock_.now;
   for (const Key& key : group.pairs) {
     Pair& pair = pairs_[key];
+    if (pair.rests) continue;
     const detail::TouchedPlace& place = pair.places.back();
     const Frame a(bodies_.motion(key.first), t);
     pair.normal = place.normal;
     pair.point = (key == met ? contact.point : a.out(place.on_a)) - a.origin();
     pair.rests = true;
-    pair.places.clear();
     ++resting_;
     listener_.tell_resting(true, {.a = key.first, .b = key.second, .normal = pair.normal, .point = pair.point});
   }
   for (const BodySlot slot : group.bodies) {
+    if (carries(slot)) continue;
     const std::vector<BodySlot> others = of_[slot].others;
     for (const BodySlot other : others) {  // which it has left meanwhile
       const Key key = std::minmax(slot, other);

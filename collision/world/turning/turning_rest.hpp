@@ -37,7 +37,7 @@ struct TouchedPlace {
 /// Two bodies that lie on each other, or hop on each other so gently that they may soon.
 struct LyingPair {
   bool rests = false;
-  std::vector<TouchedPlace> places;  ///< none while they rest
+  std::vector<TouchedPlace> places;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< of the contact with which they came to rest, from a's centre
 };
@@ -62,7 +62,8 @@ void archive_members(Archive& archive, LyingPair& pair) {
 /// those that are linked by such places, down to what is fixed, have been calm for some flights, and forces at these
 /// places within the cones of friction hold them all (static_balance.hpp), they come to rest: from then on they do not
 /// move, exactly, and cost nothing. A group wakes as a whole, with the accelerations that its bodies were given, when
-/// one of its bodies is struck, changed or removed, or one of its supports is changed or removed.
+/// one of its bodies is struck, changed or removed, or one of its supports is changed or removed. What a calm body
+/// touches does not wake: if forces hold that body too, it joins the group, and if not the group wakes then.
 ///
 /// A part of World that owns its state. It reads the bodies, and tells its listener what follows. All of it is a
 /// function of contacts and edits: not of the broad phase, windows or snapshots.
@@ -94,7 +95,8 @@ class TurningRest {
   /// Two bodies have met, and move as they do after their impulses. Returns whether they, and all bodies of their
   /// group, have come to rest.
   bool settle(BodySlot a, BodySlot b, const collision::Contact& contact);
-  /// What rests wakes, if one of the two that are about to meet rests.
+  /// Two bodies are about to meet. If one of them rests it wakes, unless the other is calm: that may lie on it soon,
+  /// and bounces off it until then as off a fixed body.
   void meet(BodySlot a, BodySlot b);
 
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
