@@ -55,7 +55,7 @@ class Descent {
     for (std::size_t k = 0; k < footholds_.size(); ++k) {
       const Vector3d force = in_cone(ahead_[k] - steps_[k] * approach(footholds_[k]), footholds_[k]);
       const Vector3d change = force - forces_[k];
-      uphill += dot(ahead_[k] - force, change) / steps_[k];
+      uphill += certificates::dot(ahead_[k] - force, change) / steps_[k];
       ahead_[k] = force + beyond * change;
       forces_[k] = force;
     }
@@ -100,7 +100,7 @@ class Descent {
 
   /// The nearest force that the foothold can give.
   static Vector3d in_cone(const Vector3d& force, const Foothold& at) {
-    const double along = dot(at.normal, force);
+    const double along = certificates::dot(at.normal, force);
     const Vector3d across = force - along * at.normal;
     const double sideways = norm(across);
     const double mu = at.friction;

@@ -147,7 +147,7 @@ void TurningRest<Motion>::drop_all(BodySlot slot) {
     if (carries(other) && pairs_[std::minmax(slot, other)].rests) wake(other);
   }
   erase_all(slot);
-  of_[slot].since = never;
+  of_[slot].since = never, of_[slot].looked = -never;
   std::erase(woken_, slot);  // it has a motion of its own
 }
 
