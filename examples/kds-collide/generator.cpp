@@ -275,7 +275,7 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
 /// domain are not.
 GeneratedScene crates_scene(const GeneratorOptions& options) {
   constexpr std::size_t a_side = 3;  // of a layer of bodies
-  constexpr double end_time = 8;     // s, in which a few dozen come to rest
+  constexpr double end_time = 8;     // s, in which a dozen come to rest
   constexpr double spacing = 1.25, half_width = 2.25, thickness = 0.25, gravity = 9.81;
   const double height = 2 + static_cast<double>(options.bodies / (a_side * a_side));
   GeneratedScene scene;
