@@ -48,7 +48,7 @@ BasicWorld<Motion>::BasicWorld(const WorldOptions& options, Listener* listener)
       tumbling_(bodies_, options_, counters_),
       volumes_(bodies_, options_, clock_),
       walls_(bodies_, options_.walls, clock_),
-      resting_(bodies_, options_.walls, clock_, *this),
+      resting_(bodies_, options_, clock_, *this),
       pairs_(bodies_, volumes_, resting_, reports_, options_, clock_, counters_, profile()),
       self_contacts_(bodies_, clock_),
       callers_now_(options.start_time) {
@@ -345,7 +345,7 @@ void BasicWorld<Motion>::start_pieces() {
 template <class Motion>
 void BasicWorld<Motion>::turn_on() {
   const auto piece = tumbling_.take_next();
-  take_up(piece.slot, piece.motion);
+  change_motion(piece.slot, piece.motion);
 }
 
 template <class Motion>

@@ -57,7 +57,7 @@ namespace kds::collision {
 /// times in seconds. An id that was never given, or whose body was removed, throws std::out_of_range, which names the
 /// id and says which of the two it is (in resting() and touching(), for either id).
 template <class BodyMotionType>
-class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
+class BasicWorld final : private RestingListener<BodyMotionType> {
   static_assert(BodyMotion<BodyMotionType>, "World: bodies move as body_motion.hpp says");
   static_assert(BodyMotionType::degree >= 1 && BodyMotionType::degree <= KDS_GREATEST_DEGREE,
                 "World: bodies move on lines (degree 1) or parabolas (degree 2), and with kds::collision_splines on "
@@ -199,7 +199,7 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   using Body = detail::Body<Motion>;
   using Mover = typename Bodies<Motion>::Mover;
   using Entry = typename BroadPhase<Motion::degree>::Entry;
-  using Resting = RestingContacts<Motion>;
+  using Resting = RestingPart<Motion>;
   using Begin = typename Pairs<Motion>::Begin;
 
   // world.cpp: the clock
@@ -324,11 +324,14 @@ class BasicWorld final : private RestingContacts<BodyMotionType>::Listener {
   double rebound(double approach, double pressed, double restitution) const requires(turns<Motion>);
   void process_wall() requires(turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
+  bool precesses(BodySlot slot) const { return tumbling_.has(slot) && !resting_.carries(slot); }
   Motion met(BodySlot slot, double t) requires(turns<Motion>);
   void turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                  const Contact& contact) requires(turns<Motion>);
 
-  // Reports of resting contacts (RestingContacts::Listener).
+  /// A motion changes that is not one of the event's.
+  void change_motion(BodySlot slot, const Motion& motion);
+  // Reports of resting contacts (RestingListener).
   void take_up(BodySlot slot, const Motion& motion) override;
   void changed(BodySlot a, BodySlot b) override { pairs_.changed(a, b); }
   void let_pass(BodySlot a, BodySlot b) override { pairs_.let_pass(a, b); }

@@ -33,6 +33,10 @@ enum class Response {
 /// has separated. The same happens, in mode `callback` too, after ten times as many meetings. Each time the policy acts
 /// is counted and reported, and a run always ends.
 ///
+/// In worlds of bodies that turn contacts do not last (WorldOptions::shortest_flight). There those of two bodies that
+/// have both met others more than `contacts` times within `interval` lose no energy, and are without friction: so no
+/// cascade of contacts goes on without end.
+///
 /// Meetings are counted by body and not by pair: a pair is forgotten when its bounding volumes part, which may happen
 /// at each bounce and at times that depend on the broad phase.
 struct ZenoPolicy {
@@ -70,10 +74,11 @@ struct WorldOptions {
   /// Events and counters do not depend on it.
   std::size_t threads = 1;
   ZenoPolicy zeno{};
-  /// s, > 0. In worlds of bodies that turn, and on meshes that bend, contacts do not come to rest: bodies that are
-  /// pressed together rebound fast enough to fly for at least this time, so that a run always ends. Of bodies that
-  /// press on each other with the acceleration g it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1
-  /// ms), and costs a contact per flight.
+  /// s, > 0. In worlds of bodies that turn, and on meshes that bend, bodies that are pressed together rebound fast
+  /// enough to fly for at least this time, so that a run always ends. Of bodies that press on each other with the
+  /// acceleration g it raises heights by g / 8 times its square (1.2 um at 10 m/s^2 and 1 ms), and costs a contact per
+  /// flight. Bodies that turn come to rest when they move no faster than such flights make them, twice g times this
+  /// (2 cm/s), and forces at the places where they touch hold them (docs/turning.md): then contacts cost nothing.
   double shortest_flight = 1e-3;
   /// rad, from 2^-30 to 1/8. Bodies that turn freely and whose moments of inertia differ precess. Their motion consists
   /// of pieces with a constant angular velocity, so short that the orientation differs from the solution of Euler's

@@ -69,7 +69,7 @@ class Pairs final : public PairListener {
  public:
   using Slot = detail::PairSlot;
   using Pair = detail::Pair;
-  using Resting = RestingContacts<Motion>;
+  using Resting = RestingPart<Motion>;
 
   Pairs(const Bodies<Motion>& bodies, const Volumes<Motion>& volumes, Resting& resting, Reports& reports,
         const WorldOptions& options, Clock& clock, WorldCounters& counters, Profile* profile);

@@ -34,13 +34,17 @@ bool BasicWorld<Motion>::resting_at_wall(BodyId a, int wall) const {
 template <class Motion>
 typename BasicWorld<Motion>::Motion BasicWorld<Motion>::free_motion(BodyId id) const {
   const BodySlot slot = bodies_.slot_of(id);
-  if constexpr (!turns<Motion>) {  // Bodies that turn have no resting contacts.
-    if (!resting_.carries(slot)) return bodies_.motion(slot);
-    Motion motion = bodies_.motion(slot).restarted(now());
-    for (std::size_t i = 2; i <= Motion::degree; ++i) motion.coefficients[i] = bodies_.free_term(slot, i, now());
-    return motion;
+  if (!resting_.carries(slot)) return bodies_.motion(slot);
+  Motion motion = bodies_.motion(slot).restarted(now());
+  for (std::size_t i = 2; i <= Motion::degree; ++i) {
+    const Eigen::Vector3d term = bodies_.free_term(slot, i, now());
+    if constexpr (turns<Motion>) {
+      motion.path.coefficients[i] = term;
+    } else {
+      motion.coefficients[i] = term;
+    }
   }
-  return bodies_.motion(slot);
+  return motion;
 }
 
 template <class Motion>

@@ -101,6 +101,11 @@ std::uint64_t BasicWorld<Motion>::count_meeting(BodySlot id) {
 
 template <class Motion>
 void BasicWorld<Motion>::take_up(BodySlot id, const Motion& motion) {
+  change_motion(id, tumbling_.has(id) ? tumbling_.take_up(id, motion, clock_.now) : motion);
+}
+
+template <class Motion>
+void BasicWorld<Motion>::change_motion(BodySlot id, const Motion& motion) {
   ++counters_.motion_updates;
   set_motion(id, motion, false);
   reports_.add(Reports::Kind::moved, bodies_.id_of(id), bodies_.id_of(id), {.time = clock_.now});

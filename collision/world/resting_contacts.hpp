@@ -8,7 +8,7 @@
 #include "collision/world/clock.hpp"
 #include "collision/world/contact_gaps.hpp"
 #include "collision/world/resting_contact.hpp"
-#include "collision/world/turning/no_resting_contacts.hpp"
+#include "collision/world/turning/turning_rest.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
 
@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -79,11 +80,10 @@ class RestingContacts {
 
   using Listener = RestingListener<Motion>;
 
-  RestingContacts(const Bodies<Motion>& bodies, const std::optional<Walls>& walls, const Clock& clock,
-                  Listener& listener)
+  RestingContacts(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock, Listener& listener)
       : bodies_(bodies),
         clock_(clock),
-        gaps_(bodies, walls, clock),
+        gaps_(bodies, options.walls, clock),
         listener_(listener),
         releases_(detail::RestingRank{&contacts_}) {}
   RestingContacts(const RestingContacts&) = delete;
@@ -275,6 +275,10 @@ class RestingContacts {
   DaryQueue<> spans_;                        ///< when spans end; slots are bodies, the first of each cluster
   std::uint64_t islands_ = 0;
 };
+
+/// The part of a world that knows what rests in it: contacts that last, or, where bodies turn, groups that lie still.
+template <class Motion>
+using RestingPart = std::conditional_t<turns<Motion>, TurningRest<Motion>, RestingContacts<Motion>>;
 
 #define KDS_DECLARE(motion) extern template class RestingContacts<motion>;
 KDS_FOR_ALL_PATHS(KDS_DECLARE)

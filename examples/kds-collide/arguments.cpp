@@ -118,10 +118,11 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_flag("--quiet", arguments.quiet, "No progress and no summary on standard error");
 
   const std::string group = "Making a scene instead of running one";
-  auto* kind = app.add_option("--generate", arguments.generator.kind,
-                              "rings, models, spheres, boxes, spinners, spinning-rings, rods, plates, capsules or sheet")
-                   ->type_name("KIND")
-                   ->group(group);
+  auto* kind =
+      app.add_option("--generate", arguments.generator.kind,
+                     "rings, models, spheres, boxes, spinners, spinning-rings, rods, plates, capsules, sheet or crates")
+          ->type_name("KIND")
+          ->group(group);
   const auto add = [&]<class Number>(const char* name, const char* type, Number& value, const char* what) {
     std::string preset;
     append_number(preset, value);

@@ -113,6 +113,15 @@ void append_array(std::string& text, const Vector3d& v) {
   text += ']';
 }
 
+void append_rotation(std::string& text, const Eigen::Quaterniond& q) {
+  text += '[';
+  for (const double part : {q.w(), q.x(), q.y(), q.z()}) {
+    append_number(text, part);
+    text += ',';
+  }
+  text.back() = ']';
+}
+
 /// Inscribed in the bounding radius, with edges in random proportions.
 std::string box_shape(double radius, Random& random) {
   Vector3d half;
@@ -179,7 +188,7 @@ void check(const GeneratorOptions& options) {
   if (std::find(kinds.begin(), kinds.end(), options.kind) == kinds.end()) {
     throw std::invalid_argument(
         "--generate: there is no \"" + options.kind +
-        "\"; use rings, models, spheres, boxes, spinners, spinning-rings, rods, plates, capsules or sheet");
+        "\"; use rings, models, spheres, boxes, spinners, spinning-rings, rods, plates, capsules, sheet or crates");
   }
   constexpr std::size_t most_bodies = 10'000'000;  // about 3 GB of text
   if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
@@ -262,15 +271,69 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
   return scene;
 }
 
+/// Crates, boards and rods that are thrown into a box without a lid: fixed boxes, which are rough, as walls of the
+/// domain are not.
+GeneratedScene crates_scene(const GeneratorOptions& options) {
+  constexpr std::size_t a_side = 3;  // of a layer of bodies
+  constexpr double end_time = 8;     // s, in which a dozen come to rest
+  constexpr double spacing = 1.25, half_width = 2.25, thickness = 0.25, gravity = 9.81;
+  const double height = 2 + static_cast<double>(options.bodies / (a_side * a_side));
+  GeneratedScene scene;
+  std::string& json = scene.json;
+  json = "{\n\"scene\": 1,\n\"end_time\": ";
+  append_number(json, end_time);
+  json += ",\n\"response\": \"elastic\", \"restitution\": 0.3, \"friction\": 0.5,\n\"bodies\": [\n";
+  const auto add = [&](const std::string& name, const Vector3d& half) {
+    json += "{\"name\": \"" + name + "\", \"shape\": {\"box\": {\"half_extents\": ";
+    append_array(json, half);
+    json += "}}, ";
+  };
+  const auto add_fixed = [&](const std::string& name, const Vector3d& half, const Vector3d& at) {
+    add(name, half);
+    json += "\"fixed\": true, \"motion\": [{\"start\": 0, \"position\": [";
+    append_array(json, at);
+    json += "]}]},\n";
+  };
+  const double edge = half_width + 2 * thickness, middle = half_width + thickness;
+  add_fixed("floor", {edge, edge, thickness}, {0, 0, -thickness});
+  add_fixed("left", {thickness, half_width, height / 2}, {-middle, 0, height / 2});
+  add_fixed("right", {thickness, half_width, height / 2}, {middle, 0, height / 2});
+  add_fixed("front", {half_width, thickness, height / 2}, {0, -middle, height / 2});
+  add_fixed("back", {half_width, thickness, height / 2}, {0, middle, height / 2});
+  const std::array shapes{Vector3d(0.3, 0.3, 0.3), Vector3d(0.1, 0.125, 0.55), Vector3d(0.4, 0.3, 0.15)};
+  Random random(options.seed);
+  for (std::size_t i = 0; i < options.bodies; ++i) {
+    const Eigen::Quaterniond q = random.rotation();
+    const double x = random.uniform(-0.05, 0.05), y = random.uniform(-0.05, 0.05);
+    const Vector3d cell(static_cast<double>(i % a_side) - 1, static_cast<double>(i / a_side % a_side) - 1,
+                        1 + static_cast<double>(i / (a_side * a_side)));
+    add("crate" + std::to_string(i), shapes[i % 3]);
+    json += "\"orientation\": ";
+    append_rotation(json, q);
+    json += ", \"motion\": [{\"start\": 0, \"position\": [";
+    append_array(json, spacing * cell + Vector3d(x, y, 0));
+    json += ",[0,0,0],";
+    append_array(json, Vector3d(0, 0, -gravity / 2));
+    json += "], \"angular_velocity\": ";
+    const Vector3d axis = random.direction();
+    append_array(json, axis * random.uniform(0, 3));
+    json += i + 1 < options.bodies ? "}]},\n" : "}]}\n";
+  }
+  json += "]\n}\n";
+  return scene;
+}
+
 }  // namespace
 
 std::vector<std::string_view> generator_kinds() {
-  return {"rings", "models", "spheres", "boxes", "spinners", "spinning-rings", "rods", "plates", "capsules", "sheet"};
+  return {"rings", "models", "spheres",  "boxes", "spinners", "spinning-rings",
+          "rods",  "plates", "capsules", "sheet", "crates"};
 }
 
 GeneratedScene generate_scene(const GeneratorOptions& options) {
   check(options);
   if (options.kind == "sheet") return sheet_scene(options);
+  if (options.kind == "crates") return crates_scene(options);
   GeneratedScene scene;
   std::vector<NamedMesh> meshes;
   const auto add_mesh = [&](const std::string& name, const MeshData& mesh) {
@@ -344,12 +407,8 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     } else {
       json += options.kind == "boxes" ? box_shape(radii[i], random) : sphere_shape(radii[i]);
     }
-    json += ", \"orientation\": [";
-    for (const double part : {q.w(), q.x(), q.y(), q.z()}) {
-      append_number(json, part);
-      json += ',';
-    }
-    json.back() = ']';
+    json += ", \"orientation\": ";
+    append_rotation(json, q);
     json += ", \"motion\": [{\"start\": 0, \"position\": [";
     append_array(json, at);
     json += ',';

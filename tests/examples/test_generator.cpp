@@ -126,6 +126,28 @@ TEST_CASE("generator: spinning rings, rods, plates and capsules turn, with the i
   }
 }
 
+TEST_CASE("generator: crates fall into a box of fixed boxes") {
+  const TemporaryFolder folder;
+  const std::size_t bodies = 20;
+  const Scene scene = read(generate_scene({.kind = "crates", .bodies = bodies, .seed = 3}), folder);
+  CHECK(scene.turning);
+  REQUIRE(scene.bodies.size() == bodies + 5);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const SceneBody& body = scene.bodies[i];
+    CHECK(body.fixed == (i < 5));
+    CHECK(body.restitution == 0.3);
+    CHECK(body.friction == 0.5);
+    if (body.fixed) continue;
+    const double r = kds::collision::place(body.shape, body.orientation).bounding_radius;
+    const Eigen::Vector3d at = body.motion.front().path.coefficients[0];
+    CHECK(at.head<2>().cwiseAbs().maxCoeff() + r < 2.25);
+    for (std::size_t j = 5; j < i; ++j) {
+      const double other = kds::collision::place(scene.bodies[j].shape, body.orientation).bounding_radius;
+      CHECK((at - scene.bodies[j].motion.front().path.coefficients[0]).norm() > r + other);
+    }
+  }
+}
+
 TEST_CASE("generator: meshes are closed, wound outward and of bounding radius 1") {
   const GeneratedScene rings = generate_scene({.kind = "rings", .bodies = 1});
   const GeneratedScene models = generate_scene({.kind = "models", .bodies = 1});
@@ -169,7 +191,7 @@ TEST_CASE("generator: options out of range are refused") {
   };
   CHECK(error({.kind = "cubes"}) ==
         "--generate: there is no \"cubes\"; use rings, models, spheres, boxes, spinners, "
-        "spinning-rings, rods, plates, capsules or sheet");
+        "spinning-rings, rods, plates, capsules, sheet or crates");
   CHECK(error({.bodies = 0}) == "--bodies: must be > 0");
   for (const double density : {0.0, 1e-100, 0.9, static_cast<double>(NAN)}) {
     CHECK(error({.density = density}) == "--density: must be from 1e-12 to 0.3");

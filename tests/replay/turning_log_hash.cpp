@@ -31,6 +31,8 @@ struct HashingListener final : TurningWorld<Degree>::Listener {
   void wall(W&, const WallEvent& e) override {
     hash->event({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
   }
+  void rests(W&, const PairEvent& e) override { hash->event({Kind::rests, e.a, e.b, e.contact}); }
+  void wakes(W&, const PairEvent& e) override { hash->event({Kind::wakes, e.a, e.b, e.contact}); }
   void pair_began(W&, BodyId a, BodyId b, double t) override { hash->event({Kind::pair_began, a, b, {.time = t}}); }
   void pair_ended(W&, BodyId a, BodyId b, double t) override { hash->event({Kind::pair_ended, a, b, {.time = t}}); }
 };
@@ -43,7 +45,7 @@ Vector3d random_vector(kds::tests::Random& random, double size) {
 }
 
 /// What the bodies of a scene are.
-enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture, capsules };
+enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture, capsules, crates };
 
 constexpr double end_time = 2;
 constexpr int most_bodies = 64;  // on a lattice of 4 x 4 x 4
@@ -53,13 +55,14 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
   kds::tests::Random random(seed);
   const auto ring = rational_torus();
   const Shape tetrahedron = convex_hull({{0.5, 0.5, 0.5}, {0.5, -0.5, -0.5}, {-0.5, 0.5, -0.5}, {-0.5, -0.5, 0.5}});
-  const int count = bodies == Bodies::rings ? 12 : 24;
+  const bool crates = bodies == Bodies::crates;
+  const int count = crates ? 8 : bodies == Bodies::rings ? 12 : 24;
   for (int i = 0; i < count; ++i) {
     const int place = (i * 37) % most_bodies;
     typename TurningWorld<Degree>::Motion motion{};
     motion.path.coefficients[0] = Vector3d(place % 4, place / 4 % 4, place / 16) * 1.5 + random_vector(random, 0.2);
     motion.path.coefficients[1] = random_vector(random, 1.5);
-    if constexpr (Degree == 2) motion.path.coefficients[2] = Vector3d(0, 0, -1);
+    if constexpr (Degree == 2) motion.path.coefficients[2] = Vector3d(0, 0, crates ? -5 : -1);
     const double w = random.between(-1, 1);
     const Vector3d q = random_vector(random, 1);
     motion.orientation = Eigen::Quaterniond(w, q[0], q[1], q[2]);
@@ -82,11 +85,19 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
       if (i % 8 == 3) body.shape = tetrahedron, body.inertia = 0.05;
       if (i % 8 == 5) body.shape = MeshShape{ring, 0.5}, body.inertia = 0.1;
     }
-    body.friction = i % 3 == 0 ? 0.25 : 0;
-    body.restitution = i % 5 == 0 ? 0.5 : 1;
-    body.fixed = i == 7;
+    if (crates && i % 2 == 0) body.shape = Box{Vector3d(0.3, 0.4, 0.2)};
+    body.friction = crates ? 0.5 : i % 3 == 0 ? 0.25 : 0;
+    body.restitution = crates ? 0.25 : i % 5 == 0 ? 0.5 : 1;
+    body.fixed = i == 7 && !crates;
     world.add_body(body);
   }
+  if (!crates) return;  // They fall on a floor, and most come to rest.
+  typename TurningWorld<Degree>::Motion floor{};
+  floor.path.coefficients.fill(Vector3d::Zero());
+  floor.path.coefficients[0] = Vector3d(3, 3, -0.75);
+  typename TurningWorld<Degree>::Description body{.shape = Box{Vector3d(4, 4, 0.25)}, .motion = {floor}};
+  body.fixed = true, body.friction = 0.5, body.restitution = 0.25;
+  world.add_body(body);
 }
 
 /// How a world is driven to the end.
@@ -113,9 +124,11 @@ template <int Degree>
 void add_worlds(std::vector<Replay>& replays) {
   constexpr std::array kinds{std::pair{Bodies::boxes, "boxes"},     std::pair{Bodies::rods_and_balls, "rods-and-balls"},
                              std::pair{Bodies::rings, "rings"},     std::pair{Bodies::precessing, "precessing"},
-                             std::pair{Bodies::mixture, "mixture"}, std::pair{Bodies::capsules, "capsules"}};
+                             std::pair{Bodies::mixture, "mixture"}, std::pair{Bodies::capsules, "capsules"},
+                             std::pair{Bodies::crates, "crates"}};
   for (const auto& [bodies, name] : kinds) {
     for (const Response response : {Response::none, Response::elastic}) {
+      if (bodies == Bodies::crates && (Degree == 1 || response == Response::none)) continue;
       Replay replay{
           "turning/" + std::to_string(Degree) + '/' + name + (response == Response::elastic ? "/elastic" : "/none"),
           {}};
@@ -123,7 +136,8 @@ void add_worlds(std::vector<Replay>& replays) {
         WorldOptions options{.response = response, .broad_phase = broad_phase};
         options.rate = broad_phase == BroadPhaseKind::sap ? 30 : 0;
         options.report_pairs = true;
-        if (response == Response::elastic) options.walls = Walls{Vector3d::Constant(-1), Vector3d::Constant(6)};
+        if (response == Response::elastic && what != Bodies::crates)
+          options.walls = Walls{Vector3d::Constant(-1), Vector3d::Constant(6)};
         replay.ways.push_back({std::move(way), [=](EventHash& hash) { run<Degree>(what, options, drive, hash); }});
       };
       for (const auto& [broad_phase, way, what] : broad_phases) add(std::string(way), broad_phase, Drive::at_once);

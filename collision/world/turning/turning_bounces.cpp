@@ -35,11 +35,13 @@ double BasicWorld<Motion>::rebound(double approach, double pressed, double resti
 template <class Motion>
 bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
   if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
-  if (count_meeting(a, b) > patience()) {  // No rebound helps: between fixed bodies that close in, say.
+  const std::uint64_t burst = count_meeting(a, b);
+  if (burst > patience()) {  // No rebound helps: between fixed bodies that close in, say.
     ++counters_.rebounds_suppressed;
     let_through(a, b, contact);
     return true;
   }
+  resting_.meet(a, b);
   Motion motion_a = met(a, contact.time);
   Motion motion_b = met(b, contact.time);
   const Vector3d& n = contact.normal;
@@ -48,7 +50,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   if (!(approach > 0)) {  // The pieces of their motions approach, their free rotations do not.
     turn_back(a, b, motion_a, motion_b, contact);
     for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
-      if (tumbling_.has(slot)) set_motion(slot, motion, false);
+      if (precesses(slot)) set_motion(slot, motion, false);
     }
     return false;
   }
@@ -68,17 +70,20 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   for (const Motion* motion : {&motion_a, &motion_b}) {
     pressed = std::max(pressed, std::abs(dot(n, motion->path.acceleration(contact.time))));
   }
-  const double restitution = std::min(bodies_[a].restitution, bodies_[b].restitution);
+  // Losses may make infinitely many contacts of three bodies in a line: so too many at one time lose nothing any more.
+  const bool often = burst > options_.zeno.contacts;
+  const double restitution = often ? 1 : std::min(bodies_[a].restitution, bodies_[b].restitution);
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
   const auto mobility = [&](BodySlot slot) {
+    if (resting_.carries(slot)) return Mobility::fixed();
     if (tumbling_.has(slot)) return Mobility::of(bodies_[slot].inverse_mass, tumbling_.inverse_inertia(slot));
     return Mobility::of_spherical(bodies_[slot].inverse_mass, bodies_[slot].inverse_inertia);
   };
   // Of two bodies the lower counts, as of restitutions.
   const Surfaces surfaces{
       .restitution = rebound(approach, pressed, restitution) / approach,
-      .friction = std::min(bodies_[a].friction, bodies_[b].friction),
+      .friction = often ? 0 : std::min(bodies_[a].friction, bodies_[b].friction),
       .tangential_restitution = std::min(bodies_[a].tangential_restitution, bodies_[b].tangential_restitution)};
   // A ball is turned by nothing that acts along its normal.
   const auto arm = [&](BodySlot slot, const Motion& motion) {
@@ -90,7 +95,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   motion_a.path.coefficients[1] = velocity_a.velocity, motion_a.angular_velocity = velocity_a.angular_velocity;
   motion_b.path.coefficients[1] = velocity_b.velocity, motion_b.angular_velocity = velocity_b.angular_velocity;
   const auto push = [&](BodySlot slot, Motion& motion, const Vector3d& angular_impulse) {
-    if (!tumbling_.has(slot)) return;
+    if (!precesses(slot)) return;
     tumbling_.push(slot, angular_impulse);
     tumbling_.set_path(slot, motion.path);
     motion.angular_velocity = tumbling_.angular_velocity(slot);
@@ -99,18 +104,20 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
   push(b, motion_b, cross(arms.b, impulse));
   turn_back(a, b, motion_a, motion_b, contact);
   for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
-    if (bodies_.fixed(slot)) continue;
+    if (bodies_.fixed(slot) || resting_.carries(slot)) continue;
     ++counters_.motion_updates;
     set_motion(slot, motion, false);
   }
-  return false;
+  const bool rests = resting_.settle(a, b, contact);
+  counters_.rebounds_suppressed += rests;
+  return rests;
 }
 
 /// The motion of a body just before a contact, for one that precesses with the angular velocity of its free rotation.
 template <class Motion>
 Motion BasicWorld<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
   Motion motion = bodies_.motion(slot).restarted(t);
-  if (!tumbling_.has(slot)) return motion;
+  if (!precesses(slot)) return motion;
   tumbling_.meet(slot, motion.orientation, t);
   motion.angular_velocity = tumbling_.angular_velocity(slot);
   return motion;
@@ -122,7 +129,7 @@ Motion BasicWorld<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) 
 template <class Motion>
 void BasicWorld<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                                    const Contact& contact) requires(turns<Motion>) {
-  if (!tumbling_.has(a) && !tumbling_.has(b)) return;
+  if (!precesses(a) && !precesses(b)) return;
   const double t = contact.time;
   const auto parting = [&](const Motion& of_a, const Motion& of_b) {
     return dot(contact.normal, PointRates<Motion::degree>(of_a, of_b, t).velocity(contact.point));
@@ -130,15 +137,20 @@ void BasicWorld<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Mot
   std::optional<RotationPiece> piece_a, piece_b;
   Motion back_a = motion_a, back_b = motion_b;
   const auto look = [&](BodySlot slot, Motion& back, std::optional<RotationPiece>& piece) {
-    if (!tumbling_.has(slot)) return;
+    if (!precesses(slot)) return;
     piece = tumbling_.way_back(slot, back.orientation, t);
     back.angular_velocity = piece->angular_velocity;
   };
   look(a, back_a, piece_a), look(b, back_b, piece_b);
   const double free = parting(motion_a, motion_b);
   const double led = parting(back_a, back_b);
-  const bool whole = free > 0 && led >= free / 2;
-  const double share = whole ? 1 : free > 0 ? free / 2 / (free - led) : 0;
+  // Ways back that differ for two neighbours of a body would lead it to and fro: after many contacts at once, none.
+  const auto often = [&](BodySlot slot) {
+    return bodies_.fixed(slot) || bodies_[slot].meetings > options_.zeno.contacts;
+  };
+  const bool goes_on = often(a) && often(b);
+  const bool whole = !goes_on && free > 0 && led >= free / 2;
+  const double share = whole ? 1 : free > 0 && !goes_on ? free / 2 / (free - led) : 0;
   const auto lead = [&](BodySlot slot, Motion& motion, const std::optional<RotationPiece>& piece) {
     if (!piece) return;
     const Vector3d more = piece->angular_velocity - motion.angular_velocity;

@@ -26,7 +26,7 @@ struct Parts final : RestingContacts<certificates::PointMotion<Degree>>::Listene
       : options(chosen),
         clock{options.start_time, options.start_time + options.window},
         volumes(bodies, options, clock),
-        resting(bodies, options.walls, clock, *this),
+        resting(bodies, options, clock, *this),
         pairs(bodies, volumes, resting, reports, options, clock, counters, nullptr) {}
 
   /// Adds a body that has entered.

@@ -1,0 +1,31 @@
+// When bodies that turn come to rest: the parameters.
+#pragma once
+
+#include <cstddef>
+
+namespace kds::collision::turning_rest {
+
+/// How far two bodies may be from each other, at a place where they have touched, to hold each other there:
+/// acceleration times WorldOptions::shortest_flight squared, eight times the height of such a flight (10 um on Earth,
+/// at 1 ms), and no more than this part of the bounding radius of the smaller. Bodies at rest may be that far apart.
+inline constexpr double largest_reach = 0x1p-6;
+
+/// A body is calm while its fastest point has at most this many times the speed squared that a fall by that way gives:
+/// with 4 it is twice acceleration times shortest flight (2 cm/s on Earth). Less, and the flights of a body that rocks
+/// on its corners are faster than that; more, and bodies that slide or roll on a level floor stop the sooner.
+inline constexpr double calm_energy = 4;
+
+/// In shortest flights: for how long bodies are to be calm, so that they touch wherever they can, and how long it takes
+/// until those that were not in balance are looked at again.
+inline constexpr double calm_flights = 8;
+/// In shortest flights: for how long it is remembered where bodies touched.
+inline constexpr double memory = 64;
+
+/// Two places of a pair are the same if they are nearer than this part of the bounding radius of the smaller body, and
+/// their normals have a greater cosine than that of the angle between them.
+inline constexpr double same_place = 0x1p-5;
+inline constexpr double same_side = 0.9;
+/// Of a pair; more than that, and the oldest is forgotten.
+inline constexpr std::size_t most_places = 16;
+
+}  // namespace kds::collision::turning_rest

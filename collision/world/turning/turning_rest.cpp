@@ -1,0 +1,373 @@
+#include "collision/world/turning/turning_rest.hpp"
+
+#include "certificates/turning/turned_orientation.hpp"
+#include "collision/motions.hpp"
+#include "collision/vectors.hpp"
+#include "collision/world/resting_contacts.hpp"
+#include "collision/world/turning/rest_rules.hpp"
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace kds::collision {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using namespace turning_rest;
+
+namespace {
+
+/// Where a body is at a time.
+class Frame {
+ public:
+  template <class Motion>
+  Frame(const Motion& motion, double t)
+      : origin_(motion.path.position(t)),
+        turn_(certificates::turned_orientation(motion.orientation, motion.spin(), t)),
+        length_(dot(turn_.vec(), turn_.vec()) + turn_.w() * turn_.w()) {}
+
+  const Vector3d& origin() const { return origin_; }
+  Vector3d out(const Vector3d& x) const { return origin_ + turned(x, turn_.w()); }
+  Vector3d back(const Vector3d& x) const { return turned(x - origin_, -turn_.w()); }
+
+ private:
+  /// q x q^-1 = x + 2 v x (v x x + w x) / |q|^2, for q = (w, v).
+  Vector3d turned(const Vector3d& x, double w) const {
+    const Vector3d v = turn_.vec();
+    const Vector3d turn = cross(v, x) + w * x;
+    return x + (2 / length_) * cross(v, turn);
+  }
+
+  Vector3d origin_;
+  Quaterniond turn_;
+  double length_;
+};
+
+template <class Motion>
+double surface_speed(const Motion& motion, double radius, double t) {
+  return norm(motion.path.velocity(t)) + norm(motion.angular_velocity) * radius;
+}
+
+template <class Motion>
+bool stands(const Motion& motion) {
+  const auto& path = motion.path.coefficients;
+  return motion.angular_velocity.isZero(0) &&
+         std::all_of(path.begin() + 1, path.end(), [](const Vector3d& x) { return x.isZero(0); });
+}
+
+template <class Motion>
+Motion stopped(const Motion& motion, double t) {
+  Motion result = motion.restarted(t);
+  auto& path = result.path.coefficients;
+  std::fill(path.begin() + 1, path.end(), Vector3d::Zero());
+  result.angular_velocity = Vector3d::Zero();
+  return result;
+}
+
+}  // namespace
+
+template <class Motion>
+typename TurningRest<Motion>::Slot TurningRest<Motion>::find(BodySlot a, BodySlot b, int) const {
+  if (resting_ == 0 || !(carries(a) || carries(b))) return none;
+  const auto it = pairs_.find({a, b});
+  return it != pairs_.end() && it->second.rests ? 0 : none;
+}
+
+template <class Motion>
+typename TurningRest<Motion>::Pair& TurningRest<Motion>::pair(Key key) {
+  const auto [it, is_new] = pairs_.try_emplace(key);
+  if (is_new) {
+    const auto list = [this](BodySlot slot, BodySlot other) {
+      auto& others = member(slot).others;
+      others.insert(std::lower_bound(others.begin(), others.end(), other), other);
+    };
+    list(key.first, key.second), list(key.second, key.first);
+  }
+  return it->second;
+}
+
+template <class Motion>
+void TurningRest<Motion>::erase(Key key) {
+  const auto it = pairs_.find(key);
+  if (it->second.rests) {
+    --resting_;
+    listener_.tell_resting(false,
+                           {.a = key.first, .b = key.second, .normal = it->second.normal, .point = it->second.point});
+  }
+  pairs_.erase(it);
+  const auto unlist = [this](BodySlot slot, BodySlot other) {
+    auto& others = of_[slot].others;
+    others.erase(std::lower_bound(others.begin(), others.end(), other));
+  };
+  unlist(key.first, key.second), unlist(key.second, key.first);
+}
+
+template <class Motion>
+void TurningRest<Motion>::erase_all(BodySlot slot) {
+  while (!of_[slot].others.empty()) erase(std::minmax(slot, of_[slot].others.back()));
+}
+
+/// All bodies of the group of one that rests.
+template <class Motion>
+void TurningRest<Motion>::wake(BodySlot slot) {
+  std::vector<BodySlot> group{slot};
+  of_[slot].rests = false;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    woken_.push_back(group[i]);
+    for (const BodySlot other : of_[group[i]].others) {
+      if (std::exchange(of_[other].rests, false)) group.push_back(other);
+    }
+    erase_all(group[i]);
+    of_[group[i]].since = never;
+  }
+}
+
+template <class Motion>
+void TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
+  if (resting_ == 0 || !(carries(a) || carries(b))) return;
+  // What touches it gently is to lie on it, perhaps: until that is known it stays as it is.
+  const bool gentle = std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 &&
+                      (carries(a) || !bodies_.fixed(a)) && (carries(b) || !bodies_.fixed(b)) &&
+                      calm(a, scale({a, b}).acceleration) && calm(b, scale({a, b}).acceleration);
+  if (gentle) return;
+  if (carries(a)) wake(a);
+  if (carries(b)) wake(b);
+  solve();
+}
+
+template <class Motion>
+void TurningRest<Motion>::drop_all(BodySlot slot) {
+  if (slot >= of_.size()) return;
+  if (carries(slot)) wake(slot);
+  const std::vector<BodySlot> others = of_[slot].others;  // which leave it when they wake
+  for (const BodySlot other : others) {
+    if (carries(other) && pairs_[std::minmax(slot, other)].rests) wake(other);
+  }
+  erase_all(slot);
+  of_[slot].since = never, of_[slot].looked = -never;
+  std::erase(woken_, slot);  // it has a motion of its own
+}
+
+template <class Motion>
+void TurningRest<Motion>::solve() {
+  std::vector<BodySlot> woken = std::exchange(woken_, {});
+  std::sort(woken.begin(), woken.end());
+  for (const BodySlot slot : woken) {
+    Motion motion = bodies_.motion(slot).restarted(clock_.now);
+    if constexpr (Motion::degree >= 2) motion.path.coefficients[2] = bodies_.free_acceleration(slot);
+    listener_.take_up(slot, motion);
+  }
+}
+
+/// The magnitude of the acceleration that a body has if nothing touches it.
+template <class Motion>
+double TurningRest<Motion>::acceleration(BodySlot slot) const {
+  return 2 * norm(bodies_.free_acceleration(slot));
+}
+
+template <class Motion>
+typename TurningRest<Motion>::Scale TurningRest<Motion>::scale(Key key) const {
+  Scale scale;
+  for (const BodySlot slot : {key.first, key.second}) {
+    if (bodies_.fixed(slot)) continue;
+    scale.acceleration = std::max(scale.acceleration, acceleration(slot));
+    scale.size = std::min(scale.size, bodies_[slot].bounding_radius);
+  }
+  return scale;
+}
+
+/// How far from each other bodies may be that hold each other, in units of length.
+template <class Motion>
+double TurningRest<Motion>::reach(const Scale& scale) const {
+  return std::min(scale.acceleration * flight_ * flight_, largest_reach * scale.size);
+}
+
+template <class Motion>
+bool TurningRest<Motion>::calm(BodySlot slot, double acceleration) const {
+  const Motion& motion = bodies_.motion(slot);
+  if (bodies_.fixed(slot)) return stands(motion);
+  const Scale scale{acceleration, bodies_[slot].bounding_radius};
+  const double speed = surface_speed(motion, scale.size, clock_.now);
+  return speed * speed <= calm_energy * acceleration * reach(scale);
+}
+
+template <class Motion>
+void TurningRest<Motion>::note(Key key, const collision::Contact& contact) {
+  const double t = clock_.now;
+  const Frame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
+  auto& places = pair(key).places;
+  const Scale scale = this->scale(key);
+  const double far = reach(scale);
+  std::erase_if(places, [&](const detail::TouchedPlace& place) {
+    const Vector3d x = a.out(place.on_a);
+    const bool lasts = t - place.time <= memory * flight_ && norm(b.out(place.on_b) - x) <= far;
+    return !lasts ||
+           (norm(x - contact.point) <= same_place * scale.size && dot(place.normal, contact.normal) >= same_side);
+  });
+  if (places.size() >= most_places) places.erase(places.begin());
+  places.push_back({a.back(contact.point), b.back(contact.point), contact.normal, t});
+}
+
+template <class Motion>
+bool TurningRest<Motion>::settle(BodySlot a, BodySlot b, const collision::Contact& contact) {
+  if constexpr (Motion::degree < 2) return false;  // nothing presses bodies together
+  const double g = scale({a, b}).acceleration;
+  const double t = clock_.now;
+  if (!(g > 0 && std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 && calm(a, g) && calm(b, g))) {
+    for (const BodySlot slot : {a, b}) {
+      if (slot >= of_.size() || bodies_.fixed(slot) || carries(slot)) continue;
+      erase_all(slot);
+      of_[slot].since = never;
+    }
+    return false;
+  }
+  note({a, b}, contact);
+  bool long_enough = true;
+  for (const BodySlot slot : {a, b}) {
+    if (bodies_.fixed(slot) || carries(slot)) continue;
+    Member& body = member(slot);
+    body.since = std::min(body.since, t);
+    long_enough = long_enough && t - std::max(body.since, body.looked) >= calm_flights * flight_;
+  }
+  if (!long_enough) return false;
+  const auto look = [&](BodySlot slot) {
+    if (!bodies_.fixed(slot)) of_[slot].looked = t;
+  };
+  const Group group = find_group(bodies_.fixed(a) ? b : a);
+  if (!quiet(group)) {
+    look(a), look(b);
+    return false;
+  }
+  if (!balanced(group.loads, group.footholds)) {
+    for (const BodySlot slot : group.bodies) look(slot);
+    for (const BodySlot slot : group.bodies) {
+      if (carries(slot)) wake(slot);  // It cannot carry the others.
+    }
+    solve();
+    return false;
+  }
+  stop(group, contact, {a, b});
+  return true;
+}
+
+/// The bodies that are linked with one by places where they touch, and the forces that these can give.
+template <class Motion>
+typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot first) {
+  const double t = clock_.now;
+  Group group;
+  ++walks_;
+  const auto visit = [&](BodySlot slot) {
+    if (std::exchange(of_[slot].seen, walks_) == walks_) return;
+    of_[slot].place = static_cast<std::uint32_t>(group.bodies.size());
+    group.bodies.push_back(slot);
+  };
+  const auto place_of = [&](BodySlot slot) { return bodies_.fixed(slot) ? Foothold::fixed : of_[slot].place; };
+  visit(first);
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    const BodySlot slot = group.bodies[i];
+    Load load{.mass = bodies_[slot].mass,
+              .size = bodies_[slot].bounding_radius,
+              .acceleration = 2 * bodies_.free_acceleration(slot)};
+    group.loads.push_back(load);
+    for (const BodySlot other : of_[slot].others) {
+      const Key key = std::minmax(slot, other);
+      if (!bodies_.fixed(other) && of_[other].seen == walks_ && of_[other].place < i) continue;
+      const Frame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
+      const double far = reach(scale(key));
+      const double friction = std::min(bodies_[key.first].friction, bodies_[key.second].friction);
+      const bool smooth =
+          std::min(bodies_[key.first].tangential_restitution, bodies_[key.second].tangential_restitution) == -1;
+      const bool rests = pairs_[key].rests;
+      bool links = false;
+      for (const detail::TouchedPlace& place : pairs_[key].places) {
+        const Vector3d on_a = a.out(place.on_a), on_b = b.out(place.on_b);
+        if (!rests && (t - place.time > memory * flight_ || norm(on_b - on_a) > far)) continue;
+        if (!std::exchange(links, true)) {
+          if (!bodies_.fixed(other)) visit(other);
+          group.pairs.push_back(key);
+        }
+        const Vector3d x = 0.5 * (on_a + on_b);
+        group.footholds.push_back({.a = place_of(key.first),
+                                   .b = place_of(key.second),
+                                   .arm_a = x - a.origin(),
+                                   .arm_b = x - b.origin(),
+                                   .normal = place.normal,
+                                   .friction = smooth ? 0 : friction});
+      }
+    }
+  }
+  return group;
+}
+
+template <class Motion>
+bool TurningRest<Motion>::quiet(const Group& group) const {
+  double g = 0;
+  for (const BodySlot slot : group.bodies) g = std::max(g, acceleration(slot));
+  const auto ready = [&](BodySlot slot) {
+    return of_[slot].rests || (clock_.now - of_[slot].since >= calm_flights * flight_ && calm(slot, g));
+  };
+  return std::all_of(group.bodies.begin(), group.bodies.end(), ready) &&
+         std::all_of(group.pairs.begin(), group.pairs.end(), [&](const Key& key) {
+           return (!bodies_.fixed(key.first) || stands(bodies_.motion(key.first))) &&
+                  (!bodies_.fixed(key.second) || stands(bodies_.motion(key.second)));
+         });
+}
+
+template <class Motion>
+void TurningRest<Motion>::stop(const Group& group, const collision::Contact& contact, Key met) {
+  const double t = clock_.now;
+  for (const Key& key : group.pairs) {
+    Pair& pair = pairs_[key];
+    if (pair.rests) continue;
+    const detail::TouchedPlace& place = pair.places.back();
+    const Frame a(bodies_.motion(key.first), t);
+    pair.normal = place.normal;
+    pair.point = (key == met ? contact.point : a.out(place.on_a)) - a.origin();
+    pair.rests = true;
+    ++resting_;
+    listener_.tell_resting(true, {.a = key.first, .b = key.second, .normal = pair.normal, .point = pair.point});
+  }
+  for (const BodySlot slot : group.bodies) {
+    if (carries(slot)) continue;
+    const std::vector<BodySlot> others = of_[slot].others;
+    for (const BodySlot other : others) {  // which it has left meanwhile
+      const Key key = std::minmax(slot, other);
+      if (!pairs_[key].rests) erase(key);
+    }
+    of_[slot].rests = true;
+    of_[slot].since = never;
+    listener_.take_up(slot, stopped(bodies_.motion(slot), t));
+  }
+}
+
+template <class Motion>
+void TurningRest<Motion>::audit(double, bool) const {
+  const auto need = [&](bool right, BodySlot slot, const char* what) {
+    if (!right) throw AuditFailure("World: body " + std::to_string(bodies_.id_of(slot)) + ": " + what);
+  };
+  std::size_t resting = 0;
+  for (const auto& [key, pair] : pairs_) {
+    for (const BodySlot slot : {key.first, key.second}) {
+      need(bodies_.entered(slot), slot, "it rests on another, and is not there");
+      need(!pair.rests || stands(bodies_.motion(slot)), slot, "it rests, and moves");
+      need(!pair.rests || of_[slot].rests || bodies_.fixed(slot), slot, "it rests on another, and is awake");
+    }
+    resting += pair.rests;
+  }
+  for (BodySlot slot = 0; slot < of_.size(); ++slot) {
+    if (!of_[slot].rests) continue;
+    const auto& others = of_[slot].others;
+    need(bodies_.entered(slot) && !bodies_.fixed(slot), slot, "it rests, and is not there");
+    need(!others.empty(), slot, "it rests on nothing");
+  }
+  if (resting != resting_) throw AuditFailure("World: pairs that rest are miscounted");
+}
+
+#define KDS_INSTANTIATE(motion) template class TurningRest<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision

@@ -1,0 +1,199 @@
+// Bodies that turn, at rest on each other and on fixed bodies.
+#pragma once
+
+#include "collision/body_motion.hpp"
+#include "collision/narrow_phase/contact.hpp"
+#include "collision/response/static_balance.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/clock.hpp"
+#include "collision/world/image_tools.hpp"
+#include "collision/world/resting_contact.hpp"
+#include "collision/world_options.hpp"
+#include "kds/arithmetic/lattice.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+
+template <class Motion>
+class RestingListener;
+
+namespace detail {
+
+/// Where two bodies have touched: the same point in the coordinates of each.
+struct TouchedPlace {
+  Eigen::Vector3d on_a, on_b;
+  Eigen::Vector3d normal;  ///< unit, from a to b, in the world
+  double time;             ///< s
+};
+
+/// Two bodies that lie on each other, or hop on each other so gently that they may soon.
+struct LyingPair {
+  bool rests = false;
+  std::vector<TouchedPlace> places;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< of the contact with which they came to rest, from a's centre
+};
+
+template <class Archive>
+void archive_members(Archive& archive, LyingPair& pair) {
+  archive(pair.rests);
+  image::vector(archive, pair.normal), image::vector(archive, pair.point);
+  archive.each(pair.places, [&](TouchedPlace& place) {
+    image::vector(archive, place.on_a), image::vector(archive, place.on_b), image::vector(archive, place.normal);
+    archive(place.time);
+  });
+}
+
+}  // namespace detail
+
+/// Rest in worlds of bodies that turn: not of contacts that slide or roll, but of groups of bodies that do not move at
+/// all. docs/turning.md states the law.
+///
+/// What is pressed together flies for WorldOptions::shortest_flight, again and again. A body is *calm* while no point
+/// of it is faster than such flights make it. Where calm bodies touch is noted. When all bodies of a group, that is,
+/// those that are linked by such places, down to what is fixed, have been calm for some flights, and forces at these
+/// places within the cones of friction hold them all (static_balance.hpp), they come to rest: from then on they do not
+/// move, exactly, and cost nothing. A group wakes as a whole, with the accelerations that its bodies were given, when
+/// one of its bodies is struck, changed or removed, or one of its supports is changed or removed. What a calm body
+/// touches does not wake: if forces hold that body too, it joins the group, and if not the group wakes then.
+///
+/// A part of World that owns its state. It reads the bodies, and tells its listener what follows. All of it is a
+/// function of contacts and edits: not of the broad phase, windows or snapshots.
+///
+/// Cost: O(log n) a contact of calm bodies; nothing for others, and nothing while bodies rest.
+template <class Motion>
+class TurningRest {
+ public:
+  using Slot = std::uint32_t;
+  using Contact = detail::RestingContact;
+  static constexpr Slot none = ~Slot{0};
+
+  using Listener = RestingListener<Motion>;
+
+  TurningRest(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock, Listener& listener)
+      : bodies_(bodies), flight_(options.shortest_flight), clock_(clock), listener_(listener) {}
+  TurningRest(const TurningRest&) = delete;
+  TurningRest& operator=(const TurningRest&) = delete;
+
+  bool empty() const { return resting_ == 0; }
+  bool holds(BodySlot a, BodySlot b, int = -1) const { return find(a, b) != none; }
+  /// Not `none` if a and b (a < b) rest on each other.
+  Slot find(BodySlot a, BodySlot b, int = -1) const;
+  /// Whether a body rests, and so has not the motion that callers gave.
+  bool carries(BodySlot slot) const { return slot < of_.size() && of_[slot].rests; }
+  bool keeps_apart(Slot) const { return true; }
+  double next_contact(BodySlot, BodySlot) const { return never; }
+
+  /// Two bodies have met, and move as they do after their impulses. Returns whether they, and all bodies of their
+  /// group, have come to rest.
+  bool settle(BodySlot a, BodySlot b, const collision::Contact& contact);
+  /// Two bodies are about to meet. If one of them rests it wakes, unless the other is calm: that may lie on it soon,
+  /// and bounces off it until then as off a fixed body.
+  void meet(BodySlot a, BodySlot b);
+
+  /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
+  void drop_all(BodySlot slot);
+  void forget(BodySlot slot) { drop_all(slot); }
+  void leave(BodySlot slot) { drop_all(slot); }
+  void disturb(BodySlot) {}
+  bool solved() const { return woken_.empty(); }
+  /// Gives bodies that have woken their motions.
+  void solve();
+
+  double next_time() const { return never; }
+  void process() {}
+  void extend_horizon() {}
+  /// Throws AuditFailure unless bodies that rest do not move, and rest on something.
+  void audit(double t, bool walls) const;
+
+  /// All of it, as plain data.
+  struct Image {
+    struct One {
+      BodySlot a = 0, b = 0;
+      detail::LyingPair pair;
+    };
+    std::vector<One> pairs;     ///< in order
+    std::vector<double> since;  ///< by body, as are the next two
+    std::vector<double> looked;
+    std::vector<char> rests;
+    std::vector<BodySlot> woken;
+
+    template <class Archive>
+    void archive(Archive& archive) {
+      archive(since, looked, rests, woken);
+      archive.each(pairs, [&](One& one) { archive(one.a, one.b, one.pair); });
+    }
+    /// Throws std::runtime_error, naming what is wrong.
+    void check(const typename Bodies<Motion>::Image& bodies, double now, const WorldOptions& options) const;
+  };
+  Image image() const;
+  void become(const Image& image);
+
+ private:
+  using Key = std::pair<BodySlot, BodySlot>;
+  using Pair = detail::LyingPair;
+
+  /// The state of a body.
+  struct Member {
+    std::vector<BodySlot> others;  ///< with which there is a pair, in order
+    double since = never;          ///< s; since when it is calm
+    double looked = -never;        ///< s; when its group was last found not to be at rest
+    bool rests = false;
+    std::uint64_t seen = 0;  ///< the last walk that has visited it
+    std::uint32_t place = 0;
+  };
+  /// Of the bodies of a pair that are not fixed.
+  struct Scale {
+    double acceleration = 0;  ///< the greatest
+    double size = never;      ///< the smallest bounding radius
+  };
+  struct Group {
+    std::vector<BodySlot> bodies;  ///< none of them fixed
+    std::vector<Key> pairs;
+    std::vector<Load> loads;
+    std::vector<Foothold> footholds;
+  };
+
+  Member& member(BodySlot slot) {
+    if (of_.size() <= slot) of_.resize(slot + std::size_t{1});
+    return of_[slot];
+  }
+  Pair& pair(Key key);
+  void erase(Key key);
+  void erase_all(BodySlot slot);
+  void wake(BodySlot slot);
+
+  double acceleration(BodySlot slot) const;
+  Scale scale(Key key) const;
+  double reach(const Scale& scale) const;
+  bool calm(BodySlot slot, double acceleration) const;
+  void note(Key key, const collision::Contact& contact);
+  Group find_group(BodySlot first);
+  bool quiet(const Group& group) const;
+  void stop(const Group& group, const collision::Contact& contact, Key met);
+
+  const Bodies<Motion>& bodies_;
+  const double flight_;
+  const Clock& clock_;
+  Listener& listener_;
+  std::map<Key, Pair> pairs_;
+  std::vector<Member> of_;  ///< by body, up to the last that has been calm
+  std::vector<BodySlot> woken_;
+  std::size_t resting_ = 0;  ///< pairs that rest
+  std::uint64_t walks_ = 0;
+};
+
+#ifdef KDS_TURNING
+extern template class TurningRest<certificates::RigidMotion<1>>;
+extern template class TurningRest<certificates::RigidMotion<2>>;
+#endif
+
+}  // namespace kds::collision

@@ -1,0 +1,80 @@
+// Rest in worlds of bodies that turn, as plain data: made, read and checked.
+#include "collision/motions.hpp"
+#include "collision/world/bodies_image.hpp"
+#include "collision/world/image_tools.hpp"
+#include "collision/world/resting_contacts.hpp"
+#include "collision/world/turning/turning_rest.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace kds::collision {
+
+template <class Motion>
+typename TurningRest<Motion>::Image TurningRest<Motion>::image() const {
+  Image image;
+  for (const auto& [key, pair] : pairs_) image.pairs.push_back({key.first, key.second, pair});
+  for (const Member& member : of_) {
+    image.since.push_back(member.since);
+    image.looked.push_back(member.looked);
+    image.rests.push_back(member.rests);
+  }
+  image.woken = woken_;
+  return image;
+}
+
+template <class Motion>
+void TurningRest<Motion>::become(const Image& image) {
+  pairs_.clear(), of_.clear();
+  of_.resize(image.since.size());
+  resting_ = 0;
+  for (BodySlot slot = 0; slot < of_.size(); ++slot) {
+    of_[slot].since = image.since[slot];
+    of_[slot].looked = image.looked[slot];
+    of_[slot].rests = image.rests[slot] != 0;
+  }
+  for (const auto& one : image.pairs) {
+    pair({one.a, one.b}) = one.pair;
+    resting_ += one.pair.rests;
+  }
+  woken_ = image.woken;
+}
+
+template <class Motion>
+void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, double now,
+                                       const WorldOptions& options) const {
+  constexpr double unit_rounding = 0x1p-40;  // far above that of a normalisation
+  if (rests.size() != since.size() || looked.size() != since.size())
+    image::fail("resting: is not of as many bodies as are calm");
+  if (since.size() > bodies.bodies.size()) image::fail("resting: of more bodies than there are");
+  if (!pairs.empty() && options.response != Response::elastic) image::fail("resting: is there in a mode without it");
+  std::vector<char> held(since.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto& [a, b, pair] = pairs[i];
+    const auto need = [i](bool right, const char* what) { image::require(right, "resting", i, what); };
+    need(a < b && b < since.size() && bodies.entered(a) && bodies.entered(b), "is not of two bodies in the world");
+    need(i == 0 || std::pair(pairs[i - 1].a, pairs[i - 1].b) < std::pair(a, b), "is out of order");
+    need(pair.normal.allFinite() && pair.point.allFinite(), "its contact is not finite");
+    if (pair.rests) held[a] = held[b] = 1;
+    for (const detail::TouchedPlace& place : pair.places) {
+      need(place.on_a.allFinite() && place.on_b.allFinite(), "a place is not finite");
+      need(std::abs(place.normal.norm() - 1) <= unit_rounding, "a normal has no unit length");
+      need(image::is_past(place.time, now), "they have not touched yet");
+    }
+  }
+  for (std::size_t i = 0; i < since.size(); ++i) {
+    image::require(since[i] == never || image::is_past(since[i], now), "resting bodies", i, "is not calm yet");
+    image::require(image::is_past(looked[i], now), "resting bodies", i, "has not been looked at yet");
+    image::require(!rests[i] || held[i], "resting bodies", i, "rests on nothing");
+  }
+  for (std::size_t i = 0; i < woken.size(); ++i) {
+    image::require(bodies.entered(woken[i]), "woken", i, "is no body in the world");
+  }
+}
+
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class TurningRest<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision
