@@ -1,0 +1,51 @@
+// A world as Python holds it: events that are gathered, functions that are called, and one thread at a time.
+#pragma once
+
+#include "examples/kds-collide/events.hpp"
+#include "python/any_world.hpp"
+
+#include <pybind11/pybind11.h>
+
+#include <array>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace kds_python {
+
+/// All members want the GIL. It is released while the world runs, if no function is to be called: other threads go on,
+/// and what they ask of this world meanwhile is refused with std::runtime_error.
+class PyWorld {
+ public:
+  PyWorld(int degree, bool turning, const kds::collision::WorldOptions& options, bool gather);
+
+  /// To ask and to change; also from within functions that the world calls.
+  AnyWorld& world();
+
+  /// Ctrl-C ends it between two events, with KeyboardInterrupt.
+  void advance_to(double t);
+  bool step(double limit);
+
+  /// None: calls nothing any more. The function is given an array of one EventRow.
+  void call_at(std::size_t kind, pybind11::object function);
+  std::vector<EventRow> take_events();
+
+ private:
+  void told(const EventRow& event);
+  template <class Work>
+  auto run(const Work& work);
+
+  static constexpr std::size_t kinds = kds_collide::event_kind_names.size();
+  std::vector<EventRow> events_;
+  std::array<pybind11::object, kinds> functions_;
+  bool gather_;
+  bool running_ = false;
+  std::thread::id runner_;
+  std::unique_ptr<AnyWorld> world_;
+};
+
+void bind_world(pybind11::module_& module);
+void bind_scene(pybind11::module_& module);
+void bind_structures(pybind11::module_& module);
+
+}  // namespace kds_python
