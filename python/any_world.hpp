@@ -4,6 +4,7 @@
 #include "collision/body_description.hpp"
 #include "collision/queries/future.hpp"
 #include "collision/queries/hit.hpp"
+#include "collision/queries/nearest.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_options.hpp"
 #include "examples/kds-collide/scene.hpp"
@@ -70,6 +71,8 @@ class AnyWorld {
                                                 const Filter& filter) const = 0;
   virtual std::vector<BodyId> overlapping(const kds::collision::PlacedShape& shape, const Eigen::Vector3d& at,
                                           const Filter& filter) const = 0;
+  virtual std::vector<kds::collision::NearBody> nearest(const Eigen::Vector3d& to, std::size_t count,
+                                                        const Filter& filter) const = 0;
   virtual std::optional<kds::collision::Hit> next_contact(const kds::collision::Shape& shape, const Motion& motion,
                                                           double until, const Filter& filter) const = 0;
   virtual std::optional<kds::collision::Hit> next_contact_of(BodyId body, double until, const Filter& filter) const = 0;

@@ -78,9 +78,7 @@ std::unique_ptr<PyWorld> make_scene_world(const Scene& scene, bool gather, const
   kds::collision::WorldOptions options;
   options.start_time = scene.begin_time;
   options.response = scene.response;
-  for (const auto& named : kds::collision::broad_phases) {
-    if (named.name == broad_phase) options.broad_phase = named.kind;
-  }
+  options.broad_phase = broad_phase_named(broad_phase);
   if (scene.domain && scene.domain->walls == Walls::reflect) {
     options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }

@@ -94,15 +94,7 @@ std::unique_ptr<PyWorld> new_world(int degree, bool turning, bool gather, const 
   } else {
     throw std::invalid_argument("response: must be 'none', 'elastic' or 'callback', not '" + response + "'");
   }
-  bool found = false;
-  std::string names;
-  for (const auto& named : broad_phases) {
-    names += (names.empty() ? "'" : ", '") + std::string(named.name) + "'";
-    if (named.name != broad_phase) continue;
-    options.broad_phase = named.kind;
-    found = true;
-  }
-  if (!found) throw std::invalid_argument("broad_phase: must be one of " + names + ", not '" + broad_phase + "'");
+  options.broad_phase = broad_phase_named(broad_phase);
   if (walls) options.walls = Walls{(*walls)[0], (*walls)[1], wall_restitution};
   options.start_time = start_time;
   options.window = window;
@@ -136,7 +128,7 @@ Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<D
   const std::vector<Motion> later = to_motions(script);
   std::vector<BodyId> ids;
   ids.reserve(bodies);
-  world.reserve(world.size() + bodies);
+  if (bodies > 1) world.reserve(world.size() + bodies);
   try {
     Description body;
     for (std::size_t i = 0; i < bodies; ++i) {
@@ -224,6 +216,13 @@ void bind_queries(py::class_<PyWorld>& world) {
     return to_array(
         self.world().overlapping(place(shape.shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3])), at, filter));
   });
+  world.def("nearest", [](PyWorld& self, const Eigen::Vector3d& to, std::size_t count, const Filter& filter) {
+    std::vector<NearRow> rows;
+    for (const NearBody& near : self.world().nearest(to, count, filter)) {
+      rows.push_back({near.body, near.distance, {near.point[0], near.point[1], near.point[2]}});
+    }
+    return py::array_t<NearRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
+  });
   world.def("next_contact",
             [](PyWorld& self, const PyShape& shape, const Doubles& motion, double until, const Filter& filter) {
               return to_array(to_rows(self.world().next_contact(shape.shape, to_motion(motion.data()), until, filter)));
@@ -249,6 +248,7 @@ void bind_queries(py::class_<PyWorld>& world) {
 void bind_world(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(FeatureRow, kind, first, second);
   PYBIND11_NUMPY_DTYPE(EventRow, time, kind, a, b, point, normal, feature_a, feature_b);
+  PYBIND11_NUMPY_DTYPE(NearRow, body, distance, point);
   module.attr("event_dtype") = py::dtype::of<EventRow>();
   module.attr("event_kinds") = kds_collide::event_kind_names;
   bind_shapes(module);

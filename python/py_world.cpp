@@ -83,4 +83,13 @@ std::vector<EventRow> PyWorld::take_events() {
   return std::exchange(events_, {});
 }
 
+kds::collision::BroadPhaseKind broad_phase_named(const std::string& name) {
+  std::string names;
+  for (const auto& named : kds::collision::broad_phases) {
+    if (named.name == name) return named.kind;
+    names += (names.empty() ? "'" : ", '") + std::string(named.name) + "'";
+  }
+  throw std::invalid_argument("broad_phase: must be one of " + names + ", not '" + name + "'");
+}
+
 }  // namespace kds_python

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -43,6 +44,9 @@ class PyWorld {
   std::thread::id runner_;
   std::unique_ptr<AnyWorld> world_;
 };
+
+/// Throws std::invalid_argument, with all names there are, for any other.
+kds::collision::BroadPhaseKind broad_phase_named(const std::string& name);
 
 void bind_world(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);

@@ -40,6 +40,13 @@ struct EventRow {
 
 static_assert(sizeof(EventRow) == 104);
 
+/// A body near a point.
+struct NearRow {
+  std::uint64_t body;
+  double distance;
+  std::array<double, 3> point;
+};
+
 inline FeatureRow to_row(const kds::collision::Feature& feature) {
   return {static_cast<std::uint32_t>(feature.kind), feature.first, feature.second};
 }

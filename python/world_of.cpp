@@ -143,6 +143,9 @@ class WorldOf final : public AnyWorld {
                                   const Filter& filter) const override {
     return kds::collision::overlapping(world_, shape, at, filter);
   }
+  std::vector<NearBody> nearest(const Eigen::Vector3d& to, std::size_t count, const Filter& filter) const override {
+    return kds::collision::nearest(world_, to, count, filter);
+  }
   std::optional<Hit> next_contact(const Shape& shape, const Motion& motion, double until,
                                   const Filter& filter) const override {
     const M own = narrowed<M>(motion, "motion");

@@ -44,6 +44,24 @@ def number(name: str, value: Any) -> float:
         raise ValueError(f"{name}: must be a number, and is {value!r}") from None
 
 
+def whole(name: str, value: Any, most: int = 2**63 - 1) -> int:
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool) and 0 <= value <= most:
+        return int(value)
+    raise ValueError(f"{name}: must be a whole number from 0 to {most}, and is {value!r}")
+
+
+def flag(name: str, value: Any) -> bool:
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    raise ValueError(f"{name}: must be True or False, and is {value!r}")
+
+
+def word(name: str, value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    raise ValueError(f"{name}: must be a string, and is {value!r}")
+
+
 def finite(name: str, value: Any) -> float:
     result = number(name, value)
     if not math.isfinite(result):

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kds import _kds
-from kds._arrays import number
+from kds._arrays import flag, number, whole, word
 from kds._events import as_events
 from kds._world import World
 
@@ -92,12 +92,12 @@ class Scene:
         there.
         """
         rows, stats = self._core.run(
-            broad_phase,
+            word("broad_phase", broad_phase),
             number("rate", rate),
-            kdop,
-            pairs,
-            threads,
-            gather,
+            whole("kdop", kdop, 2**31 - 1),
+            flag("pairs", pairs),
+            whole("threads", threads),
+            flag("gather", gather),
             "" if csv is None else os.fspath(csv),
             "" if replay is None else os.fspath(replay),
             self._title,
@@ -109,7 +109,7 @@ class Scene:
 
         Ids of bodies are their places in `names`. Such a world has snapshots, but cannot be pickled.
         """
-        return World._of_core(self._core.world(gather, broad_phase), self.degree, self.turning)
+        return World._of_core(self._core.world(flag("gather", gather), word("broad_phase", broad_phase)), self.degree, self.turning)
 
 
 def generate_scene(
@@ -126,5 +126,12 @@ def generate_scene(
     volume of all bounding balls over that of the domain.
     """
     path = os.fspath(file)
-    _kds.generate_scene(path, kind, bodies, number("density", density), seed, number("end_time", end_time))
+    _kds.generate_scene(
+        path,
+        word("kind", kind),
+        whole("bodies", bodies),
+        number("density", density),
+        whole("seed", seed),
+        number("end_time", end_time),
+    )
     return Scene.read(path)

@@ -6,10 +6,25 @@ import math
 from typing import Any, Callable, NamedTuple, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from kds import _kds
-from kds._arrays import Doubles, Ids, column, doubles, finite, flags, identity, ids, masks, number, rows, vector
+from kds._arrays import (
+    Doubles,
+    Ids,
+    column,
+    doubles,
+    flag,
+    flags,
+    identity,
+    ids,
+    masks,
+    number,
+    rows,
+    vector,
+    whole,
+    word,
+)
 from kds._events import EventKind, as_events
 from kds._kds import Shape
 
@@ -89,28 +104,28 @@ class World:
         if walls is not None:
             corners = list(doubles("walls", walls, (2, 3)))
         self._options: dict[str, Any] | None = dict(
-            degree=degree,
-            turning=turning,
-            gather=gather,
-            response=response,
-            broad_phase=broad_phase,
+            degree=whole("degree", degree, 2**31 - 1),
+            turning=flag("turning", turning),
+            gather=flag("gather", gather),
+            response=word("response", response),
+            broad_phase=word("broad_phase", broad_phase),
             walls=corners,
             wall_restitution=number("wall_restitution", wall_restitution),
             start_time=number("start_time", start_time),
             window=number("window", window),
             rate=number("rate", rate),
-            kdop=kdop,
-            report_pairs=report_pairs,
-            threads=threads,
-            zeno_contacts=zeno_contacts,
+            kdop=whole("kdop", kdop, 2**31 - 1),
+            report_pairs=flag("report_pairs", report_pairs),
+            threads=whole("threads", threads),
+            zeno_contacts=whole("zeno_contacts", zeno_contacts, 2**32 - 1),
             zeno_interval=number("zeno_interval", zeno_interval),
             shortest_flight=number("shortest_flight", shortest_flight),
             orientation_error=number("orientation_error", orientation_error),
-            most_edits=most_edits,
+            most_edits=whole("most_edits", most_edits),
         )
         self._core = _kds.World(**self._options)
-        self._degree = degree
-        self._turning = turning
+        self._degree = self._options["degree"]
+        self._turning = self._options["turning"]
 
     @classmethod
     def _of_core(cls, core: Any, degree: int, turning: bool) -> World:
@@ -515,6 +530,11 @@ class World:
         turned = doubles("orientation", orientation, (4,))
         return self._core.overlapping(shape, turned, vector("position", position), filter)
 
+    def nearest(self, point: ArrayLike, count: int = 1, *, filter: Filter | None = None) -> np.recarray:
+        """The bodies nearest to a point, nearest first, at most `count`: body, distance (0 inside) and point (3,), the
+        nearest of the body."""
+        return self._core.nearest(vector("point", point), whole("count", count), filter).view(np.recarray)
+
     def next_contact(
         self,
         shape: Shape,
@@ -564,7 +584,7 @@ class World:
 
     def resting_at_wall(self, body: int, wall: int) -> bool:
         """Whether a body rests at a wall: 0 is -x, 1 is +x, ... 5 is +z."""
-        return self._core.resting_at_wall(identity("body", body), wall)
+        return self._core.resting_at_wall(identity("body", body), whole("wall", wall, 5))
 
     # ----- state
 

@@ -68,6 +68,11 @@ class Misuse(unittest.TestCase):
 
     def test_options(self):
         self.refused("degree: must be 1", lambda: kds.World(3))
+        self.refused("degree: must be a whole number", lambda: kds.World(1.5))
+        self.refused("turning: must be True or False", lambda: kds.World(1, 2))
+        self.refused("response: must be a string", lambda: kds.World(response=None))
+        self.refused("kdop", lambda: kds.World(kdop=7))
+        self.refused("zeno_contacts: must be a whole number from 0 to 4294967295", lambda: kds.World(zeno_contacts=2**32))
         self.refused("response: must be 'none', 'elastic' or 'callback', not 'soft'", lambda: kds.World(response="soft"))
         self.refused("broad_phase: must be one of 'auto'.*not 'bvh'", lambda: kds.World(broad_phase="bvh"))
         self.refused(r"walls: must have the shape \(2, 3\)", lambda: kds.World(walls=((0, 0), (1, 1))))

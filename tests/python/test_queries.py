@@ -56,6 +56,12 @@ class Queries(unittest.TestCase):
             place, radius = random.uniform(0, 10, 3), random.uniform(0.2, 2)
             inside = np.flatnonzero(np.linalg.norm(positions - place, axis=1) < radii + radius)
             self.assertEqual(world.overlapping(kds.sphere(radius), place).tolist(), inside.tolist())
+            near = np.maximum(np.linalg.norm(positions - place, axis=1) - radii, 0)
+            found = world.nearest(place, 7)
+            self.assertLess(np.abs(found.distance - np.sort(near)[:7]).max(), ERROR)
+            self.assertLess(np.abs(found.distance - near[found.body]).max(), ERROR)
+            apart = np.linalg.norm(found.point - place, axis=1)
+            self.assertLess(np.abs(apart - found.distance)[found.distance > 0].max(initial=0), ERROR)
             low, high = place - radius, place + radius
             near = np.flatnonzero(((positions + radii[:, None] > low) & (positions - radii[:, None] < high)).all(1))
             self.assertEqual(world.in_box(low, high).tolist(), near.tolist())

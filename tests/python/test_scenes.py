@@ -2,8 +2,10 @@
 
 import csv
 import os
+import signal
 import subprocess
 import tempfile
+import threading
 import unittest
 
 import kds
@@ -65,9 +67,26 @@ class Scenes(unittest.TestCase):
         before = sorted(os.listdir(self.folder))
         with self.assertRaisesRegex(ValueError, "broad-phase"):
             scene.run(broad_phase="none", csv=self.path("events.csv"))
+        with self.assertRaisesRegex(ValueError, "broad_phase: must be one of"):
+            scene.world(broad_phase="none")
         with self.assertRaises(OSError):
             scene.run(csv=self.path("no/such/folder.csv"))
         self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    def test_signals_stay_those_of_the_program(self):
+        """Ctrl-C ends a run with KeyboardInterrupt, also after files have been written."""
+        scene = kds.generate_scene(self.path("spheres.json"), "spheres", 500, density=0.2, end_time=1e6)
+        before = sorted(os.listdir(self.folder))
+        for run in (
+            lambda: scene.world(gather=False).advance_to(1e6),
+            lambda: scene.run(csv=self.path("events.csv"), gather=False, rate=10),
+        ):
+            timer = threading.Timer(0.2, signal.pthread_kill, (threading.get_ident(), signal.SIGINT))
+            timer.start()
+            with self.assertRaises(KeyboardInterrupt):
+                run()
+            timer.join()
+            self.assertEqual(sorted(os.listdir(self.folder)), before)
 
     def test_parts(self):
         scene = kds.generate_scene(self.path("rings.json"), bodies=10, end_time=3)
