@@ -123,7 +123,7 @@ Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<D
         const Doubles& numbers, const py::array_t<std::uint32_t, py::array::c_style>& masks,
         const py::array_t<std::uint8_t, py::array::c_style>& flags, const std::optional<Eigen::Matrix3d>& tensor,
         const Doubles& script) {
-  AnyWorld& world = self.world();
+  AnyWorld& world = self.to_change();
   const auto bodies = static_cast<std::size_t>(motions.shape(0));
   const std::vector<Motion> later = to_motions(script);
   std::vector<BodyId> ids;
@@ -200,6 +200,26 @@ py::dict counters(PyWorld& self) {
   return d;
 }
 
+/// The world of a Python object; null while it is being made.
+PyWorld* made(PyObject* object) {
+  return static_cast<PyWorld*>(reinterpret_cast<py::detail::instance*>(object)->get_value_and_holder().value_ptr());
+}
+
+/// Lets Python's garbage collector find worlds that are held by functions which they call.
+void collect_garbage(PyHeapTypeObject* heap_type) {
+  PyTypeObject& type = heap_type->ht_type;
+  type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+  type.tp_traverse = [](PyObject* object, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(object));
+    const PyWorld* const world = made(object);
+    return world ? world->traverse(visit, arg) : 0;
+  };
+  type.tp_clear = [](PyObject* object) {
+    if (PyWorld* const world = made(object)) world->forget_functions();
+    return 0;
+  };
+}
+
 void bind_queries(py::class_<PyWorld>& world) {
   using Filter = AnyWorld::Filter;
   world.def("in_box", [](PyWorld& self, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
@@ -209,26 +229,27 @@ void bind_queries(py::class_<PyWorld>& world) {
                        const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool all, const Filter& filter) {
     std::optional<PlacedShape> placed;
     if (shape) placed = place(shape->shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
-    return to_array(to_rows(self.world().cast(placed, from, to, all, filter)));
+    return to_array(to_rows(self.ask([&](AnyWorld& w) { return w.cast(placed, from, to, all, filter); })));
   });
   world.def("overlapping", [](PyWorld& self, const PyShape& shape, const Eigen::Vector4d& q, const Eigen::Vector3d& at,
                               const Filter& filter) {
-    return to_array(
-        self.world().overlapping(place(shape.shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3])), at, filter));
+    const PlacedShape placed = place(shape.shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
+    return to_array(self.ask([&](AnyWorld& w) { return w.overlapping(placed, at, filter); }));
   });
   world.def("nearest", [](PyWorld& self, const Eigen::Vector3d& to, std::size_t count, const Filter& filter) {
     std::vector<NearRow> rows;
-    for (const NearBody& near : self.world().nearest(to, count, filter)) {
+    for (const NearBody& near : self.ask([&](AnyWorld& w) { return w.nearest(to, count, filter); })) {
       rows.push_back({near.body, near.distance, {near.point[0], near.point[1], near.point[2]}});
     }
     return py::array_t<NearRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
   });
-  world.def("next_contact",
-            [](PyWorld& self, const PyShape& shape, const Doubles& motion, double until, const Filter& filter) {
-              return to_array(to_rows(self.world().next_contact(shape.shape, to_motion(motion.data()), until, filter)));
-            });
+  world.def("next_contact", [](PyWorld& self, const PyShape& shape, const Doubles& motion, double until,
+                               const Filter& filter) {
+    const Motion moved = to_motion(motion.data());
+    return to_array(to_rows(self.ask([&](AnyWorld& w) { return w.next_contact(shape.shape, moved, until, filter); })));
+  });
   world.def("next_contact_of", [](PyWorld& self, BodyId body, double until, const Filter& filter) {
-    return to_array(to_rows(self.world().next_contact_of(body, until, filter)));
+    return to_array(to_rows(self.ask([&](AnyWorld& w) { return w.next_contact_of(body, until, filter); })));
   });
   world.def("next_contact_between", [](PyWorld& self, BodyId a, BodyId b, double until) {
     const auto contact = self.world().next_contact_between(a, b, until);
@@ -253,21 +274,21 @@ void bind_world(py::module_& module) {
   module.attr("event_kinds") = kds_collide::event_kind_names;
   bind_shapes(module);
 
-  py::class_<PyWorld> world(module, "World");
+  py::class_<PyWorld> world(module, "World", py::custom_type_setup(&collect_garbage));
   world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("turning"), py::arg("gather"),
             py::arg("response"), py::arg("broad_phase"), py::arg("walls"), py::arg("wall_restitution"),
             py::arg("start_time"), py::arg("window"), py::arg("rate"), py::arg("kdop"), py::arg("report_pairs"),
             py::arg("threads"), py::arg("zeno_contacts"), py::arg("zeno_interval"), py::arg("shortest_flight"),
             py::arg("orientation_error"), py::arg("most_edits"));
   world.def("add", &add);
-  world.def("remove", [](PyWorld& self, BodyId id) { self.world().remove_body(id); });
+  world.def("remove", [](PyWorld& self, BodyId id) { self.to_change().remove_body(id); });
   world.def("update", [](PyWorld& self, const Ids& ids, const Doubles& motions) {
-    self.world().update_motions(to_vector(ids), to_motions(motions));
+    self.to_change().update_motions(to_vector(ids), to_motions(motions));
   });
   world.def("motions_now", &motions_now);
   world.def("advance_to", &PyWorld::advance_to);
   world.def("step", &PyWorld::step);
-  world.def("next_time", [](PyWorld& self) { return self.world().next_time(); });
+  world.def("next_time", [](PyWorld& self) { return self.to_change().next_time(); });
   world.def("call_at", &PyWorld::call_at);
   world.def("take_events", [](PyWorld& self) { return to_array(self.take_events()); });
   world.def("now", [](PyWorld& self) { return self.world().now(); });
@@ -287,7 +308,7 @@ void bind_world(py::module_& module) {
   });
   world.def("load", [](PyWorld& self, const py::bytes& bytes) {
     std::istringstream in{std::string(bytes)};
-    self.world().restore(kds::read_snapshot(in));
+    self.to_change().restore(kds::read_snapshot(in));
   });
   bind_queries(world);
 }

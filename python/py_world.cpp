@@ -30,6 +30,12 @@ AnyWorld& PyWorld::world() {
   return *world_;
 }
 
+AnyWorld& PyWorld::to_change() {
+  AnyWorld& changed = world();
+  if (asked_ > 0) throw std::runtime_error("World: it cannot be changed while a filter is at work");
+  return changed;
+}
+
 void PyWorld::told(const EventRow& event) {
   if (gather_) events_.push_back(event);
   const py::object& function = functions_[static_cast<std::size_t>(event.kind)];
@@ -38,7 +44,7 @@ void PyWorld::told(const EventRow& event) {
 
 template <class Work>
 auto PyWorld::run(const Work& work) {
-  AnyWorld& world = this->world();
+  AnyWorld& world = to_change();
   if (running_) return work(world);  // from within a function that it calls: the world refuses
   struct Running {
     explicit Running(PyWorld& of) : of(of) {
@@ -81,6 +87,15 @@ void PyWorld::call_at(std::size_t kind, py::object function) {
 std::vector<EventRow> PyWorld::take_events() {
   world();
   return std::exchange(events_, {});
+}
+
+int PyWorld::traverse(visitproc visit, void* arg) const {
+  for (const py::object& function : functions_) Py_VISIT(function.ptr());
+  return 0;
+}
+
+void PyWorld::forget_functions() {
+  for (py::object& function : functions_) const py::object gone = std::move(function);
 }
 
 kds::collision::BroadPhaseKind broad_phase_named(const std::string& name) {

@@ -20,8 +20,13 @@ class PyWorld {
  public:
   PyWorld(int degree, bool turning, const kds::collision::WorldOptions& options, bool gather);
 
-  /// To ask and to change; also from within functions that the world calls.
+  /// To ask; also from within functions that the world calls.
   AnyWorld& world();
+  /// To change; not from within a filter, nor while another thread's filter is at work: with std::runtime_error.
+  AnyWorld& to_change();
+  /// A question with a filter, which may call Python: so other threads may come in between.
+  template <class Ask>
+  auto ask(const Ask& ask);
 
   /// Ctrl-C ends it between two events, with KeyboardInterrupt.
   void advance_to(double t);
@@ -30,6 +35,10 @@ class PyWorld {
   /// None: calls nothing any more. The function is given an array of one EventRow.
   void call_at(std::size_t kind, pybind11::object function);
   std::vector<EventRow> take_events();
+
+  /// For Python's garbage collector: a function that is called may hold the world.
+  int traverse(visitproc visit, void* arg) const;
+  void forget_functions();
 
  private:
   void told(const EventRow& event);
@@ -41,9 +50,21 @@ class PyWorld {
   std::array<pybind11::object, kinds> functions_;
   bool gather_;
   bool running_ = false;
+  int asked_ = 0;  ///< questions with filters that are under way
   std::thread::id runner_;
   std::unique_ptr<AnyWorld> world_;
 };
+
+template <class Ask>
+auto PyWorld::ask(const Ask& ask) {
+  AnyWorld& asked = world();
+  struct Asked {
+    explicit Asked(int& count) : count(count) { ++count; }
+    ~Asked() { --count; }
+    int& count;
+  } counted(asked_);
+  return ask(asked);
+}
 
 /// Throws std::invalid_argument, with all names there are, for any other.
 kds::collision::BroadPhaseKind broad_phase_named(const std::string& name);

@@ -1,7 +1,7 @@
 """Builds the extension module with CMake, from the sources around this folder.
 
-Environment: CMAKE_ARGS, further arguments to configure with; KDS_BUILD_FOLDER, a build of kds to use as it is configured
-(with KDS_BUILD_PYTHON), in place of build/pip.
+Environment: CMAKE_ARGS, further arguments to configure with; KDS_BUILD_FOLDER, a build of kds to use as it is
+configured (with KDS_BUILD_PYTHON), in place of build/pip.
 """
 
 import os

@@ -8,8 +8,8 @@
         print(event.time, event.kind, event.a, event.b)
 
 Lengths and masses are in units of your choice, times in seconds, angles in radians; vectors are of three numbers,
-orientations unit quaternions w, x, y, z. What is wrong with an argument is said by ValueError; RuntimeError means that a
-call is not possible now. The guide is docs/python.md.
+orientations unit quaternions w, x, y, z. What is wrong with an argument is said by ValueError; RuntimeError means that
+a call is not possible now. The guide is docs/python.md.
 """
 
 from kds._events import EventKind, event_dtype, feature_name

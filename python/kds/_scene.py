@@ -109,7 +109,8 @@ class Scene:
 
         Ids of bodies are their places in `names`. Such a world has snapshots, but cannot be pickled.
         """
-        return World._of_core(self._core.world(flag("gather", gather), word("broad_phase", broad_phase)), self.degree, self.turning)
+        core = self._core.world(flag("gather", gather), word("broad_phase", broad_phase))
+        return World._of_core(core, self.degree, self.turning)
 
 
 def generate_scene(

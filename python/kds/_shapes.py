@@ -44,7 +44,8 @@ def mesh(vertices: ArrayLike, triangles: ArrayLike, scale: float = 1.0) -> Shape
         )
     points = doubles("vertices", vertices, (None, 3))
     if corners.size and not 0 <= corners.min() <= corners.max() < len(points):
-        raise ValueError(f"triangles: must be from 0 to {len(points) - 1}, and go from {corners.min()} to {corners.max()}")
+        found = f"from {corners.min()} to {corners.max()}"
+        raise ValueError(f"triangles: must be from 0 to {len(points) - 1}, and go {found}")
     return _kds.mesh(points, corners.astype(np.uint32), number("scale", scale))
 
 

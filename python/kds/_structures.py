@@ -82,7 +82,8 @@ class SortedList(_Structure):
         self._core = _kds.SortedList(_padded("coefficients", coefficients, ()), finite("start", start))
 
     def advance_to(self, t: float) -> np.recarray:
-        """Runs to t; returns the swaps: time, left, right, in the order of time. `left` has just come before `right`."""
+        """Runs to t; returns the swaps: time, left, right, in the order of time. `left` has just come before
+        `right`."""
         return self._core.advance_to(t).view(np.recarray)
 
     @property

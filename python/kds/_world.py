@@ -65,14 +65,15 @@ class World:
 
     response: 'none' (bodies pass through each other, contacts and separations are reported), 'elastic' (they bounce by
         restitution and rest on each other), 'callback' (functions that are called, see on(), change the motions).
-    walls: (min, max), two points (3,): the bounding ball of each body is kept inside that box. wall_restitution: 0 to 1.
+    walls: (min, max), two points (3,): the bounding ball of each body is kept inside that box. wall_restitution: 0 to
+        1.
     broad_phase: 'auto', 'grid', 'kinetic-sap', 'sap' (needs a rate, Hz) or 'all-pairs'. The events are the same.
     report_pairs: bounding volumes that begin and cease to overlap are events too.
     gather: whether events are kept for advance_to() and take_events().
     start_time: s. window: s; how far ahead events are predicted at a time. threads: 0 for as many as there are.
 
-    Bodies are named by their ids, whole numbers: 0, 1, 2, ... as long as none has been removed, and none is given twice.
-    An id that is not there (any more) is refused with ValueError, which says whether it has been removed.
+    Bodies are named by their ids, whole numbers: 0, 1, 2, ... as long as none has been removed, and none is given
+    twice. An id that is not there (any more) is refused with ValueError, which says whether it has been removed.
 
     While the world runs and calls no function (on()), other Python threads go on; but one that asks or changes this
     world meanwhile gets RuntimeError.
@@ -158,11 +159,12 @@ class World:
     ) -> int:
         """Adds a body; returns its id.
 
-        position, velocity, acceleration, angular_velocity (rad/s): vectors (3,); orientation: a unit quaternion w, x, y,
-        z. The motion is that from `start` (s) on, now if it is left out; a body with a start to come enters then. `then`:
-        further pieces, each later than the one before. `inertia` (worlds that turn): a moment or a tensor (3, 3), else
-        that of a solid of the shape. Of two bodies the lower restitution and friction count. Two bodies may meet if the
-        category of each shares a bit with collides_with of the other. A sensor reports, and passes through all.
+        position, velocity, acceleration, angular_velocity (rad/s): vectors (3,); orientation: a unit quaternion w, x,
+        y, z. The motion is that from `start` (s) on, now if it is left out; a body with a start to come enters then.
+        `then`: further pieces, each later than the one before. `inertia` (worlds that turn): a moment or a tensor (3,
+        3), else that of a solid of the shape. Of two bodies the lower restitution and friction count. Two bodies may
+        meet if the category of each shares a bit with collides_with of the other. A sensor reports, and passes through
+        all.
 
         ValueError names what is wrong; then nothing is added. See collision/body_description.hpp.
         """
@@ -217,8 +219,8 @@ class World:
         """Adds n bodies; returns their ids (n,), of uint64.
 
         shapes: one for all, or n; or None with `radii`, a number or (n,): balls. positions (n, 3). Of all others either
-        (n, 3), orientations (n, 4), numbers (n,), or one for all. What they mean, add_body() says; inertias are moments, 0
-        for that of the shape.
+        (n, 3), orientations (n, 4), numbers (n,), or one for all. What they mean, add_body() says; inertias are
+        moments, 0 for that of the shape.
 
         All are added or, if one is wrong, none: ValueError names it, bodies[17].
         """
@@ -410,15 +412,19 @@ class World:
         return self.velocities([identity("body", body)])[0]
 
     def shape(self, body: int) -> Shape:
+        """The shape that it was added with."""
         return self._core.shape(identity("body", body))
 
     def mass(self, body: int) -> float:
+        """Its mass; of a fixed body too, which no contact moves."""
         return self._core.mass(identity("body", body))
 
     def fixed(self, body: int) -> bool:
+        """Whether no other body changes its motion."""
         return self._core.fixed(identity("body", body))
 
     def sensor(self, body: int) -> bool:
+        """Whether it only reports."""
         return self._core.sensor(identity("body", body))
 
     # ----- the clock
@@ -439,15 +445,15 @@ class World:
     def advance_to(self, t: float) -> np.recarray:
         """Processes everything up to and including t (s); returns the events since the last were taken (event_dtype).
 
-        Ctrl-C ends it between two events, and the world can go on. What a function that is called raises comes out, after
-        its event; then take_events() has the events so far. RuntimeError if called from within such a function.
+        Ctrl-C ends it between two events, and the world can go on. What a function that is called raises comes out,
+        after its event; then take_events() has the events so far. RuntimeError if called from within such a function.
         """
         self._core.advance_to(number("t", t))
         return self.take_events()
 
     def step(self, limit: float = math.inf) -> bool:
-        """Processes the next event not later than `limit`. False if there is none; then the clock is at `limit`, if that
-        is finite. What has happened, take_events() tells."""
+        """Processes the next event not later than `limit`. False if there is none; then the clock is at `limit`, if
+        that is finite. What has happened, take_events() tells."""
         return self._core.step(number("limit", limit))
 
     @property

@@ -99,6 +99,28 @@ class Queries(unittest.TestCase):
         swept = world.cast((0, 0, 0), (8, 0, 0), kds.sphere(0.5))
         self.assertEqual((swept.time, swept.a), (0.4375, target))
 
+    def test_filters_change_nothing(self):
+        world = kds.World()
+        ball = world.add_body(kds.sphere(1), (5, 0, 0))
+
+        def refused(body):
+            for change in (
+                lambda: world.remove_body(ball),
+                lambda: world.update_motion(ball, velocity=(1, 0, 0)),
+                lambda: world.add_body(kds.sphere(1), (0, 0, 0)),
+                lambda: world.advance_to(1),
+                lambda: world.next_time,
+            ):
+                with self.assertRaisesRegex(RuntimeError, "while a filter is at work"):
+                    change()
+            return world.position(body)[0] == 5
+
+        self.assertEqual(world.cast((0, 0, 0), (9, 0, 0), filter=refused).a, ball)
+        with self.assertRaises(ZeroDivisionError):
+            world.cast((0, 0, 0), (9, 0, 0), filter=lambda body: 1 / 0)
+        world.remove_body(ball)
+        self.assertEqual(len(world), 0)
+
     def test_closest_approach(self):
         world = kds.World()
         a = world.add_body(kds.sphere(0.1), (0, 0, 0), (1, 0, 0))

@@ -1,10 +1,12 @@
 """Bodies in bulk and one by one, motions, callbacks, snapshots, threads."""
 
 import copy
+import gc
 import pickle
 import threading
 import time
 import unittest
+import weakref
 
 import kds
 import numpy as np
@@ -176,6 +178,15 @@ class Callbacks(unittest.TestCase):
         world.on(kds.EventKind.CONTACT, nested)
         world.advance_to(10)
         self.assertEqual(len(refused), 3)
+
+
+    def test_a_world_that_its_functions_hold_is_collected(self):
+        world = kds.World()
+        world.on(kds.EventKind.CONTACT, lambda event: world)
+        watched = weakref.ref(world)
+        del world
+        gc.collect()
+        self.assertIsNone(watched())
 
 
 class State(unittest.TestCase):
