@@ -22,10 +22,12 @@ namespace {
 namespace py = pybind11;
 using namespace kds_collide;
 
-/// Keeps the events of a run, bodies by their places in the scene. Lets Ctrl-C end it.
+/// Keeps the events of a run if they are wanted, bodies by their places in the scene. Lets Ctrl-C end it.
 class Gatherer final : public EventSink {
  public:
+  explicit Gatherer(bool wanted) : wanted_(wanted) {}
   void on_event(const Event& e) override {
+    if (!wanted_) return;
     kds::collision::Contact contact{e.time, e.point, e.normal, e.feature_a, e.feature_b};
     rows.push_back(to_row(static_cast<std::int64_t>(e.kind), e.a, e.b, contact));
   }
@@ -35,6 +37,9 @@ class Gatherer final : public EventSink {
   }
 
   std::vector<EventRow> rows;
+
+ private:
+  bool wanted_;
 };
 
 /// Events and counters of a run; files appear when it has ended, all or none.
@@ -48,7 +53,7 @@ py::tuple run_scene(const Scene& scene, const std::string& broad_phase, double r
   options.pairs = pairs;
   options.threads = threads;
   options.steady_progress = broad_phase != "sap";  // whose frames would come more often
-  Gatherer gatherer;
+  Gatherer gatherer(gather);
   RunResult result;
   {
     const py::gil_scoped_release release;
@@ -56,7 +61,7 @@ py::tuple run_scene(const Scene& scene, const std::string& broad_phase, double r
     std::optional<EventCsv> events;
     std::optional<OutputFile> page;
     std::optional<ReplayRecorder> recorder;
-    if (gather) sinks.add(gatherer);
+    sinks.add(gatherer);
     if (!csv.empty()) sinks.add(events.emplace(csv, scene));
     if (!replay.empty()) {
       replay_page("", default_three_folder());  // throws now if three.js is not there
