@@ -6,6 +6,7 @@
 #include "examples/kds-collide/run.hpp"
 #include "examples/kds-collide/scene_reader.hpp"
 #include "examples/kds-collide/stats_json.hpp"
+#include "python/bindings.hpp"
 #include "python/py_world.hpp"
 
 #include <pybind11/numpy.h>

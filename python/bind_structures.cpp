@@ -3,7 +3,7 @@
 #include "examples/course/mesh_edges.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
-#include "python/py_world.hpp"
+#include "python/bindings.hpp"
 #include "structures/convex_hull.hpp"
 #include "structures/delaunay.hpp"
 #include "structures/sorted_list.hpp"

@@ -4,6 +4,7 @@
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "examples/kds-collide/mesh_file.hpp"
+#include "python/bindings.hpp"
 #include "python/py_world.hpp"
 
 #include <pybind11/eigen.h>

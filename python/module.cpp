@@ -1,6 +1,8 @@
 // The extension module kds._kds, which the Python files of the package wrap: nothing in it is for users.
 #include "kds/version.hpp"
-#include "python/py_world.hpp"
+#include "python/bindings.hpp"
+
+#include <pybind11/pybind11.h>
 
 #include <string>
 

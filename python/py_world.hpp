@@ -69,8 +69,4 @@ auto PyWorld::ask(const Ask& ask) {
 /// Throws std::invalid_argument, with all names there are, for any other.
 kds::collision::BroadPhaseKind broad_phase_named(const std::string& name);
 
-void bind_world(pybind11::module_& module);
-void bind_scene(pybind11::module_& module);
-void bind_structures(pybind11::module_& module);
-
 }  // namespace kds_python
