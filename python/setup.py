@@ -11,6 +11,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import sysconfig
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
@@ -33,10 +34,18 @@ class BuildWithCMake(build_ext):
             subprocess.run(["cmake", "-S", ROOT, "-B", build, *options, *more], check=True)
         jobs = str(self.parallel or os.cpu_count() or 1)
         subprocess.run(["cmake", "--build", build, "--target", "kds_python", "--parallel", jobs], check=True)
-        (made,) = (build / "python" / "kds").glob("_kds.*")
+        made = build / "python" / "kds" / ("_kds" + sysconfig.get_config_var("EXT_SUFFIX"))
         target = pathlib.Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(made, target)
 
 
-setup(version=version(), ext_modules=[Extension("kds._kds", [])], cmdclass={"build_ext": BuildWithCMake})
+# What setuptools makes on the way goes to the build folder too.
+made = ROOT / "build" / "setuptools"
+made.mkdir(parents=True, exist_ok=True)
+setup(
+    version=version(),
+    ext_modules=[Extension("kds._kds", [])],
+    cmdclass={"build_ext": BuildWithCMake},
+    options={"build": {"build_base": str(made)}, "egg_info": {"egg_base": str(made)}},
+)
