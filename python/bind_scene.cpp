@@ -128,6 +128,7 @@ void bind_scene(py::module_& module) {
                                for (const SceneBody& body : scene.bodies) names.push_back(body.name);
                                return names;
                              })
+      .def_readonly("warnings", &Scene::warnings)
       .def_readonly("begin_time", &Scene::begin_time)
       .def_readonly("end_time", &Scene::end_time)
       .def_readonly("turning", &Scene::turning)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,14 +36,21 @@ class Scene:
         ValueError says what is wrong where: `scene.json: bodies[3].shape.sphere.radius: must be > 0`.
         """
         path = os.fspath(file)
-        return cls(_kds.read_scene(path, None if until is None else number("until", until)), os.path.basename(path))
+        return cls._warned(_kds.read_scene(path, None if until is None else number("until", until)), path)
 
     @classmethod
     def parse(cls, text: str, file: str | os.PathLike[str] = "scene.json", until: float | None = None) -> Scene:
         """The same from text; `file` is named in errors, and meshes are looked for beside it."""
         path = os.fspath(file)
         end = None if until is None else number("until", until)
-        return cls(_kds.parse_scene(text, path, end), os.path.basename(path))
+        return cls._warned(_kds.parse_scene(text, path, end), path)
+
+    @classmethod
+    def _warned(cls, core: Any, path: str) -> Scene:
+        """Of a scene in which something was mended, Python's warnings say what."""
+        for warning in core.warnings:
+            warnings.warn(warning, stacklevel=3)
+        return cls(core, os.path.basename(path))
 
     @property
     def names(self) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -50,5 +51,9 @@ def mesh(vertices: ArrayLike, triangles: ArrayLike, scale: float = 1.0) -> Shape
 
 
 def read_mesh(file: str | os.PathLike[str], scale: float = 1.0) -> Shape:
-    """A mesh from an OBJ or STL file."""
-    return _kds.read_mesh(os.fspath(file), number("scale", scale))
+    """A mesh from an OBJ or STL file. Triangles without an area are left out, with a warning that counts them."""
+    shape, left_out = _kds.read_mesh(os.fspath(file), number("scale", scale))
+    if left_out:
+        text = f"{os.fspath(file)}: {len(left_out)} degenerate triangles are left out, the first is {left_out[0]}"
+        warnings.warn(text, stacklevel=2)
+    return shape

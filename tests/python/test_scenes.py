@@ -103,6 +103,16 @@ class Scenes(unittest.TestCase):
     def test_mesh_files(self):
         with open(self.path("tetrahedron.obj"), "w") as file:
             file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        with open(self.path("spoilt.obj"), "w") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\nf 1 2 3\n")
+        with self.assertWarnsRegex(UserWarning, "spoilt.obj: 1 degenerate triangles are left out, the first is 0"):
+            kds.read_mesh(self.path("spoilt.obj"))
+        scene = (
+            '{"scene": 1, "end_time": 1, "response": "none", "meshes": {"m": {"file": "spoilt.obj"}}, "bodies":'
+            ' [{"name": "a", "shape": {"mesh": "m"}, "motion": [{"start": 0, "position": [[0, 0, 0]]}]}]}'
+        )
+        with self.assertWarnsRegex(UserWarning, "scene.json: meshes.*degenerate"):
+            kds.Scene.parse(scene, self.path("scene.json"))
         read = kds.read_mesh(self.path("tetrahedron.obj"), scale=2)
         made = kds.mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], 2)
         self.assertEqual((read.kind, read.bounding_radius), ("mesh", made.bounding_radius))
