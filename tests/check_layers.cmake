@@ -12,7 +12,7 @@ foreach(layer IN LISTS layers)
     file(STRINGS "${file}" includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"][a-z_.]+/")
     foreach(line IN LISTS includes)
       string(REGEX REPLACE "^[ \t]*#[ \t]*include[ \t]*[<\"]([a-z_.]+)/.*$" "\\1" folder "${line}")
-      if(folder MATCHES "^(kds|certificates|structures|collision|tests|examples|\\.\\.)$"
+      if(folder MATCHES "^(kds|certificates|structures|collision|tests|examples|python|\\.\\.)$"
          AND NOT folder IN_LIST allowed_${layer})
         file(RELATIVE_PATH shown "${ROOT}" "${file}")
         string(APPEND wrong "  ${shown}: ${line}\n")

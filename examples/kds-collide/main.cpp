@@ -138,6 +138,7 @@ int simulate(Arguments arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  remove_temporaries_at_signals();
   Arguments arguments;
   CLI::App app("Finds when and where moving bodies collide, exactly. Scene in, events out.", "kds-collide");
   describe(app, arguments);

@@ -29,17 +29,6 @@ extern "C" void remove_temporaries(int signal) {
   raise(signal);
 }
 
-void prepare_for_signals() {
-  [[maybe_unused]] static const bool prepared = [] {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT, SIGXCPU}) {
-      // What is ignored stays so: nohup.
-      if (std::signal(signal, remove_temporaries) == SIG_IGN) std::signal(signal, SIG_IGN);
-    }
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow further is an error of writing, as a full disk is
-    return true;
-  }();
-}
-
 int remember(const std::string& name) {
   for (std::size_t slot = 0; slot < most_files; ++slot) {
     if (open_temporaries[slot].load()) continue;
@@ -55,6 +44,14 @@ void forget(int slot) {
 
 }  // namespace
 
+void remove_temporaries_at_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT, SIGXCPU}) {
+    // What is ignored stays so: nohup.
+    if (std::signal(signal, remove_temporaries) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow further is an error of writing, as a full disk is
+}
+
 std::filesystem::path past_dangling_links(const std::filesystem::path& path) {
   std::error_code ignored;
   std::filesystem::path file = path;
@@ -66,7 +63,6 @@ std::filesystem::path past_dangling_links(const std::filesystem::path& path) {
 }
 
 OutputFile::OutputFile(const std::string& path) : path_(path), target_(past_dangling_links(path)) {
-  prepare_for_signals();
   if (path_ == "-") {
     file_ = stdout;
     return;

@@ -18,14 +18,17 @@ struct OutputError : std::runtime_error {
 /// Where `path` leads if it is a symbolic link to a file that is not there yet; else `path`.
 std::filesystem::path past_dangling_links(const std::filesystem::path& path);
 
+/// For programs, not for libraries in them: from now on temporary files of OutputFile, up to 8 at a time, are removed
+/// when the process is told to stop (SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU) or nobody reads its standard output any
+/// more (SIGPIPE); a file that grows beyond a limit (SIGXFSZ, ignored) is an error like any other.
+void remove_temporaries_at_signals();
+
 /// Writes to a temporary file beside the one that `path` leads to; commit() renames it, and until then nothing is
-/// there, or what was there before. Destroyed without commit(), and when the process is told to stop (SIGINT, SIGTERM,
-/// SIGHUP, SIGQUIT, SIGXCPU) or nobody reads its standard output any more (SIGPIPE), the temporary file is removed; a
-/// file that grows beyond a limit (SIGXFSZ, ignored) is an error like any other. "-" is standard output; it, pipes and
-/// devices are written directly. Links stay links. A file that was there leaves its permissions to the new one, but not
-/// its owner or its other names (hard links).
+/// there, or what was there before. Destroyed without commit(), the temporary file is removed. "-" is standard output;
+/// it, pipes and devices are written directly. Links stay links. A file that was there leaves its permissions to the
+/// new one, but not its owner or its other names (hard links).
 ///
-/// All members but the destructor throw OutputError. Signals remove up to 8 files at a time.
+/// All members but the destructor throw OutputError.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);

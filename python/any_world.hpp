@@ -1,0 +1,88 @@
+// A world of any type of motion, behind one interface: so the bindings are compiled once.
+#pragma once
+
+#include "collision/body_description.hpp"
+#include "collision/queries/future.hpp"
+#include "collision/queries/hit.hpp"
+#include "collision/queries/nearest.hpp"
+#include "collision/world_counters.hpp"
+#include "collision/world_options.hpp"
+#include "examples/kds-collide/scene.hpp"
+#include "kds/framework/snapshot.hpp"
+#include "python/rows.hpp"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kds_python {
+
+using kds::collision::BodyId;
+
+/// The orientation of the first piece is that of a body which keeps it.
+using Description = kds::collision::BasicBodyDescription<Motion>;
+
+/// Members are those of kds::collision::BasicWorld, and of queries/, and throw what those throw. Motions that the type
+/// of the world cannot hold are refused with std::invalid_argument.
+class AnyWorld {
+ public:
+  using Listener = std::function<void(const EventRow&)>;
+  using Filter = kds::collision::BodyFilter;
+
+  virtual ~AnyWorld() = default;
+
+  virtual BodyId add_body(const Description& body) = 0;
+  virtual BodyId add_body(const kds_collide::SceneBody& body) = 0;
+  virtual void reserve(std::size_t bodies) = 0;
+  virtual void remove_body(BodyId id) = 0;
+  /// All or none: throws before anything is changed.
+  virtual void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& motions) = 0;
+
+  virtual void advance_to(double t) = 0;
+  virtual bool step(double limit) = 0;
+  virtual bool advance_for(double budget_seconds, double t) = 0;
+  virtual double next_time() const = 0;
+
+  virtual double now() const = 0;
+  virtual std::size_t size() const = 0;
+  virtual bool contains(BodyId id) const = 0;
+  virtual Motion motion_now(BodyId id) const = 0;  ///< restarted at now()
+  virtual Motion free_motion_now(BodyId id) const = 0;
+  virtual kds::collision::Shape shape(BodyId id) const = 0;
+  virtual double mass(BodyId id) const = 0;
+  virtual bool fixed(BodyId id) const = 0;
+  virtual bool sensor(BodyId id) const = 0;
+  virtual bool touching(BodyId a, BodyId b) const = 0;
+  virtual bool resting(BodyId a, BodyId b) const = 0;
+  virtual bool resting_at_wall(BodyId a, int wall) const = 0;
+  virtual kds::collision::WorldCounters counters() const = 0;
+  virtual std::string_view broad_phase() const = 0;
+  virtual void audit() const = 0;
+  virtual kds::Snapshot save() = 0;
+  virtual void restore(const kds::Snapshot& snapshot) = 0;
+
+  virtual std::vector<BodyId> in_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max) const = 0;
+  /// A ray where there is no shape.
+  virtual std::vector<kds::collision::Hit> cast(const std::optional<kds::collision::PlacedShape>& shape,
+                                                const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool all,
+                                                const Filter& filter) const = 0;
+  virtual std::vector<BodyId> overlapping(const kds::collision::PlacedShape& shape, const Eigen::Vector3d& at,
+                                          const Filter& filter) const = 0;
+  virtual std::vector<kds::collision::NearBody> nearest(const Eigen::Vector3d& to, std::size_t count,
+                                                        const Filter& filter) const = 0;
+  virtual std::optional<kds::collision::Hit> next_contact(const kds::collision::Shape& shape, const Motion& motion,
+                                                          double until, const Filter& filter) const = 0;
+  virtual std::optional<kds::collision::Hit> next_contact_of(BodyId body, double until, const Filter& filter) const = 0;
+  virtual std::optional<kds::collision::Contact> next_contact_between(BodyId a, BodyId b, double until) const = 0;
+  virtual kds::collision::Approach closest_approach(BodyId a, BodyId b, double until) const = 0;
+};
+
+/// Of degree 1 or 2, of bodies that keep their orientation or turn. Throws std::invalid_argument for another degree,
+/// and what the world throws for its options.
+std::unique_ptr<AnyWorld> make_world(int degree, bool turning, const kds::collision::WorldOptions& options,
+                                     AnyWorld::Listener listener);
+
+}  // namespace kds_python

@@ -1,0 +1,318 @@
+// kds._kds.World, and shapes.
+#include "collision/broad_phase/broad_phase_kind.hpp"
+#include "collision/response/inertia.hpp"
+#include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "examples/kds-collide/mesh_file.hpp"
+#include "python/bindings.hpp"
+#include "python/py_world.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <sstream>
+#include <stdexcept>
+
+namespace kds_python {
+namespace {
+
+namespace py = pybind11;
+using namespace kds::collision;
+
+// Arrays come from kds/_world.py, which has checked their shapes.
+using Doubles = py::array_t<double, py::array::c_style>;
+using Ids = py::array_t<std::uint64_t, py::array::c_style>;
+
+Ids to_array(const std::vector<BodyId>& ids) { return Ids(static_cast<py::ssize_t>(ids.size()), ids.data()); }
+
+std::vector<BodyId> to_vector(const Ids& ids) { return {ids.data(), ids.data() + ids.size()}; }
+
+py::array_t<EventRow> to_array(const std::vector<EventRow>& rows) {
+  return py::array_t<EventRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
+}
+
+/// A shape that place() has accepted. (A type of its own, since pybind11 takes a std::variant apart.)
+struct PyShape {
+  Shape shape;
+};
+
+double bounding_radius(const PyShape& of) { return place(of.shape, Eigen::Quaterniond::Identity()).bounding_radius; }
+
+PyShape checked(Shape shape) {
+  const PyShape checked{std::move(shape)};
+  bounding_radius(checked);
+  return checked;
+}
+
+PyShape mesh_shape(std::vector<Eigen::Vector3d> vertices, std::vector<Mesh::Triangle> triangles, double scale) {
+  return checked(MeshShape{std::make_shared<const Mesh>(std::move(vertices), std::move(triangles)), scale});
+}
+
+void bind_shapes(py::module_& module) {
+  py::class_<PyShape>(module, "Shape",
+                      "The shape of bodies: made by sphere(), box(), capsule(), hull(), mesh(), read_mesh().")
+      .def_property_readonly(
+          "kind", [](const PyShape& of) { return kind_name(of.shape); },
+          "'sphere', 'box', 'capsule', 'hull' or 'mesh'.")
+      .def_property_readonly("bounding_radius", &bounding_radius,
+                             "The radius of the ball about the centre that contains the shape.")
+      .def("__repr__", [](const PyShape& of) {
+        std::ostringstream text;
+        text << "<kds.Shape " << kind_name(of.shape) << ", bounding radius " << bounding_radius(of) << ">";
+        return text.str();
+      });
+  module.def("sphere", [](double radius) { return checked(Sphere{radius}); });
+  module.def("box", [](const Eigen::Vector3d& half_extents) { return checked(Box{half_extents}); });
+  module.def("capsule", [](double radius, double half_length) { return checked(Capsule{radius, half_length}); });
+  module.def("hull", [](std::vector<Eigen::Vector3d> points) { return checked(convex_hull(std::move(points))); });
+  module.def("mesh", mesh_shape);
+  module.def("read_mesh", [](const std::string& file, double scale) {
+    try {
+      auto data = kds_collide::read_mesh_file(file);
+      const std::vector<std::size_t> left_out = kds_collide::leave_out_degenerate(data);
+      return py::make_tuple(mesh_shape(std::move(data.vertices), std::move(data.triangles), scale), left_out);
+    } catch (const std::exception& error) {  // which do not name the file
+      throw std::invalid_argument(file + ": " + error.what());
+    }
+  });
+}
+
+std::unique_ptr<PyWorld> new_world(int degree, bool turning, bool gather, const std::string& response,
+                                   const std::string& broad_phase,
+                                   const std::optional<std::array<Eigen::Vector3d, 2>>& walls, double wall_restitution,
+                                   double start_time, double window, double rate, int kdop, bool report_pairs,
+                                   std::size_t threads, std::uint32_t zeno_contacts, double zeno_interval,
+                                   double shortest_flight, double orientation_error, std::uint64_t most_edits) {
+  WorldOptions options;
+  if (response == "none") {
+    options.response = Response::none;
+  } else if (response == "elastic") {
+    options.response = Response::elastic;
+  } else if (response == "callback") {
+    options.response = Response::callback;
+  } else {
+    throw std::invalid_argument("response: must be 'none', 'elastic' or 'callback', not '" + response + "'");
+  }
+  options.broad_phase = broad_phase_named(broad_phase);
+  if (walls) options.walls = Walls{(*walls)[0], (*walls)[1], wall_restitution};
+  options.start_time = start_time;
+  options.window = window;
+  options.rate = rate;
+  options.kdop = kdop;
+  options.report_pairs = report_pairs;
+  options.threads = threads;
+  options.zeno = {zeno_contacts, zeno_interval};
+  options.shortest_flight = shortest_flight;
+  options.orientation_error = orientation_error;
+  options.most_edits = most_edits;
+  return std::make_unique<PyWorld>(degree, turning, options, gather);
+}
+
+std::vector<Motion> to_motions(const Doubles& rows) {
+  std::vector<Motion> motions(static_cast<std::size_t>(rows.shape(0)));
+  for (std::size_t i = 0; i < motions.size(); ++i) motions[i] = to_motion(rows.data() + i * motion_length);
+  return motions;
+}
+
+constexpr std::uint8_t is_fixed = 1;
+constexpr std::uint8_t is_sensor = 2;
+
+/// Adds a body a row; all, or none: then those that were added are removed again.
+Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<Doubles>& radii, const Doubles& motions,
+        const Doubles& numbers, const py::array_t<std::uint32_t, py::array::c_style>& masks,
+        const py::array_t<std::uint8_t, py::array::c_style>& flags, const std::optional<Eigen::Matrix3d>& tensor,
+        const Doubles& script) {
+  AnyWorld& world = self.to_change();
+  const auto bodies = static_cast<std::size_t>(motions.shape(0));
+  const std::vector<Motion> later = to_motions(script);
+  std::vector<BodyId> ids;
+  ids.reserve(bodies);
+  if (bodies > 1) world.reserve(world.size() + bodies);
+  try {
+    Description body;
+    for (std::size_t i = 0; i < bodies; ++i) {
+      if (radii) {
+        body.shape = Sphere{radii->data()[i]};
+      } else if (i == 0 || shapes.size() > 1) {
+        body.shape = shapes[i].shape;
+      }
+      body.motion.assign(1, to_motion(motions.data() + i * motion_length));
+      body.motion.insert(body.motion.end(), later.begin(), later.end());
+      const double* number = numbers.data() + 5 * i;
+      body.mass = number[0];
+      body.restitution = number[1];
+      body.friction = number[2];
+      body.tangential_restitution = number[3];
+      body.inertia = tensor ? Inertia(*tensor) : Inertia(number[4]);
+      body.category = masks.data()[2 * i];
+      body.collides_with = masks.data()[2 * i + 1];
+      body.fixed = (flags.data()[i] & is_fixed) != 0;
+      body.sensor = (flags.data()[i] & is_sensor) != 0;
+      ids.push_back(world.add_body(body));
+    }
+  } catch (const std::exception& error) {
+    const std::string where = bodies > 1 ? "bodies[" + std::to_string(ids.size()) + "]: " : "";
+    for (auto id = ids.rbegin(); id != ids.rend(); ++id) world.remove_body(*id);
+    if (dynamic_cast<const std::invalid_argument*>(&error)) throw std::invalid_argument(where + error.what());
+    throw;
+  }
+  return to_array(ids);
+}
+
+/// Position, velocity, acceleration, time, orientation and angular velocity of each at now.
+Doubles motions_now(PyWorld& self, const Ids& ids, bool free) {
+  AnyWorld& world = self.world();
+  Doubles rows({ids.size(), static_cast<py::ssize_t>(motion_length)});
+  double* row = rows.mutable_data();
+  for (py::ssize_t i = 0; i < ids.size(); ++i, row += motion_length) {
+    put(free ? world.free_motion_now(ids.data()[i]) : world.motion_now(ids.data()[i]), row);
+  }
+  return rows;
+}
+
+/// Hits as events of the kind 0: a is the body, b the same.
+std::vector<EventRow> to_rows(const std::vector<Hit>& hits) {
+  std::vector<EventRow> rows;
+  for (const Hit& hit : hits) rows.push_back(to_row(0, hit.body, hit.body, hit.contact));
+  return rows;
+}
+
+std::vector<EventRow> to_rows(const std::optional<Hit>& hit) {
+  return hit ? to_rows(std::vector<Hit>{*hit}) : std::vector<EventRow>{};
+}
+
+py::dict counters(PyWorld& self) {
+  const WorldCounters c = self.world().counters();
+  py::dict d;
+  d["contacts"] = c.contacts;
+  d["separations"] = c.separations;
+  d["overlaps"] = c.overlaps;
+  d["wall_contacts"] = c.wall_contacts;
+  d["motion_updates"] = c.motion_updates;
+  d["rebounds_suppressed"] = c.rebounds_suppressed;
+  d["pairs_begun"] = c.pairs_begun;
+  d["pair_tests"] = c.pair_tests;
+  d["swaps"] = c.broad_phase.swaps;
+  d["certificates"] = c.broad_phase.certificates;
+  d["rotation_pieces"] = c.rotation_pieces;
+  d["orientation_resets"] = c.orientation_resets;
+  return d;
+}
+
+/// The world of a Python object; null while it is being made.
+PyWorld* made(PyObject* object) {
+  return static_cast<PyWorld*>(reinterpret_cast<py::detail::instance*>(object)->get_value_and_holder().value_ptr());
+}
+
+/// Lets Python's garbage collector find worlds that are held by functions which they call.
+void collect_garbage(PyHeapTypeObject* heap_type) {
+  PyTypeObject& type = heap_type->ht_type;
+  type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+  type.tp_traverse = [](PyObject* object, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(object));
+    const PyWorld* const world = made(object);
+    return world ? world->traverse(visit, arg) : 0;
+  };
+  type.tp_clear = [](PyObject* object) {
+    if (PyWorld* const world = made(object)) world->forget_functions();
+    return 0;
+  };
+}
+
+void bind_queries(py::class_<PyWorld>& world) {
+  using Filter = AnyWorld::Filter;
+  world.def("in_box", [](PyWorld& self, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+    return to_array(self.world().in_box(min, max));
+  });
+  world.def("cast", [](PyWorld& self, const std::optional<PyShape>& shape, const Eigen::Vector4d& q,
+                       const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool all, const Filter& filter) {
+    std::optional<PlacedShape> placed;
+    if (shape) placed = place(shape->shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
+    return to_array(to_rows(self.ask([&](AnyWorld& w) { return w.cast(placed, from, to, all, filter); })));
+  });
+  world.def("overlapping", [](PyWorld& self, const PyShape& shape, const Eigen::Vector4d& q, const Eigen::Vector3d& at,
+                              const Filter& filter) {
+    const PlacedShape placed = place(shape.shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
+    return to_array(self.ask([&](AnyWorld& w) { return w.overlapping(placed, at, filter); }));
+  });
+  world.def("nearest", [](PyWorld& self, const Eigen::Vector3d& to, std::size_t count, const Filter& filter) {
+    std::vector<NearRow> rows;
+    for (const NearBody& near : self.ask([&](AnyWorld& w) { return w.nearest(to, count, filter); })) {
+      rows.push_back({near.body, near.distance, {near.point[0], near.point[1], near.point[2]}});
+    }
+    return py::array_t<NearRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
+  });
+  world.def("next_contact", [](PyWorld& self, const PyShape& shape, const Doubles& motion, double until,
+                               const Filter& filter) {
+    const Motion moved = to_motion(motion.data());
+    return to_array(to_rows(self.ask([&](AnyWorld& w) { return w.next_contact(shape.shape, moved, until, filter); })));
+  });
+  world.def("next_contact_of", [](PyWorld& self, BodyId body, double until, const Filter& filter) {
+    return to_array(to_rows(self.ask([&](AnyWorld& w) { return w.next_contact_of(body, until, filter); })));
+  });
+  world.def("next_contact_between", [](PyWorld& self, BodyId a, BodyId b, double until) {
+    const auto contact = self.world().next_contact_between(a, b, until);
+    return to_array(contact ? std::vector<EventRow>{to_row(0, a, b, *contact)} : std::vector<EventRow>{});
+  });
+  world.def("closest_approach", [](PyWorld& self, BodyId a, BodyId b, double until) {
+    const Approach approach = self.world().closest_approach(a, b, until);
+    return std::array{approach.time, approach.distance};
+  });
+  world.def("touching", [](PyWorld& self, BodyId a, BodyId b) { return self.world().touching(a, b); });
+  world.def("resting", [](PyWorld& self, BodyId a, BodyId b) { return self.world().resting(a, b); });
+  world.def("resting_at_wall", [](PyWorld& self, BodyId a, int wall) { return self.world().resting_at_wall(a, wall); });
+}
+
+}  // namespace
+
+void bind_world(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(FeatureRow, kind, first, second);
+  PYBIND11_NUMPY_DTYPE(EventRow, time, kind, a, b, point, normal, feature_a, feature_b);
+  PYBIND11_NUMPY_DTYPE(NearRow, body, distance, point);
+  module.attr("event_dtype") = py::dtype::of<EventRow>();
+  module.attr("event_kinds") = kds_collide::event_kind_names;
+  bind_shapes(module);
+
+  py::class_<PyWorld> world(module, "World", py::custom_type_setup(&collect_garbage));
+  world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("turning"), py::arg("gather"),
+            py::arg("response"), py::arg("broad_phase"), py::arg("walls"), py::arg("wall_restitution"),
+            py::arg("start_time"), py::arg("window"), py::arg("rate"), py::arg("kdop"), py::arg("report_pairs"),
+            py::arg("threads"), py::arg("zeno_contacts"), py::arg("zeno_interval"), py::arg("shortest_flight"),
+            py::arg("orientation_error"), py::arg("most_edits"));
+  world.def("add", &add);
+  world.def("remove", [](PyWorld& self, BodyId id) { self.to_change().remove_body(id); });
+  world.def("update", [](PyWorld& self, const Ids& ids, const Doubles& motions) {
+    self.to_change().update_motions(to_vector(ids), to_motions(motions));
+  });
+  world.def("motions_now", &motions_now);
+  world.def("advance_to", &PyWorld::advance_to);
+  world.def("step", &PyWorld::step);
+  world.def("next_time", [](PyWorld& self) { return self.to_change().next_time(); });
+  world.def("call_at", &PyWorld::call_at);
+  world.def("take_events", [](PyWorld& self) { return to_array(self.take_events()); });
+  world.def("now", [](PyWorld& self) { return self.world().now(); });
+  world.def("size", [](PyWorld& self) { return self.world().size(); });
+  world.def("contains", [](PyWorld& self, BodyId id) { return self.world().contains(id); });
+  world.def("shape", [](PyWorld& self, BodyId id) { return PyShape{self.world().shape(id)}; });
+  world.def("mass", [](PyWorld& self, BodyId id) { return self.world().mass(id); });
+  world.def("fixed", [](PyWorld& self, BodyId id) { return self.world().fixed(id); });
+  world.def("sensor", [](PyWorld& self, BodyId id) { return self.world().sensor(id); });
+  world.def("broad_phase", [](PyWorld& self) { return std::string(self.world().broad_phase()); });
+  world.def("counters", &counters);
+  world.def("audit", [](PyWorld& self) { self.world().audit(); });
+  world.def("save", [](PyWorld& self) {
+    std::ostringstream out;
+    kds::write(out, self.world().save());
+    return py::bytes(out.str());
+  });
+  world.def("load", [](PyWorld& self, const py::bytes& bytes) {
+    std::istringstream in{std::string(bytes)};
+    self.to_change().restore(kds::read_snapshot(in));
+  });
+  bind_queries(world);
+}
+
+}  // namespace kds_python

@@ -1,0 +1,124 @@
+"""Arguments as arrays: what does not fit is said by name and shape."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Doubles = NDArray[np.float64]
+Ids = NDArray[np.uint64]
+
+
+def _shape_text(shape: tuple[int | None, ...]) -> str:
+    sizes = ["n" if size is None else str(size) for size in shape]
+    return "(" + ", ".join(sizes) + ("," if len(sizes) == 1 else "") + ")"
+
+
+def doubles(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> Doubles:
+    """The value as an array of doubles of this shape, in which None stands for any size. Nothing is broadcast."""
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"{name}: must be numbers of shape {_shape_text(shape)}: {error}") from None
+    if array.dtype.kind not in "iuf":
+        raise ValueError(f"{name}: must be real numbers, and has the dtype {array.dtype}")
+    fits = array.ndim == len(shape) and all(want in (None, has) for want, has in zip(shape, array.shape))
+    if not fits:
+        raise ValueError(f"{name}: must have the shape {_shape_text(shape)}, and has {array.shape}")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def vector(name: str, value: ArrayLike) -> Doubles:
+    return doubles(name, value, (3,))
+
+
+def number(name: str, value: Any) -> float:
+    if isinstance(value, (bool, np.bool_, str)):
+        raise ValueError(f"{name}: must be a number, and is {value!r}")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: must be a number, and is {value!r}") from None
+
+
+def whole(name: str, value: Any, most: int = 2**63 - 1) -> int:
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool) and 0 <= value <= most:
+        return int(value)
+    raise ValueError(f"{name}: must be a whole number from 0 to {most}, and is {value!r}")
+
+
+def flag(name: str, value: Any) -> bool:
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    raise ValueError(f"{name}: must be True or False, and is {value!r}")
+
+
+def word(name: str, value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    raise ValueError(f"{name}: must be a string, and is {value!r}")
+
+
+def finite(name: str, value: Any) -> float:
+    result = number(name, value)
+    if not math.isfinite(result):
+        raise ValueError(f"{name}: must be finite, and is {result}")
+    return result
+
+
+def rows(name: str, value: ArrayLike, n: int, columns: int) -> Doubles:
+    """(n, columns) doubles; one row of `columns` counts for all."""
+    array = np.asarray(value)
+    if array.dtype.kind in "iuf" and array.shape == (columns,):
+        return np.broadcast_to(np.asarray(array, dtype=np.float64), (n, columns))
+    return doubles(name, value, (n, columns))
+
+
+def column(name: str, value: ArrayLike, n: int) -> Doubles:
+    """n doubles; one number counts for all."""
+    array = np.asarray(value)
+    if array.ndim == 0 and array.dtype.kind in "iuf":
+        return np.full(n, float(array))
+    return doubles(name, value, (n,))
+
+
+def masks(name: str, value: ArrayLike, n: int) -> NDArray[np.uint32]:
+    """n masks of 32 bits; one counts for all."""
+    array = np.asarray(value)
+    if array.ndim == 0:
+        array = np.full(n, array)
+    if array.dtype.kind not in "iu" or array.shape != (n,):
+        raise ValueError(f"{name}: must be whole numbers of shape ({n},), and is {array.dtype} of shape {array.shape}")
+    if n and (array.min() < 0 or array.max() > 0xFFFFFFFF):
+        raise ValueError(f"{name}: must be masks of 32 bits, from 0 to 0xffffffff")
+    return array.astype(np.uint32)
+
+
+def flags(name: str, value: ArrayLike, n: int) -> NDArray[np.uint8]:
+    """n of 0 and 1; one bool counts for all."""
+    array = np.asarray(value)
+    if array.ndim == 0:
+        array = np.full(n, array)
+    if array.dtype.kind != "b" or array.shape != (n,):
+        raise ValueError(f"{name}: must be bools of shape ({n},), and is {array.dtype} of shape {array.shape}")
+    return array.astype(np.uint8)
+
+
+def ids(name: str, value: ArrayLike) -> Ids:
+    """Ids of bodies, (n,)."""
+    array = np.asarray(value)
+    if array.size == 0 and array.ndim == 1:
+        return np.empty(0, np.uint64)
+    if array.dtype.kind not in "iu" or array.ndim != 1 or array.min() < 0:
+        raise ValueError(f"{name}: must be ids of bodies of shape (n,), and is {array.dtype} of shape {array.shape}")
+    return np.ascontiguousarray(array, dtype=np.uint64)
+
+
+def identity(name: str, value: Any) -> int:
+    """One id."""
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool) and 0 <= value < 2**64:
+        return int(value)
+    raise ValueError(f"{name}: must be the id of a body, and is {value!r}")

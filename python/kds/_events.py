@@ -1,0 +1,43 @@
+"""Events as rows of a structured array."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from kds import _kds
+
+#: time (s), kind (EventKind), a and b (ids of bodies; b of an event at a wall is the wall: 0 is -x, 1 is +x, ... 5 is
+#: +z), point (3,), normal (3,) from a to b, feature_a and feature_b (see feature_name).
+event_dtype: np.dtype = np.dtype((np.record, _kds.event_dtype))
+
+
+class EventKind(IntEnum):
+    """The kinds of events. Those of rest and of walls have the same names in the tool's CSV files."""
+
+    CONTACT = 0  #: penetration begins
+    SEPARATION = 1  #: and ends: of bodies that pass through each other
+    OVERLAP = 2  #: in contact when one of the two enters
+    WALL = 3  #: a body reaches a wall
+    PAIR_BEGIN = 4  #: bounding volumes begin to overlap: with report_pairs
+    PAIR_END = 5
+    REST = 6  #: two bodies begin to rest on each other
+    WAKE = 7  #: and cease to
+    REST_AT_WALL = 8
+    WAKE_AT_WALL = 9
+    PASS = 10  #: two bodies are let through each other
+
+
+def as_events(rows: np.ndarray) -> np.recarray:
+    """Rows with names for columns: events.time as well as events["time"]."""
+    return rows.view(event_dtype).view(np.recarray)
+
+
+def feature_name(feature: Any) -> str:
+    """The vertex, edge or face of a feature_a or feature_b, as the tool writes it: 'v12', 'e3-17', 'f40', or '-'."""
+    kind = int(feature["kind"])
+    if kind == 2:
+        return f"e{feature['first']}-{feature['second']}"
+    return "-" if kind == 0 else f"{'v' if kind == 1 else 'f'}{feature['first']}"

@@ -1,0 +1,146 @@
+"""Scene files, read and run as the tool kds-collide does (docs/kds-collide.md)."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kds import _kds
+from kds._arrays import flag, number, whole, word
+from kds._events import as_events
+from kds._world import World
+
+
+class Run(NamedTuple):
+    """What Scene.run gives back."""
+
+    events: np.recarray  #: of event_dtype; a and b are places in Scene.names
+    stats: dict[str, Any]  #: as the tool's --stats
+
+
+class Scene:
+    """A scene file, checked; made by Scene.read or Scene.parse."""
+
+    def __init__(self, core: Any, title: str) -> None:
+        self._core = core
+        self._title = title
+
+    @classmethod
+    def read(cls, file: str | os.PathLike[str], until: float | None = None) -> Scene:
+        """Reads a scene and the meshes that it names; it ends at `until` (s) in place of its own end_time.
+
+        ValueError says what is wrong where: `scene.json: bodies[3].shape.sphere.radius: must be > 0`.
+        """
+        path = os.fspath(file)
+        return cls._warned(_kds.read_scene(path, None if until is None else number("until", until)), path)
+
+    @classmethod
+    def parse(cls, text: str, file: str | os.PathLike[str] = "scene.json", until: float | None = None) -> Scene:
+        """The same from text; `file` is named in errors, and meshes are looked for beside it."""
+        path = os.fspath(file)
+        end = None if until is None else number("until", until)
+        return cls._warned(_kds.parse_scene(text, path, end), path)
+
+    @classmethod
+    def _warned(cls, core: Any, path: str) -> Scene:
+        """Of a scene in which something was mended, Python's warnings say what."""
+        for warning in core.warnings:
+            warnings.warn(warning, stacklevel=3)
+        return cls(core, os.path.basename(path))
+
+    @property
+    def names(self) -> list[str]:
+        """Of the bodies, in the order of the file."""
+        return self._core.names
+
+    @property
+    def begin_time(self) -> float:
+        return self._core.begin_time
+
+    @property
+    def end_time(self) -> float:
+        return self._core.end_time
+
+    @property
+    def degree(self) -> int:
+        """2 where a body accelerates, else 1."""
+        return self._core.degree
+
+    @property
+    def turning(self) -> bool:
+        return self._core.turning
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return f"<kds.Scene {self._title}: {len(self)} bodies, {self.begin_time} to {self.end_time} s>"
+
+    def run(
+        self,
+        *,
+        broad_phase: str = "auto",
+        rate: float = 0.0,
+        kdop: int = 6,
+        pairs: bool = False,
+        threads: int = 1,
+        gather: bool = True,
+        csv: str | os.PathLike[str] | None = None,
+        replay: str | os.PathLike[str] | None = None,
+    ) -> Run:
+        """Runs the scene from its beginning to its end; it may be run any number of times.
+
+        `csv`, `replay`: files to write, which are those of the tool's --events and --view to the byte; they appear when
+        the run has ended. gather=False: no array of events. The other arguments are the tool's. Other threads go on
+        meanwhile. OSError for files that cannot be written; RuntimeError where a replay wants three.js, which is not
+        there.
+        """
+        rows, stats = self._core.run(
+            word("broad_phase", broad_phase),
+            number("rate", rate),
+            whole("kdop", kdop, 2**31 - 1),
+            flag("pairs", pairs),
+            whole("threads", threads),
+            flag("gather", gather),
+            "" if csv is None else os.fspath(csv),
+            "" if replay is None else os.fspath(replay),
+            self._title,
+        )
+        return Run(as_events(rows), json.loads(stats))
+
+    def world(self, *, gather: bool = True, broad_phase: str = "auto") -> World:
+        """A world with the bodies of the scene, at its begin_time: to be run step by step, asked and changed.
+
+        Ids of bodies are their places in `names`. Such a world has snapshots, but cannot be pickled.
+        """
+        core = self._core.world(flag("gather", gather), word("broad_phase", broad_phase))
+        return World._of_core(core, self.degree, self.turning)
+
+
+def generate_scene(
+    file: str | os.PathLike[str],
+    kind: str = "rings",
+    bodies: int = 1000,
+    density: float = 0.01,
+    seed: int = 1,
+    end_time: float = 1.0,
+) -> Scene:
+    """Writes a scene of the tool's generator, with its meshes beside it, and reads it.
+
+    `kind`: 'rings', 'spheres', 'boxes', 'models', 'spinners', ... (`kds-collide --help` names all). `density`: the
+    volume of all bounding balls over that of the domain.
+    """
+    path = os.fspath(file)
+    _kds.generate_scene(
+        path,
+        word("kind", kind),
+        whole("bodies", bodies),
+        number("density", density),
+        whole("seed", seed),
+        number("end_time", end_time),
+    )
+    return Scene.read(path)

@@ -1,0 +1,59 @@
+"""Shapes of bodies."""
+
+from __future__ import annotations
+
+import os
+import warnings
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kds import _kds
+from kds._arrays import doubles, number, vector
+from kds._kds import Shape
+
+
+def sphere(radius: float) -> Shape:
+    """A ball about the body's centre. Radius > 0."""
+    return _kds.sphere(number("radius", radius))
+
+
+def box(half_extents: ArrayLike) -> Shape:
+    """A solid box about the body's centre. Half extents (3,), each > 0."""
+    return _kds.box(vector("half_extents", half_extents))
+
+
+def capsule(radius: float, half_length: float) -> Shape:
+    """All that is nearer than `radius` to the segment from -half_length to half_length on the body's z axis."""
+    return _kds.capsule(number("radius", radius), number("half_length", half_length))
+
+
+def hull(points: ArrayLike) -> Shape:
+    """The solid convex hull of points (n, 3), about the origin as the body's centre. They must not lie in a plane."""
+    return _kds.hull(doubles("points", points, (None, 3)))
+
+
+def mesh(vertices: ArrayLike, triangles: ArrayLike, scale: float = 1.0) -> Shape:
+    """A surface of triangles, about the origin as the body's centre; it has no inside. Use one for many bodies.
+
+    vertices (n, 3); triangles (m, 3), whole numbers from 0 to n - 1; each vertex is multiplied by `scale`.
+    """
+    corners = np.asarray(triangles)
+    if corners.dtype.kind not in "iu" or corners.ndim != 2 or corners.shape[1] != 3:
+        raise ValueError(
+            f"triangles: must be whole numbers of shape (m, 3), and is {corners.dtype} of shape {corners.shape}"
+        )
+    points = doubles("vertices", vertices, (None, 3))
+    if corners.size and not 0 <= corners.min() <= corners.max() < len(points):
+        found = f"from {corners.min()} to {corners.max()}"
+        raise ValueError(f"triangles: must be from 0 to {len(points) - 1}, and go {found}")
+    return _kds.mesh(points, corners.astype(np.uint32), number("scale", scale))
+
+
+def read_mesh(file: str | os.PathLike[str], scale: float = 1.0) -> Shape:
+    """A mesh from an OBJ or STL file. Triangles without an area are left out, with a warning that counts them."""
+    shape, left_out = _kds.read_mesh(os.fspath(file), number("scale", scale))
+    if left_out:
+        text = f"{os.fspath(file)}: {len(left_out)} degenerate triangles are left out, the first is {left_out[0]}"
+        warnings.warn(text, stacklevel=2)
+    return shape

@@ -1,0 +1,90 @@
+// What goes between C++ and Python as rows of NumPy arrays.
+#pragma once
+
+#include "certificates/turning/rigid_motion.hpp"
+#include "collision/narrow_phase/contact.hpp"
+#include "collision/shapes/feature.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace kds_python {
+
+/// Motions of all worlds go through this type, which holds each of them exactly.
+using Motion = kds::certificates::RigidMotion<2>;
+
+// Rows have no padding, so that equal ones are equal byte by byte.
+
+struct FeatureRow {
+  std::uint32_t kind;  ///< Feature::Kind
+  std::uint32_t first;
+  std::uint32_t second;
+};
+
+/// An event, or a hit of a query.
+struct EventRow {
+  double time;
+  std::int64_t kind;  ///< kds_collide::EventKind
+  std::uint64_t a;    ///< a body
+  std::uint64_t b;    ///< a body; of a wall its number, 0 to 5
+  std::array<double, 3> point;
+  std::array<double, 3> normal;
+  FeatureRow feature_a;
+  FeatureRow feature_b;
+};
+
+static_assert(sizeof(EventRow) == 104);
+
+/// A body near a point.
+struct NearRow {
+  std::uint64_t body;
+  double distance;
+  std::array<double, 3> point;
+};
+
+inline FeatureRow to_row(const kds::collision::Feature& feature) {
+  return {static_cast<std::uint32_t>(feature.kind), feature.first, feature.second};
+}
+
+inline EventRow to_row(std::int64_t kind, std::uint64_t a, std::uint64_t b, const kds::collision::Contact& c) {
+  return {c.time,
+          kind,
+          a,
+          b,
+          {c.point[0], c.point[1], c.point[2]},
+          {c.normal[0], c.normal[1], c.normal[2]},
+          to_row(c.feature_a),
+          to_row(c.feature_b)};
+}
+
+/// A motion: position, velocity and acceleration (not its half) at the start; the start; the orientation there, w x y
+/// z; the angular velocity.
+inline constexpr std::size_t motion_length = 17;
+
+inline Motion to_motion(const double* row) {
+  Motion motion;
+  motion.path.coefficients = {Eigen::Vector3d(row[0], row[1], row[2]), Eigen::Vector3d(row[3], row[4], row[5]),
+                              Eigen::Vector3d(0.5 * row[6], 0.5 * row[7], 0.5 * row[8])};
+  motion.path.start = row[9];
+  motion.orientation = Eigen::Quaterniond(row[10], row[11], row[12], row[13]);
+  motion.angular_velocity = Eigen::Vector3d(row[14], row[15], row[16]);
+  return motion;
+}
+
+inline void put(const Motion& motion, double* row) {
+  const auto& c = motion.path.coefficients;
+  const auto& q = motion.orientation;
+  const auto& w = motion.angular_velocity;
+  const double numbers[] = {
+      c[0][0],           c[0][1], c[0][2], c[1][0], c[1][1], c[1][2], 2 * c[2][0], 2 * c[2][1], 2 * c[2][2],
+      motion.path.start, q.w(),   q.x(),   q.y(),   q.z(),   w[0],    w[1],        w[2]};
+  static_assert(std::size(numbers) == motion_length);
+  std::copy(std::begin(numbers), std::end(numbers), row);
+}
+
+}  // namespace kds_python

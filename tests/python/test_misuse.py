@@ -1,0 +1,140 @@
+"""Wrong arguments are refused by name, and nothing is half done."""
+
+import math
+import unittest
+
+import kds
+import numpy as np
+
+
+class Misuse(unittest.TestCase):
+    def refused(self, pattern, call, error=ValueError):
+        with self.assertRaisesRegex(error, pattern):
+            call()
+
+    def setUp(self):
+        self.world = kds.World()
+        self.ball = kds.sphere(1)
+
+    def tearDown(self):
+        self.assertEqual(len(self.world), 0)
+
+    def test_shapes_of_arrays(self):
+        w, n3 = self.world, np.zeros((4, 3))
+        self.refused(r"positions: must have the shape \(n, 3\), and has \(4, 2\)", lambda: w.add_bodies(self.ball, n3[:, :2]))
+        self.refused(r"positions: must have the shape", lambda: w.add_bodies(self.ball, [1, 2, 3]))
+        self.refused(r"velocities: must have the shape \(4, 3\), and has \(3, 3\)",
+                     lambda: w.add_bodies(self.ball, n3, n3[:3]))  # fmt: skip
+        self.refused(r"masses: must have the shape \(4,\)", lambda: w.add_bodies(self.ball, n3, masses=[1, 2]))
+        self.refused(r"orientations: .*\(4, 4\)", lambda: w.add_bodies(self.ball, n3, orientations=n3))
+        self.refused(r"radii: must have", lambda: w.add_bodies(None, n3, radii=n3))
+        self.refused(r"position: must have the shape \(3,\)", lambda: w.add_body(self.ball, (1, 2)))
+        self.refused(r"shapes: must be a kds.Shape or 4", lambda: w.add_bodies([self.ball] * 3, n3))
+        self.refused(r"shapes: must be given, or else radii", lambda: w.add_bodies(None, n3))
+        self.refused(r"shapes: must be given, or else radii", lambda: w.add_bodies(self.ball, n3, radii=1))
+
+    def test_types(self):
+        w, n3 = self.world, np.zeros((4, 3))
+        self.refused(r"positions: must be real numbers, and has the dtype complex128", lambda: w.add_bodies(self.ball, n3 + 1j))
+        self.refused(r"position: must be real numbers", lambda: w.add_body(self.ball, ("a", "b", "c")))
+        self.refused(r"position: must be", lambda: w.add_body(self.ball, (0, 0, None)))
+        self.refused(r"mass: must be a number", lambda: w.add_body(self.ball, (0, 0, 0), mass="heavy"))
+        self.refused(r"shape: must be a kds.Shape, and is 1", lambda: w.add_body(1, (0, 0, 0)))
+        self.refused(r"fixed: must be bools", lambda: w.add_bodies(self.ball, n3, fixed=[0, 1, 0, 1]))
+        self.refused(r"category: must be whole numbers", lambda: w.add_bodies(self.ball, n3, categories=1.5))
+        self.refused(r"collides_with: must be masks", lambda: w.add_body(self.ball, (0, 0, 0), collides_with=2**32))
+        self.refused(r"then\[0\]: must be a kds.Motion", lambda: w.add_body(self.ball, (0, 0, 0), then=[3]))
+        self.refused(r"body: must be the id of a body", lambda: w.remove_body("a"))
+        self.refused(r"bodies: must be ids", lambda: w.positions([1.0]))
+        self.refused(r"snapshot: must be bytes", lambda: w.load("text"))
+        self.refused(r"function: must be callable", lambda: w.on(kds.EventKind.WALL, 3))
+        self.refused(r"99 is not a valid EventKind", lambda: w.on(99, print))
+
+    def test_values(self):
+        w = self.world
+        self.refused("radius", lambda: kds.sphere(-1))
+        self.refused("radius", lambda: kds.sphere(math.nan))
+        self.refused("half_extents", lambda: kds.box((1, 0, 1)))
+        self.refused("mass", lambda: w.add_body(self.ball, (0, 0, 0), mass=0))
+        self.refused("restitution", lambda: w.add_body(self.ball, (0, 0, 0), restitution=2))
+        self.refused("finite", lambda: w.add_body(self.ball, (0, 0, math.inf)))
+        self.refused("orientation", lambda: w.add_body(self.ball, (0, 0, 0), orientation=(1, 1, 0, 0)))
+        self.refused("acceleration: must be 0 in a world of degree 1", lambda: w.add_body(self.ball, (0, 0, 0), (0, 0, 0), (1, 0, 0)))
+        self.refused("angular_velocity: must be 0 in a world that is not turning",
+                     lambda: w.add_body(self.ball, (0, 0, 0), angular_velocity=(1, 0, 0)))  # fmt: skip
+        self.refused(r"triangles: must be from 0 to 2", lambda: kds.mesh(np.eye(3), [[0, 1, 3]]))
+        self.refused(r"triangles: must be whole numbers", lambda: kds.mesh(np.eye(3), [[0.0, 1, 2]]))
+        self.refused("no-such-file.obj: ", lambda: kds.read_mesh("no-such-file.obj"))
+
+    def test_options(self):
+        self.refused("degree: must be 1", lambda: kds.World(3))
+        self.refused("degree: must be a whole number", lambda: kds.World(1.5))
+        self.refused("turning: must be True or False", lambda: kds.World(1, 2))
+        self.refused("response: must be a string", lambda: kds.World(response=None))
+        self.refused("kdop", lambda: kds.World(kdop=7))
+        self.refused("zeno_contacts: must be a whole number from 0 to 4294967295", lambda: kds.World(zeno_contacts=2**32))
+        self.refused("response: must be 'none', 'elastic' or 'callback', not 'soft'", lambda: kds.World(response="soft"))
+        self.refused("broad_phase: must be one of 'auto'.*not 'bvh'", lambda: kds.World(broad_phase="bvh"))
+        self.refused(r"walls: must have the shape \(2, 3\)", lambda: kds.World(walls=((0, 0), (1, 1))))
+        self.refused("walls", lambda: kds.World(walls=((0, 0, 0), (1, -1, 1))))
+        self.refused("window", lambda: kds.World(window=-1))
+        self.refused("unexpected keyword", lambda: kds.World(gravity=1), TypeError)
+
+    def test_time(self):
+        w = self.world
+        w.advance_to(2)
+        for t in (1, math.nan, math.inf):
+            self.refused("advance_to: the time must be finite and not before now, which is 2", lambda: w.advance_to(t))
+        self.assertEqual(w.now, 2)
+
+    def test_bodies_that_are_not_there(self):
+        w = self.world
+        body = w.add_body(self.ball, (0, 0, 0))
+        kept = w.add_body(self.ball, (9, 0, 0))
+        w.remove_body(body)
+        self.assertNotIn(body, w)
+        self.assertNotIn(77, w)
+        for call in (
+            lambda: w.remove_body(body),
+            lambda: w.position(body),
+            lambda: w.update_motion(body, velocity=(1, 0, 0)),
+            lambda: w.update_motions([kept, body], velocities=(1, 0, 0)),
+            lambda: w.closest_approach(body, kept, until=1),
+            lambda: w.next_contact_of(body, until=1),
+        ):
+            self.refused(f"{body}.*removed", call)
+        self.refused("77", lambda: w.mass(77))
+        self.assertEqual(w.velocity(kept).tolist(), [0, 0, 0])
+        again = w.add_body(self.ball, (0, 0, 0))
+        self.assertNotEqual(again, body)
+        self.refused("removed", lambda: w.position(body))
+        w.remove_body(again)
+        w.remove_body(kept)
+
+    def test_motions_change_all_or_none(self):
+        w = kds.World()
+        ids = w.add_bodies(self.ball, np.arange(9).reshape(3, 3) * 5)
+        self.refused(r"motion of body 2: must be finite",
+                     lambda: w.update_motions(ids, velocities=[[1, 0, 0], [1, 0, 0], [math.nan, 0, 0]]))  # fmt: skip
+        self.assertFalse(w.velocities().any())
+        self.refused("orientation: bodies keep theirs", lambda: w.update_motion(ids[0], orientation=(1, 0, 0, 0)))
+
+    def test_scenes(self):
+        self.refused(r"scene.json: bodies\[0\].shape.sphere.radius: must be > 0", lambda: kds.Scene.parse(
+            '{"scene": 1, "end_time": 1, "response": "none", "bodies": [{"name": "a", "shape": {"sphere": {"radius": 0}},'
+            ' "motion": [{"start": 0, "position": [[0, 0, 0]]}]}]}'))  # fmt: skip
+        self.refused("no-such-file.json", lambda: kds.Scene.read("no-such-file.json"))
+        self.refused("bodies", lambda: kds.generate_scene("unused.json", bodies=0))
+
+    def test_structures(self):
+        self.refused(r"coefficients: must have the shape \(n, k\), k from 1 to 3, and has \(2, 4\)", lambda: kds.SortedList(np.zeros((2, 4))))
+        self.refused(r"coefficients\[1\]: must be finite", lambda: kds.SortedList([[0, 1], [math.nan, 2]]))
+        self.refused(r"paths: must have the shape \(n, k, 2\)", lambda: kds.Delaunay(np.zeros((5, 2))))
+        line = kds.SortedList([[0, 1], [1, 0]])
+        self.refused("no element with id 5", lambda: line.remove(5))
+        line.advance_to(2)
+        self.refused("not before now, which is 2", lambda: line.advance_to(1))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,255 @@
+"""Bodies in bulk and one by one, motions, callbacks, snapshots, threads."""
+
+import copy
+import gc
+import pickle
+import threading
+import time
+import unittest
+import weakref
+
+import kds
+import numpy as np
+
+
+def gas(n, seed, **options):
+    """Balls between walls, and what they were made of."""
+    random = np.random.default_rng(seed)
+    side = 4 * int(np.ceil(n ** (1 / 3)))
+    places = np.stack(np.meshgrid(*[np.arange(2.0, side, 4)] * 3), -1).reshape(-1, 3)[:n]
+    data = dict(
+        positions=places + random.uniform(-0.9, 0.9, (n, 3)),
+        velocities=random.normal(0, 3, (n, 3)),
+        radii=random.uniform(0.3, 1, n),
+        masses=random.uniform(0.5, 2, n),
+        restitutions=random.uniform(0.5, 1, n),
+    )
+    world = kds.World(walls=((0, 0, 0), (side,) * 3), **{"response": "elastic", **options})
+    return world, data
+
+
+class Bulk(unittest.TestCase):
+    def test_bulk_equals_one_by_one(self):
+        for seed in range(3):
+            with self.subTest(seed=seed):
+                together, data = gas(200, seed, degree=2)
+                together.add_bodies(None, accelerations=(0, 0, -1), collide_with=3, categories=2, **data)
+                single, _ = gas(200, seed, degree=2)
+                for i in range(200):
+                    single.add_body(
+                        kds.sphere(data["radii"][i]),
+                        data["positions"][i],
+                        data["velocities"][i],
+                        (0, 0, -1),
+                        mass=data["masses"][i],
+                        restitution=data["restitutions"][i],
+                        category=2,
+                        collides_with=3,
+                    )
+                first, second = together.advance_to(2), single.advance_to(2)
+                self.assertGreater(len(first), 100)
+                self.assertEqual(first.tobytes(), second.tobytes())
+                self.assertEqual(together.save(), single.save())
+
+    def test_one_shape_for_all_and_several(self):
+        places = np.array([[0, 0, 0], [5, 0, 0], [10, 0, 0]])
+        world = kds.World()
+        world.add_bodies(kds.box((1, 1, 1)), places)
+        world.add_bodies([kds.sphere(1), kds.capsule(1, 1), kds.hull(np.vstack([np.zeros(3), np.eye(3)]))], places + 20)
+        self.assertEqual([world.shape(i).kind for i in range(6)], ["box"] * 3 + ["sphere", "capsule", "hull"])
+        np.testing.assert_array_equal(world.positions(), np.vstack([places, places + 20]))
+
+    def test_none_is_added_if_one_is_wrong(self):
+        world = kds.World()
+        radii = np.ones(5)
+        radii[3] = -1
+        with self.assertRaisesRegex(ValueError, r"bodies\[3\].*radius"):
+            world.add_bodies(None, np.zeros((5, 3)), radii=radii)
+        self.assertEqual(len(world), 0)
+        self.assertEqual(len(world.advance_to(1)), 0)
+
+    def test_masks(self):
+        world = kds.World()
+        positions = [[0, 0, 0], [3, 0, 0], [3, 5, 0]]
+        world.add_bodies(kds.sphere(1), positions, [[1, 0, 0], [0, 0, 0], [0, -1, 0]],
+                         categories=[1, 2, 1], collide_with=np.array([1, 3, 3], np.uint32))  # fmt: skip
+        met = {(int(e.a), int(e.b)) for e in world.advance_to(10) if e.kind == kds.EventKind.CONTACT}
+        self.assertEqual(met, {(1, 2), (0, 2)})
+
+    def test_new_motions(self):
+        world = kds.World(degree=2, start_time=1)
+        ids = world.add_bodies(kds.sphere(1), np.arange(12).reshape(4, 3) * 10, (1, 2, 3), (0, 0, -1))
+        world.advance_to(3)
+        world.update_motions(ids[1:3], velocities=[[1, 0, 0], [2, 0, 0]])
+        world.update_motion(ids[3], acceleration=(0, 0, 0))
+        np.testing.assert_array_equal(world.velocities(), [[1, 2, 1], [1, 0, 0], [2, 0, 0], [1, 2, 1]])
+        np.testing.assert_array_equal(world.accelerations()[:, 2], [-1, -1, -1, 0])
+        np.testing.assert_array_equal(world.positions([0])[0], [2, 14, 24])
+        self.assertEqual(world.now, 3)
+
+    def test_scripts_and_late_entries(self):
+        world = kds.World()
+        a = world.add_body(kds.sphere(1), (0, 0, 0), then=[kds.Motion(2, (0, 0, 0), (1, 0, 0))])
+        b = world.add_body(kds.sphere(1), (4, 0, 0), start=1)
+        self.assertEqual(world.bodies.tolist(), [a])
+        events = world.advance_to(10)
+        self.assertEqual([(e.time, e.kind, e.a, e.b) for e in events], [(4, 0, a, b), (8, 1, a, b)])
+        self.assertEqual(world.bodies.tolist(), [a, b])
+
+    def test_turning(self):
+        world = kds.World(turning=True)
+        rod = world.add_body(kds.capsule(0.1, 1), (0, 0, 0), orientation=(1, 0, 0, 0), angular_velocity=(1, 0, 0))
+        ball = world.add_body(kds.sphere(0.1), (0, -1, 0))
+        (event,) = world.advance_to(2)[:1]
+        # The rod's end comes down to the ball's side: its axis is at the distance 0.2 from the ball's centre.
+        self.assertAlmostEqual(event.time, np.pi / 2 - np.arcsin(0.2), places=12)
+        self.assertEqual((event.a, event.b), (rod, ball))
+        half = np.sqrt(0.5)
+        world.update_motion(ball, position=(0, 5, 0), orientation=(half, half, 0, 0), angular_velocity=(0, 0, 2))
+        np.testing.assert_array_equal(world.angular_velocities([ball])[0], [0, 0, 2])
+        np.testing.assert_array_equal(world.orientations([ball])[0], [half, half, 0, 0])
+
+
+class Callbacks(unittest.TestCase):
+    def test_functions_see_what_is_gathered(self):
+        world, data = gas(100, 7)
+        world.add_bodies(None, **data)
+        seen = []
+        for kind in kds.EventKind:
+            world.on(kind, lambda event: seen.append(event.tobytes()))
+        events = world.advance_to(2)
+        self.assertGreater(len(events), 50)
+        self.assertEqual(b"".join(seen), events.tobytes())
+        plain, _ = gas(100, 7)
+        plain.add_bodies(None, **data)
+        self.assertEqual(plain.advance_to(2).tobytes(), events.tobytes())
+
+    def test_add_and_remove(self):
+        """Each contact replaces both bodies by one: the end is one body of all the mass, where the mass centre is."""
+        world, data = gas(60, 3, response="callback")
+        ids = world.add_bodies(None, **data)
+        masses = dict(zip(ids.tolist(), data["masses"]))
+
+        def merge(event):
+            a, b = int(event.a), int(event.b)
+            whole = masses[a] + masses[b]
+            place = (masses[a] * world.position(a) + masses[b] * world.position(b)) / whole
+            velocity = (masses[a] * world.velocity(a) + masses[b] * world.velocity(b)) / whole
+            world.remove_body(a)
+            world.remove_body(b)
+            self.assertNotIn(a, world)
+            masses[world.add_body(kds.sphere(0.3), place, velocity, mass=whole)] = whole
+
+        world.on(kds.EventKind.CONTACT, merge)
+        world.on(kds.EventKind.OVERLAP, merge)
+        world.advance_to(50)
+        self.assertLess(len(world), 30)
+        self.assertAlmostEqual(sum(world.mass(i) for i in world.bodies), data["masses"].sum(), places=9)
+        world.audit()
+
+    def test_exceptions_come_out_and_the_world_goes_on(self):
+        world = kds.World()
+        world.add_bodies(kds.sphere(1), [[0, 0, 0], [4, 0, 0]], [[1, 0, 0], [0, 0, 0]])
+
+        class Stop(Exception):
+            pass
+
+        def stop(event):
+            raise Stop(event.time)
+
+        world.on(kds.EventKind.CONTACT, stop)
+        with self.assertRaisesRegex(Stop, "2.0"):
+            world.advance_to(10)
+        self.assertEqual(world.now, 2)
+        self.assertEqual(world.take_events().kind.tolist(), [kds.EventKind.CONTACT])
+        self.assertEqual(world.advance_to(10).kind.tolist(), [kds.EventKind.SEPARATION])
+
+    def test_a_world_does_not_run_within_its_own_functions(self):
+        world = kds.World()
+        world.add_bodies(kds.sphere(1), [[0, 0, 0], [4, 0, 0]], [[1, 0, 0], [0, 0, 0]])
+        refused = []
+
+        def nested(event):
+            for call in (lambda: world.advance_to(5), world.step, world.save):
+                with self.assertRaises(RuntimeError) as caught:
+                    call()
+                refused.append(str(caught.exception))
+
+        world.on(kds.EventKind.CONTACT, nested)
+        world.advance_to(10)
+        self.assertEqual(len(refused), 3)
+
+
+    def test_a_world_that_its_functions_hold_is_collected(self):
+        world = kds.World()
+        world.on(kds.EventKind.CONTACT, lambda event: world)
+        watched = weakref.ref(world)
+        del world
+        gc.collect()
+        self.assertIsNone(watched())
+
+
+class State(unittest.TestCase):
+    def test_snapshots(self):
+        for turning in (False, True):
+            with self.subTest(turning=turning):
+                world, data = gas(100, 5, turning=turning)
+                world.add_bodies(None, **data)
+                world.advance_to(1)
+                saved = world.save()
+                later = world.advance_to(2)
+                self.assertGreater(len(later), 10)
+                world.load(saved)
+                self.assertEqual(world.now, 1)
+                self.assertEqual(world.advance_to(2).tobytes(), later.tobytes())
+                world.load(saved)
+                for other in (pickle.loads(pickle.dumps(world)), copy.deepcopy(world)):
+                    self.assertEqual(other.advance_to(2).tobytes(), later.tobytes())
+                for damaged in (saved[:-1], saved[:100] + bytes([saved[100] ^ 1]) + saved[101:], b""):
+                    with self.assertRaisesRegex(RuntimeError, "snapshot"):
+                        world.load(damaged)
+                self.assertEqual(world.advance_to(2).tobytes(), later.tobytes())
+
+    def test_steps(self):
+        world = kds.World()
+        world.add_bodies(kds.sphere(1), [[0, 0, 0], [4, 0, 0]], [[1, 0, 0], [0, 0, 0]])
+        self.assertTrue(world.next_time <= 2)
+        times = []
+        while world.step(100):
+            times += world.take_events().time.tolist()
+        self.assertEqual(times, [2, 6])
+        self.assertEqual(world.now, 100)
+
+
+class Threads(unittest.TestCase):
+    def test_other_threads_go_on(self):
+        """Another thread counts while the world runs, and is refused the world; with functions it waits for the GIL."""
+        world, data = gas(4000, 1, gather=False)
+        world.add_bodies(None, **data)
+        counted, refused, done = [0], [0], threading.Event()
+
+        def count():
+            while not done.is_set():
+                counted[0] += 1
+                try:
+                    world.now
+                except RuntimeError:
+                    refused[0] += 1
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        try:
+            # Until the other has been refused: a run that kept the GIL would keep it from ever seeing a world that runs.
+            begin, t = time.monotonic(), 0.0
+            while refused[0] == 0 and time.monotonic() - begin < 30:
+                t += 0.5
+                world.advance_to(t)
+        finally:
+            done.set()
+            thread.join()
+        self.assertGreater(refused[0], 0)
+        self.assertGreater(counted[0], refused[0] - 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
