@@ -260,6 +260,29 @@ TEST_CASE("balls roll down slopes, and lie on level ground", "[rest]") {
   }
 }
 
+TEST_CASE("what slides without friction slides on, however slowly", "[rest]") {
+  const auto run = [](double speed, double turn, double friction) {
+    Log log;
+    Turning world(options(), &log);
+    const BodyId floor = world.add_body(ground());
+    Body box = body(Box{Vector3d::Constant(0.5)}, {0, 0, 0.501}, Quaterniond::Identity(), {0, 0, turn});
+    box.motion[0].path.coefficients[1] = {speed, 0, 0};
+    box.friction = friction;
+    const BodyId id = world.add_body(box);
+    world.advance_to(2);
+    const double x = world.motion(id).path.position(2)[0];
+    CHECK(world.resting(floor, id) == still(world, id));
+    return std::pair(still(world, id), x);
+  };
+  CHECK(run(0, 0, 0).first);
+  const auto [stopped, x] = run(0.01, 0, 0);
+  CHECK_FALSE(stopped);
+  CHECK(std::abs(x - 0.02) < 1e-9);
+  CHECK_FALSE(run(0, 0.01, 0).first);
+  CHECK(run(0.01, 0, 0.5).first);
+  CHECK(run(0, 0.01, 0.5).first);
+}
+
 TEST_CASE("what is perfectly elastic, or has no weight, does not come to rest", "[rest]") {
   Log log;
   Turning world(options(), &log);

@@ -15,6 +15,10 @@ inline constexpr double largest_reach = 0x1p-6;
 /// on its corners are faster than that; more, and bodies that slide or roll on a level floor stop the sooner.
 inline constexpr double calm_energy = 4;
 
+/// Without friction nothing brakes what slides, or turns about the normal: two such bodies come to rest on each other
+/// only where that is slower than this part of the speed of a calm body (20 um/s on Earth); else they slide on.
+inline constexpr double smooth_slip = 0x1p-10;
+
 /// In shortest flights: for how long bodies are to be calm, so that they touch wherever they can, and how long it takes
 /// until those that were not in balance are looked at again.
 inline constexpr double calm_flights = 8;

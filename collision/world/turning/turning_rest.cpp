@@ -185,13 +185,31 @@ double TurningRest<Motion>::reach(const Scale& scale) const {
   return std::min(scale.acceleration * flight_ * flight_, largest_reach * scale.size);
 }
 
+/// Up to which speed of its fastest point a body is calm.
+template <class Motion>
+double TurningRest<Motion>::calm_speed(const Scale& scale) const {
+  return std::sqrt(calm_energy * scale.acceleration * reach(scale));
+}
+
 template <class Motion>
 bool TurningRest<Motion>::calm(BodySlot slot, double acceleration) const {
   const Motion& motion = bodies_.motion(slot);
   if (bodies_.fixed(slot)) return stands(motion);
   const Scale scale{acceleration, bodies_[slot].bounding_radius};
-  const double speed = surface_speed(motion, scale.size, clock_.now);
-  return speed * speed <= calm_energy * acceleration * reach(scale);
+  return surface_speed(motion, scale.size, clock_.now) <= calm_speed(scale);
+}
+
+/// Whether two bodies that touch without friction slide on each other, or turn about the normal: as wholes, for the
+/// corners of a body that rocks slide to and fro.
+template <class Motion>
+bool TurningRest<Motion>::slides(Key key, const Vector3d& normal) const {
+  const Motion& a = bodies_.motion(key.first);
+  const Motion& b = bodies_.motion(key.second);
+  const Scale scale = this->scale(key);
+  const Vector3d way = a.path.velocity(clock_.now) - b.path.velocity(clock_.now);
+  const double turn = dot(a.angular_velocity - b.angular_velocity, normal);
+  const double slip = norm(way - dot(way, normal) * normal) + std::abs(turn) * scale.size;
+  return slip > smooth_slip * calm_speed(scale);
 }
 
 template <class Motion>
@@ -237,7 +255,7 @@ bool TurningRest<Motion>::settle(BodySlot a, BodySlot b, const collision::Contac
     if (!bodies_.fixed(slot)) of_[slot].looked = t;
   };
   const Group group = find_group(bodies_.fixed(a) ? b : a);
-  if (!quiet(group)) {
+  if (group.slides || !quiet(group)) {
     look(a), look(b);
     return false;
   }
@@ -289,6 +307,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
           if (!bodies_.fixed(other)) visit(other);
           group.pairs.push_back(key);
         }
+        group.slides = group.slides || ((friction == 0 || smooth) && !rests && slides(key, place.normal));
         const Vector3d x = 0.5 * (on_a + on_b);
         group.footholds.push_back({.a = place_of(key.first),
                                    .b = place_of(key.second),

@@ -160,6 +160,7 @@ class TurningRest {
     std::vector<Key> pairs;
     std::vector<Load> loads;
     std::vector<Foothold> footholds;
+    bool slides = false;  ///< somewhere without friction
   };
 
   Member& member(BodySlot slot) {
@@ -174,7 +175,9 @@ class TurningRest {
   double acceleration(BodySlot slot) const;
   Scale scale(Key key) const;
   double reach(const Scale& scale) const;
+  double calm_speed(const Scale& scale) const;
   bool calm(BodySlot slot, double acceleration) const;
+  bool slides(Key key, const Eigen::Vector3d& normal) const;
   void note(Key key, const collision::Contact& contact);
   Group find_group(BodySlot first);
   bool quiet(const Group& group) const;
