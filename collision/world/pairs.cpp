@@ -44,7 +44,11 @@ void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
   const Slot slot = overlapping != none ? overlapping : add(a, b);
   Pair& pair = pairs_[slot];
   pair.listed = true;
-  const bool fresh = begin_ == Begin::entering || (begin_ == Begin::jumping && mode(a, b) == ContactMode::resolved);
+  const auto has_jumped = [this](BodySlot body) {
+    return std::find(jumped_.begin(), jumped_.end(), body) != jumped_.end();
+  };
+  const bool jumps = begin_ == Begin::jumping || (t == jumped_at_ && (has_jumped(a) || has_jumped(b)));
+  const bool fresh = begin_ == Begin::entering || (jumps && mode(a, b) == ContactMode::resolved);
   pair.fresh = pair.fresh || fresh;
   ++counters_.pairs_begun;
   mark_dirty(slot);

@@ -156,6 +156,7 @@ class Pairs final : public PairListener {
       double boxes = never;
     };
     std::vector<One> pairs;
+    std::vector<BodySlot> jumped;  ///< bodies that have jumped at this instant, ascending
 
     template <class Archive>
     void archive(Archive& archive);
@@ -225,6 +226,9 @@ class Pairs final : public PairListener {
   bool follows_boxes_ = false;                ///< whether it has to find by itself when boxes meet and part
   bool exact_ = false;
   Begin begin_ = Begin::moving;
+  /// Bodies that have jumped at jumped_at_: a pair that the broad phase finds later at that instant begins by the jump.
+  std::vector<BodySlot> jumped_;
+  double jumped_at_ = -never;
 };
 
 // Functions for a change of motion or a contact are in the header: each is a few instructions for a pair, in the
@@ -249,6 +253,9 @@ template <class Motion>
 inline void Pairs<Motion>::motion_changed(BodySlot id, bool jumped) {
   for (const Link& link : links(id)) mark_dirty(link.slot);
   if (!jumped) return;
+  if (jumped_at_ != clock_.now) jumped_.clear();
+  jumped_at_ = clock_.now;
+  jumped_.push_back(id);
   for (const Link& link : links(id)) {
     if (mode(id, link.other) == ContactMode::resolved) pairs_[link.slot].fresh = true;
   }

@@ -20,6 +20,11 @@ typename Pairs<Motion>::Image Pairs<Motion>::image() const {
   }
   std::sort(image.pairs.begin(), image.pairs.end(),
             [](const auto& x, const auto& y) { return std::pair(x.pair.a, x.pair.b) < std::pair(y.pair.a, y.pair.b); });
+  if (jumped_at_ == clock_.now) {
+    image.jumped = jumped_;
+    std::sort(image.jumped.begin(), image.jumped.end());
+    image.jumped.erase(std::unique(image.jumped.begin(), image.jumped.end()), image.jumped.end());
+  }
   return image;
 }
 
@@ -29,6 +34,8 @@ void Pairs<Motion>::become(const Image& image) {
   of_.assign(bodies_.slots(), {});
   unlisted_ = 0;
   begin_ = Begin::moving;
+  jumped_ = image.jumped;
+  jumped_at_ = jumped_.empty() ? -never : clock_.now;
   contacts_.resize(0), boxes_.resize(0);
   contacts_.resize(image.pairs.size());
   if (follows_boxes_) boxes_.resize(image.pairs.size());
@@ -52,6 +59,7 @@ void Pairs<Motion>::Image::archive(Archive& archive) {
     archive(p.a, p.b, p.listed, p.dirty, p.fresh, p.overlapping, p.boxes_overlap, p.estimated, p.passes_at, one.contact,
             one.boxes);
   });
+  archive(jumped);
 }
 
 template <class Motion>
