@@ -3,6 +3,7 @@
 
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh_script.hpp"
+#include "tests/collision/queries/sample_bodies.hpp"
 #include "tests/collision/sample_meshes.hpp"
 
 #include <catch2/catch.hpp>
@@ -17,35 +18,9 @@ namespace kds::collision::test_casts {
 namespace {
 
 using Eigen::Vector3d;
+using samples::body;
 using samples::Random;
-using Path = certificates::PointMotion<1>;
-
-BodyDescription<1> body(const Shape& shape, const Vector3d& at, const Vector3d& velocity = Vector3d::Zero(),
-                        const Eigen::Quaterniond& orientation = Eigen::Quaterniond::Identity()) {
-  BodyDescription<1> description;
-  description.shape = shape;
-  description.orientation = orientation;
-  description.motion = {Path{{at, velocity}}};
-  return description;
-}
-
-Shape random_shape(Random& random, const std::shared_ptr<const Mesh>& ring) {
-  switch (random.below(5)) {
-    case 0:
-      return Sphere{random.uniform(0.1, 0.6)};
-    case 1:
-      return Box{Vector3d(random.uniform(0.1, 0.6), random.uniform(0.1, 0.6), random.uniform(0.1, 0.6))};
-    case 2:
-      return Capsule{random.uniform(0.1, 0.4), random.uniform(0.1, 0.5)};
-    case 3:
-      return MeshShape{ring, random.uniform(0.3, 0.7)};
-    default: {
-      std::vector<Vector3d> points;
-      for (int i = 0; i < 8; ++i) points.push_back(random.vector(0.5));
-      return convex_hull(points);
-    }
-  }
-}
+using samples::random_shape;
 
 /// Contacts of one body in a world where all pass through each other: the first of each other body, by time.
 struct FirstMeetings final : WorldListener<1> {
