@@ -7,7 +7,7 @@
 #include "collision/response/principal_inertia.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +100,7 @@ void require_steady_clock(const certificates::RigidMotion<Degree>& motion, doubl
 }  // namespace
 
 template <class Motion>
-void BasicWorld<Motion>::reserve(std::size_t bodies) {
+void Engine<Motion>::reserve(std::size_t bodies) {
   require_editable("World::reserve");
   if (bodies > no_body) {
     throw std::length_error("World::reserve: " + std::to_string(bodies) + " bodies are more than there are slots");
@@ -110,7 +110,7 @@ void BasicWorld<Motion>::reserve(std::size_t bodies) {
 }
 
 template <class Motion>
-BodyId BasicWorld<Motion>::add_body(const Description& description) {
+BodyId Engine<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
   if (collision::bends(description.shape) && options_.response != Response::none && !description.sensor &&
@@ -150,8 +150,8 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
 
 /// A null shape stands for a ball that is not turned.
 template <class Motion>
-inline BodySlot BasicWorld<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape,
-                                        [[maybe_unused]] const std::optional<PrincipalInertia>& principal) {
+inline BodySlot Engine<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape,
+                                    [[maybe_unused]] const std::optional<PrincipalInertia>& principal) {
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && path_of(*std::next(piece)).start <= clock_.now) ++piece;
@@ -175,7 +175,7 @@ inline BodySlot BasicWorld<Motion>::put(const Description& description, std::sha
 
 /// From the first mesh on all volumes include contact gaps: those of bodies that are there already are enlarged now.
 template <class Motion>
-void BasicWorld<Motion>::make_room_for_meshes() {
+void Engine<Motion>::make_room_for_meshes() {
   if (!volumes_.make_room_for_meshes()) return;
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (bodies_[slot].entered) update_volume(slot, volumes_.box(slot));
@@ -184,14 +184,14 @@ void BasicWorld<Motion>::make_room_for_meshes() {
 
 /// Reports a volume to the broad phase that has changed although nothing has moved.
 template <class Motion>
-void BasicWorld<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degree>& box) {
+void Engine<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degree>& box) {
   if (bodies_.collides(slot)) broad_phase_->update(slot, box, clock_.now, pairs_);
   pairs_.box_changed(slot);
   volumes_.schedule(slot);
 }
 
 template <class Motion>
-void BasicWorld<Motion>::enter_new_bodies() {
+void Engine<Motion>::enter_new_bodies() {
   const std::vector<BodySlot> entering = bodies_.take_waiting();
   // Events of the others that are due now come first, so that they are not attributed to the new bodies.
   while (broad_phase_->advance(clock_.now, pairs_)) {
@@ -236,7 +236,7 @@ void BasicWorld<Motion>::enter_new_bodies() {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::update_motion(BodyId id, const Motion& motion) {
+void Engine<Motion>::update_motion(BodyId id, const Motion& motion) {
   require_editable("World::update_motion");
   const BodySlot slot = bodies_.slot_of(id);
   if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
@@ -255,7 +255,7 @@ void BasicWorld<Motion>::update_motion(BodyId id, const Motion& motion) {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::give(BodySlot slot, const Motion& motion) {
+void Engine<Motion>::give(BodySlot slot, const Motion& motion) {
   scripts_.clear(slot);
   ++counters_.motion_updates;
   bodies_.accelerate_freely(slot, motion);
@@ -272,7 +272,7 @@ void BasicWorld<Motion>::give(BodySlot slot, const Motion& motion) {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
+void Engine<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
   require_editable("World::update_vertices");
   const BodySlot slot = bodies_.slot_of(id);
   if (!bends(slot)) {
@@ -299,7 +299,7 @@ void BasicWorld<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyf
 }
 
 template <class Motion>
-void BasicWorld<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
+void Engine<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   bodies_.move(slot, motion);
   pairs_.prefetch(slot);  // in parallel with the work of the broad phase
@@ -312,14 +312,14 @@ void BasicWorld<Motion>::set_motion(BodySlot slot, const Motion& motion, bool ju
 }
 
 template <class Motion>
-void BasicWorld<Motion>::take_up_bounce() {
+void Engine<Motion>::take_up_bounce() {
   if (bounced_ == no_body) return;
   const BodySlot slot = std::exchange(bounced_, no_body);
   set_motion(slot, Motion(bodies_.motion(slot)), false);
 }
 
 template <class Motion>
-void BasicWorld<Motion>::remove_body(BodyId id) {
+void Engine<Motion>::remove_body(BodyId id) {
   require_editable("World::remove_body", bodies_.contains(id) ? body_slot(id) : no_body);
   const BodySlot slot = bodies_.slot_of(id);
   count_edit();
@@ -327,7 +327,7 @@ void BasicWorld<Motion>::remove_body(BodyId id) {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::take_out(BodySlot slot) {
+void Engine<Motion>::take_out(BodySlot slot) {
   if (bounced_ == slot) bounced_ = no_body;
   resting_.forget(slot);
   if (self_contacts_.touching(slot)) {  // It ceases to, unless that it does has not been reported yet.
@@ -347,7 +347,7 @@ void BasicWorld<Motion>::take_out(BodySlot slot) {
   bodies_.remove(slot);
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -1,6 +1,6 @@
 // The simple queries of a world.
 #include "collision/motions.hpp"
-#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -9,7 +9,7 @@
 namespace kds::collision {
 
 template <class Motion>
-bool BasicWorld<Motion>::touching(BodyId a, BodyId b) const {
+bool Engine<Motion>::touching(BodyId a, BodyId b) const {
   const BodySlot of_a = bodies_.slot_of(a);
   const BodySlot of_b = bodies_.slot_of(b);
   if (a == b) return self_contacts_.touching(of_a);
@@ -17,13 +17,13 @@ bool BasicWorld<Motion>::touching(BodyId a, BodyId b) const {
 }
 
 template <class Motion>
-bool BasicWorld<Motion>::resting(BodyId a, BodyId b) const {
+bool Engine<Motion>::resting(BodyId a, BodyId b) const {
   const auto [first, second] = std::minmax({bodies_.slot_of(a), bodies_.slot_of(b)});
   return resting_.holds(first, second);
 }
 
 template <class Motion>
-bool BasicWorld<Motion>::resting_at_wall(BodyId a, int wall) const {
+bool Engine<Motion>::resting_at_wall(BodyId a, int wall) const {
   const BodySlot slot = bodies_.slot_of(a);
   if (wall < 0 || wall > 5) {
     throw std::out_of_range("World::resting_at_wall: there is no wall " + std::to_string(wall) + ", they are 0 to 5");
@@ -32,7 +32,7 @@ bool BasicWorld<Motion>::resting_at_wall(BodyId a, int wall) const {
 }
 
 template <class Motion>
-typename BasicWorld<Motion>::Motion BasicWorld<Motion>::free_motion(BodyId id) const {
+typename Engine<Motion>::Motion Engine<Motion>::free_motion(BodyId id) const {
   const BodySlot slot = bodies_.slot_of(id);
   if (!resting_.carries(slot)) return bodies_.motion(slot);
   Motion motion = bodies_.motion(slot).restarted(now());
@@ -48,13 +48,13 @@ typename BasicWorld<Motion>::Motion BasicWorld<Motion>::free_motion(BodyId id) c
 }
 
 template <class Motion>
-WorldCounters BasicWorld<Motion>::counters() const {
+WorldCounters Engine<Motion>::counters() const {
   WorldCounters counters = counters_;
   counters.broad_phase = counters_.broad_phase + broad_phase_->counters();  // and before it was loaded
   return counters;
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

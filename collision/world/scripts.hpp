@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/point_motion.hpp"
+#include "collision/body_id.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/motions.hpp"
 #include "collision/world/image_tools.hpp"

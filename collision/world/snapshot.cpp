@@ -1,8 +1,8 @@
 // Worlds saved, and loaded again: the sum of their parts.
 #include "kds/framework/snapshot.hpp"
 #include "collision/motions.hpp"
-#include "collision/world.hpp"
 #include "collision/world/bodies_image.hpp"
+#include "collision/world/engine.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/reports_image.hpp"
 
@@ -50,7 +50,7 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact, 
 /// State that depends on the past is: contact times of known pairs, the places of resting contacts, pairs that are let
 /// pass, the counts of the Zeno policy, reports not yet made.
 template <class Motion>
-struct BasicWorld<Motion>::Image {
+struct Engine<Motion>::Image {
   double now = 0, callers_now = 0, horizon = 0;
   bool room_for_meshes = false;
   WorldCounters counters;
@@ -95,7 +95,7 @@ struct BasicWorld<Motion>::Image {
 };
 
 template <class Motion>
-typename BasicWorld<Motion>::Image BasicWorld<Motion>::image() const {
+typename Engine<Motion>::Image Engine<Motion>::image() const {
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (!volumes_.from_caller(slot)) continue;
     throw std::invalid_argument("World: body " + std::to_string(bodies_.id_of(slot)) +
@@ -117,7 +117,7 @@ typename BasicWorld<Motion>::Image BasicWorld<Motion>::image() const {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::become(const Image& image) {
+void Engine<Motion>::become(const Image& image) {
   clock_ = {image.now, image.horizon};
   callers_now_ = image.callers_now;
   idle_until_ = next_time_ = -never;
@@ -139,7 +139,7 @@ void BasicWorld<Motion>::become(const Image& image) {
 
 template <class Motion>
 template <class Archive>
-void BasicWorld<Motion>::archive(Archive& archive) {
+void Engine<Motion>::archive(Archive& archive) {
   // A world that is broken by an exception may be loaded: then it is valid again.
   if (!Archive::loading || stepping_ || volumes_.calling()) require_idle("World::archive");
   archive.tag((turns<Motion> ? "World of bodies that turn, of degree " : "World of degree ") +
@@ -157,10 +157,10 @@ void BasicWorld<Motion>::archive(Archive& archive) {
   }
 }
 
-#define KDS_INSTANTIATE(motion)                                    \
-  KDS_TEMPLATE_PART class BasicWorld<motion>;                      \
-  template void BasicWorld<motion>::archive(kds::detail::Writer&); \
-  template void BasicWorld<motion>::archive(kds::detail::Reader&);
+#define KDS_INSTANTIATE(motion)                                \
+  KDS_TEMPLATE_PART class Engine<motion>;                      \
+  template void Engine<motion>::archive(kds::detail::Writer&); \
+  template void Engine<motion>::archive(kds::detail::Reader&);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
