@@ -8,6 +8,14 @@
 #include <utility>
 
 namespace kds::collision {
+namespace {
+
+template <class Motion>
+const detail::Body<Motion>& body_of(const Engine<Motion>& engine, BodyId id) {
+  return engine.bodies()[engine.bodies().slot_of(id)];
+}
+
+}  // namespace
 
 template <class Motion>
 BasicWorld<Motion>::BasicWorld(const WorldOptions& options, Listener* listener)
@@ -33,12 +41,52 @@ void BasicWorld<Motion>::remove_body(BodyId id) {
 
 template <class Motion>
 void BasicWorld<Motion>::update_motion(BodyId id, const Motion& motion) {
-  engine_->update_motion(id, motion);
+  engine_->update_motion(id, {&motion, 1});
+}
+
+template <class Motion>
+void BasicWorld<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
+  engine_->update_motion(id, pieces);
+}
+
+template <class Motion>
+void BasicWorld<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
+  engine_->append_motion(id, pieces);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
   engine_->update_vertices(id, std::move(keyframes));
+}
+
+template <class Motion>
+void BasicWorld<Motion>::set_mass(BodyId id, double mass) {
+  engine_->set_mass(id, mass);
+}
+
+template <class Motion>
+void BasicWorld<Motion>::set_restitution(BodyId id, double restitution) {
+  engine_->set_restitution(id, restitution);
+}
+
+template <class Motion>
+void BasicWorld<Motion>::set_filter(BodyId id, std::uint32_t category, std::uint32_t collides_with) {
+  engine_->set_filter(id, category, collides_with);
+}
+
+template <class Motion>
+void BasicWorld<Motion>::set_user_data(BodyId id, std::uint64_t user_data) {
+  engine_->set_user_data(id, user_data);
+}
+
+template <class Motion>
+TimerId BasicWorld<Motion>::set_timer(double t) {
+  return engine_->set_timer(t);
+}
+
+template <class Motion>
+bool BasicWorld<Motion>::cancel_timer(TimerId timer) {
+  return engine_->cancel_timer(timer);
 }
 
 template <class Motion>
@@ -115,20 +163,38 @@ PlacedShape BasicWorld<Motion>::shape(BodyId id) const {
 
 template <class Motion>
 double BasicWorld<Motion>::mass(BodyId id) const {
-  const auto& bodies = engine_->bodies();
-  return bodies[bodies.slot_of(id)].mass;
+  return body_of(*engine_, id).mass;
 }
 
 template <class Motion>
 bool BasicWorld<Motion>::sensor(BodyId id) const {
-  const auto& bodies = engine_->bodies();
-  return bodies[bodies.slot_of(id)].sensor;
+  return body_of(*engine_, id).sensor;
 }
 
 template <class Motion>
 bool BasicWorld<Motion>::fixed(BodyId id) const {
   const auto& bodies = engine_->bodies();
   return bodies.fixed(bodies.slot_of(id));
+}
+
+template <class Motion>
+double BasicWorld<Motion>::restitution(BodyId id) const {
+  return body_of(*engine_, id).restitution;
+}
+
+template <class Motion>
+std::uint32_t BasicWorld<Motion>::category(BodyId id) const {
+  return body_of(*engine_, id).category;
+}
+
+template <class Motion>
+std::uint32_t BasicWorld<Motion>::collides_with(BodyId id) const {
+  return body_of(*engine_, id).collides_with;
+}
+
+template <class Motion>
+std::uint64_t BasicWorld<Motion>::user_data(BodyId id) const {
+  return body_of(*engine_, id).user_data;
 }
 
 template <class Motion>
@@ -144,6 +210,11 @@ bool BasicWorld<Motion>::resting(BodyId a, BodyId b) const {
 template <class Motion>
 bool BasicWorld<Motion>::resting_at_wall(BodyId a, int wall) const {
   return engine_->resting_at_wall(a, wall);
+}
+
+template <class Motion>
+void BasicWorld<Motion>::visit_partners(BodyId id, BodyVisitor visit) const {
+  engine_->visit_partners(id, visit);
 }
 
 template <class Motion>

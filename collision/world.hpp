@@ -15,7 +15,9 @@
 #include "collision/world_options.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -28,9 +30,9 @@ class Engine;
 /// (body_motion.hpp): most worlds are a World<Degree>, below, whose bodies keep their orientation.
 ///
 /// [Coming06] Figure 2. Events are, in this order where times are equal: pieces of motion that start (of scripts, then
-/// of bodies that precess), changes of the broad phase, bounding volumes that have to be renewed, walls, resting
-/// contacts that end, contacts and separations by (a, b), those of meshes that bend with themselves. The broad phase
-/// makes no difference: WorldListener states the order of reports.
+/// of bodies that precess), changes of the broad phase, bounding volumes that have to be renewed, timers, walls,
+/// resting contacts that end, contacts and separations by (a, b), those of meshes that bend with themselves. The broad
+/// phase makes no difference: WorldListener states the order of reports.
 ///
 /// It is made of parts, which docs/design.md lists, behind one pointer (world/engine.hpp): programs that use a world
 /// compile none of them.
@@ -84,6 +86,14 @@ class BasicWorld final {
   /// not finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
 
+  /// The same for a motion in pieces, each starting later than the one before: the last that has started by now() is
+  /// taken up now, as above, and those after it are to come. Throws, naming the piece, as add_body() does.
+  void update_motion(BodyId id, std::span<const Motion> pieces);
+
+  /// Adds pieces of motion after those that are still to come: so a stream of pieces needs no more than the next ones.
+  /// Throws std::invalid_argument, naming the piece, unless each starts later than now() and than the one before.
+  void append_motion(BodyId id, std::span<const Motion> pieces);
+
   /// Replaces what is still to come of the vertices of a mesh that bends: from where they are at now() they move on
   /// straight lines to the first of these keyframes, from there to the next, and stand still after the last; with none
   /// they stand still from now() on. So a simulator of cloth gives the end of each of its steps:
@@ -94,6 +104,24 @@ class BasicWorld final {
   /// std::invalid_argument for a body that does not bend, and, naming the keyframe, unless each is later than now() and
   /// than the one before, and has a position for each vertex, finite and in range.
   void update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes);
+
+  /// Gives a body another mass; the inertia of one that turns changes by the same factor, and its motion does not
+  /// change. Throws std::invalid_argument for a body that is fixed, and for a mass that add_body() would not take.
+  void set_mass(BodyId id, double mass);
+  /// Counts from the next contact on. Throws std::invalid_argument unless in [0, 1].
+  void set_restitution(BodyId id, double restitution);
+  /// Gives a body another category and mask (BodyDescription). Contacts with bodies that it may not collide with any
+  /// more end: those of bodies that pass through each other separate, with reports, and what rests on it, or below it,
+  /// wakes. Where it is in contact with a body with which it could not collide before, that is reported as an overlap.
+  void set_filter(BodyId id, std::uint32_t category, std::uint32_t collides_with);
+  void set_user_data(BodyId id, std::uint64_t user_data);
+
+  /// At a time in s the listener's timer() is called: after pieces of motion that start then, before contacts. Timers
+  /// of one time ring in the order in which they were set. Throws std::invalid_argument for a time that is before
+  /// now() or not finite.
+  TimerId set_timer(double t);
+  /// False if there is no such timer any more, or never was.
+  bool cancel_timer(TimerId timer);
 
   /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,
   /// std::logic_error if called from within a callback, and std::runtime_error as WorldOptions::most_edits says.
@@ -141,6 +169,10 @@ class BasicWorld final {
   double mass(BodyId id) const;
   bool sensor(BodyId id) const;
   bool fixed(BodyId id) const;
+  double restitution(BodyId id) const;
+  std::uint32_t category(BodyId id) const;
+  std::uint32_t collides_with(BodyId id) const;
+  std::uint64_t user_data(BodyId id) const;
 
   /// Whether a and b are in contact; only for bodies that pass through each other (mode `none`, sensors), otherwise
   /// false. Of one body: whether it touches itself, if it reports that (BodyDescription::self_contacts).
@@ -150,6 +182,10 @@ class BasicWorld final {
   /// modes; std::out_of_range for any other number).
   bool resting(BodyId a, BodyId b) const;
   bool resting_at_wall(BodyId a, int wall) const;
+
+  /// Calls visit(id), in order of the slots, for each body that a body touches or rests on, as touching() and
+  /// resting() say. `visit` is called when the answer is complete, and may change the world.
+  void visit_partners(BodyId id, BodyVisitor visit) const;
 
   WorldCounters counters() const;
   /// The broad phase in use: a name of broad_phase_kind.hpp; "auto" is "grid", or "few-boxes" with few bodies.

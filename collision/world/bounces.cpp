@@ -45,7 +45,7 @@ void Engine<Motion>::process_wall() requires(!turns<Motion>) {
   double pressed = 0;
   if constexpr (Motion::degree >= 2) pressed = 2 * motion.coefficients[2][axis] * out;
   const double rebound = std::min(body.restitution, options_.walls->restitution) * approach;
-  WallEvent event{bodies_.id_of(id), wall, {.time = clock_.now}};
+  WallEvent event{bodies_.id_of(id), wall, {.time = clock_.now}, body.user_data};
   event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
   event.contact.normal[axis] = out;
   event.contact.point = motion.coefficients[0];

@@ -1,4 +1,4 @@
-// How bodies are added to the world, changed and removed.
+// How bodies are added to the world and removed.
 #include "collision/motions.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
@@ -7,6 +7,7 @@
 #include "collision/response/principal_inertia.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/vectors.hpp"
+#include "collision/world/checked_pieces.hpp"
 #include "collision/world/engine.hpp"
 
 #include <algorithm>
@@ -29,13 +30,7 @@ template <class Motion>
 void validate(const BasicBodyDescription<Motion>& description) {
   const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
   if (description.motion.empty()) fail("motion: has no piece");
-  for (std::size_t i = 0; i < description.motion.size(); ++i) {
-    const auto& piece = description.motion[i];
-    if (!in_range(piece)) refuse_motion(piece, "motion[" + std::to_string(i) + "]");
-    if (i > 0 && !(path_of(piece).start > path_of(description.motion[i - 1]).start)) {
-      fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
-    }
-  }
+  require_pieces(std::span<const Motion>(description.motion), "motion");
   if (!description.fixed) require_size(description.mass, "mass");
   if (!can_move_by<Motion>(description.shape)) {
     const std::string name = std::string("shape: a ") + kind_name(description.shape);
@@ -85,16 +80,6 @@ Eigen::Matrix3d tensor_of(const BasicBodyDescription<Motion>& description) {
     throw std::invalid_argument(text.str());
   }
   return solid.inertia;
-}
-
-/// A body that precesses moves in pieces, and the clock has to tell these from each other.
-template <int Degree>
-void require_steady_clock(const certificates::RigidMotion<Degree>& motion, double now, const std::string& where) {
-  const double t = std::max(std::abs(now), std::abs(motion.start()));
-  if (norm(motion.angular_velocity) * (next_up(t) - t) <= longest_turn) return;
-  throw std::invalid_argument(where +
-                              ".angular_velocity: the body precesses, and turns by more than a radian between two "
-                              "doubles of the clock");
 }
 
 }  // namespace
@@ -236,82 +221,6 @@ void Engine<Motion>::enter_new_bodies() {
 }
 
 template <class Motion>
-void Engine<Motion>::update_motion(BodyId id, const Motion& motion) {
-  require_editable("World::update_motion");
-  const BodySlot slot = bodies_.slot_of(id);
-  if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
-  if (path_of(motion).start > clock_.now) {
-    throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(path_of(motion).start) +
-                                ", after the clock at " + std::to_string(clock_.now));
-  }
-  if constexpr (turns<Motion>) {
-    if (tumbling_.has(slot)) require_steady_clock(motion, clock_.now, "World::update_motion: motion");
-  }
-  count_edit();
-  change_or_fail([&] {
-    if (tumbling_.has(slot)) return give(slot, tumbling_.take_up(slot, motion, clock_.now));
-    give(slot, motion);
-  });
-}
-
-template <class Motion>
-void Engine<Motion>::give(BodySlot slot, const Motion& motion) {
-  scripts_.clear(slot);
-  ++counters_.motion_updates;
-  bodies_.accelerate_freely(slot, motion);
-  if (!bodies_[slot].entered) {
-    bodies_.move(slot, motion);
-    if (!bodies_.waits(slot)) bodies_.wait(slot);
-    return;
-  }
-  const bool jumped = bodies_.is_jump(slot, motion, clock_.now);
-  if (jumped) resting_.drop_all(slot);
-  resting_.leave(slot);
-  set_motion(slot, motion, jumped);
-  resting_.disturb(slot);
-}
-
-template <class Motion>
-void Engine<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
-  require_editable("World::update_vertices");
-  const BodySlot slot = bodies_.slot_of(id);
-  if (!bends(slot)) {
-    throw std::invalid_argument("World::update_vertices: body " + std::to_string(id) + " is a " +
-                                kind_name(bodies_.shape(slot).shape) + ", which does not bend");
-  }
-  const PlacedShape& before = *bodies_[slot].shape;
-  const MeshScript& script = *std::get<BendingMesh>(before.shape).script;
-  PlacedShape after;
-  try {
-    const BendingMesh bent{std::make_shared<const MeshScript>(script.continued(clock_.now, std::move(keyframes)))};
-    after = place_turned(bent, before.rotation);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(std::string("World::update_vertices: ") + error.what());
-  }
-  count_edit();
-  change_or_fail([&] {
-    ++counters_.motion_updates;
-    bodies_.set_shape(slot, std::move(after));
-    volumes_.shape_changed(slot);
-    if (bodies_[slot].entered) set_motion(slot, bodies_.motion(slot), false);
-    self_contacts_.changed(slot);
-  });
-}
-
-template <class Motion>
-void Engine<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
-  const Stopwatch watch(profile(), Work::update);
-  bodies_.move(slot, motion);
-  pairs_.prefetch(slot);  // in parallel with the work of the broad phase
-  if (jumped) pairs_.set_begin(Begin::jumping);
-  if (bodies_.collides(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
-  pairs_.set_begin(Begin::moving);
-  pairs_.motion_changed(slot, jumped);
-  walls_.schedule(slot);
-  volumes_.schedule(slot);
-}
-
-template <class Motion>
 void Engine<Motion>::take_up_bounce() {
   if (bounced_ == no_body) return;
   const BodySlot slot = std::exchange(bounced_, no_body);
@@ -343,7 +252,7 @@ void Engine<Motion>::take_out(BodySlot slot) {
   if (bodies_[slot].entered && bodies_.collides(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
   volumes_.remove(slot);
   pairs_.remove(slot);
-  if (!reports_.empty()) reports_.forget(bodies_.id_of(slot));
+  if (!reports_.empty()) reports_.forget(bodies_.id_of(slot), bodies_[slot].user_data);
   bodies_.remove(slot);
 }
 

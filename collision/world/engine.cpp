@@ -155,6 +155,7 @@ inline typename Engine<Motion>::Due Engine<Motion>::next_due() const {
   consider(tumbling_.next_time(), Task::turn_on);
   consider(pairs_.next_box_time(), Task::meet_boxes);
   consider(volumes_.next_time(), Task::renew_volume);
+  consider(timers_.next_time(), Task::ring);
   consider(walls_.next_time(), Task::meet_wall);
   consider(resting_.next_time(), Task::end_resting);
   consider(pairs_.next_time(), Task::meet_or_separate);
@@ -192,6 +193,9 @@ bool Engine<Motion>::process(Task task) {
       update_volume(slot, volumes_.renew(slot));
       return volumes_.from_caller(slot);
     }
+    case Task::ring:
+      ring();
+      return true;
     case Task::meet_wall:
       process_wall();
       return true;
@@ -335,6 +339,9 @@ void Engine<Motion>::start_pieces() {
     } else {
       bodies_.wait(slot);
     }
+    if (!options_.report_pieces) continue;
+    const BodyId id = bodies_.id_of(slot);
+    reports_.add(Reports::Kind::piece, id, id, {.time = clock_.now});
   }
 }
 
@@ -346,9 +353,19 @@ void Engine<Motion>::turn_on() {
 }
 
 template <class Motion>
+void Engine<Motion>::ring() {
+  const TimerId timer = timers_.take_next();
+  tell([&](Listener& listener) { listener.timer(world_, timer); });
+}
+
+template <class Motion>
 void Engine<Motion>::report_next() {
   const Reports::Report event = reports_.take_first();
-  PairEvent pair{event.a, event.b, event.contact};
+  const auto user_data = [this](BodyId id, std::uint64_t of_removed) {
+    return bodies_.contains(id) ? bodies_[body_slot(id)].user_data : of_removed;
+  };
+  const PairEvent pair{event.a, event.b, event.contact, user_data(event.a, event.user_data_a),
+                       user_data(event.b, event.user_data_b)};
   switch (event.kind) {
     case Reports::Kind::overlap:
       ++counters_.overlaps;
@@ -360,11 +377,13 @@ void Engine<Motion>::report_next() {
       return tell([&](Listener& listener) { listener.rebound_suppressed(world_, pair); });
     case Reports::Kind::wakes:
     case Reports::Kind::rests:
-      return report_resting(event);
+      return report_resting(event, pair);
     case Reports::Kind::passes:
       return tell([&](Listener& listener) { listener.passes(world_, pair); });
     case Reports::Kind::moved:
       return tell([&](Listener& listener) { listener.moved(world_, event.a); });
+    case Reports::Kind::piece:
+      return tell([&](Listener& listener) { listener.piece(world_, event.a); });
     case Reports::Kind::pair_began:
       return tell([&](Listener& listener) { listener.pair_began(world_, event.a, event.b, event.contact.time); });
     case Reports::Kind::pair_ended:
@@ -373,15 +392,14 @@ void Engine<Motion>::report_next() {
 }
 
 template <class Motion>
-void Engine<Motion>::report_resting(const Reports::Report& event) {
+void Engine<Motion>::report_resting(const Reports::Report& event, const PairEvent& pair) {
   const bool begins = event.kind == Reports::Kind::rests;
   if (event.wall >= 0) {
-    const WallEvent wall{event.a, event.wall, event.contact};
+    const WallEvent wall{event.a, event.wall, event.contact, pair.user_data_a};
     return tell([&](Listener& listener) {
       begins ? listener.rests_at_wall(world_, wall) : listener.wakes_at_wall(world_, wall);
     });
   }
-  const PairEvent pair{event.a, event.b, event.contact};
   tell([&](Listener& listener) { begins ? listener.rests(world_, pair) : listener.wakes(world_, pair); });
 }
 

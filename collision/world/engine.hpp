@@ -17,6 +17,7 @@
 #include "collision/world/resting_contacts.hpp"
 #include "collision/world/scripts.hpp"
 #include "collision/world/self_contacts.hpp"
+#include "collision/world/timers.hpp"
 #include "collision/world/turning/tumbling.hpp"
 #include "collision/world/volumes.hpp"
 #include "collision/world/wall_times.hpp"
@@ -29,6 +30,8 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -51,8 +54,15 @@ class Engine final : private RestingListener<BodyMotionType> {
   BodyId add_body(const Description& description);
   void reserve(std::size_t bodies);
   void remove_body(BodyId id);
-  void update_motion(BodyId id, const Motion& motion);
+  void update_motion(BodyId id, std::span<const Motion> pieces);
+  void append_motion(BodyId id, std::span<const Motion> pieces);
   void update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes);
+  void set_mass(BodyId id, double mass);
+  void set_restitution(BodyId id, double restitution);
+  void set_filter(BodyId id, std::uint32_t category, std::uint32_t collides_with);
+  void set_user_data(BodyId id, std::uint64_t user_data);
+  TimerId set_timer(double t);
+  bool cancel_timer(TimerId timer);
 
   void advance_to(double t);
   bool step(double limit);
@@ -73,6 +83,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   std::string_view broad_phase() const { return broad_phase_->name(); }
   const Profile& work_profile() const { return profile_; }
 
+  void visit_partners(BodyId id, BodyVisitor visit) const;
   void visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max, BodyVisitor visit) const;
   void visit_swept(const KineticBox<Motion::degree>& box, double until, BodyVisitor visit) const;
 
@@ -93,6 +104,7 @@ class Engine final : private RestingListener<BodyMotionType> {
     turn_on,           ///< tumbling_
     meet_boxes,        ///< pairs_
     renew_volume,      ///< volumes_
+    ring,              ///< timers_
     meet_wall,         ///< walls_
     end_resting,       ///< resting_
     meet_or_separate,  ///< pairs_
@@ -117,8 +129,9 @@ class Engine final : private RestingListener<BodyMotionType> {
   void go_back(double t);
   void start_pieces();
   void turn_on();
+  void ring();
   void report_next();
-  void report_resting(const Reports::Report& event);
+  void report_resting(const Reports::Report& event, const PairEvent& pair);
   void count_edit();
 
   // guards.cpp: what may be called when, and the state after an exception
@@ -160,20 +173,26 @@ class Engine final : private RestingListener<BodyMotionType> {
     require_whole("World::step");  // The listener may have caught the exception of a change that it made.
   }
 
-  // edits.cpp: bodies that are added, moved and removed
+  // edits.cpp: bodies that are added and removed
   BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape,
                const std::optional<PrincipalInertia>& principal);
   void make_room_for_meshes();
   void enter_new_bodies();
   void take_out(BodySlot slot);
+  void update_volume(BodySlot slot, const KineticBox<Motion::degree>& box);
+
+  // motion_edits.cpp: bodies that are moved
+  void require_clock_for(BodySlot slot, std::span<const Motion> pieces, const std::string& name) const;
   void give(BodySlot slot, const Motion& motion);
   void set_motion(BodySlot slot, const Motion& motion, bool jumped);
-  void update_volume(BodySlot slot, const KineticBox<Motion::degree>& box);
+
+  // property_edits.cpp: bodies whose properties change
+  void move_freely(BodySlot slot, const Motion& motion);
 
   // response.cpp: what follows from contacts
   void process_meeting();
   PairEvent event_of(BodySlot a, BodySlot b, const Contact& contact) const {
-    return {bodies_.id_of(a), bodies_.id_of(b), contact};
+    return {bodies_.id_of(a), bodies_.id_of(b), contact, bodies_[a].user_data, bodies_[b].user_data};
   }
   void process_self_contact();
   void process_contact(BodySlot a, BodySlot b, const Contact& contact);
@@ -245,6 +264,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   // The parts, each with a state, a queue and laws of its own.
   Bodies<Motion> bodies_;
   Scripts<Motion> scripts_;
+  Timers timers_;
   Tumbling<Motion> tumbling_;
   Volumes<Motion> volumes_;
   WallTimes<Motion> walls_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace kds::collision {
 
@@ -14,6 +15,20 @@ bool Engine<Motion>::touching(BodyId a, BodyId b) const {
   const BodySlot of_b = bodies_.slot_of(b);
   if (a == b) return self_contacts_.touching(of_a);
   return pairs_.mode(of_a, of_b) == ContactMode::transparent && pairs_.overlapping(of_a, of_b);
+}
+
+/// All are collected first, since `visit` may change the world.
+template <class Motion>
+void Engine<Motion>::visit_partners(BodyId id, BodyVisitor visit) const {
+  require_whole("World::visit_partners");
+  const BodySlot slot = bodies_.slot_of(id);
+  std::vector<BodySlot> found = resting_.partners(slot);
+  pairs_.visit_overlapped(slot, [&](BodySlot other) { found.push_back(other); });
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  std::vector<BodyId> ids;
+  for (const BodySlot other : found) ids.push_back(bodies_.id_of(other));
+  for (const BodyId other : ids) visit(other);
 }
 
 template <class Motion>

@@ -16,7 +16,7 @@ namespace kds::collision {
 namespace {
 
 /// The version of the image's layout: it changes with the members, so that bytes of another layout are refused as such.
-constexpr int snapshot_form = 9;
+constexpr int snapshot_form = 10;
 
 /// Options that decide events. Broad phase, window, threads and profile may differ.
 template <class Archive>
@@ -38,6 +38,7 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact, 
   same("zeno.interval", options.zeno.interval);
   same("shortest_flight", options.shortest_flight);
   if (turns_bodies) same("orientation_error", options.orientation_error);
+  same("report_pieces", std::uint32_t{options.report_pieces});
   same("report_pairs", std::uint32_t{options.report_pairs});
   if (!options.report_pairs) return;
   same("broad_phase, which reports its pairs", std::uint32_t{exact});
@@ -57,6 +58,7 @@ struct Engine<Motion>::Image {
   EditLimit edits;
   typename Bodies<Motion>::Image bodies;
   typename Scripts<Motion>::Image scripts;
+  Timers::Image timers;
   typename Tumbling<Motion>::Image tumbling;
   typename Pairs<Motion>::Image pairs;
   typename SelfContacts<Motion>::Image self_contacts;
@@ -67,7 +69,7 @@ struct Engine<Motion>::Image {
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
     archive(now, callers_now, horizon, room_for_meshes, counters, edits);
     bodies.archive(archive, known);
-    archive(scripts, tumbling, pairs, self_contacts, resting, pending);
+    archive(scripts, timers, tumbling, pairs, self_contacts, resting, pending);
   }
 
   /// Throws std::runtime_error, naming what is wrong, unless it may be an image of a world with these options, which
@@ -79,6 +81,7 @@ struct Engine<Motion>::Image {
     if (!edits.began_by(now)) image::fail("edits: are counted from a time after now");
     bodies.check(now);
     scripts.check(now, [&](BodySlot slot) { return bodies.alive(slot); });
+    timers.check(now);
     tumbling.check(bodies, now);
     std::vector<char> enters(bodies.bodies.size());
     for (const BodySlot slot : bodies.waiting) enters[slot] = 1;
@@ -109,6 +112,7 @@ typename Engine<Motion>::Image Engine<Motion>::image() const {
           .edits = edits_,
           .bodies = bodies_.image(),
           .scripts = scripts_.image(),
+          .timers = timers_.image(),
           .tumbling = tumbling_.image(),
           .pairs = pairs_.image(),
           .self_contacts = self_contacts_.image(),
@@ -125,6 +129,7 @@ void Engine<Motion>::become(const Image& image) {
   edits_ = image.edits;
   bodies_.become(image.bodies);
   scripts_.become(image.scripts);
+  timers_.become(image.timers);
   tumbling_.become(image.tumbling);
   volumes_.become(image.room_for_meshes);
   reports_.become(image.pending);

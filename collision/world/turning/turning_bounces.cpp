@@ -128,7 +128,7 @@ Motion Engine<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
 /// with half of their speed at least.
 template <class Motion>
 void Engine<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
-                                   const Contact& contact) requires(turns<Motion>) {
+                               const Contact& contact) requires(turns<Motion>) {
   if (!precesses(a) && !precesses(b)) return;
   const double t = contact.time;
   const auto parting = [&](const Motion& of_a, const Motion& of_b) {
@@ -187,7 +187,7 @@ void Engine<Motion>::process_wall() requires(turns<Motion>) {
   double pressed = 0;
   if constexpr (Motion::degree >= 2) pressed = 2 * path[2][axis] * out;
   path[1][axis] = -out * rebound(approach, pressed, std::min(body.restitution, options_.walls->restitution));
-  WallEvent event{bodies_.id_of(slot), wall, {.time = clock_.now}};
+  WallEvent event{bodies_.id_of(slot), wall, {.time = clock_.now}, bodies_[slot].user_data};
   event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
   event.contact.normal[axis] = out;
   event.contact.point = path[0];
