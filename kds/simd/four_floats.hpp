@@ -49,22 +49,7 @@ inline float highest(FourFloats x) {
 
 /// Bit i if a comparison holds in lane i.
 inline unsigned set_of_four(FourFloatsBits x) { return simd::target::set_of_four(x); }
-/// The same, for code that is written for any number of lanes.
-inline unsigned set_of_lanes(FourFloatsBits x) { return set_of_four(x); }
 /// Whether a comparison holds in all lanes.
 inline bool all_set(FourFloatsBits x) { return set_of_four(x) == 0xF; }
-
-/// Three of the four floats from a place on in each of four rows: lane i of x, y and z is from the i-th.
-[[gnu::always_inline]] inline void read_three(const float* const* rows, int place, FourFloats& x, FourFloats& y,
-                                              FourFloats& z) {
-  FourFloats of[4];
-  for (int i = 0; i < 4; ++i) __builtin_memcpy(&of[i], rows[i] + place, sizeof of[i]);
-  const FourFloats low_01 = __builtin_shufflevector(of[0], of[1], 0, 4, 1, 5);
-  const FourFloats low_23 = __builtin_shufflevector(of[2], of[3], 0, 4, 1, 5);
-  x = __builtin_shufflevector(low_01, low_23, 0, 1, 4, 5);
-  y = __builtin_shufflevector(low_01, low_23, 2, 3, 6, 7);
-  z = __builtin_shufflevector(__builtin_shufflevector(of[0], of[1], 2, 6, 3, 7),
-                              __builtin_shufflevector(of[2], of[3], 2, 6, 3, 7), 0, 1, 4, 5);
-}
 
 }  // namespace kds

@@ -1,38 +1,26 @@
 // Some vectors side by side, coordinate by coordinate, in floats.
 #pragma once
 
-#include "kds/simd/eight_wide.hpp"
-#include "kds/simd/four_floats.hpp"
+#include "kds/simd/float_lanes.hpp"
 
 namespace kds::collision {
 
-/// `Floats`: FourFloats, or EightFloats in a file that is compiled for processors with such registers. All that is made
-/// of these is inlined (kds/simd/four_wide.hpp says why).
+using kds::all, kds::signed_by, kds::where;
+
+/// `Floats`: FourFloats, or EightFloats in a file that is compiled for processors with such registers
+/// (kds/simd/float_lanes.hpp).
 template <class Floats>
 struct FloatVectors {
   Floats x, y, z;
 };
 
-/// What comparisons of them give.
-template <class Floats>
-using BitsOf = decltype(Floats{} < Floats{});
-
-/// How many there are.
-template <class Floats>
-inline constexpr int lanes_of_floats = sizeof(Floats) / sizeof(float);
-
-/// A number in each lane.
-template <class Floats>
-[[gnu::always_inline]] inline Floats all(float x) {
-  return x - Floats{};
-}
 /// A vector in each lane, of three numbers.
 template <class Floats>
 [[gnu::always_inline]] inline FloatVectors<Floats> all(const float* v) {
   return {all<Floats>(v[0]), all<Floats>(v[1]), all<Floats>(v[2])};
 }
 
-/// See read_three (four_floats.hpp).
+/// See read_three().
 template <class Floats>
 [[gnu::always_inline]] inline FloatVectors<Floats> vectors_at(const float* const* rows, int place) {
   FloatVectors<Floats> v;
@@ -66,8 +54,6 @@ template <class Floats>
 [[gnu::always_inline]] inline FloatVectors<Floats> magnitudes(const FloatVectors<Floats>& v) {
   return {magnitude(v.x), magnitude(v.y), magnitude(v.z)};
 }
-
-using kds::signed_by, kds::where;
 
 /// Those of a where a comparison holds, else those of b.
 template <class Floats>

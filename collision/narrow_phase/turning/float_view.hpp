@@ -52,7 +52,18 @@ void find_triangle_parts(const FloatView& view, const TrianglesTogether& triangl
 
 namespace detail {
 
-/// The same, for processors with AVX2 only.
+/// The three functions above.
+struct FloatGaps {
+  void (*node_waits)(const FloatView&, const NodesTogether&, NodeWaits&);
+  unsigned (*nodes_apart_by)(float margin, const FloatView&, const NodesTogether&);
+  void (*triangle_parts)(const FloatView&, const TrianglesTogether&, float* parts);
+};
+/// In registers of four floats.
+extern const FloatGaps gaps_by_four;
+/// In registers of eight, the same bits; null where the build or the processor has none.
+const FloatGaps* gaps_by_eight();
+
+/// For processors with AVX2 only.
 void find_node_waits_by_eight(const FloatView& view, const NodesTogether& nodes, NodeWaits& waits);
 unsigned find_nodes_apart_by_eight(float margin, const FloatView& view, const NodesTogether& nodes);
 void find_triangle_parts_by_eight(const FloatView& view, const TrianglesTogether& triangles, float* parts);

@@ -45,14 +45,12 @@ class PairFrame {
       : time(t),
         turn_a(a.rotation(rates.a, t)),
         turn_b(b.rotation(rates.b, t)),
+        matrix_a(turn_a.matrix()),
+        matrix_b(turn_b.matrix()),
         spin_a(a.angular_velocity),
         spin_b(b.angular_velocity),
         rate_a(norm(spin_a) * (1 + 0x1p-40)),
         rate_b(norm(spin_b) * (1 + 0x1p-40)) {
-    for (int k = 0; k < 3; ++k) {
-      matrix_a.col(k) = turn_a(Eigen::Vector3d::Unit(k));
-      matrix_b.col(k) = turn_b(Eigen::Vector3d::Unit(k));
-    }
     const auto origin_a = a.origin(t);
     const auto origin_b = b.origin(t);
     way.value = origin_b.vector - origin_a.vector;

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 
 namespace kds::collision {
 
@@ -81,8 +82,24 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     return TriangleGap<Degree>(view, this->hull_a_, this->hull_b_).width();
   }
 
+  /// As those of the base, by less work.
+  double gaps(const TurningView<Degree>& view, std::array<double, std::size_t{Base::ways}>& gap) const {
+    TrianglesSeen<Degree>(view, this->hull_a_, this->hull_b_)
+        .every_direction([&](int k, double forward, double back, double) {
+          gap[static_cast<std::size_t>(2 * k)] = back;
+          gap[static_cast<std::size_t>(2 * k + 1)] = forward;
+        });
+    return this->error(view);
+  }
+
   /// The conditions of a way that do not hold for certain, and are positive, for so long from now on.
-  Conditions unsure(const TurningView<Degree>& view, int way, double stretch) const;
+  Conditions unsure(const TurningView<Degree>& view, int way, double stretch) const {
+    return unsure<false>(view, way, stretch);
+  }
+  /// The same of a way that is open just after the time of the view: those that rise go on to hold, too.
+  Conditions unsure_while_open(const TurningView<Degree>& view, int way, double stretch) const {
+    return unsure<true>(view, way, stretch);
+  }
 
   /// Whether all of its conditions are zero at all times.
   bool separates_nothing(int way) const {
@@ -112,6 +129,15 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
   }
 
  private:
+  template <bool IsOpen>
+  Conditions unsure(const TurningView<Degree>& view, int way, double stretch) const;
+
+  /// Whether f, if it is not below zero at the beginning, stays so in a stretch. `less`: by which its rate may be off.
+  static bool rises(const Jet& f, double less, double third, double stretch) {
+    const Jet slope{f.rate - less, 0.5 * f.bend, -third / 3};
+    return slope.value > 0 && positive_for(slope, 0, stretch) >= stretch;
+  }
+
   /// Of the ways of planes.
   template <class Test>
   bool every_corner(int way, const Corners& p, const Corners& q, Conditions which, const Test& test) const {
@@ -134,12 +160,17 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
 
 /// Each condition is n . p, or n . v, with unit vectors that turn: what exact signs are taken of, times a positive
 /// number. Normals are off by the doubt of their hull, and stay so as they turn.
+///
+/// Of a condition f that holds just after the time of the view: f(x) >= x (f' + f'' x / 2 - third x^2 / 6). The errors
+/// of f' and f'' are such that times the longest stretch L that there is, and its square, they are no more than those
+/// of f: so f' is off by e / L, and f'' by 2 e / L^2, 3 e / L in all, where e is what f may be off by until L.
 template <int Degree>
+template <bool IsOpen>
 auto TurningTriangles<Degree>::unsure(const TurningView<Degree>& view, int way, double stretch) const -> Conditions {
   const auto& hull_a = this->hull_a_;
   const auto& hull_b = this->hull_b_;
-  if (!view.certain || !(stretch <= view.stretch(hull_a.radius + hull_b.radius, stretch))) return all(way);
-  const typename Base::Seen seen(*this, view);
+  const double longest = view.stretch(hull_a.radius + hull_b.radius, std::numeric_limits<double>::max());
+  if (!view.certain || !(stretch <= longest)) return all(way);
   const double sense = way % 2 != 0 ? 1 : -1;
   Conditions unsure = 0;
   const auto note = [&](int number, Jet f, double less, double third) {
@@ -147,32 +178,46 @@ auto TurningTriangles<Degree>::unsure(const TurningView<Degree>& view, int way, 
     const bool sure = f.value > 0 && positive_for(f, third, stretch) >= stretch;
     if (!sure) unsure |= Conditions{1} << number;
   };
+  const auto turned_a = [&](const Eigen::Vector3d& x) { return turning(view.in_world_a(x), view.spin_a); };
+  const auto turned_b = [&](const Eigen::Vector3d& x) { return turning(view.in_world_b(x), view.spin_b); };
   if (way < 4) {
     const bool of_a = way < 2;
-    const VectorJet n = sense * turning(seen.normal[of_a ? 0 : 1], of_a ? view.spin_a : view.spin_b);
-    const TurningBounds bounds(view, of_a ? view.rate_a : view.rate_b, hull_a.radius, hull_b.radius, stretch);
-    const double less = bounds.rounding + (of_a ? hull_a.doubt : hull_b.doubt) * bounds.lengths;
-    const Jet face = of_a ? dot(n, view.way) - dot(n, turning(seen.a[0], view.spin_a))
-                          : dot(n, view.way) + dot(n, turning(seen.b[0], view.spin_b));
+    const VectorJet n = sense * (of_a ? turned_a(hull_a.normals[0]) : turned_b(hull_b.normals[0]));
+    const double rate = of_a ? view.rate_a : view.rate_b, doubt = of_a ? hull_a.doubt : hull_b.doubt;
+    const TurningBounds bounds(view, rate, hull_a.radius, hull_b.radius, stretch);
+    const double less = bounds.rounding + doubt * bounds.lengths;
+    const Jet face = of_a ? dot(n, view.way) - dot(n, turned_a(hull_a.points[0]))
+                          : dot(n, view.way) + dot(n, turned_b(hull_b.points[0]));
+    std::array<Jet, 3> f;
     for (std::size_t i = 0; i < 3; ++i) {
-      const Jet f =
-          of_a ? face + dot(n, turning(seen.b[i], view.spin_b)) : face - dot(n, turning(seen.a[i], view.spin_a));
-      note(static_cast<int>(i), f, less, bounds.third);
+      f[i] = of_a ? face + dot(n, turned_b(hull_b.points[i])) : face - dot(n, turned_a(hull_a.points[i]));
+      note(static_cast<int>(i), f[i], less, bounds.third);
+    }
+    if (IsOpen && unsure != 0) {
+      const TurningBounds until_longest(view, rate, hull_a.radius, hull_b.radius, longest);
+      const double error = until_longest.rounding + doubt * until_longest.lengths;
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (rises(f[i], 3 * error / longest, bounds.third, stretch)) unsure &= ~(Conditions{1} << i);
+      }
     }
     return unsure;
   }
   const auto k = static_cast<std::size_t>(way - 4) / 2;
-  const VectorJet u = turning(seen.u[k / 3], view.spin_a), v = turning(seen.v[k % 3], view.spin_b);
+  const VectorJet u = turned_a(hull_a.edges[k / 3]), v = turned_b(hull_b.edges[k % 3]);
   const double rates = view.rate_a + view.rate_b;
   const TurningBounds bounds(view, rates, hull_a.radius, hull_b.radius, stretch);
-  const VectorJet between{view.way.value + seen.b[k % 3] - seen.a[k / 3],
-                          view.way.rate + cross(view.spin_b, seen.b[k % 3]) - cross(view.spin_a, seen.a[k / 3]),
-                          view.way.bend + cross(view.spin_b, cross(view.spin_b, seen.b[k % 3])) -
-                              cross(view.spin_a, cross(view.spin_a, seen.a[k / 3]))};
-  note(0, sense * dot(cross(u, v), between), bounds.rounding, bounds.third);
+  const VectorJet a = turned_a(hull_a.points[k / 3]), b = turned_b(hull_b.points[k % 3]);
+  const VectorJet between{view.way.value + b.value - a.value, view.way.rate + b.rate - a.rate,
+                          view.way.bend + b.bend - a.bend};
+  const Jet f = sense * dot(cross(u, v), between);
+  note(0, f, bounds.rounding, bounds.third);
+  if (IsOpen && unsure != 0) {
+    const TurningBounds until_longest(view, rates, hull_a.radius, hull_b.radius, longest);
+    if (rises(f, 3 * until_longest.rounding / longest, bounds.third, stretch)) unsure = 0;
+  }
   const double third = rates * rates * rates * (1 + 0x1p-40);
-  note(1, sense * dot(turning(seen.normal[0], view.spin_a), v), PairFrame<Degree>::rounding + hull_a.doubt, third);
-  note(2, sense * dot(turning(seen.normal[1], view.spin_b), u), PairFrame<Degree>::rounding + hull_b.doubt, third);
+  note(1, sense * dot(turned_a(hull_a.normals[0]), v), PairFrame<Degree>::rounding + hull_a.doubt, third);
+  note(2, sense * dot(turned_b(hull_b.normals[0]), u), PairFrame<Degree>::rounding + hull_b.doubt, third);
   return unsure;
 }
 
