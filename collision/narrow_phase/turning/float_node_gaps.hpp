@@ -59,7 +59,7 @@ class NodeGaps {
   [[gnu::always_inline]] Floats least_part() const {
     const Floats radius_a = view_.unit_a * radii(a_), radius_b = view_.unit_b * radii(b_) + view_.round;
     const Floats speed = square_root(dot(rate_, rate_)) + view_.angle_a * radius_a + view_.angle_b * radius_b;
-    return lesser((1.0F / 24) * (radius_a + radius_b) / speed, all<Floats>(1));
+    return lesser((1.0F / 18) * (radius_a + radius_b) / speed, all<Floats>(1));
   }
 
   struct Widest {

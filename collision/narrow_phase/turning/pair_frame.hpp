@@ -109,6 +109,8 @@ struct TurningBounds {
   double rounding;  ///< of what is lost in computing f, f' and f'', and following them
   double lengths;   ///< of what p is the sum of, at any time of the stretch
 
+  TurningBounds(double of_third, double of_rounding, double of_lengths)
+      : third(of_third), rounding(of_rounding), lengths(of_lengths) {}
   /// |n| is at most 1. `of_a`, `of_b`: sums of the lengths of the vectors that turn with each body.
   template <int Degree>
   TurningBounds(const PairFrame<Degree>& frame, double rate_n, double of_a, double of_b, double stretch) {

@@ -13,6 +13,7 @@
 #include <functional>
 #include <queue>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -83,6 +84,10 @@ class TurningMeshSearch {
    public:
     Front(const TurningMeshSearch& search, double t0, double horizon, ContactMode mode)
         : search_(search), horizon_(horizon), mode_(mode), view_(search.view(t0, horizon)) {
+      // What most searches need.
+      std::vector<Item> items;
+      items.reserve(32), visits_.reserve(32), leaves_.reserve(16);
+      queue_ = decltype(queue_)(std::greater<>(), std::move(items));
       search_.nodes_.first([&](NodePair nodes) { visits_.push_back({nodes, t0}); });
       visit_all();
     }
@@ -138,6 +143,7 @@ class TurningMeshSearch {
   template <class Ask>
   bool every_near(const View& view, double margin, const Ask& ask) const {
     std::vector<NodePair> list;
+    list.reserve(64);
     const auto put = [&](NodePair nodes) { list.push_back(nodes); };
     nodes_.first(put);
     while (!list.empty()) {
@@ -332,7 +338,7 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
   constexpr double short_time = 0x1p-20;
   const double sizes = a_.radius(0) + norm(view.way.value);
   const double soon = std::max(next_up(t), t + short_time * view.stretch(sizes, horizon - t));
-  if (const double parts = ways.first_parting(t, std::min(soon, horizon)); parts != never) return parts;
+  if (const double parts = ways.first_parting(t, std::min(soon, horizon), true); parts != never) return parts;
   const double depth = std::max(0.0, -pair.gap(view));
   const double slack = (1 + 0x1p-10) * depth + pair.roundings(view);
   const Pair shallow = pair.with_slack(slack);
@@ -344,7 +350,7 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
     deeper = proven;
   }
   deeper = std::max(deeper, soon);
-  return std::min(deeper, ways.first_parting(t, std::min(deeper, horizon)));
+  return std::min(deeper, ways.first_parting(t, std::min(deeper, horizon), true));
 }
 
 template <int Degree, class Side>

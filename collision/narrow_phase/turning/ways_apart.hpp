@@ -89,10 +89,12 @@ class WaysApart {
     return never;
   }
 
-  /// The first double in [t, horizon] just after which they do not, or `never`.
-  double first_parting(double t, double horizon) const {
+  /// The first double in [t, horizon] just after which they do not, or `never`. `penetrates`: they are known to do so
+  /// just after t.
+  double first_parting(double t, double horizon, bool penetrates = false) const {
     while (t <= horizon) {
-      if (!penetrate(t)) return t;
+      if (!penetrates && !penetrate(t)) return t;
+      penetrates = false;
       const double until = std::min(horizon, std::max(next_up(t), t + pair_.time_of_turning()));
       const double opens = first_opening(t, until);
       if (opens != never) return opens;
