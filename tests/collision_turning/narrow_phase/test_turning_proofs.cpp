@@ -240,6 +240,43 @@ TEST_CASE("triangles are apart for as long as is proven, and conditions that are
   CHECK(sure > 3000);
 }
 
+TEST_CASE("conditions that begin to hold go on for as long as they surely rise", "[turning]") {
+  const std::uint64_t seed = 566;
+  CAPTURE(seed);
+  Random random(seed);
+  int begun = 0, rising = 0;
+  for (int round = 0; round < 120; ++round) {
+    const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 2));
+    auto p = random_triangle(random), q = random_triangle(random);
+    const double size = round % 2 == 0 ? 1 : 0x1p-20;  // then conditions of directions are far greater than the others
+    for (Vector3d& corner : p) corner *= size;
+    for (Vector3d& corner : q) corner *= size;
+    const TurningTriangles<2> pair(a, p, b, q);
+    const double t = random.between(0, 0.5);
+    for (int way = 0; way < TurningTriangles<2>::ways; ++way) {
+      for (unsigned number = 0; number < 3; ++number) {
+        pair.every_condition(way, 1u << number, [&](const auto& condition) {
+          const double begins = recovery_time(condition, t, t + 1);
+          if (begins == never || begins == t) return true;
+          ++begun;
+          CAPTURE(round, way, number, begins);
+          const auto view = pair.frame(begins);
+          const double stretch = std::ldexp(view.stretch(2 * size, 1), -random.integer(0, 12)) * random.unit();
+          const auto unsure = pair.unsure(view, way, stretch), of_open = pair.unsure_while_open(view, way, stretch);
+          CHECK((unsure >> number & 1) == 1);
+          CHECK((of_open & ~unsure) == 0);
+          if (of_open >> number & 1) return true;
+          ++rising;
+          for (int i = 0; i <= 4; ++i) CHECK(sign_after(condition, begins + stretch * i / 4) == 1);
+          return true;
+        });
+      }
+    }
+  }
+  CHECK(begun > 500);
+  CHECK(rising > 200);
+}
+
 TEST_CASE("triangles side by side are apart for as long as floats prove", "[turning]") {
   using Oracle = tests::TurningMeshOracle;
   const std::uint64_t seed = 564;
