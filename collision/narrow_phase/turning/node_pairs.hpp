@@ -1,4 +1,4 @@
-// Pairs of nodes of the trees of two bodies that turn: how they are opened, and taken four at a time.
+// Pairs of nodes of the trees of two bodies that turn: how they are opened, and taken eight at a time.
 #pragma once
 
 #include "collision/narrow_phase/turning/turning_mesh_sides.hpp"

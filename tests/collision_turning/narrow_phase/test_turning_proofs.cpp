@@ -95,8 +95,8 @@ long double gap_of(const Corners& a, const Corners& b) {
 
 /// Registers of eight floats, where there are any, give the bits that those of four do.
 void check_widths(const FloatView& view, const NodesTogether& nodes) {
-  const auto& four = detail::gaps_by_four;
-  const auto* const eight = detail::gaps_by_eight();
+  const auto& four = collision::detail::gaps_by_four;
+  const auto* const eight = collision::detail::gaps_by_eight();
   if (!eight) return;
   NodeWaits x, y;
   four.node_waits(view, nodes, x);
@@ -106,10 +106,10 @@ void check_widths(const FloatView& view, const NodesTogether& nodes) {
   CHECK(four.nodes_apart_by(0.1F, view, nodes) == eight->nodes_apart_by(0.1F, view, nodes));
 }
 void check_widths(const FloatView& view, const TrianglesTogether& triangles) {
-  const auto* const eight = detail::gaps_by_eight();
+  const auto* const eight = collision::detail::gaps_by_eight();
   if (!eight) return;
   std::array<float, most_together> x, y;
-  detail::gaps_by_four.triangle_parts(view, triangles, x.data());
+  collision::detail::gaps_by_four.triangle_parts(view, triangles, x.data());
   eight->triangle_parts(view, triangles, y.data());
   CHECK(std::memcmp(x.data(), y.data(), sizeof x) == 0);
 }
