@@ -42,13 +42,13 @@ class Misuse(unittest.TestCase):
         self.refused(r"shape: must be a kds.Shape, and is 1", lambda: w.add_body(1, (0, 0, 0)))
         self.refused(r"fixed: must be bools", lambda: w.add_bodies(self.ball, n3, fixed=[0, 1, 0, 1]))
         self.refused(r"category: must be whole numbers", lambda: w.add_bodies(self.ball, n3, categories=1.5))
-        self.refused(r"collides_with: must be masks", lambda: w.add_body(self.ball, (0, 0, 0), collides_with=2**32))
+        self.refused(r"collides_with: must be numbers of 32 bits", lambda: w.add_body(self.ball, (0, 0, 0), collides_with=2**32))
         self.refused(r"then\[0\]: must be a kds.Motion", lambda: w.add_body(self.ball, (0, 0, 0), then=[3]))
         self.refused(r"body: must be the id of a body", lambda: w.remove_body("a"))
         self.refused(r"bodies: must be ids", lambda: w.positions([1.0]))
         self.refused(r"snapshot: must be bytes", lambda: w.load("text"))
         self.refused(r"function: must be callable", lambda: w.on(kds.EventKind.WALL, 3))
-        self.refused(r"99 is not a valid EventKind", lambda: w.on(99, print))
+        self.refused(r"kind: must be a kds.EventKind, and is 99", lambda: w.on(99, print))
 
     def test_values(self):
         w = self.world
