@@ -25,7 +25,7 @@ namespace {
 namespace py = pybind11;
 using namespace kds::collision;
 
-// Arrays come from kds/_world.py, which has checked their shapes.
+// Arrays come from the Python files of the package, which have checked their shapes.
 using Doubles = py::array_t<double, py::array::c_style>;
 using Ids = py::array_t<std::uint64_t, py::array::c_style>;  // or other numbers of 64 bits
 using Masks = py::array_t<std::uint32_t, py::array::c_style>;

@@ -93,9 +93,19 @@ def column(name: str, value: ArrayLike, n: int) -> Doubles:
     return doubles(name, value, (n,))
 
 
+def _wholes(name: str, value: ArrayLike) -> NDArray[Any]:
+    """An array, in which whole numbers on both sides of 2^63 are whole: NumPy makes doubles of them."""
+    array = array_of(name, value)
+    if array.dtype.kind == "f" and not isinstance(value, (np.ndarray, np.generic)):
+        exact = np.array(value, dtype=object)
+        if all(isinstance(each, (int, np.integer)) and 0 <= each < 2**64 for each in exact.flat):
+            return exact.astype(np.uint64)
+    return array
+
+
 def unsigned(name: str, value: ArrayLike, n: int, bits: int) -> NDArray[Any]:
     """n whole numbers from 0 to 2^bits - 1, with 32 or 64 bits; one counts for all."""
-    array = array_of(name, value)
+    array = _wholes(name, value)
     if array.ndim == 0:
         array = np.full(n, array)
     if array.dtype.kind not in "iu" or array.shape != (n,):
@@ -117,7 +127,7 @@ def flags(name: str, value: ArrayLike, n: int) -> NDArray[np.uint8]:
 
 def ids(name: str, value: ArrayLike) -> Ids:
     """Ids of bodies, (n,)."""
-    array = array_of(name, value)
+    array = _wholes(name, value)
     if array.size == 0 and array.ndim == 1:
         return np.empty(0, np.uint64)
     if array.dtype.kind not in "iu" or array.ndim != 1 or array.min() < 0:

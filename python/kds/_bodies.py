@@ -12,6 +12,7 @@ from kds import _kds
 from kds._arrays import (
     Doubles,
     Ids,
+    array_of,
     column,
     doubles,
     flags,
@@ -80,7 +81,7 @@ class Bodies:
         ValueError names what is wrong; then nothing is added. See collision/body_description.hpp.
         """
         tensor = None
-        if inertia is not None and np.ndim(inertia) != 0:
+        if inertia is not None and array_of("inertia", inertia).ndim != 0:
             tensor, inertia = doubles("inertia", inertia, (3, 3)), None
         added = self._add(
             [shape_of("shape", shape)],
@@ -96,14 +97,14 @@ class Bodies:
             mass=number("mass", mass),
             inertia=0.0 if inertia is None else number("inertia", inertia),
             tensor=tensor,
-            fixed=fixed,
+            fixed=flags("fixed", fixed, 1),
             restitution=number("restitution", restitution),
             friction=number("friction", friction),
             tangential_restitution=number("tangential_restitution", tangential_restitution),
-            category=category,
-            collides_with=collides_with,
-            sensor=sensor,
-            user_data=user_data,
+            category=unsigned("category", category, 1, 32),
+            collides_with=unsigned("collides_with", collides_with, 1, 32),
+            sensor=flags("sensor", sensor, 1),
+            user_data=unsigned("user_data", user_data, 1, 64),
         )
         return int(added[0])
 
@@ -162,14 +163,14 @@ class Bodies:
             mass=column("masses", masses, n),
             inertia=column("inertias", inertias, n),
             tensor=None,
-            fixed=fixed,
+            fixed=flags("fixed", fixed, n),
             restitution=column("restitutions", restitutions, n),
             friction=column("frictions", frictions, n),
             tangential_restitution=column("tangential_restitutions", tangential_restitutions, n),
-            category=categories,
-            collides_with=collide_with,
-            sensor=sensors,
-            user_data=user_data,
+            category=unsigned("categories", categories, n, 32),
+            collides_with=unsigned("collide_with", collide_with, n, 32),
+            sensor=flags("sensors", sensors, n),
+            user_data=unsigned("user_data", user_data, n, 64),
         )
 
     def _add(
@@ -207,13 +208,12 @@ class Bodies:
         numbers = np.empty((n, 5))
         for place, value in enumerate((mass, restitution, friction, tangential_restitution, inertia)):
             numbers[:, place] = value
-        both = np.stack([unsigned("category", category, n, 32), unsigned("collides_with", collides_with, n, 32)], axis=1)
-        bits = flags("fixed", fixed, n) + 2 * flags("sensor", sensor, n)
-        data = unsigned("user_data", user_data, n, 64)
+        both = np.stack([category, collides_with], axis=1)
+        bits = fixed + np.uint8(2) * sensor
         if n == 0:
             return np.empty(0, np.uint64)
         later = pieces("then", then, motions[0, TIME])
-        return self._core.add(shapes, radii, motions, numbers, both, bits, data, tensor, later)
+        return self._core.add(shapes, radii, motions, numbers, both, bits, user_data, tensor, later)
 
     def remove_body(self, body: int) -> None:
         """Removes a body. Its contacts end, with events where bodies pass through each other."""
