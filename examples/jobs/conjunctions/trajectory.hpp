@@ -24,7 +24,7 @@ class Trajectory {
  public:
   /// Throws std::invalid_argument for an orbit that bends too sharply for pieces of one tick.
   explicit Trajectory(const Elements& elements) : orbit_(elements), end_(orbit_.state(0)) {
-    constexpr double longest = 64 * tick;
+    constexpr double longest = 8 * tick;
     const double length = std::min(orbit_.piece_length(interpolation_error), longest);
     if (!(length >= tick))
       throw std::invalid_argument("Trajectory: the orbit bends too sharply for pieces of a minute");
