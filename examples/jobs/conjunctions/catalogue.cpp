@@ -44,9 +44,10 @@ Elements low_orbit(Random& random, std::size_t i) {
   return random.orbit(height, height + rise, inclination);
 }
 
-/// One of 72 planes, with as many places in each as there are objects for.
+/// In one of 72 planes.
 Elements constellation_orbit(Random& random, std::size_t i) {
-  Elements elements = random.orbit(550, 550, 53 * degree);
+  const double height = random.uniform(500, 600);
+  Elements elements = random.orbit(height, height, 53 * degree);
   elements.node = static_cast<double>(i % 72) * 5 * degree;
   elements.perigee = 0;
   return elements;
