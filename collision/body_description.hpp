@@ -93,6 +93,7 @@ struct BasicBodyDescription {
   /// Of a mesh that bends: its contacts with itself are reported, too, as contacts and separations of the body with the
   /// same body, whatever the response of the world. They cost as much as many bodies (docs/deforming.md).
   bool self_contacts = false;
+  std::uint64_t user_data = 0;  ///< the caller's own, for example an index; events carry it
   BoundingVolume volume = BoundingVolume::shape;
   BoxFunction box{};  ///< if given: the caller's own conservative boxes, instead of `volume`
 };

@@ -2,48 +2,40 @@
 #pragma once
 
 #include "collision/body_description.hpp"
+#include "collision/body_id.hpp"
 #include "collision/body_motion.hpp"
-#include "collision/broad_phase/broad_phase.hpp"
+#include "collision/broad_phase/body_visitor.hpp"
+#include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/motions.hpp"
-#include "collision/narrow_phase/bending_contact.hpp"
-#include "collision/narrow_phase/contact.hpp"
 #include "collision/profile.hpp"
 #include "collision/response/free_rotation.hpp"
 #include "collision/shapes/mesh_script.hpp"
-#include "collision/world/bodies.hpp"
-#include "collision/world/clock.hpp"
-#include "collision/world/edit_limit.hpp"
-#include "collision/world/pairs.hpp"
-#include "collision/world/reports.hpp"
-#include "collision/world/resting_contacts.hpp"
-#include "collision/world/scripts.hpp"
-#include "collision/world/self_contacts.hpp"
-#include "collision/world/turning/tumbling.hpp"
-#include "collision/world/volumes.hpp"
-#include "collision/world/wall_times.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
 
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
 namespace kds::collision {
 
+template <class BodyMotionType>
+class Engine;
+
 /// Moves bodies through time and reports their contacts at exact times. The type of motion is a template parameter
 /// (body_motion.hpp): most worlds are a World<Degree>, below, whose bodies keep their orientation.
 ///
 /// [Coming06] Figure 2. Events are, in this order where times are equal: pieces of motion that start (of scripts, then
-/// of bodies that precess), changes of the broad phase, bounding volumes that have to be renewed, walls, resting
-/// contacts that end, contacts and separations by (a, b), those of meshes that bend with themselves. The broad phase
-/// makes no difference: WorldListener states the order of reports.
+/// of bodies that precess), changes of the broad phase, bounding volumes that have to be renewed, timers, walls,
+/// resting contacts that end, contacts and separations by (a, b), those of meshes that bend with themselves. The broad
+/// phase makes no difference: WorldListener states the order of reports.
 ///
-/// It is made of parts (world/), which docs/design.md lists.
+/// It is made of parts, which docs/design.md lists, behind one pointer (world/engine.hpp): programs that use a world
+/// compile none of them.
 ///
 /// Adding, removing and moving bodies calls no listener: the consequences are reported by the next step, at now().
 ///
@@ -57,7 +49,7 @@ namespace kds::collision {
 /// times in seconds. An id that was never given, or whose body was removed, throws std::out_of_range, which names the
 /// id and says which of the two it is (in resting() and touching(), for either id).
 template <class BodyMotionType>
-class BasicWorld final : private RestingListener<BodyMotionType> {
+class BasicWorld final {
   static_assert(BodyMotion<BodyMotionType>, "World: bodies move as body_motion.hpp says");
   static_assert(BodyMotionType::degree >= 1 && BodyMotionType::degree <= KDS_GREATEST_DEGREE,
                 "World: bodies move on lines (degree 1) or parabolas (degree 2), and with kds::collision_splines on "
@@ -94,6 +86,14 @@ class BasicWorld final : private RestingListener<BodyMotionType> {
   /// not finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
 
+  /// The same for a motion in pieces, each starting later than the one before: the last that has started by now() is
+  /// taken up now, as above, and those after it are to come. Throws, naming the piece, as add_body() does.
+  void update_motion(BodyId id, std::span<const Motion> pieces);
+
+  /// Adds pieces of motion after those that are still to come: so a stream of pieces needs no more than the next ones.
+  /// Throws std::invalid_argument, naming the piece, unless each starts later than now() and than the one before.
+  void append_motion(BodyId id, std::span<const Motion> pieces);
+
   /// Replaces what is still to come of the vertices of a mesh that bends: from where they are at now() they move on
   /// straight lines to the first of these keyframes, from there to the next, and stand still after the last; with none
   /// they stand still from now() on. So a simulator of cloth gives the end of each of its steps:
@@ -104,6 +104,24 @@ class BasicWorld final : private RestingListener<BodyMotionType> {
   /// std::invalid_argument for a body that does not bend, and, naming the keyframe, unless each is later than now() and
   /// than the one before, and has a position for each vertex, finite and in range.
   void update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes);
+
+  /// Gives a body another mass; the inertia of one that turns changes by the same factor, and its motion does not
+  /// change. Throws std::invalid_argument for a body that is fixed, and for a mass that add_body() would not take.
+  void set_mass(BodyId id, double mass);
+  /// Counts from the next contact on. Throws std::invalid_argument unless in [0, 1].
+  void set_restitution(BodyId id, double restitution);
+  /// Gives a body another category and mask (BodyDescription). Contacts with bodies that it may not collide with any
+  /// more end: those of bodies that pass through each other separate, with reports, and what rests on it, or below it,
+  /// wakes. Where it is in contact with a body with which it could not collide before, that is reported as an overlap.
+  void set_filter(BodyId id, std::uint32_t category, std::uint32_t collides_with);
+  void set_user_data(BodyId id, std::uint64_t user_data);
+
+  /// At a time in s the listener's timer() is called: after pieces of motion that start then, before contacts. Timers
+  /// of one time ring in the order in which they were set. Throws std::invalid_argument for a time that is before
+  /// now() or not finite.
+  TimerId set_timer(double t);
+  /// False if there is no such timer any more, or never was.
+  bool cancel_timer(TimerId timer);
 
   /// Processes everything up to and including t. Throws std::invalid_argument where t is before now() or not finite,
   /// std::logic_error if called from within a callback, and std::runtime_error as WorldOptions::most_edits says.
@@ -133,13 +151,13 @@ class BasicWorld final : private RestingListener<BodyMotionType> {
   /// As audit(), at a time from now() on before which nothing is due.
   void audit(double t) const;
 
-  double now() const { return stepping_ ? clock_.now : callers_now_; }
-  std::size_t size() const { return bodies_.size(); }
-  bool contains(BodyId id) const { return bodies_.contains(id); }
+  double now() const;
+  std::size_t size() const;
+  bool contains(BodyId id) const;
 
   /// Includes the accelerations by resting contacts; to change a motion, begin with free_motion(). The reference is
   /// valid until bodies are added, removed or moved, or the clock advances.
-  const Motion& motion(BodyId id) const { return bodies_.motion(bodies_.slot_of(id)); }
+  const Motion& motion(BodyId id) const;
   /// The motion that the body would have without its resting contacts: with the acceleration that the caller gave last.
   Motion free_motion(BodyId id) const;
   /// The orientation, angular velocity and angular momentum at now() of a body that turns freely. Those of a body that
@@ -147,10 +165,14 @@ class BasicWorld final : private RestingListener<BodyMotionType> {
   /// orientation differs by up to WorldOptions::orientation_error. Throws std::invalid_argument for a body whose
   /// turning is not changed by contacts.
   FreeTurning free_turning(BodyId id) const requires(turns<Motion>);
-  PlacedShape shape(BodyId id) const { return bodies_.shape(bodies_.slot_of(id)); }
-  double mass(BodyId id) const { return bodies_[bodies_.slot_of(id)].mass; }
-  bool sensor(BodyId id) const { return bodies_[bodies_.slot_of(id)].sensor; }
-  bool fixed(BodyId id) const { return bodies_.fixed(bodies_.slot_of(id)); }
+  PlacedShape shape(BodyId id) const;
+  double mass(BodyId id) const;
+  bool sensor(BodyId id) const;
+  bool fixed(BodyId id) const;
+  double restitution(BodyId id) const;
+  std::uint32_t category(BodyId id) const;
+  std::uint32_t collides_with(BodyId id) const;
+  std::uint64_t user_data(BodyId id) const;
 
   /// Whether a and b are in contact; only for bodies that pass through each other (mode `none`, sensors), otherwise
   /// false. Of one body: whether it touches itself, if it reports that (BodyDescription::self_contacts).
@@ -161,11 +183,15 @@ class BasicWorld final : private RestingListener<BodyMotionType> {
   bool resting(BodyId a, BodyId b) const;
   bool resting_at_wall(BodyId a, int wall) const;
 
+  /// Calls visit(id), in order of the slots, for each body that a body touches or rests on, as touching() and
+  /// resting() say. `visit` is called when the answer is complete, and may change the world.
+  void visit_partners(BodyId id, BodyVisitor visit) const;
+
   WorldCounters counters() const;
   /// The broad phase in use: a name of broad_phase_kind.hpp; "auto" is "grid", or "few-boxes" with few bodies.
-  std::string_view broad_phase() const { return broad_phase_->name(); }
+  std::string_view broad_phase() const;
   /// All zero unless WorldOptions.profile is set.
-  const Profile& work_profile() const { return profile_; }
+  const Profile& work_profile() const;
 
   // Queries: bodies that are near, judged by their bounding volumes. Volumes and boxes are closed, so those that touch
   // meet, and volumes are rounded outward, by less than 2^-48 of the coordinates and of the distance moved since their
@@ -196,189 +222,7 @@ class BasicWorld final : private RestingListener<BodyMotionType> {
   void archive(Archive& archive);
 
  private:
-  using Body = detail::Body<Motion>;
-  using Mover = typename Bodies<Motion>::Mover;
-  using Entry = typename BroadPhase<Motion::degree>::Entry;
-  using Resting = RestingPart<Motion>;
-  using Begin = typename Pairs<Motion>::Begin;
-
-  // world.cpp: the clock
-  /// The tasks of the parts of the world, in the order in which they are done if they are due at one time.
-  enum class Task {
-    start_pieces,      ///< scripts_
-    turn_on,           ///< tumbling_
-    meet_boxes,        ///< pairs_
-    renew_volume,      ///< volumes_
-    meet_wall,         ///< walls_
-    end_resting,       ///< resting_
-    meet_or_separate,  ///< pairs_
-    meet_itself        ///< self_contacts_
-  };
-  struct Due {
-    double time;
-    Task task;
-  };
-  Due next_due() const;
-  bool certify(Task task);
-  bool happens(Task task) const;
-  bool process(Task task);
-  /// Whether the search for the next event processes it, or stops before it.
-  enum class Search { makes, looks };
-  bool next_event(double limit, Search search = Search::makes);
-  bool guarded_event(double limit, Search search);
-  bool work_left() const { return bodies_.any_waits() || !resting_.solved() || !pairs_.tested() || !reports_.empty(); }
-  void make_broad_phase();
-  void rebuild_broad_phase();
-  void set_horizon(double limit);
-  void go_back(double t);
-  void start_pieces();
-  void turn_on();
-  void report_next();
-  void report_resting(const Reports::Report& event);
-  void count_edit();
-
-  // world/guards.cpp: what may be called when, and the state after an exception
-  [[noreturn]] void refuse(const char* function) const;
-  void require_whole(const char* function) const {
-    if (failure_) [[unlikely]]
-      refuse(function);
-  }
-  /// For functions that change bodies, which callbacks may call. `body`: the one that is removed, if one is.
-  void require_editable(const char* function, BodySlot body = no_body) {
-    if (failure_ || volumes_.calling()) [[unlikely]]
-      refuse(function);
-    if (bounced_ != no_body && bounced_ != body) change_or_fail([&] { take_up_bounce(); });
-    if (!stepping_ && clock_.now > callers_now_) [[unlikely]]
-      change_or_fail([&] { go_back(callers_now_); });
-  }
-  /// For functions that run, save or load the world.
-  void require_idle(const char* function) const {
-    if (failure_ || volumes_.calling() || stepping_) [[unlikely]]
-      refuse(function);
-  }
-  void note_failure();
-  /// Makes a change. An exception in the middle of it leaves the world broken.
-  template <class Change>
-  auto change_or_fail(const Change& change) {
-    try {
-      return change();
-    } catch (...) {
-      note_failure();
-      throw;
-    }
-  }
-  /// Calls the listener: in a step, when the world is consistent, which it still is if the listener throws.
-  template <class Call>
-  void tell(const Call& call) {
-    telling_ = true;
-    call(*listener_);
-    telling_ = false;
-    require_whole("World::step");  // The listener may have caught the exception of a change that it made.
-  }
-
-  // world/edits.cpp: bodies that are added, moved and removed
-  BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape,
-               const std::optional<PrincipalInertia>& principal);
-  void make_room_for_meshes();
-  void enter_new_bodies();
-  void take_out(BodySlot slot);
-  void give(BodySlot slot, const Motion& motion);
-  void set_motion(BodySlot slot, const Motion& motion, bool jumped);
-  void update_volume(BodySlot slot, const KineticBox<Motion::degree>& box);
-
-  // world/response.cpp: what follows from contacts
-  void process_meeting();
-  PairEvent event_of(BodySlot a, BodySlot b, const Contact& contact) const {
-    return {bodies_.id_of(a), bodies_.id_of(b), contact};
-  }
-  void process_self_contact();
-  void process_contact(BodySlot a, BodySlot b, const Contact& contact);
-  void let_through(BodySlot a, BodySlot b, const Contact& contact);
-  std::uint64_t count_meeting(BodySlot a, BodySlot b);
-  std::uint64_t count_meeting(BodySlot slot);
-  std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
-
-  // world/bounces.cpp: of bodies that keep their orientation
-  /// Rate at which b parts from a along the normal just after the contact.
-  double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>);
-  void process_wall() requires(!turns<Motion>);
-  void bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>);
-  void take_up_bounce();
-  bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
-  bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>);
-  bool bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
-                      std::uint64_t burst) requires(!turns<Motion>);
-  void begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
-  bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
-  bool endless(std::uint64_t burst) const;
-
-  // world/bending_bounces.cpp: of meshes that bend
-  bool bends(BodySlot slot) const { return bodies_[slot].shape && collision::bends(bodies_[slot].shape->shape); }
-  bool bends(BodySlot a, BodySlot b) const { return bends(a) || bends(b); }
-  SurfaceRate surface_rate(BodySlot slot, const Contact& contact, bool is_a) const requires(!turns<Motion>);
-  double least_rebound(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>);
-  void bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(!turns<Motion>);
-
-  // world/turning/turning_bounces.cpp: of bodies that turn
-  double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>);
-  double rebound(double approach, double pressed, double restitution) const requires(turns<Motion>);
-  void process_wall() requires(turns<Motion>);
-  bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
-  bool precesses(BodySlot slot) const { return tumbling_.has(slot) && !resting_.carries(slot); }
-  Motion met(BodySlot slot, double t) requires(turns<Motion>);
-  void turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
-                 const Contact& contact) requires(turns<Motion>);
-
-  /// A motion changes that is not one of the event's.
-  void change_motion(BodySlot slot, const Motion& motion);
-  // Reports of resting contacts (RestingListener).
-  void take_up(BodySlot slot, const Motion& motion) override;
-  void changed(BodySlot a, BodySlot b) override { pairs_.changed(a, b); }
-  void let_pass(BodySlot a, BodySlot b) override { pairs_.let_pass(a, b); }
-  void tell_rebound_suppressed(BodySlot a, BodySlot b) override;
-  void tell_resting(bool begins, const detail::RestingContact& contact) override;
-  void tell_passes(const detail::RestingContact& contact) override;
-  Contact contact_of(const detail::RestingContact& contact) const;
-
-  // world/near.cpp: queries
-  template <class Ask, class Meets>
-  void answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const;
-
-  // world/snapshot.cpp
-  struct Image;
-  Image image() const;
-  void become(const Image& image);
-
-  Profile* profile() { return options_.profile ? &profile_ : nullptr; }
-
-  const WorldOptions options_;
-  Listener* listener_;
-  Listener silent_;
-  Clock clock_;  ///< ahead of callers_now_ when next_time() has looked ahead
-  WorldCounters counters_;
-  Profile profile_;
-  // The parts, each with a state, a queue and laws of its own.
-  Bodies<Motion> bodies_;
-  Scripts<Motion> scripts_;
-  Tumbling<Motion> tumbling_;
-  Volumes<Motion> volumes_;
-  WallTimes<Motion> walls_;
-  Reports reports_;
-  Resting resting_;
-  Pairs<Motion> pairs_;
-  SelfContacts<Motion> self_contacts_;
-  std::unique_ptr<BroadPhase<Motion::degree>> broad_phase_;
-  EditLimit edits_;
-  double callers_now_;          ///< the clock as callers know it
-  double idle_until_ = -never;  ///< nothing is due before it; an edit resets it
-  bool idle_for_ever_ = false;  ///< no event comes at all; an edit resets it
-  double next_time_ = -never;   ///< the result of next_time(); -never if there is none
-  /// The body that has bounced off a wall and whose motion the parts have not taken up yet, while that is reported: it
-  /// is often removed then.
-  BodySlot bounced_ = no_body;
-  bool stepping_ = false;
-  bool telling_ = false;        ///< a listener is being told, or has thrown
-  std::exception_ptr failure_;  ///< the exception that has left the world broken
+  std::unique_ptr<Engine<Motion>> engine_;
 };
 
 /// A world of bodies that keep their orientation, on paths of a degree.

@@ -1,7 +1,7 @@
 // The counters of a world.
 #pragma once
 
-#include "collision/broad_phase/broad_phase.hpp"
+#include "collision/broad_phase/broad_phase_counters.hpp"
 #include "kds/statistics.hpp"
 
 #include <cstdint>

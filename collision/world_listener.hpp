@@ -5,6 +5,8 @@
 #include "collision/body_id.hpp"
 #include "collision/narrow_phase/contact.hpp"
 
+#include <cstdint>
+
 namespace kds::collision {
 
 /// An event of two bodies, a in the lower slot: a contact, an overlap, a separation, the start or end of rest ... Or of
@@ -13,6 +15,8 @@ struct PairEvent {
   BodyId a;
   BodyId b;
   Contact contact;
+  std::uint64_t user_data_a = 0;  ///< BodyDescription::user_data, also of bodies that have been removed
+  std::uint64_t user_data_b = 0;
 };
 
 /// A body's bounding sphere meets a wall: 0 is -x, 1 is +x, 2 is -y ... 5 is +z.
@@ -20,7 +24,11 @@ struct WallEvent {
   BodyId body;
   int wall;
   Contact contact;  ///< the point lies on the wall; the normal points out of the domain; there are no features
+  std::uint64_t user_data = 0;
 };
+
+/// The number of a timer: 0, 1, 2, ... in the order in which they are set.
+using TimerId = std::uint64_t;
 
 template <class Motion>
 class BasicWorld;
@@ -28,14 +36,14 @@ class BasicWorld;
 /// Told of events in order of time, and of those at one time in an order that does not depend on the broad phase:
 /// bodies come by their slots, and those that were in one slot by their generations (body_rank). What follows from an
 /// event, or from what callers do, comes before the next event, in this order:
-/// 1. `rebound_suppressed`, `wakes`, `passes`, `rests`, each by (a, b), then `moved`, by body; resting contacts that
-///    begin and end at one instant are not reported;
+/// 1. `rebound_suppressed`, `wakes`, `passes`, `rests`, each by (a, b), then `moved` and `piece`, by body; resting
+///    contacts that begin and end at one instant are not reported;
 /// 2. `pair_began` and `pair_ended`, by (a, b); volumes that part and meet again at one instant are not reported;
 /// 3. separations of bodies that have been removed, by (a, b);
 /// 4. overlaps, by (a, b).
-/// Events at one time are in this order: pairs that begin and end as the bodies move on, by (a, b), with all of the
-/// above; walls, by body; contacts and separations, by (a, b);
-/// then those of meshes that bend with themselves, by body.
+/// Events at one time are in this order: pieces that start, and pairs that begin and end as the bodies move on, by
+/// (a, b), with all of the above; timers, in the order in which they were set; walls, by body; contacts and
+/// separations, by (a, b); then those of meshes that bend with themselves, by body.
 ///
 /// Every callback may change motions, add and remove bodies, the ones concerned included; the world is consistent when
 /// it is called, and later reports of the same instant are made of the world as it is then. To advance, save or load
@@ -72,6 +80,10 @@ class BasicWorldListener {
   /// The motion of a body has changed that is not one of the event's: resting contacts pass on what happens to others,
   /// and a body that precesses begins its next piece.
   virtual void moved(BasicWorld<Motion>&, BodyId) {}
+  /// With WorldOptions.report_pieces: a piece of a body's motion has started that is not the first, or that made it
+  /// enter.
+  virtual void piece(BasicWorld<Motion>&, BodyId) {}
+  virtual void timer(BasicWorld<Motion>&, TimerId) {}  ///< of BasicWorld::set_timer(): now() is its time
 };
 
 /// Of a World<Degree>.

@@ -67,8 +67,9 @@ struct WorldOptions {
   /// pairs reported are those whose volumes overlap.
   int kdop = 6;
   std::optional<Walls> walls{};
-  bool report_pairs = false;  ///< tell the listener of bounding volumes that begin and cease to overlap
-  bool profile = false;       ///< measure where the time goes
+  bool report_pairs = false;   ///< tell the listener of bounding volumes that begin and cease to overlap
+  bool report_pieces = false;  ///< tell the listener of pieces of motion that start
+  bool profile = false;        ///< measure where the time goes
   /// Threads that share the work where thousands of bodies enter, or thousands of pairs are to be tested, at once; 0
   /// for as many as the machine has. All else, callbacks and box functions included, is done by the caller's thread.
   /// Events and counters do not depend on it.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/body_visitor.hpp"
+#include "collision/broad_phase/broad_phase_counters.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 
@@ -26,21 +27,6 @@ class PairListener {
   virtual bool filters_meet(std::uint64_t, std::uint64_t) const { return true; }
   virtual void pair_began(BodySlot a, BodySlot b, double t) = 0;
   virtual void pair_ended(BodySlot a, BodySlot b, double t) = 0;
-};
-
-/// Work done by a broad phase.
-struct BroadPhaseCounters {
-  std::uint64_t swaps = 0;         ///< exchanges of adjacent interval ends
-  std::uint64_t certificates = 0;  ///< failure times computed
-  std::uint64_t box_updates = 0;   ///< bounding volumes computed or changed
-
-  friend BroadPhaseCounters operator+(const BroadPhaseCounters& a, const BroadPhaseCounters& b) {
-    return {a.swaps + b.swaps, a.certificates + b.certificates, a.box_updates + b.box_updates};
-  }
-  friend BroadPhaseCounters operator-(const BroadPhaseCounters& a, const BroadPhaseCounters& b) {
-    return {a.swaps - b.swaps, a.certificates - b.certificates, a.box_updates - b.box_updates};
-  }
-  friend bool operator==(const BroadPhaseCounters&, const BroadPhaseCounters&) = default;
 };
 
 /// Reports, at the right times and in order, which pairs of bodies have to be tested.

@@ -1,6 +1,7 @@
 // Kinetic k-DOPs: the extents of bodies along more directions than the axes.
 #pragma once
 
+#include "collision/body_id.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "kds/arithmetic/ball.hpp"

@@ -1,7 +1,7 @@
 // How the world checks itself.
 #include "kds/audit.hpp"
 #include "collision/motions.hpp"
-#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <string>
@@ -9,7 +9,7 @@
 namespace kds::collision {
 
 template <class Motion>
-void BasicWorld<Motion>::audit(double t) const {
+void Engine<Motion>::audit(double t) const {
   require_whole("World::audit");
   t = std::max(t, clock_.now);
   broad_phase_->audit(t);
@@ -31,7 +31,7 @@ void BasicWorld<Motion>::audit(double t) const {
   }
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

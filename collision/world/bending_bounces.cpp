@@ -3,7 +3,7 @@
 #include "collision/response/impulse.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace kds::collision {
 using Eigen::Vector3d;
 
 template <class Motion>
-SurfaceRate BasicWorld<Motion>::surface_rate(BodySlot slot, const Contact& contact, bool is_a) const
+SurfaceRate Engine<Motion>::surface_rate(BodySlot slot, const Contact& contact, bool is_a) const
     requires(!turns<Motion>) {
   if (!bends(slot)) return {};
   return collision::surface_rate(*bodies_[slot].shape, is_a ? contact.feature_a : contact.feature_b,
@@ -25,8 +25,7 @@ SurfaceRate BasicWorld<Motion>::surface_rate(BodySlot slot, const Contact& conta
 /// which contacts are found. Nothing rests on such a mesh: what lies on it bounces in flights of
 /// WorldOptions::shortest_flight.
 template <class Motion>
-double BasicWorld<Motion>::least_rebound(BodySlot a, BodySlot b, const Contact& contact) const
-    requires(!turns<Motion>) {
+double Engine<Motion>::least_rebound(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>) {
   const Vector3d& n = contact.normal;
   const double t = contact.time;
   const SurfaceRate of_a = surface_rate(a, contact, true), of_b = surface_rate(b, contact, false);
@@ -55,8 +54,8 @@ double BasicWorld<Motion>::least_rebound(BodySlot a, BodySlot b, const Contact& 
 
 /// The mesh is fixed, so the other body leaves it with the velocity of the surface at the contact and the rebound.
 template <class Motion>
-void BasicWorld<Motion>::bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact,
-                                            std::uint64_t burst) requires(!turns<Motion>) {
+void Engine<Motion>::bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact,
+                                        std::uint64_t burst) requires(!turns<Motion>) {
   const BodySlot free = bodies_.fixed(a) ? b : a;
   const double rate = parting(a, b, contact);
   const double restitution = std::min(bodies_[a].restitution, bodies_[b].restitution);
@@ -82,7 +81,7 @@ void BasicWorld<Motion>::bounce_off_surface(BodySlot a, BodySlot b, const Contac
   resting_.solve();
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

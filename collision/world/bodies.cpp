@@ -74,12 +74,11 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
     added.friction = description.friction, added.tangential_restitution = description.tangential_restitution;
   }
   added.restitution = description.restitution;
-  added.category = description.category;
-  added.collides_with = description.collides_with;
-  filters_ = filters_ || description.category != default_category || ~description.collides_with != 0;
+  set_filter(slot, {description.category, description.collides_with});
   added.volume = description.volume;
   added.sensor = description.sensor;
   added.self_contacts = description.self_contacts;
+  added.user_data = description.user_data;
   sensors_ = sensors_ || description.sensor;
   added.alive = true;
   move(slot, motion);
@@ -87,6 +86,19 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
   accelerate_freely(slot, motion);
   ++alive_;
   return slot;
+}
+
+template <class Motion>
+void Bodies<Motion>::set_filter(BodySlot slot, const CollisionFilter& filter) {
+  bodies_[slot].category = filter.category, bodies_[slot].collides_with = filter.collides_with;
+  filters_ = filters_ || filter.category != default_category || ~filter.collides_with != 0;
+}
+
+template <class Motion>
+void Bodies<Motion>::set_mass(BodySlot slot, double mass) {
+  Body& body = bodies_[slot];
+  if constexpr (turns<Motion>) body.inverse_inertia *= body.mass / mass;
+  body.mass = mass, body.inverse_mass = 1 / mass;
 }
 
 template <class Motion>
@@ -141,7 +153,7 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
     to.motion = motion(slot);
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
     to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume, to.sensor = b.sensor;
-    to.self_contacts = b.self_contacts;
+    to.self_contacts = b.self_contacts, to.user_data = b.user_data;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
     if constexpr (turns<Motion>) {
       to.inverse_inertia = b.inverse_inertia;
@@ -181,15 +193,15 @@ void Bodies<Motion>::become(const Image& image) {
     set_shape(slot, from.placed);
     move(slot, from.motion);
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
-    b.category = from.category, b.collides_with = from.collides_with, b.volume = from.volume, b.sensor = from.sensor;
-    b.self_contacts = from.self_contacts;
+    set_filter(slot, {from.category, from.collides_with});
+    b.volume = from.volume, b.sensor = from.sensor;
+    b.self_contacts = from.self_contacts, b.user_data = from.user_data;
     if constexpr (turns<Motion>) {
       b.inverse_inertia = from.inverse_inertia;
       b.friction = from.friction, b.tangential_restitution = from.tangential_restitution;
       b.tumbles = from.tumbles;
     }
     sensors_ = sensors_ || b.sensor;
-    filters_ = filters_ || b.category != default_category || ~b.collides_with != 0;
     b.meetings = from.meetings, b.burst_start = from.burst_start;
     if constexpr (Motion::degree == 2) b.force = from.force;
     if constexpr (Motion::degree >= 3) b.given = from.given;

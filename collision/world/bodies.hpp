@@ -79,6 +79,7 @@ struct Body
   BoundingVolume volume = BoundingVolume::shape;
   bool sensor = false;
   bool self_contacts = false;
+  std::uint64_t user_data = 0;
   bool alive = false;
   bool entered = false;        ///< its motion has begun; it is in the broad phase, if it collides with anything
   std::uint64_t meetings = 0;  ///< contacts since burst_start (ZenoPolicy)
@@ -188,6 +189,9 @@ class Bodies {
   bool collides(BodySlot slot) const { return bodies_[slot].category != 0 && bodies_[slot].collides_with != 0; }
   CollisionFilter filter(BodySlot slot) const { return {bodies_[slot].category, bodies_[slot].collides_with}; }
   bool may_collide(BodySlot a, BodySlot b) const { return filter(a).meets(filter(b)); }
+  void set_filter(BodySlot slot, const CollisionFilter& filter);
+  /// Of a body that turns, but does not precess, the inertia changes by the same factor. Precondition: it is not fixed.
+  void set_mass(BodySlot slot, double mass);
 
   /// Adds a body with its first motion. A null `shape` stands for a ball that is not turned. Precondition: valid.
   BodySlot add(const Description& description, std::shared_ptr<const PlacedShape> shape, const Motion& motion);

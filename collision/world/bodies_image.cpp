@@ -63,8 +63,8 @@ void Bodies<Motion>::Image::body(Archive& archive, One& body) const {
   archive(body.alive);
   if (!body.alive) return;
   archive_shape(archive, body.placed, body.mesh, meshes);
-  archive(body.entered, body.sensor, body.self_contacts, body.motion, body.mass, body.inverse_mass, body.restitution,
-          body.category, body.collides_with, body.volume, body.meetings, body.burst_start);
+  archive(body.entered, body.sensor, body.self_contacts, body.user_data, body.motion, body.mass, body.inverse_mass,
+          body.restitution, body.category, body.collides_with, body.volume, body.meetings, body.burst_start);
   image::vector(archive, body.force);
   if constexpr (turns<Motion>) archive(body.inverse_inertia, body.friction, body.tangential_restitution, body.tumbles);
   if constexpr (Motion::degree >= 3) archive(body.given);

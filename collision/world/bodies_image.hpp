@@ -18,6 +18,7 @@ struct Bodies<Motion>::Image {
     bool entered = false;
     bool sensor = false;
     bool self_contacts = false;
+    std::uint64_t user_data = 0;
     PlacedShape placed;
     std::uint32_t mesh = 0;  ///< number in `meshes`, of a mesh
     Motion motion;

@@ -2,7 +2,7 @@
 #include "collision/motions.hpp"
 #include "collision/response/impulse.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 /// If that rate is zero, its first derivative that is not, up to a positive factor.
 template <class Motion>
-double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>) {
+double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>) {
   const auto& path_a = bodies_.path(a);
   const auto& path_b = bodies_.path(b);
   const double t = contact.time;
@@ -34,7 +34,7 @@ double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contac
 }
 
 template <class Motion>
-void BasicWorld<Motion>::process_wall() requires(!turns<Motion>) {
+void Engine<Motion>::process_wall() requires(!turns<Motion>) {
   const BodySlot id = walls_.next_body();
   const Body& body = bodies_[id];
   const int wall = walls_.next_wall();
@@ -45,7 +45,7 @@ void BasicWorld<Motion>::process_wall() requires(!turns<Motion>) {
   double pressed = 0;
   if constexpr (Motion::degree >= 2) pressed = 2 * motion.coefficients[2][axis] * out;
   const double rebound = std::min(body.restitution, options_.walls->restitution) * approach;
-  WallEvent event{bodies_.id_of(id), wall, {.time = clock_.now}};
+  WallEvent event{bodies_.id_of(id), wall, {.time = clock_.now}, body.user_data};
   event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
   event.contact.normal[axis] = out;
   event.contact.point = motion.coefficients[0];
@@ -73,8 +73,8 @@ void BasicWorld<Motion>::process_wall() requires(!turns<Motion>) {
   if (!clustered) resting_.disturb(id);
   resting_.solve();
   const auto report = [&](Listener& listener) {
-    listener.wall(*this, event);
-    if (suppressed) listener.rebound_suppressed_at_wall(*this, event);
+    listener.wall(world_, event);
+    if (suppressed) listener.rebound_suppressed_at_wall(world_, event);
   };
   try {
     tell(report);
@@ -88,7 +88,7 @@ void BasicWorld<Motion>::process_wall() requires(!turns<Motion>) {
 /// If only this body is concerned, its new motion is taken up by the parts of the world after it has been reported, or
 /// before the next change if a callback makes one.
 template <class Motion>
-void BasicWorld<Motion>::bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>) {
+void Engine<Motion>::bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>) {
   ++counters_.motion_updates;
   if (!resting_.empty() || volumes_.any_ends()) return set_motion(slot, motion, false);
   bodies_.move(slot, motion);
@@ -98,7 +98,7 @@ void BasicWorld<Motion>::bounce_off_wall(BodySlot slot, const Motion& motion) re
 /// Whether the two that meet rest on each other from now on, without rebound: see ZenoPolicy. `pressed`: relative
 /// acceleration towards each other; `size`: magnitude of the coordinates.
 template <class Motion>
-bool BasicWorld<Motion>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
+bool Engine<Motion>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
   if (!(rebound > 0) || burst > options_.zeno.contacts) return true;
   if (!(pressed > 0)) return false;
   // At a large clock the doubles are sparse: a flight must last for several of them. And it must rise by several
@@ -113,13 +113,13 @@ bool BasicWorld<Motion>::stays(double rebound, double pressed, double size, std:
 /// Whether the number of meetings at nearly one time says that they will not end: true at each multiple of
 /// ZenoPolicy::contacts.
 template <class Motion>
-bool BasicWorld<Motion>::endless(std::uint64_t burst) const {
+bool Engine<Motion>::endless(std::uint64_t burst) const {
   const std::uint64_t many = std::max(options_.zeno.contacts, 1u);
   return burst > many && burst % many == 0;
 }
 
 template <class Motion>
-bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
+bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
   if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
   const std::uint64_t burst = count_meeting(a, b);
   if (burst > patience()) {  // A resting contact would not last: the pair passes through.
@@ -160,8 +160,8 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
 
 /// A contact in a cluster. Whether the two rest on each other from now on.
 template <class Motion>
-bool BasicWorld<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact,
-                                double restitution) requires(!turns<Motion>) {
+bool Engine<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact,
+                            double restitution) requires(!turns<Motion>) {
   const bool rested = resting_.find(a, b) != Resting::none;
   const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, restitution);
@@ -177,7 +177,7 @@ bool BasicWorld<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact,
 }
 
 template <class Motion>
-void BasicWorld<Motion>::begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
+void Engine<Motion>::begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
   ++counters_.rebounds_suppressed;
   const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.add({.a = a, .b = b, .normal = contact.normal, .point = point});
@@ -187,8 +187,8 @@ void BasicWorld<Motion>::begin_rest(BodySlot a, BodySlot b, const Contact& conta
 
 /// A contact in no cluster. Whether the two rest on each other from now on.
 template <class Motion>
-bool BasicWorld<Motion>::bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
-                                        std::uint64_t burst) requires(!turns<Motion>) {
+bool Engine<Motion>::bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+                                    std::uint64_t burst) requires(!turns<Motion>) {
   Motion motion_a = bodies_.motion(a).restarted(contact.time);
   Motion motion_b = bodies_.motion(b).restarted(contact.time);
   const Vector3d& n = contact.normal;
@@ -216,7 +216,7 @@ bool BasicWorld<Motion>::bounce_or_rest(BodySlot a, BodySlot b, const Contact& c
   return false;
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

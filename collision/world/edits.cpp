@@ -1,4 +1,4 @@
-// How bodies are added to the world, changed and removed.
+// How bodies are added to the world and removed.
 #include "collision/motions.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"
@@ -7,7 +7,8 @@
 #include "collision/response/principal_inertia.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world.hpp"
+#include "collision/world/checked_pieces.hpp"
+#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,13 +30,7 @@ template <class Motion>
 void validate(const BasicBodyDescription<Motion>& description) {
   const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
   if (description.motion.empty()) fail("motion: has no piece");
-  for (std::size_t i = 0; i < description.motion.size(); ++i) {
-    const auto& piece = description.motion[i];
-    if (!in_range(piece)) refuse_motion(piece, "motion[" + std::to_string(i) + "]");
-    if (i > 0 && !(path_of(piece).start > path_of(description.motion[i - 1]).start)) {
-      fail("motion[" + std::to_string(i) + "].start: pieces must be sorted by start");
-    }
-  }
+  require_pieces(std::span<const Motion>(description.motion), "motion");
   if (!description.fixed) require_size(description.mass, "mass");
   if (!can_move_by<Motion>(description.shape)) {
     const std::string name = std::string("shape: a ") + kind_name(description.shape);
@@ -87,20 +82,10 @@ Eigen::Matrix3d tensor_of(const BasicBodyDescription<Motion>& description) {
   return solid.inertia;
 }
 
-/// A body that precesses moves in pieces, and the clock has to tell these from each other.
-template <int Degree>
-void require_steady_clock(const certificates::RigidMotion<Degree>& motion, double now, const std::string& where) {
-  const double t = std::max(std::abs(now), std::abs(motion.start()));
-  if (norm(motion.angular_velocity) * (next_up(t) - t) <= longest_turn) return;
-  throw std::invalid_argument(where +
-                              ".angular_velocity: the body precesses, and turns by more than a radian between two "
-                              "doubles of the clock");
-}
-
 }  // namespace
 
 template <class Motion>
-void BasicWorld<Motion>::reserve(std::size_t bodies) {
+void Engine<Motion>::reserve(std::size_t bodies) {
   require_editable("World::reserve");
   if (bodies > no_body) {
     throw std::length_error("World::reserve: " + std::to_string(bodies) + " bodies are more than there are slots");
@@ -110,7 +95,7 @@ void BasicWorld<Motion>::reserve(std::size_t bodies) {
 }
 
 template <class Motion>
-BodyId BasicWorld<Motion>::add_body(const Description& description) {
+BodyId Engine<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
   validate(description);
   if (collision::bends(description.shape) && options_.response != Response::none && !description.sensor &&
@@ -150,8 +135,8 @@ BodyId BasicWorld<Motion>::add_body(const Description& description) {
 
 /// A null shape stands for a ball that is not turned.
 template <class Motion>
-inline BodySlot BasicWorld<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape,
-                                        [[maybe_unused]] const std::optional<PrincipalInertia>& principal) {
+inline BodySlot Engine<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape,
+                                    [[maybe_unused]] const std::optional<PrincipalInertia>& principal) {
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && path_of(*std::next(piece)).start <= clock_.now) ++piece;
@@ -175,7 +160,7 @@ inline BodySlot BasicWorld<Motion>::put(const Description& description, std::sha
 
 /// From the first mesh on all volumes include contact gaps: those of bodies that are there already are enlarged now.
 template <class Motion>
-void BasicWorld<Motion>::make_room_for_meshes() {
+void Engine<Motion>::make_room_for_meshes() {
   if (!volumes_.make_room_for_meshes()) return;
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (bodies_[slot].entered) update_volume(slot, volumes_.box(slot));
@@ -184,14 +169,14 @@ void BasicWorld<Motion>::make_room_for_meshes() {
 
 /// Reports a volume to the broad phase that has changed although nothing has moved.
 template <class Motion>
-void BasicWorld<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degree>& box) {
+void Engine<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degree>& box) {
   if (bodies_.collides(slot)) broad_phase_->update(slot, box, clock_.now, pairs_);
   pairs_.box_changed(slot);
   volumes_.schedule(slot);
 }
 
 template <class Motion>
-void BasicWorld<Motion>::enter_new_bodies() {
+void Engine<Motion>::enter_new_bodies() {
   const std::vector<BodySlot> entering = bodies_.take_waiting();
   // Events of the others that are due now come first, so that they are not attributed to the new bodies.
   while (broad_phase_->advance(clock_.now, pairs_)) {
@@ -236,90 +221,14 @@ void BasicWorld<Motion>::enter_new_bodies() {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::update_motion(BodyId id, const Motion& motion) {
-  require_editable("World::update_motion");
-  const BodySlot slot = bodies_.slot_of(id);
-  if (!in_range(motion)) refuse_motion(motion, "World::update_motion: motion");
-  if (path_of(motion).start > clock_.now) {
-    throw std::invalid_argument("World::update_motion: the motion starts at " + std::to_string(path_of(motion).start) +
-                                ", after the clock at " + std::to_string(clock_.now));
-  }
-  if constexpr (turns<Motion>) {
-    if (tumbling_.has(slot)) require_steady_clock(motion, clock_.now, "World::update_motion: motion");
-  }
-  count_edit();
-  change_or_fail([&] {
-    if (tumbling_.has(slot)) return give(slot, tumbling_.take_up(slot, motion, clock_.now));
-    give(slot, motion);
-  });
-}
-
-template <class Motion>
-void BasicWorld<Motion>::give(BodySlot slot, const Motion& motion) {
-  scripts_.clear(slot);
-  ++counters_.motion_updates;
-  bodies_.accelerate_freely(slot, motion);
-  if (!bodies_[slot].entered) {
-    bodies_.move(slot, motion);
-    if (!bodies_.waits(slot)) bodies_.wait(slot);
-    return;
-  }
-  const bool jumped = bodies_.is_jump(slot, motion, clock_.now);
-  if (jumped) resting_.drop_all(slot);
-  resting_.leave(slot);
-  set_motion(slot, motion, jumped);
-  resting_.disturb(slot);
-}
-
-template <class Motion>
-void BasicWorld<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
-  require_editable("World::update_vertices");
-  const BodySlot slot = bodies_.slot_of(id);
-  if (!bends(slot)) {
-    throw std::invalid_argument("World::update_vertices: body " + std::to_string(id) + " is a " +
-                                kind_name(bodies_.shape(slot).shape) + ", which does not bend");
-  }
-  const PlacedShape& before = *bodies_[slot].shape;
-  const MeshScript& script = *std::get<BendingMesh>(before.shape).script;
-  PlacedShape after;
-  try {
-    const BendingMesh bent{std::make_shared<const MeshScript>(script.continued(clock_.now, std::move(keyframes)))};
-    after = place_turned(bent, before.rotation);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(std::string("World::update_vertices: ") + error.what());
-  }
-  count_edit();
-  change_or_fail([&] {
-    ++counters_.motion_updates;
-    bodies_.set_shape(slot, std::move(after));
-    volumes_.shape_changed(slot);
-    if (bodies_[slot].entered) set_motion(slot, bodies_.motion(slot), false);
-    self_contacts_.changed(slot);
-  });
-}
-
-template <class Motion>
-void BasicWorld<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
-  const Stopwatch watch(profile(), Work::update);
-  bodies_.move(slot, motion);
-  pairs_.prefetch(slot);  // in parallel with the work of the broad phase
-  if (jumped) pairs_.set_begin(Begin::jumping);
-  if (bodies_.collides(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
-  pairs_.set_begin(Begin::moving);
-  pairs_.motion_changed(slot, jumped);
-  walls_.schedule(slot);
-  volumes_.schedule(slot);
-}
-
-template <class Motion>
-void BasicWorld<Motion>::take_up_bounce() {
+void Engine<Motion>::take_up_bounce() {
   if (bounced_ == no_body) return;
   const BodySlot slot = std::exchange(bounced_, no_body);
   set_motion(slot, Motion(bodies_.motion(slot)), false);
 }
 
 template <class Motion>
-void BasicWorld<Motion>::remove_body(BodyId id) {
+void Engine<Motion>::remove_body(BodyId id) {
   require_editable("World::remove_body", bodies_.contains(id) ? body_slot(id) : no_body);
   const BodySlot slot = bodies_.slot_of(id);
   count_edit();
@@ -327,7 +236,7 @@ void BasicWorld<Motion>::remove_body(BodyId id) {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::take_out(BodySlot slot) {
+void Engine<Motion>::take_out(BodySlot slot) {
   if (bounced_ == slot) bounced_ = no_body;
   resting_.forget(slot);
   if (self_contacts_.touching(slot)) {  // It ceases to, unless that it does has not been reported yet.
@@ -343,11 +252,11 @@ void BasicWorld<Motion>::take_out(BodySlot slot) {
   if (bodies_[slot].entered && bodies_.collides(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
   volumes_.remove(slot);
   pairs_.remove(slot);
-  if (!reports_.empty()) reports_.forget(bodies_.id_of(slot));
+  if (!reports_.empty()) reports_.forget(bodies_.id_of(slot), bodies_[slot].user_data);
   bodies_.remove(slot);
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -1,6 +1,6 @@
 // Which functions of a world may be called when, and its state after an exception.
 #include "collision/motions.hpp"
-#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
 
 #include <exception>
 #include <stdexcept>
@@ -10,12 +10,12 @@ namespace kds::collision {
 
 /// Keeps the first reason: later exceptions follow from it.
 template <class Motion>
-void BasicWorld<Motion>::note_failure() {
+void Engine<Motion>::note_failure() {
   if (!failure_) failure_ = std::current_exception();
 }
 
 template <class Motion>
-void BasicWorld<Motion>::refuse(const char* function) const {
+void Engine<Motion>::refuse(const char* function) const {
   const std::string called = std::string(function) + ": ";
   if (!failure_ && volumes_.calling()) throw std::logic_error(called + "a box function must not change the world");
   if (!failure_) throw std::logic_error(called + "must not be called from within a callback");
@@ -29,7 +29,7 @@ void BasicWorld<Motion>::refuse(const char* function) const {
   throw std::logic_error(called + "the world can no longer be used, since a change was interrupted half-way: " + why);
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -1,7 +1,7 @@
 // The queries of a world.
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/motions.hpp"
-#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -14,7 +14,7 @@ namespace kds::collision {
 /// meets(slot) is true do not.
 template <class Motion>
 template <class Ask, class Meets>
-void BasicWorld<Motion>::answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const {
+void Engine<Motion>::answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const {
   require_whole(function);
   if (volumes_.calling()) {
     throw std::logic_error(std::string(function) + ": must not be called from within a box function");
@@ -43,8 +43,8 @@ void BasicWorld<Motion>::answer(const char* function, const Ask& ask, const Meet
 }
 
 template <class Motion>
-void BasicWorld<Motion>::visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
-                                           BodyVisitor visit) const {
+void Engine<Motion>::visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
+                                       BodyVisitor visit) const {
   if (!(min.array() <= max.array()).all()) {
     throw std::invalid_argument("World::visit_overlapping: min must not be above max, and both must be numbers");
   }
@@ -56,7 +56,7 @@ void BasicWorld<Motion>::visit_overlapping(const Eigen::Vector3d& min, const Eig
 }
 
 template <class Motion>
-void BasicWorld<Motion>::visit_swept(const KineticBox<Motion::degree>& box, double until, BodyVisitor visit) const {
+void Engine<Motion>::visit_swept(const KineticBox<Motion::degree>& box, double until, BodyVisitor visit) const {
   const double from = now();
   if (!box.min.finite() || !box.max.finite()) {
     throw std::invalid_argument("World::visit_swept: the box is not finite");
@@ -78,7 +78,7 @@ void BasicWorld<Motion>::visit_swept(const KineticBox<Motion::degree>& box, doub
       visit);
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

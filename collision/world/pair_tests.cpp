@@ -2,6 +2,7 @@
 #include "certificates/ball_separation.hpp"
 #include "certificates/balls_together.hpp"
 #include "certificates/conjunction.hpp"
+#include "collision/broad_phase/box_overlap.hpp"
 #include "collision/motions.hpp"
 #include "collision/parallel.hpp"
 #include "collision/profile.hpp"

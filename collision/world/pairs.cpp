@@ -48,7 +48,9 @@ void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
     return std::find(jumped_.begin(), jumped_.end(), body) != jumped_.end();
   };
   const bool jumps = begin_ == Begin::jumping || (t == jumped_at_ && (has_jumped(a) || has_jumped(b)));
-  const bool fresh = begin_ == Begin::entering || (jumps && mode(a, b) == ContactMode::resolved);
+  const bool newly_allowed =
+      begin_ == Begin::filtering && !filter_before_.meets(bodies_.filter(a == filtered_ ? b : a));
+  const bool fresh = begin_ == Begin::entering || newly_allowed || (jumps && mode(a, b) == ContactMode::resolved);
   pair.fresh = pair.fresh || fresh;
   ++counters_.pairs_begun;
   mark_dirty(slot);
@@ -184,20 +186,41 @@ void Pairs<Motion>::let_pass(BodySlot a, BodySlot b) {
   mark_dirty(slot);
 }
 
+/// Ends a pair that overlaps, or has just separated, and that the broad phase has ended: the two separate, unless their
+/// overlap has not been reported yet.
+template <class Motion>
+void Pairs<Motion>::end(Slot slot) {
+  const Pair& pair = pairs_[slot];
+  if (mode(pair.a, pair.b) == ContactMode::transparent && pair.overlapping &&
+      !reports_.take_back(Reports::Kind::overlap, bodies_.id_of(pair.a), bodies_.id_of(pair.b))) {
+    reports_.add(Reports::Kind::separation, bodies_.id_of(pair.a), bodies_.id_of(pair.b),
+                 contact(pair.a, pair.b, clock_.now));
+  }
+  release(slot);
+}
+
 template <class Motion>
 void Pairs<Motion>::remove(BodySlot id) {
-  while (!links(id).empty()) {  // those that overlap, or have just separated
-    const Slot slot = links(id).back().slot;
-    const Pair& pair = pairs_[slot];
-    // They separate, unless their overlap has not been reported yet.
-    if (mode(pair.a, pair.b) == ContactMode::transparent && pair.overlapping &&
-        !reports_.take_back(Reports::Kind::overlap, bodies_.id_of(pair.a), bodies_.id_of(pair.b))) {
-      reports_.add(Reports::Kind::separation, bodies_.id_of(pair.a), bodies_.id_of(pair.b),
-                   contact(pair.a, pair.b, clock_.now));
-    }
-    release(slot);
-  }
+  while (!links(id).empty()) end(links(id).back().slot);
   if (id < of_.size()) links_.free(of_[id]);
+}
+
+template <class Motion>
+void Pairs<Motion>::filter_changed(BodySlot id, const CollisionFilter& before) {
+  filtered_ = id, filter_before_ = before;
+  const auto left = links(id);
+  std::vector<Slot> over;
+  for (const Link& link : left) {
+    if (!bodies_.may_collide(id, link.other)) over.push_back(link.slot);
+  }
+  for (const Slot slot : over) end(slot);
+}
+
+template <class Motion>
+void Pairs<Motion>::visit_overlapped(BodySlot id, SlotVisitor visit) const {
+  for (const Link& link : links(id)) {
+    if (pairs_[link.slot].overlapping && mode(id, link.other) == ContactMode::transparent) visit(link.other);
+  }
 }
 
 template <class Motion>

@@ -99,8 +99,12 @@ class Pairs final : public PairListener {
 
   /// The change of bodies during which pairs begin. A body that enters may overlap others from the start; so may one
   /// that jumps, but if they pass through each other that is a contact.
-  enum class Begin { moving, jumping, entering };
+  enum class Begin { moving, jumping, entering, filtering };
   void set_begin(Begin begin) { begin_ = begin; }
+  /// A body has another filter than before, and the broad phase, which has ended its pairs, is about to begin them
+  /// anew, `filtering`: of pairs that could not collide before the bodies may overlap from the start. Those that may
+  /// not collide any more end.
+  void filter_changed(BodySlot id, const CollisionFilter& before);
 
   /// A body has another motion, or has jumped. prefetch() may be called before.
   void motion_changed(BodySlot id, bool jumped);
@@ -112,6 +116,8 @@ class Pairs final : public PairListener {
   /// Lets a pair pass until it has separated, and at this time whatever else happens, even if its boxes do not overlap
   /// just now.
   void let_pass(BodySlot a, BodySlot b);
+  /// Calls visit(slot) for each body that passes through this one and overlaps it.
+  void visit_overlapped(BodySlot id, SlotVisitor visit) const;
   /// A body is removed; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.
   void remove(BodySlot id);
 
@@ -185,6 +191,7 @@ class Pairs final : public PairListener {
   Slot add(BodySlot a, BodySlot b);
   void link(Slot slot, std::uint32_t first_room = first_pairs);
   void unlist(Slot slot);
+  void end(Slot slot);
   void release(Slot slot);
   void mark_dirty(Slot slot);
   void report_boxes(bool meet, BodySlot a, BodySlot b) {
@@ -226,6 +233,8 @@ class Pairs final : public PairListener {
   bool follows_boxes_ = false;                ///< whether it has to find by itself when boxes meet and part
   bool exact_ = false;
   Begin begin_ = Begin::moving;
+  BodySlot filtered_ = no_body;  ///< where pairs begin by `filtering`
+  CollisionFilter filter_before_{0, 0};
   /// Bodies that have jumped at jumped_at_: a pair that the broad phase finds later at that instant begins by the jump.
   std::vector<BodySlot> jumped_;
   double jumped_at_ = -never;

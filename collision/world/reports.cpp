@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace kds::collision {
 
@@ -27,17 +28,24 @@ void Reports::add_resting(bool begins, BodyId a, BodyId b, const Contact& contac
 
 bool Reports::take_back(Kind kind, BodyId a, BodyId b, int wall) {
   if (reports_.empty()) return false;
-  const auto it = reports_.find({kind, a, b, {}, wall});
+  const auto it = reports_.find({kind, a, b, {}, wall, 0, 0});
   if (it == reports_.end()) return false;
   reports_.erase(it);
   return true;
 }
 
-void Reports::forget(BodyId removed) {
-  std::erase_if(reports_, [&](const Report& report) {
-    const bool of_present = report.kind == Kind::overlap || report.kind == Kind::moved || report.kind == Kind::rests;
-    return of_present && (report.a == removed || report.b == removed);
-  });
+void Reports::forget(BodyId removed, std::uint64_t user_data) {
+  std::vector<Report> kept;
+  for (Report report : std::exchange(reports_, {})) {
+    const bool is_a = report.a == removed, is_b = report.b == removed;
+    const bool of_present = report.kind == Kind::overlap || report.kind == Kind::moved || report.kind == Kind::piece ||
+                            report.kind == Kind::rests;
+    if (of_present && (is_a || is_b)) continue;
+    if (is_a) report.user_data_a = user_data;
+    if (is_b) report.user_data_b = user_data;
+    kept.push_back(report);
+  }
+  become(kept);
 }
 
 Reports::Report Reports::take_first() {

@@ -4,6 +4,7 @@
 #include "collision/body_id.hpp"
 #include "collision/narrow_phase/contact.hpp"
 
+#include <cstdint>
 #include <set>
 #include <span>
 #include <vector>
@@ -15,10 +16,23 @@ namespace detail {
 /// A report to be made at this instant.
 struct Pending {
   /// In the order in which WorldListener is told of them.
-  enum class Kind { rebound_suppressed, wakes, passes, rests, moved, pair_ended, pair_began, separation, overlap } kind;
+  enum class Kind {
+    rebound_suppressed,
+    wakes,
+    passes,
+    rests,
+    moved,
+    piece,
+    pair_ended,
+    pair_began,
+    separation,
+    overlap
+  } kind;
   BodyId a, b;  ///< in order of their ranks; b is a where it is about one body
   Contact contact;
-  int wall = -1;  ///< of a body that rests at one, or ceases to
+  int wall = -1;                  ///< of a body that rests at one, or ceases to
+  std::uint64_t user_data_a = 0;  ///< of bodies that have been removed
+  std::uint64_t user_data_b = 0;
 
   bool operator<(const Pending& other) const;
 };
@@ -34,7 +48,7 @@ class Reports {
 
   bool empty() const { return reports_.empty(); }
   void add(Kind kind, BodyId a, BodyId b, const Contact& contact, int wall = -1) {
-    reports_.insert({kind, a, b, contact, wall});
+    reports_.insert({kind, a, b, contact, wall, 0, 0});
   }
 
   /// Bounding volumes meet, or part. If they meet and part at one instant, or part and meet (bodies that are moved in
@@ -48,9 +62,9 @@ class Reports {
   /// Forgets a report that has been undone before it was made; false if there is none.
   bool take_back(Kind kind, BodyId a, BodyId b, int wall = -1);
 
-  /// A body has been removed, with its pairs: its separations are still reported, and the reports that only a body in
-  /// the world can have are dropped.
-  void forget(BodyId removed);
+  /// A body has been removed, with its pairs: its separations are still reported, with its user data, and the reports
+  /// that only a body in the world can have are dropped.
+  void forget(BodyId removed, std::uint64_t user_data);
 
   /// The next to be told. Precondition: not empty.
   Report take_first();

@@ -16,7 +16,7 @@ namespace detail {
 
 template <class Archive>
 void archive_members(Archive& archive, detail::Pending& report) {
-  archive(report.kind, report.a, report.b, report.contact.time, report.wall);
+  archive(report.kind, report.a, report.b, report.contact.time, report.wall, report.user_data_a, report.user_data_b);
   for (Feature* f : {&report.contact.feature_a, &report.contact.feature_b}) archive(f->kind, f->first, f->second);
   image::vector(archive, report.contact.point), image::vector(archive, report.contact.normal);
 }
@@ -34,7 +34,7 @@ void check_reports(const std::vector<Reports::Report>& pending, const BodiesImag
     need(event.kind >= Kind::rebound_suppressed && event.kind <= Kind::overlap, "is of an unknown kind");
     const bool resting = event.kind == Kind::rests || event.kind == Kind::wakes;
     need(event.wall == -1 || (resting && event.wall >= 0 && event.wall < 6), "is at no wall");
-    if (event.kind == Kind::moved || event.wall >= 0) {
+    if (event.kind == Kind::moved || event.kind == Kind::piece || event.wall >= 0) {
       const bool known = bodies.present(event.a) || (event.kind == Kind::wakes && bodies.removed(event.a));
       need(known && event.b == event.a, "is not of a body in the world");
     } else {

@@ -1,6 +1,6 @@
 // What follows from contacts: reports, and pairs that are let pass.
 #include "collision/motions.hpp"
-#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace kds::collision {
 template <class Motion>
-void BasicWorld<Motion>::process_meeting() {
+void Engine<Motion>::process_meeting() {
   const auto meeting = pairs_.take_next();
   const BodySlot a = meeting.a;
   const BodySlot b = meeting.b;
@@ -19,25 +19,25 @@ void BasicWorld<Motion>::process_meeting() {
   if (pairs_.mode(a, b) == ContactMode::resolved) return;
   ++counters_.separations;
   const PairEvent event = event_of(a, b, contact());
-  tell([&](Listener& listener) { listener.separation(*this, event); });
+  tell([&](Listener& listener) { listener.separation(world_, event); });
 }
 
 template <class Motion>
-void BasicWorld<Motion>::process_self_contact() {
+void Engine<Motion>::process_self_contact() {
   const auto meeting = self_contacts_.take_next();
   const PairEvent event = event_of(meeting.slot, meeting.slot, self_contacts_.contact(meeting.slot));
   ++(meeting.separates ? counters_.separations : counters_.contacts);
   tell([&](Listener& listener) {
-    meeting.separates ? listener.separation(*this, event) : listener.contact(*this, event);
+    meeting.separates ? listener.separation(world_, event) : listener.contact(world_, event);
   });
 }
 
 template <class Motion>
-void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& contact) {
+void Engine<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& contact) {
   const PairEvent event = event_of(a, b, contact);
   ++counters_.contacts;
   if (pairs_.mode(a, b) == ContactMode::transparent) {
-    return tell([&](Listener& listener) { listener.contact(*this, event); });
+    return tell([&](Listener& listener) { listener.contact(world_, event); });
   }
   const auto state = [&] {
     return std::tuple(bodies_.motion(a), bodies_.motion(b), bodies_[a].shape, bodies_[b].shape);
@@ -52,7 +52,7 @@ void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& 
     counters_.rebounds_suppressed += suppressed;
   }
   const auto after = [&] {
-    if (!contains(event.a) || !contains(event.b) || resting_.find(a, b) != Resting::none) return;
+    if (!bodies_.contains(event.a) || !bodies_.contains(event.b) || resting_.find(a, b) != Resting::none) return;
     // A pair that still approaches (two fixed bodies, or a callback that left them so) passes through. So does one with
     // a mesh that bends if nothing has changed: contact is within a tolerance, and would be found again.
     const bool again = before && *before == state();
@@ -62,8 +62,8 @@ void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& 
   };
   try {
     tell([&](Listener& listener) {
-      listener.contact(*this, event);
-      if (suppressed) listener.rebound_suppressed(*this, event);
+      listener.contact(world_, event);
+      if (suppressed) listener.rebound_suppressed(world_, event);
     });
   } catch (...) {
     if (!failure_) after();
@@ -73,7 +73,7 @@ void BasicWorld<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& 
 }
 
 template <class Motion>
-void BasicWorld<Motion>::let_through(BodySlot a, BodySlot b, const Contact& contact) {
+void Engine<Motion>::let_through(BodySlot a, BodySlot b, const Contact& contact) {
   pairs_.let_pass(a, b);
   reports_.add(Reports::Kind::passes, bodies_.id_of(a), bodies_.id_of(b), contact);
 }
@@ -81,7 +81,7 @@ void BasicWorld<Motion>::let_through(BodySlot a, BodySlot b, const Contact& cont
 /// How often both have met others within ZenoPolicy::interval; a fixed body's meetings count only with another fixed
 /// one.
 template <class Motion>
-std::uint64_t BasicWorld<Motion>::count_meeting(BodySlot a, BodySlot b) {
+std::uint64_t Engine<Motion>::count_meeting(BodySlot a, BodySlot b) {
   const bool a_fixed = bodies_.fixed(a);
   const bool b_fixed = bodies_.fixed(b);
   if (a_fixed != b_fixed) return count_meeting(a_fixed ? b : a);
@@ -90,7 +90,7 @@ std::uint64_t BasicWorld<Motion>::count_meeting(BodySlot a, BodySlot b) {
 }
 
 template <class Motion>
-std::uint64_t BasicWorld<Motion>::count_meeting(BodySlot id) {
+std::uint64_t Engine<Motion>::count_meeting(BodySlot id) {
   Body& body = bodies_[id];
   if (clock_.now - body.burst_start > options_.zeno.interval) {
     body.meetings = 0;
@@ -100,43 +100,43 @@ std::uint64_t BasicWorld<Motion>::count_meeting(BodySlot id) {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::take_up(BodySlot id, const Motion& motion) {
+void Engine<Motion>::take_up(BodySlot id, const Motion& motion) {
   change_motion(id, tumbling_.has(id) ? tumbling_.take_up(id, motion, clock_.now) : motion);
 }
 
 template <class Motion>
-void BasicWorld<Motion>::change_motion(BodySlot id, const Motion& motion) {
+void Engine<Motion>::change_motion(BodySlot id, const Motion& motion) {
   ++counters_.motion_updates;
   set_motion(id, motion, false);
   reports_.add(Reports::Kind::moved, bodies_.id_of(id), bodies_.id_of(id), {.time = clock_.now});
 }
 
 template <class Motion>
-void BasicWorld<Motion>::tell_rebound_suppressed(BodySlot a, BodySlot b) {
+void Engine<Motion>::tell_rebound_suppressed(BodySlot a, BodySlot b) {
   ++counters_.rebounds_suppressed;
   const PairEvent event = event_of(a, b, contact_at(bodies_.moving(a), bodies_.moving(b), clock_.now));
   reports_.add(Reports::Kind::rebound_suppressed, event.a, event.b, event.contact);
 }
 
 template <class Motion>
-void BasicWorld<Motion>::tell_resting(bool begins, const detail::RestingContact& resting) {
+void Engine<Motion>::tell_resting(bool begins, const detail::RestingContact& resting) {
   const BodySlot b = resting.b == no_body ? resting.a : resting.b;
   reports_.add_resting(begins, bodies_.id_of(resting.a), bodies_.id_of(b), contact_of(resting), resting.wall);
 }
 
 template <class Motion>
-void BasicWorld<Motion>::tell_passes(const detail::RestingContact& resting) {
+void Engine<Motion>::tell_passes(const detail::RestingContact& resting) {
   reports_.add(Reports::Kind::passes, bodies_.id_of(resting.a), bodies_.id_of(resting.b), contact_of(resting));
 }
 
 template <class Motion>
-Contact BasicWorld<Motion>::contact_of(const detail::RestingContact& resting) const {
+Contact Engine<Motion>::contact_of(const detail::RestingContact& resting) const {
   Contact contact{.time = clock_.now, .point = bodies_.path(resting.a).position(clock_.now) + resting.point};
   contact.normal = resting.normal;
   return contact;
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

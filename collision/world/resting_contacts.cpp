@@ -112,6 +112,29 @@ void RestingContacts<Motion>::drop_all(BodySlot id) {
   while (rests(id)) drop(of_[id].contacts.back());
 }
 
+template <class Motion>
+bool RestingContacts<Motion>::drop_filtered(BodySlot id) {
+  if (!rests(id)) return false;
+  std::vector<Slot> over;
+  for (const Slot slot : of_[id].contacts) {
+    const Contact& contact = contacts_[slot];
+    if (contact.b != no_body && !bodies_.may_collide(contact.a, contact.b)) over.push_back(slot);
+  }
+  for (const Slot slot : over) drop(slot);
+  return !over.empty();
+}
+
+template <class Motion>
+std::vector<BodySlot> RestingContacts<Motion>::partners(BodySlot id) const {
+  std::vector<BodySlot> found;
+  if (!rests(id)) return found;
+  for (const Slot slot : of_[id].contacts) {
+    const Contact& contact = contacts_[slot];
+    if (contact.b != no_body && holds(contact.a, contact.b)) found.push_back(contact.a == id ? contact.b : contact.a);
+  }
+  return found;
+}
+
 /// Convex bodies that rest on each other stay on either side of a plane through the point of contact, so they cannot
 /// meet again before the contact ends. A mesh may meet the other body elsewhere. Where rounding makes the search find
 /// the resting contact itself, the body is moved away from it by some roundings, as long as the two motions stay as

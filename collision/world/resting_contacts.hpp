@@ -104,6 +104,10 @@ class RestingContacts {
   void add(const Contact& contact);
   /// All contacts of a body end, since it jumps.
   void drop_all(BodySlot id);
+  /// Those contacts of a body end whose two bodies may not collide any more; false if there were none.
+  bool drop_filtered(BodySlot id);
+  /// The bodies that a body rests on, and those that rest on it.
+  std::vector<BodySlot> partners(BodySlot id) const;
   /// All contacts of a body end, since it is removed.
   void forget(BodySlot id) {
     drop_all(id);

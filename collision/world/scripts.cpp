@@ -15,6 +15,12 @@ void Scripts<Motion>::add(BodySlot slot, std::span<const Motion> pieces) {
 }
 
 template <class Motion>
+void Scripts<Motion>::append(BodySlot slot, std::span<const Motion> pieces) {
+  if (last_start(slot) == -never) return add(slot, pieces);
+  scripts_[slot].insert(scripts_[slot].begin(), pieces.rbegin(), pieces.rend());
+}
+
+template <class Motion>
 void Scripts<Motion>::clear(BodySlot slot) {
   if (slot >= scripts_.size() || scripts_[slot].empty()) return;
   scripts_[slot] = {};

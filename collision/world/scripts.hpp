@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/point_motion.hpp"
+#include "collision/body_id.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/motions.hpp"
 #include "collision/world/image_tools.hpp"
@@ -22,6 +23,12 @@ class Scripts {
  public:
   /// Gives a body pieces to come, in order of their starts. Precondition: it has none.
   void add(BodySlot slot, std::span<const Motion> pieces);
+  /// The same after those that it has. Precondition: they start later.
+  void append(BodySlot slot, std::span<const Motion> pieces);
+  /// When the last piece to come of a body starts; -never if there is none.
+  double last_start(BodySlot slot) const {
+    return slot < scripts_.size() && !scripts_[slot].empty() ? path_of(scripts_[slot].front()).start : -never;
+  }
   /// Removes the pieces still to come.
   void clear(BodySlot slot);
 

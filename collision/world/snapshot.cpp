@@ -1,8 +1,8 @@
 // Worlds saved, and loaded again: the sum of their parts.
 #include "kds/framework/snapshot.hpp"
 #include "collision/motions.hpp"
-#include "collision/world.hpp"
 #include "collision/world/bodies_image.hpp"
+#include "collision/world/engine.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/reports_image.hpp"
 
@@ -16,7 +16,7 @@ namespace kds::collision {
 namespace {
 
 /// The version of the image's layout: it changes with the members, so that bytes of another layout are refused as such.
-constexpr int snapshot_form = 9;
+constexpr int snapshot_form = 10;
 
 /// Options that decide events. Broad phase, window, threads and profile may differ.
 template <class Archive>
@@ -38,6 +38,7 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact, 
   same("zeno.interval", options.zeno.interval);
   same("shortest_flight", options.shortest_flight);
   if (turns_bodies) same("orientation_error", options.orientation_error);
+  same("report_pieces", std::uint32_t{options.report_pieces});
   same("report_pairs", std::uint32_t{options.report_pairs});
   if (!options.report_pairs) return;
   same("broad_phase, which reports its pairs", std::uint32_t{exact});
@@ -50,13 +51,14 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact, 
 /// State that depends on the past is: contact times of known pairs, the places of resting contacts, pairs that are let
 /// pass, the counts of the Zeno policy, reports not yet made.
 template <class Motion>
-struct BasicWorld<Motion>::Image {
+struct Engine<Motion>::Image {
   double now = 0, callers_now = 0, horizon = 0;
   bool room_for_meshes = false;
   WorldCounters counters;
   EditLimit edits;
   typename Bodies<Motion>::Image bodies;
   typename Scripts<Motion>::Image scripts;
+  Timers::Image timers;
   typename Tumbling<Motion>::Image tumbling;
   typename Pairs<Motion>::Image pairs;
   typename SelfContacts<Motion>::Image self_contacts;
@@ -67,7 +69,7 @@ struct BasicWorld<Motion>::Image {
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
     archive(now, callers_now, horizon, room_for_meshes, counters, edits);
     bodies.archive(archive, known);
-    archive(scripts, tumbling, pairs, self_contacts, resting, pending);
+    archive(scripts, timers, tumbling, pairs, self_contacts, resting, pending);
   }
 
   /// Throws std::runtime_error, naming what is wrong, unless it may be an image of a world with these options, which
@@ -79,6 +81,7 @@ struct BasicWorld<Motion>::Image {
     if (!edits.began_by(now)) image::fail("edits: are counted from a time after now");
     bodies.check(now);
     scripts.check(now, [&](BodySlot slot) { return bodies.alive(slot); });
+    timers.check(now);
     tumbling.check(bodies, now);
     std::vector<char> enters(bodies.bodies.size());
     for (const BodySlot slot : bodies.waiting) enters[slot] = 1;
@@ -95,7 +98,7 @@ struct BasicWorld<Motion>::Image {
 };
 
 template <class Motion>
-typename BasicWorld<Motion>::Image BasicWorld<Motion>::image() const {
+typename Engine<Motion>::Image Engine<Motion>::image() const {
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (!volumes_.from_caller(slot)) continue;
     throw std::invalid_argument("World: body " + std::to_string(bodies_.id_of(slot)) +
@@ -109,6 +112,7 @@ typename BasicWorld<Motion>::Image BasicWorld<Motion>::image() const {
           .edits = edits_,
           .bodies = bodies_.image(),
           .scripts = scripts_.image(),
+          .timers = timers_.image(),
           .tumbling = tumbling_.image(),
           .pairs = pairs_.image(),
           .self_contacts = self_contacts_.image(),
@@ -117,7 +121,7 @@ typename BasicWorld<Motion>::Image BasicWorld<Motion>::image() const {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::become(const Image& image) {
+void Engine<Motion>::become(const Image& image) {
   clock_ = {image.now, image.horizon};
   callers_now_ = image.callers_now;
   idle_until_ = next_time_ = -never;
@@ -125,6 +129,7 @@ void BasicWorld<Motion>::become(const Image& image) {
   edits_ = image.edits;
   bodies_.become(image.bodies);
   scripts_.become(image.scripts);
+  timers_.become(image.timers);
   tumbling_.become(image.tumbling);
   volumes_.become(image.room_for_meshes);
   reports_.become(image.pending);
@@ -139,7 +144,7 @@ void BasicWorld<Motion>::become(const Image& image) {
 
 template <class Motion>
 template <class Archive>
-void BasicWorld<Motion>::archive(Archive& archive) {
+void Engine<Motion>::archive(Archive& archive) {
   // A world that is broken by an exception may be loaded: then it is valid again.
   if (!Archive::loading || stepping_ || volumes_.calling()) require_idle("World::archive");
   archive.tag((turns<Motion> ? "World of bodies that turn, of degree " : "World of degree ") +
@@ -157,10 +162,10 @@ void BasicWorld<Motion>::archive(Archive& archive) {
   }
 }
 
-#define KDS_INSTANTIATE(motion)                                    \
-  KDS_TEMPLATE_PART class BasicWorld<motion>;                      \
-  template void BasicWorld<motion>::archive(kds::detail::Writer&); \
-  template void BasicWorld<motion>::archive(kds::detail::Reader&);
+#define KDS_INSTANTIATE(motion)                                \
+  KDS_TEMPLATE_PART class Engine<motion>;                      \
+  template void Engine<motion>::archive(kds::detail::Writer&); \
+  template void Engine<motion>::archive(kds::detail::Reader&);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -1,5 +1,6 @@
 #include "collision/world/volumes.hpp"
 
+#include "collision/broad_phase/box_overlap.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/motions.hpp"
 #include "collision/vectors.hpp"

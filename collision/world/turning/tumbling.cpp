@@ -46,6 +46,12 @@ void Tumbling<Motion>::remove(BodySlot slot) {
 }
 
 template <class Motion>
+void Tumbling<Motion>::scale(BodySlot slot, double factor) {
+  of_[slot]->inertia.moments *= factor;
+  of_[slot]->state.momentum *= factor;
+}
+
+template <class Motion>
 void Tumbling<Motion>::begin(BodySlot slot, const RotationPiece& piece) {
   of_[slot]->ahead = piece.orientation;
   of_[slot]->astray = false;

@@ -82,6 +82,8 @@ class Tumbling {
   /// except where that is bit for bit the one that the body has already and the body does not jump: then the angular
   /// momentum stays as it is. Precondition: the motion has started.
   Motion take_up(BodySlot slot, const Motion& given, double t);
+  /// Its mass has changed by a factor, and its moments of inertia with it: it turns as before.
+  void scale(BodySlot slot, double factor);
   /// The path of its centre has changed.
   void set_path(BodySlot slot, const PathOf<Motion>& path) { of_[slot]->path = path; }
 

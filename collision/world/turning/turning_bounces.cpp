@@ -3,7 +3,7 @@
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/response/turning_impulse.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 /// At the point of contact. Roundings count as nothing.
 template <class Motion>
-double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>) {
+double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>) {
   const PointRates<Motion::degree> rates(bodies_.motion(a), bodies_.motion(b), contact.time);
   const double rate = dot(contact.normal, rates.velocity(contact.point));
   return std::abs(rate) <= rates.noise(contact.point) ? 0 : rate;
@@ -27,13 +27,13 @@ double BasicWorld<Motion>::parting(BodySlot a, BodySlot b, const Contact& contac
 /// What is pressed together flies for a while, and what would stick parts, if ever so slowly: else the two would meet
 /// without end.
 template <class Motion>
-double BasicWorld<Motion>::rebound(double approach, double pressed, double restitution) const requires(turns<Motion>) {
+double Engine<Motion>::rebound(double approach, double pressed, double restitution) const requires(turns<Motion>) {
   constexpr double least = 0x1p-26;  // of the speed of approach
   return std::max({restitution * approach, least * approach, 0.5 * options_.shortest_flight * pressed});
 }
 
 template <class Motion>
-bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
+bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
   if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
   const std::uint64_t burst = count_meeting(a, b);
   if (burst > patience()) {  // No rebound helps: between fixed bodies that close in, say.
@@ -115,7 +115,7 @@ bool BasicWorld<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact)
 
 /// The motion of a body just before a contact, for one that precesses with the angular velocity of its free rotation.
 template <class Motion>
-Motion BasicWorld<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
+Motion Engine<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
   Motion motion = bodies_.motion(slot).restarted(t);
   if (!precesses(slot)) return motion;
   tumbling_.meet(slot, motion.orientation, t);
@@ -127,8 +127,8 @@ Motion BasicWorld<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) 
 /// rotations. As the additional turn may close the gap again, only such a part of it is used that the two bodies part
 /// with half of their speed at least.
 template <class Motion>
-void BasicWorld<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
-                                   const Contact& contact) requires(turns<Motion>) {
+void Engine<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
+                               const Contact& contact) requires(turns<Motion>) {
   if (!precesses(a) && !precesses(b)) return;
   const double t = contact.time;
   const auto parting = [&](const Motion& of_a, const Motion& of_b) {
@@ -161,7 +161,7 @@ void BasicWorld<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Mot
 }
 
 template <class Motion>
-FreeTurning BasicWorld<Motion>::free_turning(BodyId id) const requires(turns<Motion>) {
+FreeTurning Engine<Motion>::free_turning(BodyId id) const requires(turns<Motion>) {
   const BodySlot slot = bodies_.slot_of(id);
   if (tumbling_.has(slot)) return tumbling_.turning(slot, now());
   if (bodies_[slot].inverse_inertia == 0) {
@@ -175,7 +175,7 @@ FreeTurning BasicWorld<Motion>::free_turning(BodyId id) const requires(turns<Mot
 
 /// Walls meet bounding balls, so that they turn nothing.
 template <class Motion>
-void BasicWorld<Motion>::process_wall() requires(turns<Motion>) {
+void Engine<Motion>::process_wall() requires(turns<Motion>) {
   const BodySlot slot = walls_.next_body();
   const Body& body = bodies_[slot];
   const int wall = walls_.next_wall();
@@ -187,7 +187,7 @@ void BasicWorld<Motion>::process_wall() requires(turns<Motion>) {
   double pressed = 0;
   if constexpr (Motion::degree >= 2) pressed = 2 * path[2][axis] * out;
   path[1][axis] = -out * rebound(approach, pressed, std::min(body.restitution, options_.walls->restitution));
-  WallEvent event{bodies_.id_of(slot), wall, {.time = clock_.now}};
+  WallEvent event{bodies_.id_of(slot), wall, {.time = clock_.now}, bodies_[slot].user_data};
   event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
   event.contact.normal[axis] = out;
   event.contact.point = path[0];
@@ -196,10 +196,10 @@ void BasicWorld<Motion>::process_wall() requires(turns<Motion>) {
   ++counters_.motion_updates;
   if (tumbling_.has(slot)) tumbling_.set_path(slot, motion.path);
   set_motion(slot, motion, false);
-  tell([&](Listener& listener) { listener.wall(*this, event); });
+  tell([&](Listener& listener) { listener.wall(world_, event); });
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class BasicWorld<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -152,6 +152,26 @@ void TurningRest<Motion>::drop_all(BodySlot slot) {
 }
 
 template <class Motion>
+bool TurningRest<Motion>::drop_filtered(BodySlot slot) {
+  if (slot >= of_.size()) return false;
+  const auto& others = of_[slot].others;
+  const auto over = [&](BodySlot other) { return !bodies_.may_collide(slot, other); };
+  if (std::none_of(others.begin(), others.end(), over)) return false;
+  drop_all(slot);
+  return true;
+}
+
+template <class Motion>
+std::vector<BodySlot> TurningRest<Motion>::partners(BodySlot slot) const {
+  std::vector<BodySlot> found;
+  if (slot >= of_.size()) return found;
+  for (const BodySlot other : of_[slot].others) {
+    if (holds(std::min(slot, other), std::max(slot, other))) found.push_back(other);
+  }
+  return found;
+}
+
+template <class Motion>
 void TurningRest<Motion>::solve() {
   std::vector<BodySlot> woken = std::exchange(woken_, {});
   std::sort(woken.begin(), woken.end());

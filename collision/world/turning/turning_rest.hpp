@@ -102,6 +102,10 @@ class TurningRest {
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
   void drop_all(BodySlot slot);
   void forget(BodySlot slot) { drop_all(slot); }
+  /// The same if it has touched one that it may not collide with any more; false if not.
+  bool drop_filtered(BodySlot slot);
+  /// The bodies that a body rests on, and those that rest on it.
+  std::vector<BodySlot> partners(BodySlot slot) const;
   void leave(BodySlot slot) { drop_all(slot); }
   void disturb(BodySlot) {}
   bool solved() const { return woken_.empty(); }

@@ -1,6 +1,6 @@
 // Not one of these reads a recorded state or event: all start from the motions.
 #include "certificates/order.hpp"
-#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/broad_phase/box_overlap.hpp"
 #include "collision/world.hpp"
 #include "examples/smallest_gap.hpp"
 #include "kds/framework/kinetic.hpp"

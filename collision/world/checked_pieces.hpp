@@ -1,0 +1,43 @@
+// What is asked of the pieces of a motion that callers give.
+#pragma once
+
+#include "certificates/turning/rigid_motion.hpp"
+#include "collision/body_description.hpp"
+#include "collision/body_motion.hpp"
+#include "collision/response/rotation_piece.hpp"
+#include "collision/vectors.hpp"
+#include "kds/arithmetic/lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+namespace kds::collision {
+
+/// Throws std::invalid_argument, naming the piece `name`[i], unless their numbers are in range and each starts later
+/// than the one before.
+template <class Motion>
+void require_pieces(std::span<const Motion> pieces, const std::string& name) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!in_range(pieces[i])) refuse_motion(pieces[i], name + "[" + std::to_string(i) + "]");
+    if (i > 0 && !(path_of(pieces[i]).start > path_of(pieces[i - 1]).start)) {
+      throw std::invalid_argument(name + "[" + std::to_string(i) + "].start: pieces must be sorted by start");
+    }
+  }
+}
+
+/// A body that precesses moves in pieces, and the clock has to tell these from each other. Throws
+/// std::invalid_argument, naming the motion by `name`, if it cannot at some time from `now` on.
+template <int Degree>
+void require_steady_clock(const certificates::RigidMotion<Degree>& motion, double now, const std::string& name) {
+  const double t = std::max(std::abs(now), std::abs(motion.start()));
+  if (norm(motion.angular_velocity) * (next_up(t) - t) <= longest_turn) return;
+  throw std::invalid_argument(name +
+                              ".angular_velocity: the body precesses, and turns by more than a radian between two "
+                              "doubles of the clock");
+}
+
+}  // namespace kds::collision

@@ -1,0 +1,420 @@
+// The clock of the world: which event is next, and the functions by which callers move it.
+#include "collision/world/engine.hpp"
+
+#include "collision/motions.hpp"
+#include "collision/profile.hpp"
+#include "collision/world/new_broad_phase.hpp"
+#include "kds/arithmetic/strict.hpp"
+#include "kds/audit.hpp"
+#include "kds/raised_flag.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+namespace {
+
+/// Returns the options, or throws.
+const WorldOptions& validated(const WorldOptions& options) {
+  require_strict_arithmetic("World");
+  validate(options);
+  return options;
+}
+
+struct PairCollector final : PairListener {
+  std::vector<std::pair<BodySlot, BodySlot>> pairs;
+  void pair_began(BodySlot a, BodySlot b, double) override { pairs.emplace_back(a, b); }
+  void pair_ended(BodySlot a, BodySlot b, double) override { std::erase(pairs, std::pair(a, b)); }
+};
+
+void require_ahead(const char* function, double t, double now) {
+  if (t >= now && t != never) return;
+  throw std::invalid_argument(std::string(function) + ": " + std::to_string(t) + " is not a finite time from now on (" +
+                              std::to_string(now) + ")");
+}
+
+}  // namespace
+
+template <class Motion>
+Engine<Motion>::Engine(BasicWorld<Motion>& world, const WorldOptions& options, Listener* listener)
+    : world_(world),
+      options_(validated(options)),
+      listener_(listener ? listener : &silent_),
+      clock_{options.start_time, options.start_time + options.window},
+      tumbling_(bodies_, options_, counters_),
+      volumes_(bodies_, options_, clock_),
+      walls_(bodies_, options_.walls, clock_),
+      resting_(bodies_, options_, clock_, *this),
+      pairs_(bodies_, volumes_, resting_, reports_, options_, clock_, counters_, profile()),
+      self_contacts_(bodies_, clock_),
+      callers_now_(options.start_time) {
+  make_broad_phase();
+}
+
+template <class Motion>
+void Engine<Motion>::make_broad_phase() {
+  broad_phase_ = new_broad_phase<Motion::degree>(options_, clock_.now, profile(), volumes_.kdops());
+  broad_phase_->extend_horizon(clock_.now, clock_.horizon);
+  pairs_.expect_exact(broad_phase_->exact());
+}
+
+/// Makes a broad phase for the bodies as they are now; pairs are listed as it finds them.
+template <class Motion>
+void Engine<Motion>::rebuild_broad_phase() {
+  make_broad_phase();
+  PairCollector found;
+  std::vector<Entry> entries;
+  std::vector<KineticBox<Motion::degree>> boxes;
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (!bodies_[slot].entered || !bodies_.collides(slot)) continue;
+    entries.push_back({slot, nullptr});
+    boxes.push_back(volumes_.renew(slot));
+    volumes_.schedule(slot);
+  }
+  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].box = &boxes[i];
+  broad_phase_->insert(entries, clock_.now, found);
+  std::sort(found.pairs.begin(), found.pairs.end());
+  pairs_.list_anew(found.pairs);
+}
+
+/// A search for an event without a limit has found none, and gone beyond all times: the clock is put back. In
+/// between, bounding volumes have met and parted, and nothing else has happened.
+template <class Motion>
+void Engine<Motion>::go_back(double t) {
+  if (clock_.now == t) return;
+  clock_.now = t;
+  counters_.broad_phase = counters_.broad_phase + broad_phase_->counters();
+  rebuild_broad_phase();
+}
+
+template <class Motion>
+void Engine<Motion>::set_horizon(double limit) {
+  if (!(limit > clock_.horizon)) return;
+  constexpr double farthest = 1;  // s, for bodies that turn, whose contacts are searched turn by turn
+  const double window = turns<Motion> ? std::min(options_.window, farthest) : options_.window;
+  clock_.horizon = std::max(limit, clock_.horizon + window);
+  broad_phase_->extend_horizon(clock_.now, clock_.horizon);
+  pairs_.extend_horizon();
+  walls_.extend_horizon();
+  volumes_.extend_horizon();
+  resting_.extend_horizon();
+  self_contacts_.extend_horizon();
+}
+
+template <class Motion>
+bool Engine<Motion>::step(double limit) {
+  require_idle("World::step");
+  if (limit == never && idle_for_ever_) return false;
+  if (limit < idle_until_) {
+    callers_now_ = std::max(callers_now_, limit);
+    clock_.now = std::max(clock_.now, callers_now_);
+    return false;
+  }
+  if (std::isnan(limit)) throw std::invalid_argument("World::step: the limit is not a number");
+  if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
+    throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
+  }
+  if (turns<Motion> && limit == never) {
+    throw std::invalid_argument("World::step: bodies that turn may come near each other for ever, so it needs a limit");
+  }
+  if (limit < clock_.now) {  // next_time() has found that nothing happens until then.
+    callers_now_ = std::max(callers_now_, limit);
+    return false;
+  }
+  next_time_ = -never;
+  return guarded_event(limit, Search::makes);
+}
+
+/// The clock follows the events that have been processed, even if a listener throws.
+template <class Motion>
+bool Engine<Motion>::guarded_event(double limit, Search search) {
+  const kds::detail::RaisedFlag stepping(stepping_);  // Callbacks are called only from here.
+  try {
+    const bool found = next_event(limit, search);
+    if (search == Search::makes) callers_now_ = clock_.now;
+    return found;
+  } catch (...) {
+    if (search == Search::makes) callers_now_ = clock_.now;
+    if (!std::exchange(telling_, false)) note_failure();
+    throw;
+  }
+}
+
+template <class Motion>
+inline typename Engine<Motion>::Due Engine<Motion>::next_due() const {
+  Due first{never, Task::start_pieces};
+  const auto consider = [&first](double time, Task task) {
+    if (time < first.time) first = {time, task};
+  };
+  consider(scripts_.next_time(), Task::start_pieces);
+  consider(tumbling_.next_time(), Task::turn_on);
+  consider(pairs_.next_box_time(), Task::meet_boxes);
+  consider(volumes_.next_time(), Task::renew_volume);
+  consider(timers_.next_time(), Task::ring);
+  consider(walls_.next_time(), Task::meet_wall);
+  consider(resting_.next_time(), Task::end_resting);
+  consider(pairs_.next_time(), Task::meet_or_separate);
+  consider(self_contacts_.next_time(), Task::meet_itself);
+  return first;
+}
+
+/// If the time of a task is only a bound, its part finds the exact time; true if it was a bound.
+template <class Motion>
+bool Engine<Motion>::certify(Task task) {
+  return (task == Task::meet_or_separate && pairs_.certify()) || (task == Task::meet_wall && walls_.certify());
+}
+
+/// Whether a task is an event, which changes what can be observed.
+template <class Motion>
+bool Engine<Motion>::happens(Task task) const {
+  return task != Task::renew_volume || volumes_.from_caller(volumes_.next_body());
+}
+
+/// Does a task that is due. True if it ends a step.
+template <class Motion>
+bool Engine<Motion>::process(Task task) {
+  switch (task) {
+    case Task::start_pieces:
+      start_pieces();
+      return true;
+    case Task::turn_on:
+      turn_on();
+      return false;  // The report ends the step.
+    case Task::meet_boxes:
+      pairs_.process_boxes();
+      return false;
+    case Task::renew_volume: {
+      const BodySlot slot = volumes_.next_body();
+      update_volume(slot, volumes_.renew(slot));
+      return volumes_.from_caller(slot);
+    }
+    case Task::ring:
+      ring();
+      return true;
+    case Task::meet_wall:
+      process_wall();
+      return true;
+    case Task::end_resting:
+      resting_.process();
+      return false;
+    case Task::meet_or_separate:
+      process_meeting();
+      return true;
+    case Task::meet_itself:
+      process_self_contact();
+      return true;
+  }
+  return false;
+}
+
+template <class Motion>
+bool Engine<Motion>::next_event(double limit, Search search) {
+  const bool looks = search == Search::looks;
+  idle_until_ = -never;
+  idle_for_ever_ = false;
+  bool looked_ahead = false;
+  double reached = callers_now_;  // the clock if no event follows
+  // Where it is not known that anything will happen, the broad phase runs ahead of the clock.
+  double broad_phase_reached = clock_.now;
+  for (;;) {
+    if (bodies_.any_waits()) enter_new_bodies();
+    if (!resting_.solved()) resting_.solve();
+    if (!pairs_.tested()) pairs_.test();
+    const Due due = next_due();
+    // Pending work is of this instant: all that happens at it has to be known before any of it is reported.
+    const bool reports = !reports_.empty();
+    // Events beyond the horizon are not known: process up to it, then extend it.
+    const double next = std::min({reports ? clock_.now : limit, clock_.horizon, due.time});
+    const bool is_due = due.time == next && next < never;
+    if (is_due && certify(due.task)) continue;
+    // A piece that starts now is the motion at t+, so it starts before the broad phase runs past this time.
+    const bool piece = is_due && due.task <= Task::turn_on;
+    const double until = next == never ? broad_phase_->next_time() : piece ? next_down(next) : next;
+    if (until == never) {
+      clock_.now = std::max(clock_.now, broad_phase_reached);
+      go_back(reached);
+      idle_for_ever_ = true;
+      return false;
+    }
+    {
+      const Stopwatch watch(profile(), Work::sort);
+      if (next == never) broad_phase_reached = until;
+      if (broad_phase_->advance(until, pairs_) || next == never) continue;
+    }
+    clock_.now = std::max(clock_.now, next);
+    if (reports && !(is_due && due.task <= Task::meet_boxes)) {
+      if (!looks) report_next();
+      return true;
+    }
+    if (is_due) {
+      if (looks && happens(due.task)) return true;
+      if (process(due.task)) return true;
+      if (due.task == Task::end_resting) reached = clock_.now;
+    } else if (next < limit) {
+      // Without a limit: one window farther, and if nothing happens in that either, for all time.
+      set_horizon(limit == never && !looked_ahead ? clock_.horizon + options_.window : limit);
+      looked_ahead = true;
+    } else {
+      if (!looks) idle_until_ = std::min({clock_.horizon, due.time, broad_phase_->next_time()});
+      return false;
+    }
+  }
+}
+
+/// The result stays in queues and lists, like all that is known of later times.
+template <class Motion>
+double Engine<Motion>::next_time() {
+  require_idle("World::next_time");
+  if (next_time_ != -never) return next_time_;
+  if (clock_.now == callers_now_ && work_left()) return callers_now_;
+  if (clock_.horizon == never && options_.broad_phase == BroadPhaseKind::sap) {
+    throw std::invalid_argument("World::next_time: sweep and prune by frames has no last event, so it needs a window");
+  }
+  next_time_ = guarded_event(clock_.horizon, Search::looks) ? clock_.now : never;
+  return next_time_;
+}
+
+template <class Motion>
+void Engine<Motion>::process() {
+  const double t = next_time();
+  if (t < never) step(t);
+}
+
+template <class Motion>
+void Engine<Motion>::extend_horizon(double now, double horizon) {
+  require_idle("World::extend_horizon");
+  if (now > callers_now_) advance_to(now);
+  idle_until_ = next_time_ = -never;
+  idle_for_ever_ = false;
+  change_or_fail([&] { set_horizon(horizon); });
+}
+
+template <class Motion>
+void Engine<Motion>::advance_to(double t) {
+  require_idle("World::advance_to");
+  require_ahead("World::advance_to", t, callers_now_);
+  while (step(t)) {
+  }
+}
+
+template <class Motion>
+bool Engine<Motion>::advance_for(double budget_seconds, double t) {
+  using WallClock = std::chrono::steady_clock;
+  require_idle("World::advance_for");
+  require_ahead("World::advance_for", t, callers_now_);
+  if (!(budget_seconds >= 0)) {
+    throw std::invalid_argument("World::advance_for: a budget of " + std::to_string(budget_seconds) + " s is not >= 0");
+  }
+  const auto deadline = WallClock::now() + std::chrono::duration<double>(budget_seconds);
+  while (step(t)) {
+    if (WallClock::now() >= deadline) return false;
+  }
+  return true;
+}
+
+/// Starts all pieces that are due in one go: bodies that jump together are not apart in between.
+template <class Motion>
+void Engine<Motion>::start_pieces() {
+  auto pieces = scripts_.take_next();
+  std::vector<char> jumps;
+  for (auto& [slot, motion] : pieces) {
+    if (tumbling_.has(slot)) motion = tumbling_.take_up(slot, motion, clock_.now);
+    jumps.push_back(bodies_[slot].entered && bodies_.is_jump(slot, motion, clock_.now));
+    if (jumps.back()) resting_.drop_all(slot);
+    resting_.leave(slot);
+    bodies_.move(slot, motion);
+    bodies_.accelerate_freely(slot, motion);
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const BodySlot slot = pieces[i].slot;
+    if (bodies_[slot].entered) {
+      ++counters_.motion_updates;
+      set_motion(slot, pieces[i].motion, jumps[i]);
+      resting_.disturb(slot);
+    } else {
+      bodies_.wait(slot);
+    }
+    if (!options_.report_pieces) continue;
+    const BodyId id = bodies_.id_of(slot);
+    reports_.add(Reports::Kind::piece, id, id, {.time = clock_.now});
+  }
+}
+
+/// A piece of a body that precesses is over. The next begins where it ends, so nothing has jumped.
+template <class Motion>
+void Engine<Motion>::turn_on() {
+  const auto piece = tumbling_.take_next();
+  change_motion(piece.slot, piece.motion);
+}
+
+template <class Motion>
+void Engine<Motion>::ring() {
+  const TimerId timer = timers_.take_next();
+  tell([&](Listener& listener) { listener.timer(world_, timer); });
+}
+
+template <class Motion>
+void Engine<Motion>::report_next() {
+  const Reports::Report event = reports_.take_first();
+  const auto user_data = [this](BodyId id, std::uint64_t of_removed) {
+    return bodies_.contains(id) ? bodies_[body_slot(id)].user_data : of_removed;
+  };
+  const PairEvent pair{event.a, event.b, event.contact, user_data(event.a, event.user_data_a),
+                       user_data(event.b, event.user_data_b)};
+  switch (event.kind) {
+    case Reports::Kind::overlap:
+      ++counters_.overlaps;
+      return tell([&](Listener& listener) { listener.overlap(world_, pair); });
+    case Reports::Kind::separation:
+      ++counters_.separations;
+      return tell([&](Listener& listener) { listener.separation(world_, pair); });
+    case Reports::Kind::rebound_suppressed:
+      return tell([&](Listener& listener) { listener.rebound_suppressed(world_, pair); });
+    case Reports::Kind::wakes:
+    case Reports::Kind::rests:
+      return report_resting(event, pair);
+    case Reports::Kind::passes:
+      return tell([&](Listener& listener) { listener.passes(world_, pair); });
+    case Reports::Kind::moved:
+      return tell([&](Listener& listener) { listener.moved(world_, event.a); });
+    case Reports::Kind::piece:
+      return tell([&](Listener& listener) { listener.piece(world_, event.a); });
+    case Reports::Kind::pair_began:
+      return tell([&](Listener& listener) { listener.pair_began(world_, event.a, event.b, event.contact.time); });
+    case Reports::Kind::pair_ended:
+      return tell([&](Listener& listener) { listener.pair_ended(world_, event.a, event.b, event.contact.time); });
+  }
+}
+
+template <class Motion>
+void Engine<Motion>::report_resting(const Reports::Report& event, const PairEvent& pair) {
+  const bool begins = event.kind == Reports::Kind::rests;
+  if (event.wall >= 0) {
+    const WallEvent wall{event.a, event.wall, event.contact, pair.user_data_a};
+    return tell([&](Listener& listener) {
+      begins ? listener.rests_at_wall(world_, wall) : listener.wakes_at_wall(world_, wall);
+    });
+  }
+  tell([&](Listener& listener) { begins ? listener.rests(world_, pair) : listener.wakes(world_, pair); });
+}
+
+/// Callers have changed something, so the time until the next event has to be searched again. Edits by callbacks are
+/// counted, so that a run ends.
+template <class Motion>
+void Engine<Motion>::count_edit() {
+  idle_until_ = next_time_ = -never;
+  idle_for_ever_ = false;
+  if (stepping_)
+    edits_.count(clock_.now, options_.zeno.interval, std::max<std::uint64_t>(options_.most_edits, 64 * bodies_.size()));
+}
+
+#define KDS_INSTANTIATE(motion) template class Engine<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision

@@ -1,0 +1,289 @@
+// What a world does: its parts, its clock, and what follows from their events.
+#pragma once
+
+#include "collision/body_description.hpp"
+#include "collision/body_motion.hpp"
+#include "collision/broad_phase/broad_phase.hpp"
+#include "collision/narrow_phase/bending_contact.hpp"
+#include "collision/narrow_phase/contact.hpp"
+#include "collision/profile.hpp"
+#include "collision/response/free_rotation.hpp"
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/world/bodies.hpp"
+#include "collision/world/clock.hpp"
+#include "collision/world/edit_limit.hpp"
+#include "collision/world/pairs.hpp"
+#include "collision/world/reports.hpp"
+#include "collision/world/resting_contacts.hpp"
+#include "collision/world/scripts.hpp"
+#include "collision/world/self_contacts.hpp"
+#include "collision/world/timers.hpp"
+#include "collision/world/turning/tumbling.hpp"
+#include "collision/world/volumes.hpp"
+#include "collision/world/wall_times.hpp"
+#include "collision/world_counters.hpp"
+#include "collision/world_listener.hpp"
+#include "collision/world_options.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kds::collision {
+
+/// What is behind a BasicWorld (world.hpp, which documents the public functions): it owns the parts (docs/design.md),
+/// lets the one whose event is next process it, passes the consequences on to the others, and calls the listener.
+template <class BodyMotionType>
+class Engine final : private RestingListener<BodyMotionType> {
+ public:
+  using Motion = BodyMotionType;
+  using Description = BasicBodyDescription<Motion>;
+  using Listener = BasicWorldListener<Motion>;
+
+  /// `world` is what callbacks are given.
+  Engine(BasicWorld<Motion>& world, const WorldOptions& options, Listener* listener);
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  BodyId add_body(const Description& description);
+  void reserve(std::size_t bodies);
+  void remove_body(BodyId id);
+  void update_motion(BodyId id, std::span<const Motion> pieces);
+  void append_motion(BodyId id, std::span<const Motion> pieces);
+  void update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes);
+  void set_mass(BodyId id, double mass);
+  void set_restitution(BodyId id, double restitution);
+  void set_filter(BodyId id, std::uint32_t category, std::uint32_t collides_with);
+  void set_user_data(BodyId id, std::uint64_t user_data);
+  TimerId set_timer(double t);
+  bool cancel_timer(TimerId timer);
+
+  void advance_to(double t);
+  bool step(double limit);
+  bool advance_for(double budget_seconds, double t);
+  double next_time();
+  void process();
+  void extend_horizon(double now, double horizon);
+  void audit(double t) const;
+
+  double now() const { return stepping_ ? clock_.now : callers_now_; }
+  const Bodies<Motion>& bodies() const { return bodies_; }
+  Motion free_motion(BodyId id) const;
+  FreeTurning free_turning(BodyId id) const requires(turns<Motion>);
+  bool touching(BodyId a, BodyId b) const;
+  bool resting(BodyId a, BodyId b) const;
+  bool resting_at_wall(BodyId a, int wall) const;
+  WorldCounters counters() const;
+  std::string_view broad_phase() const { return broad_phase_->name(); }
+  const Profile& work_profile() const { return profile_; }
+
+  void visit_partners(BodyId id, BodyVisitor visit) const;
+  void visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max, BodyVisitor visit) const;
+  void visit_swept(const KineticBox<Motion::degree>& box, double until, BodyVisitor visit) const;
+
+  template <class Archive>
+  void archive(Archive& archive);
+
+ private:
+  using Body = detail::Body<Motion>;
+  using Mover = typename Bodies<Motion>::Mover;
+  using Entry = typename BroadPhase<Motion::degree>::Entry;
+  using Resting = RestingPart<Motion>;
+  using Begin = typename Pairs<Motion>::Begin;
+
+  // engine.cpp: the clock
+  /// The tasks of the parts of the world, in the order in which they are done if they are due at one time.
+  enum class Task {
+    start_pieces,      ///< scripts_
+    turn_on,           ///< tumbling_
+    meet_boxes,        ///< pairs_
+    renew_volume,      ///< volumes_
+    ring,              ///< timers_
+    meet_wall,         ///< walls_
+    end_resting,       ///< resting_
+    meet_or_separate,  ///< pairs_
+    meet_itself        ///< self_contacts_
+  };
+  struct Due {
+    double time;
+    Task task;
+  };
+  Due next_due() const;
+  bool certify(Task task);
+  bool happens(Task task) const;
+  bool process(Task task);
+  /// Whether the search for the next event processes it, or stops before it.
+  enum class Search { makes, looks };
+  bool next_event(double limit, Search search = Search::makes);
+  bool guarded_event(double limit, Search search);
+  bool work_left() const { return bodies_.any_waits() || !resting_.solved() || !pairs_.tested() || !reports_.empty(); }
+  void make_broad_phase();
+  void rebuild_broad_phase();
+  void set_horizon(double limit);
+  void go_back(double t);
+  void start_pieces();
+  void turn_on();
+  void ring();
+  void report_next();
+  void report_resting(const Reports::Report& event, const PairEvent& pair);
+  void count_edit();
+
+  // guards.cpp: what may be called when, and the state after an exception
+  [[noreturn]] void refuse(const char* function) const;
+  void require_whole(const char* function) const {
+    if (failure_) [[unlikely]]
+      refuse(function);
+  }
+  /// For functions that change bodies, which callbacks may call. `body`: the one that is removed, if one is.
+  void require_editable(const char* function, BodySlot body = no_body) {
+    if (failure_ || volumes_.calling()) [[unlikely]]
+      refuse(function);
+    if (bounced_ != no_body && bounced_ != body) change_or_fail([&] { take_up_bounce(); });
+    if (!stepping_ && clock_.now > callers_now_) [[unlikely]]
+      change_or_fail([&] { go_back(callers_now_); });
+  }
+  /// For functions that run, save or load the world.
+  void require_idle(const char* function) const {
+    if (failure_ || volumes_.calling() || stepping_) [[unlikely]]
+      refuse(function);
+  }
+  void note_failure();
+  /// Makes a change. An exception in the middle of it leaves the world broken.
+  template <class Change>
+  auto change_or_fail(const Change& change) {
+    try {
+      return change();
+    } catch (...) {
+      note_failure();
+      throw;
+    }
+  }
+  /// Calls the listener: in a step, when the world is consistent, which it still is if the listener throws.
+  template <class Call>
+  void tell(const Call& call) {
+    telling_ = true;
+    call(*listener_);
+    telling_ = false;
+    require_whole("World::step");  // The listener may have caught the exception of a change that it made.
+  }
+
+  // edits.cpp: bodies that are added and removed
+  BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape,
+               const std::optional<PrincipalInertia>& principal);
+  void make_room_for_meshes();
+  void enter_new_bodies();
+  void take_out(BodySlot slot);
+  void update_volume(BodySlot slot, const KineticBox<Motion::degree>& box);
+
+  // motion_edits.cpp: bodies that are moved
+  void require_clock_for(BodySlot slot, std::span<const Motion> pieces, const std::string& name) const;
+  void give(BodySlot slot, const Motion& motion);
+  void set_motion(BodySlot slot, const Motion& motion, bool jumped);
+
+  // property_edits.cpp: bodies whose properties change
+  void move_freely(BodySlot slot, const Motion& motion);
+
+  // response.cpp: what follows from contacts
+  void process_meeting();
+  PairEvent event_of(BodySlot a, BodySlot b, const Contact& contact) const {
+    return {bodies_.id_of(a), bodies_.id_of(b), contact, bodies_[a].user_data, bodies_[b].user_data};
+  }
+  void process_self_contact();
+  void process_contact(BodySlot a, BodySlot b, const Contact& contact);
+  void let_through(BodySlot a, BodySlot b, const Contact& contact);
+  std::uint64_t count_meeting(BodySlot a, BodySlot b);
+  std::uint64_t count_meeting(BodySlot slot);
+  std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
+
+  // bounces.cpp: of bodies that keep their orientation
+  /// Rate at which b parts from a along the normal just after the contact.
+  double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>);
+  void process_wall() requires(!turns<Motion>);
+  void bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>);
+  void take_up_bounce();
+  bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
+  bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>);
+  bool bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+                      std::uint64_t burst) requires(!turns<Motion>);
+  void begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
+  bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
+  bool endless(std::uint64_t burst) const;
+
+  // bending_bounces.cpp: of meshes that bend
+  bool bends(BodySlot slot) const { return bodies_[slot].shape && collision::bends(bodies_[slot].shape->shape); }
+  bool bends(BodySlot a, BodySlot b) const { return bends(a) || bends(b); }
+  SurfaceRate surface_rate(BodySlot slot, const Contact& contact, bool is_a) const requires(!turns<Motion>);
+  double least_rebound(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>);
+  void bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(!turns<Motion>);
+
+  // turning/turning_bounces.cpp: of bodies that turn
+  double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>);
+  double rebound(double approach, double pressed, double restitution) const requires(turns<Motion>);
+  void process_wall() requires(turns<Motion>);
+  bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
+  bool precesses(BodySlot slot) const { return tumbling_.has(slot) && !resting_.carries(slot); }
+  Motion met(BodySlot slot, double t) requires(turns<Motion>);
+  void turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
+                 const Contact& contact) requires(turns<Motion>);
+
+  /// A motion changes that is not one of the event's.
+  void change_motion(BodySlot slot, const Motion& motion);
+  // Reports of resting contacts (RestingListener).
+  void take_up(BodySlot slot, const Motion& motion) override;
+  void changed(BodySlot a, BodySlot b) override { pairs_.changed(a, b); }
+  void let_pass(BodySlot a, BodySlot b) override { pairs_.let_pass(a, b); }
+  void tell_rebound_suppressed(BodySlot a, BodySlot b) override;
+  void tell_resting(bool begins, const detail::RestingContact& contact) override;
+  void tell_passes(const detail::RestingContact& contact) override;
+  Contact contact_of(const detail::RestingContact& contact) const;
+
+  // near.cpp: queries
+  template <class Ask, class Meets>
+  void answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const;
+
+  // snapshot.cpp
+  struct Image;
+  Image image() const;
+  void become(const Image& image);
+
+  Profile* profile() { return options_.profile ? &profile_ : nullptr; }
+
+  BasicWorld<Motion>& world_;
+  const WorldOptions options_;
+  Listener* listener_;
+  Listener silent_;
+  Clock clock_;  ///< ahead of callers_now_ when next_time() has looked ahead
+  WorldCounters counters_;
+  Profile profile_;
+  // The parts, each with a state, a queue and laws of its own.
+  Bodies<Motion> bodies_;
+  Scripts<Motion> scripts_;
+  Timers timers_;
+  Tumbling<Motion> tumbling_;
+  Volumes<Motion> volumes_;
+  WallTimes<Motion> walls_;
+  Reports reports_;
+  Resting resting_;
+  Pairs<Motion> pairs_;
+  SelfContacts<Motion> self_contacts_;
+  std::unique_ptr<BroadPhase<Motion::degree>> broad_phase_;
+  EditLimit edits_;
+  double callers_now_;          ///< the clock as callers know it
+  double idle_until_ = -never;  ///< nothing is due before it; an edit resets it
+  bool idle_for_ever_ = false;  ///< no event comes at all; an edit resets it
+  double next_time_ = -never;   ///< the result of next_time(); -never if there is none
+  /// The body that has bounced off a wall and whose motion the parts have not taken up yet, while that is reported: it
+  /// is often removed then.
+  BodySlot bounced_ = no_body;
+  bool stepping_ = false;
+  bool telling_ = false;        ///< a listener is being told, or has thrown
+  std::exception_ptr failure_;  ///< the exception that has left the world broken
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,135 @@
+// How the motions of bodies are changed.
+#include "collision/motions.hpp"
+#include "collision/profile.hpp"
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/world/checked_pieces.hpp"
+#include "collision/world/engine.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace kds::collision {
+
+template <class Motion>
+void Engine<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
+  require_editable("World::update_motion");
+  const BodySlot slot = bodies_.slot_of(id);
+  const std::string name = "World::update_motion: motion";
+  if (pieces.empty()) throw std::invalid_argument(name + ": has no piece");
+  if (pieces.size() == 1 && !in_range(pieces[0])) refuse_motion(pieces[0], name);
+  require_pieces(pieces, name);
+  if (path_of(pieces[0]).start > clock_.now) {
+    throw std::invalid_argument("World::update_motion: the motion starts at " +
+                                std::to_string(path_of(pieces[0]).start) + ", after the clock at " +
+                                std::to_string(clock_.now));
+  }
+  require_clock_for(slot, pieces, name);
+  count_edit();
+  auto next = std::upper_bound(pieces.begin(), pieces.end(), clock_.now,
+                               [](double t, const Motion& piece) { return t < path_of(piece).start; });
+  change_or_fail([&] {
+    const Motion& now = *std::prev(next);
+    give(slot, tumbling_.has(slot) ? tumbling_.take_up(slot, now, clock_.now) : now);
+    scripts_.add(slot, {next, pieces.end()});
+  });
+}
+
+template <class Motion>
+void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
+  require_editable("World::append_motion");
+  const BodySlot slot = bodies_.slot_of(id);
+  const std::string name = "World::append_motion: motion";
+  require_pieces(pieces, name);
+  if (pieces.empty()) return;
+  const double last = std::max(scripts_.last_start(slot), clock_.now);
+  if (!(path_of(pieces[0]).start > last)) {
+    throw std::invalid_argument(name + "[0].start: " + std::to_string(path_of(pieces[0]).start) +
+                                " is not after the clock and the last piece, " + std::to_string(last));
+  }
+  require_clock_for(slot, pieces, name);
+  count_edit();
+  change_or_fail([&] { scripts_.append(slot, pieces); });
+}
+
+/// Of a body that precesses.
+template <class Motion>
+void Engine<Motion>::require_clock_for(BodySlot slot, std::span<const Motion> pieces, const std::string& name) const {
+  if constexpr (turns<Motion>) {
+    if (!tumbling_.has(slot)) return;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const std::string index = pieces.size() == 1 ? "" : "[" + std::to_string(i) + "]";
+      require_steady_clock(pieces[i], clock_.now, name + index);
+    }
+  }
+}
+
+template <class Motion>
+void Engine<Motion>::give(BodySlot slot, const Motion& motion) {
+  scripts_.clear(slot);
+  ++counters_.motion_updates;
+  bodies_.accelerate_freely(slot, motion);
+  if (!bodies_[slot].entered) {
+    bodies_.move(slot, motion);
+    if (!bodies_.waits(slot)) bodies_.wait(slot);
+    return;
+  }
+  const bool jumped = bodies_.is_jump(slot, motion, clock_.now);
+  if (jumped) resting_.drop_all(slot);
+  resting_.leave(slot);
+  set_motion(slot, motion, jumped);
+  resting_.disturb(slot);
+}
+
+template <class Motion>
+void Engine<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
+  require_editable("World::update_vertices");
+  const BodySlot slot = bodies_.slot_of(id);
+  if (!bends(slot)) {
+    throw std::invalid_argument("World::update_vertices: body " + std::to_string(id) + " is a " +
+                                kind_name(bodies_.shape(slot).shape) + ", which does not bend");
+  }
+  const PlacedShape& before = *bodies_[slot].shape;
+  const MeshScript& script = *std::get<BendingMesh>(before.shape).script;
+  PlacedShape after;
+  try {
+    const BendingMesh bent{std::make_shared<const MeshScript>(script.continued(clock_.now, std::move(keyframes)))};
+    after = place_turned(bent, before.rotation);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("World::update_vertices: ") + error.what());
+  }
+  count_edit();
+  change_or_fail([&] {
+    ++counters_.motion_updates;
+    bodies_.set_shape(slot, std::move(after));
+    volumes_.shape_changed(slot);
+    if (bodies_[slot].entered) set_motion(slot, bodies_.motion(slot), false);
+    self_contacts_.changed(slot);
+  });
+}
+
+template <class Motion>
+void Engine<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
+  const Stopwatch watch(profile(), Work::update);
+  bodies_.move(slot, motion);
+  pairs_.prefetch(slot);  // in parallel with the work of the broad phase
+  if (jumped) pairs_.set_begin(Begin::jumping);
+  if (bodies_.collides(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
+  pairs_.set_begin(Begin::moving);
+  pairs_.motion_changed(slot, jumped);
+  walls_.schedule(slot);
+  volumes_.schedule(slot);
+}
+
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision
