@@ -36,8 +36,8 @@ struct Scene {
   double end = 0;  ///< s; when the last way point of each is reached
 };
 
-/// A mast of lattice, 36 m high, on hilly ground, and drones that fly around it at 10 to 25 m/s for 20 s, each in a
-/// layer of heights of its own. The same number and seed give the same scene on every system.
+/// A mast of lattice, 36 m high, on hilly ground, and drones that fly around it for 20 s, at up to some 30 m/s, each in
+/// a layer of heights of its own. The same number and seed give the same scene on every system.
 Scene swarm_at_mast(std::size_t drones, std::uint64_t seed);
 
 /// Adds a cable of 4 mm radius beside the way of a drone, at right angles to it, so near that its middle line is 2 mm
