@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// Windows in a tick. More make more work for each object, fewer more pairs that have to be tested. For the 30 000
-/// objects of docs/conjunctions.md 3 to 5 take about the same time.
+/// objects of docs/conjunctions.md 2 to 5 take about the same time.
 constexpr int windows_a_tick = 4;
 
 /// Added to distances that are compared in doubles, km: coordinates up to 10^5 km and a few operations with them err by

@@ -79,8 +79,8 @@ std::optional<Meeting> first_meeting(const Scene& scene, double margin) {
   while (!meeting.found && world.step(scene.end)) {
   }
   if (!meeting.found) return std::nullopt;
-  const auto& [a, b, contact] = *meeting.found;
-  return Meeting{contact.time, name(scene, a), name(scene, b), contact.point};
+  const PairEvent& event = *meeting.found;
+  return Meeting{event.contact.time, name(scene, event.a), name(scene, event.b), event.contact.point};
 }
 
 std::optional<Clearance> least_clearance(const Scene& scene, double most, double resolution) {
