@@ -48,8 +48,7 @@ void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
     return std::find(jumped_.begin(), jumped_.end(), body) != jumped_.end();
   };
   const bool jumps = begin_ == Begin::jumping || (t == jumped_at_ && (has_jumped(a) || has_jumped(b)));
-  const bool newly_allowed =
-      begin_ == Begin::filtering && !filter_before_.meets(bodies_.filter(a == filtered_ ? b : a));
+  const bool newly_allowed = t == filtered_at_ && !could_always_collide(a, b);
   const bool fresh = begin_ == Begin::entering || newly_allowed || (jumps && mode(a, b) == ContactMode::resolved);
   pair.fresh = pair.fresh || fresh;
   ++counters_.pairs_begun;
@@ -207,13 +206,32 @@ void Pairs<Motion>::remove(BodySlot id) {
 
 template <class Motion>
 void Pairs<Motion>::filter_changed(BodySlot id, const CollisionFilter& before) {
-  filtered_ = id, filter_before_ = before;
-  const auto left = links(id);
+  if (filtered_at_ != clock_.now) filtered_.clear();
+  filtered_at_ = clock_.now;
+  filtered_.emplace_back(id, before.number());
   std::vector<Slot> over;
-  for (const Link& link : left) {
+  for (const Link& link : links(id)) {
     if (!bodies_.may_collide(id, link.other)) over.push_back(link.slot);
   }
   for (const Slot slot : over) end(slot);
+}
+
+/// Whether all the filters that the two have had at filtered_at_ let them collide.
+template <class Motion>
+bool Pairs<Motion>::could_always_collide(BodySlot a, BodySlot b) const {
+  const auto filters = [this](BodySlot id) {
+    std::vector<CollisionFilter> had{bodies_.filter(id)};
+    for (const auto& [body, filter] : filtered_) {
+      if (body == id) had.emplace_back(filter);
+    }
+    return had;
+  };
+  const auto of_b = filters(b);
+  const auto meets_all = [&](const CollisionFilter& of_a) {
+    return std::all_of(of_b.begin(), of_b.end(), [&](const CollisionFilter& filter) { return of_a.meets(filter); });
+  };
+  const auto of_a = filters(a);
+  return std::all_of(of_a.begin(), of_a.end(), meets_all);
 }
 
 template <class Motion>

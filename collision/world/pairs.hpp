@@ -99,11 +99,11 @@ class Pairs final : public PairListener {
 
   /// The change of bodies during which pairs begin. A body that enters may overlap others from the start; so may one
   /// that jumps, but if they pass through each other that is a contact.
-  enum class Begin { moving, jumping, entering, filtering };
+  enum class Begin { moving, jumping, entering };
   void set_begin(Begin begin) { begin_ = begin; }
   /// A body has another filter than before, and the broad phase, which has ended its pairs, is about to begin them
-  /// anew, `filtering`: of pairs that could not collide before the bodies may overlap from the start. Those that may
-  /// not collide any more end.
+  /// anew. Those that may not collide any more end; of those that could not collide before the bodies may overlap from
+  /// the start.
   void filter_changed(BodySlot id, const CollisionFilter& before);
 
   /// A body has another motion, or has jumped. prefetch() may be called before.
@@ -154,6 +154,9 @@ class Pairs final : public PairListener {
   /// penetrate or are about to separate at this instant.
   void audit(double t) const;
 
+  /// A body, and the number of a filter that it had.
+  using Filtered = std::pair<BodySlot, std::uint64_t>;
+
   /// All of it, as plain data, in the order of (a, b).
   struct Image {
     struct One {
@@ -162,7 +165,8 @@ class Pairs final : public PairListener {
       double boxes = never;
     };
     std::vector<One> pairs;
-    std::vector<BodySlot> jumped;  ///< bodies that have jumped at this instant, ascending
+    std::vector<BodySlot> jumped;    ///< bodies that have jumped at this instant, ascending
+    std::vector<Filtered> filtered;  ///< and that have had other filters at this instant
 
     template <class Archive>
     void archive(Archive& archive);
@@ -190,6 +194,7 @@ class Pairs final : public PairListener {
   Slot find(BodySlot a, BodySlot b) const;
   Slot add(BodySlot a, BodySlot b);
   void link(Slot slot, std::uint32_t first_room = first_pairs);
+  bool could_always_collide(BodySlot a, BodySlot b) const;
   void unlist(Slot slot);
   void end(Slot slot);
   void release(Slot slot);
@@ -233,11 +238,12 @@ class Pairs final : public PairListener {
   bool follows_boxes_ = false;                ///< whether it has to find by itself when boxes meet and part
   bool exact_ = false;
   Begin begin_ = Begin::moving;
-  BodySlot filtered_ = no_body;  ///< where pairs begin by `filtering`
-  CollisionFilter filter_before_{0, 0};
   /// Bodies that have jumped at jumped_at_: a pair that the broad phase finds later at that instant begins by the jump.
   std::vector<BodySlot> jumped_;
   double jumped_at_ = -never;
+  /// The same of bodies that have had other filters at filtered_at_, and those filters.
+  std::vector<Filtered> filtered_;
+  double filtered_at_ = -never;
 };
 
 // Functions for a change of motion or a contact are in the header: each is a few instructions for a pair, in the
@@ -266,7 +272,8 @@ inline void Pairs<Motion>::motion_changed(BodySlot id, bool jumped) {
   jumped_at_ = clock_.now;
   jumped_.push_back(id);
   for (const Link& link : links(id)) {
-    if (mode(id, link.other) == ContactMode::resolved) pairs_[link.slot].fresh = true;
+    const bool newly_allowed = filtered_at_ == clock_.now && !could_always_collide(id, link.other);
+    if (newly_allowed || mode(id, link.other) == ContactMode::resolved) pairs_[link.slot].fresh = true;
   }
 }
 

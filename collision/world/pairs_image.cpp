@@ -25,6 +25,7 @@ typename Pairs<Motion>::Image Pairs<Motion>::image() const {
     std::sort(image.jumped.begin(), image.jumped.end());
     image.jumped.erase(std::unique(image.jumped.begin(), image.jumped.end()), image.jumped.end());
   }
+  if (filtered_at_ == clock_.now) image.filtered = filtered_;
   return image;
 }
 
@@ -36,6 +37,8 @@ void Pairs<Motion>::become(const Image& image) {
   begin_ = Begin::moving;
   jumped_ = image.jumped;
   jumped_at_ = jumped_.empty() ? -never : clock_.now;
+  filtered_ = image.filtered;
+  filtered_at_ = filtered_.empty() ? -never : clock_.now;
   contacts_.resize(0), boxes_.resize(0);
   contacts_.resize(image.pairs.size());
   if (follows_boxes_) boxes_.resize(image.pairs.size());
@@ -60,6 +63,7 @@ void Pairs<Motion>::Image::archive(Archive& archive) {
             one.boxes);
   });
   archive(jumped);
+  archive.each(filtered, [&](Filtered& one) { archive(one.first, one.second); });
 }
 
 template <class Motion>

@@ -68,11 +68,9 @@ void Engine<Motion>::set_filter(BodyId id, std::uint32_t category, std::uint32_t
     bodies_.set_filter(slot, after);
     pairs_.filter_changed(slot, before);
     if (bodies_.collides(slot)) {
-      pairs_.set_begin(Begin::filtering);
       const KineticBox<Motion::degree> box = volumes_.renew(slot);
       const Entry entry{slot, &box};
       broad_phase_->insert({&entry, 1}, clock_.now, pairs_);
-      pairs_.set_begin(Begin::moving);
     }
     volumes_.schedule(slot);
     if (resting_.drop_filtered(slot)) move_freely(slot, free);

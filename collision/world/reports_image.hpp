@@ -35,7 +35,8 @@ void check_reports(const std::vector<Reports::Report>& pending, const BodiesImag
     const bool resting = event.kind == Kind::rests || event.kind == Kind::wakes;
     need(event.wall == -1 || (resting && event.wall >= 0 && event.wall < 6), "is at no wall");
     if (event.kind == Kind::moved || event.kind == Kind::piece || event.wall >= 0) {
-      const bool known = bodies.present(event.a) || (event.kind == Kind::wakes && bodies.removed(event.a));
+      const bool known = bodies.present(event.a) || (event.kind == Kind::wakes && bodies.removed(event.a)) ||
+                         (event.kind == Kind::piece && bodies.there(event.a));
       need(known && event.b == event.a, "is not of a body in the world");
     } else {
       const bool itself = event.a == event.b && (event.kind == Kind::overlap || event.kind == Kind::separation);

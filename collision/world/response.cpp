@@ -53,6 +53,7 @@ void Engine<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& cont
   }
   const auto after = [&] {
     if (!bodies_.contains(event.a) || !bodies_.contains(event.b) || resting_.find(a, b) != Resting::none) return;
+    if (!bodies_.may_collide(a, b)) return;  // any more
     // A pair that still approaches (two fixed bodies, or a callback that left them so) passes through. So does one with
     // a mesh that bends if nothing has changed: contact is within a tolerance, and would be found again.
     const bool again = before && *before == state();

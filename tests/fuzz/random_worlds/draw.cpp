@@ -141,6 +141,21 @@ BodyPlan draw_body(Random& random, const Style& style) {
   return body;
 }
 
+Call draw_call(Random& random, const Style& style, std::size_t bodies) {
+  using enum Call::Kind;
+  constexpr std::array kinds{remove, move, move, turn_back, keep, follow, away_and_back, filter, weigh, append, ring};
+  Call call;
+  call.kind = kinds[random.below(kinds.size())];
+  call.body = random.below(bodies);
+  call.other = random.below(bodies);
+  call.path = draw_path(random, style);
+  call.seconds = draw_seconds(random, style);
+  call.mass = 0.5 * random.integer(1, 8);
+  call.category = static_cast<std::uint32_t>(random.integer(0, 3));
+  call.collides_with = random.one_in(2) ? ~0u : static_cast<std::uint32_t>(random.integer(0, 3));
+  return call;
+}
+
 double draw_seconds(Random& random, const Style& style) {
   return style.numbers == Numbers::fine ? random.between(0, 0.75) : 0.125 * random.integer(0, 6);
 }

@@ -4,6 +4,7 @@
 #include "tests/fuzz/random_worlds/scenario.hpp"
 #include "tests/support/random_numbers.hpp"
 
+#include <cstddef>
 #include <cstdint>
 
 namespace kds::fuzz {
@@ -35,6 +36,8 @@ struct Style {
 Style draw_style(Random& random, Response response);
 Path draw_path(Random& random, const Style& style);
 BodyPlan draw_body(Random& random, const Style& style);
+/// A call of any kind that changes one of so many bodies.
+Call draw_call(Random& random, const Style& style, std::size_t bodies);
 /// A span of time to advance by, often none.
 double draw_seconds(Random& random, const Style& style);
 

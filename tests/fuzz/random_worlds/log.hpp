@@ -34,6 +34,8 @@ struct Line {
     wakes_at_wall,
     passes,
     moved,
+    piece,
+    timer,
     thrown,  ///< by a call; `text` is what it says
     state,   ///< behind an advance: `text` says the clock, where the bodies are, and who touches and rests
   };
@@ -58,6 +60,8 @@ inline constexpr std::string_view line_names[] = {"contact",
                                                   "wakes_at_wall",
                                                   "passes",
                                                   "moved",
+                                                  "piece",
+                                                  "timer",
                                                   "thrown",
                                                   "state"};
 

@@ -21,23 +21,11 @@ void add(Scenario& scenario, const BodyPlan& body) {
 
 std::size_t any_body(Random& random, const Scenario& scenario) { return random.below(scenario.bodies.size()); }
 
-/// One that has come lately, as a rule: those of the start may be gone.
-Call call_on_a_body(Random& random, const Scenario& scenario, const Style& style) {
-  using enum Call::Kind;
-  constexpr std::array kinds{remove, move, move, turn_back, keep, follow, away_and_back};
-  Call call;
-  call.kind = kinds[random.below(kinds.size())];
-  call.body = any_body(random, scenario);
-  call.other = any_body(random, scenario);
-  call.path = draw_path(random, style);
-  return call;
-}
-
 /// What is done from outside between two advances.
 void edit(Random& random, const Style& style, Size size, Scenario& scenario) {
   if (size == Size::few) {
     if (random.one_in(3)) add(scenario, draw_body(random, style));
-    if (random.one_in(3)) scenario.calls.push_back(call_on_a_body(random, scenario, style));
+    if (random.one_in(3)) scenario.calls.push_back(draw_call(random, style, scenario.bodies.size()));
     if (random.one_in(6)) {  // an id that is given again at once
       scenario.calls.push_back({.kind = Call::Kind::remove, .body = any_body(random, scenario)});
       add(scenario, draw_body(random, style));
@@ -78,6 +66,7 @@ void draw_options(Random& random, const Style& style, Scenario& scenario) {
   scenario.walls = random.one_in(2);
   scenario.wall = {style.reach + 2, restitutions[random.below(restitutions.size())]};
   scenario.report_pairs = random.one_in(3);
+  scenario.report_pieces = random.one_in(2);
   scenario.unit = units[random.below(units.size())];
   scenario.start_time = starts[random.below(starts.size())];
   scenario.zeno_interval = intervals[random.below(intervals.size())];

@@ -41,7 +41,8 @@ template <int Degree>
 void Player<Degree>::note(Line::Kind kind, BodyId a, BodyId b, const Contact& contact) {
   log_.push_back({kind, a, b, contact, {}});
   const bool of_a_wall = is_of_a_wall(kind);
-  const EventKey event{static_cast<std::uint8_t>(kind), number_of(a), of_a_wall ? b : number_of(b), 0};
+  const std::size_t of = kind == Line::Kind::timer ? a : number_of(a);
+  const EventKey event{static_cast<std::uint8_t>(kind), of, of_a_wall ? b : number_of(b), 0};
   const Line line = log_.back();  // the log may move
   for (const Call& each : reactor_.react(line, event, bodies_)) call(each, &line.contact);
 }
@@ -95,6 +96,7 @@ WorldOptions Player<Degree>::options(BroadPhaseKind broad_phase) const {
   result.rate = broad_phase == BroadPhaseKind::sap ? way_.rate : 0;
   result.kdop = broad_phase == BroadPhaseKind::kinetic_sap ? way_.kdop : 6;
   result.report_pairs = scenario_.report_pairs;
+  result.report_pieces = scenario_.report_pieces;
   result.threads = way_.threads;
   result.zeno = {scenario_.zeno_contacts, scenario_.zeno_interval};
   result.most_edits = most_edits;

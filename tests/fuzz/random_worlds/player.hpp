@@ -47,6 +47,11 @@ class Player final : public collision::WorldListener<Degree> {
   void pair_ended(World&, BodyId a, BodyId b, double t) override { note(Line::Kind::pair_ended, a, b, {.time = t}); }
   void moved(World& world, BodyId a) override { note(Line::Kind::moved, a, 0, {.time = world.now()}); }
 
+  void piece(World& world, BodyId a) override { note(Line::Kind::piece, a, 0, {.time = world.now()}); }
+  void timer(World& world, collision::TimerId timer) override {
+    note(Line::Kind::timer, timer, 0, {.time = world.now()});
+  }
+
   void note(Line::Kind kind, BodyId a, BodyId b, const Contact& contact);
   void note_wall(Line::Kind kind, const WallEvent& e) { note(kind, e.body, e.wall, e.contact); }
   void note_thrown(const char* what);
@@ -61,6 +66,7 @@ class Player final : public collision::WorldListener<Degree> {
   void call_from_outside(const Call& call);
   void call(const Call& call, const Contact* contact);
   void add(std::size_t body);
+  void append(BodyId id, const Call& call);
   void push_off(std::size_t body, const Vector3d& normal);
   void must_be_refused(const Call& call);
   void advance(double seconds);

@@ -60,6 +60,18 @@ void Player<Degree>::call(const Call& call, const Contact* contact) {
       world.update_motion(id, same);
       return;
     }
+    case Call::Kind::filter:
+      if (id != gone) world.set_filter(id, call.category, call.collides_with);
+      return;
+    case Call::Kind::weigh:
+      if (id != gone && !world.fixed(id)) world.set_mass(id, call.mass);
+      return;
+    case Call::Kind::append:
+      if (moves) append(id, call);
+      return;
+    case Call::Kind::ring:
+      world.set_timer(world.now() + call.seconds);
+      return;
     case Call::Kind::push_off:
       if (!contact) return;
       push_off(call.body, -contact->normal);
@@ -91,6 +103,17 @@ void Player<Degree>::push_off(std::size_t body, const Vector3d& normal) {
   Motion away = world_->free_motion(id).restarted(world_->now());
   away.coefficients[1] = scenario_.unit * normal;
   world_->update_motion(id, away);
+}
+
+template <int Degree>
+void Player<Degree>::append(BodyId id, const Call& call) {
+  Path path = call.path;
+  path.start = call.seconds;
+  const Motion piece = motion(path);
+  try {
+    world_->append_motion(id, {&piece, 1});
+  } catch (const std::invalid_argument&) {  // the script goes on until later
+  }
 }
 
 template <int Degree>

@@ -42,6 +42,21 @@ void print_call(const Scenario& scenario, const Call& call, const char* indent) 
     case Call::Kind::follow:
       text += ", " + std::to_string(call.other);
       break;
+    case Call::Kind::filter:
+      text += ", " + std::to_string(call.category) + "u, " + std::to_string(call.collides_with) + "u";
+      break;
+    case Call::Kind::weigh:
+      text += ", " + number(call.mass);
+      break;
+    case Call::Kind::append: {
+      Path later = call.path;
+      later.start = call.seconds;
+      text += ", " + path(later);
+      break;
+    }
+    case Call::Kind::ring:
+      text = "ring(" + number(call.seconds);
+      break;
     case Call::Kind::push_off:
       text += ", -c.normal";
       if (call.other != call.body) text += "), p.push_off(" + std::to_string(call.other) + ", c.normal";
@@ -134,7 +149,8 @@ void print_options(const Scenario& scenario, const Way& way) {
   constexpr std::array responses{"none", "elastic", "callback"};
   std::printf("  p.options.start_time = %s;\n  p.options.response = Response::%s;\n",
               number(scenario.start_time).c_str(), responses[static_cast<std::size_t>(scenario.response)]);
-  std::printf("  p.options.report_pairs = %d;\n", static_cast<int>(scenario.report_pairs));
+  std::printf("  p.options.report_pairs = %d;\n  p.options.report_pieces = %d;\n",
+              static_cast<int>(scenario.report_pairs), static_cast<int>(scenario.report_pieces));
   std::printf("  p.options.zeno = {%u, %a};\n  p.options.most_edits = 300;\n", scenario.zeno_contacts,
               scenario.zeno_interval);
   std::printf("  p.length = %a;\n  p.fixed_bodies_move = %d;\n", scenario.unit,

@@ -62,6 +62,12 @@ struct Player : WorldListener<Degree> {
   void pair_began(W&, BodyId a, BodyId b, double t) override { note("pair_began", a, b, number[b], {.time = t}); }
   void pair_ended(W&, BodyId a, BodyId b, double t) override { note("pair_ended", a, b, number[b], {.time = t}); }
   void moved(W& w, BodyId a) override { note("moved", a, 0, number[0], {.time = w.now()}); }
+  void piece(W& w, BodyId a) override { note("piece", a, 0, number[0], {.time = w.now()}); }
+  void timer(W& w, TimerId timer) override {
+    log.push_back("timer " + std::to_string(timer));
+    react("timer", static_cast<int>(timer), number[0], counts[{"timer", static_cast<int>(timer), number[0]}]++,
+          {.time = w.now()});
+  }
 
   Motion path(double start, Vector3d place, Vector3d velocity, [[maybe_unused]] Vector3d half_acceleration) {
     Motion m;
@@ -95,6 +101,18 @@ struct Player : WorldListener<Degree> {
     m.coefficients[1] = length * velocity;
     move(n, m);
   }
+  void filter(int n, std::uint32_t category, std::uint32_t with) {
+    if (there(n)) world->set_filter(id[n], category, with);
+  }
+  void weigh(int n, double mass) { if (there(n) && !world->fixed(id[n])) world->set_mass(id[n], mass); }
+  void append(int n, const Motion& piece) {
+    if (!moves(n)) return;
+    try {
+      world->append_motion(id[n], {&piece, 1});
+    } catch (const std::invalid_argument&) {
+    }
+  }
+  void ring(double seconds) { world->set_timer(world->now() + seconds); }
   void fail() { throw std::runtime_error("a callback throws"); }
   void save_and_load() {
     const auto saved = kds::save(*world);

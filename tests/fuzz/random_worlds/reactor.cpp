@@ -16,7 +16,9 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
   return hash ^ (hash >> 29);
 }
 
-bool is_of_two_bodies(Line::Kind kind) { return !is_of_a_wall(kind) && kind != Line::Kind::moved; }
+bool is_of_two_bodies(Line::Kind kind) {
+  return !is_of_a_wall(kind) && kind != Line::Kind::moved && kind != Line::Kind::piece && kind != Line::Kind::timer;
+}
 
 EventKey counted(const EventKey& event, std::map<EventKey, std::size_t>& counts) {
   EventKey result = event;
@@ -24,11 +26,11 @@ EventKey counted(const EventKey& event, std::map<EventKey, std::size_t>& counts)
   return result;
 }
 
-Call::Kind draw_kind(Random& random) {
+/// Some are not for one of the bodies that are there.
+Call::Kind draw_kind(Random& random, Call::Kind kind) {
   using enum Call::Kind;
   if (random.one_in(one_is_refused_in)) return std::array{advance, save, fail}[random.below(3)];
-  constexpr std::array kinds{add, remove, move, turn_back, keep, follow, away_and_back};
-  return kinds[random.below(kinds.size())];
+  return random.one_in(8) ? add : kind;
 }
 
 }  // namespace
@@ -51,12 +53,10 @@ std::vector<Call> RandomReactor::react(const Line& line, const EventKey& event, 
   Random random(hash);
   for (std::size_t n = 1 + random.below(most_calls); n > 0; --n) {
     const auto one_of_the_event = [&] { return is_of_two_bodies(line.kind) && random.one_in(2) ? event.b : event.a; };
-    Call call;
-    call.kind = draw_kind(random);
-    call.body = random.one_in(2) ? one_of_the_event() : random.below(bodies.size());
-    call.other = random.one_in(2) ? one_of_the_event() : random.below(bodies.size());
-    call.path = draw_path(random, style_);
-    call.seconds = draw_seconds(random, style_);
+    Call call = draw_call(random, style_, bodies.size());
+    call.kind = draw_kind(random, call.kind);
+    if (random.one_in(2)) call.body = one_of_the_event();
+    if (random.one_in(2)) call.other = one_of_the_event();
     if (call.kind == add) {
       // In place of another one, whose id it then gets.
       if (random.one_in(2)) calls.push_back({.kind = remove, .body = call.body});

@@ -31,7 +31,7 @@ struct BodyPlan {
   ShapeKind shape = ShapeKind::ball;
   Vector3d size = Vector3d::Ones();  ///< radius in [0], half extents (of a hull: of the box that it is cut from), scale
                                      ///< of the mesh in [0], or radius and half length
-  std::size_t mesh = 0;  ///< of sample_meshes()
+  std::size_t mesh = 0;              ///< of sample_meshes()
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   std::vector<Path> pieces{Path{}};
   double mass = 1;
@@ -56,6 +56,10 @@ struct Call {
     keep,           ///< `body` is given the motion that it has
     follow,         ///< `body` is put where `other` is, with its motion
     away_and_back,  ///< `body` jumps to `path` and back at once
+    filter,         ///< `body` gets `category` and `collides_with`
+    weigh,          ///< `body` gets `mass`
+    append,         ///< `body` gets `path` as a further piece, `seconds` from now, if its script ends before
+    ring,           ///< a timer is set, `seconds` from now
     push_off,       ///< in a callback alone: both bodies leave each other along the normal, `body` in any case
     advance,        ///< up to `seconds` from now; in a callback it must be refused
     save,           ///< in a callback alone: it must be refused
@@ -66,10 +70,14 @@ struct Call {
   std::size_t other = 0;
   Path path{};
   double seconds = 0;
+  double mass = 1;
+  std::uint32_t category = 1;
+  std::uint32_t collides_with = ~0u;
 };
 
-inline constexpr std::string_view call_names[] = {"add",           "remove",   "move",    "turn_back", "keep", "follow",
-                                                  "away_and_back", "push_off", "advance", "save",      "fail"};
+inline constexpr std::string_view call_names[] = {"add",    "remove",        "move",    "turn_back", "keep",
+                                                  "follow", "away_and_back", "filter",  "weigh",     "append",
+                                                  "ring",   "push_off",      "advance", "save",      "fail"};
 
 /// Which event of a log: the `count`th of its kind and bodies.
 struct EventKey {
@@ -99,6 +107,7 @@ struct Scenario {
   bool walls = false;
   WallPlan wall;
   bool report_pairs = false;
+  bool report_pieces = false;
   double start_time = 0;
   double unit = 1;  ///< all lengths are multiplied by it
   std::uint32_t zeno_contacts = 100;
