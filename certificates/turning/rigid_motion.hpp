@@ -35,7 +35,8 @@ struct RigidMotion {
   static_assert(Degree == 1 || Degree == 2);
   static constexpr int degree = Degree;
 
-  PointMotion<Degree> path;  ///< of the origin of the body; its start is that of the turning too
+  /// Of the origin of the body, which stays at zero by default; its start is that of the turning too.
+  PointMotion<Degree> path{{Eigen::Vector3d::Zero()}};
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< q, at the start
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();       ///< W, rad/s, in the axes of the world
 

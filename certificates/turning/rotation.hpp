@@ -2,12 +2,15 @@
 #pragma once
 
 #include "certificates/vectors.hpp"
+#include "kds/simd/four_doubles.hpp"
 #include "kds/turning/spin.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace kds::certificates {
@@ -48,6 +51,35 @@ class Rotation {
       y += sine_ * p + versine_ * cross(axis_, p);
     }
     return y;
+  }
+
+  /// Where the three axes of the body point to: the same bits as of each by itself.
+  Eigen::Matrix3d matrix() const {
+    using Columns = std::array<FourDoubles, 3>;  // coordinate by coordinate; the fourth lane is not used
+    const auto crossed = [](const Eigen::Vector3d& v, const Columns& x) {
+      const FourDoubles v0(v[0]), v1(v[1]), v2(v[2]);
+      return Columns{v1 * x[2] - v2 * x[1], v2 * x[0] - v0 * x[2], v0 * x[1] - v1 * x[0]};
+    };
+    Columns y{FourDoubles(1, 0, 0, 0), FourDoubles(0, 1, 0, 0), FourDoubles(0, 0, 1, 0)};
+    const auto turn = [&](const Eigen::Vector3d& v, const auto& part) {
+      const Columns p = crossed(v, y), h = crossed(v, p);
+      for (std::size_t d = 0; d < 3; ++d) y[d] = y[d] + part(p[d], h[d]);
+    };
+    if (!upright_) {
+      const FourDoubles scale(scale_), w(w_);
+      turn(v_, [&](const FourDoubles& p, const FourDoubles& h) { return scale * (w * p + h); });
+    }
+    if (turned_) {
+      const FourDoubles sine(sine_), versine(versine_);
+      turn(axis_, [&](const FourDoubles& p, const FourDoubles& h) { return sine * p + versine * h; });
+    }
+    Eigen::Matrix3d columns;
+    for (std::size_t d = 0; d < 3; ++d) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        columns(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(k)) = y[d][k];
+      }
+    }
+    return columns;
   }
 
   /// Each coordinate, and the whole vector, is off by at most this times magnitude_sum(b), plus 2^-600.

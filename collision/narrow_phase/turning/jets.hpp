@@ -30,6 +30,12 @@ struct VectorJet {
   Eigen::Vector3d rate;
   Eigen::Vector3d bend;
 
+  friend VectorJet operator+(const VectorJet& a, const VectorJet& b) {
+    return {a.value + b.value, a.rate + b.rate, a.bend + b.bend};
+  }
+  friend VectorJet operator-(const VectorJet& a, const VectorJet& b) {
+    return {a.value - b.value, a.rate - b.rate, a.bend - b.bend};
+  }
   friend VectorJet operator*(double factor, const VectorJet& a) {
     return {factor * a.value, factor * a.rate, factor * a.bend};
   }

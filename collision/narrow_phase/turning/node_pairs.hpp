@@ -1,4 +1,4 @@
-// Pairs of nodes of the trees of two bodies that turn: how they are opened, and taken four at a time.
+// Pairs of nodes of the trees of two bodies that turn: how they are opened, and taken eight at a time.
 #pragma once
 
 #include "collision/narrow_phase/turning/turning_mesh_sides.hpp"
@@ -20,12 +20,11 @@ struct NodePair {
   friend auto operator<=>(const NodePair&, const NodePair&) = default;
 };
 
-/// Up to four of a list, and the nodes to look at; where there are less the last one more than once.
+/// Some of a list, and the nodes to look at.
 template <class Item>
-struct FourOf {
-  std::array<Item, 4> items;
-  FourNodes a, b;
-  std::size_t count;
+struct ItemsTogether {
+  std::array<Item, std::size_t{most_together}> items;
+  NodesTogether nodes;
 };
 
 /// The pairs of nodes of a mesh (a) and a MeshOfPair, BoxOfPair, BallOfPair or CapsuleOfPair (b). Refers to both.
@@ -48,28 +47,36 @@ class NodePairs {
     }
   }
 
-  /// Calls take(pair) for up to four pairs that are all there is, below the roots: to look at four costs as much as to
-  /// look at one.
+  /// Calls take(pair) for up to eight pairs that are all there is, below the roots: to look at eight costs as much as
+  /// to look at one.
   template <class Take>
-  void first_four(const Take& take) const {
-    const auto take_halves = [&](NodePair halves) { are_leaves(halves) ? take(halves) : open(halves, take); };
-    are_leaves({0, 0}) ? take(NodePair{0, 0}) : open({0, 0}, take_halves);
+  void first(const Take& take, int levels = 3) const {
+    first({0, 0}, levels, take);
   }
 
   /// Takes them from the end of a list that is not empty. nodes_of(item): its pair of nodes.
   template <class Item, class NodesOf>
-  FourOf<Item> take_four(std::vector<Item>& list, const NodesOf& nodes_of) const {
-    FourOf<Item> four{{}, {}, {}, std::min<std::size_t>(4, list.size())};
-    for (std::size_t i = 0; i < 4; ++i) {
-      four.items[i] = list[list.size() - std::min(i + 1, four.count)];
-      const NodePair& nodes = std::invoke(nodes_of, four.items[i]);
-      four.a[i] = &a_.node(nodes.a), four.b[i] = &b_.node(nodes.b);
+  ItemsTogether<Item> take_together(std::vector<Item>& list, const NodesOf& nodes_of) const {
+    ItemsTogether<Item> together;
+    const std::size_t count = std::min(list.size(), together.items.size());
+    together.nodes.count = static_cast<int>(count);
+    for (std::size_t i = 0; i < together.items.size(); ++i) {
+      const Item& item = list[list.size() - std::min(i + 1, count)];
+      if (i < count) together.items[i] = item;
+      const NodePair& nodes = std::invoke(nodes_of, item);
+      together.nodes.a[i] = numbers_of(a_.node(nodes.a)), together.nodes.b[i] = numbers_of(b_.node(nodes.b));
     }
-    list.resize(list.size() - four.count);
-    return four;
+    list.resize(list.size() - count);
+    return together;
   }
 
  private:
+  template <class Take>
+  void first(NodePair nodes, int levels, const Take& take) const {
+    if (levels == 0 || are_leaves(nodes)) return take(nodes);
+    open(nodes, [&](NodePair halves) { first(halves, levels - 1, take); });
+  }
+
   const MeshOfPair& a_;
   const Side& b_;
 };

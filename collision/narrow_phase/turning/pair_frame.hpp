@@ -45,14 +45,12 @@ class PairFrame {
       : time(t),
         turn_a(a.rotation(rates.a, t)),
         turn_b(b.rotation(rates.b, t)),
+        matrix_a(turn_a.matrix()),
+        matrix_b(turn_b.matrix()),
         spin_a(a.angular_velocity),
         spin_b(b.angular_velocity),
         rate_a(norm(spin_a) * (1 + 0x1p-40)),
         rate_b(norm(spin_b) * (1 + 0x1p-40)) {
-    for (int k = 0; k < 3; ++k) {
-      matrix_a.col(k) = turn_a(Eigen::Vector3d::Unit(k));
-      matrix_b.col(k) = turn_b(Eigen::Vector3d::Unit(k));
-    }
     const auto origin_a = a.origin(t);
     const auto origin_b = b.origin(t);
     way.value = origin_b.vector - origin_a.vector;
@@ -111,6 +109,8 @@ struct TurningBounds {
   double rounding;  ///< of what is lost in computing f, f' and f'', and following them
   double lengths;   ///< of what p is the sum of, at any time of the stretch
 
+  TurningBounds(double of_third, double of_rounding, double of_lengths)
+      : third(of_third), rounding(of_rounding), lengths(of_lengths) {}
   /// |n| is at most 1. `of_a`, `of_b`: sums of the lengths of the vectors that turn with each body.
   template <int Degree>
   TurningBounds(const PairFrame<Degree>& frame, double rate_n, double of_a, double of_b, double stretch) {

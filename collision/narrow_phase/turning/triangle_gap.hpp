@@ -15,19 +15,70 @@
 
 namespace kds::collision {
 
-/// Two triangles at the time of a view, about the origins of their bodies: along which of their 11 directions they are
-/// the farthest apart, and for how long along that one, as it turns with what it belongs to.
+/// Two triangles at the time of a view, about the origins of their bodies: how far they are apart along each of their
+/// 11 directions: normals of a and b, products of their edges.
 template <int Degree>
-class TriangleGap {
+class TrianglesSeen {
  public:
-  TriangleGap(const TurningView<Degree>& view, const TriangleHull& a, const TriangleHull& b)
+  TrianglesSeen(const TurningView<Degree>& view, const TriangleHull& a, const TriangleHull& b)
       : view_(view),
         hull_a_(a),
         hull_b_(b),
         a_(turned(view.matrix_a, side_by_side(a.points))),
         b_(turned(view.matrix_b, side_by_side(b.points))),
         u_(turned(view.matrix_a, side_by_side(a.edges))),
-        v_(turned(view.matrix_b, side_by_side(b.edges))) {
+        v_(turned(view.matrix_b, side_by_side(b.edges))) {}
+
+  /// Calls note(k, forward, back, square) for each direction: the gaps along it, with a behind b and before it, and the
+  /// square of its length.
+  template <class Note>
+  [[gnu::always_inline]] void every_direction(const Note& note) const {
+    for (const int k : {0, 1}) {
+      const Eigen::Vector3d n = normal(k);
+      const FourDoubles a = dots(n, a_), b = dots(n, b_);
+      const double between = dot(n, view_.way.value);
+      note(k, between + least(b) - most(a), least(a) - most(b) - between, 1.0);
+    }
+    // Along the product of two edges both ends of either are as far: the other corner tells on which side it lies.
+    const ThreeVectors other_b{last_first(b_[0]), last_first(b_[1]), last_first(b_[2])};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3d u = vector(u_, i), on = vector(a_, i), other = vector(a_, (i + 2) % 3);
+      const ThreeVectors n{FourDoubles(u[1]) * v_[2] - FourDoubles(u[2]) * v_[1],
+                           FourDoubles(u[2]) * v_[0] - FourDoubles(u[0]) * v_[2],
+                           FourDoubles(u[0]) * v_[1] - FourDoubles(u[1]) * v_[0]};
+      const FourDoubles square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+      const FourDoubles on_a = dots(on, n), other_a = dots(other, n), between = dots(view_.way.value, n);
+      const FourDoubles on_b = n[0] * b_[0] + n[1] * b_[1] + n[2] * b_[2];
+      const FourDoubles over_b = n[0] * other_b[0] + n[1] * other_b[1] + n[2] * other_b[2];
+      const FourDoubles forward = between + lesser(on_b, over_b) - greater(on_a, other_a);
+      const FourDoubles back = lesser(on_a, other_a) - greater(on_b, over_b) - between;
+      for (std::size_t j = 0; j < 3; ++j) note(static_cast<int>(2 + 3 * i + j), forward[j], back[j], square[j]);
+    }
+  }
+
+ protected:
+  Eigen::Vector3d normal(int k) const {
+    return k == 0 ? view_.in_world_a(hull_a_.normals[0]) : view_.in_world_b(hull_b_.normals[0]);
+  }
+
+  static double least(const FourDoubles& x) { return std::min({x[0], x[1], x[2]}); }
+  static double most(const FourDoubles& x) { return std::max({x[0], x[1], x[2]}); }
+  /// Lanes 2, 0, 1, 3.
+  static FourDoubles last_first(const FourDoubles& x) { return {x[2], x[0], x[1], x[3]}; }
+
+  const TurningView<Degree>& view_;
+  const TriangleHull& hull_a_;
+  const TriangleHull& hull_b_;
+  ThreeVectors a_, b_, u_, v_;
+};
+
+/// Along which of these directions they are the farthest apart, and for how long along that one, as it turns with what
+/// it belongs to.
+template <int Degree>
+class TriangleGap : private TrianglesSeen<Degree> {
+ public:
+  TriangleGap(const TurningView<Degree>& view, const TriangleHull& a, const TriangleHull& b)
+      : TrianglesSeen<Degree>(view, a, b) {
     find_widest();
   }
 
@@ -60,6 +111,9 @@ class TriangleGap {
   }
 
  private:
+  using Seen = TrianglesSeen<Degree>;
+  using Seen::a_, Seen::b_, Seen::hull_a_, Seen::hull_b_, Seen::normal, Seen::u_, Seen::v_, Seen::view_;
+
   struct Jets {
     FourDoubles value, rate, bend;
   };
@@ -74,40 +128,14 @@ class TriangleGap {
 
   void find_widest() {
     constexpr double least_square = 0x1p-20;  // of sines: edges that are nearly parallel make no direction
-    const auto note = [&](double gap, int k, double sense) {
-      if (gap > width_) width_ = gap, k_ = k, sense_ = sense;
-    };
-    for (const int k : {0, 1}) {
-      const Eigen::Vector3d n = normal(k);
-      const FourDoubles a = dots(n, a_), b = dots(n, b_);
-      const double between = dot(n, view_.way.value);
-      note(between + least(b) - most(a), k, 1);
-      note(least(a) - most(b) - between, k, -1);
-    }
-    // Along the product of two edges both ends of either are as far: the other corner tells on which side it lies.
-    const ThreeVectors other_b{last_first(b_[0]), last_first(b_[1]), last_first(b_[2])};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Eigen::Vector3d u = vector(u_, i), on = vector(a_, i), other = vector(a_, (i + 2) % 3);
-      const ThreeVectors n{FourDoubles(u[1]) * v_[2] - FourDoubles(u[2]) * v_[1],
-                           FourDoubles(u[2]) * v_[0] - FourDoubles(u[0]) * v_[2],
-                           FourDoubles(u[0]) * v_[1] - FourDoubles(u[1]) * v_[0]};
-      const FourDoubles square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-      const FourDoubles on_a = dots(on, n), other_a = dots(other, n), between = dots(view_.way.value, n);
-      const FourDoubles on_b = n[0] * b_[0] + n[1] * b_[1] + n[2] * b_[2];
-      const FourDoubles over_b = n[0] * other_b[0] + n[1] * other_b[1] + n[2] * other_b[2];
-      const FourDoubles forward = between + lesser(on_b, over_b) - greater(on_a, other_a);
-      const FourDoubles back = lesser(on_a, other_a) - greater(on_b, over_b) - between;
-      for (std::size_t j = 0; j < 3; ++j) {
-        const double gap = std::max(forward[j], back[j]);
-        if (!(square[j] > least_square) || (width_ > 0 && !(gap > 0 && gap * gap > width_ * width_ * square[j])))
-          continue;
-        note(gap / std::sqrt(square[j]), static_cast<int>(2 + 3 * i + j), forward[j] >= back[j] ? 1 : -1);
+    this->every_direction([&](int k, double forward, double back, double square) {
+      const double gap = std::max(forward, back);
+      if (k >= 2) {
+        if (!(square > least_square) || (width_ > 0 && !(gap > 0 && gap * gap > width_ * width_ * square))) return;
       }
-    }
-  }
-
-  Eigen::Vector3d normal(int k) const {
-    return k == 0 ? view_.in_world_a(hull_a_.normals[0]) : view_.in_world_b(hull_b_.normals[0]);
+      const double width = k < 2 ? gap : gap / std::sqrt(square);
+      if (width > width_) width_ = width, k_ = k, sense_ = forward >= back ? 1 : -1;
+    });
   }
 
   /// From a to b.
@@ -117,17 +145,8 @@ class TriangleGap {
     return sense_ * cross(turning(vector(u_, k / 3), view_.spin_a), turning(vector(v_, k % 3), view_.spin_b));
   }
 
-  static double least(const FourDoubles& x) { return std::min({x[0], x[1], x[2]}); }
-  static double most(const FourDoubles& x) { return std::max({x[0], x[1], x[2]}); }
-  /// Lanes 2, 0, 1, 3.
-  static FourDoubles last_first(const FourDoubles& x) { return {x[2], x[0], x[1], x[3]}; }
-
-  const TurningView<Degree>& view_;
-  const TriangleHull& hull_a_;
-  const TriangleHull& hull_b_;
-  ThreeVectors a_, b_, u_, v_;
   double width_ = -never;
-  int k_ = 0;         ///< the direction of the widest gap: normals of a and b, products of their edges
+  int k_ = 0;         ///< the direction of the widest gap
   double sense_ = 1;  ///< 1 if it points from a to b
 };
 

@@ -18,9 +18,9 @@ namespace kds::collision {
 /// points of the body, turned by the exact rotation of its motion. All parts use these numbers.
 ///
 /// Method. Pairs of nodes of the trees wait in a queue, each until the time up to which they are proven to be apart, in
-/// floats. The pair whose time is the earliest is looked at then, with those that come soon after it, four at a time
+/// floats. The pair whose time is the earliest is looked at then, with those that come soon after it, some at a time
 /// (nodes_apart): proven again, if that lasts for a while, or else split. Pairs of triangles are proven apart by
-/// floats, four at a time (TriangleGaps), by doubles (TurningHulls), and only where that does not help on, by exact
+/// floats, some at a time (TriangleGaps), by doubles (TurningHulls), and only where that does not help on, by exact
 /// signs (WaysApart). So the time that is found does not depend on what floats and doubles prove.
 ///
 /// Mode `resolved`: a pair of triangles that penetrates counts if it approaches where it touches, faster than roundings

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
-#include "collision/narrow_phase/turning/four_triangles.hpp"
 #include "collision/narrow_phase/turning/node_pairs.hpp"
 #include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_touch.hpp"
@@ -14,6 +13,7 @@
 #include <functional>
 #include <queue>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -61,7 +61,7 @@ class TurningMeshSearch {
   TurningTouch touch_at(double t) const;
 
  private:
-  /// Whether floats tell of four pairs of leaves more than their boxes do.
+  /// Whether floats tell of pairs of leaves more than their boxes do.
   static constexpr bool tells_triangles = std::is_same_v<Side, MeshOfPair>;
 
   enum class Known : std::uint8_t {
@@ -84,7 +84,11 @@ class TurningMeshSearch {
    public:
     Front(const TurningMeshSearch& search, double t0, double horizon, ContactMode mode)
         : search_(search), horizon_(horizon), mode_(mode), view_(search.view(t0, horizon)) {
-      search_.nodes_.first_four([&](NodePair nodes) { visits_.push_back({nodes, t0}); });
+      // What most searches need.
+      std::vector<Item> items;
+      items.reserve(32), visits_.reserve(32), leaves_.reserve(16);
+      queue_ = decltype(queue_)(std::greater<>(), std::move(items));
+      search_.nodes_.first([&](NodePair nodes) { visits_.push_back({nodes, t0}); });
       visit_all();
     }
     double next();
@@ -109,7 +113,7 @@ class TurningMeshSearch {
     };
     void visit_all();
     void visit_triangles(const Visit& visit);
-    void visit_four_triangles();
+    void visit_triangles_together();
     void visit_exactly(NodePair nodes, int tries);
     bool counts(NodePair nodes) const;
 
@@ -139,14 +143,15 @@ class TurningMeshSearch {
   template <class Ask>
   bool every_near(const View& view, double margin, const Ask& ask) const {
     std::vector<NodePair> list;
+    list.reserve(64);
     const auto put = [&](NodePair nodes) { list.push_back(nodes); };
-    nodes_.first_four(put);
+    nodes_.first(put);
     while (!list.empty()) {
-      const auto four = nodes_.take_four(list, std::identity());
-      const unsigned apart = nodes_apart_by(margin, view, four.a, four.b);
-      for (std::size_t i = four.count; i-- > 0;) {
+      const auto together = nodes_.take_together(list, std::identity());
+      const unsigned apart = nodes_apart_by(margin, view, together.nodes);
+      for (std::size_t i = static_cast<std::size_t>(together.nodes.count); i-- > 0;) {
         if (apart >> i & 1) continue;
-        const NodePair nodes = four.items[i];
+        const NodePair nodes = together.items[i];
         if (!nodes_.are_leaves(nodes)) {
           nodes_.open(nodes, put);
           continue;
@@ -204,7 +209,7 @@ double TurningMeshSearch<Degree, Side>::Front::next() {
         if (item.time > horizon_) return never;
         if (!soon_enough(item)) look(item.time);
         visits_.push_back({item.nodes, item.time, item.tries});
-        // Others that this view is good for, too, so that four are looked at together.
+        // Others that this view is good for, too, so that some are looked at together.
         while (!queue_.empty() && visits_.size() < most_together) {
           const Item& other = queue_.top();
           if (other.known != Known::apart_until || other.time > horizon_ || !soon_enough(other)) break;
@@ -230,10 +235,10 @@ double TurningMeshSearch<Degree, Side>::Front::next() {
 template <int Degree, class Side>
 void TurningMeshSearch<Degree, Side>::Front::visit_all() {
   while (!visits_.empty()) {
-    const auto four = search_.nodes_.take_four(visits_, &Visit::nodes);
-    const FourWaits apart = nodes_apart(view_, four.a, four.b);
-    for (std::size_t i = 0; i < four.count; ++i) {
-      const Visit& visit = four.items[i];
+    const auto together = search_.nodes_.take_together(visits_, &Visit::nodes);
+    const NodeWaits apart = nodes_apart(view_, together.nodes);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(together.nodes.count); ++i) {
+      const Visit& visit = together.items[i];
       const double until = apart_until(apart.part[i]);
       if (until > horizon_) continue;
       if ((apart.worth_it >> i & 1) && until > visit.from) {
@@ -245,25 +250,32 @@ void TurningMeshSearch<Degree, Side>::Front::visit_all() {
       }
     }
   }
-  if constexpr (tells_triangles) visit_four_triangles();
+  if constexpr (tells_triangles) visit_triangles_together();
   for (const Visit& visit : leaves_) visit_triangles(visit);
   leaves_.clear();
 }
 
 /// By floats. Those that need more are left in the list.
 template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit_four_triangles() {
+void TurningMeshSearch<Degree, Side>::Front::visit_triangles_together() {
   constexpr float worth = 0x1p-8F;
   if (!view_.certain || !(view_.ahead > 0)) return;
+  constexpr std::size_t width = most_together;
+  TrianglesTogether triangles{};
   std::size_t left = 0;
-  for (std::size_t first = 0; first < leaves_.size(); first += 4) {
-    const std::size_t count = std::min<std::size_t>(4, leaves_.size() - first);
-    FourTriangles a, b;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const NodePair& leaves = leaves_[first + std::min(i, count - 1)].nodes;
-      a[i] = search_.a_.corners(leaves.a), b[i] = search_.b_.corners(leaves.b);
+  for (std::size_t first = 0; first < leaves_.size(); first += width) {
+    const std::size_t count = std::min(width, leaves_.size() - first);
+    triangles.count = static_cast<int>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const NodePair& leaves = leaves_[first + i].nodes;
+      const auto a = search_.a_.corners(leaves.a), b = search_.b_.corners(leaves.b);
+      for (std::size_t k = 0; k < 3; ++k) {
+        put_corner(triangles.a[k][i], view_, a[k]);
+        put_corner(triangles.b[k][i], view_, b[k]);
+      }
     }
-    const FourFloats parts = TriangleGaps<Degree>(view_, a, b).parts();
+    std::array<float, width> parts;
+    find_triangle_parts(view_.floats, triangles, parts.data());
     for (std::size_t i = 0; i < count; ++i) {
       const Visit visit = leaves_[first + i];
       const double until = apart_until(parts[i]);
@@ -326,7 +338,7 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
   constexpr double short_time = 0x1p-20;
   const double sizes = a_.radius(0) + norm(view.way.value);
   const double soon = std::max(next_up(t), t + short_time * view.stretch(sizes, horizon - t));
-  if (const double parts = ways.first_parting(t, std::min(soon, horizon)); parts != never) return parts;
+  if (const double parts = ways.first_parting(t, std::min(soon, horizon), true); parts != never) return parts;
   const double depth = std::max(0.0, -pair.gap(view));
   const double slack = (1 + 0x1p-10) * depth + pair.roundings(view);
   const Pair shallow = pair.with_slack(slack);
@@ -338,7 +350,7 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
     deeper = proven;
   }
   deeper = std::max(deeper, soon);
-  return std::min(deeper, ways.first_parting(t, std::min(deeper, horizon)));
+  return std::min(deeper, ways.first_parting(t, std::min(deeper, horizon), true));
 }
 
 template <int Degree, class Side>

@@ -13,6 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
 
 namespace kds::collision {
 
@@ -81,8 +84,24 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     return TriangleGap<Degree>(view, this->hull_a_, this->hull_b_).width();
   }
 
+  /// As those of the base, by less work.
+  double gaps(const TurningView<Degree>& view, std::array<double, std::size_t{Base::ways}>& gap) const {
+    TrianglesSeen<Degree>(view, this->hull_a_, this->hull_b_)
+        .every_direction([&](int k, double forward, double back, double) {
+          gap[static_cast<std::size_t>(2 * k)] = back;
+          gap[static_cast<std::size_t>(2 * k + 1)] = forward;
+        });
+    return this->error(view);
+  }
+
   /// The conditions of a way that do not hold for certain, and are positive, for so long from now on.
-  Conditions unsure(const TurningView<Degree>& view, int way, double stretch) const;
+  Conditions unsure(const TurningView<Degree>& view, int way, double stretch) const {
+    return stretch > 0 ? unsure<Time::ahead>(view, way, stretch) : unsure<Time::now>(view, way, 0);
+  }
+  /// The same of a way that is open just after the time of the view: those that rise go on to hold, too.
+  Conditions unsure_while_open(const TurningView<Degree>& view, int way, double stretch) const {
+    return unsure<Time::while_open>(view, way, stretch);
+  }
 
   /// Whether all of its conditions are zero at all times.
   bool separates_nothing(int way) const {
@@ -112,6 +131,14 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
   }
 
  private:
+  enum class Time : std::uint8_t {
+    now,        ///< just then: derivatives do not count
+    ahead,      ///< for a stretch
+    while_open  ///< for a stretch, of conditions that hold at its beginning
+  };
+  template <Time Which>
+  Conditions unsure(const TurningView<Degree>& view, int way, double stretch) const;
+
   /// Of the ways of planes.
   template <class Test>
   bool every_corner(int way, const Corners& p, const Corners& q, Conditions which, const Test& test) const {
@@ -134,45 +161,80 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
 
 /// Each condition is n . p, or n . v, with unit vectors that turn: what exact signs are taken of, times a positive
 /// number. Normals are off by the doubt of their hull, and stay so as they turn.
+///
+/// Of a condition f that holds just after the time of the view: f(x) >= x (f' + f'' x / 2 - third x^2 / 6). The errors
+/// of f' and f'' are such that times the longest stretch L that there is, and its square, they are no more than those
+/// of f: so f' is off by e / L, and f'' by 2 e / L^2, 3 e / L in all, where e is what f may be off by until L.
 template <int Degree>
+template <typename TurningTriangles<Degree>::Time Which>
 auto TurningTriangles<Degree>::unsure(const TurningView<Degree>& view, int way, double stretch) const -> Conditions {
+  constexpr bool now = Which == Time::now;
+  using Value = std::conditional_t<now, double, Jet>;
+  using Vector = std::conditional_t<now, Eigen::Vector3d, VectorJet>;
   const auto& hull_a = this->hull_a_;
   const auto& hull_b = this->hull_b_;
-  if (!view.certain || !(stretch <= view.stretch(hull_a.radius + hull_b.radius, stretch))) return all(way);
-  const typename Base::Seen seen(*this, view);
+  const double longest = view.stretch(hull_a.radius + hull_b.radius, std::numeric_limits<double>::max());
+  if (!view.certain || !(stretch <= longest)) return all(way);
+  const auto moving = [](const Eigen::Vector3d& x, const Eigen::Vector3d& spin) -> Vector {
+    if constexpr (now) {
+      return x;
+    } else {
+      return turning(x, spin);
+    }
+  };
+  const auto of_a = [&](const Eigen::Vector3d& x) { return moving(view.in_world_a(x), view.spin_a); };
+  const auto of_b = [&](const Eigen::Vector3d& x) { return moving(view.in_world_b(x), view.spin_b); };
   const double sense = way % 2 != 0 ? 1 : -1;
   Conditions unsure = 0;
-  const auto note = [&](int number, Jet f, double less, double third) {
-    f.value -= less;
-    const bool sure = f.value > 0 && positive_for(f, third, stretch) >= stretch;
+  // `doubt`: by which the direction is off. `bounds`: for the stretch; `to_longest()`: for the longest.
+  const auto note = [&](int number, const Value& f, double doubt, const TurningBounds& bounds, const auto& to_longest) {
+    const double less = bounds.rounding + doubt * bounds.lengths;
+    bool sure = false;
+    if constexpr (now) {
+      sure = f > less;
+    } else {
+      sure = f.value > less && positive_for({f.value - less, f.rate, f.bend}, bounds.third, stretch) >= stretch;
+      if (Which == Time::while_open && !sure && f.rate > 0) {
+        const TurningBounds most = to_longest();
+        const double error = most.rounding + doubt * most.lengths;
+        const Jet slope{f.rate - 3 * error / longest, 0.5 * f.bend, -bounds.third / 3};
+        sure = slope.value > 0 && positive_for(slope, 0, stretch) >= stretch;
+      }
+    }
     if (!sure) unsure |= Conditions{1} << number;
   };
+  const auto bounds_for = [&](double rates, double until) {
+    return TurningBounds(view, rates, hull_a.radius, hull_b.radius, until);
+  };
+  Vector between;
+  if constexpr (now) {
+    between = view.way.value;
+  } else {
+    between = view.way;
+  }
   if (way < 4) {
-    const bool of_a = way < 2;
-    const VectorJet n = sense * turning(seen.normal[of_a ? 0 : 1], of_a ? view.spin_a : view.spin_b);
-    const TurningBounds bounds(view, of_a ? view.rate_a : view.rate_b, hull_a.radius, hull_b.radius, stretch);
-    const double less = bounds.rounding + (of_a ? hull_a.doubt : hull_b.doubt) * bounds.lengths;
-    const Jet face = of_a ? dot(n, view.way) - dot(n, turning(seen.a[0], view.spin_a))
-                          : dot(n, view.way) + dot(n, turning(seen.b[0], view.spin_b));
+    const bool face_of_a = way < 2;
+    const auto& face = face_of_a ? hull_a : hull_b;
+    const Vector n = sense * (face_of_a ? of_a(face.normals[0]) : of_b(face.normals[0]));
+    const double rates = face_of_a ? view.rate_a : view.rate_b;
+    const TurningBounds bounds = bounds_for(rates, stretch);
+    const Value plane = face_of_a ? dot(n, between) - dot(n, of_a(face.points[0]))  //
+                                  : dot(n, between) + dot(n, of_b(face.points[0]));
     for (std::size_t i = 0; i < 3; ++i) {
-      const Jet f =
-          of_a ? face + dot(n, turning(seen.b[i], view.spin_b)) : face - dot(n, turning(seen.a[i], view.spin_a));
-      note(static_cast<int>(i), f, less, bounds.third);
+      const Value f = face_of_a ? plane + dot(n, of_b(hull_b.points[i])) : plane - dot(n, of_a(hull_a.points[i]));
+      note(static_cast<int>(i), f, face.doubt, bounds, [&] { return bounds_for(rates, longest); });
     }
     return unsure;
   }
   const auto k = static_cast<std::size_t>(way - 4) / 2;
-  const VectorJet u = turning(seen.u[k / 3], view.spin_a), v = turning(seen.v[k % 3], view.spin_b);
+  const Vector u = of_a(hull_a.edges[k / 3]), v = of_b(hull_b.edges[k % 3]);
   const double rates = view.rate_a + view.rate_b;
-  const TurningBounds bounds(view, rates, hull_a.radius, hull_b.radius, stretch);
-  const VectorJet between{view.way.value + seen.b[k % 3] - seen.a[k / 3],
-                          view.way.rate + cross(view.spin_b, seen.b[k % 3]) - cross(view.spin_a, seen.a[k / 3]),
-                          view.way.bend + cross(view.spin_b, cross(view.spin_b, seen.b[k % 3])) -
-                              cross(view.spin_a, cross(view.spin_a, seen.a[k / 3]))};
-  note(0, sense * dot(cross(u, v), between), bounds.rounding, bounds.third);
-  const double third = rates * rates * rates * (1 + 0x1p-40);
-  note(1, sense * dot(turning(seen.normal[0], view.spin_a), v), PairFrame<Degree>::rounding + hull_a.doubt, third);
-  note(2, sense * dot(turning(seen.normal[1], view.spin_b), u), PairFrame<Degree>::rounding + hull_b.doubt, third);
+  const Vector apart = between + of_b(hull_b.points[k % 3]) - of_a(hull_a.points[k / 3]);
+  note(0, sense * dot(cross(u, v), apart), 0, bounds_for(rates, stretch), [&] { return bounds_for(rates, longest); });
+  const TurningBounds of_directions(rates * rates * rates * (1 + 0x1p-40), PairFrame<Degree>::rounding, 1);
+  const auto same = [&] { return of_directions; };
+  note(1, sense * dot(of_a(hull_a.normals[0]), v), hull_a.doubt, of_directions, same);
+  note(2, sense * dot(of_b(hull_b.normals[0]), u), hull_b.doubt, of_directions, same);
   return unsure;
 }
 

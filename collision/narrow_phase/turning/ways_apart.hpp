@@ -39,7 +39,8 @@ struct ExactSigns {
 /// times, and `known_to_separate_nothing(way)`, where that is told at once; `frame(t)`, what is known in doubles;
 /// `gaps(frame, gap)`, which fills in a width for each way and returns an error, so that a way that is narrower than
 /// -error has a condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change;
-/// `unsure(frame, way, stretch)`, the conditions that have to be looked at; `apart_until(t, horizon)`, a proven time;
+/// `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps `unsure_while_open`, the same
+/// of a way whose conditions hold just after the time of the frame; `apart_until(t, horizon)`, a proven time;
 /// `time_of_turning()`.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
@@ -88,10 +89,12 @@ class WaysApart {
     return never;
   }
 
-  /// The first double in [t, horizon] just after which they do not, or `never`.
-  double first_parting(double t, double horizon) const {
+  /// The first double in [t, horizon] just after which they do not, or `never`. `penetrates`: they are known to do so
+  /// just after t.
+  double first_parting(double t, double horizon, bool penetrates = false) const {
     while (t <= horizon) {
-      if (!penetrate(t)) return t;
+      if (!penetrates && !penetrate(t)) return t;
+      penetrates = false;
       const double until = std::min(horizon, std::max(next_up(t), t + pair_.time_of_turning()));
       const double opens = first_opening(t, until);
       if (opens != never) return opens;
@@ -103,6 +106,7 @@ class WaysApart {
 
  private:
   static constexpr int none = -1;
+  using Conditions = typename Pair::Conditions;
 
   /// A value for each way: an array where their number is a constant.
   static constexpr bool has_constant_ways = !std::is_member_object_pointer_v<decltype(&Pair::ways)>;
@@ -176,13 +180,21 @@ class WaysApart {
     const double soon = t + soon_part * (until - t);
     for (const double end : {soon, until}) {
       double first = never;
-      pair_.every_condition(way, pair_.unsure(frame, way, (end - t) * (1 + 0x1p-40)), [&](const auto& condition) {
+      pair_.every_condition(way, unsure_while_open(frame, way, (end - t) * (1 + 0x1p-40)), [&](const auto& condition) {
         first = std::min(first, signs_.failure_time(condition, t, std::min(first, end)));
         return true;
       });
       if (first != never) return first;
     }
     return never;
+  }
+
+  Conditions unsure_while_open(const Frame& frame, int way, double stretch) const {
+    if constexpr (requires { pair_.unsure_while_open(frame, way, stretch); }) {
+      return pair_.unsure_while_open(frame, way, stretch);
+    } else {
+      return pair_.unsure(frame, way, stretch);
+    }
   }
 
   /// The first double in [t, until] just after which a way is open. Precondition: none is open just after t.

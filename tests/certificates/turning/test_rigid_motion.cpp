@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -80,6 +81,26 @@ TEMPLATE_TEST_CASE_SIG("places and velocities of bodies that turn are within the
   CHECK(greatest < 1);
   CHECK(greatest > 0.03);  // the bounds are no idle ones
   CHECK(unknown == 0);
+}
+
+TEST_CASE("the columns of a rotation are where it turns the axes", "[rigid_motion]") {
+  const std::uint64_t seed = 372;
+  CAPTURE(seed);
+  Random random(seed);
+  for (int round = 0; round < 400; ++round) {
+    auto motion = turning_scene<1>(random, random.one_in(4)).a;
+    if (random.one_in(4)) motion.orientation = Quaterniond::Identity();
+    if (random.one_in(4)) motion.angular_velocity.setZero();
+    const certificates::Rotation turn = motion.rotation(motion.start() + random.between(-3, 3));
+    const Eigen::Matrix3d columns = turn.matrix();
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d axis = turn(Vector3d::Unit(k));
+      for (int d = 0; d < 3; ++d) {
+        CAPTURE(round, k, d);
+        CHECK(std::bit_cast<std::uint64_t>(columns(d, k)) == std::bit_cast<std::uint64_t>(axis[d]));
+      }
+    }
+  }
 }
 
 TEST_CASE("a motion that is restarted is the same up to the rounding of its numbers", "[rigid_motion]") {

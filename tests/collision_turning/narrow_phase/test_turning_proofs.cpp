@@ -1,5 +1,5 @@
 // What doubles prove of parts of meshes that turn, and failure times that are remembered: against the definition.
-#include "collision/narrow_phase/turning/four_triangles.hpp"
+#include "collision/narrow_phase/turning/float_vectors.hpp"
 #include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_mesh_sides.hpp"
 #include "collision/narrow_phase/turning/turning_nodes.hpp"
@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -92,6 +93,27 @@ long double gap_of(const Corners& a, const Corners& b) {
   return widest;
 }
 
+/// Registers of eight floats, where there are any, give the bits that those of four do.
+void check_widths(const FloatView& view, const NodesTogether& nodes) {
+  const auto& four = collision::detail::gaps_by_four;
+  const auto* const eight = collision::detail::gaps_by_eight();
+  if (!eight) return;
+  NodeWaits x, y;
+  four.node_waits(view, nodes, x);
+  eight->node_waits(view, nodes, y);
+  CHECK(std::memcmp(x.part, y.part, sizeof x.part) == 0);
+  CHECK(x.worth_it == y.worth_it);
+  CHECK(four.nodes_apart_by(0.1F, view, nodes) == eight->nodes_apart_by(0.1F, view, nodes));
+}
+void check_widths(const FloatView& view, const TrianglesTogether& triangles) {
+  const auto* const eight = collision::detail::gaps_by_eight();
+  if (!eight) return;
+  std::array<float, most_together> x, y;
+  collision::detail::gaps_by_four.triangle_parts(view, triangles, x.data());
+  eight->triangle_parts(view, triangles, y.data());
+  CHECK(std::memcmp(x.data(), y.data(), sizeof x) == 0);
+}
+
 }  // namespace
 
 TEST_CASE("nodes are apart for as long as is proven", "[turning]") {
@@ -106,18 +128,20 @@ TEST_CASE("nodes are apart for as long as is proven", "[turning]") {
     const ObbNode node_a = box_node(box_a.half_extents), node_b = box_node(box_b.half_extents);
     const double t = random.between(0, 0.5), horizon = t + 1;
     const NodesView<2> view(a, b, {a, b}, box_units(box_a.half_extents), box_units(box_b.half_extents), t, horizon);
-    const FourNodes four_a{&node_a, &node_a, &node_a, &node_a}, four_b{&node_b, &node_b, &node_b, &node_b};
+    NodesTogether nodes;
+    nodes.count = most_together;
+    for (int i = 0; i < most_together; ++i) nodes.a[i] = numbers_of(node_a), nodes.b[i] = numbers_of(node_b);
     CAPTURE(round);
     const auto gap = [&](double when) {
       return static_cast<double>(tests::TurningOracle::gap(a, box_a, b, box_b, when));
     };
-    if (const unsigned apart = nodes_apart_by(0.25, view, four_a, four_b); apart != 0) {
-      CHECK(apart == 0xF);
+    if (const unsigned apart = nodes_apart_by(0.25, view, nodes); apart != 0) {
+      CHECK(apart == 0xFF);
       // Along an axis; the oracle knows more of them.
       CHECK(gap(t) > 0.25);
     }
-    const FourWaits apart = nodes_apart(view, four_a, four_b);
-    CHECK(all_set(apart.part == splat(apart.part[0])));
+    const NodeWaits apart = nodes_apart(view, nodes);
+    for (const float part : apart.part) CHECK(part == apart.part[0]);
     if (!apart.worth_it) continue;
     ++proven;
     const double until = std::min(horizon, t + view.ahead * static_cast<double>(apart.part[0]));
@@ -143,13 +167,20 @@ TEST_CASE("nodes of meshes of any size are apart for as long as is proven", "[tu
     for (Motion* const motion : {&a, &b}) {
       for (Vector3d& coefficient : motion->path.coefficients) coefficient *= size;
     }
-    FourNodes nodes_a, nodes_b;
+    constexpr std::size_t count = most_together;
+    std::array<const ObbNode*, count> nodes_a, nodes_b;
     for (const ObbNode*& node : nodes_a) node = &nodes[random.below(nodes.size())];
     for (const ObbNode*& node : nodes_b) node = &nodes[random.below(nodes.size())];
+    NodesTogether together;
+    together.count = most_together;
+    for (std::size_t i = 0; i < count; ++i) {
+      together.a[i] = numbers_of(*nodes_a[i]), together.b[i] = numbers_of(*nodes_b[i]);
+    }
     const double t = random.between(0, 0.5), horizon = t + 1;
     const NodesView<2> view(a, b, {a, b}, units_a, units_b, t, horizon);
-    const FourWaits apart = nodes_apart(view, nodes_a, nodes_b);
-    for (std::size_t pair = 0; pair < 4; ++pair) {
+    const NodeWaits apart = nodes_apart(view, together);
+    check_widths(view.floats, together);
+    for (std::size_t pair = 0; pair < count; ++pair) {
       if (!(apart.worth_it >> pair & 1)) continue;
       ++proven;
       CAPTURE(round, pair);
@@ -209,7 +240,44 @@ TEST_CASE("triangles are apart for as long as is proven, and conditions that are
   CHECK(sure > 3000);
 }
 
-TEST_CASE("four pairs of triangles are apart for as long as floats prove", "[turning]") {
+TEST_CASE("conditions that begin to hold go on for as long as they surely rise", "[turning]") {
+  const std::uint64_t seed = 566;
+  CAPTURE(seed);
+  Random random(seed);
+  int begun = 0, rising = 0;
+  for (int round = 0; round < 120; ++round) {
+    const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 2));
+    auto p = random_triangle(random), q = random_triangle(random);
+    const double size = round % 2 == 0 ? 1 : 0x1p-20;  // then conditions of directions are far greater than the others
+    for (Vector3d& corner : p) corner *= size;
+    for (Vector3d& corner : q) corner *= size;
+    const TurningTriangles<2> pair(a, p, b, q);
+    const double t = random.between(0, 0.5);
+    for (int way = 0; way < TurningTriangles<2>::ways; ++way) {
+      for (unsigned number = 0; number < 3; ++number) {
+        pair.every_condition(way, 1u << number, [&](const auto& condition) {
+          const double begins = recovery_time(condition, t, t + 1);
+          if (begins == never || begins == t) return true;
+          ++begun;
+          CAPTURE(round, way, number, begins);
+          const auto view = pair.frame(begins);
+          const double stretch = std::ldexp(view.stretch(2 * size, 1), -random.integer(0, 12)) * random.unit();
+          const auto unsure = pair.unsure(view, way, stretch), of_open = pair.unsure_while_open(view, way, stretch);
+          CHECK((unsure >> number & 1) == 1);
+          CHECK((of_open & ~unsure) == 0);
+          if (of_open >> number & 1) return true;
+          ++rising;
+          for (int i = 0; i <= 4; ++i) CHECK(sign_after(condition, begins + stretch * i / 4) == 1);
+          return true;
+        });
+      }
+    }
+  }
+  CHECK(begun > 500);
+  CHECK(rising > 200);
+}
+
+TEST_CASE("triangles side by side are apart for as long as floats prove", "[turning]") {
   using Oracle = tests::TurningMeshOracle;
   const std::uint64_t seed = 564;
   CAPTURE(seed);
@@ -217,22 +285,33 @@ TEST_CASE("four pairs of triangles are apart for as long as floats prove", "[tur
   int proven = 0, ended = 0;
   for (int round = 0; round < 300; ++round) {
     const Motion a = random_motion(random, Vector3d::Zero()), b = random_motion(random, random_vector(random, 2));
-    FourTriangles p, q;
+    constexpr std::size_t count = most_together;
+    std::array<std::array<Vector3d, 3>, count> p, q;
     const double small = random.one_in(2) ? 1 : 0x1p-8;  // about the same point, so that they are near each other
-    for (std::size_t pair = 0; pair < 4; ++pair) {
+    for (std::size_t pair = 0; pair < count; ++pair) {
       p[pair] = random_triangle(random), q[pair] = random_triangle(random);
       for (Vector3d& corner : p[pair]) corner *= small;
       if (random.one_in(4)) q[pair][2] = q[pair][1];  // a needle
     }
     const double t = random.between(0, 0.5), horizon = t + 1, reach = 1.75;
     const NodesView<2> view(a, b, {a, b}, {1, 0, reach}, {1, 0, reach}, t, horizon);
-    const FourFloats parts = TriangleGaps<2>(view, p, q).parts();
+    TrianglesTogether triangles{};
+    triangles.count = most_together;
+    for (std::size_t pair = 0; pair < count; ++pair) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        put_corner(triangles.a[k][pair], view, p[pair][k]);
+        put_corner(triangles.b[k][pair], view, q[pair][k]);
+      }
+    }
+    std::array<float, count> parts;
+    find_triangle_parts(view.floats, triangles, parts.data());
+    check_widths(view.floats, triangles);
     const auto placed = [](const Motion& motion, const std::array<Vector3d, 3>& corners, double when) {
       Oracle::Triangle triangle;
       for (std::size_t i = 0; i < 3; ++i) triangle[i] = Oracle::point(motion, corners[i], when);
       return std::vector<Oracle::Triangle>{triangle};
     };
-    for (std::size_t pair = 0; pair < 4; ++pair) {
+    for (std::size_t pair = 0; pair < count; ++pair) {
       if (!(parts[pair] > 0)) continue;
       ++proven;
       CAPTURE(round, pair);
