@@ -219,7 +219,7 @@ class WorldOf final : public AnyWorld {
   }
 
  private:
-  /// A motion, and those that add_body() and update_motion() of kds/_bodies.py name `then`.
+  /// A motion, and those that add_body() and update_motion() in Python name `then`.
   static std::vector<M> narrowed_script(const std::vector<Motion>& pieces) {
     std::vector<M> own;
     own.reserve(pieces.size());

@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike
 from kds import _kds
 from kds._arrays import doubles, flag, number, whole, word
 from kds._bodies import Bodies
+from kds._edits import Edits
 from kds._events import EventKind, as_events, kind_of
 from kds._queries import Queries
 
 
-class World(Bodies, Queries):
+class World(Bodies, Edits, Queries):
     """Moves bodies through time and finds their contacts, at exact times.
 
     degree: 1 for straight paths, 2 for parabolas too. turning: whether bodies turn (docs/turning.md); else they keep
