@@ -151,11 +151,6 @@ Motion BasicWorld<Motion>::free_motion(BodyId id) const {
 }
 
 template <class Motion>
-FreeTurning BasicWorld<Motion>::free_turning(BodyId id) const requires(turns<Motion>) {
-  return engine_->free_turning(id);
-}
-
-template <class Motion>
 PlacedShape BasicWorld<Motion>::shape(BodyId id) const {
   const auto& bodies = engine_->bodies();
   return bodies.shape(bodies.slot_of(id));

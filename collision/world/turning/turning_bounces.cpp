@@ -3,6 +3,7 @@
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/response/turning_impulse.hpp"
 #include "collision/vectors.hpp"
+#include "collision/world.hpp"
 #include "collision/world/engine.hpp"
 
 #include <algorithm>
@@ -199,7 +200,15 @@ void Engine<Motion>::process_wall() requires(turns<Motion>) {
   tell([&](Listener& listener) { listener.wall(world_, event); });
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
+/// Here and not in world.cpp, since clang 14 would instantiate it for other motions too.
+template <class Motion>
+FreeTurning BasicWorld<Motion>::free_turning(BodyId id) const requires(turns<Motion>) {
+  return engine_->free_turning(id);
+}
+
+#define KDS_INSTANTIATE(motion)           \
+  KDS_TEMPLATE_PART class Engine<motion>; \
+  template FreeTurning BasicWorld<motion>::free_turning(BodyId) const;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
