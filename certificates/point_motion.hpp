@@ -19,7 +19,7 @@ template <int Degree>
 struct PointCoefficients : std::array<Eigen::Vector3d, std::size_t{Degree} + 1> {
   using Vector = Eigen::Vector3d;
 
-  PointCoefficients() {}
+  PointCoefficients() { set(); }
   PointCoefficients(const Vector& c0) { set(c0); }
   PointCoefficients(const Vector& c0, const Vector& c1) requires(Degree >= 1) { set(c0, c1); }
   PointCoefficients(const Vector& c0, const Vector& c1, const Vector& c2) requires(Degree >= 2) { set(c0, c1, c2); }

@@ -154,7 +154,10 @@ class KineticGrid final : public BroadPhase<Degree> {
   std::size_t threads_;
   double horizon_ = never;
   double first_travel_ = 0;   ///< of a new body
-  std::uint64_t wishes_ = 0;  ///< how often a coarser level was wanted since the last was begun
+  /// How often a coarser level was wanted among the last fat boxes, and how many these are: of as many as there are
+  /// bodies. Wishes of all time would add up, and begin a level for a few that fly far, in whose cells all others crowd.
+  std::uint64_t wishes_ = 0;
+  std::uint64_t boxes_since_ = 0;
   /// The first is of all bodies whose filters are not told apart; it has kind 0.
   std::array<Filter, 8> filters_{};
   bool in_vain_ = false;  ///< some filter should have a kind of its own

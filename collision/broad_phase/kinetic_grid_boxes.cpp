@@ -105,9 +105,10 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
 template <int Degree>
 auto KineticGrid<Degree>::fat_box(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now)
     -> FatBox {
+  if (++boxes_since_ > fat_boxes_.size()) wishes_ = boxes_since_ = 0;
   const FatBox fat = fat_box(bodies_[id], sweep, present, now, fat_boxes_.coarsest(), [&] {
     if (++wishes_ * tuning_.share_for_level <= fat_boxes_.size()) return false;
-    wishes_ = 0;
+    wishes_ = boxes_since_ = 0;
     return true;
   });
   counters_.certificates += fat.certificates;

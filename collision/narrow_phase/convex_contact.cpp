@@ -95,9 +95,12 @@ double BallsContact<Degree>::first_contact(const Body& a, const Body& b, double 
   return mode == ContactMode::transparent ? failure_time(apart, t0, horizon) : apart.first_approach(t0, horizon);
 }
 
-/// No cheaper bound: the exact time costs hardly more.
+/// On lines and parabolas there is no cheaper bound: the exact time costs hardly more.
 template <int Degree>
-double BallsContact<Degree>::apart_until(const Body&, const Body&, double t0, double, PairMemory&) {
+double BallsContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
+  if constexpr (Degree >= 3) {
+    if (horizon < never && balls_apart(a, b).plane_between(t0, horizon)) return never;
+  }
   return t0;
 }
 

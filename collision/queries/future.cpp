@@ -1,12 +1,10 @@
 #include "collision/queries/future.hpp"
 
-#include "certificates/ball_separation.hpp"
 #include "collision/body_description.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/vectors.hpp"
-#include "kds/roots/failure_time.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -125,20 +123,7 @@ std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, Bod
 template <class Motion>
 Approach closest_approach(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until) {
   require_span("closest_approach", world, until);
-  const auto& path_a = path_of(world.motion(a));
-  const auto& path_b = path_of(world.motion(b));
-  const auto at = [&](double t) { return Approach{t, norm(Vector3d(path_b.position(t) - path_a.position(t)))}; };
-  using SquaredDistance = certificates::BallSeparation<Motion::degree>;
-  const DerivativeCertificate<SquaredDistance> parting{SquaredDistance{path_a, path_b, 0, 0}};
-
-  Approach nearest = at(world.now());
-  for (double t = world.now(); t != never;) {
-    t = recovery_time(parting, t, until);
-    const Approach here = at(t == never ? until : t);
-    if (here.distance < nearest.distance) nearest = here;
-    if (t != never) t = failure_time(parting, t, until);
-  }
-  return nearest;
+  return closest_approach(path_of(world.motion(a)), path_of(world.motion(b)), world.now(), until);
 }
 
 #define KDS_INSTANTIATE(motion)                                                                                  \

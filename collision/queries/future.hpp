@@ -3,6 +3,7 @@
 
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/queries/approach.hpp"
 #include "collision/queries/hit.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/world.hpp"
@@ -36,16 +37,7 @@ template <class Motion>
 std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until,
                                             ContactMode mode = ContactMode::resolved);
 
-/// When two centres are nearest to each other, and how far apart then.
-struct Approach {
-  double time;      ///< s
-  double distance;  ///< between the centres, not the surfaces; rounded
-};
-
-/// Of two bodies of the world in [now(), until]. The time is now(), `until`, or the first double just after which the
-/// centres part, by the exact sign of the derivative of their distance; where there are several such, that of the least
-/// distance as doubles tell it, the first of equal ones. Two that keep their distance are nearest at once. Cost: some
-/// failure times of degree 2 Degree - 1 (kds/roots/failure_time.hpp).
+/// When the centres of two bodies of the world are nearest in [now(), until]: approach.hpp, of their paths.
 template <class Motion>
 Approach closest_approach(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until);
 

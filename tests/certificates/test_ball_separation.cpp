@@ -163,4 +163,44 @@ TEMPLATE_TEST_CASE_SIG("balls do not meet before a plane between them is sure to
   CHECK(near > (PathDegree <= 2 ? 500 : -1));
 }
 
+TEMPLATE_TEST_CASE_SIG("a plane that stays between two balls is right, and found where they keep away",
+                       "[ball_separation]", ((int PathDegree), PathDegree), 1, 3, 5) {
+  const std::uint64_t seed = 105;
+  CAPTURE(PathDegree, seed);
+  Random random(seed);
+  int between = 0, meet = 0, far = 0, missed = 0;
+  for (int round = 0; round < 5'000; ++round) {
+    const double scale = std::ldexp(1.0, static_cast<int>(random.integer(-30, 30)));
+    PointMotion<PathDegree> a, b;
+    const double from = random.between(-2, 2);
+    const double to = from + random.between(0, 2);
+    for (auto* ball : {&a, &b}) {
+      ball->start = from - random.between(0, 1);
+      double size = scale;
+      for (auto& c : ball->coefficients) {
+        c = size * Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+        size /= 4;
+      }
+    }
+    const BallSeparation<PathDegree> balls{a, b, scale * random.between(0, 0.5), scale * random.between(0, 0.5)};
+    const bool found = balls.plane_between(from, to);
+    const bool meets = failure_time(balls, from, to) != never;
+    if (found) REQUIRE_FALSE(meets);
+    between += found;
+    meet += meets;
+    double least = never;
+    for (int i = 0; i <= 64; ++i) {
+      const double t = from + (to - from) * i / 64;
+      least = std::min(least, (b.position(t) - a.position(t)).norm());
+    }
+    if (least < 1.5 * scale + balls.radius_a + balls.radius_b) continue;
+    ++far;
+    missed += !found;
+  }
+  CHECK(meet > 300);
+  CHECK(between > 500);
+  CHECK(far > 20);
+  CHECK(missed <= far / 10);
+}
+
 }  // namespace test_ball_separation

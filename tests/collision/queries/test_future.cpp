@@ -177,6 +177,8 @@ TEST_CASE("the closest approach of centres that keep their distance is at once")
   CHECK(closest_approach(world, a, c, 9).time == 5);
   CHECK(closest_approach(world, a, c, 9).distance == 0);
   CHECK_THROWS_AS(closest_approach(world, a, b, 0.5), std::invalid_argument);
+  CHECK_THROWS_AS(closest_approach(world.motion(a), world.motion(b), 2.0, 1.0), std::invalid_argument);
+  CHECK_THROWS_AS(closest_approach(world.motion(a), world.motion(b), 2.0, never), std::invalid_argument);
 }
 
 TEST_CASE("bodies that enter later are not there, neither of a pair nor for others") {
