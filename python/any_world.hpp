@@ -6,11 +6,14 @@
 #include "collision/queries/hit.hpp"
 #include "collision/queries/nearest.hpp"
 #include "collision/world_counters.hpp"
+#include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
 #include "examples/kds-collide/scene.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "python/rows.hpp"
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,6 +24,9 @@
 namespace kds_python {
 
 using kds::collision::BodyId;
+
+/// Category, and what it collides with.
+using BodyMasks = std::array<std::uint32_t, 2>;
 
 /// The orientation of the first piece is that of a body which keeps it.
 using Description = kds::collision::BasicBodyDescription<Motion>;
@@ -40,6 +46,16 @@ class AnyWorld {
   virtual void remove_body(BodyId id) = 0;
   /// All or none: throws before anything is changed.
   virtual void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& motions) = 0;
+  /// The first piece has started; those after it are named `then` in errors.
+  virtual void update_motion(BodyId id, const std::vector<Motion>& pieces) = 0;
+  virtual void append_motion(BodyId id, const std::vector<Motion>& pieces) = 0;
+  // All or none, too: a value for each body.
+  virtual void set_masses(const std::vector<BodyId>& ids, const double* masses) = 0;
+  virtual void set_restitutions(const std::vector<BodyId>& ids, const double* restitutions) = 0;
+  virtual void set_filters(const std::vector<BodyId>& ids, const BodyMasks* masks) = 0;
+  virtual void set_user_data(const std::vector<BodyId>& ids, const std::uint64_t* user_data) = 0;
+  virtual kds::collision::TimerId set_timer(double t) = 0;
+  virtual bool cancel_timer(kds::collision::TimerId timer) = 0;
 
   virtual void advance_to(double t) = 0;
   virtual bool step(double limit) = 0;
@@ -55,6 +71,10 @@ class AnyWorld {
   virtual double mass(BodyId id) const = 0;
   virtual bool fixed(BodyId id) const = 0;
   virtual bool sensor(BodyId id) const = 0;
+  virtual double restitution(BodyId id) const = 0;
+  virtual BodyMasks masks(BodyId id) const = 0;
+  virtual std::uint64_t user_data(BodyId id) const = 0;
+  virtual std::vector<BodyId> partners(BodyId id) const = 0;
   virtual bool touching(BodyId a, BodyId b) const = 0;
   virtual bool resting(BodyId a, BodyId b) const = 0;
   virtual bool resting_at_wall(BodyId a, int wall) const = 0;

@@ -13,8 +13,11 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 namespace kds_python {
 namespace {
@@ -22,9 +25,10 @@ namespace {
 namespace py = pybind11;
 using namespace kds::collision;
 
-// Arrays come from kds/_world.py, which has checked their shapes.
+// Arrays come from the Python files of the package, which have checked their shapes.
 using Doubles = py::array_t<double, py::array::c_style>;
-using Ids = py::array_t<std::uint64_t, py::array::c_style>;
+using Ids = py::array_t<std::uint64_t, py::array::c_style>;  // or other numbers of 64 bits
+using Masks = py::array_t<std::uint32_t, py::array::c_style>;
 
 Ids to_array(const std::vector<BodyId>& ids) { return Ids(static_cast<py::ssize_t>(ids.size()), ids.data()); }
 
@@ -84,8 +88,9 @@ std::unique_ptr<PyWorld> new_world(int degree, bool turning, bool gather, const 
                                    const std::string& broad_phase,
                                    const std::optional<std::array<Eigen::Vector3d, 2>>& walls, double wall_restitution,
                                    double start_time, double window, double rate, int kdop, bool report_pairs,
-                                   std::size_t threads, std::uint32_t zeno_contacts, double zeno_interval,
-                                   double shortest_flight, double orientation_error, std::uint64_t most_edits) {
+                                   bool report_pieces, std::size_t threads, std::uint32_t zeno_contacts,
+                                   double zeno_interval, double shortest_flight, double orientation_error,
+                                   std::uint64_t most_edits) {
   WorldOptions options;
   if (response == "none") {
     options.response = Response::none;
@@ -103,6 +108,7 @@ std::unique_ptr<PyWorld> new_world(int degree, bool turning, bool gather, const 
   options.rate = rate;
   options.kdop = kdop;
   options.report_pairs = report_pairs;
+  options.report_pieces = report_pieces;
   options.threads = threads;
   options.zeno = {zeno_contacts, zeno_interval};
   options.shortest_flight = shortest_flight;
@@ -122,9 +128,8 @@ constexpr std::uint8_t is_sensor = 2;
 
 /// Adds a body a row; all, or none: then those that were added are removed again.
 Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<Doubles>& radii, const Doubles& motions,
-        const Doubles& numbers, const py::array_t<std::uint32_t, py::array::c_style>& masks,
-        const py::array_t<std::uint8_t, py::array::c_style>& flags, const std::optional<Eigen::Matrix3d>& tensor,
-        const Doubles& script) {
+        const Doubles& numbers, const Masks& masks, const py::array_t<std::uint8_t, py::array::c_style>& flags,
+        const Ids& user_data, const std::optional<Eigen::Matrix3d>& tensor, const Doubles& script) {
   AnyWorld& world = self.to_change();
   const auto bodies = static_cast<std::size_t>(motions.shape(0));
   const std::vector<Motion> later = to_motions(script);
@@ -149,6 +154,7 @@ Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<D
       body.inertia = tensor ? Inertia(*tensor) : Inertia(number[4]);
       body.category = masks.data()[2 * i];
       body.collides_with = masks.data()[2 * i + 1];
+      body.user_data = user_data.data()[i];
       body.fixed = (flags.data()[i] & is_fixed) != 0;
       body.sensor = (flags.data()[i] & is_sensor) != 0;
       ids.push_back(world.add_body(body));
@@ -173,15 +179,36 @@ Doubles motions_now(PyWorld& self, const Ids& ids, bool free) {
   return rows;
 }
 
+/// Categories and masks.
+Masks masks_of(PyWorld& self, const Ids& ids) {
+  const AnyWorld& world = self.world();
+  Masks both({ids.size(), py::ssize_t{2}});
+  std::uint32_t* row = both.mutable_data();
+  for (py::ssize_t i = 0; i < ids.size(); ++i, row += 2) {
+    const BodyMasks masks = world.masks(ids.data()[i]);
+    std::copy(masks.begin(), masks.end(), row);
+  }
+  return both;
+}
+
+void set_filters(PyWorld& self, const Ids& ids, const Masks& both) {
+  std::vector<BodyMasks> masks(static_cast<std::size_t>(ids.size()));
+  for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = {both.data()[2 * i], both.data()[2 * i + 1]};
+  self.to_change().set_filters(to_vector(ids), masks.data());
+}
+
 /// Hits as events of the kind 0: a is the body, b the same.
-std::vector<EventRow> to_rows(const std::vector<Hit>& hits) {
+std::vector<EventRow> to_rows(const AnyWorld& world, const std::vector<Hit>& hits) {
   std::vector<EventRow> rows;
-  for (const Hit& hit : hits) rows.push_back(to_row(0, hit.body, hit.body, hit.contact));
+  for (const Hit& hit : hits) {
+    const std::uint64_t user_data = world.user_data(hit.body);
+    rows.push_back(to_row(0, hit.body, hit.body, hit.contact, user_data, user_data));
+  }
   return rows;
 }
 
-std::vector<EventRow> to_rows(const std::optional<Hit>& hit) {
-  return hit ? to_rows(std::vector<Hit>{*hit}) : std::vector<EventRow>{};
+std::vector<EventRow> to_rows(const AnyWorld& world, const std::optional<Hit>& hit) {
+  return hit ? to_rows(world, std::vector<Hit>{*hit}) : std::vector<EventRow>{};
 }
 
 py::dict counters(PyWorld& self) {
@@ -231,7 +258,7 @@ void bind_queries(py::class_<PyWorld>& world) {
                        const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool all, const Filter& filter) {
     std::optional<PlacedShape> placed;
     if (shape) placed = place(shape->shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
-    return to_array(to_rows(self.ask([&](AnyWorld& w) { return w.cast(placed, from, to, all, filter); })));
+    return to_array(self.ask([&](AnyWorld& w) { return to_rows(w, w.cast(placed, from, to, all, filter)); }));
   });
   world.def("overlapping", [](PyWorld& self, const PyShape& shape, const Eigen::Vector4d& q, const Eigen::Vector3d& at,
                               const Filter& filter) {
@@ -245,22 +272,26 @@ void bind_queries(py::class_<PyWorld>& world) {
     }
     return py::array_t<NearRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
   });
-  world.def("next_contact", [](PyWorld& self, const PyShape& shape, const Doubles& motion, double until,
-                               const Filter& filter) {
-    const Motion moved = to_motion(motion.data());
-    return to_array(to_rows(self.ask([&](AnyWorld& w) { return w.next_contact(shape.shape, moved, until, filter); })));
-  });
+  world.def("next_contact",
+            [](PyWorld& self, const PyShape& shape, const Doubles& motion, double until, const Filter& filter) {
+              const Motion moved = to_motion(motion.data());
+              return to_array(
+                  self.ask([&](AnyWorld& w) { return to_rows(w, w.next_contact(shape.shape, moved, until, filter)); }));
+            });
   world.def("next_contact_of", [](PyWorld& self, BodyId body, double until, const Filter& filter) {
-    return to_array(to_rows(self.ask([&](AnyWorld& w) { return w.next_contact_of(body, until, filter); })));
+    return to_array(self.ask([&](AnyWorld& w) { return to_rows(w, w.next_contact_of(body, until, filter)); }));
   });
   world.def("next_contact_between", [](PyWorld& self, BodyId a, BodyId b, double until) {
-    const auto contact = self.world().next_contact_between(a, b, until);
-    return to_array(contact ? std::vector<EventRow>{to_row(0, a, b, *contact)} : std::vector<EventRow>{});
+    const AnyWorld& w = self.world();
+    const auto contact = w.next_contact_between(a, b, until);
+    if (!contact) return to_array(std::vector<EventRow>{});
+    return to_array(std::vector{to_row(0, a, b, *contact, w.user_data(a), w.user_data(b))});
   });
   world.def("closest_approach", [](PyWorld& self, BodyId a, BodyId b, double until) {
     const Approach approach = self.world().closest_approach(a, b, until);
     return std::array{approach.time, approach.distance};
   });
+  world.def("partners", [](PyWorld& self, BodyId id) { return to_array(self.world().partners(id)); });
   world.def("touching", [](PyWorld& self, BodyId a, BodyId b) { return self.world().touching(a, b); });
   world.def("resting", [](PyWorld& self, BodyId a, BodyId b) { return self.world().resting(a, b); });
   world.def("resting_at_wall", [](PyWorld& self, BodyId a, int wall) { return self.world().resting_at_wall(a, wall); });
@@ -270,23 +301,43 @@ void bind_queries(py::class_<PyWorld>& world) {
 
 void bind_world(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(FeatureRow, kind, first, second);
-  PYBIND11_NUMPY_DTYPE(EventRow, time, kind, a, b, point, normal, feature_a, feature_b);
+  PYBIND11_NUMPY_DTYPE(EventRow, time, kind, a, b, point, normal, feature_a, feature_b, user_data_a, user_data_b);
   PYBIND11_NUMPY_DTYPE(NearRow, body, distance, point);
   module.attr("event_dtype") = py::dtype::of<EventRow>();
-  module.attr("event_kinds") = kds_collide::event_kind_names;
+  std::vector<std::string_view> kinds(kds_collide::event_kind_names.begin(), kds_collide::event_kind_names.end());
+  kinds.insert(kinds.end(), {"piece", "timer"});
+  module.attr("event_kinds") = kinds;
   bind_shapes(module);
 
   py::class_<PyWorld> world(module, "World", py::custom_type_setup(&collect_garbage));
   world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("turning"), py::arg("gather"),
             py::arg("response"), py::arg("broad_phase"), py::arg("walls"), py::arg("wall_restitution"),
             py::arg("start_time"), py::arg("window"), py::arg("rate"), py::arg("kdop"), py::arg("report_pairs"),
-            py::arg("threads"), py::arg("zeno_contacts"), py::arg("zeno_interval"), py::arg("shortest_flight"),
-            py::arg("orientation_error"), py::arg("most_edits"));
+            py::arg("report_pieces"), py::arg("threads"), py::arg("zeno_contacts"), py::arg("zeno_interval"),
+            py::arg("shortest_flight"), py::arg("orientation_error"), py::arg("most_edits"));
   world.def("add", &add);
   world.def("remove", [](PyWorld& self, BodyId id) { self.to_change().remove_body(id); });
   world.def("update", [](PyWorld& self, const Ids& ids, const Doubles& motions) {
     self.to_change().update_motions(to_vector(ids), to_motions(motions));
   });
+  world.def("update_script", [](PyWorld& self, BodyId id, const Doubles& pieces) {
+    self.to_change().update_motion(id, to_motions(pieces));
+  });
+  world.def("append", [](PyWorld& self, BodyId id, const Doubles& pieces) {
+    self.to_change().append_motion(id, to_motions(pieces));
+  });
+  world.def("set_masses", [](PyWorld& self, const Ids& ids, const Doubles& masses) {
+    self.to_change().set_masses(to_vector(ids), masses.data());
+  });
+  world.def("set_restitutions", [](PyWorld& self, const Ids& ids, const Doubles& restitutions) {
+    self.to_change().set_restitutions(to_vector(ids), restitutions.data());
+  });
+  world.def("set_filters", &set_filters);
+  world.def("set_user_data", [](PyWorld& self, const Ids& ids, const Ids& user_data) {
+    self.to_change().set_user_data(to_vector(ids), user_data.data());
+  });
+  world.def("set_timer", [](PyWorld& self, double t) { return self.to_change().set_timer(t); });
+  world.def("cancel_timer", [](PyWorld& self, TimerId timer) { return self.to_change().cancel_timer(timer); });
   world.def("motions_now", &motions_now);
   world.def("advance_to", &PyWorld::advance_to);
   world.def("step", &PyWorld::step);
@@ -300,6 +351,9 @@ void bind_world(py::module_& module) {
   world.def("mass", [](PyWorld& self, BodyId id) { return self.world().mass(id); });
   world.def("fixed", [](PyWorld& self, BodyId id) { return self.world().fixed(id); });
   world.def("sensor", [](PyWorld& self, BodyId id) { return self.world().sensor(id); });
+  world.def("restitution", [](PyWorld& self, BodyId id) { return self.world().restitution(id); });
+  world.def("masks", &masks_of);
+  world.def("user_data", [](PyWorld& self, BodyId id) { return self.world().user_data(id); });
   world.def("broad_phase", [](PyWorld& self) { return std::string(self.world().broad_phase()); });
   world.def("counters", &counters);
   world.def("audit", [](PyWorld& self) { self.world().audit(); });

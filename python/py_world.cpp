@@ -80,7 +80,7 @@ bool PyWorld::step(double limit) {
 
 void PyWorld::call_at(std::size_t kind, py::object function) {
   world();
-  if (kind >= kinds) throw std::invalid_argument("on: there is no kind of event " + std::to_string(kind));
+  if (kind >= event_kinds) throw std::invalid_argument("on: there is no kind of event " + std::to_string(kind));
   functions_[kind] = function.is_none() ? py::object() : std::move(function);
 }
 

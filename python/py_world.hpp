@@ -1,7 +1,6 @@
 // A world as Python holds it: events that are gathered, functions that are called, and one thread at a time.
 #pragma once
 
-#include "examples/kds-collide/events.hpp"
 #include "python/any_world.hpp"
 
 #include <pybind11/pybind11.h>
@@ -45,9 +44,8 @@ class PyWorld {
   template <class Work>
   auto run(const Work& work);
 
-  static constexpr std::size_t kinds = kds_collide::event_kind_names.size();
   std::vector<EventRow> events_;
-  std::array<pybind11::object, kinds> functions_;
+  std::array<pybind11::object, event_kinds> functions_;
   bool gather_;
   bool running_ = false;
   int asked_ = 0;  ///< questions with filters that are under way

@@ -4,6 +4,7 @@
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/shapes/feature.hpp"
+#include "examples/kds-collide/events.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -26,19 +27,26 @@ struct FeatureRow {
   std::uint32_t second;
 };
 
+// Kinds of events that the tool does not have come after its own.
+inline constexpr std::int64_t piece_kind = kds_collide::event_kind_names.size();
+inline constexpr std::int64_t timer_kind = piece_kind + 1;
+inline constexpr std::size_t event_kinds = timer_kind + 1;
+
 /// An event, or a hit of a query.
 struct EventRow {
   double time;
-  std::int64_t kind;  ///< kds_collide::EventKind
-  std::uint64_t a;    ///< a body
-  std::uint64_t b;    ///< a body; of a wall its number, 0 to 5
+  std::int64_t kind;  ///< kds_collide::EventKind, piece_kind or timer_kind
+  std::uint64_t a;    ///< a body; or a timer
+  std::uint64_t b;    ///< a body; of a wall its number, 0 to 5; of one thing alone a itself
   std::array<double, 3> point;
   std::array<double, 3> normal;
   FeatureRow feature_a;
   FeatureRow feature_b;
+  std::uint64_t user_data_a;
+  std::uint64_t user_data_b;
 };
 
-static_assert(sizeof(EventRow) == 104);
+static_assert(sizeof(EventRow) == 120);
 
 /// A body near a point.
 struct NearRow {
@@ -51,7 +59,8 @@ inline FeatureRow to_row(const kds::collision::Feature& feature) {
   return {static_cast<std::uint32_t>(feature.kind), feature.first, feature.second};
 }
 
-inline EventRow to_row(std::int64_t kind, std::uint64_t a, std::uint64_t b, const kds::collision::Contact& c) {
+inline EventRow to_row(std::int64_t kind, std::uint64_t a, std::uint64_t b, const kds::collision::Contact& c,
+                       std::uint64_t user_data_a = 0, std::uint64_t user_data_b = 0) {
   return {c.time,
           kind,
           a,
@@ -59,7 +68,9 @@ inline EventRow to_row(std::int64_t kind, std::uint64_t a, std::uint64_t b, cons
           {c.point[0], c.point[1], c.point[2]},
           {c.normal[0], c.normal[1], c.normal[2]},
           to_row(c.feature_a),
-          to_row(c.feature_b)};
+          to_row(c.feature_b),
+          user_data_a,
+          user_data_b};
 }
 
 /// A motion: position, velocity and acceleration (not its half) at the start; the start; the orientation there, w x y

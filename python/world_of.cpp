@@ -29,22 +29,31 @@ class Teller final : public BasicWorldListener<M> {
   void rests_at_wall(BasicWorld<M>&, const WallEvent& e) override { tell(EventKind::rest_at_wall, e); }
   void wakes_at_wall(BasicWorld<M>&, const WallEvent& e) override { tell(EventKind::wake_at_wall, e); }
   void passes(BasicWorld<M>&, const PairEvent& e) override { tell(EventKind::pass, e); }
+  void piece(BasicWorld<M>& world, BodyId body) override { tell(piece_kind, body, world.now(), world.user_data(body)); }
+  void timer(BasicWorld<M>& world, TimerId timer) override { tell(timer_kind, timer, world.now(), 0); }
   void pair_began(BasicWorld<M>&, BodyId a, BodyId b, double t) override { tell(EventKind::pair_begin, a, b, t); }
   void pair_ended(BasicWorld<M>&, BodyId a, BodyId b, double t) override { tell(EventKind::pair_end, a, b, t); }
 
  private:
   void tell(EventKind kind, const PairEvent& e) {
-    listener_(to_row(static_cast<std::int64_t>(kind), e.a, e.b, e.contact));
+    listener_(to_row(static_cast<std::int64_t>(kind), e.a, e.b, e.contact, e.user_data_a, e.user_data_b));
   }
   void tell(EventKind kind, const WallEvent& e) {
-    listener_(to_row(static_cast<std::int64_t>(kind), e.body, static_cast<std::uint64_t>(e.wall), e.contact));
+    const auto wall = static_cast<std::uint64_t>(e.wall);
+    listener_(to_row(static_cast<std::int64_t>(kind), e.body, wall, e.contact, e.user_data));
+  }
+  void tell(EventKind kind, BodyId a, BodyId b, double t) {
+    listener_(to_row(static_cast<std::int64_t>(kind), a, b, nowhere(t)));
+  }
+  void tell(std::int64_t kind, std::uint64_t of, double t, std::uint64_t user_data) {
+    listener_(to_row(kind, of, of, nowhere(t), user_data, user_data));
   }
   /// As in the files of the tool, point and normal are zero.
-  void tell(EventKind kind, BodyId a, BodyId b, double t) {
+  static Contact nowhere(double t) {
     Contact contact;
     contact.time = t;
     contact.normal = Eigen::Vector3d::Zero();
-    listener_(to_row(static_cast<std::int64_t>(kind), a, b, contact));
+    return contact;
   }
 
   AnyWorld::Listener listener_;
@@ -70,7 +79,7 @@ class WorldOf final : public AnyWorld {
   BodyId add_body(const Description& body) override {
     BasicBodyDescription<M> own;
     own.shape = body.shape;
-    for (const Motion& piece : body.motion) own.motion.push_back(narrowed<M>(piece, "motion"));
+    own.motion = narrowed_script(body.motion);
     if constexpr (!turns<M>) {
       if (!body.motion.empty()) own.orientation = body.motion.front().orientation;
     }
@@ -83,6 +92,7 @@ class WorldOf final : public AnyWorld {
     own.category = body.category;
     own.collides_with = body.collides_with;
     own.sensor = body.sensor;
+    own.user_data = body.user_data;
     return world_.add_body(own);
   }
   BodyId add_body(const kds_collide::SceneBody& body) override {
@@ -103,6 +113,44 @@ class WorldOf final : public AnyWorld {
     for (std::size_t i = 0; i < ids.size(); ++i) world_.update_motion(ids[i], own[i]);
   }
 
+  void update_motion(BodyId id, const std::vector<Motion>& pieces) override {
+    world_.update_motion(id, narrowed_script(pieces));
+  }
+  void append_motion(BodyId id, const std::vector<Motion>& pieces) override {
+    std::vector<M> own;
+    for (const Motion& piece : pieces) own.push_back(narrowed<M>(piece, "motion[" + std::to_string(own.size()) + "]"));
+    world_.append_motion(id, own);
+  }
+
+  void set_masses(const std::vector<BodyId>& ids, const double* masses) override {
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (world_.fixed(ids[i])) {
+        throw std::invalid_argument("set_mass: body " + std::to_string(ids[i]) + " is fixed, and no mass counts");
+      }
+      require_size(masses[i], ("mass of body " + std::to_string(ids[i])).c_str());
+    }
+    for (std::size_t i = 0; i < ids.size(); ++i) world_.set_mass(ids[i], masses[i]);
+  }
+  void set_restitutions(const std::vector<BodyId>& ids, const double* restitutions) override {
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      (void)world_.restitution(ids[i]);  // throws if it is not there
+      if (!(restitutions[i] >= 0 && restitutions[i] <= 1)) {
+        throw std::invalid_argument("restitution of body " + std::to_string(ids[i]) + ": must be in [0, 1]");
+      }
+    }
+    for (std::size_t i = 0; i < ids.size(); ++i) world_.set_restitution(ids[i], restitutions[i]);
+  }
+  void set_filters(const std::vector<BodyId>& ids, const BodyMasks* masks) override {
+    for (const BodyId id : ids) (void)world_.category(id);
+    for (std::size_t i = 0; i < ids.size(); ++i) world_.set_filter(ids[i], masks[i][0], masks[i][1]);
+  }
+  void set_user_data(const std::vector<BodyId>& ids, const std::uint64_t* user_data) override {
+    for (const BodyId id : ids) (void)world_.user_data(id);
+    for (std::size_t i = 0; i < ids.size(); ++i) world_.set_user_data(ids[i], user_data[i]);
+  }
+  TimerId set_timer(double t) override { return world_.set_timer(t); }
+  bool cancel_timer(TimerId timer) override { return world_.cancel_timer(timer); }
+
   void advance_to(double t) override { world_.advance_to(t); }
   bool step(double limit) override { return world_.step(limit); }
   bool advance_for(double budget_seconds, double t) override { return world_.advance_for(budget_seconds, t); }
@@ -117,6 +165,14 @@ class WorldOf final : public AnyWorld {
   double mass(BodyId id) const override { return world_.mass(id); }
   bool fixed(BodyId id) const override { return world_.fixed(id); }
   bool sensor(BodyId id) const override { return world_.sensor(id); }
+  double restitution(BodyId id) const override { return world_.restitution(id); }
+  BodyMasks masks(BodyId id) const override { return {world_.category(id), world_.collides_with(id)}; }
+  std::uint64_t user_data(BodyId id) const override { return world_.user_data(id); }
+  std::vector<BodyId> partners(BodyId id) const override {
+    std::vector<BodyId> found;
+    world_.visit_partners(id, [&found](BodyId other) { found.push_back(other); });
+    return found;
+  }
   bool touching(BodyId a, BodyId b) const override { return world_.touching(a, b); }
   bool resting(BodyId a, BodyId b) const override { return world_.resting(a, b); }
   bool resting_at_wall(BodyId a, int wall) const override { return world_.resting_at_wall(a, wall); }
@@ -163,6 +219,18 @@ class WorldOf final : public AnyWorld {
   }
 
  private:
+  /// A motion, and those that add_body() and update_motion() in Python name `then`.
+  static std::vector<M> narrowed_script(const std::vector<Motion>& pieces) {
+    std::vector<M> own;
+    own.reserve(pieces.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const std::string name = i == 0 ? "motion" : "then[" + std::to_string(i - 1) + "]";
+      own.push_back(narrowed<M>(pieces[i], name));
+      if (!in_range(own.back())) refuse_motion(own.back(), name);
+    }
+    return own;
+  }
+
   /// Of a body that is to enter later the motion is that of its start.
   Motion widened(const M& motion, BodyId id) const {
     Motion wide = kds_collide::to_piece(motion);

@@ -14,10 +14,12 @@ a call is not possible now. The guide is docs/python.md.
 
 from kds._events import EventKind, event_dtype, feature_name
 from kds._kds import Shape, version as __version__
+from kds._motion import Motion
+from kds._queries import Approach
 from kds._scene import Run, Scene, generate_scene
 from kds._shapes import box, capsule, hull, mesh, read_mesh, sphere
 from kds._structures import ConvexHull, Delaunay, SortedList
-from kds._world import Approach, Motion, World
+from kds._world import World
 
 __all__ = [
     "Approach",

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from kds._kds import Shape
 
 Doubles = NDArray[np.float64]
 Ids = NDArray[np.uint64]
@@ -17,12 +20,17 @@ def _shape_text(shape: tuple[int | None, ...]) -> str:
     return "(" + ", ".join(sizes) + ("," if len(sizes) == 1 else "") + ")"
 
 
+def array_of(name: str, value: ArrayLike) -> NDArray[Any]:
+    """The value as an array of any type and shape."""
+    try:
+        return np.asarray(value)
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"{name}: must be an array: {error}") from None
+
+
 def doubles(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> Doubles:
     """The value as an array of doubles of this shape, in which None stands for any size. Nothing is broadcast."""
-    try:
-        array = np.asarray(value)
-    except (ValueError, TypeError) as error:
-        raise ValueError(f"{name}: must be numbers of shape {_shape_text(shape)}: {error}") from None
+    array = array_of(name, value)
     if array.dtype.kind not in "iuf":
         raise ValueError(f"{name}: must be real numbers, and has the dtype {array.dtype}")
     fits = array.ndim == len(shape) and all(want in (None, has) for want, has in zip(shape, array.shape))
@@ -71,7 +79,7 @@ def finite(name: str, value: Any) -> float:
 
 def rows(name: str, value: ArrayLike, n: int, columns: int) -> Doubles:
     """(n, columns) doubles; one row of `columns` counts for all."""
-    array = np.asarray(value)
+    array = array_of(name, value)
     if array.dtype.kind in "iuf" and array.shape == (columns,):
         return np.broadcast_to(np.asarray(array, dtype=np.float64), (n, columns))
     return doubles(name, value, (n, columns))
@@ -79,27 +87,37 @@ def rows(name: str, value: ArrayLike, n: int, columns: int) -> Doubles:
 
 def column(name: str, value: ArrayLike, n: int) -> Doubles:
     """n doubles; one number counts for all."""
-    array = np.asarray(value)
+    array = array_of(name, value)
     if array.ndim == 0 and array.dtype.kind in "iuf":
         return np.full(n, float(array))
     return doubles(name, value, (n,))
 
 
-def masks(name: str, value: ArrayLike, n: int) -> NDArray[np.uint32]:
-    """n masks of 32 bits; one counts for all."""
-    array = np.asarray(value)
+def _wholes(name: str, value: ArrayLike) -> NDArray[Any]:
+    """An array, in which whole numbers on both sides of 2^63 are whole: NumPy makes doubles of them."""
+    array = array_of(name, value)
+    if array.dtype.kind == "f" and not isinstance(value, (np.ndarray, np.generic)):
+        exact = np.array(value, dtype=object)
+        if all(isinstance(each, (int, np.integer)) and 0 <= each < 2**64 for each in exact.flat):
+            return exact.astype(np.uint64)
+    return array
+
+
+def unsigned(name: str, value: ArrayLike, n: int, bits: int) -> NDArray[Any]:
+    """n whole numbers from 0 to 2^bits - 1, with 32 or 64 bits; one counts for all."""
+    array = _wholes(name, value)
     if array.ndim == 0:
         array = np.full(n, array)
     if array.dtype.kind not in "iu" or array.shape != (n,):
         raise ValueError(f"{name}: must be whole numbers of shape ({n},), and is {array.dtype} of shape {array.shape}")
-    if n and (array.min() < 0 or array.max() > 0xFFFFFFFF):
-        raise ValueError(f"{name}: must be masks of 32 bits, from 0 to 0xffffffff")
-    return array.astype(np.uint32)
+    if n and (int(array.min()) < 0 or int(array.max()) >= 2**bits):
+        raise ValueError(f"{name}: must be numbers of {bits} bits, from 0 to {2**bits - 1:#x}")
+    return array.astype(np.uint32 if bits == 32 else np.uint64)
 
 
 def flags(name: str, value: ArrayLike, n: int) -> NDArray[np.uint8]:
     """n of 0 and 1; one bool counts for all."""
-    array = np.asarray(value)
+    array = array_of(name, value)
     if array.ndim == 0:
         array = np.full(n, array)
     if array.dtype.kind != "b" or array.shape != (n,):
@@ -109,7 +127,7 @@ def flags(name: str, value: ArrayLike, n: int) -> NDArray[np.uint8]:
 
 def ids(name: str, value: ArrayLike) -> Ids:
     """Ids of bodies, (n,)."""
-    array = np.asarray(value)
+    array = _wholes(name, value)
     if array.size == 0 and array.ndim == 1:
         return np.empty(0, np.uint64)
     if array.dtype.kind not in "iu" or array.ndim != 1 or array.min() < 0:
@@ -122,3 +140,21 @@ def identity(name: str, value: Any) -> int:
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool) and 0 <= value < 2**64:
         return int(value)
     raise ValueError(f"{name}: must be the id of a body, and is {value!r}")
+
+
+def one_or_more(name: str, value: ArrayLike) -> Ids:
+    """The id of a body, or ids (n,)."""
+    return np.array([identity(name, value)], np.uint64) if np.isscalar(value) else ids(name, value)
+
+
+def shape_of(name: str, value: Any) -> Shape:
+    if isinstance(value, Shape):
+        return value
+    raise ValueError(f"{name}: must be a kds.Shape, and is {value!r}")
+
+
+def path(name: str, value: Any) -> str:
+    try:
+        return os.fsdecode(value)
+    except TypeError:
+        raise ValueError(f"{name}: must be a path, and is {value!r}") from None

@@ -10,7 +10,9 @@ import numpy as np
 from kds import _kds
 
 #: time (s), kind (EventKind), a and b (ids of bodies; b of an event at a wall is the wall: 0 is -x, 1 is +x, ... 5 is
-#: +z), point (3,), normal (3,) from a to b, feature_a and feature_b (see feature_name).
+#: +z; of an event of one thing, a piece or a timer, the same as a), point (3,), normal (3,) from a to b, feature_a and
+#: feature_b (see feature_name), user_data_a and user_data_b (of the bodies, also of those that have been removed; 0 of
+#: walls, timers, PAIR_BEGIN and PAIR_END, and in the events of Scene.run).
 event_dtype: np.dtype = np.dtype((np.record, _kds.event_dtype))
 
 
@@ -28,6 +30,15 @@ class EventKind(IntEnum):
     REST_AT_WALL = 8
     WAKE_AT_WALL = 9
     PASS = 10  #: two bodies are let through each other
+    PIECE = 11  #: a piece of a body's motion starts: with report_pieces
+    TIMER = 12  #: of World.set_timer; a is its number
+
+
+def kind_of(name: str, value: Any) -> int:
+    try:
+        return int(EventKind(value))
+    except ValueError:
+        raise ValueError(f"{name}: must be a kds.EventKind, and is {value!r}") from None
 
 
 def as_events(rows: np.ndarray) -> np.recarray:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kds import _kds
-from kds._arrays import flag, number, whole, word
+from kds._arrays import flag, number, path, whole, word
 from kds._events import as_events
 from kds._world import World
 
@@ -35,22 +35,22 @@ class Scene:
 
         ValueError says what is wrong where: `scene.json: bodies[3].shape.sphere.radius: must be > 0`.
         """
-        path = os.fspath(file)
-        return cls._warned(_kds.read_scene(path, None if until is None else number("until", until)), path)
+        name = path("file", file)
+        return cls._warned(_kds.read_scene(name, None if until is None else number("until", until)), name)
 
     @classmethod
     def parse(cls, text: str, file: str | os.PathLike[str] = "scene.json", until: float | None = None) -> Scene:
         """The same from text; `file` is named in errors, and meshes are looked for beside it."""
-        path = os.fspath(file)
+        name = path("file", file)
         end = None if until is None else number("until", until)
-        return cls._warned(_kds.parse_scene(text, path, end), path)
+        return cls._warned(_kds.parse_scene(word("text", text), name, end), name)
 
     @classmethod
-    def _warned(cls, core: Any, path: str) -> Scene:
+    def _warned(cls, core: Any, name: str) -> Scene:
         """Of a scene in which something was mended, Python's warnings say what."""
         for warning in core.warnings:
             warnings.warn(warning, stacklevel=3)
-        return cls(core, os.path.basename(path))
+        return cls(core, os.path.basename(name))
 
     @property
     def names(self) -> list[str]:
@@ -106,8 +106,8 @@ class Scene:
             flag("pairs", pairs),
             whole("threads", threads),
             flag("gather", gather),
-            "" if csv is None else os.fspath(csv),
-            "" if replay is None else os.fspath(replay),
+            "" if csv is None else path("csv", csv),
+            "" if replay is None else path("replay", replay),
             self._title,
         )
         return Run(as_events(rows), json.loads(stats))
@@ -134,13 +134,13 @@ def generate_scene(
     `kind`: 'rings', 'spheres', 'boxes', 'models', 'spinners', ... (`kds-collide --help` names all). `density`: the
     volume of all bounding balls over that of the domain.
     """
-    path = os.fspath(file)
+    name = path("file", file)
     _kds.generate_scene(
-        path,
+        name,
         word("kind", kind),
         whole("bodies", bodies),
         number("density", density),
         whole("seed", seed),
         number("end_time", end_time),
     )
-    return Scene.read(path)
+    return Scene.read(name)

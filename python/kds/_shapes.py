@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kds import _kds
-from kds._arrays import doubles, number, vector
+from kds._arrays import array_of, doubles, number, path, vector
 from kds._kds import Shape
 
 
@@ -38,7 +38,7 @@ def mesh(vertices: ArrayLike, triangles: ArrayLike, scale: float = 1.0) -> Shape
 
     vertices (n, 3); triangles (m, 3), whole numbers from 0 to n - 1; each vertex is multiplied by `scale`.
     """
-    corners = np.asarray(triangles)
+    corners = array_of("triangles", triangles)
     if corners.dtype.kind not in "iu" or corners.ndim != 2 or corners.shape[1] != 3:
         raise ValueError(
             f"triangles: must be whole numbers of shape (m, 3), and is {corners.dtype} of shape {corners.shape}"
@@ -52,8 +52,9 @@ def mesh(vertices: ArrayLike, triangles: ArrayLike, scale: float = 1.0) -> Shape
 
 def read_mesh(file: str | os.PathLike[str], scale: float = 1.0) -> Shape:
     """A mesh from an OBJ or STL file. Triangles without an area are left out, with a warning that counts them."""
-    shape, left_out = _kds.read_mesh(os.fspath(file), number("scale", scale))
+    name = path("file", file)
+    shape, left_out = _kds.read_mesh(name, number("scale", scale))
     if left_out:
-        text = f"{os.fspath(file)}: {len(left_out)} degenerate triangles are left out, the first is {left_out[0]}"
+        text = f"{name}: {len(left_out)} degenerate triangles are left out, the first is {left_out[0]}"
         warnings.warn(text, stacklevel=2)
     return shape

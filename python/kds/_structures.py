@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kds import _kds
-from kds._arrays import Doubles, doubles, finite
+from kds._arrays import Doubles, array_of, finite, number, whole
 
 
 def _padded(name: str, value: ArrayLike, tail: tuple[int, ...]) -> Doubles:
     """(n, k, *tail) coefficients, k from 1 to 3, with zeros up to 3; finite."""
-    array = np.asarray(value)
+    array = array_of(name, value)
     shape = ", ".join(["n", "k", *map(str, tail)])
     if array.dtype.kind not in "iuf":
         raise ValueError(f"{name}: must be real numbers, and has the dtype {array.dtype}")
@@ -51,18 +51,21 @@ class _Structure:
     def __repr__(self) -> str:
         return f"<kds.{type(self).__name__}: {len(self)} elements at {self.now} s>"
 
+    def _one(self, coefficients: ArrayLike) -> Doubles:
+        return _padded("coefficients", array_of("coefficients", coefficients)[None], self._tail)
+
     def insert(self, coefficients: ArrayLike) -> int:
         """Adds an element, (k,) or (k, 2) coefficients in t - now; returns its number."""
-        return self._core.insert(_padded("coefficients", [np.asarray(coefficients)], self._tail))
+        return self._core.insert(self._one(coefficients))
 
     def remove(self, element: int) -> None:
         """Takes an element out; its number is not used again by a SortedList."""
-        self._core.remove(element)
+        self._core.remove(whole("element", element, 2**32 - 1))
 
     def update(self, element: int, coefficients: ArrayLike) -> None:
         """Gives an element a new motion from now on: coefficients in t - now. It may jump, and what that
         changes advance_to() reports, at the time of the jump."""
-        self._core.update(element, _padded("coefficients", [np.asarray(coefficients)], self._tail))
+        self._core.update(whole("element", element, 2**32 - 1), self._one(coefficients))
 
     def audit(self) -> None:
         """Checks the state and every certificate by exact signs; RuntimeError if one is wrong."""
@@ -84,7 +87,7 @@ class SortedList(_Structure):
     def advance_to(self, t: float) -> np.recarray:
         """Runs to t; returns the swaps: time, left, right, in the order of time. `left` has just come before
         `right`."""
-        return self._core.advance_to(t).view(np.recarray)
+        return self._core.advance_to(number("t", t)).view(np.recarray)
 
     @property
     def order(self) -> NDArray[np.uint32]:
@@ -142,7 +145,7 @@ class ConvexHull(_PlaneStructure):
     def advance_to(self, t: float) -> np.recarray:
         """Runs to t; returns what changed: time, change (+1: the point has come to the hull, -1: it has left), a (the
         point), b (the same)."""
-        return self._core.advance_to(t).view(np.recarray)
+        return self._core.advance_to(number("t", t)).view(np.recarray)
 
 
 class Delaunay(_PlaneStructure):
@@ -157,4 +160,4 @@ class Delaunay(_PlaneStructure):
     def advance_to(self, t: float) -> np.recarray:
         """Runs to t; returns what changed: time, change (+1: an edge has come, -1: one has gone), a < b, its ends. A
         flip is two rows of one time."""
-        return self._core.advance_to(t).view(np.recarray)
+        return self._core.advance_to(number("t", t)).view(np.recarray)

@@ -41,14 +41,111 @@ class Misuse(unittest.TestCase):
         self.refused(r"mass: must be a number", lambda: w.add_body(self.ball, (0, 0, 0), mass="heavy"))
         self.refused(r"shape: must be a kds.Shape, and is 1", lambda: w.add_body(1, (0, 0, 0)))
         self.refused(r"fixed: must be bools", lambda: w.add_bodies(self.ball, n3, fixed=[0, 1, 0, 1]))
-        self.refused(r"category: must be whole numbers", lambda: w.add_bodies(self.ball, n3, categories=1.5))
-        self.refused(r"collides_with: must be masks", lambda: w.add_body(self.ball, (0, 0, 0), collides_with=2**32))
+        self.refused(r"categories: must be whole numbers", lambda: w.add_bodies(self.ball, n3, categories=1.5))
+        self.refused(r"collides_with: must be numbers of 32 bits", lambda: w.add_body(self.ball, (0, 0, 0), collides_with=2**32))
         self.refused(r"then\[0\]: must be a kds.Motion", lambda: w.add_body(self.ball, (0, 0, 0), then=[3]))
         self.refused(r"body: must be the id of a body", lambda: w.remove_body("a"))
         self.refused(r"bodies: must be ids", lambda: w.positions([1.0]))
         self.refused(r"snapshot: must be bytes", lambda: w.load("text"))
         self.refused(r"function: must be callable", lambda: w.on(kds.EventKind.WALL, 3))
-        self.refused(r"99 is not a valid EventKind", lambda: w.on(99, print))
+        self.refused(r"kind: must be a kds.EventKind, and is 99", lambda: w.on(99, print))
+
+    def test_nothing_of_a_wrong_type_gets_through(self):
+        """Each argument of each function in turn is of a type that fits nowhere: one line says so, and names it."""
+        zero, world = (0, 0, 0), kds.World(degree=2)
+        a, b = world.add_bodies(self.ball, [[0, 0, 0], [9, 0, 0]])
+        line, net = kds.SortedList([[0, 1], [1, 0]]), kds.Delaunay(np.eye(3, 2)[:, None])
+        scene = kds.Scene.parse('{"scene": 1, "end_time": 1, "response": "none", "bodies": []}')
+        tried = 0
+        for function, given in (
+            (kds.World, dict(degree=1, turning=False, response="none", walls=None, wall_restitution=1, broad_phase="auto",
+                             report_pairs=False, report_pieces=False, gather=True, start_time=0, window=1, rate=0,
+                             kdop=6, threads=1, zeno_contacts=100, zeno_interval=0, shortest_flight=1,
+                             orientation_error=0.01, most_edits=1)),
+            (kds.sphere, dict(radius=1)),
+            (kds.box, dict(half_extents=(1, 1, 1))),
+            (kds.capsule, dict(radius=1, half_length=1)),
+            (kds.hull, dict(points=np.eye(4, 3))),
+            (kds.mesh, dict(vertices=np.eye(3), triangles=[[0, 1, 2]], scale=1)),
+            (kds.read_mesh, dict(file="no-such-file.obj", scale=1)),
+            (kds.Scene.read, dict(file="no-such-file.json", until=1)),
+            (kds.Scene.parse, dict(text="", file="scene.json", until=1)),
+            (kds.generate_scene, dict(file="", kind="rings", bodies=1, density=0.1, seed=1, end_time=1)),
+            (scene.run, dict(broad_phase="auto", rate=0, kdop=6, pairs=False, threads=1, gather=True, csv=None,
+                             replay=None)),
+            (scene.world, dict(gather=True, broad_phase="auto")),
+            (world.add_body, dict(shape=self.ball, position=zero, velocity=zero, acceleration=zero, start=0,
+                                  orientation=(1, 0, 0, 0), angular_velocity=zero, then=(), mass=1, inertia=1,
+                                  fixed=False, restitution=1, friction=0, tangential_restitution=0, category=1,
+                                  collides_with=1, sensor=False, user_data=0)),
+            (world.add_bodies, dict(shapes=self.ball, positions=[zero], velocities=zero, accelerations=zero, starts=0,
+                                    orientations=(1, 0, 0, 0), angular_velocities=zero, masses=1, inertias=1,
+                                    fixed=False, restitutions=1, frictions=0, tangential_restitutions=0, categories=1,
+                                    collide_with=1, sensors=False, user_data=0)),
+            (world.add_bodies, dict(shapes=None, positions=[zero], radii=1)),
+            (world.remove_body, dict(body=99)),
+            (world.update_motion, dict(body=a, position=zero, velocity=zero, acceleration=zero, then=())),
+            (world.update_motions, dict(bodies=[a], positions=zero, velocities=zero, accelerations=zero)),
+            (world.append_motion, dict(body=a, motion=())),
+            (world.set_mass, dict(bodies=a, mass=1)),
+            (world.set_restitution, dict(bodies=a, restitution=1)),
+            (world.set_filter, dict(bodies=a, category=1, collides_with=1)),
+            (world.set_user_data, dict(bodies=a, user_data=1)),
+            (world.positions, dict(bodies=[a])),
+            (world.position, dict(body=a)),
+            (world.velocity, dict(body=a)),
+            (world.shape, dict(body=a)),
+            (world.mass, dict(body=a)),
+            (world.fixed, dict(body=a)),
+            (world.sensor, dict(body=a)),
+            (world.restitution, dict(body=a)),
+            (world.category, dict(body=a)),
+            (world.collides_with, dict(body=a)),
+            (world.user_data, dict(body=a)),
+            (world.advance_to, dict(t=0)),
+            (world.step, dict(limit=0)),
+            (world.on, dict(kind=kds.EventKind.WALL, function=None)),
+            (world.set_timer, dict(t=1)),
+            (world.cancel_timer, dict(timer=1)),
+            (world.load, dict(snapshot=b"")),
+            (world.in_box, dict(low=zero, high=zero)),
+            (world.cast, dict(start=zero, end=(1, 0, 0), shape=self.ball, orientation=(1, 0, 0, 0), filter=None)),
+            (world.cast_all, dict(start=zero, end=(1, 0, 0), shape=None, orientation=(1, 0, 0, 0), filter=None)),
+            (world.overlapping, dict(shape=self.ball, position=zero, orientation=(1, 0, 0, 0), filter=None)),
+            (world.nearest, dict(point=zero, count=1, filter=None)),
+            (world.next_contact, dict(shape=self.ball, position=zero, velocity=zero, acceleration=zero, until=1,
+                                      orientation=(1, 0, 0, 0), angular_velocity=zero, filter=None)),
+            (world.next_contact_of, dict(body=a, until=1, filter=None)),
+            (world.next_contact_between, dict(a=a, b=b, until=1)),
+            (world.closest_approach, dict(a=a, b=b, until=1)),
+            (world.partners, dict(body=a)),
+            (world.touching, dict(a=a, b=b)),
+            (world.resting, dict(a=a, b=b)),
+            (world.resting_at_wall, dict(body=a, wall=0)),
+            (kds.SortedList, dict(coefficients=[[0]], start=0)),
+            (kds.Delaunay, dict(paths=np.eye(3, 2)[:, None], start=0)),
+            (line.advance_to, dict(t=0)),
+            (line.insert, dict(coefficients=[0])),
+            (line.update, dict(element=0, coefficients=[0])),
+            (line.remove, dict(element=9)),
+            (net.advance_to, dict(t=0)),
+            (net.insert, dict(coefficients=[[0, 0]])),
+            (net.update, dict(element=0, coefficients=[[0, 0]])),
+            (net.remove, dict(element=9)),
+        ):  # fmt: skip
+            for name in given:
+                for wrong in (object(), [object()], "no", [[1], [1, 2]], {1: 2}, 1j):
+                    if isinstance(wrong, str) and (isinstance(given[name], str) or name in ("csv", "replay")):
+                        continue
+                    with self.subTest(function=function.__qualname__, name=name, wrong=wrong):
+                        with self.assertRaises(ValueError) as caught:
+                            function(**{**given, name: wrong})
+                        text = str(caught.exception)
+                        self.assertRegex(text, rf"^{name}\b")
+                        self.assertNotIn("\n", text)
+                        tried += 1
+        self.assertGreater(tried, 900)
+        self.assertEqual(len(world), 2)
 
     def test_values(self):
         w = self.world

@@ -41,7 +41,7 @@ class Stubs(unittest.TestCase):
             if not (inspect.isclass(value) or inspect.isfunction(value)):
                 continue
             self.assertTrue(value.__doc__, name)
-            for member, function in vars(value).items():
+            for member, function in inspect.getmembers(value):
                 if inspect.isfunction(function) and not member.startswith("_"):
                     self.assertTrue(function.__doc__, f"{name}.{member}")
 

@@ -112,11 +112,12 @@ TEST_CASE("Reports: what is told of a body that is gone, and of the next in its 
   reports.add_volumes(false, 0, gone, 1);
   reports.add(Reports::Kind::overlap, 0, gone, {});
   reports.add(Reports::Kind::moved, gone, gone, {});
-  reports.forget(gone);
+  reports.forget(gone, 7);
   reports.add_volumes(true, 0, next, 1);  // it does not take back the end of the other pair
   const auto end = reports.take_first();
   CHECK(end.kind == Reports::Kind::pair_ended);
   CHECK(end.b == gone);
+  CHECK(end.user_data_b == 7);
   const auto begin = reports.take_first();
   CHECK(begin.kind == Reports::Kind::pair_began);
   CHECK(begin.b == next);

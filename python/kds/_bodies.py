@@ -1,0 +1,291 @@
+"""The bodies of a world: added, and looked at."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Iterable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kds import _kds
+from kds._arrays import (
+    Doubles,
+    Ids,
+    array_of,
+    column,
+    doubles,
+    flags,
+    identity,
+    ids,
+    number,
+    rows,
+    shape_of,
+    unsigned,
+    vector,
+)
+from kds._kds import Shape
+from kds._motion import (
+    ACCELERATION,
+    ANGULAR_VELOCITY,
+    COLUMNS,
+    ORIENTATION,
+    POSITION,
+    STILL,
+    TIME,
+    UPRIGHT,
+    VELOCITY,
+    Motion,
+    pieces,
+)
+
+
+class Bodies:
+    """How bodies come into a World, and what they are there."""
+
+    _core: _kds.World
+
+    def add_body(
+        self,
+        shape: Shape,
+        position: ArrayLike,
+        velocity: ArrayLike = STILL,
+        acceleration: ArrayLike = STILL,
+        *,
+        orientation: ArrayLike = UPRIGHT,
+        angular_velocity: ArrayLike = STILL,
+        start: float | None = None,
+        then: Motion | Sequence[Motion] = (),
+        mass: float = 1.0,
+        inertia: float | ArrayLike | None = None,
+        fixed: bool = False,
+        restitution: float = 1.0,
+        friction: float = 0.0,
+        tangential_restitution: float = 0.0,
+        category: int = 1,
+        collides_with: int = 0xFFFFFFFF,
+        sensor: bool = False,
+        user_data: int = 0,
+    ) -> int:
+        """Adds a body; returns its id.
+
+        position, velocity, acceleration, angular_velocity (rad/s): vectors (3,); orientation: a unit quaternion w, x,
+        y, z. The motion is that from `start` (s) on, now if it is left out; a body with a start to come enters then.
+        `then`: further pieces, each later than the one before. `inertia` (worlds that turn): a moment or a tensor (3,
+        3), else that of a solid of the shape. Of two bodies the lower restitution and friction count. Two bodies may
+        meet if the category of each shares a bit with collides_with of the other. A sensor reports, and passes through
+        all. user_data: a number of 64 bits of your own, which events carry.
+
+        ValueError names what is wrong; then nothing is added. See collision/body_description.hpp.
+        """
+        tensor = None
+        if inertia is not None and array_of("inertia", inertia).ndim != 0:
+            tensor, inertia = doubles("inertia", inertia, (3, 3)), None
+        added = self._add(
+            [shape_of("shape", shape)],
+            None,
+            1,
+            position=vector("position", position)[None],
+            velocity=vector("velocity", velocity),
+            acceleration=vector("acceleration", acceleration),
+            orientation=doubles("orientation", orientation, (4,)),
+            angular_velocity=vector("angular_velocity", angular_velocity),
+            start=None if start is None else number("start", start),
+            then=then,
+            mass=number("mass", mass),
+            inertia=0.0 if inertia is None else number("inertia", inertia),
+            tensor=tensor,
+            fixed=flags("fixed", fixed, 1),
+            restitution=number("restitution", restitution),
+            friction=number("friction", friction),
+            tangential_restitution=number("tangential_restitution", tangential_restitution),
+            category=unsigned("category", category, 1, 32),
+            collides_with=unsigned("collides_with", collides_with, 1, 32),
+            sensor=flags("sensor", sensor, 1),
+            user_data=unsigned("user_data", user_data, 1, 64),
+        )
+        return int(added[0])
+
+    def add_bodies(
+        self,
+        shapes: Shape | Sequence[Shape] | None,
+        positions: ArrayLike,
+        velocities: ArrayLike = STILL,
+        accelerations: ArrayLike = STILL,
+        *,
+        radii: ArrayLike | None = None,
+        orientations: ArrayLike = UPRIGHT,
+        angular_velocities: ArrayLike = STILL,
+        starts: ArrayLike | None = None,
+        masses: ArrayLike = 1.0,
+        inertias: ArrayLike = 0.0,
+        fixed: ArrayLike = False,
+        restitutions: ArrayLike = 1.0,
+        frictions: ArrayLike = 0.0,
+        tangential_restitutions: ArrayLike = 0.0,
+        categories: ArrayLike = 1,
+        collide_with: ArrayLike = 0xFFFFFFFF,
+        sensors: ArrayLike = False,
+        user_data: ArrayLike = 0,
+    ) -> Ids:
+        """Adds n bodies; returns their ids (n,), of uint64.
+
+        shapes: one for all, or n; or None with `radii`, a number or (n,): balls. positions (n, 3). Of all others either
+        (n, 3), orientations (n, 4), numbers (n,), or one for all. What they mean, add_body() says; inertias are
+        moments, 0 for that of the shape.
+
+        All are added or, if one is wrong, none: ValueError names it, bodies[17].
+        """
+        where = doubles("positions", positions, (None, 3))
+        n = len(where)
+        if (shapes is None) == (radii is None):
+            raise ValueError("shapes: must be given, or else radii")
+        several: list[Shape] = []
+        if isinstance(shapes, Shape):
+            several = [shapes]
+        elif shapes is not None:
+            several = list(shapes) if isinstance(shapes, Iterable) else []
+            if len(several) != n or not all(isinstance(shape, Shape) for shape in several):
+                raise ValueError(f"shapes: must be a kds.Shape or {n} of them, as many as positions")
+        return self._add(
+            several,
+            None if radii is None else column("radii", radii, n),
+            n,
+            position=where,
+            velocity=rows("velocities", velocities, n, 3),
+            acceleration=rows("accelerations", accelerations, n, 3),
+            orientation=rows("orientations", orientations, n, 4),
+            angular_velocity=rows("angular_velocities", angular_velocities, n, 3),
+            start=None if starts is None else column("starts", starts, n),
+            then=(),
+            mass=column("masses", masses, n),
+            inertia=column("inertias", inertias, n),
+            tensor=None,
+            fixed=flags("fixed", fixed, n),
+            restitution=column("restitutions", restitutions, n),
+            friction=column("frictions", frictions, n),
+            tangential_restitution=column("tangential_restitutions", tangential_restitutions, n),
+            category=unsigned("categories", categories, n, 32),
+            collides_with=unsigned("collide_with", collide_with, n, 32),
+            sensor=flags("sensors", sensors, n),
+            user_data=unsigned("user_data", user_data, n, 64),
+        )
+
+    def _add(
+        self,
+        shapes: list[Shape],
+        radii: Doubles | None,
+        n: int,
+        *,
+        position: Any,
+        velocity: Any,
+        acceleration: Any,
+        orientation: Any,
+        angular_velocity: Any,
+        start: Any,
+        then: Motion | Sequence[Motion],
+        mass: Any,
+        inertia: Any,
+        tensor: Any,
+        fixed: Any,
+        restitution: Any,
+        friction: Any,
+        tangential_restitution: Any,
+        category: Any,
+        collides_with: Any,
+        sensor: Any,
+        user_data: Any,
+    ) -> Ids:
+        motions = np.empty((n, COLUMNS))
+        motions[:, POSITION] = position
+        motions[:, VELOCITY] = velocity
+        motions[:, ACCELERATION] = acceleration
+        motions[:, TIME] = self._core.now() if start is None else start
+        motions[:, ORIENTATION] = orientation
+        motions[:, ANGULAR_VELOCITY] = angular_velocity
+        numbers = np.empty((n, 5))
+        for place, value in enumerate((mass, restitution, friction, tangential_restitution, inertia)):
+            numbers[:, place] = value
+        both = np.stack([category, collides_with], axis=1)
+        bits = fixed + np.uint8(2) * sensor
+        if n == 0:
+            return np.empty(0, np.uint64)
+        later = pieces("then", then, motions[0, TIME])
+        return self._core.add(shapes, radii, motions, numbers, both, bits, user_data, tensor, later)
+
+    def __len__(self) -> int:
+        return self._core.size()
+
+    def __contains__(self, body: object) -> bool:
+        if not isinstance(body, (int, np.integer)) or not 0 <= body < 2**64:
+            return False
+        return self._core.contains(int(body))
+
+    @property
+    def bodies(self) -> Ids:
+        """The ids of all bodies that have entered, or enter now (n,)."""
+        return self._core.in_box(np.full(3, -math.inf), np.full(3, math.inf))
+
+    def _motions(self, bodies: ArrayLike | None) -> Doubles:
+        return self._core.motions_now(self.bodies if bodies is None else ids("bodies", bodies), False)
+
+    def positions(self, bodies: ArrayLike | None = None) -> Doubles:
+        """Where the centres are now (n, 3): of these bodies, or of all, as `bodies` has them. Of one that is to enter
+        later: where it will."""
+        return self._motions(bodies)[:, POSITION].copy()
+
+    def velocities(self, bodies: ArrayLike | None = None) -> Doubles:
+        """Their velocities (n, 3)."""
+        return self._motions(bodies)[:, VELOCITY].copy()
+
+    def accelerations(self, bodies: ArrayLike | None = None) -> Doubles:
+        """Their accelerations (n, 3), those by resting contacts included."""
+        return self._motions(bodies)[:, ACCELERATION].copy()
+
+    def orientations(self, bodies: ArrayLike | None = None) -> Doubles:
+        """Their orientations (n, 4): w, x, y, z."""
+        return self._motions(bodies)[:, ORIENTATION].copy()
+
+    def angular_velocities(self, bodies: ArrayLike | None = None) -> Doubles:
+        """Their angular velocities (n, 3), rad/s; of a body that precesses that of its present piece."""
+        return self._motions(bodies)[:, ANGULAR_VELOCITY].copy()
+
+    def position(self, body: int) -> Doubles:
+        """Where the centre of one body is now (3,)."""
+        return self.positions([identity("body", body)])[0]
+
+    def velocity(self, body: int) -> Doubles:
+        """Its velocity (3,)."""
+        return self.velocities([identity("body", body)])[0]
+
+    def shape(self, body: int) -> Shape:
+        """The shape that it was added with."""
+        return self._core.shape(identity("body", body))
+
+    def mass(self, body: int) -> float:
+        """Its mass; of a fixed body too, which no contact moves."""
+        return self._core.mass(identity("body", body))
+
+    def fixed(self, body: int) -> bool:
+        """Whether no other body changes its motion."""
+        return self._core.fixed(identity("body", body))
+
+    def sensor(self, body: int) -> bool:
+        """Whether it only reports."""
+        return self._core.sensor(identity("body", body))
+
+    def restitution(self, body: int) -> float:
+        """Its restitution: of two that meet the lower counts."""
+        return self._core.restitution(identity("body", body))
+
+    def category(self, body: int) -> int:
+        """The bits that say what it is."""
+        return int(self._core.masks(np.array([identity("body", body)], np.uint64))[0, 0])
+
+    def collides_with(self, body: int) -> int:
+        """The bits that say with what it may collide."""
+        return int(self._core.masks(np.array([identity("body", body)], np.uint64))[0, 1])
+
+    def user_data(self, body: int) -> int:
+        """Your own number for it, 0 if none was given."""
+        return self._core.user_data(identity("body", body))

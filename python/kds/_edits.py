@@ -1,0 +1,133 @@
+"""What changes in a world: motions, masses, filters; bodies that leave."""
+
+from __future__ import annotations
+
+from typing import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kds import _kds
+from kds._arrays import Doubles, Ids, column, doubles, identity, ids, one_or_more, rows, unsigned, vector
+from kds._motion import ACCELERATION, ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME, VELOCITY, Motion, pieces
+
+
+class Edits:
+    """How the bodies of a World are changed."""
+
+    _core: _kds.World
+    _turning: bool
+
+    def remove_body(self, body: int) -> None:
+        """Removes a body. Its contacts end, with events where bodies pass through each other."""
+        self._core.remove(identity("body", body))
+
+    def update_motion(
+        self,
+        body: int,
+        *,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        orientation: ArrayLike | None = None,
+        angular_velocity: ArrayLike | None = None,
+        then: Motion | Sequence[Motion] = (),
+    ) -> None:
+        """Gives a body a new motion from now on; what is left out stays as it is now. Pieces to come are discarded, and
+        those of `then` come in their place, each later than the one before."""
+        one = {
+            "positions": None if position is None else vector("position", position),
+            "velocities": None if velocity is None else vector("velocity", velocity),
+            "accelerations": None if acceleration is None else vector("acceleration", acceleration),
+            "orientations": None if orientation is None else doubles("orientation", orientation, (4,)),
+            "angular_velocities": None if angular_velocity is None else vector("angular_velocity", angular_velocity),
+        }
+        which = np.array([identity("body", body)], np.uint64)
+        first = self._changed(which, **one)
+        self._core.update_script(int(which[0]), np.vstack([first, pieces("then", then, first[0, TIME])]))
+
+    def append_motion(self, body: int, motion: Motion | Sequence[Motion]) -> None:
+        """Adds pieces of motion after those that are still to come, each later than the one before: so a stream of
+        pieces needs no more than the next ones. All are added, or none."""
+        self._core.append(identity("body", body), pieces("motion", motion, self._core.now()))
+
+    def update_motions(
+        self,
+        bodies: ArrayLike,
+        *,
+        positions: ArrayLike | None = None,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        orientations: ArrayLike | None = None,
+        angular_velocities: ArrayLike | None = None,
+    ) -> None:
+        """The same for n bodies, all or, if one is wrong, none: ids (n,), and (n, 3) or (3,), orientations (n, 4)."""
+        which = ids("bodies", bodies)
+        motions = self._changed(
+            which,
+            positions=positions,
+            velocities=velocities,
+            accelerations=accelerations,
+            orientations=orientations,
+            angular_velocities=angular_velocities,
+        )
+        self._core.update(which, motions)
+
+    def _changed(
+        self,
+        which: Ids,
+        *,
+        positions: ArrayLike | None,
+        velocities: ArrayLike | None,
+        accelerations: ArrayLike | None,
+        orientations: ArrayLike | None,
+        angular_velocities: ArrayLike | None,
+    ) -> Doubles:
+        """The motions of now, with what is given in their place."""
+        if orientations is not None and not self._turning:
+            raise ValueError("orientation: bodies keep theirs in a world that is not turning")
+        motions = self._core.motions_now(which, True)
+        motions[:, TIME] = self._core.now()
+        given = (
+            ("positions", positions, POSITION),
+            ("velocities", velocities, VELOCITY),
+            ("accelerations", accelerations, ACCELERATION),
+            ("orientations", orientations, ORIENTATION),
+            ("angular_velocities", angular_velocities, ANGULAR_VELOCITY),
+        )
+        for name, value, columns in given:
+            if value is not None:
+                motions[:, columns] = rows(name, value, len(which), columns.stop - columns.start)
+        return motions
+
+    def set_mass(self, bodies: ArrayLike, mass: ArrayLike) -> None:
+        """Gives bodies other masses: an id, or ids (n,), and a number for all or (n,); inertias change by the same
+        factors, and motions do not change. ValueError for bodies that are fixed. All change, or none."""
+        which = one_or_more("bodies", bodies)
+        self._core.set_masses(which, column("mass", mass, len(which)))
+
+    def set_restitution(self, bodies: ArrayLike, restitution: ArrayLike) -> None:
+        """The same for restitutions, from 0 to 1; they count from the next contact on."""
+        which = one_or_more("bodies", bodies)
+        self._core.set_restitutions(which, column("restitution", restitution, len(which)))
+
+    def set_filter(
+        self, bodies: ArrayLike, category: ArrayLike | None = None, collides_with: ArrayLike | None = None
+    ) -> None:
+        """The same for what bodies are and may collide with (add_body()); what is left out stays as it is.
+
+        Contacts with bodies that they may not collide with any more end: as separations of bodies that pass through
+        each other, and what rests on them wakes. Where they are in contact with bodies with which they could not
+        collide before, that is an overlap.
+        """
+        which = one_or_more("bodies", bodies)
+        both = self._core.masks(which)
+        for place, (name, value) in enumerate((("category", category), ("collides_with", collides_with))):
+            if value is not None:
+                both[:, place] = unsigned(name, value, len(which), 32)
+        self._core.set_filters(which, both)
+
+    def set_user_data(self, bodies: ArrayLike, user_data: ArrayLike) -> None:
+        """The same for numbers of your own, of 64 bits, which later events carry."""
+        which = one_or_more("bodies", bodies)
+        self._core.set_user_data(which, unsigned("user_data", user_data, len(which), 64))

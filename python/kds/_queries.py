@@ -1,0 +1,168 @@
+"""Questions to a world (docs/queries.md): nothing is changed."""
+
+from __future__ import annotations
+
+from typing import Callable, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kds import _kds
+from kds._arrays import Ids, doubles, identity, number, shape_of, vector, whole
+from kds._events import as_events
+from kds._kds import Shape
+from kds._motion import ACCELERATION, ANGULAR_VELOCITY, COLUMNS, ORIENTATION, POSITION, STILL, TIME, UPRIGHT, VELOCITY
+
+Filter = Callable[[int], bool]
+
+
+class Approach(NamedTuple):
+    """When two centres are nearest, and how far apart then."""
+
+    time: float
+    distance: float
+
+
+def _checked(filter: Filter | None) -> Filter | None:
+    """The filter for C++, where True and False are the only answers."""
+    if filter is None:
+        return None
+    if not callable(filter):
+        raise ValueError(f"filter: must be a function of the id of a body, or None, and is {filter!r}")
+    return lambda body: bool(filter(body))
+
+
+def _first(hits: np.ndarray) -> np.record | None:
+    return as_events(hits)[0] if len(hits) else None
+
+
+class Queries:
+    """What a World is asked."""
+
+    _core: _kds.World
+
+    def in_box(self, low: ArrayLike, high: ArrayLike) -> Ids:
+        """The bodies whose bounding volumes meet a box now, its ends may be infinite."""
+        return self._core.in_box(vector("low", low), vector("high", high))
+
+    def cast(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        shape: Shape | None = None,
+        *,
+        orientation: ArrayLike = UPRIGHT,
+        filter: Filter | None = None,
+    ) -> np.record | None:
+        """What a ray from start to end (3,) hits first, or a shape whose centre goes that way; None if nothing.
+
+        The hit is an event: a is the body, time the part of the way to it, from 0 to 1; point, normal, and feature_b of
+        the body. `filter`: which bodies count, a function of the id.
+        """
+        return _first(self._cast(start, end, shape, orientation, False, filter))
+
+    def cast_all(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        shape: Shape | None = None,
+        *,
+        orientation: ArrayLike = UPRIGHT,
+        filter: Filter | None = None,
+    ) -> np.recarray:
+        """All that is hit on the way, each body once, by time."""
+        return as_events(self._cast(start, end, shape, orientation, True, filter))
+
+    def _cast(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        shape: Shape | None,
+        orientation: ArrayLike,
+        every: bool,
+        filter: Filter | None,
+    ) -> np.ndarray:
+        turned = doubles("orientation", orientation, (4,))
+        return self._core.cast(
+            None if shape is None else shape_of("shape", shape),
+            turned,
+            vector("start", start),
+            vector("end", end),
+            every,
+            _checked(filter),
+        )
+
+    def overlapping(
+        self,
+        shape: Shape,
+        position: ArrayLike,
+        *,
+        orientation: ArrayLike = UPRIGHT,
+        filter: Filter | None = None,
+    ) -> Ids:
+        """The bodies that a shape penetrates whose centre is at a point."""
+        turned = doubles("orientation", orientation, (4,))
+        return self._core.overlapping(
+            shape_of("shape", shape), turned, vector("position", position), _checked(filter)
+        )
+
+    def nearest(self, point: ArrayLike, count: int = 1, *, filter: Filter | None = None) -> np.recarray:
+        """The bodies nearest to a point, nearest first, at most `count`: body, distance (0 inside) and point (3,), the
+        nearest of the body."""
+        return self._core.nearest(
+            vector("point", point), whole("count", count), _checked(filter)
+        ).view(np.recarray)
+
+    def next_contact(
+        self,
+        shape: Shape,
+        position: ArrayLike,
+        velocity: ArrayLike = STILL,
+        acceleration: ArrayLike = STILL,
+        *,
+        until: float,
+        orientation: ArrayLike = UPRIGHT,
+        angular_velocity: ArrayLike = STILL,
+        filter: Filter | None = None,
+    ) -> np.record | None:
+        """The first body that a shape will meet, up to `until` (s), which is in no world and moves so from now on, as
+        all move now; None if none. The hit has the time (s), a is the body, point and normal."""
+        motion = np.empty((1, COLUMNS))
+        motion[0, POSITION] = vector("position", position)
+        motion[0, VELOCITY] = vector("velocity", velocity)
+        motion[0, ACCELERATION] = vector("acceleration", acceleration)
+        motion[0, TIME] = self._core.now()
+        motion[0, ORIENTATION] = doubles("orientation", orientation, (4,))
+        motion[0, ANGULAR_VELOCITY] = vector("angular_velocity", angular_velocity)
+        ends = number("until", until)
+        return _first(self._core.next_contact(shape_of("shape", shape), motion, ends, _checked(filter)))
+
+    def next_contact_of(self, body: int, *, until: float, filter: Filter | None = None) -> np.record | None:
+        """What a body will meet first, up to `until`, as all move now; None if nothing. a is the other body."""
+        ends = number("until", until)
+        return _first(self._core.next_contact_of(identity("body", body), ends, _checked(filter)))
+
+    def next_contact_between(self, a: int, b: int, *, until: float) -> np.record | None:
+        """When and where two bodies will meet, as they move now; None if they do not."""
+        pair = identity("a", a), identity("b", b)
+        return _first(self._core.next_contact_between(*pair, number("until", until)))
+
+    def closest_approach(self, a: int, b: int, *, until: float) -> Approach:
+        """When the centres of two bodies are nearest, up to `until`, and how far apart then."""
+        return Approach(*self._core.closest_approach(identity("a", a), identity("b", b), number("until", until)))
+
+    def partners(self, body: int) -> Ids:
+        """The bodies that a body touches or rests on, as touching() and resting() say (n,)."""
+        return self._core.partners(identity("body", body))
+
+    def touching(self, a: int, b: int) -> bool:
+        """Whether two bodies that pass through each other are in contact."""
+        return self._core.touching(identity("a", a), identity("b", b))
+
+    def resting(self, a: int, b: int) -> bool:
+        """Whether two bodies rest on each other."""
+        return self._core.resting(identity("a", a), identity("b", b))
+
+    def resting_at_wall(self, body: int, wall: int) -> bool:
+        """Whether a body rests at a wall: 0 is -x, 1 is +x, ... 5 is +z."""
+        return self._core.resting_at_wall(identity("body", body), whole("wall", wall, 5))
