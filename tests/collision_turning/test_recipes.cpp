@@ -1,0 +1,37 @@
+// The code of docs/recipes.md with bodies that turn: what is quoted there stands here.
+#include "collision/world.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+namespace test_recipes {
+namespace {
+
+using namespace kds::collision;
+using Eigen::Vector3d;
+using Turning = kds::certificates::RigidMotion<2>;
+using Parabola = kds::certificates::PointMotion<2>;
+
+TEST_CASE("recipe: a body that turns") {
+  TurningWorld<2> world({.response = Response::elastic});
+  world.add_body({.shape = Box{{9, 9, 1}},
+                  .motion = {Turning{Parabola::line({0, 0, -1}, {0, 0, 0})}},
+                  .fixed = true,
+                  .friction = 0.5});
+  const Turning thrown{.path = Parabola::parabola({0, 0, 2}, {1, 0, 0}, {0, 0, -10}), .angular_velocity = {0, 1, 2}};
+  const BodyId die =
+      world.add_body({.shape = Box{{0.25, 0.25, 0.25}}, .motion = {thrown}, .restitution = 0.25, .friction = 0.5});
+  world.advance_to(0.5);
+  const Turning now = world.motion(die).restarted(world.now());
+  const Vector3d place = now.path.coefficients[0];
+  const Eigen::Quaterniond orientation = now.orientation;  // to draw it
+  CHECK(place == Vector3d(0.5, 0, 0.75));
+  CHECK(orientation.angularDistance(Eigen::Quaterniond::Identity()) == Approx(0.5 * std::sqrt(5)));
+  world.advance_to(10);
+  CHECK(world.motion(die).path.position(10)[2] == Approx(0.25).margin(1e-6));
+  CHECK(world.motion(die).angular_velocity == Vector3d(0, 0, 0));
+}
+
+}  // namespace
+}  // namespace test_recipes

@@ -1,0 +1,42 @@
+// The code of docs/recipes.md that reads files and writes replays: what is quoted there stands here.
+#include "collision/shapes/mesh.hpp"
+#include "examples/kds-collide/mesh_file.hpp"
+#include "examples/kds-collide/replay.hpp"
+#include "examples/kds-collide/run.hpp"
+#include "examples/kds-collide/scene_reader.hpp"
+#include "tests/examples/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <memory>
+#include <string>
+
+namespace test_recipes {
+
+using namespace kds_collide;
+using kds_collide::tests::TemporaryFolder;
+
+TEST_CASE("recipe: a mesh from a file") {
+  const TemporaryFolder folder;
+  const auto file =
+      folder.write("model.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 2 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
+  MeshData data = read_mesh_file(file);
+  const auto left_out = leave_out_degenerate(data);  // triangles without area, which a Mesh refuses
+  const auto mesh = std::make_shared<const kds::collision::Mesh>(data.vertices, data.triangles);
+  CHECK(left_out.size() == 1);
+  CHECK(mesh->triangles().size() == 2);
+}
+
+TEST_CASE("recipe: a replay of a scene") {
+  const std::string text = R"({"scene": 1, "end_time": 5, "response": "elastic", "bodies": [
+    {"name": "left", "shape": {"sphere": {"radius": 1}}, "motion": [{"start": 0, "position": [[-3,0,0], [1,0,0]]}]},
+    {"name": "right", "shape": {"sphere": {"radius": 1}}, "motion": [{"start": 0, "position": [[3,0,0], [-1,0,0]]}]}]})";
+  const Scene scene = parse_scene(text, "two balls");
+  ReplayRecorder recorder(scene);
+  const RunResult result = run(scene, {}, recorder);
+  const std::string data = recorder.to_json("two balls");  // replay_page(data, default_three_folder()) is the page
+  CHECK(result.contacts == 1);
+  CHECK(data.find("\"touches\":[[2") != std::string::npos);
+}
+
+}  // namespace test_recipes
