@@ -22,11 +22,10 @@ constexpr int phases = 10;    // of it that are tried
 void prove(const char* title, const Scene& scene) {
   std::cout << title << ": ";
   if (const auto meeting = first_meeting(scene)) {
-    std::cout << "NOT FREE: " << meeting->second << " meets the " << meeting->first << " at " << meeting->time
-              << " s\n";
+    std::cout << "NOT FREE: " << meeting->second << " meets " << meeting->first << " at " << meeting->time << " s\n";
   } else if (const auto clearance = least_clearance(scene, 10, 0.001)) {
     std::cout << "FREE; the least clearance is between " << clearance->free * 1000 << " and "
-              << clearance->not_free * 1000 << " mm, of " << clearance->nearest.second << " from the "
+              << clearance->not_free * 1000 << " mm, of " << clearance->nearest.second << " from "
               << clearance->nearest.first << " at " << clearance->nearest.time << " s\n";
   } else {
     std::cout << "FREE, by more than 10 m\n";

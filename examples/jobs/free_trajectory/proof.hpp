@@ -17,7 +17,7 @@ namespace free_trajectory {
 Eigen::Vector3d place(const Drone& drone, double t);
 Eigen::Vector3d velocity(const Drone& drone, double t);
 
-/// Two things meet: "drone 3", "mast"; at a time (s) and a point (m).
+/// Two things meet: "drone 3", "the mast"; at a time (s) and a point (m).
 struct Meeting {
   double time;
   std::string first, second;

@@ -45,7 +45,7 @@ void add_bar(Obstacle& to, const Vector3d& from, const Vector3d& end, double rad
 
 Obstacle mast() {
   constexpr int floors = 12;
-  Obstacle mast{"mast", {}, {}};
+  Obstacle mast{"the mast", {}, {}};
   const auto corner = [](int floor, int i) {
     const double half = 1.5 - 0.1 * floor;  // m
     const Vector3d at(i == 0 || i == 3 ? -half : half, i < 2 ? -half : half, 3.0 * floor);
@@ -65,7 +65,7 @@ Obstacle mast() {
 Obstacle ground(Random& random) {
   constexpr std::uint32_t points = 25;
   constexpr double spacing = 5;  // m
-  Obstacle ground{"ground", {}, {}};
+  Obstacle ground{"the ground", {}, {}};
   for (std::uint32_t y = 0; y < points; ++y) {
     for (std::uint32_t x = 0; x < points; ++x) {
       const double half = spacing * (points - 1) / 2;
@@ -124,7 +124,7 @@ void add_cable(Scene& scene, std::size_t drone, double time) {
   const Vector3d beside = way.cross(Vector3d::UnitZ()).normalized();
   const Vector3d along = way.cross(beside);
   const Vector3d middle = place(flown, time) + (flown.radius - depth) * beside;
-  Obstacle cable{"cable", {}, {}};
+  Obstacle cable{"the cable", {}, {}};
   for (int i = -4; i < 4; ++i) {
     add_bar(cable, middle + half_length / 4 * i * along, middle + half_length / 4 * (i + 1) * along, radius);
   }

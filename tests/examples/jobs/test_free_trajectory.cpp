@@ -106,7 +106,7 @@ TEST_CASE("a free trajectory: a contact that samples miss") {
   add_cable(scene, 0, 12.405);
   const auto meeting = first_meeting(scene);
   REQUIRE(meeting);
-  CHECK(meeting->first == "cable");
+  CHECK(meeting->first == "the cable");
   CHECK(meeting->second == "drone 0");
   CHECK(std::abs(meeting->time - 12.405) < 0.005);
   // They touch there: the drone is its radius away, and a millionth of a second later nearer.
