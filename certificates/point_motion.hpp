@@ -13,8 +13,7 @@
 
 namespace kds::certificates {
 
-/// The coefficients of a motion: an array of vectors. If only the first ones are given, the others are zero; if none is
-/// given, all are uninitialised, as vectors of Eigen are, so that arrays of motions cost nothing to make.
+/// The coefficients of a motion: an array of vectors. If only the first ones are given, or none, the others are zero.
 template <int Degree>
 struct PointCoefficients : std::array<Eigen::Vector3d, std::size_t{Degree} + 1> {
   using Vector = Eigen::Vector3d;

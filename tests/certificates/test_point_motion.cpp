@@ -50,6 +50,8 @@ TEST_CASE("coefficients that are left out are zero, whatever was in memory", "[p
     }
     CHECK(path->start == 0);
   };
+  check([&] { return new (&memory) Path; }, 0);
+  check([&] { return new (&memory) Path{}; }, 0);
   check([&] { return new (&memory) Path{{given[0]}}; }, 1);
   check([&] { return new (&memory) Path{{given[0], given[1]}}; }, 2);
   check([&] { return new (&memory) Path{{given[0], given[1], given[2]}, 0}; }, 3);
