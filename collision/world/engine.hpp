@@ -130,8 +130,6 @@ class Engine final : private RestingListener<BodyMotionType> {
   void start_pieces();
   void turn_on();
   void ring();
-  void report_next();
-  void report_resting(const Reports::Report& event, const PairEvent& pair);
   void count_edit();
 
   // guards.cpp: what may be called when, and the state after an exception
@@ -172,6 +170,10 @@ class Engine final : private RestingListener<BodyMotionType> {
     telling_ = false;
     require_whole("World::step");  // The listener may have caught the exception of a change that it made.
   }
+
+  // telling.cpp: reports
+  void report_next();
+  void report_resting(const Reports::Report& event, const PairEvent& pair);
 
   // edits.cpp: bodies that are added and removed
   BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape,

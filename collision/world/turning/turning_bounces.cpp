@@ -109,7 +109,7 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) req
     ++counters_.motion_updates;
     set_motion(slot, motion, false);
   }
-  const bool rests = resting_.settle(a, b, contact);
+  const bool rests = resting_.comes_to_rest(a, b, contact);
   counters_.rebounds_suppressed += rests;
   return rests;
 }

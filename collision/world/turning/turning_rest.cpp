@@ -250,7 +250,7 @@ void TurningRest<Motion>::note(Key key, const collision::Contact& contact) {
 }
 
 template <class Motion>
-bool TurningRest<Motion>::settle(BodySlot a, BodySlot b, const collision::Contact& contact) {
+bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision::Contact& contact) {
   if constexpr (Motion::degree < 2) return false;  // nothing presses bodies together
   const double g = scale({a, b}).acceleration;
   const double t = clock_.now;

@@ -94,7 +94,7 @@ class TurningRest {
 
   /// Two bodies have met, and move as they do after their impulses. Returns whether they, and all bodies of their
   /// group, have come to rest.
-  bool settle(BodySlot a, BodySlot b, const collision::Contact& contact);
+  bool comes_to_rest(BodySlot a, BodySlot b, const collision::Contact& contact);
   /// Two bodies are about to meet. If one of them rests it wakes, unless the other is calm: that may lie on it soon,
   /// and bounces off it until then as off a fixed body.
   void meet(BodySlot a, BodySlot b);
