@@ -199,7 +199,7 @@ double TurningMeshSearch<Degree, Side>::first_contact(double t0, double horizon,
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::Front::next() {
   constexpr double part = 0.375;
-  constexpr std::size_t most_together = 16;
+  constexpr std::size_t most_visits = 16;
   const auto soon_enough = [&](const Item& item) { return item.time - view_.time <= part * (item.time - item.seen); };
   while (!queue_.empty()) {
     const Item item = queue_.top();
@@ -210,7 +210,7 @@ double TurningMeshSearch<Degree, Side>::Front::next() {
         if (!soon_enough(item)) look(item.time);
         visits_.push_back({item.nodes, item.time, item.tries});
         // Others that this view is good for, too, so that some are looked at together.
-        while (!queue_.empty() && visits_.size() < most_together) {
+        while (!queue_.empty() && visits_.size() < most_visits) {
           const Item& other = queue_.top();
           if (other.known != Known::apart_until || other.time > horizon_ || !soon_enough(other)) break;
           visits_.push_back({other.nodes, other.time, other.tries});

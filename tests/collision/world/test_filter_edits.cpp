@@ -198,7 +198,7 @@ TEST_CASE("Filters change alike, whatever the broad phase, in callbacks and with
   CHECK(count > 20);
 }
 
-TEST_CASE("A ball whose mask leaves out the floor under it wakes and falls; what it still may rest on it rests on") {
+TEST_CASE("A ball whose mask leaves out the floor under it wakes and falls, and rests on if it does not") {
   struct Told final : WorldListener<2> {
     std::vector<std::pair<BodyId, BodyId>> woken;
     void wakes(World<2>&, const PairEvent& e) override { woken.emplace_back(e.a, e.b); }
