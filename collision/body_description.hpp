@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/turning/rigid_motion.hpp"
+#include "collision/body_id.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/shapes/shape.hpp"
 
@@ -87,9 +88,15 @@ struct BasicBodyDescription {
   double tangential_restitution = 0;
   std::uint32_t category = default_category;  ///< bits
   std::uint32_t collides_with = ~0u;  ///< mask; a pair is tested if each one's category shares a bit with the other's
+  /// Bodies of the same group, unless it is 0, do not collide with each other, whatever their masks.
+  std::uint32_t group = 0;
   /// Passes through all bodies and walls, and no other body changes its motion: its contacts and separations are
   /// reported as in mode `none`, whatever the response of the world.
   bool sensor = false;
+  /// A body that this one, a sensor, moves with: it has that body's motion, whatever changes it, enters with it and is
+  /// removed with it; its own `motion` must be empty. It never meets that body, nor other sensors of it. So a ball of
+  /// twice the radius is a proximity alarm.
+  std::optional<BodyId> attached_to{};
   /// Of a mesh that bends: its contacts with itself are reported, too, as contacts and separations of the body with the
   /// same body, whatever the response of the world. They cost as much as many bodies (docs/deforming.md).
   bool self_contacts = false;

@@ -75,6 +75,16 @@ void BasicWorld<Motion>::set_filter(BodyId id, std::uint32_t category, std::uint
 }
 
 template <class Motion>
+void BasicWorld<Motion>::set_group(BodyId id, std::uint32_t group) {
+  engine_->set_group(id, group);
+}
+
+template <class Motion>
+void BasicWorld<Motion>::ignore_pair(BodyId a, BodyId b, bool ignored) {
+  engine_->ignore_pair(a, b, ignored);
+}
+
+template <class Motion>
 void BasicWorld<Motion>::set_user_data(BodyId id, std::uint64_t user_data) {
   engine_->set_user_data(id, user_data);
 }
@@ -179,12 +189,30 @@ double BasicWorld<Motion>::restitution(BodyId id) const {
 
 template <class Motion>
 std::uint32_t BasicWorld<Motion>::category(BodyId id) const {
-  return body_of(*engine_, id).category;
+  return body_of(*engine_, id).filter.category;
 }
 
 template <class Motion>
 std::uint32_t BasicWorld<Motion>::collides_with(BodyId id) const {
-  return body_of(*engine_, id).collides_with;
+  return body_of(*engine_, id).filter.collides_with;
+}
+
+template <class Motion>
+std::uint32_t BasicWorld<Motion>::group(BodyId id) const {
+  return body_of(*engine_, id).filter.group;
+}
+
+template <class Motion>
+bool BasicWorld<Motion>::ignores_pair(BodyId a, BodyId b) const {
+  const auto& bodies = engine_->bodies();
+  return bodies.ignored().contains(bodies.slot_of(a), bodies.slot_of(b));
+}
+
+template <class Motion>
+std::optional<BodyId> BasicWorld<Motion>::attached_to(BodyId id) const {
+  const auto& bodies = engine_->bodies();
+  const BodySlot owner = bodies.attachments().owner(bodies.slot_of(id));
+  return owner == no_body ? std::nullopt : std::optional(bodies.id_of(owner));
 }
 
 template <class Motion>

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -114,6 +115,10 @@ class BasicWorld final {
   /// more end: those of bodies that pass through each other separate, with reports, and what rests on it, or below it,
   /// wakes. Where it is in contact with a body with which it could not collide before, that is reported as an overlap.
   void set_filter(BodyId id, std::uint32_t category, std::uint32_t collides_with);
+  /// The same for its group (BodyDescription), and for one pair of bodies: those that are ignored do not collide,
+  /// whatever their masks. Throws std::invalid_argument for a body and itself.
+  void set_group(BodyId id, std::uint32_t group);
+  void ignore_pair(BodyId a, BodyId b, bool ignored = true);
   void set_user_data(BodyId id, std::uint64_t user_data);
 
   /// At a time in s the listener's timer() is called: after pieces of motion that start then, before contacts. Timers
@@ -172,7 +177,11 @@ class BasicWorld final {
   double restitution(BodyId id) const;
   std::uint32_t category(BodyId id) const;
   std::uint32_t collides_with(BodyId id) const;
+  std::uint32_t group(BodyId id) const;
+  bool ignores_pair(BodyId a, BodyId b) const;
   std::uint64_t user_data(BodyId id) const;
+  /// The body that a sensor moves with, none if it is not attached.
+  std::optional<BodyId> attached_to(BodyId id) const;
 
   /// Whether a and b are in contact; only for bodies that pass through each other (mode `none`, sensors), otherwise
   /// false. Of one body: whether it touches itself, if it reports that (BodyDescription::self_contacts).

@@ -26,7 +26,7 @@ namespace kds_python {
 using kds::collision::BodyId;
 
 /// Category, and what it collides with.
-using BodyMasks = std::array<std::uint32_t, 2>;
+using BodyMasks = std::array<std::uint32_t, 3>;
 
 /// The orientation of the first piece is that of a body which keeps it.
 using Description = kds::collision::BasicBodyDescription<Motion>;
@@ -52,6 +52,8 @@ class AnyWorld {
   // All or none, too: a value for each body.
   virtual void set_masses(const std::vector<BodyId>& ids, const double* masses) = 0;
   virtual void set_restitutions(const std::vector<BodyId>& ids, const double* restitutions) = 0;
+  virtual void ignore_pair(BodyId a, BodyId b, bool ignored) = 0;
+  virtual bool ignores_pair(BodyId a, BodyId b) const = 0;
   virtual void set_filters(const std::vector<BodyId>& ids, const BodyMasks* masks) = 0;
   virtual void set_user_data(const std::vector<BodyId>& ids, const std::uint64_t* user_data) = 0;
   virtual kds::collision::TimerId set_timer(double t) = 0;

@@ -17,6 +17,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace kds_python {
@@ -152,8 +153,8 @@ Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<D
       body.friction = number[2];
       body.tangential_restitution = number[3];
       body.inertia = tensor ? Inertia(*tensor) : Inertia(number[4]);
-      body.category = masks.data()[2 * i];
-      body.collides_with = masks.data()[2 * i + 1];
+      std::tie(body.category, body.collides_with, body.group) =
+          std::tuple(masks.data()[3 * i], masks.data()[3 * i + 1], masks.data()[3 * i + 2]);
       body.user_data = user_data.data()[i];
       body.fixed = (flags.data()[i] & is_fixed) != 0;
       body.sensor = (flags.data()[i] & is_sensor) != 0;
@@ -168,6 +169,18 @@ Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<D
   return to_array(ids);
 }
 
+/// A sensor that moves with a body.
+BodyId attach(PyWorld& self, const PyShape& shape, BodyId owner, const Masks& masks, std::uint64_t user_data) {
+  Description body;
+  body.shape = shape.shape;
+  body.attached_to = owner;
+  body.sensor = true;
+  std::tie(body.category, body.collides_with, body.group) =
+      std::tuple(masks.data()[0], masks.data()[1], masks.data()[2]);
+  body.user_data = user_data;
+  return self.to_change().add_body(body);
+}
+
 /// Position, velocity, acceleration, time, orientation and angular velocity of each at now.
 Doubles motions_now(PyWorld& self, const Ids& ids, bool free) {
   AnyWorld& world = self.world();
@@ -179,12 +192,12 @@ Doubles motions_now(PyWorld& self, const Ids& ids, bool free) {
   return rows;
 }
 
-/// Categories and masks.
+/// Categories, masks and groups.
 Masks masks_of(PyWorld& self, const Ids& ids) {
   const AnyWorld& world = self.world();
-  Masks both({ids.size(), py::ssize_t{2}});
+  Masks both({ids.size(), py::ssize_t{3}});
   std::uint32_t* row = both.mutable_data();
-  for (py::ssize_t i = 0; i < ids.size(); ++i, row += 2) {
+  for (py::ssize_t i = 0; i < ids.size(); ++i, row += 3) {
     const BodyMasks masks = world.masks(ids.data()[i]);
     std::copy(masks.begin(), masks.end(), row);
   }
@@ -193,7 +206,7 @@ Masks masks_of(PyWorld& self, const Ids& ids) {
 
 void set_filters(PyWorld& self, const Ids& ids, const Masks& both) {
   std::vector<BodyMasks> masks(static_cast<std::size_t>(ids.size()));
-  for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = {both.data()[2 * i], both.data()[2 * i + 1]};
+  for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = {both.data()[3 * i], both.data()[3 * i + 1], both.data()[3 * i + 2]};
   self.to_change().set_filters(to_vector(ids), masks.data());
 }
 
@@ -353,6 +366,11 @@ void bind_world(py::module_& module) {
   world.def("sensor", [](PyWorld& self, BodyId id) { return self.world().sensor(id); });
   world.def("restitution", [](PyWorld& self, BodyId id) { return self.world().restitution(id); });
   world.def("masks", &masks_of);
+  world.def("attach", &attach);
+  world.def("ignore_pair", [](PyWorld& self, BodyId a, BodyId b, bool ignored) {
+    self.to_change().ignore_pair(a, b, ignored);
+  });
+  world.def("ignores_pair", [](PyWorld& self, BodyId a, BodyId b) { return self.world().ignores_pair(a, b); });
   world.def("user_data", [](PyWorld& self, BodyId id) { return self.world().user_data(id); });
   world.def("broad_phase", [](PyWorld& self) { return std::string(self.world().broad_phase()); });
   world.def("counters", &counters);

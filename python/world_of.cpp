@@ -91,6 +91,8 @@ class WorldOf final : public AnyWorld {
     own.tangential_restitution = body.tangential_restitution;
     own.category = body.category;
     own.collides_with = body.collides_with;
+    own.group = body.group;
+    own.attached_to = body.attached_to;
     own.sensor = body.sensor;
     own.user_data = body.user_data;
     return world_.add_body(own);
@@ -142,7 +144,10 @@ class WorldOf final : public AnyWorld {
   }
   void set_filters(const std::vector<BodyId>& ids, const BodyMasks* masks) override {
     for (const BodyId id : ids) (void)world_.category(id);
-    for (std::size_t i = 0; i < ids.size(); ++i) world_.set_filter(ids[i], masks[i][0], masks[i][1]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      world_.set_filter(ids[i], masks[i][0], masks[i][1]);
+      world_.set_group(ids[i], masks[i][2]);
+    }
   }
   void set_user_data(const std::vector<BodyId>& ids, const std::uint64_t* user_data) override {
     for (const BodyId id : ids) (void)world_.user_data(id);
@@ -166,7 +171,9 @@ class WorldOf final : public AnyWorld {
   bool fixed(BodyId id) const override { return world_.fixed(id); }
   bool sensor(BodyId id) const override { return world_.sensor(id); }
   double restitution(BodyId id) const override { return world_.restitution(id); }
-  BodyMasks masks(BodyId id) const override { return {world_.category(id), world_.collides_with(id)}; }
+  BodyMasks masks(BodyId id) const override { return {world_.category(id), world_.collides_with(id), world_.group(id)}; }
+  void ignore_pair(BodyId a, BodyId b, bool ignored) override { world_.ignore_pair(a, b, ignored); }
+  bool ignores_pair(BodyId a, BodyId b) const override { return world_.ignores_pair(a, b); }
   std::uint64_t user_data(BodyId id) const override { return world_.user_data(id); }
   std::vector<BodyId> partners(BodyId id) const override {
     std::vector<BodyId> found;

@@ -22,7 +22,7 @@ class PairListener {
   /// as long as both are there.
   virtual bool filters() const { return false; }
   virtual bool may_collide(BodySlot, BodySlot) const { return true; }
-  /// A body's filter, a number: whether two bodies may collide is a function of their filters.
+  /// A body's filter, a number: bodies whose filters do not meet may not collide.
   virtual std::uint64_t filter_of(BodySlot) const { return 0; }
   virtual bool filters_meet(std::uint64_t, std::uint64_t) const { return true; }
   virtual void pair_began(BodySlot a, BodySlot b, double t) = 0;

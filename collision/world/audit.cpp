@@ -15,6 +15,11 @@ void Engine<Motion>::audit(double t) const {
   broad_phase_->audit(t);
   // Work of this instant may still have to be done.
   if (bodies_.any_waits() || !pairs_.tested() || volumes_.next_time() <= t) return;
+  for (const auto& [sensor, owner] : bodies_.attachments().all()) {
+    if (bodies_.motion(sensor) == bodies_.motion(owner)) continue;
+    throw AuditFailure("World: sensor " + std::to_string(bodies_.id_of(sensor)) + " does not move with body " +
+                       std::to_string(bodies_.id_of(owner)));
+  }
   tumbling_.audit(t);
   if (resting_.solved()) resting_.audit(t, options_.walls.has_value());
   pairs_.audit(t);

@@ -74,7 +74,7 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
     added.friction = description.friction, added.tangential_restitution = description.tangential_restitution;
   }
   added.restitution = description.restitution;
-  set_filter(slot, {description.category, description.collides_with});
+  set_filter(slot, {description.category, description.collides_with, description.group});
   added.volume = description.volume;
   added.sensor = description.sensor;
   added.self_contacts = description.self_contacts;
@@ -90,8 +90,24 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
 
 template <class Motion>
 void Bodies<Motion>::set_filter(BodySlot slot, const CollisionFilter& filter) {
-  bodies_[slot].category = filter.category, bodies_[slot].collides_with = filter.collides_with;
-  filters_ = filters_ || filter.category != default_category || ~filter.collides_with != 0;
+  bodies_[slot].filter = filter;
+  filters_ = filters_ || filter != CollisionFilter{};
+}
+
+template <class Motion>
+void Bodies<Motion>::ignore(BodySlot a, BodySlot b, bool ignored) {
+  if (ignored) {
+    ignored_.add(a, b);
+  } else {
+    ignored_.remove(a, b);
+  }
+  filters_ = true;
+}
+
+template <class Motion>
+void Bodies<Motion>::attach(BodySlot sensor, BodySlot owner) {
+  attachments_.attach(sensor, owner);
+  filters_ = true;
 }
 
 template <class Motion>
@@ -105,6 +121,8 @@ template <class Motion>
 void Bodies<Motion>::remove(BodySlot slot) {
   std::erase(waiting_, slot);  // otherwise the next body in this slot would enter in its place
   bodies_[slot] = Body{};
+  ignored_.forget(slot);
+  attachments_.detach(slot);
   --alive_;
   if (generations_.size() <= slot) generations_.resize(bodies_.size());
   if (generations_[slot] == last_generation) return;
@@ -152,7 +170,7 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
     }
     to.motion = motion(slot);
     to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
-    to.category = b.category, to.collides_with = b.collides_with, to.volume = b.volume, to.sensor = b.sensor;
+    to.filter = b.filter, to.volume = b.volume, to.sensor = b.sensor;
     to.self_contacts = b.self_contacts, to.user_data = b.user_data;
     to.meetings = b.meetings, to.burst_start = b.burst_start;
     if constexpr (turns<Motion>) {
@@ -164,6 +182,7 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
     if constexpr (Motion::degree >= 3) to.given = b.given;
   }
   image.generations = generations_, image.free = free_, image.waiting = waiting_;
+  image.ignored = ignored_.pairs(), image.attached = attachments_.all();
   return image;
 }
 
@@ -184,6 +203,9 @@ void Bodies<Motion>::become(const Image& image) {
   bodies_.resize(count), movers_.resize(count);
   if constexpr (turns<Motion>) motions_.resize(count);
   alive_ = 0;
+  ignored_.clear(), attachments_.clear();
+  for (const auto& [a, b] : image.ignored) ignore(a, b, true);
+  for (const auto& [sensor, owner] : image.attached) attach(sensor, owner);
   for (BodySlot slot = 0; slot < count; ++slot) {
     const auto& from = image.bodies[slot];
     if (!from.alive) continue;
@@ -193,7 +215,7 @@ void Bodies<Motion>::become(const Image& image) {
     set_shape(slot, from.placed);
     move(slot, from.motion);
     b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
-    set_filter(slot, {from.category, from.collides_with});
+    set_filter(slot, from.filter);
     b.volume = from.volume, b.sensor = from.sensor;
     b.self_contacts = from.self_contacts, b.user_data = from.user_data;
     if constexpr (turns<Motion>) {

@@ -8,6 +8,8 @@
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/world/attachments.hpp"
+#include "collision/world/ignored_pairs.hpp"
 
 #include <Eigen/Core>
 
@@ -21,20 +23,23 @@
 
 namespace kds::collision {
 
-/// With what a body may collide.
+/// With what a body may collide: see BodyDescription.
 struct CollisionFilter {
-  CollisionFilter(std::uint32_t its_category, std::uint32_t with) : category(its_category), collides_with(with) {}
-  explicit CollisionFilter(std::uint64_t number)
-      : CollisionFilter(static_cast<std::uint32_t>(number >> 32), static_cast<std::uint32_t>(number)) {}
+  std::uint32_t category = default_category;
+  std::uint32_t collides_with = ~0u;
+  std::uint32_t group = 0;
 
   /// Both masks as one number.
-  std::uint64_t number() const { return std::uint64_t{category} << 32 | collides_with; }
-  bool meets(const CollisionFilter& other) const {
-    return (category & other.collides_with) != 0 && (other.category & collides_with) != 0;
+  std::uint64_t masks() const { return std::uint64_t{category} << 32 | collides_with; }
+  static CollisionFilter of_masks(std::uint64_t masks) {
+    return {static_cast<std::uint32_t>(masks >> 32), static_cast<std::uint32_t>(masks), 0};
   }
 
-  std::uint32_t category;
-  std::uint32_t collides_with;
+  bool meets(const CollisionFilter& other) const {
+    return (category & other.collides_with) != 0 && (other.category & collides_with) != 0 &&
+           (group == 0 || group != other.group);
+  }
+  friend bool operator==(const CollisionFilter&, const CollisionFilter&) = default;
 };
 
 /// The generation of the last body that a slot can have.
@@ -74,8 +79,7 @@ struct Body
   double restitution = 1;
   double mass = 1;
   double bounding_radius = 0;
-  std::uint32_t category = 1;
-  std::uint32_t collides_with = ~0u;
+  CollisionFilter filter{};
   BoundingVolume volume = BoundingVolume::shape;
   bool sensor = false;
   bool self_contacts = false;
@@ -186,10 +190,18 @@ class Bodies {
   /// Whether some body does not collide with all others, or did not.
   bool filters() const { return filters_; }
   /// Whether there is anything that it may collide with. Bodies that collide with nothing are not in the broad phase.
-  bool collides(BodySlot slot) const { return bodies_[slot].category != 0 && bodies_[slot].collides_with != 0; }
-  CollisionFilter filter(BodySlot slot) const { return {bodies_[slot].category, bodies_[slot].collides_with}; }
-  bool may_collide(BodySlot a, BodySlot b) const { return filter(a).meets(filter(b)); }
+  bool collides(BodySlot slot) const { return filter(slot).category != 0 && filter(slot).collides_with != 0; }
+  const CollisionFilter& filter(BodySlot slot) const { return bodies_[slot].filter; }
+  bool may_collide(BodySlot a, BodySlot b) const {
+    return filter(a).meets(filter(b)) && !(!ignored_.empty() && ignored_.contains(a, b)) &&
+           !(!attachments_.empty() && attachments_.together(a, b));
+  }
   void set_filter(BodySlot slot, const CollisionFilter& filter);
+  const IgnoredPairs& ignored() const { return ignored_; }
+  void ignore(BodySlot a, BodySlot b, bool ignored);
+
+  const Attachments& attachments() const { return attachments_; }
+  void attach(BodySlot sensor, BodySlot owner);
   /// Of a body that turns, but does not precess, the inertia changes by the same factor. Precondition: it is not fixed.
   void set_mass(BodySlot slot, double mass);
 
@@ -226,6 +238,8 @@ class Bodies {
   std::vector<std::uint32_t> generations_;
   std::vector<BodySlot> free_;
   std::vector<BodySlot> waiting_;
+  IgnoredPairs ignored_;
+  Attachments attachments_;
   std::size_t alive_ = 0;
   bool filters_ = false;
   bool sensors_ = false;

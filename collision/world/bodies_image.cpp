@@ -64,7 +64,8 @@ void Bodies<Motion>::Image::body(Archive& archive, One& body) const {
   if (!body.alive) return;
   archive_shape(archive, body.placed, body.mesh, meshes);
   archive(body.entered, body.sensor, body.self_contacts, body.user_data, body.motion, body.mass, body.inverse_mass,
-          body.restitution, body.category, body.collides_with, body.volume, body.meetings, body.burst_start);
+          body.restitution, body.filter.category, body.filter.collides_with, body.filter.group, body.volume, body.meetings,
+          body.burst_start);
   image::vector(archive, body.force);
   if constexpr (turns<Motion>) archive(body.inverse_inertia, body.friction, body.tangential_restitution, body.tumbles);
   if constexpr (Motion::degree >= 3) archive(body.given);
@@ -76,6 +77,41 @@ void Bodies<Motion>::Image::archive(Archive& archive, const std::vector<std::sha
   archive.each(meshes, [&](auto& one) { mesh(archive, one, known); });
   archive.each(bodies, [&](One& one) { body(archive, one); });
   archive(generations, free, waiting);
+  archive.each(ignored, [&](auto& pair) { archive(pair.first, pair.second); });
+  archive.each(attached, [&](auto& pair) { archive(pair.first, pair.second); });
+}
+
+template <class Motion>
+BodySlot Bodies<Motion>::Image::owner(BodySlot slot) const {
+  const auto found = std::lower_bound(attached.begin(), attached.end(), std::pair(slot, BodySlot{0}));
+  return found == attached.end() || found->first != slot ? no_body : found->second;
+}
+
+template <class Motion>
+bool Bodies<Motion>::Image::may_collide(BodySlot a, BodySlot b) const {
+  const BodySlot of_a = owner(a), of_b = owner(b);
+  const bool together = (of_a == no_body ? a : of_a) == (of_b == no_body ? b : of_b);
+  return bodies[a].filter.meets(bodies[b].filter) && !together &&
+         !std::binary_search(ignored.begin(), ignored.end(), IgnoredPairs::pair(a, b));
+}
+
+/// Also the pairs that are ignored.
+template <class Motion>
+void Bodies<Motion>::Image::check_attached() const {
+  for (std::size_t i = 0; i < ignored.size(); ++i) {
+    const auto [a, b] = ignored[i];
+    image::require(a < b && alive(a) && alive(b), "ignored", i, "is not of two bodies");
+    image::require(i == 0 || ignored[i - 1] < ignored[i], "ignored", i, "is out of order, or there twice");
+  }
+  for (std::size_t i = 0; i < attached.size(); ++i) {
+    const auto [sensor, its_owner] = attached[i];
+    image::require(alive(sensor) && alive(its_owner) && bodies[sensor].sensor, "attached", i, "is no sensor of a body");
+    image::require(i == 0 || attached[i - 1].first < sensor, "attached", i, "is out of order, or there twice");
+    image::require(!bodies[sensor].entered || bodies[its_owner].entered, "attached", i, "has entered before its body");
+  }
+  for (std::size_t i = 0; i < attached.size(); ++i) {
+    image::require(owner(attached[i].second) == no_body, "attached", i, "is of a body that is attached itself");
+  }
 }
 
 template <class Motion>
@@ -86,6 +122,7 @@ void Bodies<Motion>::Image::check(double now) const {
     image::require(alive(waiting[i]) && !bodies[waiting[i]].entered, "waiting", i, "is no body that waits to enter");
     image::require(path_of(bodies[waiting[i]].motion).start <= now, "waiting", i, "its motion begins after now");
   }
+  check_attached();
   for (std::size_t slot = 0; slot < bodies.size(); ++slot) {
     const One& body = bodies[slot];
     const auto need = [slot](bool right, const char* what) { image::require(right, "bodies", slot, what); };

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -25,7 +26,7 @@ struct Bodies<Motion>::Image {
     double mass = 1, inverse_mass = 1, restitution = 1;
     double inverse_inertia = 0, friction = 0, tangential_restitution = 0;  ///< of bodies that turn
     bool tumbles = false;
-    std::uint32_t category = 1, collides_with = ~0u;
+    CollisionFilter filter{};
     BoundingVolume volume = BoundingVolume::shape;
     std::uint64_t meetings = 0;
     double burst_start = 0;
@@ -37,6 +38,8 @@ struct Bodies<Motion>::Image {
   std::vector<One> bodies;  // by slot
   std::vector<std::uint32_t> generations;
   std::vector<BodySlot> free, waiting;
+  std::vector<std::pair<BodySlot, BodySlot>> ignored;   ///< lower slot first, in order
+  std::vector<std::pair<BodySlot, BodySlot>> attached;  ///< sensor and owner, in order
 
   bool alive(BodySlot slot) const { return slot < bodies.size() && bodies[slot].alive; }
   bool entered(BodySlot slot) const { return alive(slot) && bodies[slot].entered; }
@@ -50,6 +53,10 @@ struct Bodies<Motion>::Image {
     return slot < bodies.size() && (body_generation(id) < generation(slot) || last);
   }
 
+  BodySlot owner(BodySlot slot) const;
+  /// Precondition, here and below: the image has been checked.
+  bool may_collide(BodySlot a, BodySlot b) const;
+
   /// Loading, meshes that are among `known` are not built again.
   template <class Archive>
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known);
@@ -58,6 +65,7 @@ struct Bodies<Motion>::Image {
   void check(double now) const;
 
  private:
+  void check_attached() const;
   template <class Archive>
   static void mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
                    const std::vector<std::shared_ptr<const Mesh>>& known);

@@ -90,7 +90,8 @@ void Engine<Motion>::process_wall() requires(!turns<Motion>) {
 template <class Motion>
 void Engine<Motion>::bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>) {
   ++counters_.motion_updates;
-  if (!resting_.empty() || volumes_.any_ends()) return set_motion(slot, motion, false);
+  const bool others = !resting_.empty() || volumes_.any_ends() || !bodies_.attachments().empty();
+  if (others) return set_motion(slot, motion, false);
   bodies_.move(slot, motion);
   bounced_ = slot;
 }

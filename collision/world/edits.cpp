@@ -94,9 +94,29 @@ void Engine<Motion>::reserve(std::size_t bodies) {
   walls_.reserve(bodies);
 }
 
+/// A sensor with the motion of its owner.
+template <class Motion>
+BodyId Engine<Motion>::add_attached(const Description& description) {
+  const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
+  const BodySlot owner = bodies_.slot_of(*description.attached_to);
+  if (!description.sensor) fail("attached_to: only a sensor can be attached to a body");
+  if (!description.motion.empty()) fail("motion: a sensor that is attached to a body has the motion of that");
+  if (bodies_.attachments().owner(owner) != no_body) {
+    fail("attached_to: body " + std::to_string(*description.attached_to) + " is attached to another itself");
+  }
+  Description alone = description;
+  alone.attached_to.reset();
+  alone.motion = {bodies_.motion(owner)};
+  const BodyId id = add_body(alone);
+  scripts_.clear(body_slot(id));  // Its owner's begins both.
+  bodies_.attach(body_slot(id), owner);
+  return id;
+}
+
 template <class Motion>
 BodyId Engine<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
+  if (description.attached_to) return add_attached(description);
   validate(description);
   if (collision::bends(description.shape) && options_.response != Response::none && !description.sensor &&
       !description.fixed) {
@@ -232,7 +252,10 @@ void Engine<Motion>::remove_body(BodyId id) {
   require_editable("World::remove_body", bodies_.contains(id) ? body_slot(id) : no_body);
   const BodySlot slot = bodies_.slot_of(id);
   count_edit();
-  change_or_fail([&] { take_out(slot); });
+  change_or_fail([&] {
+    while (!bodies_.attachments().sensors(slot).empty()) take_out(bodies_.attachments().sensors(slot).front());
+    take_out(slot);
+  });
 }
 
 template <class Motion>

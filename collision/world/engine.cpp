@@ -329,6 +329,7 @@ void Engine<Motion>::start_pieces() {
     resting_.leave(slot);
     bodies_.move(slot, motion);
     bodies_.accelerate_freely(slot, motion);
+    for (const BodySlot sensor : bodies_.attachments().sensors(slot)) bodies_.move(sensor, motion);
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const BodySlot slot = pieces[i].slot;
@@ -337,7 +338,7 @@ void Engine<Motion>::start_pieces() {
       set_motion(slot, pieces[i].motion, jumps[i]);
       resting_.disturb(slot);
     } else {
-      bodies_.wait(slot);
+      wait_to_enter(slot);
     }
     if (!options_.report_pieces) continue;
     const BodyId id = bodies_.id_of(slot);

@@ -60,6 +60,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   void set_mass(BodyId id, double mass);
   void set_restitution(BodyId id, double restitution);
   void set_filter(BodyId id, std::uint32_t category, std::uint32_t collides_with);
+  void set_group(BodyId id, std::uint32_t group);
+  void ignore_pair(BodyId a, BodyId b, bool ignored);
   void set_user_data(BodyId id, std::uint64_t user_data);
   TimerId set_timer(double t);
   bool cancel_timer(TimerId timer);
@@ -176,6 +178,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void report_resting(const Reports::Report& event, const PairEvent& pair);
 
   // edits.cpp: bodies that are added and removed
+  BodyId add_attached(const Description& description);
   BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape,
                const std::optional<PrincipalInertia>& principal);
   void make_room_for_meshes();
@@ -184,12 +187,18 @@ class Engine final : private RestingListener<BodyMotionType> {
   void update_volume(BodySlot slot, const KineticBox<Motion::degree>& box);
 
   // motion_edits.cpp: bodies that are moved
+  void require_own_motion(BodySlot slot, const char* function) const;
+  void wait_to_enter(BodySlot slot);
+  void move_attached(BodySlot slot, bool jumped);
   void require_clock_for(BodySlot slot, std::span<const Motion> pieces, const std::string& name) const;
   void give(BodySlot slot, const Motion& motion);
   void set_motion(BodySlot slot, const Motion& motion, bool jumped);
 
   // property_edits.cpp: bodies whose properties change
   void move_freely(BodySlot slot, const Motion& motion);
+  void give_filter(BodySlot slot, const CollisionFilter& after);
+  template <class Change>
+  void filter_anew(BodySlot slot, const Change& change);
 
   // response.cpp: what follows from contacts
   void process_meeting();

@@ -22,6 +22,7 @@ template <class Motion>
 void Engine<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
   require_editable("World::update_motion");
   const BodySlot slot = bodies_.slot_of(id);
+  require_own_motion(slot, "World::update_motion");
   const std::string name = "World::update_motion: motion";
   if (pieces.empty()) throw std::invalid_argument(name + ": has no piece");
   if (pieces.size() == 1 && !in_range(pieces[0])) refuse_motion(pieces[0], name);
@@ -46,6 +47,7 @@ template <class Motion>
 void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
   require_editable("World::append_motion");
   const BodySlot slot = bodies_.slot_of(id);
+  require_own_motion(slot, "World::append_motion");
   const std::string name = "World::append_motion: motion";
   require_pieces(pieces, name);
   if (pieces.empty()) return;
@@ -78,8 +80,7 @@ void Engine<Motion>::give(BodySlot slot, const Motion& motion) {
   bodies_.accelerate_freely(slot, motion);
   if (!bodies_[slot].entered) {
     bodies_.move(slot, motion);
-    if (!bodies_.waits(slot)) bodies_.wait(slot);
-    return;
+    return wait_to_enter(slot);
   }
   const bool jumped = bodies_.is_jump(slot, motion, clock_.now);
   if (jumped) resting_.drop_all(slot);
@@ -126,6 +127,38 @@ void Engine<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped
   pairs_.motion_changed(slot, jumped);
   walls_.schedule(slot);
   volumes_.schedule(slot);
+  if (!bodies_.attachments().empty()) move_attached(slot, jumped);
+}
+
+/// Sensors that are attached to a body follow it.
+template <class Motion>
+void Engine<Motion>::move_attached(BodySlot slot, bool jumped) {
+  const Motion motion = bodies_.motion(slot);
+  for (const BodySlot sensor : bodies_.attachments().sensors(slot)) {
+    if (bodies_[sensor].entered) {
+      set_motion(sensor, motion, jumped);
+    } else {
+      bodies_.move(sensor, motion);
+    }
+  }
+}
+
+/// A body that has not entered has begun its motion, and so have the sensors that are attached to it.
+template <class Motion>
+void Engine<Motion>::wait_to_enter(BodySlot slot) {
+  if (!bodies_.waits(slot)) bodies_.wait(slot);
+  for (const BodySlot sensor : bodies_.attachments().sensors(slot)) {
+    bodies_.move(sensor, bodies_.motion(slot));
+    if (!bodies_.waits(sensor)) bodies_.wait(sensor);
+  }
+}
+
+template <class Motion>
+void Engine<Motion>::require_own_motion(BodySlot slot, const char* function) const {
+  const BodySlot owner = bodies_.attachments().owner(slot);
+  if (owner == no_body) return;
+  throw std::invalid_argument(std::string(function) + ": body " + std::to_string(bodies_.id_of(slot)) +
+                              " is attached to body " + std::to_string(bodies_.id_of(owner)) + ", whose motion it has");
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;

@@ -206,9 +206,27 @@ void Pairs<Motion>::remove(BodySlot id) {
 
 template <class Motion>
 void Pairs<Motion>::filter_changed(BodySlot id, const CollisionFilter& before) {
-  if (filtered_at_ != clock_.now) filtered_.clear();
+  begin_filtering();
+  filtered_.emplace_back(id, before);
+  end_filtered(id);
+}
+
+template <class Motion>
+void Pairs<Motion>::ignoring_changed(BodySlot a, BodySlot b) {
+  begin_filtering();
+  unignored_.push_back(IgnoredPairs::pair(a, b));
+  end_filtered(a);
+}
+
+/// What was filtered at an earlier instant does not matter any more.
+template <class Motion>
+void Pairs<Motion>::begin_filtering() {
+  if (filtered_at_ != clock_.now) filtered_.clear(), unignored_.clear();
   filtered_at_ = clock_.now;
-  filtered_.emplace_back(id, before.number());
+}
+
+template <class Motion>
+void Pairs<Motion>::end_filtered(BodySlot id) {
   std::vector<Slot> over;
   for (const Link& link : links(id)) {
     if (!bodies_.may_collide(id, link.other)) over.push_back(link.slot);
@@ -216,16 +234,18 @@ void Pairs<Motion>::filter_changed(BodySlot id, const CollisionFilter& before) {
   for (const Slot slot : over) end(slot);
 }
 
-/// Whether all the filters that the two have had at filtered_at_ let them collide.
+/// Whether all the filters that the two have had at filtered_at_ let them collide, and they were never ignored.
 template <class Motion>
 bool Pairs<Motion>::could_always_collide(BodySlot a, BodySlot b) const {
   const auto filters = [this](BodySlot id) {
     std::vector<CollisionFilter> had{bodies_.filter(id)};
     for (const auto& [body, filter] : filtered_) {
-      if (body == id) had.emplace_back(filter);
+      if (body == id) had.push_back(filter);
     }
     return had;
   };
+  const auto unignored = std::find(unignored_.begin(), unignored_.end(), IgnoredPairs::pair(a, b));
+  if (unignored != unignored_.end()) return false;
   const auto of_b = filters(b);
   const auto meets_all = [&](const CollisionFilter& of_a) {
     return std::all_of(of_b.begin(), of_b.end(), [&](const CollisionFilter& filter) { return of_a.meets(filter); });

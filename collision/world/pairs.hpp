@@ -88,9 +88,9 @@ class Pairs final : public PairListener {
   void pairs_to_come(std::size_t pairs) override;
   bool filters() const override { return bodies_.filters(); }
   bool may_collide(BodySlot a, BodySlot b) const override { return bodies_.may_collide(a, b); }
-  std::uint64_t filter_of(BodySlot slot) const override { return bodies_.filter(slot).number(); }
+  std::uint64_t filter_of(BodySlot slot) const override { return bodies_.filter(slot).masks(); }
   bool filters_meet(std::uint64_t a, std::uint64_t b) const override {
-    return CollisionFilter(a).meets(CollisionFilter(b));
+    return CollisionFilter::of_masks(a).meets(CollisionFilter::of_masks(b));
   }
   void pair_began(BodySlot a, BodySlot b, double t) override;
   void pair_ended(BodySlot a, BodySlot b, double t) override;
@@ -105,6 +105,8 @@ class Pairs final : public PairListener {
   /// anew. Those that may not collide any more end; of those that could not collide before the bodies may overlap from
   /// the start.
   void filter_changed(BodySlot id, const CollisionFilter& before);
+  /// The same of a pair that the caller has begun or ceased to ignore.
+  void ignoring_changed(BodySlot a, BodySlot b);
 
   /// A body has another motion, or has jumped. prefetch() may be called before.
   void motion_changed(BodySlot id, bool jumped);
@@ -154,8 +156,9 @@ class Pairs final : public PairListener {
   /// penetrate or are about to separate at this instant.
   void audit(double t) const;
 
-  /// A body, and the number of a filter that it had.
-  using Filtered = std::pair<BodySlot, std::uint64_t>;
+  /// What could not collide before: a body, and the filter that it had; and pairs that were ignored.
+  using Filtered = std::pair<BodySlot, CollisionFilter>;
+  using Ignored = IgnoredPairs::Pair;
 
   /// All of it, as plain data, in the order of (a, b).
   struct Image {
@@ -167,6 +170,7 @@ class Pairs final : public PairListener {
     std::vector<One> pairs;
     std::vector<BodySlot> jumped;    ///< bodies that have jumped at this instant, ascending
     std::vector<Filtered> filtered;  ///< and that have had other filters at this instant
+    std::vector<Ignored> ignored;    ///< and that have been ignored, the lower slot first
 
     template <class Archive>
     void archive(Archive& archive);
@@ -195,6 +199,8 @@ class Pairs final : public PairListener {
   Slot add(BodySlot a, BodySlot b);
   void link(Slot slot, std::uint32_t first_room = first_pairs);
   bool could_always_collide(BodySlot a, BodySlot b) const;
+  void begin_filtering();
+  void end_filtered(BodySlot id);
   void unlist(Slot slot);
   void end(Slot slot);
   void release(Slot slot);
@@ -243,6 +249,7 @@ class Pairs final : public PairListener {
   double jumped_at_ = -never;
   /// The same of bodies that have had other filters at filtered_at_, and those filters.
   std::vector<Filtered> filtered_;
+  std::vector<Ignored> unignored_;  ///< and pairs that were ignored
   double filtered_at_ = -never;
 };
 

@@ -25,7 +25,7 @@ typename Pairs<Motion>::Image Pairs<Motion>::image() const {
     std::sort(image.jumped.begin(), image.jumped.end());
     image.jumped.erase(std::unique(image.jumped.begin(), image.jumped.end()), image.jumped.end());
   }
-  if (filtered_at_ == clock_.now) image.filtered = filtered_;
+  if (filtered_at_ == clock_.now) image.filtered = filtered_, image.ignored = unignored_;
   return image;
 }
 
@@ -38,7 +38,8 @@ void Pairs<Motion>::become(const Image& image) {
   jumped_ = image.jumped;
   jumped_at_ = jumped_.empty() ? -never : clock_.now;
   filtered_ = image.filtered;
-  filtered_at_ = filtered_.empty() ? -never : clock_.now;
+  unignored_ = image.ignored;
+  filtered_at_ = filtered_.empty() && unignored_.empty() ? -never : clock_.now;
   contacts_.resize(0), boxes_.resize(0);
   contacts_.resize(image.pairs.size());
   if (follows_boxes_) boxes_.resize(image.pairs.size());
@@ -63,7 +64,11 @@ void Pairs<Motion>::Image::archive(Archive& archive) {
             one.boxes);
   });
   archive(jumped);
-  archive.each(filtered, [&](Filtered& one) { archive(one.first, one.second); });
+  archive.each(filtered, [&](Filtered& one) {
+    CollisionFilter& filter = one.second;
+    archive(one.first, filter.category, filter.collides_with, filter.group);
+  });
+  archive.each(ignored, [&](Ignored& one) { archive(one.first, one.second); });
 }
 
 template <class Motion>
@@ -75,7 +80,7 @@ void Pairs<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, d
     need(pair.a < pair.b && bodies.entered(pair.a) && bodies.entered(pair.b), "is not of two bodies in the world");
     const auto& a = bodies.bodies[pair.a];
     const auto& b = bodies.bodies[pair.b];
-    need((a.category & b.collides_with) != 0 && (b.category & a.collides_with) != 0, "is of bodies that never meet");
+    need(bodies.may_collide(pair.a, pair.b), "is of bodies that never meet");
     need(image::is_to_come(pairs[i].contact, now) && image::is_to_come(pairs[i].boxes, now), "is due before now");
     need(image::is_past(pair.passes_at, now), "passes at a time after now");
     const bool resolved = options.response != Response::none && !a.sensor && !b.sensor;

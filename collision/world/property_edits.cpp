@@ -48,33 +48,69 @@ void Engine<Motion>::set_restitution(BodyId id, double restitution) {
   bodies_[slot].restitution = restitution;
 }
 
-/// The body leaves the broad phase and comes back with the new filter. In between its pairs have ended, except for
-/// those that overlap.
+/// Changes with which others a body that has entered may collide. It leaves the broad phase and comes back. In between
+/// its pairs have ended, except for those that overlap.
+template <class Motion>
+template <class Change>
+void Engine<Motion>::filter_anew(BodySlot slot, const Change& change) {
+  // What is due by now belongs to the time before.
+  while (broad_phase_->advance(clock_.now, pairs_)) {
+  }
+  const Motion free = free_motion(bodies_.id_of(slot));
+  if (bodies_.collides(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
+  change();
+  if (bodies_.collides(slot)) {
+    const KineticBox<Motion::degree> box = volumes_.renew(slot);
+    const Entry entry{slot, &box};
+    broad_phase_->insert({&entry, 1}, clock_.now, pairs_);
+  }
+  volumes_.schedule(slot);
+  if (resting_.drop_filtered(slot)) move_freely(slot, free);
+}
+
+template <class Motion>
+void Engine<Motion>::give_filter(BodySlot slot, const CollisionFilter& after) {
+  const CollisionFilter before = bodies_.filter(slot);
+  if (before == after) return;
+  count_edit();
+  if (!bodies_[slot].entered) return bodies_.set_filter(slot, after);
+  const auto change = [&] {
+    bodies_.set_filter(slot, after);
+    pairs_.filter_changed(slot, before);
+  };
+  change_or_fail([&] { filter_anew(slot, change); });
+}
+
 template <class Motion>
 void Engine<Motion>::set_filter(BodyId id, std::uint32_t category, std::uint32_t collides_with) {
   require_editable("World::set_filter");
   const BodySlot slot = bodies_.slot_of(id);
-  const CollisionFilter before = bodies_.filter(slot);
-  const CollisionFilter after(category, collides_with);
-  if (before.number() == after.number()) return;
+  give_filter(slot, {category, collides_with, bodies_.filter(slot).group});
+}
+
+template <class Motion>
+void Engine<Motion>::set_group(BodyId id, std::uint32_t group) {
+  require_editable("World::set_group");
+  const BodySlot slot = bodies_.slot_of(id);
+  CollisionFilter filter = bodies_.filter(slot);
+  filter.group = group;
+  give_filter(slot, filter);
+}
+
+template <class Motion>
+void Engine<Motion>::ignore_pair(BodyId a, BodyId b, bool ignored) {
+  require_editable("World::ignore_pair");
+  const BodySlot of_a = bodies_.slot_of(a);
+  const BodySlot of_b = bodies_.slot_of(b);
+  if (a == b) throw std::invalid_argument("World::ignore_pair: body " + std::to_string(a) + " and itself are no pair");
+  if (bodies_.ignored().contains(of_a, of_b) == ignored) return;
   count_edit();
-  if (!bodies_[slot].entered) return bodies_.set_filter(slot, after);
-  change_or_fail([&] {
-    // What is due by now belongs to the filter before.
-    while (broad_phase_->advance(clock_.now, pairs_)) {
-    }
-    const Motion free = free_motion(id);
-    if (bodies_.collides(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
-    bodies_.set_filter(slot, after);
-    pairs_.filter_changed(slot, before);
-    if (bodies_.collides(slot)) {
-      const KineticBox<Motion::degree> box = volumes_.renew(slot);
-      const Entry entry{slot, &box};
-      broad_phase_->insert({&entry, 1}, clock_.now, pairs_);
-    }
-    volumes_.schedule(slot);
-    if (resting_.drop_filtered(slot)) move_freely(slot, free);
-  });
+  if (!bodies_[of_a].entered || !bodies_[of_b].entered) return bodies_.ignore(of_a, of_b, ignored);
+  const auto change = [&] {
+    bodies_.ignore(of_a, of_b, ignored);
+    pairs_.ignoring_changed(of_a, of_b);
+  };
+  change_or_fail([&] { filter_anew(of_a, change); });
 }
 
 template <class Motion>

@@ -16,7 +16,7 @@ namespace kds::collision {
 namespace {
 
 /// The version of the image's layout: it changes with the members, so that bytes of another layout are refused as such.
-constexpr int snapshot_form = 10;
+constexpr int snapshot_form = 11;
 
 /// Options that decide events. Broad phase, window, threads and profile may differ.
 template <class Archive>
@@ -87,7 +87,9 @@ struct Engine<Motion>::Image {
     for (const BodySlot slot : bodies.waiting) enters[slot] = 1;
     for (BodySlot slot = 0; slot < bodies.bodies.size(); ++slot) {
       const bool later = slot < scripts.of.size() && !scripts.of[slot].empty();
-      image::require(!bodies.alive(slot) || bodies.entered(slot) || enters[slot] || later, "bodies", slot,
+      const BodySlot owner = bodies.owner(slot);
+      const bool with_owner = owner != no_body && !bodies.entered(owner);
+      image::require(!bodies.alive(slot) || bodies.entered(slot) || enters[slot] || later || with_owner, "bodies", slot,
                      "it never enters");
     }
     pairs.check(bodies, now, options);

@@ -64,6 +64,7 @@ class Bodies:
         tangential_restitution: float = 0.0,
         category: int = 1,
         collides_with: int = 0xFFFFFFFF,
+        group: int = 0,
         sensor: bool = False,
         user_data: int = 0,
     ) -> int:
@@ -73,8 +74,8 @@ class Bodies:
         y, z. The motion is that from `start` (s) on, now if it is left out; a body with a start to come enters then.
         `then`: further pieces, each later than the one before. `inertia` (worlds that turn): a moment or a tensor (3,
         3), else that of a solid of the shape. Of two bodies the lower restitution and friction count. Two bodies may
-        meet if the category of each shares a bit with collides_with of the other. A sensor reports, and passes through
-        all. user_data: a number of 64 bits of your own, which events carry.
+        meet if the category of each shares a bit with collides_with of the other, and their group is not the same, or
+        0. A sensor reports, and passes through all. user_data: a number of 64 bits of your own, which events carry.
 
         ValueError names what is wrong; then nothing is added. See collision/body_description.hpp.
         """
@@ -101,6 +102,7 @@ class Bodies:
             tangential_restitution=number("tangential_restitution", tangential_restitution),
             category=unsigned("category", category, 1, 32),
             collides_with=unsigned("collides_with", collides_with, 1, 32),
+            group=unsigned("group", group, 1, 32),
             sensor=flags("sensor", sensor, 1),
             user_data=unsigned("user_data", user_data, 1, 64),
         )
@@ -125,6 +127,7 @@ class Bodies:
         tangential_restitutions: ArrayLike = 0.0,
         categories: ArrayLike = 1,
         collide_with: ArrayLike = 0xFFFFFFFF,
+        groups: ArrayLike = 0,
         sensors: ArrayLike = False,
         user_data: ArrayLike = 0,
     ) -> Ids:
@@ -167,8 +170,29 @@ class Bodies:
             tangential_restitution=column("tangential_restitutions", tangential_restitutions, n),
             category=unsigned("categories", categories, n, 32),
             collides_with=unsigned("collide_with", collide_with, n, 32),
+            group=unsigned("groups", groups, n, 32),
             sensor=flags("sensors", sensors, n),
             user_data=unsigned("user_data", user_data, n, 64),
+        )
+
+    def attach_sensor(
+        self,
+        body: int,
+        shape: Shape,
+        *,
+        category: int = 1,
+        collides_with: int = 0xFFFFFFFF,
+        group: int = 0,
+        user_data: int = 0,
+    ) -> int:
+        """Adds a sensor that moves with a body, whatever changes the motion of that, and is removed with it; returns
+        its id. It never meets that body, nor other sensors of it. ValueError if that is attached itself."""
+        masks = (("category", category), ("collides_with", collides_with), ("group", group))
+        return self._core.attach(
+            shape_of("shape", shape),
+            identity("body", body),
+            np.stack([unsigned(name, value, 1, 32) for name, value in masks], axis=1),
+            int(unsigned("user_data", user_data, 1, 64)[0]),
         )
 
     def _add(
@@ -193,6 +217,7 @@ class Bodies:
         tangential_restitution: Any,
         category: Any,
         collides_with: Any,
+        group: Any,
         sensor: Any,
         user_data: Any,
     ) -> Ids:
@@ -206,7 +231,7 @@ class Bodies:
         numbers = np.empty((n, 5))
         for place, value in enumerate((mass, restitution, friction, tangential_restitution, inertia)):
             numbers[:, place] = value
-        both = np.stack([category, collides_with], axis=1)
+        both = np.stack([category, collides_with, group], axis=1)
         bits = fixed + np.uint8(2) * sensor
         if n == 0:
             return np.empty(0, np.uint64)
@@ -285,6 +310,10 @@ class Bodies:
     def collides_with(self, body: int) -> int:
         """The bits that say with what it may collide."""
         return int(self._core.masks(np.array([identity("body", body)], np.uint64))[0, 1])
+
+    def group(self, body: int) -> int:
+        """The number of its group, 0 if it has none."""
+        return int(self._core.masks(np.array([identity("body", body)], np.uint64))[0, 2])
 
     def user_data(self, body: int) -> int:
         """Your own number for it, 0 if none was given."""

@@ -112,7 +112,11 @@ class Edits:
         self._core.set_restitutions(which, column("restitution", restitution, len(which)))
 
     def set_filter(
-        self, bodies: ArrayLike, category: ArrayLike | None = None, collides_with: ArrayLike | None = None
+        self,
+        bodies: ArrayLike,
+        category: ArrayLike | None = None,
+        collides_with: ArrayLike | None = None,
+        group: ArrayLike | None = None,
     ) -> None:
         """The same for what bodies are and may collide with (add_body()); what is left out stays as it is.
 
@@ -122,10 +126,20 @@ class Edits:
         """
         which = one_or_more("bodies", bodies)
         both = self._core.masks(which)
-        for place, (name, value) in enumerate((("category", category), ("collides_with", collides_with))):
+        named = (("category", category), ("collides_with", collides_with), ("group", group))
+        for place, (name, value) in enumerate(named):
             if value is not None:
                 both[:, place] = unsigned(name, value, len(which), 32)
         self._core.set_filters(which, both)
+
+    def ignore_pair(self, a: int, b: int, ignored: bool = True) -> None:
+        """Two bodies do not collide with each other from now on, whatever their filters, or do again; what they are
+        doing now ends and begins as set_filter() says."""
+        self._core.ignore_pair(identity("a", a), identity("b", b), bool(ignored))
+
+    def ignores_pair(self, a: int, b: int) -> bool:
+        """Whether two bodies are ignored as a pair."""
+        return self._core.ignores_pair(identity("a", a), identity("b", b))
 
     def set_user_data(self, bodies: ArrayLike, user_data: ArrayLike) -> None:
         """The same for numbers of your own, of 64 bits, which later events carry."""

@@ -99,23 +99,15 @@ TEST_CASE("recipe: a sensor") {
 
 TEST_CASE("recipe: a proximity alarm that follows a body") {
   struct Alarm final : WorldListener<1> {
-    BodyId guarded{}, halo{};
+    BodyId halo{};
     std::vector<double> rung;
-    void follow(World<1>& world, BodyId id) {
-      if (id == guarded) world.update_motion(halo, world.motion(guarded));
+    void contact(World<1>&, const PairEvent& event) override {
+      if (event.a == halo || event.b == halo) rung.push_back(event.contact.time);
     }
-    void contact(World<1>& world, const PairEvent& event) override {
-      if (event.a == halo || event.b == halo) return rung.push_back(event.contact.time);
-      follow(world, event.a), follow(world, event.b);
-    }
-    void wall(World<1>& world, const WallEvent& event) override { follow(world, event.body); }
-    void moved(World<1>& world, BodyId id) override { follow(world, id); }  // what rests passes on what happens to it
-    void piece(World<1>& world, BodyId id) override { follow(world, id); }  // with WorldOptions::report_pieces
   } alarm;
   World<1> world({.response = Response::elastic, .walls = Walls{{-5, -5, -5}, {5, 5, 5}}}, &alarm);
-  const Line path = Line::line({0, 0, 0}, {1, 0, 0});
-  alarm.guarded = world.add_body({.shape = Sphere{0.5}, .motion = {path}, .category = 2});
-  alarm.halo = world.add_body({.shape = Sphere{2}, .motion = {path}, .collides_with = ~2u, .sensor = true});
+  const BodyId guarded = world.add_body({.shape = Sphere{0.5}, .motion = {Line::line({0, 0, 0}, {1, 0, 0})}});
+  alarm.halo = world.add_body({.shape = Sphere{2}, .sensor = true, .attached_to = guarded});
   world.add_body({.shape = Sphere{0.5}, .motion = {Line::line({-4, 0, 0}, {0, 0, 0})}});
   world.advance_to(11);
   CHECK(alarm.rung == std::vector<double>{10.5});  // on the way back from the wall at x = 5, 2 + 0.5 before the other

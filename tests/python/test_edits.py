@@ -27,6 +27,40 @@ def zigzag(pieces, seed):
     return starts, np.concatenate([np.zeros((1, 3)), np.cumsum(ways, axis=0)]), velocities
 
 
+class Attached(unittest.TestCase):
+    def test_an_alarm_moves_with_its_body_and_goes_with_it(self):
+        world = kds.World(response="elastic")
+        a, b = world.add_bodies(kds.sphere(1), [[0, 0, 0], [10, 0, 0]], [[1, 0, 0], [0, 0, 0]])
+        alarm = world.attach_sensor(a, kds.sphere(2), user_data=5)
+        events = world.advance_to(7.5)
+        self.assertEqual(kinds(events), ["CONTACT"])
+        self.assertEqual((events[0].time, events[0].a, events[0].b), (7, b, alarm))
+        self.assertEqual((events[0].user_data_a, events[0].user_data_b), (0, 5))
+        world.update_motions([a], positions=[[0, 0, 0]], velocities=[[0, 1, 0]])
+        self.assertTrue(np.array_equal(world.position(alarm), [0, 0, 0]))
+        with self.assertRaisesRegex(ValueError, "is attached to body 0"):
+            world.update_motions([alarm], positions=[[0, 0, 0]])
+        with self.assertRaisesRegex(ValueError, "attached to another itself"):
+            world.attach_sensor(alarm, kds.sphere(1))
+        world.remove_body(a)
+        self.assertFalse(world.contains(alarm))
+
+    def test_groups_and_pairs_that_are_ignored(self):
+        for group in (0, 3):
+            with self.subTest(group=group):
+                world = kds.World()
+                a, b = world.add_bodies(kds.sphere(1), [[-3, 0, 0], [3, 0, 0]], [[1, 0, 0], [-1, 0, 0]], groups=group)
+                self.assertEqual(world.group(a), group)
+                world.ignore_pair(a, b, group == 0)
+                self.assertEqual(world.ignores_pair(b, a), group == 0)
+                self.assertEqual(len(world.advance_to(2.5)), 0)
+                world.ignore_pair(a, b, False)
+                world.set_filter(a, group=0)
+                self.assertEqual(kinds(world.advance_to(2.75)), ["OVERLAP"])
+        with self.assertRaisesRegex(ValueError, "and itself are no pair"):
+            world.ignore_pair(a, a)
+
+
 class Scripts(unittest.TestCase):
     def world_of(self, seed):
         world = kds.World(report_pieces=True)

@@ -1,4 +1,4 @@
-// Bodies whose category and mask change while the world runs.
+// Bodies whose masks and groups change while the world runs, and pairs that are ignored for some time.
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/random_scenes.hpp"
 
@@ -25,22 +25,33 @@ constexpr BodyId balls = 14;
 struct Filter {
   std::uint32_t category = 1;
   std::uint32_t collides_with = ~0u;
+  std::uint32_t group = 0;
 
   bool meets(const Filter& other) const {
-    return (category & other.collides_with) != 0 && (other.category & collides_with) != 0;
+    return (category & other.collides_with) != 0 && (other.category & collides_with) != 0 &&
+           (group == 0 || group != other.group);
   }
 };
+/// A body gets another filter; or, if there are two bodies, the pair is ignored or no longer.
 struct Change {
   double time;
   BodyId body;
-  Filter filter;
+  Filter filter{};
+  std::optional<BodyId> other{};
+  bool ignored = false;
+
+  void make(World<1>& world) const {
+    if (other) return world.ignore_pair(body, *other, ignored);
+    world.set_filter(body, filter.category, filter.collides_with);
+    world.set_group(body, filter.group);
+  }
 };
 struct Scene {
   std::vector<BodyDescription<1>> bodies;
   std::vector<Change> changes;  ///< by time
 };
 
-/// Balls that cross each other's ways, and as many changes of filters as there are balls.
+/// Balls that cross each other's ways, as many changes of filters as there are balls, and as many of pairs.
 Scene random_scene(std::uint64_t seed) {
   Random random(seed);
   const auto vector = [&](double most) {
@@ -50,7 +61,16 @@ Scene random_scene(std::uint64_t seed) {
   Scene scene;
   for (BodyId i = 0; i < balls; ++i) scene.bodies.push_back(ball<1>(random.between(1, 2.5), vector(4), vector(1)));
   for (BodyId i = 0; i < balls; ++i) {
-    scene.changes.push_back({random.between(0, end), static_cast<BodyId>(random.between(0, balls)), {mask(), mask()}});
+    const auto group = static_cast<std::uint32_t>(random.between(0, 3));
+    scene.changes.push_back(
+        {random.between(0, end), static_cast<BodyId>(random.between(0, balls)), {mask(), mask(), group}});
+  }
+  for (BodyId i = 0; i < balls; ++i) {
+    const auto other = static_cast<BodyId>(random.between(0, balls));
+    if (other == i) continue;
+    const double from = random.between(0, end), to = random.between(from, end);
+    scene.changes.push_back({.time = from, .body = i, .other = other, .ignored = true});
+    scene.changes.push_back({.time = to, .body = other, .other = i, .ignored = false});
   }
   std::sort(scene.changes.begin(), scene.changes.end(), [](auto& x, auto& y) { return x.time < y.time; });
   return scene;
@@ -76,8 +96,7 @@ struct Changer final : WorldListener<1> {
   void rests(World<1>&, const PairEvent& e) override { events->push_back({Kind::rests, e.a, e.b, e.contact}); }
   void wakes(World<1>&, const PairEvent& e) override { events->push_back({Kind::wakes, e.a, e.b, e.contact}); }
   void timer(World<1>& world, TimerId timer) override {
-    const Change& change = (*changes)[timer];
-    world.set_filter(change.body, change.filter.category, change.filter.collides_with);
+    (*changes)[timer].make(world);
   }
 };
 
@@ -97,7 +116,7 @@ std::vector<Event> run(const Scene& scene, const Way& way, Response response) {
     }
     world->advance_to(change.time);
     if (way.looks_ahead && way.method != BroadPhaseKind::sap) world->next_time();
-    world->set_filter(change.body, change.filter.category, change.filter.collides_with);
+    change.make(*world);
     if (way.looks_ahead && way.method != BroadPhaseKind::sap) world->next_time();
     if (way.looks_ahead) world->audit();
     if (!way.snapshots) continue;
@@ -122,7 +141,7 @@ std::optional<std::pair<double, double>> meeting(const BodyDescription<1>& a, co
 
 using Expected = std::tuple<double, Kind, BodyId, BodyId>;
 
-/// A pair is in contact while the balls penetrate and their filters meet.
+/// A pair is in contact while the balls penetrate, their filters meet, and it is not ignored.
 std::vector<Expected> expected_of(const Scene& scene) {
   std::vector<Expected> expected;
   for (BodyId a = 0; a < balls; ++a) {
@@ -130,9 +149,10 @@ std::vector<Expected> expected_of(const Scene& scene) {
       const auto span = meeting(scene.bodies[a], scene.bodies[b]);
       if (!span) continue;
       std::array<Filter, 2> filters;
+      bool ignored = false;
       bool touches = false;
       const auto go = [&](double from, double to) {
-        const bool allowed = filters[0].meets(filters[1]);
+        const bool allowed = filters[0].meets(filters[1]) && !ignored;
         const auto note = [&](double t, Kind kind) {
           expected.emplace_back(t, kind, a, b);
           touches = kind != Kind::separation;
@@ -144,9 +164,14 @@ std::vector<Expected> expected_of(const Scene& scene) {
       };
       double t = 0;
       for (const Change& change : scene.changes) {
-        if (change.body != a && change.body != b) continue;
+        const bool of_a = change.body == a || change.other == a, of_b = change.body == b || change.other == b;
+        if (change.other ? !(of_a && of_b) : !(of_a || of_b)) continue;
         go(t, change.time);
-        filters[change.body == a ? 0 : 1] = change.filter;
+        if (change.other) {
+          ignored = change.ignored;
+        } else {
+          filters[of_a ? 0 : 1] = change.filter;
+        }
         t = change.time;
       }
       go(t, end);

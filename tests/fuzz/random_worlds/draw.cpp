@@ -91,6 +91,8 @@ Style draw_style(Random& random, Response response) {
   style.masks = random.one_in(4);
   style.fixed_bodies_move = random.one_in(3);
   style.box_functions = random.one_in(8);
+  style.sensors = random.one_in(3);
+  style.groups = random.one_in(4);
   return style;
 }
 
@@ -126,6 +128,8 @@ BodyPlan draw_body(Random& random, const Style& style) {
     body.category = 1u << random.below(2);
     body.collides_with = static_cast<std::uint32_t>(random.integer(0, 3));
   }
+  if (style.groups && random.one_in(2)) body.group = static_cast<std::uint32_t>(random.integer(1, 2));
+  if (style.sensors && random.one_in(4)) body.sensor = true;
   if (random.one_in(8)) body.volume = collision::BoundingVolume::sphere;
   if (style.scripts && random.one_in(3)) draw_script(random, style, body.pieces);
   if (body.fixed && !style.fixed_bodies_move) {
@@ -143,7 +147,8 @@ BodyPlan draw_body(Random& random, const Style& style) {
 
 Call draw_call(Random& random, const Style& style, std::size_t bodies) {
   using enum Call::Kind;
-  constexpr std::array kinds{remove, move, move, turn_back, keep, follow, away_and_back, filter, weigh, append, ring};
+  constexpr std::array kinds{remove, move,   move,  turn_back, keep,  follow, away_and_back,
+                             filter, filter, group, ignore,    weigh, append, ring};
   Call call;
   call.kind = kinds[random.below(kinds.size())];
   call.body = random.below(bodies);

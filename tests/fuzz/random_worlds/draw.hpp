@@ -29,6 +29,8 @@ struct Style {
   bool jumps_in_scripts = false;
   bool masks = false;
   bool fixed_bodies_move = false;
+  bool sensors = false;
+  bool groups = false;
   bool box_functions = false;
 };
 

@@ -25,6 +25,10 @@ std::size_t any_body(Random& random, const Scenario& scenario) { return random.b
 void edit(Random& random, const Style& style, Size size, Scenario& scenario) {
   if (size == Size::few) {
     if (random.one_in(3)) add(scenario, draw_body(random, style));
+    if (style.sensors && random.one_in(3)) {
+      scenario.bodies.push_back(draw_body(random, style));
+      scenario.calls.push_back({.kind = Call::Kind::attach, .body = scenario.bodies.size() - 1, .other = any_body(random, scenario)});
+    }
     if (random.one_in(3)) scenario.calls.push_back(draw_call(random, style, scenario.bodies.size()));
     if (random.one_in(6)) {  // an id that is given again at once
       scenario.calls.push_back({.kind = Call::Kind::remove, .body = any_body(random, scenario)});

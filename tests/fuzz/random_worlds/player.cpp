@@ -145,6 +145,8 @@ BodyDescription<Degree> Player<Degree>::description(const BodyPlan& plan) {
   result.fixed = plan.fixed;
   result.category = plan.category;
   result.collides_with = plan.collides_with;
+  result.group = plan.group;
+  result.sensor = plan.sensor;
   result.volume = plan.volume;
   if (plan.box_function) {
     const collision::PlacedShape placed = place(result.shape, result.orientation);

@@ -65,7 +65,7 @@ class Player final : public collision::WorldListener<Degree> {
 
   void call_from_outside(const Call& call);
   void call(const Call& call, const Contact* contact);
-  void add(std::size_t body);
+  void add(std::size_t body, std::optional<std::size_t> owner = std::nullopt);
   void append(BodyId id, const Call& call);
   void push_off(std::size_t body, const Vector3d& normal);
   void must_be_refused(const Call& call);
@@ -78,7 +78,8 @@ class Player final : public collision::WorldListener<Degree> {
   BodyId id_of(std::size_t body) const { return body < ids_.size() ? ids_[body] : gone; }
   /// Whether it is there, and calls may change its motion.
   bool moves(std::size_t body) const {
-    return id_of(body) != gone && (scenario_.fixed_bodies_move || !world_->fixed(id_of(body)));
+    const BodyId id = id_of(body);
+    return id != gone && !world_->attached_to(id) && (scenario_.fixed_bodies_move || !world_->fixed(id));
   }
   std::size_t number_of(BodyId id) const {
     const auto found = numbers_.find(id);

@@ -31,7 +31,9 @@ void Player<Degree>::call(const Call& call, const Contact* contact) {
     case Call::Kind::remove:
       if (id == gone) return;
       world.remove_body(id);
-      ids_[call.body] = gone;
+      for (BodyId& other : ids_) {
+        if (other != gone && !world.contains(other)) other = gone;  // and the sensors that were attached to it
+      }
       return;
     case Call::Kind::move:
       if (moves) world.update_motion(id, motion(call.path));
@@ -63,6 +65,16 @@ void Player<Degree>::call(const Call& call, const Contact* contact) {
     case Call::Kind::filter:
       if (id != gone) world.set_filter(id, call.category, call.collides_with);
       return;
+    case Call::Kind::group:
+      if (id != gone) world.set_group(id, call.category);
+      return;
+    case Call::Kind::ignore: {
+      const BodyId other = id_of(call.other);
+      if (id != gone && other != gone && id != other) world.ignore_pair(id, other, ~call.collides_with != 0);
+      return;
+    }
+    case Call::Kind::attach:
+      return add(call.body, call.other);
     case Call::Kind::weigh:
       if (id != gone && !world.fixed(id)) world.set_mass(id, call.mass);
       return;
@@ -88,9 +100,15 @@ void Player<Degree>::call(const Call& call, const Contact* contact) {
 }
 
 template <int Degree>
-void Player<Degree>::add(std::size_t body) {
+void Player<Degree>::add(std::size_t body, std::optional<std::size_t> owner) {
   if (world_->size() >= scenario_.most_alive) return;
-  const BodyId id = world_->add_body(description(bodies_[body]));
+  collision::BodyDescription<Degree> added = description(bodies_[body]);
+  if (owner) {
+    const BodyId its = id_of(*owner);
+    if (its == gone || world_->attached_to(its)) return;
+    added.attached_to = its, added.sensor = true, added.motion = {};
+  }
+  const BodyId id = world_->add_body(added);
   if (ids_.size() <= body) ids_.resize(body + 1, gone);
   ids_[body] = id;
   numbers_[id] = body;

@@ -35,6 +35,15 @@ void print_call(const Scenario& scenario, const Call& call, const char* indent) 
     case Call::Kind::add:
       text += ", body_" + body + "(p)";
       break;
+    case Call::Kind::attach:
+      text += ", body_" + body + "(p), " + std::to_string(call.other);
+      break;
+    case Call::Kind::group:
+      text += ", " + std::to_string(call.category) + "u";
+      break;
+    case Call::Kind::ignore:
+      text += ", " + std::to_string(call.other) + (~call.collides_with != 0 ? ", true" : ", false");
+      break;
     case Call::Kind::move:
     case Call::Kind::away_and_back:
       text += ", " + path(call.path);
@@ -71,7 +80,7 @@ void print_call(const Scenario& scenario, const Call& call, const char* indent) 
     default:
       break;
   }
-  const bool limited = call.kind == Call::Kind::add;
+  const bool limited = call.kind == Call::Kind::add || call.kind == Call::Kind::attach;
   std::printf("%s%sp.%s);\n", indent,
               limited ? ("if (p.world->size() < " + std::to_string(scenario.most_alive) + ") ").c_str() : "",
               text.c_str());
@@ -109,6 +118,8 @@ void print_body(const Scenario& scenario, std::size_t number_of_body) {
   if (body.category != plain.category || body.collides_with != plain.collides_with) {
     std::printf("  d.category = %u, d.collides_with = %uu;\n", body.category, body.collides_with);
   }
+  if (body.group != 0) std::printf("  d.group = %u;\n", body.group);
+  if (body.sensor) std::printf("  d.sensor = true;\n");
   if (body.volume == collision::BoundingVolume::sphere) std::printf("  d.volume = BoundingVolume::sphere;\n");
   if (body.box_function) {
     std::printf(
@@ -126,7 +137,7 @@ void print_body(const Scenario& scenario, std::size_t number_of_body) {
 std::set<std::size_t> bodies_used(const Scenario& scenario) {
   std::set<std::size_t> used;
   const auto use = [&](const Call& call) {
-    if (call.kind == Call::Kind::add) used.insert(call.body);
+    if (call.kind == Call::Kind::add || call.kind == Call::Kind::attach) used.insert(call.body);
   };
   for (const Call& call : scenario.calls) use(call);
   for (const Reaction& reaction : scenario.reactions) {

@@ -77,10 +77,21 @@ struct Player : WorldListener<Degree> {
     return m;
   }
   bool there(int n) { return id.count(n) != 0; }
-  bool moves(int n) { return there(n) && (fixed_bodies_move || !world->fixed(id[n])); }
+  bool moves(int n) {
+    return there(n) && !world->attached_to(id[n]) && (fixed_bodies_move || !world->fixed(id[n]));
+  }
   bool under_way(int n) { return there(n) && world->motion(id[n]).start <= world->now(); }
   void add(int n, const BodyDescription<Degree>& d) { number[id[n] = world->add_body(d)] = n; }
-  void remove(int n) { if (there(n)) world->remove_body(id[n]), id.erase(n); }
+  void attach(int n, BodyDescription<Degree> d, int owner) {
+    if (!there(owner) || world->attached_to(id[owner])) return;
+    d.attached_to = id[owner], d.sensor = true, d.motion = {};
+    add(n, d);
+  }
+  void remove(int n) {
+    if (!there(n)) return;
+    world->remove_body(id[n]);
+    std::erase_if(id, [&](const auto& one) { return !world->contains(one.second); });
+  }
   void move(int n, const Motion& to) { if (moves(n)) world->update_motion(id[n], to); }
   void turn_back(int n) {
     if (!moves(n) || !under_way(n)) return;
@@ -103,6 +114,10 @@ struct Player : WorldListener<Degree> {
   }
   void filter(int n, std::uint32_t category, std::uint32_t with) {
     if (there(n)) world->set_filter(id[n], category, with);
+  }
+  void group(int n, std::uint32_t group) { if (there(n)) world->set_group(id[n], group); }
+  void ignore(int n, int other, bool ignored) {
+    if (n != other && there(n) && there(other)) world->ignore_pair(id[n], id[other], ignored);
   }
   void weigh(int n, double mass) { if (there(n) && !world->fixed(id[n])) world->set_mass(id[n], mass); }
   void append(int n, const Motion& piece) {

@@ -62,6 +62,7 @@ std::vector<Call> RandomReactor::react(const Line& line, const EventKey& event, 
       if (random.one_in(2)) calls.push_back({.kind = remove, .body = call.body});
       call.body = bodies.size();
       bodies.push_back(draw_body(random, style_));
+      if (style_.sensors && random.one_in(2)) call.kind = attach;
     }
     calls.push_back(call);
   }

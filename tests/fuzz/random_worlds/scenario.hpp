@@ -39,6 +39,8 @@ struct BodyPlan {
   bool fixed = false;
   std::uint32_t category = 1;
   std::uint32_t collides_with = ~0u;
+  std::uint32_t group = 0;
+  bool sensor = false;
   collision::BoundingVolume volume = collision::BoundingVolume::shape;
   bool box_function = false;
   double box_margin = 0;    ///< how far its boxes reach beyond the shape
@@ -57,6 +59,9 @@ struct Call {
     follow,         ///< `body` is put where `other` is, with its motion
     away_and_back,  ///< `body` jumps to `path` and back at once
     filter,         ///< `body` gets `category` and `collides_with`
+    group,          ///< `body` gets the group `category`
+    ignore,         ///< `body` and `other` are ignored, or no longer if `collides_with` has all bits
+    attach,         ///< `body` is added, as a sensor that is attached to `other`
     weigh,          ///< `body` gets `mass`
     append,         ///< `body` gets `path` as a further piece, `seconds` from now, if its script ends before
     ring,           ///< a timer is set, `seconds` from now
@@ -76,8 +81,9 @@ struct Call {
 };
 
 inline constexpr std::string_view call_names[] = {"add",    "remove",        "move",    "turn_back", "keep",
-                                                  "follow", "away_and_back", "filter",  "weigh",     "append",
-                                                  "ring",   "push_off",      "advance", "save",      "fail"};
+                                                  "follow", "away_and_back", "filter",  "group",     "ignore",
+                                                  "attach", "weigh",         "append",  "ring",      "push_off",
+                                                  "advance", "save",         "fail"};
 
 /// Which event of a log: the `count`th of its kind and bodies.
 struct EventKey {
