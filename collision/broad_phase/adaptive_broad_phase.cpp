@@ -68,6 +68,15 @@ void AdaptiveBroadPhase<Degree>::change_to_few(double now, PairListener& listene
 }
 
 template <int Degree>
+void AdaptiveBroadPhase<Degree>::expect(std::size_t bodies, BodySlot end, std::span<const Entry> some, double now) {
+  if (!grid_ && few_.size() == 0 && bodies > tuning_.most_for_few) {
+    grid_ = std::make_unique<KineticGrid<Degree>>(threads_, tuning_.grid);
+    grid_->extend_horizon(now, horizon_);
+  }
+  if (grid_) grid_->expect(bodies, end, some, now);
+}
+
+template <int Degree>
 void AdaptiveBroadPhase<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
   if (!grid_ && few_.size() + bodies.size() > tuning_.most_for_few) change_to_grid(now, listener);
   if (grid_) return grid_->insert(bodies, now, listener);

@@ -93,7 +93,11 @@ class BoxGrid {
     items_.resize(std::max<std::size_t>(items_.size(), end));
     if (end > natives_.room()) restart(end);
   }
-
+  /// The same, for boxes that come later.
+  void expect(Id end) {
+    items_.reserve(end);
+    if (end > natives_.room()) restart(end);
+  }
   /// Chooses the smallest cells by the spacing of boxes. Precondition: empty. Later the grid chooses by itself.
   void choose_cells(double spacing);
 

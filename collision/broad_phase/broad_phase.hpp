@@ -66,6 +66,9 @@ class BroadPhase {
   /// `now` is not before the last time given, a body that is added is not there yet, and one that is removed or updated
   /// is.
   virtual void insert(std::span<const Entry> bodies, double now, PairListener& listener) = 0;
+  /// A hint: so many bodies, of slots below `end`, will be inserted soon, in parts; these are some of them. Changes
+  /// nothing that can be observed.
+  virtual void expect(std::size_t /*bodies*/, BodySlot /*end*/, std::span<const Entry> /*some*/, double /*now*/) {}
   /// Takes a body out. Its pairs end, and are reported.
   virtual void remove(BodySlot body, double now, PairListener& listener) = 0;
 

@@ -46,6 +46,7 @@ class KineticGrid final : public BroadPhase<Degree> {
 
   bool exact() const override { return false; }
   std::string_view name() const override { return "grid"; }
+  void expect(std::size_t bodies, BodySlot end, std::span<const Entry> some, double now) override;
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
   void remove(BodySlot id, double now, PairListener& listener) override;
   void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
@@ -126,6 +127,7 @@ class KineticGrid final : public BroadPhase<Degree> {
                  MayBegin&& may_begin) const;
   FatBox fat_box(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
   std::uint32_t fit(Body& body, StaticBox& box, double now, double coarsest) const;
+  void prepare(std::size_t bodies, std::span<const Entry> some, double now);
   void insert_first(std::span<const Entry> bodies, double now, PairListener& listener);
   void make_boxes(std::span<const Entry> bodies, std::span<StaticBox> boxes, std::size_t threads, double now);
   void cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now);
@@ -160,6 +162,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   std::uint64_t boxes_since_ = 0;
   /// The first is of all bodies whose filters are not told apart; it has kind 0.
   std::array<Filter, 8> filters_{};
+  bool expected_ = false;  ///< cells have been chosen for the bodies to come
   bool in_vain_ = false;  ///< some filter should have a kind of its own
   BroadPhaseCounters counters_;
 };

@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <utility>
 
 namespace kds::collision {
 namespace {
@@ -55,23 +56,40 @@ std::vector<BodySlot> spatial_order(std::span<const typename BroadPhase<Degree>:
 
 }  // namespace
 
+/// Chooses the cells for the first bodies, of which some are given.
+template <int Degree>
+void KineticGrid<Degree>::prepare(std::size_t bodies, std::span<const Entry> some, double now) {
+  const double among = typical_spacing(some.size(), [&](std::size_t i) { return box_at(*some[i].box, now); });
+  const double spacing = among * std::cbrt(static_cast<double>(some.size()) / static_cast<double>(bodies));
+  first_travel_ = tuning_.first_travel * spacing;
+  for (Filter& filter : filters_) filter.travel = 0;
+  fat_boxes_.choose_cells(spacing);
+}
+
+template <int Degree>
+void KineticGrid<Degree>::expect(std::size_t bodies, BodySlot end, std::span<const Entry> some, double now) {
+  // Memory is used when the bodies come.
+  bodies_.reserve(end);
+  fat_boxes_.expect(end);
+  if (fat_boxes_.size() > 0 || some.empty()) return;
+  prepare(bodies, some, now);
+  expected_ = true;
+}
+
 template <int Degree>
 void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, PairListener& listener) {
+  if (bodies.empty()) return;
   BodySlot end = 0;
   for (const Entry& entry : bodies) end = std::max(end, entry.slot + 1);
   if (end > bodies_.size()) {
     const std::size_t room = bodies_.empty() ? end : std::max<std::size_t>(end, 2 * bodies_.size());
-    bodies_.resize(room);
-    expiry_.resize(room);
+    bodies_.resize(std::min(room, std::max<std::size_t>(bodies_.capacity(), end)));
+    expiry_.resize(bodies_.size());
   }
   fat_boxes_.reserve(end);
-  if (fat_boxes_.size() == 0 && !bodies.empty()) {
-    const double spacing = typical_spacing(bodies.size(), [&](std::size_t i) { return box_at(*bodies[i].box, now); });
-    first_travel_ = tuning_.first_travel * spacing;
-    for (Filter& filter : filters_) filter.travel = 0;
-    fat_boxes_.choose_cells(spacing);
-    return insert_first(bodies, now, listener);
-  }
+  const bool expected = std::exchange(expected_, false);
+  if (fat_boxes_.size() == 0 && !expected) prepare(bodies.size(), bodies, now);
+  if (fat_boxes_.size() == 0) return insert_first(bodies, now, listener);
   for (const Entry& entry : bodies) {
     join_filter(entry.slot, listener);
     const double travel = filters_[bodies_[entry.slot].filter].travel;

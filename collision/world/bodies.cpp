@@ -144,6 +144,15 @@ bool Bodies<Motion>::waits(BodySlot slot) const {
 }
 
 template <class Motion>
+std::vector<BodySlot> Bodies<Motion>::take_waiting(std::size_t most) {
+  if (most >= waiting_.size()) return std::exchange(waiting_, {});
+  const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(most);
+  std::vector<BodySlot> taken(waiting_.begin(), end);
+  waiting_.erase(waiting_.begin(), end);
+  return taken;
+}
+
+template <class Motion>
 std::vector<std::shared_ptr<const Mesh>> Bodies<Motion>::meshes() const {
   std::vector<std::shared_ptr<const Mesh>> result;
   for (BodySlot slot = 0; slot < bodies_.size(); ++slot) {

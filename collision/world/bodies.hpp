@@ -216,7 +216,8 @@ class Bodies {
   bool any_waits() const { return !waiting_.empty(); }
   bool waits(BodySlot slot) const;
   const std::vector<BodySlot>& waiting() const { return waiting_; }
-  std::vector<BodySlot> take_waiting() { return std::exchange(waiting_, {}); }
+  /// Takes those that have waited longest, all or so many.
+  std::vector<BodySlot> take_waiting(std::size_t most);
 
   /// The whole state as plain data, for snapshots.
   struct Image;

@@ -195,9 +195,29 @@ void Engine<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degre
   volumes_.schedule(slot);
 }
 
+/// Of bodies that enter in parts the broad phase is told at the first.
 template <class Motion>
-void Engine<Motion>::enter_new_bodies() {
-  const std::vector<BodySlot> entering = bodies_.take_waiting();
+void Engine<Motion>::expect_new_bodies() {
+  constexpr std::size_t sample = 256;
+  expected_ = bodies_.slots();
+  const std::vector<BodySlot>& waiting = bodies_.waiting();
+  const std::size_t step = std::max<std::size_t>(waiting.size() / sample, 1);
+  std::vector<Entry> entries;
+  std::vector<KineticBox<Motion::degree>> boxes;
+  boxes.reserve(waiting.size() / step + 1);
+  for (std::size_t i = 0; i < waiting.size(); i += step) {
+    const BodySlot slot = waiting[i];
+    if (!bodies_.collides(slot) || volumes_.from_caller(slot)) continue;
+    boxes.push_back(volumes_.renew(slot));
+    entries.push_back({slot, &boxes.back()});
+  }
+  broad_phase_->expect(waiting.size(), static_cast<BodySlot>(bodies_.slots()), entries, clock_.now);
+}
+
+template <class Motion>
+void Engine<Motion>::enter_new_bodies(std::size_t most) {
+  if (most < bodies_.waiting().size() && expected_ < bodies_.slots()) expect_new_bodies();
+  const std::vector<BodySlot> entering = bodies_.take_waiting(most);
   // Events of the others that are due now come first, so that they are not attributed to the new bodies.
   while (broad_phase_->advance(clock_.now, pairs_)) {
   }

@@ -32,6 +32,10 @@ struct PairCollector final : PairListener {
   void pair_ended(BodySlot a, BodySlot b, double) override { std::erase(pairs, std::pair(a, b)); }
 };
 
+/// Bodies that enter, pairs that are tested or events of the broad phase that are processed between two looks at the
+/// clock: far less than a millisecond, and many more instructions than a look takes.
+constexpr std::size_t small_part = 64;
+
 void require_ahead(const char* function, double t, double now) {
   if (t >= now && t != never) return;
   throw std::invalid_argument(std::string(function) + ": " + std::to_string(t) + " is not a finite time from now on (" +
@@ -60,6 +64,7 @@ template <class Motion>
 void Engine<Motion>::make_broad_phase() {
   broad_phase_ = new_broad_phase<Motion::degree>(options_, clock_.now, profile(), volumes_.kdops());
   broad_phase_->extend_horizon(clock_.now, clock_.horizon);
+  expected_ = 0;
   pairs_.expect_exact(broad_phase_->exact());
 }
 
@@ -221,10 +226,19 @@ bool Engine<Motion>::next_event(double limit, Search search) {
   double reached = callers_now_;  // the clock if no event follows
   // Where it is not known that anything will happen, the broad phase runs ahead of the clock.
   double broad_phase_reached = clock_.now;
+  const std::size_t part = deadline_ ? small_part : ~std::size_t{0};
   for (;;) {
-    if (bodies_.any_waits()) enter_new_bodies();
+    if (bodies_.any_waits()) enter_new_bodies(part);
+    if (bodies_.any_waits()) {
+      if (late()) return true;
+      continue;
+    }
     if (!resting_.solved()) resting_.solve();
-    if (!pairs_.tested()) pairs_.test();
+    if (!pairs_.tested()) pairs_.test(part);
+    if (!pairs_.tested()) {
+      if (late()) return true;
+      continue;
+    }
     const Due due = next_due();
     // Pending work is of this instant: all that happens at it has to be known before any of it is reported.
     const bool reports = !reports_.empty();
@@ -244,7 +258,9 @@ bool Engine<Motion>::next_event(double limit, Search search) {
     {
       const Stopwatch watch(profile(), Work::sort);
       if (next == never) broad_phase_reached = until;
-      if (broad_phase_->advance(until, pairs_) || next == never) continue;
+      const Ran ran = run_broad_phase(until);
+      if (ran == Ran::until_late) return true;
+      if (ran == Ran::to_a_pair || next == never) continue;
     }
     clock_.now = std::max(clock_.now, next);
     if (reports && !(is_due && due.task <= Task::meet_boxes)) {
@@ -264,6 +280,20 @@ bool Engine<Motion>::next_event(double limit, Search search) {
       return false;
     }
   }
+}
+
+/// Precondition: nothing else is due before `until`.
+template <class Motion>
+inline typename Engine<Motion>::Ran Engine<Motion>::run_broad_phase(double until) {
+  if (deadline_) {
+    std::size_t events = 0;
+    for (double t = broad_phase_->next_time(); t <= until; t = broad_phase_->next_time()) {
+      if (broad_phase_->advance(t, pairs_)) return Ran::to_a_pair;
+      clock_.now = std::max(clock_.now, t);
+      if (++events % small_part == 0 && late()) return Ran::until_late;
+    }
+  }
+  return broad_phase_->advance(until, pairs_) ? Ran::to_a_pair : Ran::all;
 }
 
 /// The result stays in queues and lists, like all that is known of later times.
@@ -304,15 +334,21 @@ void Engine<Motion>::advance_to(double t) {
 
 template <class Motion>
 bool Engine<Motion>::advance_for(double budget_seconds, double t) {
-  using WallClock = std::chrono::steady_clock;
   require_idle("World::advance_for");
   require_ahead("World::advance_for", t, callers_now_);
   if (!(budget_seconds >= 0)) {
     throw std::invalid_argument("World::advance_for: a budget of " + std::to_string(budget_seconds) + " s is not >= 0");
   }
-  const auto deadline = WallClock::now() + std::chrono::duration<double>(budget_seconds);
+  const double longest = 1e9;  // s; what is counted in integers must not overflow
+  const auto budget = std::chrono::duration<double>(std::min(budget_seconds, longest));
+  const auto deadline = WallClock::now() + std::chrono::duration_cast<WallClock::duration>(budget);
+  struct Reset {
+    std::optional<WallClock::time_point>& of;
+    ~Reset() { of.reset(); }
+  } reset{deadline_};
+  deadline_ = deadline;
   while (step(t)) {
-    if (WallClock::now() >= deadline) return false;
+    if (late()) return false;
   }
   return true;
 }

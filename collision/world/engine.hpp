@@ -25,6 +25,7 @@
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -95,6 +96,7 @@ class Engine final : private RestingListener<BodyMotionType> {
  private:
   using Body = detail::Body<Motion>;
   using Mover = typename Bodies<Motion>::Mover;
+  using WallClock = std::chrono::steady_clock;
   using Entry = typename BroadPhase<Motion::degree>::Entry;
   using Resting = RestingPart<Motion>;
   using Begin = typename Pairs<Motion>::Begin;
@@ -124,6 +126,10 @@ class Engine final : private RestingListener<BodyMotionType> {
   enum class Search { makes, looks };
   bool next_event(double limit, Search search = Search::makes);
   bool guarded_event(double limit, Search search);
+  bool late() const { return deadline_ && WallClock::now() >= *deadline_; }
+  /// How far the broad phase has come: to the end, to a pair that it has reported, or until the deadline.
+  enum class Ran { all, to_a_pair, until_late };
+  Ran run_broad_phase(double until);
   bool work_left() const { return bodies_.any_waits() || !resting_.solved() || !pairs_.tested() || !reports_.empty(); }
   void make_broad_phase();
   void rebuild_broad_phase();
@@ -182,7 +188,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape,
                const std::optional<PrincipalInertia>& principal);
   void make_room_for_meshes();
-  void enter_new_bodies();
+  void enter_new_bodies(std::size_t most);
+  void expect_new_bodies();
   void take_out(BodySlot slot);
   void update_volume(BodySlot slot, const KineticBox<Motion::degree>& box);
 
@@ -285,6 +292,9 @@ class Engine final : private RestingListener<BodyMotionType> {
   SelfContacts<Motion> self_contacts_;
   std::unique_ptr<BroadPhase<Motion::degree>> broad_phase_;
   EditLimit edits_;
+  /// When advance_for() is to return. Until then work that may be much at one instant is done in small parts.
+  std::optional<WallClock::time_point> deadline_;
+  std::size_t expected_ = 0;  ///< the broad phase has been told of the bodies in slots below this
   double callers_now_;          ///< the clock as callers know it
   double idle_until_ = -never;  ///< nothing is due before it; an edit resets it
   bool idle_for_ever_ = false;  ///< no event comes at all; an edit resets it

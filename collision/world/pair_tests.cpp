@@ -131,19 +131,21 @@ void Pairs<Motion>::estimate_balls(std::size_t first, std::size_t last) {
 }
 
 template <class Motion>
-void Pairs<Motion>::estimate_dirty() {
+void Pairs<Motion>::estimate_dirty(std::size_t from) {
   if (!balls_are_quick()) return estimates_.assign(dirty_.size(), undecided);
   estimates_.resize(dirty_.size());
-  in_parts(dirty_.size(), threads_for(dirty_.size(), options_.threads),
-           [&](std::size_t, std::size_t first, std::size_t last) { estimate_balls(first, last); });
+  const std::size_t count = dirty_.size() - from;
+  in_parts(count, threads_for(count, options_.threads),
+           [&](std::size_t, std::size_t first, std::size_t last) { estimate_balls(from + first, from + last); });
 }
 
-/// Tests the dirty pairs that rest on each other, and leaves the others. Most of a heap need no test, since the resting
-/// contact keeps them apart.
+/// Tests the dirty pairs, from the first on, that rest on each other, and leaves the others. Most of a heap need no
+/// test, since the resting contact keeps them apart.
 template <class Motion>
-void Pairs<Motion>::test_resting() {
-  std::size_t others = 0;
-  for (const Slot slot : dirty_) {
+void Pairs<Motion>::test_resting(std::size_t first) {
+  std::size_t others = first;
+  for (std::size_t i = first; i < dirty_.size(); ++i) {
+    const Slot slot = dirty_[i];
     Pair& pair = pairs_[slot];
     const auto contact = pair.alive ? resting_.find(pair.a, pair.b) : Resting::none;
     if (contact == Resting::none) {
@@ -176,12 +178,13 @@ void Pairs<Motion>::finish_test(Slot slot) {
 }
 
 template <class Motion>
-void Pairs<Motion>::test() {
+void Pairs<Motion>::test(std::size_t most) {
   const Stopwatch watch(profile_, Work::test);
-  if (!resting_.empty()) test_resting();
-  estimate_dirty();
+  const std::size_t first = dirty_.size() - std::min(most, dirty_.size());
+  if (!resting_.empty()) test_resting(first);
+  estimate_dirty(first);
   const bool sensors = bodies_.any_sensor();
-  for (std::size_t i = 0, dirty = dirty_.size(); i < dirty; ++i) {
+  for (std::size_t i = first, dirty = dirty_.size(); i < dirty; ++i) {
     const Slot slot = dirty_[i];
     Pair& pair = pairs_[slot];
     pair.dirty = false;
@@ -198,7 +201,7 @@ void Pairs<Motion>::test() {
     }
     finish_test(slot);
   }
-  dirty_.clear();
+  dirty_.resize(first);
 }
 
 template <class Motion>

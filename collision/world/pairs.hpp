@@ -123,8 +123,8 @@ class Pairs final : public PairListener {
   /// A body is removed; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.
   void remove(BodySlot id);
 
-  /// Tests all dirty pairs.
-  void test();
+  /// Tests dirty pairs, all or so many of them.
+  void test(std::size_t most = ~std::size_t{0});
   bool tested() const { return dirty_.empty(); }
 
   /// A time up to which there is no contact and no separation.
@@ -212,9 +212,9 @@ class Pairs final : public PairListener {
   // pair_tests.cpp
   double horizon(const Pair& pair) const;
   bool balls_are_quick() const;
-  void test_resting();
+  void test_resting(std::size_t first);
   void finish_test(Slot slot);
-  void estimate_dirty();
+  void estimate_dirty(std::size_t from);
   void estimate_balls(std::size_t first, std::size_t last);
   void test(Slot slot);
   void set_contact(Slot slot, double time);

@@ -179,7 +179,7 @@ void Player<Degree>::advance(double seconds) {
 template <int Degree>
 bool Player<Degree>::step_up_to(double limit) {
   try {
-    while (!given_up() && world_->step(limit)) {
+    while (!given_up() && (way_.budgets ? !world_->advance_for(0, limit) : world_->step(limit))) {
       ++steps_;
       if (way_.audits) world_->audit();
       if (way_.save_every != 0 && steps_ % way_.save_every == 0) save_and_load();

@@ -181,6 +181,7 @@ void print_options(const Scenario& scenario, const Way& way) {
   std::printf(
       "    p.options.kdop = %d;\n    p.stops = %d;\n    p.save_every = %zu;\n    p.saves_between_calls = %d;\n  }\n",
       way.kdop, way.stops, way.save_every, static_cast<int>(way.saves_between_calls));
+  if (way.budgets) std::printf("  if (other) p.budgets = true;\n");
   if (way.runs_ahead) std::printf("  if (other) p.runs_ahead = true;\n");
 }
 

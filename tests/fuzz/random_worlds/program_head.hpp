@@ -28,7 +28,7 @@ struct Player : WorldListener<Degree> {
   BroadPhaseKind load_into = BroadPhaseKind::all_pairs;
   double length = 1;  // unit of length
   int stops = 0, save_every = 0, steps = 0;
-  bool saves_between_calls = false, runs_ahead = false, fixed_bodies_move = false, swapped = false;
+  bool saves_between_calls = false, runs_ahead = false, budgets = false, fixed_bodies_move = false, swapped = false;
   std::unique_ptr<W> world;
   std::map<int, BodyId> id;      // by number of the body
   std::map<BodyId, int> number;  // by id, the last one
@@ -151,7 +151,7 @@ struct Player : WorldListener<Degree> {
     world = std::move(loaded);
   }
   void step_up_to(double limit) {
-    while (world->step(limit)) {
+    while (budgets ? !world->advance_for(0, limit) : world->step(limit)) {
       if (save_every != 0 && ++steps % save_every == 0) save_and_load();
     }
   }

@@ -88,6 +88,7 @@ class Reducer {
     simpler(&Way::window, never);
     simpler(&Way::threads, std::size_t{1});
     simpler(&Way::kdop, 6);
+    simpler(&Way::budgets, false);
     simpler(&Way::stops, 0);
     simpler(&Way::stops, 1);
     simpler(&Way::save_every, std::size_t{0});

@@ -31,6 +31,7 @@ std::string Way::name() const {
   if (threads != 1) out << ", " << threads << " threads";
   if (kdop != 6) out << ", k-DOPs of " << kdop;
   if (stops != 0) out << ", " << stops << " stops";
+  if (budgets) out << ", for budgets";
   if (save_every != 0) out << ", saved every " << save_every << " steps";
   if (saves_between_calls) out << ", saved before each call";
   if (runs_ahead) out << ", with steps undone";
@@ -74,6 +75,7 @@ std::vector<Way> ways_of(const Scenario& scenario) {
       varied.broad_phase = kinetic_sap;
       varied.kdop = std::array{14, 18, 26}[random.below(3)];
   }
+  varied.budgets = random.one_in(2);
   ways.push_back(varied);
 
   constexpr std::array all{all_pairs, automatic, grid, kinetic_sap, sap};
@@ -85,6 +87,7 @@ std::vector<Way> ways_of(const Scenario& scenario) {
     saved.load_into = all[random.below(all.size())];
     if (!may_load(scenario, saved.broad_phase, saved.load_into)) saved.load_into = saved.broad_phase;
     saved.runs_ahead = random.one_in(3);
+    saved.budgets = random.one_in(3);
     ways.push_back(saved);
   }
   return ways;

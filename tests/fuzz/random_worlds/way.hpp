@@ -22,6 +22,7 @@ struct Way {
   int kdop = 6;
   bool audits = false;         ///< after each step
   int stops = 0;               ///< each advance is made in so many more parts
+  bool budgets = false;        ///< each step is for a budget of no time
   std::size_t save_every = 0;  ///< steps; each time the world is saved and loaded into another one (0: never)
   BroadPhaseKind load_into = BroadPhaseKind::all_pairs;  ///< that world's, in turn with `broad_phase`
   bool saves_between_calls = false;                      ///< before each call; of large worlds, before each advance

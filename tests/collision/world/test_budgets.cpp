@@ -1,0 +1,107 @@
+// advance_for(): work that is divided, and the log that does not depend on it.
+#include "kds/framework/snapshot.hpp"
+#include "tests/collision/random_scenes.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace kds::collision::test_budgets {
+namespace {
+
+using namespace tests;
+
+struct Way {
+  BroadPhaseKind method = BroadPhaseKind::automatic;
+  bool budgets = false;
+  bool snapshots = false;
+};
+struct Result {
+  std::vector<Event> events;
+  std::size_t calls = 0;
+};
+
+constexpr std::size_t bodies = 1200;
+constexpr double end = 0.25;  // s
+
+/// Many bodies enter at once, some of them in contact; as many again enter while it runs, and some are moved.
+Result run(Response response, const Way& way) {
+  WorldOptions options = with_response(response);
+  options.walls = Walls{{-12, -12, -12}, {12, 12, 12}, 1};
+  options.broad_phase = way.method;
+  options.rate = 30;
+  options.report_pairs = false;
+  Result result;
+  EventLog<2> log;
+  auto world = std::make_unique<World<2>>(options, &log);
+  Random random(7);
+  const auto vector = [&](double most) {
+    return Vector3d(random.between(-most, most), random.between(-most, most), random.between(-most, most));
+  };
+  const auto add = [&] {
+    for (std::size_t i = 0; i < bodies; ++i) {
+      auto described = body<2>(i % 8 == 0 ? Shape(Box{{0.3, 0.4, 0.5}}) : Shape(Sphere{0.4}),
+                               motion<2>(vector(11), vector(4), vector(1), world->now()));
+      described.sensor = i % 50 == 0;
+      world->add_body(described);
+    }
+  };
+  const auto advance = [&](double t) {
+    if (!way.budgets) return world->advance_to(t);
+    while (!world->advance_for(0, t)) {
+      ++result.calls;
+      if (way.snapshots && result.calls % 16 == 0) {
+        const Snapshot saved = save(*world);
+        world = std::make_unique<World<2>>(options, &log);
+        restore(saved, *world);
+      }
+    }
+  };
+  add();
+  advance(0.1);
+  add();
+  for (BodyId id = 0; id < 40; ++id) world->update_motion(id, motion<2>(vector(11), vector(4), zero, world->now()));
+  advance(end);
+  world->audit();
+  result.events = log.events;
+  return result;
+}
+
+TEST_CASE("What is done for budgets gives the log that is made in one go") {
+  const auto response = GENERATE(Response::none, Response::elastic);
+  const Result whole = run(response, {});
+  CHECK(whole.events.size() > 400);
+  for (const auto method : {BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::sap}) {
+    for (const bool snapshots : {false, true}) {
+      CAPTURE(static_cast<int>(method), snapshots);
+      const Result parts = run(response, {method, true, snapshots});
+      CHECK(parts.calls > whole.events.size() + 2 * bodies / 64);  // Bodies enter in parts.
+      CHECK(parts.events == whole.events);
+    }
+  }
+}
+
+TEST_CASE("Half of the bodies have entered when a budget is used up, and the world can be edited and asked") {
+  EventLog<1> log;
+  World<1> world(with_response(Response::none), &log);
+  constexpr BodyId count = 1000;
+  for (BodyId i = 0; i < count; ++i) world.add_body(ball<1>(1, {1.5 * static_cast<double>(i), 0, 0}));
+  CHECK_FALSE(world.advance_for(0, 1));
+  CHECK(world.now() == 0);
+  CHECK(log.events.empty());
+  std::size_t found = 0;
+  const auto far = Vector3d::Constant(1e6);
+  world.visit_overlapping(-far, far, [&](BodyId) { ++found; });
+  CHECK(found == count);
+  world.remove_body(0);
+  world.remove_body(count - 1);
+  world.update_motion(1, World<1>::Motion::line({-10, 0, 0}, zero, 0));
+  world.advance_to(1);
+  CHECK(log.count(Kind::overlap) == count - 4);  // of the neighbours that are left
+  world.audit();
+}
+
+}  // namespace
+}  // namespace kds::collision::test_budgets
