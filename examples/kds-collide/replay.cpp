@@ -184,16 +184,25 @@ std::string read_script(const std::filesystem::path& folder, const char* name) {
 }  // namespace
 
 ReplayRecorder::ReplayRecorder(const Scene& scene) : scene_(scene) {
-  for (const SceneBody& body : scene.bodies) motion_.push_back(body.motion);
+  for (std::uint32_t place = 0; place < scene.bodies.size(); ++place) {
+    for (const MotionPiece& piece : scene.bodies[place].motion) record_.on_motion(place, piece);
+  }
 }
 
-void ReplayRecorder::on_event(const Event& event) {
+Record::Body& Record::body(std::uint32_t place) {
+  if (bodies_.size() <= place) bodies_.resize(place + std::size_t{1});
+  return bodies_[place];
+}
+
+void Record::on_removal(std::uint32_t place, double time) { body(place).end = time; }
+
+void Record::on_event(const Event& event) {
   if (event.kind == EventKind::wall || event.is_about_volumes()) return;
   (event.is_about_rest() ? rests_ : touches_).push_back(event);
 }
 
-void ReplayRecorder::on_motion(std::uint32_t body, const MotionPiece& piece) {
-  auto& pieces = motion_[body];
+void Record::on_motion(std::uint32_t place, const MotionPiece& piece) {
+  auto& pieces = body(place).motion;
   // Pieces of a script may come after it.
   const auto at = std::lower_bound(pieces.begin(), pieces.end(), piece.start(),
                                    [](const MotionPiece& p, double start) { return p.start() < start; });
@@ -205,19 +214,19 @@ void ReplayRecorder::on_motion(std::uint32_t body, const MotionPiece& piece) {
   }
 }
 
-std::string ReplayRecorder::to_json(const std::string& title) const {
+std::string Record::to_json(const Scene& scene, const std::string& title) const {
   std::string text = "{\"title\":" + quoted(title) + ",\"begin\":";
-  append_number(text, scene_.begin_time);
+  append_number(text, scene.begin_time);
   text += ",\"duration\":";
-  append_number(text, scene_.end_time - scene_.begin_time);
+  append_number(text, scene.end_time - scene.begin_time);
   text += ",\"response\":";
-  text += scene_.response == Response::elastic ? "\"elastic\"" : "\"none\"";
-  if (scene_.domain) {
+  text += scene.response == Response::elastic ? "\"elastic\"" : "\"none\"";
+  if (scene.domain) {
     text += ",\"domain\":{\"min\":";
-    append_vector(text, scene_.domain->min);
+    append_vector(text, scene.domain->min);
     text += ",\"max\":";
-    append_vector(text, scene_.domain->max);
-    text += scene_.domain->walls == Walls::reflect ? ",\"walls\":true}" : ",\"walls\":false}";
+    append_vector(text, scene.domain->max);
+    text += scene.domain->walls == Walls::reflect ? ",\"walls\":true}" : ",\"walls\":false}";
   }
   text += ",\n\"meshes\":[";
   std::map<const kds::collision::Mesh*, std::size_t> mesh_numbers;
@@ -226,32 +235,36 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
     if (mesh_numbers.size() > 1) text += ",\n";
     append_mesh(text, mesh);
   };
-  for (const SceneMesh& mesh : scene_.meshes) add_mesh(*mesh.mesh);
-  for (const SceneBody& body : scene_.bodies) {
+  for (const SceneMesh& mesh : scene.meshes) add_mesh(*mesh.mesh);
+  for (const SceneBody& body : scene.bodies) {
     if (const auto mesh = triangles_of(body.shape)) add_mesh(*mesh);
   }
   text += "],\n\"bodies\":[\n";
-  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-    const SceneBody& body = scene_.bodies[i];
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const SceneBody& body = scene.bodies[i];
     if (i > 0) text += ",\n";
     text += "{\"name\":" + quoted(body.name) + ",\"shape\":";
     append_shape(text, body, mesh_numbers);
     if (const auto* bending = std::get_if<kds::collision::BendingMesh>(&body.shape)) {
-      append_frames(text, *bending->script, scene_.begin_time);
+      append_frames(text, *bending->script, scene.begin_time);
     }
     const Eigen::Quaterniond& q = body.orientation;
     text += ",\"turn\":";
     append_list(text, {q.x(), q.y(), q.z(), q.w()});
     if (body.fixed) text += ",\"fixed\":true";
+    if (bodies_[i].end < scene.end_time) {
+      text += ",\"until\":";
+      append_number(text, bodies_[i].end - scene.begin_time);
+    }
     text += ",\"motion\":[";
     const double size = kds::collision::place(body.shape, body.orientation).bounding_radius;
-    const auto pieces = drawn(motion_[i], size, scene_.end_time);
+    const auto pieces = drawn(bodies_[i].motion, size, scene.end_time);
     for (std::size_t p = 0; p < pieces.size(); ++p) {
       if (p > 0) text += ',';
-      append_path(text, pieces[p], scene_.begin_time);
+      append_path(text, pieces[p], scene.begin_time);
     }
     text += ']';
-    if (scene_.turning && turns(pieces, q)) {
+    if (scene.turning && turns(pieces, q)) {
       text += ",\"spins\":";
       char separator = '[';
       for (const MotionPiece& piece : pieces) {
@@ -267,7 +280,7 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
   for (std::size_t i = 0; i < touches_.size(); ++i) {
     const Event& touch = touches_[i];
     text += i > 0 ? ",[" : "[";
-    append_number(text, touch.time - scene_.begin_time);
+    append_number(text, touch.time - scene.begin_time);
     for (const std::uint32_t value : {static_cast<std::uint32_t>(touch.kind), touch.a, touch.b}) {
       text += ',';
       append_number(text, value);
@@ -278,7 +291,7 @@ std::string ReplayRecorder::to_json(const std::string& title) const {
   for (std::size_t i = 0; i < rests_.size(); ++i) {
     const Event& rest = rests_[i];
     text += i > 0 ? ",[" : "[";
-    append_number(text, rest.time - scene_.begin_time);
+    append_number(text, rest.time - scene.begin_time);
     text += rest.kind == EventKind::rest || rest.kind == EventKind::rest_at_wall ? ",1," : ",-1,";
     append_number(text, rest.a);
     if (!rest.is_at_wall()) {

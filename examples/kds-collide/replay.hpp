@@ -3,6 +3,7 @@
 
 #include "examples/kds-collide/events.hpp"
 #include "examples/kds-collide/scene.hpp"
+#include "kds/arithmetic/lattice.hpp"
 
 #include <filesystem>
 #include <stdexcept>
@@ -16,21 +17,43 @@ struct ReplayError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Keeps the motion pieces and contacts of a run: what the page needs to show any instant of it.
+/// The motion pieces and contacts of a run: what the page needs to show any instant of it. Bodies are named by their
+/// places in a scene.
+class Record {
+ public:
+  void on_event(const Event& event);
+  /// Pieces may come in any order of their starts; of several with one start the last counts.
+  void on_motion(std::uint32_t body, const MotionPiece& piece);
+  /// From `time` on the body is not there.
+  void on_removal(std::uint32_t body, double time);
+
+  /// The page's data, as JSON: see replay.html for what it means.
+  std::string to_json(const Scene& scene, const std::string& title) const;
+
+ private:
+  struct Body {
+    std::vector<MotionPiece> motion;  ///< starts ascend
+    double end = kds::never;
+  };
+  Body& body(std::uint32_t place);
+
+  std::vector<Body> bodies_;
+  std::vector<Event> touches_;  ///< contacts, separations, overlaps
+  std::vector<Event> rests_;    ///< contacts that begin and cease to last
+};
+
+/// Keeps the record of a scene's run. (Of a world of one's own: WorldRecorder, in world_recorder.hpp.)
 class ReplayRecorder final : public EventSink {
  public:
   explicit ReplayRecorder(const Scene& scene);
-  void on_event(const Event& event) override;
-  void on_motion(std::uint32_t body, const MotionPiece& piece) override;
+  void on_event(const Event& event) override { record_.on_event(event); }
+  void on_motion(std::uint32_t body, const MotionPiece& piece) override { record_.on_motion(body, piece); }
 
-  /// The page's data, as JSON: see replay.html for what it means.
-  std::string to_json(const std::string& title) const;
+  std::string to_json(const std::string& title) const { return record_.to_json(scene_, title); }
 
  private:
   const Scene& scene_;
-  std::vector<std::vector<MotionPiece>> motion_;  ///< of each body; starts ascend
-  std::vector<Event> touches_;                    ///< contacts, separations, overlaps
-  std::vector<Event> rests_;                      ///< contacts that begin and cease to last
+  Record record_;
 };
 
 /// The page: viewer, three.js and data in one text. Throws ReplayError where three.js is not found in `three_folder`.

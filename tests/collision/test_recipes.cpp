@@ -1,4 +1,5 @@
 // The code of docs/recipes.md: what is quoted there stands here, and is held to what the page says of it.
+#include "collision/drawing/draw_world.hpp"
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
 #include "collision/queries/nearest.hpp"
@@ -401,6 +402,18 @@ TEST_CASE("recipe: a log, and the same run again") {
   };
   CHECK(run(BroadPhaseKind::grid) == run(BroadPhaseKind::kinetic_sap));  // bit for bit
   CHECK(run(BroadPhaseKind::grid).size() > 10);
+}
+
+TEST_CASE("recipe: a world as lines") {
+  World<1> world({});
+  world.add_body({.shape = Box{{1, 1, 1}}, .motion = {Line::line({0, 0, 0}, {2, 0, 0})}});
+  world.advance_to(1);
+  std::vector<std::pair<Vector3d, Vector3d>> lines;  // of your renderer
+  draw(world, [&](const Vector3d& from, const Vector3d& to, Drawn what) {
+    if (what != Drawn::sensor) lines.emplace_back(from, to);
+  });
+  CHECK(lines.size() == 12);  // the edges
+  CHECK(lines[0].first == Vector3d(2 - 1, -1, -1));
 }
 
 }  // namespace

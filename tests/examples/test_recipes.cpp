@@ -4,6 +4,7 @@
 #include "examples/kds-collide/replay.hpp"
 #include "examples/kds-collide/run.hpp"
 #include "examples/kds-collide/scene_reader.hpp"
+#include "examples/kds-collide/world_recorder.hpp"
 #include "tests/examples/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
@@ -36,6 +37,19 @@ TEST_CASE("recipe: a replay of a scene") {
   const RunResult result = run(scene, {}, recorder);
   const std::string data = recorder.to_json("two balls");  // replay_page(data, default_three_folder()) is the page
   CHECK(result.contacts == 1);
+  CHECK(data.find("\"touches\":[[2") != std::string::npos);
+}
+
+TEST_CASE("recipe: a replay of a world") {
+  using kds::collision::Sphere, kds::collision::World, kds::collision::WorldOptions;
+  using Line = World<1>::Motion;
+  const WorldOptions options;
+  WorldRecorder<Line> recorder(options);  // and tells a listener of yours, if you give it one
+  World<1> world(options, &recorder);
+  world.add_body({.shape = Sphere{1}, .motion = {Line::line({-3, 0, 0}, {1, 0, 0})}});
+  world.add_body({.shape = Sphere{1}, .motion = {Line::line({3, 0, 0}, {-1, 0, 0})}});
+  world.advance_to(4);
+  const std::string data = recorder.to_json(world, "two balls");  // recorder.page(world, "two balls") is the page
   CHECK(data.find("\"touches\":[[2") != std::string::npos);
 }
 

@@ -1,0 +1,190 @@
+// A replay of a world of the caller's own.
+#pragma once
+
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/world.hpp"
+#include "examples/kds-collide/replay.hpp"
+#include "examples/kds-collide/scene_world.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace kds_collide {
+
+/// Records what happens in a world, from where it is first seen on. It is a listener, and tells another, if there is
+/// one, of all that it is told:
+///
+///     kds_collide::WorldRecorder<World<2>::Motion> recorder(options, &mine);
+///     World<2> world(options, &recorder);
+///     ...                                              // add bodies, advance, change
+///     out << recorder.page(world, "my world");         // an HTML file that plays it
+///
+/// Motions that events change are recorded at their times. What the caller does between events - to add, remove or move
+/// bodies - is recorded by look(), which page() calls, too: call it after such changes, else they count from the next
+/// look on. A mesh that bends is shown with the keyframes that it has when it is first seen.
+///
+/// Cost: O(1) an event; look() O(n log n) for n bodies.
+template <class BodyMotionType>
+class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotionType> {
+ public:
+  using Motion = BodyMotionType;
+  static_assert(Motion::degree <= 2, "WorldRecorder: a replay has paths of degree 1 and 2");
+  using World = kds::collision::BasicWorld<Motion>;
+  using Listener = kds::collision::BasicWorldListener<Motion>;
+  using BodyId = kds::collision::BodyId;
+  using PairEvent = kds::collision::PairEvent;
+  using WallEvent = kds::collision::WallEvent;
+
+  /// `options`: those of the world. `listener` must outlive the recorder.
+  explicit WorldRecorder(const kds::collision::WorldOptions& options, Listener* listener = nullptr)
+      : listener_(listener ? *listener : silent_) {
+    scene_.begin_time = options.start_time;
+    scene_.response = options.response == Response::none ? Response::none : Response::elastic;
+    scene_.turning = kds::collision::turns<Motion>;
+    if (options.walls) {
+      scene_.domain = Domain{options.walls->min, options.walls->max, Walls::reflect, options.walls->restitution};
+    }
+  }
+
+  /// Records which bodies are there, and their motions.
+  void look(const World& world) {
+    std::vector<BodyId> gone;
+    for (const auto& [id, place] : places_) {
+      if (!world.contains(id)) gone.push_back(id);
+    }
+    for (const BodyId id : gone) see_if_there(world, id);
+    const Eigen::Vector3d everywhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    world.visit_overlapping(-everywhere, everywhere, [&](BodyId id) { see(world, id); });
+  }
+
+  /// The page, from the time at which the world began to now(). Throws ReplayError where three.js is not found.
+  std::string page(const World& world, const std::string& title,
+                   const std::filesystem::path& three_folder = default_three_folder()) {
+    return replay_page(to_json(world, title), three_folder);
+  }
+  /// Its data.
+  std::string to_json(const World& world, const std::string& title) {
+    look(world);
+    scene_.end_time = world.now();
+    return record_.to_json(scene_, title);
+  }
+
+ private:
+  void contact(World& world, const PairEvent& event) override {
+    note(world, EventKind::contact, event);
+    listener_.contact(world, event);
+    see_both(world, event);
+  }
+  void separation(World& world, const PairEvent& event) override {
+    note(world, EventKind::separation, event);
+    listener_.separation(world, event);
+    see_both(world, event);
+  }
+  void overlap(World& world, const PairEvent& event) override {
+    note(world, EventKind::overlap, event);
+    listener_.overlap(world, event);
+    see_both(world, event);
+  }
+  void wall(World& world, const WallEvent& event) override {
+    listener_.wall(world, event);
+    see_if_there(world, event.body);
+  }
+  void rests(World& world, const PairEvent& event) override {
+    note(world, EventKind::rest, event);
+    listener_.rests(world, event);
+    see_both(world, event);
+  }
+  void wakes(World& world, const PairEvent& event) override {
+    note(world, EventKind::wake, event);
+    listener_.wakes(world, event);
+    see_both(world, event);
+  }
+  void rests_at_wall(World& world, const WallEvent& event) override {
+    note_wall(world, EventKind::rest_at_wall, event);
+    listener_.rests_at_wall(world, event);
+    see_if_there(world, event.body);
+  }
+  void wakes_at_wall(World& world, const WallEvent& event) override {
+    note_wall(world, EventKind::wake_at_wall, event);
+    listener_.wakes_at_wall(world, event);
+    see_if_there(world, event.body);
+  }
+  void moved(World& world, BodyId id) override {
+    listener_.moved(world, id);
+    see_if_there(world, id);
+  }
+  void piece(World& world, BodyId id) override {
+    listener_.piece(world, id);
+    see_if_there(world, id);
+  }
+  void timer(World& world, kds::collision::TimerId timer) override {
+    listener_.timer(world, timer);
+    look(world);  // What it is for is to change something.
+  }
+  void rebound_suppressed(World& world, const PairEvent& event) override { listener_.rebound_suppressed(world, event); }
+  void rebound_suppressed_at_wall(World& world, const WallEvent& event) override {
+    listener_.rebound_suppressed_at_wall(world, event);
+  }
+  void passes(World& world, const PairEvent& event) override { listener_.passes(world, event); }
+  void pair_began(World& world, BodyId a, BodyId b, double t) override { listener_.pair_began(world, a, b, t); }
+  void pair_ended(World& world, BodyId a, BodyId b, double t) override { listener_.pair_ended(world, a, b, t); }
+
+  /// Of bodies that have been removed only what was seen of them before counts.
+  void note(const World& world, EventKind kind, const PairEvent& event) {
+    see_both(world, event);
+    const auto a = places_.find(event.a), b = places_.find(event.b);
+    if (a == places_.end() || b == places_.end()) return;
+    record_.on_event({.time = event.contact.time, .kind = kind, .a = a->second, .b = b->second});
+  }
+  void note_wall(const World& world, EventKind kind, const WallEvent& event) {
+    see_if_there(world, event.body);
+    const auto body = places_.find(event.body);
+    if (body != places_.end()) record_.on_event({.time = event.contact.time, .kind = kind, .a = body->second});
+  }
+
+  void see_both(const World& world, const PairEvent& event) {
+    see_if_there(world, event.a);
+    see_if_there(world, event.b);
+  }
+  void see_if_there(const World& world, BodyId id) {
+    if (world.contains(id)) return see(world, id);
+    const auto place = places_.find(id);
+    if (place == places_.end()) return;
+    record_.on_removal(place->second, world.now());
+    places_.erase(place);
+  }
+  void see(const World& world, BodyId id) {
+    const auto [place, is_new] = places_.try_emplace(id, static_cast<std::uint32_t>(scene_.bodies.size()));
+    if (is_new) add(world, id);
+    record_.on_motion(place->second, to_piece(world.motion(id)));
+  }
+  void add(const World& world, BodyId id) {
+    const kds::collision::PlacedShape placed = world.shape(id);
+    SceneBody body;
+    body.name = "body " + std::to_string(id);
+    body.shape = placed.shape;
+    if (const auto* bending = std::get_if<kds::collision::BendingMesh>(&placed.shape)) {
+      const auto& form = bending->script->form();
+      body.bent = std::make_shared<const kds::collision::Mesh>(form.positions, form.triangles);
+      scene_.meshes.push_back({body.name, "", body.bent});
+    }
+    body.orientation = Eigen::Quaterniond(placed.rotation);
+    if constexpr (kds::collision::turns<Motion>) body.orientation = world.motion(id).orientation.normalized();
+    body.fixed = world.fixed(id);
+    scene_.bodies.push_back(std::move(body));
+  }
+
+  Listener silent_;
+  Listener& listener_;
+  Scene scene_;
+  Record record_;
+  std::unordered_map<BodyId, std::uint32_t> places_;  ///< in the scene, of bodies that are there
+};
+
+}  // namespace kds_collide
