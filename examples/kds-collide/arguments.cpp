@@ -56,7 +56,10 @@ CLI::Validator not_empty() {
 
 /// The files that a run writes, by option; empty where it does not.
 std::vector<std::pair<const char*, std::string>> outputs(const Arguments& arguments) {
-  return {{"--events", arguments.events}, {"--stats", arguments.stats}, {"--view", arguments.view}};
+  return {{"--events", arguments.events},
+          {"--stats", arguments.stats},
+          {"--view", arguments.view},
+          {"--gltf", arguments.gltf}};
 }
 
 /// Whether to write to one is to change the other. A device or a pipe may be written to by several.
@@ -113,6 +116,9 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_flag("--pairs", arguments.run.pairs, "Write events of kinetic bounding volumes too");
   app.add_option("--view", arguments.view, "Write a replay that any browser shows")
       ->type_name("FILE.html")
+      ->check(not_empty());
+  app.add_option("--gltf", arguments.gltf, "Write an animation in the format glTF")
+      ->type_name("FILE.gltf")
       ->check(not_empty());
   const std::vector<CLI::Option*> of_a_run = app.get_options([](const CLI::Option* o) { return o->nonpositional(); });
   app.add_flag("--quiet", arguments.quiet, "No progress and no summary on standard error");

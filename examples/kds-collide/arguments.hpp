@@ -18,6 +18,7 @@ struct Arguments {
   std::string events;
   std::string stats;
   std::string view;
+  std::string gltf;
   std::optional<double> until;  ///< s
   RunOptions run;
   bool quiet = false;

@@ -2,6 +2,7 @@
 #include "collision/broad_phase/broad_phase_kind.hpp"
 #include "examples/kds-collide/arguments.hpp"
 #include "examples/kds-collide/event_csv.hpp"
+#include "examples/kds-collide/gltf.hpp"
 #include "examples/kds-collide/one_line.hpp"
 #include "examples/kds-collide/output_file.hpp"
 #include "examples/kds-collide/progress_bar.hpp"
@@ -103,6 +104,7 @@ int simulate(Arguments arguments) {
   std::optional<EventCsv> events;
   std::optional<OutputFile> stats;
   std::optional<OutputFile> view;
+  std::optional<OutputFile> gltf;
   std::optional<ReplayRecorder> recorder;
   std::optional<ProgressBar> progress;
   if (!arguments.events.empty()) sinks.add(events.emplace(arguments.events, scene));
@@ -110,8 +112,9 @@ int simulate(Arguments arguments) {
   if (!arguments.view.empty()) {
     replay_page("", default_three_folder());
     view.emplace(arguments.view);
-    sinks.add(recorder.emplace(scene));
   }
+  if (!arguments.gltf.empty()) gltf.emplace(arguments.gltf);
+  if (view || gltf) sinks.add(recorder.emplace(scene));
   if (!arguments.quiet && isatty(STDERR_FILENO) != 0) {
     sinks.add(progress.emplace(scene.begin_time, scene.end_time));
     arguments.run.steady_progress = true;
@@ -119,14 +122,14 @@ int simulate(Arguments arguments) {
 
   const RunResult result = run(scene, arguments.run, sinks);
   progress.reset();
-  if (view) {
-    view->write(replay_page(recorder->to_json(std::filesystem::path(arguments.scene).filename().string()),
-                            default_three_folder()));
-  }
+  const std::string title = std::filesystem::path(arguments.scene).filename().string();
+  if (view) view->write(replay_page(recorder->to_json(title), default_three_folder()));
+  if (gltf) gltf->write(to_gltf(scene, recorder->record(), title));
   if (stats) stats->write(to_json(result, arguments.run, read_seconds));
   const auto each_output = [&](auto&& what) {
     if (events) what(*events);
     if (view) what(*view);
+    if (gltf) what(*gltf);
     if (stats) what(*stats);
   };
   each_output([](auto& output) { output.close(); });  // All are whole before one appears.

@@ -19,7 +19,7 @@
 namespace kds_collide {
 namespace {
 
-/// The viewer's page, from replay.html.
+/// The viewer's page, from the files in replay/.
 constexpr std::string_view page_template =
 #include "replay_template.inc"
     ;
@@ -115,7 +115,7 @@ bool turns_on(const MotionPiece& before, const MotionPiece& piece, double until)
 }
 
 /// The pieces that are to be drawn. Where the one before leads to the same place, until the next begins, it goes on.
-std::vector<MotionPiece> drawn(const std::vector<MotionPiece>& pieces, double size, double end) {
+std::vector<MotionPiece> visible(const std::vector<MotionPiece>& pieces, double size, double end) {
   std::vector<MotionPiece> result;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const MotionPiece& piece = pieces[i];
@@ -148,6 +148,16 @@ void append_shape(std::string& text, const SceneBody& body,
   }
   text += ",\"size\":";
   append_vector(text, measures(shape));
+}
+
+/// Point and normal.
+void append_place(std::string& text, const Event& event) {
+  for (const Eigen::Vector3d& v : {event.point, event.normal}) {
+    for (int d = 0; d < 3; ++d) {
+      text += ',';
+      append_short(text, v[d]);
+    }
+  }
 }
 
 /// Where the vertices of a mesh that bends are at its keyframes.
@@ -197,8 +207,8 @@ Record::Body& Record::body(std::uint32_t place) {
 void Record::on_removal(std::uint32_t place, double time) { body(place).end = time; }
 
 void Record::on_event(const Event& event) {
-  if (event.kind == EventKind::wall || event.is_about_volumes()) return;
-  (event.is_about_rest() ? rests_ : touches_).push_back(event);
+  if (event.is_about_volumes()) return;
+  (event.kind == EventKind::wall ? walls_ : event.is_about_rest() ? rests_ : touches_).push_back(event);
 }
 
 void Record::on_motion(std::uint32_t place, const MotionPiece& piece) {
@@ -212,6 +222,12 @@ void Record::on_motion(std::uint32_t place, const MotionPiece& piece) {
   } else {
     pieces.insert(at, piece);
   }
+}
+
+std::vector<MotionPiece> Record::drawn(const Scene& scene, std::uint32_t place) const {
+  const SceneBody& body = scene.bodies[place];
+  const double size = kds::collision::place(body.shape, body.orientation).bounding_radius;
+  return visible(bodies_[place].motion, size, scene.end_time);
 }
 
 std::string Record::to_json(const Scene& scene, const std::string& title) const {
@@ -257,8 +273,7 @@ std::string Record::to_json(const Scene& scene, const std::string& title) const 
       append_number(text, bodies_[i].end - scene.begin_time);
     }
     text += ",\"motion\":[";
-    const double size = kds::collision::place(body.shape, body.orientation).bounding_radius;
-    const auto pieces = drawn(bodies_[i].motion, size, scene.end_time);
+    const auto pieces = drawn(scene, static_cast<std::uint32_t>(i));
     for (std::size_t p = 0; p < pieces.size(); ++p) {
       if (p > 0) text += ',';
       append_path(text, pieces[p], scene.begin_time);
@@ -285,6 +300,19 @@ std::string Record::to_json(const Scene& scene, const std::string& title) const 
       text += ',';
       append_number(text, value);
     }
+    append_place(text, touch);
+    text += ']';
+  }
+  text += "],\n\"walls\":[";
+  for (std::size_t i = 0; i < walls_.size(); ++i) {
+    const Event& wall = walls_[i];
+    text += i > 0 ? ",[" : "[";
+    append_number(text, wall.time - scene.begin_time);
+    for (const std::uint32_t value : {wall.a, wall.b}) {
+      text += ',';
+      append_number(text, value);
+    }
+    append_place(text, wall);
     text += ']';
   }
   text += "],\n\"rests\":[";

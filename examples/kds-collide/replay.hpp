@@ -27,7 +27,12 @@ class Record {
   /// From `time` on the body is not there.
   void on_removal(std::uint32_t body, double time);
 
-  /// The page's data, as JSON: see replay.html for what it means.
+  /// The pieces of a body's motion that are to be drawn, up to a thousandth of its size.
+  std::vector<MotionPiece> drawn(const Scene& scene, std::uint32_t place) const;
+  /// When the body is removed, `never` if it is not. Precondition, here and above: it has been recorded.
+  double end(std::uint32_t place) const { return bodies_[place].end; }
+
+  /// The page's data, as JSON: see replay/record.js for what it means.
   std::string to_json(const Scene& scene, const std::string& title) const;
 
  private:
@@ -38,7 +43,8 @@ class Record {
   Body& body(std::uint32_t place);
 
   std::vector<Body> bodies_;
-  std::vector<Event> touches_;  ///< contacts, separations, overlaps
+  std::vector<Event> touches_;  ///< contacts, separations, overlaps, passes
+  std::vector<Event> walls_;
   std::vector<Event> rests_;    ///< contacts that begin and cease to last
 };
 
@@ -50,6 +56,7 @@ class ReplayRecorder final : public EventSink {
   void on_motion(std::uint32_t body, const MotionPiece& piece) override { record_.on_motion(body, piece); }
 
   std::string to_json(const std::string& title) const { return record_.to_json(scene_, title); }
+  const Record& record() const { return record_; }
 
  private:
   const Scene& scene_;

@@ -3,6 +3,7 @@
 
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
+#include "examples/kds-collide/gltf.hpp"
 #include "examples/kds-collide/replay.hpp"
 #include "examples/kds-collide/scene_world.hpp"
 
@@ -68,7 +69,13 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
                    const std::filesystem::path& three_folder = default_three_folder()) {
     return replay_page(to_json(world, title), three_folder);
   }
-  /// Its data.
+  /// An animation (gltf.hpp), of the same time.
+  std::string gltf(const World& world, const std::string& title, double frames_per_second = 60) {
+    look(world);
+    scene_.end_time = world.now();
+    return to_gltf(scene_, record_, title, frames_per_second);
+  }
+  /// The data of the page.
   std::string to_json(const World& world, const std::string& title) {
     look(world);
     scene_.end_time = world.now();
@@ -92,6 +99,7 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
     see_both(world, event);
   }
   void wall(World& world, const WallEvent& event) override {
+    note_wall(world, EventKind::wall, event);
     listener_.wall(world, event);
     see_if_there(world, event.body);
   }
@@ -131,7 +139,10 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
   void rebound_suppressed_at_wall(World& world, const WallEvent& event) override {
     listener_.rebound_suppressed_at_wall(world, event);
   }
-  void passes(World& world, const PairEvent& event) override { listener_.passes(world, event); }
+  void passes(World& world, const PairEvent& event) override {
+    note(world, EventKind::pass, event);
+    listener_.passes(world, event);
+  }
   void pair_began(World& world, BodyId a, BodyId b, double t) override { listener_.pair_began(world, a, b, t); }
   void pair_ended(World& world, BodyId a, BodyId b, double t) override { listener_.pair_ended(world, a, b, t); }
 
@@ -140,12 +151,15 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
     see_both(world, event);
     const auto a = places_.find(event.a), b = places_.find(event.b);
     if (a == places_.end() || b == places_.end()) return;
-    record_.on_event({.time = event.contact.time, .kind = kind, .a = a->second, .b = b->second});
+    record_.on_event({event.contact.time, kind, a->second, b->second, event.contact.point, event.contact.normal, {}, {}});
   }
   void note_wall(const World& world, EventKind kind, const WallEvent& event) {
     see_if_there(world, event.body);
     const auto body = places_.find(event.body);
-    if (body != places_.end()) record_.on_event({.time = event.contact.time, .kind = kind, .a = body->second});
+    if (body == places_.end()) return;
+    const kds::collision::Contact& c = event.contact;
+    const auto wall = static_cast<std::uint32_t>(event.wall);
+    record_.on_event({c.time, kind, body->second, wall, c.point, c.normal, {}, {}});
   }
 
   void see_both(const World& world, const PairEvent& event) {

@@ -35,11 +35,13 @@ Scene scene_of_two() {
 TEST_CASE("replay: the record holds pieces of motion and contacts, counted from the beginning") {
   const Scene scene = scene_of_two();
   ReplayRecorder recorder(scene);
-  recorder.on_event({11, EventKind::contact, 0, 1, {}, {}, {}, {}});
-  recorder.on_event({11.5, EventKind::wall, 0, 1, {}, {}, {}, {}});
-  recorder.on_event({11.5, EventKind::rest_at_wall, 0, 1, {}, {}, {}, {}});
-  recorder.on_event({12, EventKind::rest, 0, 1, {}, {}, {}, {}});
-  recorder.on_event({12.5, EventKind::wake, 0, 1, {}, {}, {}, {}});
+  const Eigen::Vector3d point(1, 2, 3), normal(0, 0, -1);
+  recorder.on_event({11, EventKind::contact, 0, 1, point, normal, {}, {}});
+  recorder.on_event({11.5, EventKind::wall, 0, 1, point, normal, {}, {}});
+  recorder.on_event({11.5, EventKind::rest_at_wall, 0, 1, point, normal, {}, {}});
+  recorder.on_event({12, EventKind::rest, 0, 1, point, normal, {}, {}});
+  recorder.on_event({12, EventKind::pair_begin, 0, 1, point, normal, {}, {}});
+  recorder.on_event({12.5, EventKind::wake, 0, 1, point, normal, {}, {}});
   MotionPiece piece = scene.bodies[1].motion[0];
   piece.path.start = 11;
   recorder.on_motion(0, piece);
@@ -56,7 +58,8 @@ TEST_CASE("replay: the record holds pieces of motion and contacts, counted from 
   CHECK(data["bodies"][0]["shape"] == "sphere");
   CHECK(data["bodies"][0]["motion"] == json::parse("[[0,0,0,0,1,0,0],[1,0,0,0,-1,0,0,0,0,-5]]"));
   CHECK(data["bodies"][1]["motion"] == json::parse("[[0,0,0,0,-1,0,0]]"));
-  CHECK(data["touches"] == json::parse("[[1,0,0,1]]"));
+  CHECK(data["touches"] == json::parse("[[1,0,0,1,1,2,3,0,0,-1]]"));
+  CHECK(data["walls"] == json::parse("[[1.5,0,1,1,2,3,0,0,-1]]"));
   CHECK(data["rests"] == json::parse("[[1.5,1,0],[2,1,0,1],[2.5,-1,0,1]]"));
 }
 

@@ -46,7 +46,8 @@ TEST_CASE("recorder: bodies that bounce, come later, are moved and are removed")
   CHECK(data["bodies"][1]["until"] == 7);
   CHECK(data["bodies"][2]["motion"] == json::parse("[[7,0,5,0]]"));
   CHECK(data["bodies"][2]["fixed"] == true);
-  CHECK(data["touches"] == json::parse("[[6,0,0,1]]"));
+  CHECK(data["touches"] == json::parse("[[6,0,0,1,3,0,0,1,0,0]]"));
+  CHECK(data["walls"] == json::parse("[[15,0,5,0,0,9,0,0,1]]"));
 }
 
 TEST_CASE("recorder: a body that a callback removes, and another that gets its slot") {
@@ -66,7 +67,7 @@ TEST_CASE("recorder: a body that a callback removes, and another that gets its s
   REQUIRE(data["bodies"].size() == 3);
   CHECK(data["bodies"][1]["until"] == 2);
   CHECK(data["bodies"][2]["motion"] == json::parse("[[2,0,8,0]]"));
-  CHECK(data["touches"] == json::parse("[[2,0,0,1]]"));
+  CHECK(data["touches"] == json::parse("[[2,0,0,1,1,0,0,1,0,0]]"));
 }
 
 TEST_CASE("recorder: a page of bodies that turn") {

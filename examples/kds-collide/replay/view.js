@@ -1,0 +1,125 @@
+// What is around the bodies: the space, light and camera.
+const canvas = document.getElementById("view");
+let renderer;
+try {
+  renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+} catch (error) {
+  document.getElementById("sorry").style.display = "grid";
+  throw error;
+}
+renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+renderer.gammaOutput = true;
+renderer.setClearColor(0x0b0e13);
+const scene = new THREE.Scene();
+
+/** How far from the centre the vertices of any frame are. */
+function farthest(frames) {
+  let radius = 0;
+  for (const frame of frames) {
+    for (let i = 1; i < frame.length; i += 3) radius = Math.max(radius, Math.hypot(frame[i], frame[i + 1], frame[i + 2]));
+  }
+  return radius;
+}
+/** The box around a body about its centre: of one that bends around all frames, of others around its ball. */
+function boxOf(body) {
+  const box = new THREE.Box3();
+  if (body.frames) {
+    const turn = new THREE.Quaternion(...body.turn), v = new THREE.Vector3();
+    for (const frame of body.frames) {
+      for (let i = 1; i < frame.length; i += 3) box.expandByPoint(v.fromArray(frame, i).applyQuaternion(turn));
+    }
+  } else {
+    const r = sizeOf(body);
+    box.set(new THREE.Vector3(-r, -r, -r), new THREE.Vector3(r, r, r));
+  }
+  return box;
+}
+function sizeOf(body) {
+  const s = Math.max(...body.size);
+  if (body.frames) return farthest(body.frames);
+  return typeof body.shape === "number" ? s * data.meshes[body.shape].radius
+       : body.shape === "box" ? Math.hypot(...body.size)
+       : body.shape === "capsule" ? body.size[0] + body.size[2] : s;
+}
+for (const mesh of data.meshes) {
+  mesh.radius = 0;
+  for (let i = 0; i < mesh.vertices.length; i += 3) {
+    mesh.radius = Math.max(mesh.radius, Math.hypot(mesh.vertices[i], mesh.vertices[i + 1], mesh.vertices[i + 2]));
+  }
+}
+
+const bounds = new THREE.Box3();
+if (data.domain) {
+  bounds.set(new THREE.Vector3(...data.domain.min), new THREE.Vector3(...data.domain.max));
+} else {
+  const at = new THREE.Vector3();
+  for (const body of data.bodies) {
+    const box = boxOf(body);
+    for (const t of [0, data.duration / 2, data.duration]) {
+      if (position(body, t, at)) bounds.union(box.clone().translate(at));
+    }
+  }
+  if (bounds.isEmpty()) bounds.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
+}
+const centre = bounds.getCenter(new THREE.Vector3());
+const extent = bounds.getSize(new THREE.Vector3());
+const reach = extent.length() / 2;
+
+scene.fog = new THREE.Fog(0x0b0e13, 2 * reach, 7 * reach);
+scene.add(new THREE.HemisphereLight(0xdfe9ff, 0x3a3630, 0.85));
+const sun = new THREE.DirectionalLight(0xfff4e2, 1.0);
+scene.add(sun);
+const rim = new THREE.DirectionalLight(0x6aa0ff, 0.35);
+scene.add(rim);
+
+const camera = new THREE.PerspectiveCamera(38, 1, reach / 200, reach * 40);
+let controls;
+
+/** Puts the camera where the whole box is seen, from the direction in which it looks, or from the usual one. */
+function fit(fromWhere) {
+  const from = (fromWhere || camera.position.clone().sub(controls.target)).clone().normalize();
+  const back = from.clone(), right = new THREE.Vector3().crossVectors(camera.up, back).normalize();
+  const above = new THREE.Vector3().crossVectors(back, right);
+  const tall = Math.tan(camera.fov * Math.PI / 360) * 0.82, wide = tall * camera.aspect;   // clear of bar and title
+  let distance = reach / 10;
+  const corner = new THREE.Vector3();
+  for (let k = 0; k < 8; ++k) {
+    corner.set(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5).multiply(extent);
+    const needed = Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(above)) / tall);
+    distance = Math.max(distance, needed + corner.dot(back));
+  }
+  controls.target.copy(centre);
+  camera.position.copy(centre).addScaledVector(from, 1.02 * distance);
+}
+
+/** Turns the view so that an axis, "x", "y", "z" or their opposites, points up. */
+function setUp(axis) {
+  const i = "xyz".indexOf(axis[axis.length - 1]), sign = axis.length > 1 ? -1 : 1;
+  camera.up.set(0, 0, 0).setComponent(i, sign);
+  // The controls read the axis when they are made.
+  if (controls) controls.dispose();
+  controls = new THREE.OrbitControls(camera, canvas);
+  controls.enableDamping = true;
+  controls.dampingFactor = 0.08;
+  controls.rotateSpeed = 0.7;
+  controls.minDistance = reach / 50;
+  controls.maxDistance = reach * 12;
+  const from = new THREE.Vector3();
+  from.setComponent(i, 0.34 * sign).setComponent((i + 1) % 3, -0.52).setComponent((i + 2) % 3, -0.8);
+  fit(from);
+}
+
+if (data.domain) {
+  const edges = new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(extent.x, extent.y, extent.z));
+  const strength = data.domain.walls ? 0.75 : 0.3;
+  const frame = new THREE.LineSegments(edges, new THREE.LineBasicMaterial(
+    { color: 0x4d5d73, transparent: true, opacity: strength, fog: false }));
+  frame.position.copy(centre);
+  scene.add(frame);
+  const floor = new THREE.Mesh(new THREE.PlaneBufferGeometry(extent.x, extent.y),
+    new THREE.MeshBasicMaterial({ color: 0x0a0d12, depthWrite: false, transparent: true, opacity: 0.8 }));
+  floor.position.set(centre.x, centre.y, bounds.min.z);
+  floor.renderOrder = -1;
+  scene.add(floor);
+}
+
