@@ -16,6 +16,7 @@ struct Replaced {
   std::vector<std::uint32_t> removed;  ///< numbers of tetrahedra; `created` may use them again
   std::vector<std::uint32_t> created;
   std::vector<Id> gone;  ///< vertices that the mesh has no longer
+  bool sound = true;     ///< whether the mesh is still a sphere
 };
 
 /// Edits a mesh that is the regular triangulation of its vertices; flip() any mesh of positive volumes.
@@ -115,11 +116,10 @@ class BowyerWatson {
   }
 
   /// Flips a facet: two tetrahedra become three, or three around one of its edges become two. False, with nothing
-  /// done, if neither gives tetrahedra of positive volume. Papers: [Lawson86], [Joe89].
+  /// done, if neither gives tetrahedra of positive volume that are not there already. Papers: [Lawson86], [Joe89].
   bool flip(Facet f, Replaced& replaced) {
     const std::uint32_t t = f / 4, other = mesh_.twin(f) / 4;
     const Id e = mesh_.apex(mesh_.twin(f)), d = mesh_.apex(f);
-    const bool at_infinity = !mesh_.finite(t) || !mesh_.finite(other);
     std::vector<Corners> three;
     for (std::uint32_t corner = 0; corner < 4; ++corner) {
       if (4 * t + corner == f) continue;
@@ -130,14 +130,14 @@ class BowyerWatson {
         for (std::uint32_t i = 0; i < 4; ++i) {
           if (i != corner && 4 * t + i != f) two.push_back(with_corner(t, i, e));
         }
-        if (positive(two) && !(at_infinity && mesh_.contains_facet(left_out, d, e))) {
+        if (positive(two) && !mesh_.contains_facet(d, left_out, e)) {
           replaced = replace({t, other, third}, two);
           return true;
         }
       }
       three.push_back(with_corner(t, corner, e));
     }
-    if (!positive(three) || (at_infinity && mesh_.connected(d, e))) return false;
+    if (!positive(three) || mesh_.connected(d, e)) return false;
     replaced = replace({t, other}, three);
     return true;
   }
@@ -149,7 +149,7 @@ class BowyerWatson {
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    Replaced result{removed, mesh_.replace(removed, others), {}};
+    Replaced result{removed, mesh_.replace(removed, others), {}, true};
     for (const Id v : vertices) {
       if (!mesh_.contains(v)) result.gone.push_back(v);
     }

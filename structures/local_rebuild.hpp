@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <iterator>
 #include <optional>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -58,7 +59,10 @@ class LocalRebuild {
     }
     const std::optional<std::vector<Corners>> inside = inside_of(hole, without);
     if (!inside) return std::nullopt;
-    return BowyerWatson<Predicates>(mesh_, is_).replace(hole, *inside);
+    const auto others = tetrahedra_outside(hole);
+    Replaced replaced = BowyerWatson<Predicates>(mesh_, is_).replace(hole, *inside);
+    replaced.sound = is_sphere(others, *inside);
+    return replaced;
   }
 
  private:
@@ -133,6 +137,30 @@ class LocalRebuild {
       }
     }
     return corners;
+  }
+
+  /// How many tetrahedra outside the hole each of its vertices has.
+  std::unordered_map<Id, std::size_t> tetrahedra_outside(const std::vector<std::uint32_t>& hole) const {
+    std::unordered_map<Id, std::size_t> result;
+    for (const std::uint32_t t : hole) {
+      for (const Id v : mesh_.corners(t)) {
+        if (result.contains(v)) continue;
+        const std::vector<std::uint32_t> star = mesh_.star(v);
+        result[v] = static_cast<std::size_t>(
+            std::count_if(star.begin(), star.end(), [&](std::uint32_t s) { return !in_hole_.contains(s); }));
+      }
+    }
+    return result;
+  }
+  /// Whether there is a ball around each vertex of the filling. In a mesh of layers there may be none.
+  bool is_sphere(std::unordered_map<Id, std::size_t> tetrahedra, const std::vector<Corners>& inside) const {
+    for (const Corners& corners : inside) {
+      for (const Id v : corners) ++tetrahedra[v];
+    }
+    return std::all_of(tetrahedra.begin(), tetrahedra.end(), [&](const auto& vertex) {
+      const auto [v, count] = vertex;
+      return count == 0 || (mesh_.contains(v) && mesh_.ball_around(v) == count);
+    });
   }
 
   /// The same orientation, the lowest id first.

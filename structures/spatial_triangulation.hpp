@@ -114,6 +114,8 @@ class SpatialTriangulationRule {
                             const MovingSet<Path>& x) const;
   Choice hidden_certificate(Id id, Slot part, const MovingSet<Path>& x) const;
   static std::uint8_t sphere_kind(const TetrahedronMesh::Corners& abcd, Id e, const Predicates& is);
+  bool moves_along(Id id, std::uint32_t t, const Predicates& is) const;
+  std::uint8_t hidden_kind(Id id, const Predicates& is) const;
   std::uint8_t facet_kind(Facet f, const Predicates& is) const;
   bool holds(Facet f, const Predicates& is) const;
   /// The facet of the hull at an infinite tetrahedron, and the corner of its neighbour across facet f, orientated so
@@ -214,7 +216,7 @@ auto SpatialTriangulationRule<Path>::certificate(Slot slot, const MovingSet<Path
 
 template <class Path>
 auto SpatialTriangulationRule<Path>::hidden_certificate(Id id, Slot part, const MovingSet<Path>& x) const -> Choice {
-  if (!hidden_.contains(id)) return {};
+  if (!hidden_.contains(id) || hidden_kind_[id] == none) return {};
   const std::uint32_t t = hidden_.place(id);
   if (part == 4) return sphere_certificate(hidden_kind_[id], mesh_.corners(t), id, x);
   const auto [a, b, c] = mesh_.facet(4 * t + part);
@@ -297,8 +299,8 @@ void SpatialTriangulationRule<Path>::audit(const MovingSet<Path>& x, double now)
     if (mesh_.contains(id)) continue;
     const std::uint32_t t = hidden_.place(id);
     if (!mesh_.in_use(t) || !mesh_.finite(t)) fail(id, "is hidden in no tetrahedron");
-    if (!weighted && !is.is_in(mesh_, t, id)) fail(id, "is hidden elsewhere");
-    if (weighted && hidden_kind_[id] != sphere_kind(mesh_.corners(t), id, is)) fail(id, "has a wrong kind of certificate");
+    if (!weighted && !moves_along(id, t, is)) fail(id, "is hidden, but not where a vertex is");
+    if (weighted && hidden_kind_[id] != hidden_kind(id, is)) fail(id, "has a wrong kind of certificate");
   }
   if (hidden != hidden_.size()) fail(nobody, "the number of hidden points is another");
 }

@@ -44,7 +44,12 @@ void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Pred
   Mesher mesher(mesh_, is);
   const std::uint32_t t = mesher.locate(id, near);
   if (!mesher.conflict(t, id)) return hide(id, t, is, repair);
-  settle(mesher.insert(id, t), nobody, is, repair);
+  const Replaced replaced = mesher.insert(id, t);
+  // Always so in a valid mesh. A hidden point may appear while other events of the same time are not yet repaired.
+  for (const std::uint32_t created : replaced.created) {
+    lost_ = lost_ || (mesh_.finite(created) && is.orientation(mesh_.corners(created)) <= 0);
+  }
+  settle(replaced, nobody, is, repair);
 }
 
 /// Finds a place for the points that were hidden in what has been replaced, and for vertices that are gone, and
@@ -52,6 +57,7 @@ void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Pred
 template <class Path>
 void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without, const Predicates& is,
                                             Repair<Path>& repair) {
+  lost_ = lost_ || !replaced.sound;
   std::vector<Id> orphans;
   for (const Id id : replaced.gone) {
     if (id != without) orphans.push_back(id);
@@ -67,7 +73,7 @@ void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without
   near_ = replaced.created.front();
   for (const Id id : orphans) {
     const auto home = std::find_if(replaced.created.begin(), replaced.created.end(), [&](std::uint32_t t) {
-      return mesh_.finite(t) && is.is_in(mesh_, t, id);
+      return mesh_.finite(t) && (moves_along(id, t, is) || is.is_in(mesh_, t, id));
     });
     if (home == replaced.created.end()) {
       lost_ = true;
@@ -82,7 +88,7 @@ void SpatialTriangulationRule<Path>::hide(Id id, std::uint32_t t, const Predicat
   hidden_.put(id, t);
   if constexpr (weighted) {
     if (hidden_kind_.size() <= id) hidden_kind_.resize(id + std::size_t{1}, none);
-    hidden_kind_[id] = sphere_kind(mesh_.corners(t), id, is);
+    hidden_kind_[id] = hidden_kind(id, is);
     for (Slot part = 5; part < 10; ++part) repair.certify(stride * id + part);
   }
 }
@@ -130,6 +136,21 @@ std::uint8_t SpatialTriangulationRule<Path>::sphere_kind(const TetrahedronMesh::
     if (is.orientation(p, q, r, s) != 0) return static_cast<std::uint8_t>(perturbed + rank);
   }
   return none;
+}
+
+/// Whether a point moves with a corner of a tetrahedron, one of a greater id, which the perturbation leaves lower. Then
+/// it is hidden as long as that is a vertex.
+template <class Path>
+bool SpatialTriangulationRule<Path>::moves_along(Id id, std::uint32_t t, const Predicates& is) const {
+  const TetrahedronMesh::Corners corners = mesh_.corners(t);
+  return std::any_of(corners.begin(), corners.end(),
+                     [&](Id c) { return c != infinite && id < c && (is.x[c] == is.x[id] || (!weighted && is.same(c, id))); });
+}
+
+template <class Path>
+std::uint8_t SpatialTriangulationRule<Path>::hidden_kind(Id id, const Predicates& is) const {
+  const std::uint32_t t = hidden_.place(id);
+  return moves_along(id, t, is) ? std::uint8_t{none} : sphere_kind(mesh_.corners(t), id, is);
 }
 
 template <class Path>

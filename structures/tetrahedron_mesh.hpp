@@ -85,6 +85,19 @@ class TetrahedronMesh {
     for (const std::uint32_t t : result) seen[t] = 0;
     return result;
   }
+  /// How many tetrahedra are around a vertex; 0 if they are not a ball, by the characteristic of Euler.
+  std::size_t ball_around(Id vertex) const {
+    const std::vector<std::uint32_t> around = star(vertex);
+    std::vector<Id> neighbours;
+    for (const std::uint32_t t : around) {
+      for (const Id corner : corners(t)) {
+        if (corner != vertex) neighbours.push_back(corner);
+      }
+    }
+    std::sort(neighbours.begin(), neighbours.end());
+    const auto distinct = std::unique(neighbours.begin(), neighbours.end()) - neighbours.begin();
+    return around.size() + 4 == 2 * static_cast<std::size_t>(distinct) ? around.size() : 0;
+  }
   /// Whether an edge joins a and b.
   bool connected(Id a, Id b) const {
     for (const std::uint32_t t : star(a)) {
@@ -118,8 +131,8 @@ class TetrahedronMesh {
   /// positively oriented and have the same boundary.
   std::vector<std::uint32_t> replace(const std::vector<std::uint32_t>& removed, const std::vector<Corners>& others);
 
-  /// Throws AuditFailure unless each facet is shared by two tetrahedra that lie on its two sides, and the tetrahedra are
-  /// those of a sphere, by the characteristic of Euler around each vertex.
+  /// Throws AuditFailure unless each facet is shared by two tetrahedra that lie on its two sides, and the tetrahedra
+  /// around each vertex are a ball.
   void audit() const;
 
   template <class Archive>
@@ -263,17 +276,7 @@ inline void TetrahedronMesh::audit() const {
     for (const Id v : corners(t)) ++valence[v == infinite ? at_.size() : v];
   }
   for (const Id v : vertices()) {
-    const std::vector<std::uint32_t> around = star(v);
-    if (around.size() != valence[v == infinite ? at_.size() : v]) fail(4 * at(v), "is at a vertex of several stars");
-    std::vector<Id> neighbours;
-    for (const std::uint32_t t : around) {
-      for (const Id w : corners(t)) {
-        if (w != v) neighbours.push_back(w);
-      }
-    }
-    std::sort(neighbours.begin(), neighbours.end());
-    const auto distinct = std::unique(neighbours.begin(), neighbours.end()) - neighbours.begin();
-    if (around.size() + 4 != 2 * static_cast<std::size_t>(distinct)) fail(4 * at(v), "is at a vertex without a ball");
+    if (ball_around(v) != valence[v == infinite ? at_.size() : v]) fail(4 * at(v), "is at a vertex without a ball");
   }
 }
 
