@@ -74,9 +74,10 @@ class BowyerWatson {
     for (t = 0; t < mesh_.end_tetrahedron(); ++t) {
       if (mesh_.in_use(t) && mesh_.finite(t) && is_.is_in(mesh_, t, point)) return t;
     }
-    for (t = 0;; ++t) {
+    for (t = 0; t < mesh_.end_tetrahedron(); ++t) {
       if (mesh_.in_use(t) && !mesh_.finite(t) && conflict(t, point)) return t;
     }
+    return TetrahedronMesh::none;
   }
 
   /// Whether a tetrahedron cannot stay when a point is inserted: the point is inside its sphere or, if it is infinite,

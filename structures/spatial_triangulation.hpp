@@ -135,11 +135,15 @@ class SpatialTriangulationRule {
   bool build_around(std::vector<std::uint32_t> wrong, Id without, const Predicates& is, Repair<Path>& repair);
   void place(Id id, std::uint32_t near, const Predicates& is, Repair<Path>& repair);
   void settle(const Replaced& replaced, Id without, const Predicates& is, Repair<Path>& repair);
+  std::uint32_t home_of(Id id, const std::vector<std::uint32_t>& tetrahedra, const Predicates& is) const;
   void hide(Id id, std::uint32_t t, const Predicates& is, Repair<Path>& repair);
   void reveal(Id id, Repair<Path>& repair);
   void prove(const std::vector<std::uint32_t>& tetrahedra, const Predicates& is, Repair<Path>& repair);
   void prove_facet(Facet f, const Predicates& is, Repair<Path>& repair);
-  void begin() { at_hull_ = lost_ = false; }
+  void begin() {
+    at_hull_ = lost_ = false;
+    places_ = 0;
+  }
   bool sound() const { return !lost_ && !(at_hull_ && !hull_.goes_round_once(mesh_)); }
   bool look_round(const Predicates& is, Repair<Path>& repair);
   void rebuild(Id without, Repair<Path>& repair);
@@ -157,6 +161,7 @@ class SpatialTriangulationRule {
   // Of this event or edit: whether it has changed what HullFacings stores; whether a point has found no place.
   bool at_hull_ = false;
   bool lost_ = false;
+  std::size_t places_ = 0;  ///< how many points it has placed
 };
 
 /// The Delaunay triangulation of points in space, and the regular triangulation of such with weights.

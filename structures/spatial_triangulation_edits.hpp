@@ -43,6 +43,9 @@ template <class Path>
 void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Predicates& is, Repair<Path>& repair) {
   Mesher mesher(mesh_, is);
   const std::uint32_t t = mesher.locate(id, near);
+  // In an invalid mesh points may drive each other out without end.
+  lost_ = lost_ || t == TetrahedronMesh::none || ++places_ > 64 + mesh_.size();
+  if (lost_) return;
   if (!mesher.conflict(t, id)) return hide(id, t, is, repair);
   const Replaced replaced = mesher.insert(id, t);
   // Always so in a valid mesh. A hidden point may appear while other events of the same time are not yet repaired.
@@ -53,11 +56,12 @@ void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Pred
 }
 
 /// Finds a place for the points that were hidden in what has been replaced, and for vertices that are gone, and
-/// certifies. In an invalid mesh there may be none.
+/// certifies.
 template <class Path>
 void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without, const Predicates& is,
                                             Repair<Path>& repair) {
   lost_ = lost_ || !replaced.sound;
+  if (lost_) return;  // Everything will be built anew.
   std::vector<Id> orphans;
   for (const Id id : replaced.gone) {
     if (id != without) orphans.push_back(id);
@@ -72,15 +76,28 @@ void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without
   prove(replaced.created, is, repair);
   near_ = replaced.created.front();
   for (const Id id : orphans) {
-    const auto home = std::find_if(replaced.created.begin(), replaced.created.end(), [&](std::uint32_t t) {
-      return mesh_.finite(t) && (moves_along(id, t, is) || is.is_in(mesh_, t, id));
-    });
-    if (home == replaced.created.end()) {
-      lost_ = true;
-    } else {
-      hide(id, *home, is, repair);
+    const std::uint32_t home = home_of(id, replaced.created, is);
+    home != TetrahedronMesh::none ? hide(id, home, is, repair) : place(id, near_, is, repair);
+  }
+}
+
+/// A tetrahedron for a point that is still hidden: one of those given, or at a vertex of theirs that it moves with.
+template <class Path>
+std::uint32_t SpatialTriangulationRule<Path>::home_of(Id id, const std::vector<std::uint32_t>& tetrahedra,
+                                                      const Predicates& is) const {
+  for (const std::uint32_t t : tetrahedra) {
+    if (mesh_.finite(t) && (moves_along(id, t, is) || is.is_in(mesh_, t, id))) return t;
+  }
+  for (const std::uint32_t t : tetrahedra) {
+    if (!moves_along(id, t, is)) continue;
+    for (const Id corner : mesh_.corners(t)) {
+      if (corner == infinite) continue;
+      for (const std::uint32_t home : mesh_.star(corner)) {
+        if (mesh_.finite(home) && moves_along(id, home, is)) return home;
+      }
     }
   }
+  return TetrahedronMesh::none;
 }
 
 template <class Path>
