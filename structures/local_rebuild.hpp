@@ -39,14 +39,15 @@ class LocalRebuild {
 
   /// `without` is a vertex to leave out, with all its tetrahedra in the hole, or `nobody`. hidden(t, f) calls f for
   /// each point that is no vertex and lies in tetrahedron t: it may become one. Nothing is changed, and nothing is
-  /// returned, if the hole would become the whole mesh, or the filling does not fit since the mesh is invalid.
+  /// returned, if the hole would become the whole mesh.
   template <class Hidden>
   std::optional<Replaced> operator()(std::vector<std::uint32_t> hole, Id without, const Hidden& hidden) {
     seen_.insert(infinite);
     seen_.insert(without);
     in_hole_.insert(hole.begin(), hole.end());
     std::vector<Id> waiting;
-    for (std::size_t taken = 0; taken < hole.size();) {
+    std::optional<std::vector<Corners>> inside;
+    for (std::size_t taken = 0; !inside;) {
       for (; taken < hole.size(); ++taken) {
         const auto take = [&](Id id) {
           if (seen_.insert(id).second) waiting.push_back(id);
@@ -55,10 +56,10 @@ class LocalRebuild {
         hidden(hole[taken], take);
       }
       insert(waiting);
-      grow(hole);
+      if (grow(hole, false)) continue;
+      inside = inside_of(hole, without);
+      if (!inside && !grow(hole, true)) return std::nullopt;
     }
-    const std::optional<std::vector<Corners>> inside = inside_of(hole, without);
-    if (!inside) return std::nullopt;
     const auto others = tetrahedra_outside(hole);
     Replaced replaced = BowyerWatson<Predicates>(mesh_, is_).replace(hole, *inside);
     replaced.sound = is_sphere(others, *inside);
@@ -78,8 +79,9 @@ class LocalRebuild {
     waiting.clear();
   }
 
-  /// Takes in what is beyond those facets of the boundary that the filling has not, and notes those that it has.
-  void grow(std::vector<std::uint32_t>& hole) {
+  /// Takes in what is beyond those facets of the boundary that the filling has not, or beyond all, and notes those that
+  /// it has. Whether there was anything to take in.
+  bool grow(std::vector<std::uint32_t>& hole, bool everywhere) {
     std::vector<std::pair<std::array<Id, 3>, Facet>> facets;
     for (std::uint32_t t = 0; t < filling_.end_tetrahedron(); ++t) {
       for (Facet f = 4 * t; filling_.in_use(t) && f < 4 * t + 4; ++f) facets.emplace_back(turned(filling_.facet(f)), f);
@@ -93,7 +95,7 @@ class LocalRebuild {
         if (in_hole_.contains(beyond)) continue;
         const std::pair wanted{turned(mesh_.facet(f)), Facet{0}};
         const auto found = std::lower_bound(facets.begin(), facets.end(), wanted);
-        if (found != facets.end() && found->first == wanted.first) {
+        if (!everywhere && found != facets.end() && found->first == wanted.first) {
           boundary_.push_back(found->second);
         } else {
           in_hole_.insert(beyond);
@@ -101,10 +103,12 @@ class LocalRebuild {
         }
       }
     }
+    return hole.size() > before;
   }
 
   /// The tetrahedra of the filling inside the boundary. None if there is no boundary, or if it does not separate them
-  /// from the others, or if a vertex of the hole is among the others only.
+  /// from the others; if a vertex of the hole is among the others only; or if they lie outside the hull, and nothing of
+  /// the hole does, because a tetrahedron has turned over.
   std::optional<std::vector<Corners>> inside_of(const std::vector<std::uint32_t>& hole, Id without) const {
     std::vector<std::uint8_t> is_boundary(4 * std::size_t{filling_.end_tetrahedron()}, 0);
     std::vector<std::uint8_t> is_inside(filling_.end_tetrahedron(), 0);
@@ -124,6 +128,7 @@ class LocalRebuild {
         enter(filling_.twin(f) / 4);
       }
     }
+    const bool hole_at_hull = std::any_of(hole.begin(), hole.end(), [&](std::uint32_t t) { return !mesh_.finite(t); });
     if (inside.empty()) return std::nullopt;
     std::vector<Corners> corners;
     std::unordered_set<Id> vertices;
@@ -131,6 +136,7 @@ class LocalRebuild {
       corners.push_back(filling_.corners(t));
       vertices.insert(corners.back().begin(), corners.back().end());
     }
+    if (vertices.contains(infinite) && !hole_at_hull) return std::nullopt;
     for (const std::uint32_t t : hole) {
       for (const Id v : mesh_.corners(t)) {
         if (v != without && filling_.contains(v) && !vertices.contains(v)) return std::nullopt;
