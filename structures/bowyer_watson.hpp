@@ -23,8 +23,8 @@ struct Replaced {
 ///
 /// Predicates: orientation(a, b, c, d) > 0 if a, b, c turn counter-clockwise seen from d; in_sphere(abcd, e) < 0 if e
 /// is inside the sphere of a, b, c, d, and never 0 where these have a volume; same(a, b), collinear(a, b, c) if the
-/// points stay so; is_in(mesh, t, p) if p is in a tetrahedron. All signs are exact and those of one instant. Papers: [Bowyer81], [Watson81], [Edelsbrunner96] for
-/// weights, [Devillers11] for the degeneracies, [Devillers02] for walking.
+/// points stay so; is_in(mesh, t, p) if p is in a tetrahedron. All signs are exact and those of one instant. Papers:
+/// [Bowyer81], [Watson81], [Edelsbrunner96] for weights, [Devillers11] for the degeneracies, [Devillers02] for walking.
 ///
 /// Why no degeneracy is special: a point on the plane of a facet is in conflict with both tetrahedra at that facet or
 /// with neither, since for both the predicate is that of the circle in the plane. So each facet of the boundary of
@@ -50,8 +50,8 @@ class BowyerWatson {
         mesh_.begin({base[0], base[side > 0 ? 1 : 2], base[side > 0 ? 2 : 1], id});
         return true;
       }
-      const bool in_vain = (base.size() == 1 && is_.same(base[0], id)) ||
-                           (base.size() == 2 && is_.collinear(base[0], base[1], id));
+      const bool in_vain =
+          (base.size() == 1 && is_.same(base[0], id)) || (base.size() == 2 && is_.collinear(base[0], base[1], id));
       if (!in_vain) base.push_back(id);
     }
     return false;

@@ -45,8 +45,7 @@ class HullFacings {
     const auto [from, to] = edge(mesh, f);
     for (const int level : {1, 2, 3}) {
       const auto& along = forward[static_cast<std::size_t>(level - 1)];
-      const int sign =
-          sign_after(certificates::DirectionOrder<Path, 3>{is.x[from], is.x[to], along}, is.now);
+      const int sign = sign_after(certificates::DirectionOrder<Path, 3>{is.x[from], is.x[to], along}, is.now);
       way_[f] = way_[mesh.twin(f)] = static_cast<std::int8_t>(sign * level);
       if (sign != 0) return;
     }
@@ -74,9 +73,7 @@ class HullFacings {
   /// Whether the facet of an infinite tetrahedron faces up.
   bool up(const TetrahedronMesh& mesh, std::uint32_t t) const { return way_[mesh.opposite(t, infinite)] > 0; }
   /// Whether an edge of the hull, the facet of two infinite tetrahedra, is in the outline.
-  bool in_outline(const TetrahedronMesh& mesh, Facet f) const {
-    return up(mesh, f / 4) != up(mesh, mesh.twin(f) / 4);
-  }
+  bool in_outline(const TetrahedronMesh& mesh, Facet f) const { return up(mesh, f / 4) != up(mesh, mesh.twin(f) / 4); }
   /// What is stored of a facet or edge: the number of the coordinate that decides, with the sign of the way.
   int stored(Facet f) const { return way_[f]; }
 

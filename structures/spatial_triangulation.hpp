@@ -39,12 +39,12 @@ namespace kds::structures {
 /// Papers: [Basch99], [Guibas04]; [Edelsbrunner96] for weights; [Devillers11]. Certificates of degree 5 for linear, 10
 /// for quadratic paths. Sampled paths are not supported: for them zero is no sign.
 ///
-/// Cost, where most vertices have some 15 neighbours: an event is a flip, O(1) certificates (responsive: 32 marked at
-/// most, 9 of them in-sphere tests, and 24 more at the hull); 21 n certificates (compact: 13 n facets, 7 n volumes); an
-/// element is in some 100 (not local in the worst case); every event is a change of the triangulation, except where a
-/// facet or edge of the hull turns, or a hidden point moves on (efficient). Insertion O(n^(1/3)) for the walk and
-/// O(neighbours); removal O(neighbours); a new motion that keeps the tetrahedra around it O(neighbours), any other a
-/// removal and an insertion. An event at the hull takes O(facets of the hull), without arithmetic.
+/// Cost, where most vertices have some 15 neighbours: an event is a flip, O(1) certificates (responsive: 21 marked, 9 of
+/// them in-sphere tests; more where a neighbourhood is built anew); 20 n certificates (compact: 13 n facets, 7 n
+/// volumes); an element is in some 100 (not local in the worst case); every event is a change of the triangulation,
+/// except where a facet or edge of the hull turns, or a hidden point moves on (efficient). Insertion O(n^(1/3)) for the
+/// walk and O(neighbours); removal O(neighbours); a new motion that keeps the tetrahedra around it O(neighbours), any
+/// other a removal and an insertion. An event at the hull takes O(facets of the hull), without arithmetic.
 ///
 /// While all points stay in one plane there is no tetrahedron, and nothing is known of them: flat().
 template <class Path>
@@ -80,9 +80,9 @@ class SpatialTriangulationRule {
   using Choice = std::variant<std::monostate, InSphere, Orientation, Facing, Direction>;
 
   // Slots of tetrahedron t: `stride` t + i for its facets, each known by the lesser of its two numbers; then, with i =
-  // 4, its volume or, if it is infinite, the way its facet of the hull faces. At an edge of the hull, which is the facet
-  // of two infinite tetrahedra, the greater number has the way that the edge leads. With weights five more: those of
-  // the hidden point whose *id* is t: that it is on the inner side of the four facets, and outside the sphere.
+  // 4, its volume or, if it is infinite, the way its facet of the hull faces. At an edge of the hull, which is the
+  // facet of two infinite tetrahedra, the greater number has the way that the edge leads. With weights five more: those
+  // of the hidden point whose *id* is t: that it is on the inner side of the four facets, and outside the sphere.
   static constexpr Slot stride = weighted ? 10 : 5;
   Choice certificate(Slot slot, const MovingSet<Path>& x) const;
   std::vector<Id> members(Slot slot) const;
@@ -290,7 +290,8 @@ void SpatialTriangulationRule<Path>::audit(const MovingSet<Path>& x, double now)
   const Predicates is{x, now};
   for (std::uint32_t t = 0; t < mesh_.end_tetrahedron(); ++t) {
     for (Facet f = 4 * t; mesh_.in_use(t) && f < 4 * t + 4; ++f) {
-      if (kind_[5 * t + f % 4] != facet_kind(f, is)) fail(mesh_.apex(f), "has a wrong kind of certificate opposite to it");
+      if (kind_[5 * t + f % 4] != facet_kind(f, is))
+        fail(mesh_.apex(f), "has a wrong kind of certificate opposite to it");
     }
   }
   std::size_t hidden = 0;

@@ -160,8 +160,9 @@ std::uint8_t SpatialTriangulationRule<Path>::sphere_kind(const TetrahedronMesh::
 template <class Path>
 bool SpatialTriangulationRule<Path>::moves_along(Id id, std::uint32_t t, const Predicates& is) const {
   const TetrahedronMesh::Corners corners = mesh_.corners(t);
-  return std::any_of(corners.begin(), corners.end(),
-                     [&](Id c) { return c != infinite && id < c && (is.x[c] == is.x[id] || (!weighted && is.same(c, id))); });
+  return std::any_of(corners.begin(), corners.end(), [&](Id c) {
+    return c != infinite && id < c && (is.x[c] == is.x[id] || (!weighted && is.same(c, id)));
+  });
 }
 
 template <class Path>

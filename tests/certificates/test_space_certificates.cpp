@@ -74,17 +74,15 @@ TEMPLATE_TEST_CASE("space certificates are the polynomials they say they are", "
     const auto a = point(), b = point(), c = point(), d = point(), e = random.one_in(8) ? b : point();
     const auto without_height = [](std::vector<oracle::Polynomial> row) { return row.erase(row.begin() + 3), row; };
     // Columns x, y, z, 1; its sign is that of d seen from the other side.
-    const auto volume = determinant({without_height(lifted(a)), without_height(lifted(b)), without_height(lifted(c)),
-                                     without_height(lifted(d))});
+    const auto volume = determinant(
+        {without_height(lifted(a)), without_height(lifted(b)), without_height(lifted(c)), without_height(lifted(d))});
     wrong_orientation += mistakes(SpaceOrientation<Path>{b, a, c, d}, volume, random);
-    wrong_sphere +=
-        mistakes(InSphere<Path>{a, b, c, d, e},
-                 determinant({lifted(a), lifted(b), lifted(c), lifted(d), lifted(e)}), random);
+    wrong_sphere += mistakes(InSphere<Path>{a, b, c, d, e},
+                             determinant({lifted(a), lifted(b), lifted(c), lifted(d), lifted(e)}), random);
     for (const int axis : {0, 1, 2}) {
       const auto at = [&](const Path& p, int shift) { return exact(p.axis((axis + shift) % 3)); };
-      const auto area = determinant({{at(a, 1), at(a, 2), exact(1.0)},
-                                     {at(b, 1), at(b, 2), exact(1.0)},
-                                     {at(c, 1), at(c, 2), exact(1.0)}});
+      const auto area = determinant(
+          {{at(a, 1), at(a, 2), exact(1.0)}, {at(b, 1), at(b, 2), exact(1.0)}, {at(c, 1), at(c, 2), exact(1.0)}});
       wrong_normal += mistakes(NormalDirection<Path>{a, b, c, axis}, area, random);
     }
   }

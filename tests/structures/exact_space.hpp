@@ -87,8 +87,7 @@ class ExactSpace {
   template <class At>
   static auto volume(At&& at, Id a, Id b, Id c, Id d) {
     const auto u = from(at, a, b), v = from(at, a, c), w = from(at, a, d);
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-           u[2] * (v[0] * w[1] - v[1] * w[0]);
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
   }
   template <class Formula>
   int sign(Formula&& formula) const {
