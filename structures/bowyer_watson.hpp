@@ -15,7 +15,7 @@ namespace kds::structures {
 struct Replaced {
   std::vector<std::uint32_t> removed;  ///< numbers of tetrahedra; `created` may use them again
   std::vector<std::uint32_t> created;
-  std::vector<Id> gone;  ///< vertices that the mesh has no longer
+  std::vector<Id> gone;  ///< vertices that the mesh has lost
   bool sound = true;     ///< whether the mesh is still a sphere
 };
 
