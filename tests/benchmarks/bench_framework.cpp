@@ -16,6 +16,7 @@
 #include "structures/extents.hpp"
 #include "structures/heap.hpp"
 #include "structures/sorted_list.hpp"
+#include "structures/spatial_triangulation.hpp"
 #include "structures/tournament.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/support/random_numbers.hpp"
@@ -167,6 +168,26 @@ void measure_plane(Id n, double end, int rounds) {
   measure("closest pair", Degree, n, end, rounds, structures::ClosestPairRule<Path>{}, random_path<Degree>);
 }
 
+template <int Degree>
+certificates::PointMotion<Degree> random_path_in_space(Random& random) {
+  certificates::PointMotion<Degree> path;
+  for (auto& c : path.coefficients) c = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+  path.coefficients[0] = {random.unit(), random.unit(), random.unit()};
+  return path;
+}
+
+template <int Degree>
+void measure_space(Id n, double end, int rounds) {
+  using Path = certificates::PointMotion<Degree>;
+  measure("Delaunay in space", Degree, n, end, rounds, structures::SpatialDelaunayRule<Path>{},
+          random_path_in_space<Degree>);
+  using Weighted = certificates::WeightedPoint<Degree>;
+  const auto weighted = [n](Random& random) {
+    return Weighted{random_path_in_space<Degree>(random), {{random.unit() / std::cbrt(static_cast<double>(n) * n)}}};
+  };
+  measure("regular in space", Degree, n, end, rounds, structures::RegularTriangulationRule<Weighted>{}, weighted);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -192,5 +213,7 @@ int main(int argc, char** argv) {
   for (const Id n : {100u, 1000u}) {
     measure_plane<1>(n, 0.25, rounds);
     measure_plane<2>(n, 0.25, rounds);
+    measure_space<1>(n, 0.05, rounds);
+    measure_space<2>(n, 0.05, rounds);
   }
 }

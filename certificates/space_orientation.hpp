@@ -1,0 +1,78 @@
+// Four moving points of space, positively oriented.
+#pragma once
+
+#include "kds/bounded.hpp"
+#include "kds/certificate.hpp"
+#include "kds/motion.hpp"
+
+#include <array>
+
+namespace kds::certificates {
+
+/// det(b - a, c - a, d - a) >= 0: d is on the side of the plane a, b, c from which these turn counter-clockwise, or on
+/// the plane. Six times the volume of the tetrahedron.
+///
+/// Degree 3 for linear, 6 for quadratic paths. A path is anything with axis(0), axis(1) and axis(2). Law: even
+/// permutations of a, b, c, d leave it as it is, odd ones change its sign.
+template <class Path>
+struct SpaceOrientation {
+  static constexpr int degree = 3 * Path::degree;
+  const Path& a;
+  const Path& b;
+  const Path& c;
+  const Path& d;
+
+  template <class Number>
+  auto polynomial(double epoch) const {
+    return value([&](const Path& p, int axis) { return difference_about<Number>(p.axis(axis), a.axis(axis), epoch); });
+  }
+
+  Ball<DoubleDouble> extended_value(double t) const {
+    return value([&](const Path& p, int axis) { return extended_difference(p.axis(axis), a.axis(axis), t); });
+  }
+
+  /// Cheap and sufficient: two of the four are the same point.
+  bool vanishes() const { return a == b || a == c || a == d || b == c || b == d || c == d; }
+
+ private:
+  template <class From>
+  auto value(const From& from_a) const {
+    const auto bx = from_a(b, 0), by = from_a(b, 1), bz = from_a(b, 2);
+    const auto cx = from_a(c, 0), cy = from_a(c, 1), cz = from_a(c, 2);
+    const auto dx = from_a(d, 0), dy = from_a(d, 1), dz = from_a(d, 2);
+    return bz * (cx * dy - cy * dx) + cz * (dx * by - dy * bx) + dz * (bx * cy - by * cx);
+  }
+};
+
+/// One coordinate of the vector (b - a) x (c - a) is >= 0: seen from far along that axis, a, b, c turn
+/// counter-clockwise, or are seen from the side.
+///
+/// Degree 2 for linear, 4 for quadratic paths. Law: as Orientation in the plane.
+template <class Path>
+struct NormalDirection {
+  static constexpr int degree = 2 * Path::degree;
+  const Path& a;
+  const Path& b;
+  const Path& c;
+  int axis;  ///< 0, 1 or 2
+
+  template <class Number>
+  auto polynomial(double epoch) const {
+    return value([&](const Path& p, int d) { return difference_about<Number>(p.axis(d), a.axis(d), epoch); });
+  }
+
+  Ball<DoubleDouble> extended_value(double t) const {
+    return value([&](const Path& p, int d) { return extended_difference(p.axis(d), a.axis(d), t); });
+  }
+
+  bool vanishes() const { return a == b || b == c || c == a; }
+
+ private:
+  template <class From>
+  auto value(const From& from_a) const {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    return from_a(b, u) * from_a(c, v) - from_a(b, v) * from_a(c, u);
+  }
+};
+
+}  // namespace kds::certificates
