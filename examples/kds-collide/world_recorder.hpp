@@ -23,12 +23,13 @@ namespace kds_collide {
 ///
 ///     kds_collide::WorldRecorder<World<2>::Motion> recorder(options, &mine);
 ///     World<2> world(options, &recorder);
-///     ...                                              // add bodies, advance, change
+///     ...                                              // add bodies,
+///     recorder.look(world);                            // advance, change, look,
 ///     out << recorder.page(world, "my world");         // an HTML file that plays it
 ///
 /// Motions that events change are recorded at their times. What the caller does between events - to add, remove or move
 /// bodies - is recorded by look(), which page() calls, too: call it after such changes, else they count from the next
-/// look on. A mesh that bends is shown with the keyframes that it has when it is first seen.
+/// event of the body, or the next look, on. A mesh that bends is shown with the keyframes that it has when it is first seen.
 ///
 /// Cost: O(1) an event; look() O(n log n) for n bodies.
 template <class BodyMotionType>

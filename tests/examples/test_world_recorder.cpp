@@ -26,6 +26,7 @@ TEST_CASE("recorder: bodies that bounce, come later, are moved and are removed")
   World<1> world(options, &recorder);
   world.add_body({.shape = Sphere{1}, .motion = {Line::line({-4, 0, 0}, {1, 0, 0}, 1)}});
   const BodyId other = world.add_body({.shape = Sphere{1}, .motion = {Line::line({4, 0, 0}, {0, 0, 0}, 1)}});
+  recorder.look(world);
   world.advance_to(8);  // They meet at 7.
   world.add_body({.shape = Box{{1, 1, 1}}, .motion = {Line::line({0, 5, 0}, {0, 0, 0}, 8)}, .fixed = true});
   recorder.look(world);
