@@ -184,7 +184,7 @@ namespace {
 /// Edits the elements from within repair(), as it must not.
 struct Meddler : ListRule<Motion<1>> {
   MovingSet<Motion<1>>* set;
-  Effect repair(Slot slot, Repair<Motion<1>>& repair) {
+  Effect repair(Slot slot, Repair<Motion<1>, Change>& repair) {
     set->remove(0, repair.now());
     return ListRule<Motion<1>>::repair(slot, repair);
   }
