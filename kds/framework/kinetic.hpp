@@ -269,14 +269,15 @@ void Kinetic<Rule, Listener, Queue, Solver>::process() {
   call_followers_listeners();
 }
 
-/// A right rule never comes near this limit: each repair removes a contradiction between state and signs, of which m
-/// certificates and elements have some m^2 / 2 at most (the pairs of a sorted list).
+/// A right rule never comes near this limit: each repair removes a contradiction between state and signs, of which a
+/// sorted list of n values, with m = 2 n certificates and elements, has n^2 / 2 = m^2 / 8 (its pairs).
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::count_repair(Slot slot, double time) {
   if (repaired_at_ != time) repairs_ = 0;
   repaired_at_ = time;
+  if (++repairs_ <= 1000) return;
   const std::uint64_t m = measures_.held + elements_.size();
-  if (repairs_++ > 1000 + m * m) {
+  if (repairs_ > 1000 + m * m) {
     fail_use("slot " + std::to_string(slot) + ": repair() does not end: it has been called " +
              std::to_string(repairs_ - 1) + " times at " + std::to_string(time));
   }
