@@ -52,7 +52,8 @@ struct NoListener {
 /// means that the certificate is no longer guaranteed: the rule is not asked to repair, but the elements are sampled
 /// anew (MovingSet::sample_with); the state is that of the samples.
 ///
-/// An exception from the rule leaves the structure invalid: every event and edit after that throws std::logic_error.
+/// An exception from the rule leaves the structure invalid, and the one that it stands on: every event and edit after
+/// that throws std::logic_error.
 ///
 /// Cost of an event, beyond the rule's own: a pop, and for each certificate it marks a failure time and a push.
 template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue, class Solver = CertifiedSolver>

@@ -58,6 +58,10 @@ template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::follow(std::span<const typename Standing::Change> changes,
                                                     double now, bool in_event) {
   if constexpr (is_outer) {
+    if (next_time() < now) {
+      fail_use("the structure that it stands on has passed over its event at " + std::to_string(next_time()) +
+               ": both must be in one simulator");
+    }
     ++followed_reports_;
     begin(now);
     repairs_ = 0;

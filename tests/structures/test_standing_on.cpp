@@ -248,6 +248,14 @@ TEST_CASE("a structure that misses what the inner one does says so", "[standing_
     Simulator simulator(0, gap);
     CHECK_THROWS_WITH(run(simulator), Catch::Contains("must stand before it in the simulator"));
   }
+  SECTION("not in the simulator") {
+    set.insert(3, {{{2.5, 0, 0}}, 0}, 0);
+    set.insert(4, {{{2.5, 0, 0.25}}, 0}, 0);
+    Gap gap(list, 0);
+    Simulator simulator(0, list);
+    REQUIRE(gap.next_time() < never);
+    CHECK_THROWS_WITH(run(simulator), Catch::Contains("SmallestGap: the structure that it stands on has passed over"));
+  }
   SECTION("loaded alone") {
     Gap gap(list, 0);
     Simulator both(0, list, gap);
