@@ -30,8 +30,8 @@ std::string fact(const Narrower& gaps, const Name& name) {
   return "gap " + name(gaps.a) + name(gaps.b) + " \u2264 gap " + name(gaps.c) + name(gaps.d);
 }
 
-/// Maintains the two values that are closest: it stands on a sorted list, which tells neighbours, and keeps the smallest
-/// of their gaps. A gap is known by the lower of its two values.
+/// Maintains the two values that are closest: it stands on a sorted list, which tells neighbours, and keeps the
+/// smallest of their gaps. A gap is known by the lower of its two values.
 class SmallestGapRule : public structures::ChampionRule<SmallestGapRule, ListRule<Motion<2>>, Narrower> {
  public:
   static constexpr const char* name = "SmallestGap";

@@ -4,8 +4,8 @@
 namespace kds {
 
 /// The type of a parameter that is kept as a reference: takes an lvalue, and refuses a temporary, which would be gone
-/// when the reference is used. The certificates that hold motions by reference take them so: Order{x.axis(0), y.axis(0)}
-/// does not compile if axis() gives a value.
+/// when the reference is used. The certificates of values and points of the plane take motions so:
+/// Order{x.axis(0), y.axis(0)} does not compile if axis() gives a value.
 template <class T>
 class Lasting {
  public:

@@ -31,7 +31,8 @@ namespace kds::structures {
 /// Points that stay in one place together are a closest pair. While three or more points all stay on one line nothing
 /// is known (DelaunayRule::flat()).
 template <class Path>
-class ClosestPairRule : public ChampionRule<ClosestPairRule<Path>, DelaunayRule<Path>, certificates::DistanceOrder<Path>> {
+class ClosestPairRule
+    : public ChampionRule<ClosestPairRule<Path>, DelaunayRule<Path>, certificates::DistanceOrder<Path>> {
   using Base = ChampionRule<ClosestPairRule<Path>, DelaunayRule<Path>, certificates::DistanceOrder<Path>>;
 
  public:

@@ -20,8 +20,9 @@ namespace kds::structures {
 /// that change places in it exchange their parts in the tree if the longer closes a cycle with the shorter.
 ///
 /// Cost, besides that of the triangulation: three certificates for an event (responsive), and O(n) steps where an edge
-/// of the tree is passed by another edge, or where one comes or goes; 3 n certificates (compact); as many events as pairs
-/// of edges change their order, of which few change the tree (not efficient). External events are changes of the tree.
+/// of the tree is passed by another edge, or where one comes or goes; 3 n certificates (compact); as many events as
+/// pairs of edges change their order, of which few change the tree (not efficient). External events are changes of the
+/// tree.
 ///
 /// Of points that stay in one place the tree has one (DelaunayRule::vertex). While all points stay on one line nothing
 /// is known (DelaunayRule::flat).

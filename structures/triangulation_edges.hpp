@@ -16,8 +16,8 @@
 
 namespace kds::structures {
 
-/// What has become of an edge of a triangulation. Edges are told apart by their numbers: after points have passed through
-/// each other two may join the same two points until the events of that time are over.
+/// What has become of an edge of a triangulation. Edges are told apart by their numbers: after points have passed
+/// through each other two may join the same two points until the events of that time are over.
 struct EdgeChange {
   enum class What : std::uint8_t { came, went, moved };  ///< moved: an end has got a new motion
   What what;

@@ -29,7 +29,7 @@ struct ElementChange {
 /// Both sets are saved, and reversed, together. Elements of the other set must not be samples.
 template <MovingElement E>
 class ElementsRule {
-  static_assert(!Sampled<E>, "ElementsRule: members() of a rule names only its own elements, so others are not sampled");
+  static_assert(!Sampled<E>, "ElementsRule: a rule names only elements of its own to be sampled, so these would not be");
 
  public:
   using Element = E;

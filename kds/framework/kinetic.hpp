@@ -97,7 +97,7 @@ class Kinetic final : public KineticOf<Rule>,
   /// (neither is checked). The set must outlive the structure.
   explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
       : KineticOf<Rule>(elements, std::move(rule)), listener_(std::move(listener)), backwards_(elements.backwards()) {
-    static_assert(!is_outer, "Kinetic: a rule that stands on another one needs a structure of that: Kinetic(inner, now)");
+    static_assert(!is_outer, "Kinetic: a rule that stands on another needs a structure of that: Kinetic(inner, now)");
     build(now);
   }
   /// For a rule that stands on another (StandsOn): takes up the state of a structure `inner` of that, whose events up

@@ -214,7 +214,8 @@ class Trial {
   }
 
   void found(const std::string& what) {
-    if (findings_.wrong++ == 0) findings_.first = "seed " + std::to_string(options_.seed) + ": " + Rule::name + ": " + what;
+    if (findings_.wrong++ > 0) return;
+    findings_.first = "seed " + std::to_string(options_.seed) + ": " + Rule::name + ": " + what;
   }
 
   static constexpr std::size_t most_events = 100000;

@@ -267,7 +267,9 @@ TEST_CASE("a repair that repairs nothing is named", "[framework]") {
 TEST_CASE("a right rule may repair as often as it has pairs, at one time", "[framework]") {
   const Id n = 100;
   std::uint64_t at_once = 0;
-  const auto count = [&](const ListRule<Motion<1>>&, const KineticEvent& event) { at_once += event.time == 0x1p52 + 1; };
+  const auto count = [&](const ListRule<Motion<1>>&, const KineticEvent& event) {
+    at_once += event.time == 0x1p52 + 1;
+  };
   MovingSet<Motion<1>> late;  // all meet half a second after a clock whose doubles are a second apart
   for (Id id = 0; id < n; ++id) late.insert(id, {{{0.0 + id, -2.0 * id}}, 0x1p52}, 0x1p52);
   Kinetic<ListRule<Motion<1>>, decltype(count)> reversed(late, 0x1p52, {}, count);

@@ -85,7 +85,8 @@ int check_edges(const EdgesRule<Path>& rule, const MovingSet<Path>& set, double 
     edges.insert({std::min(mesh.origin(h), mesh.target(h)), std::max(mesh.origin(h), mesh.target(h))});
   }
   const std::vector<Id> ids = set.ids();
-  return (edges != told || told.size() != rule.edges.size()) + !std::equal(ids.begin(), ids.end(), rule.points.begin(), rule.points.end());
+  const bool same_points = std::equal(ids.begin(), ids.end(), rule.points.begin(), rule.points.end());
+  return (edges != told || told.size() != rule.edges.size()) + !same_points;
 }
 
 /// How often the smallest gap has become another: a rule on a rule on a rule.
