@@ -7,7 +7,8 @@ endif()
 # said_of(FILE message...): the file must not compile, and the compiler must give these messages. Sets `said`.
 function(said_of file)
   execute_process(
-    COMMAND "${COMPILER}" -std=c++20 -fsyntax-only -w ${all_errors} "-I${ROOT}" ${INCLUDES} "${ROOT}/tests/kds/misuse/${file}"
+    COMMAND "${COMPILER}" -std=c++20 -fsyntax-only -w ${all_errors} "-I${ROOT}" ${INCLUDES}
+            "${ROOT}/tests/kds/misuse/${file}"
     RESULT_VARIABLE failed ERROR_VARIABLE said OUTPUT_VARIABLE said)
   if(NOT failed)
     message(FATAL_ERROR "${file}, in which each part is wrong, has compiled.")
