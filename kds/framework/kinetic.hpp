@@ -96,8 +96,8 @@ class Kinetic final : public KineticOf<Rule>,
   /// Takes up the elements that the set has at the time `now`, which is the clock: finite, and not before the last edit
   /// (neither is checked). The set must outlive the structure.
   explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
+  requires(!is_outer)
       : KineticOf<Rule>(elements, std::move(rule)), listener_(std::move(listener)), backwards_(elements.backwards()) {
-    static_assert(!is_outer, "Kinetic: a rule that stands on another needs a structure of that: Kinetic(inner, now)");
     build(now);
   }
   /// For a rule that stands on another (StandsOn): takes up the state of a structure `inner` of that, whose events up
@@ -111,11 +111,13 @@ class Kinetic final : public KineticOf<Rule>,
         listener_(std::move(listener)),
         backwards_(elements.backwards()),
         inner_(&inner) {
-    inner.elements_.process_due(now);
-    rule_.inner_ = &inner.rule();
-    build(now);
-    inner.followers_.push_back(this);
-    inner.repair_.followed_ = true;
+    if constexpr (is_outer) {
+      inner.elements_.process_due(now);
+      rule_.inner_ = &inner.rule();
+      build(now);
+      inner.followers_.push_back(this);
+      inner.repair_.followed_ = true;
+    }
   }
   ~Kinetic() {
     elements_.detach(*this);

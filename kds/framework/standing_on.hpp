@@ -143,7 +143,9 @@ namespace detail {
 template <class R>
 struct Standing {
   struct Inner {};
-  struct Structure;
+  struct Structure {  // of which there is none
+    MovingSet<typename R::Element>& elements_;
+  };
   using Change = NoChange;
   static constexpr bool on_motions = false;
 };
