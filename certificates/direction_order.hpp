@@ -3,6 +3,7 @@
 
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
+#include "kds/lasting.hpp"
 #include "kds/motion.hpp"
 
 #include <array>
@@ -18,6 +19,9 @@ struct DirectionOrder {
   const Path& lower;
   const Path& upper;
   const std::array<double, Dimension>& direction;
+
+  DirectionOrder(Lasting<Path> low, Lasting<Path> high, Lasting<std::array<double, Dimension>> along_which)
+      : lower(low), upper(high), direction(along_which) {}
 
   template <class Number>
   auto polynomial(double epoch) const {

@@ -3,6 +3,7 @@
 
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
+#include "kds/lasting.hpp"
 #include "kds/motion.hpp"
 
 namespace kds::certificates {
@@ -16,6 +17,9 @@ struct DistanceOrder {
   const Path& b;
   const Path& c;
   const Path& d;
+
+  DistanceOrder(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third, Lasting<Path> fourth)
+      : a(first), b(second), c(third), d(fourth) {}
 
   template <class Number>
   auto polynomial(double epoch) const {
@@ -36,5 +40,8 @@ struct DistanceOrder {
   /// Cheap and sufficient: both pairs are the same.
   bool vanishes() const requires(!requires { Path::sampled; }) { return (a == c && b == d) || (a == d && b == c); }
 };
+
+template <class Path>
+DistanceOrder(const Path&, const Path&, const Path&, const Path&) -> DistanceOrder<Path>;
 
 }  // namespace kds::certificates

@@ -3,6 +3,7 @@
 
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
+#include "kds/lasting.hpp"
 #include "kds/motion.hpp"
 
 namespace kds::certificates {
@@ -19,6 +20,9 @@ struct InCircle {
   const Path& b;
   const Path& c;
   const Path& d;
+
+  InCircle(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third, Lasting<Path> fourth)
+      : a(first), b(second), c(third), d(fourth) {}
 
   template <class Number>
   auto polynomial(double epoch) const {
@@ -53,5 +57,8 @@ struct InCircle {
            (squared(cx) + squared(cy)) * (ay * bx - ax * by);
   }
 };
+
+template <class Path>
+InCircle(const Path&, const Path&, const Path&, const Path&) -> InCircle<Path>;
 
 }  // namespace kds::certificates

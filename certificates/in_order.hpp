@@ -3,6 +3,7 @@
 
 #include "certificates/order.hpp"
 #include "kds/bounded.hpp"
+#include "kds/lasting.hpp"
 
 #include <type_traits>
 
@@ -15,11 +16,16 @@ struct Ascending {
   const Value& lower;
   const Value& upper;
 
+  Ascending(Lasting<Value> low, Lasting<Value> high) : lower(low), upper(high) {}
+
   template <class Number>
   auto polynomial(double epoch) const {
     return difference_about<Number>(upper, lower, epoch);
   }
 };
+
+template <class Value>
+Ascending(const Value&, const Value&) -> Ascending<Value>;
 
 namespace detail {
 template <class Value>

@@ -5,6 +5,7 @@
 #include "certificates/order_together.hpp"
 #include "kds/arithmetic/unrolled.hpp"
 #include "kds/certificate.hpp"
+#include "kds/lasting.hpp"
 #include "kds/motion.hpp"
 #include "kds/roots/failure_time.hpp"
 
@@ -20,6 +21,8 @@ struct Order {
   static constexpr bool antisymmetric = true;
   const Motion<Degree>& lower;
   const Motion<Degree>& upper;
+
+  Order(Lasting<Motion<Degree>> low, Lasting<Motion<Degree>> high) : lower(low), upper(high) {}
 
   template <class Number>
   Polynomial<Degree, Number> polynomial(double epoch) const {
@@ -108,6 +111,9 @@ struct Order {
     return kds::quick_parabola_failure_time<turned>(detail::shifted_parabola_between(lower, upper), now, horizon);
   }
 };
+
+template <int Degree>
+Order(const Motion<Degree>&, const Motion<Degree>&) -> Order<Degree>;
 
 template <int Degree>
 double Order<Degree>::quick_failure_time(double now, double horizon) const {

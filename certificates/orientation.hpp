@@ -3,6 +3,7 @@
 
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
+#include "kds/lasting.hpp"
 #include "kds/motion.hpp"
 
 namespace kds::certificates {
@@ -18,6 +19,8 @@ struct Orientation {
   const Path& b;
   const Path& c;
 
+  Orientation(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third) : a(first), b(second), c(third) {}
+
   template <class Number>
   auto polynomial(double epoch) const {
     const auto to = [&](const Path& p, int d) { return difference_about<Number>(p.axis(d), a.axis(d), epoch); };
@@ -32,5 +35,8 @@ struct Orientation {
   /// Cheap and sufficient: two of the three are the same point.
   bool vanishes() const requires(!requires { Path::sampled; }) { return a == b || b == c || c == a; }
 };
+
+template <class Path>
+Orientation(const Path&, const Path&, const Path&) -> Orientation<Path>;
 
 }  // namespace kds::certificates

@@ -37,8 +37,9 @@ int main() {
     std::cout << "from minute " << event.time << " on " << name(a) << " and " << name(b) << " are the closest, at "
               << distance(aircraft[a], aircraft[b], event.time) << " km\n";
   };
-  Kinetic<Closest, decltype(another)> closest(aircraft, now, {}, another);
-  Simulator simulator(now, closest);
+  Kinetic<structures::DelaunayRule<Path>> triangulation(aircraft, now);
+  Kinetic<Closest, decltype(another)> closest(triangulation, now, {}, another);
+  Simulator simulator(now, triangulation, closest);
 
   // Between two events the pair is the same, so the least distance is where a parabola is lowest, or at an event.
   double least = never;

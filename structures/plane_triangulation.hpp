@@ -7,10 +7,12 @@
 #include "structures/lawson.hpp"
 #include "structures/plane_predicates.hpp"
 #include "structures/triangle_mesh.hpp"
+#include "structures/triangulation_edges.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -52,6 +54,8 @@ class PlaneTriangulationRule {
   /// Ids on the hull, counter-clockwise, beginning with the lowest id; those on its edges are among them. Empty if
   /// flat(). O(points of the hull).
   std::vector<Id> hull() const;
+  /// The edges between points, under numbers that they keep. Those of a convex hull are not numbered.
+  const TriangulationEdges& edges() const { return edges_; }
   /// How often it has been built anew.
   std::uint64_t rebuilds() const { return rebuilds_; }
 
@@ -60,21 +64,26 @@ class PlaneTriangulationRule {
   using Direction = certificates::DirectionOrder<Path, 2>;
   using Choice = std::variant<std::monostate, Orientation, InCircle, Direction>;
 
+  /// What it reports to rules that stand on it; a convex hull reports nothing.
+  using Change = std::conditional_t<What == Criterion::delaunay, EdgeChange, void>;
+  using Pen = Repair<Path, Change>;
+
   // Slots 4 t, 4 t + 1, 4 t + 2: the edges of triangle t, each known by the lesser of its half-edges; 4 t + 3: its
   // area, or, if it is infinite, the direction of its edge of the hull.
   Choice certificate(Slot slot, const MovingSet<Path>& x) const;
   std::vector<Id> members(Slot slot) const;
-  Effect repair(Slot slot, Repair<Path>& repair);
-  void insert(Id id, Repair<Path>& repair);
-  void remove(Id id, Repair<Path>& repair);
-  bool keeps(Id id, const Path& next, Repair<Path>& repair);
-  void change(Id id, Repair<Path>& repair);
-  void build(Repair<Path>& repair) { rebuild(nobody, repair); }
+  Effect repair(Slot slot, Pen& repair);
+  void insert(Id id, Pen& repair);
+  void remove(Id id, Pen& repair);
+  bool keeps(Id id, const Path& next, Pen& repair);
+  void change(Id id, Pen& repair);
+  void build(Pen& repair) { rebuild(nobody, repair); }
   void audit(const MovingSet<Path>& x, double now) const;
+  std::vector<EdgeChange> changes_from_nothing() const;
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(mesh_, headings_, same_as_, hidden_, near_, busy_at_, repairs_, rebuilds_);
+    archive(mesh_, headings_, same_as_, hidden_, near_, busy_at_, repairs_, rebuilds_, edges_);
   }
 
  private:
@@ -94,11 +103,13 @@ class PlaneTriangulationRule {
     }
     return t;
   }
-  bool look_round(const Predicates& is, Repair<Path>& repair);
+  bool look_round(const Predicates& is, Pen& repair);
   bool turn_back(std::uint32_t t, Lawson<Predicates>& lawson);
   void place(Id id, Lawson<Predicates>& lawson);
-  void rebuild(Id without, Repair<Path>& repair);
-  void certify_touched(Repair<Path>& repair);
+  void rebuild(Id without, Pen& repair);
+  void certify_touched(Pen& repair);
+  void report_touched(Pen& repair);
+  void report_moved(Id id, Pen& repair);
 
   TriangleMesh mesh_;
   HullHeadings headings_;
@@ -108,6 +119,7 @@ class PlaneTriangulationRule {
   double busy_at_ = -never;   ///< time of the last event, and how many there have been at that time
   std::uint64_t repairs_ = 0;
   std::uint64_t rebuilds_ = 0;
+  TriangulationEdges edges_;
   std::vector<std::uint32_t> touched_;
 };
 
@@ -125,6 +137,15 @@ std::vector<Id> PlaneTriangulationRule<Path, What>::hull() const {
   } while (h != first);
   std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end()), ids.end());
   return ids;
+}
+
+template <class Path, Criterion What>
+std::vector<EdgeChange> PlaneTriangulationRule<Path, What>::changes_from_nothing() const {
+  std::vector<EdgeChange> changes;
+  for (TriangulationEdges::Number edge = 0; edge < edges_.end(); ++edge) {
+    if (edges_.contains(edge)) changes.push_back({EdgeChange::What::came, edge, edges_.ends(edge)});
+  }
+  return changes;
 }
 
 template <class Path, Criterion What>
@@ -158,7 +179,7 @@ std::vector<Id> PlaneTriangulationRule<Path, What>::members(Slot slot) const {
 }
 
 template <class Path, Criterion What>
-Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Repair<Path>& repair) {
+Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Pen& repair) {
   if (busy_at_ != repair.now()) repairs_ = 0;
   busy_at_ = repair.now();
   const Predicates is{repair.elements(), repair.now()};
@@ -189,7 +210,7 @@ Effect PlaneTriangulationRule<Path, What>::repair(Slot slot, Repair<Path>& repai
 /// Updates the headings of all hull edges: more of them may have turned at this time. False if the hull does not go
 /// round once.
 template <class Path, Criterion What>
-bool PlaneTriangulationRule<Path, What>::look_round(const Predicates& is, Repair<Path>& repair) {
+bool PlaneTriangulationRule<Path, What>::look_round(const Predicates& is, Pen& repair) {
   for (std::uint32_t t = 0; t < mesh_.end_triangle(); ++t) {
     if (!mesh_.in_use(t) || mesh_.finite(t)) continue;
     headings_.find(mesh_, t, is);
@@ -224,6 +245,7 @@ void PlaneTriangulationRule<Path, What>::audit(const MovingSet<Path>& x, double 
     throw AuditFailure(name + (": id " + std::to_string(id)) + ": " + what);
   };
   mesh_.audit();
+  if constexpr (What == Criterion::delaunay) edges_.audit(mesh_);
   if (!flat() && !headings_.go_round_once(mesh_)) fail(nobody, "the hull does not go round once");
   const Predicates is{x, now};
   std::uint64_t hidden = 0;

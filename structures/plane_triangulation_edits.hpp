@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 namespace kds::structures {
@@ -23,7 +24,7 @@ void PlaneTriangulationRule<Path, What>::place(Id id, Lawson<Predicates>& lawson
 }
 
 template <class Path, Criterion What>
-void PlaneTriangulationRule<Path, What>::insert(Id id, Repair<Path>& repair) {
+void PlaneTriangulationRule<Path, What>::insert(Id id, Pen& repair) {
   if (same_as_.size() <= id) same_as_.resize(id + std::size_t{1}, nobody);
   if (flat()) return rebuild(nobody, repair);
   const Predicates is{repair.elements(), repair.now()};
@@ -34,22 +35,23 @@ void PlaneTriangulationRule<Path, What>::insert(Id id, Repair<Path>& repair) {
 
 /// A motion that leaves the triangles around the vertex as they are: a bounce, say, or a small jump.
 template <class Path, Criterion What>
-bool PlaneTriangulationRule<Path, What>::keeps(Id id, const Path& next, Repair<Path>& repair) {
+bool PlaneTriangulationRule<Path, What>::keeps(Id id, const Path& next, Pen& repair) {
   if (flat() || hidden_ > 0) return false;
   const Predicates is{repair.elements(), repair.now(), id, &next};
   return Lawson<Predicates>(mesh_, is, touched_).fits(id);
 }
 
 template <class Path, Criterion What>
-void PlaneTriangulationRule<Path, What>::change(Id id, Repair<Path>& repair) {
+void PlaneTriangulationRule<Path, What>::change(Id id, Pen& repair) {
   const Predicates is{repair.elements(), repair.now()};
   Lawson<Predicates>(mesh_, is, touched_).legalise_around(id);
   certify_touched(repair);
+  report_moved(id, repair);
   if (!headings_.go_round_once(mesh_)) rebuild(nobody, repair);
 }
 
 template <class Path, Criterion What>
-void PlaneTriangulationRule<Path, What>::remove(Id id, Repair<Path>& repair) {
+void PlaneTriangulationRule<Path, What>::remove(Id id, Pen& repair) {
   if (same_as_[id] != nobody) {
     same_as_[id] = nobody;
     --hidden_;
@@ -81,7 +83,7 @@ void PlaneTriangulationRule<Path, What>::remove(Id id, Repair<Path>& repair) {
 }
 
 template <class Path, Criterion What>
-void PlaneTriangulationRule<Path, What>::rebuild(Id without, Repair<Path>& repair) {
+void PlaneTriangulationRule<Path, What>::rebuild(Id without, Pen& repair) {
   const std::uint32_t before = mesh_.end_triangle();
   rebuilds_ += before != 0;
   mesh_.clear();
@@ -100,6 +102,11 @@ void PlaneTriangulationRule<Path, What>::rebuild(Id without, Repair<Path>& repai
       if (!mesh_.contains(id)) place(id, lawson);
     }
   }
+  if constexpr (What == Criterion::delaunay) {
+    touched_.resize(std::max(before, mesh_.end_triangle()));
+    std::iota(touched_.begin(), touched_.end(), 0u);
+    report_touched(repair);
+  }
   touched_.clear();
   if (!flat()) look_round(is, repair);
   for (Slot slot = 0; slot < 4 * std::max(before, mesh_.end_triangle()); ++slot) repair.certify(slot);
@@ -108,7 +115,7 @@ void PlaneTriangulationRule<Path, What>::rebuild(Id without, Repair<Path>& repai
 /// The edges of triangles that have changed, their areas or headings. At the hull also the areas of their neighbours,
 /// which are certified only while they are not at the hull.
 template <class Path, Criterion What>
-void PlaneTriangulationRule<Path, What>::certify_touched(Repair<Path>& repair) {
+void PlaneTriangulationRule<Path, What>::certify_touched(Pen& repair) {
   const Predicates is{repair.elements(), repair.now()};
   bool at_hull = false;
   for (const std::uint32_t t : touched_) {
@@ -125,7 +132,28 @@ void PlaneTriangulationRule<Path, What>::certify_touched(Repair<Path>& repair) {
       if (at_hull) repair.certify(twin / 3 * 4 + 3);
     }
   }
+  report_touched(repair);
   touched_.clear();
+}
+
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::report_touched(Pen& repair) {
+  if constexpr (What == Criterion::delaunay) {
+    edges_.update(mesh_, touched_, [&](const EdgeChange& change) { repair.report(change); });
+  }
+}
+
+template <class Path, Criterion What>
+void PlaneTriangulationRule<Path, What>::report_moved(Id id, Pen& repair) {
+  if constexpr (What == Criterion::delaunay) {
+    const Edge first = mesh_.from(id);
+    Edge h = first;
+    do {
+      const auto edge = edges_.of(h);
+      if (edge != TriangulationEdges::none) repair.report({EdgeChange::What::moved, edge, edges_.ends(edge)});
+      h = mesh_.clockwise(h);
+    } while (h != first);
+  }
 }
 
 }  // namespace kds::structures

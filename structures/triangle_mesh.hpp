@@ -43,6 +43,8 @@ class TriangleMesh {
   /// A half-edge from a vertex. Precondition: contains(vertex).
   Edge from(Id vertex) const { return vertex == infinite ? at_infinity_ : from_[vertex]; }
 
+  /// Ids of vertices are below this, but for the infinite one.
+  Id end_vertex() const { return static_cast<Id>(from_.size()); }
   /// Numbers of triangles are below this; not all of them need be in_use().
   std::uint32_t end_triangle() const { return static_cast<std::uint32_t>(twin_.size() / 3); }
   bool in_use(std::uint32_t triangle) const { return twin_[3 * std::size_t{triangle}] != none; }

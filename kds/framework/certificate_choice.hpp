@@ -32,6 +32,42 @@ struct IsCertificateChoice<std::optional<T>> : IsCertificateChoice<T> {};
 template <class... T>
 struct IsCertificateChoice<std::variant<T...>> : std::bool_constant<(IsCertificateChoice<T>::value && ...)> {};
 
+template <class C>
+concept NamesDegree = requires {
+  { C::degree } -> std::convertible_to<int>;
+};
+/// For every type of number, Exact among them.
+template <class C>
+concept GivesPolynomials = requires(const C& certificate, double epoch) {
+  certificate.template polynomial<Exact>(epoch);
+  certificate.template polynomial<Ball<double>>(epoch);
+  certificate.template polynomial<Ball<DoubleDouble>>(epoch);
+};
+template <class C>
+concept NamesItsDegree = requires(const C& certificate, double epoch) {
+  requires decltype(certificate.template polynomial<Exact>(epoch))::degree == C::degree;
+};
+
+/// To be named wherever certificates are used: compiles only for certificates and choices of them, and says what is
+/// wrong with a class that is none.
+template <class C>
+struct RightCertificate {
+  static constexpr bool right = AnyCertificate<C> || std::same_as<C, std::monostate> || !std::is_class_v<C>;
+  static_assert(right || NamesDegree<C>, "certificate: `static constexpr int degree` is missing");
+  static_assert(right || GivesPolynomials<C>,
+                "certificate: `template <class Number> auto polynomial(double epoch) const` is missing, or does not "
+                "take every Number");
+  static_assert(right || !NamesDegree<C> || !GivesPolynomials<C> || NamesItsDegree<C>,
+                "certificate: `degree` is not the degree of its polynomial");
+  static constexpr bool checked = true;
+};
+template <class T>
+struct RightCertificate<std::optional<T>> : RightCertificate<T> {};
+template <class... T>
+struct RightCertificate<std::variant<T...>> {
+  static constexpr bool checked = (RightCertificate<T>::checked && ...);
+};
+
 /// Calls f with the certificate, if there is one.
 template <class T, class F>
 void with_certificate(const T& choice, F&& f) {

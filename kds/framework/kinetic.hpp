@@ -1,6 +1,6 @@
 // A kinetic structure made of a rule: everything but how to certify and how to repair. This file has the class and its
-// events; kinetic_edits.hpp has edits, kinetic_samples.hpp sampled elements, kinetic_audit.hpp audits, measures and
-// snapshots.
+// events; kinetic_edits.hpp has edits, kinetic_standing.hpp structures on structures, kinetic_samples.hpp sampled
+// elements, kinetic_audit.hpp audits, measures and snapshots.
 #pragma once
 
 #include "kds/audit.hpp"
@@ -14,6 +14,8 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
+#include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -22,8 +24,11 @@
 
 namespace kds {
 
+/// No certificate of the structure's own.
+inline constexpr Slot no_slot = std::numeric_limits<Slot>::max();
+
 /// A certificate that failed and was repaired; or one of sampled elements whose guarantee ended, so that they were
-/// sampled anew (internal).
+/// sampled anew (internal); or, with no_slot, an event of the structure that this one stands on.
 struct KineticEvent {
   double time = 0;  ///< s
   Slot slot = 0;
@@ -47,20 +52,32 @@ struct NoListener {
 /// means that the certificate is no longer guaranteed: the rule is not asked to repair, but the elements are sampled
 /// anew (MovingSet::sample_with); the state is that of the samples.
 ///
-/// An exception from the rule leaves the structure invalid: every event and edit after that throws std::logic_error.
+/// An exception from the rule leaves the structure invalid, and the one that it stands on: every event and edit after
+/// that throws std::logic_error.
 ///
 /// Cost of an event, beyond the rule's own: a pop, and for each certificate it marks a failure time and a push.
 template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue, class Solver = CertifiedSolver>
-class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
+class Kinetic final : public KineticOf<Rule>,
+                      private MovingSet<typename Rule::Element>::Observer,
+                      private detail::Follower<typename detail::Standing<Rule>::Change> {
+  using Standing = detail::Standing<Rule>;
+  static constexpr bool is_outer = OuterRule<Rule>;
   static_assert(detail::NamesElement<Rule>, "kinetic rule: `using Element = ...;` must name what moves");
   static_assert(detail::HasName<Rule>, "kinetic rule: `static constexpr const char* name = ...;` is missing");
+  static_assert(detail::CertificateOf<Rule>::checked);
   static_assert(detail::Certifies<Rule>,
                 "kinetic rule: `certificate(Slot, const MovingSet<Element>&) const` must give a certificate, or a "
                 "std::optional or std::variant of certificates");
   static_assert(detail::NamesMembers<Rule>, "kinetic rule: `members(Slot) const` must give a range of ids");
   static_assert(detail::Repairs<Rule>, "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing");
-  static_assert(detail::InsertsAndRemoves<Rule>,
+  static_assert(is_outer || (detail::Inserts<Rule> && detail::Removes<Rule>),
                 "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing");
+  static_assert(!is_outer || ReportsChanges<typename Standing::Inner>,
+                "kinetic rule: the rule that it stands on has no `Change`, and so tells nothing");
+  static_assert(!is_outer || detail::Follows<Rule>,
+                "kinetic rule: `Effect follow(std::span<const Inner::Change>, Repair<Element>&)` is missing");
+  static_assert(!ReportsChanges<Rule> || detail::TellsItsState<Rule>,
+                "kinetic rule: `std::vector<Change> changes_from_nothing() const` is missing");
   static_assert(TakesUpMotions<Rule> || !detail::NamesChange<Rule>,
                 "kinetic rule: `change` must be `void change(Id, Repair<Element>&)`");
   static_assert(TakesUpMotions<Rule> || !detail::NamesKeeps<Rule>,
@@ -79,33 +96,55 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   /// Takes up the elements that the set has at the time `now`, which is the clock: finite, and not before the last edit
   /// (neither is checked). The set must outlive the structure.
   explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
-      : elements_(elements),
-        rule_(std::move(rule)),
-        listener_(std::move(listener)),
-        repair_(elements),
-        backwards_(elements.backwards()) {
-    begin(now);
-    if constexpr (BuildsAtOnce<Rule>) {
-      rule_.build(repair_);
-    } else {
-      for (const Id id : elements.ids()) rule_.insert(id, repair_);
-    }
-    finish(false);
-    elements_.attach(*this);
+  requires(!is_outer)
+      : KineticOf<Rule>(elements, std::move(rule)), listener_(std::move(listener)), backwards_(elements.backwards()) {
+    build(now);
   }
-  ~Kinetic() { elements_.detach(*this); }
-  Kinetic(const Kinetic&) = delete;
-  Kinetic& operator=(const Kinetic&) = delete;
+  /// For a rule that stands on another (StandsOn): takes up the state of a structure `inner` of that, whose events up
+  /// to `now` are processed first, and shares its elements. `inner` must outlive it.
+  Kinetic(typename Standing::Structure& inner, double now, Rule rule = {}, Listener listener = {})
+      : Kinetic(inner.elements_, inner, now, std::move(rule), std::move(listener)) {}
+  /// The same with elements of its own, of another type perhaps.
+  Kinetic(MovingSet<Element>& elements, typename Standing::Structure& inner, double now, Rule rule = {},
+          Listener listener = {})
+      : KineticOf<Rule>(elements, std::move(rule)),
+        listener_(std::move(listener)),
+        backwards_(elements.backwards()),
+        inner_(&inner) {
+    if constexpr (is_outer) {
+      inner.elements_.process_due(now);
+      rule_.inner_ = &inner.rule();
+      build(now);
+      inner.followers_.push_back(this);
+      inner.repair_.followed_ = true;
+    }
+  }
+  ~Kinetic() {
+    elements_.detach(*this);
+    if constexpr (is_outer) {
+      std::erase(inner_->followers_, static_cast<detail::Follower<typename Standing::Change>*>(this));
+      inner_->repair_.followed_ = !inner_->followers_.empty();
+    }
+  }
 
-  const Rule& rule() const { return rule_; }
   Listener& listener() { return listener_; }
-  const MovingSet<Element>& elements() const { return elements_; }
 
-  /// Time of the next event within the horizon, `never` if there is none.
-  double next_time() const { return schedule_.next_time(); }
+  double next_time() const override { return schedule_.next_time(); }
 
   /// Processes the event due at next_time(). Precondition: there is one.
   void process();
+
+  /// Calls f(rule, repair) at `now`, the clock: it may change what the rule is asked for (a rank, a border), mark slots
+  /// and report changes, as any function of the rule. An edit like one of the elements, so after the events of its
+  /// time; the rule's archive() must save what f changes. Throws as MovingSet::update() does for a time; f itself must
+  /// not throw.
+  template <class F>
+  void edit(F&& f, double now) {
+    elements_.process_due(now);
+    begin(now);
+    f(rule_, repair_);
+    finish(false);
+  }
 
   /// See KineticStructure. Cost: a failure time for each certificate that the change concerns.
   void extend_horizon(double now, double horizon);
@@ -138,12 +177,21 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
  private:
   // How edits come in: kinetic_edits.hpp.
   void process_due(double now) override;
+  void process_own_due(double now);
   void inserted(Id id, double now) override;
   void removing(Id id, double now) override;
   void changing(Id id, const Element& next, double now) override;
   void changed(Id id, double now) override;
   /// Throws if the rule is being called, or the structure is invalid since the rule has thrown.
   void require_ready() const;
+
+  // How changes reach structures that stand on this one: kinetic_standing.hpp.
+  void build(double now);
+  void tell_followers(bool in_event);
+  void call_followers_listeners();
+  void follow(std::span<const typename Standing::Change> changes, double now, bool in_event) override;
+  void listen() override;
+  void require_inner_first(double time) const;
 
   // Each call of a function of the rule stands between these two: marked slots are certified when it is over.
   void begin(double now) {
@@ -152,6 +200,11 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
     repair_.now_ = last_ = now;
   }
   void finish(bool in_event);
+  void count_repair(Slot slot, double time);
+  void count_touched() {
+    measures_.touched += repair_.marked_.size();
+    measures_.most_touched = std::max<std::uint64_t>(measures_.most_touched, repair_.marked_.size());
+  }
   void certify(Slot slot, bool in_event);
   void hold(Slot slot, bool held);
 
@@ -174,10 +227,12 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
 
   [[noreturn]] static void fail_use(const std::string& what) { throw std::logic_error(Rule::name + (": " + what)); }
 
-  MovingSet<Element>& elements_;
-  Rule rule_;
+  using Mark = typename Repair<Element>::Mark;
+  using KineticOf<Rule>::elements_;
+  using KineticOf<Rule>::rule_;
+  using KineticOf<Rule>::repair_;
+
   Listener listener_;
-  Repair<Element> repair_;
   Schedule<Queue, Solver> schedule_;
   std::vector<std::uint8_t> held_;  ///< whether a slot has a certificate
   Measures measures_;
@@ -186,6 +241,11 @@ class Kinetic final : private MovingSet<typename Rule::Element>::Observer {
   bool busy_ = false;
   bool backwards_ = false;
   bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
+  double repaired_at_ = -never;
+  std::uint64_t repairs_ = 0;  ///< at that time, since the last edit
+  typename Standing::Structure* inner_ = nullptr;
+  std::uint64_t followed_reports_ = 0;   ///< of the structure that it stands on
+  std::vector<KineticEvent> untold_;  ///< events that were followed, of which the listener has not heard
 };
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -198,16 +258,32 @@ void Kinetic<Rule, Listener, Queue, Solver>::process() {
     if constexpr (!Sampled<Element>) return;
     sample_again(slot, time);
   } else {
+    require_inner_first(time);
+    count_repair(slot, time);
     begin(time);
     event.effect = rule_.repair(slot, repair_);
     repair_.certify(slot);
-    measures_.touched += repair_.marked_.size();
-    measures_.most_touched = std::max<std::uint64_t>(measures_.most_touched, repair_.marked_.size());
+    count_touched();
     finish(true);
   }
   ++measures_.events;
   measures_.external += event.effect == Effect::external;
   listener_(rule_, event);
+  call_followers_listeners();
+}
+
+/// A right rule never comes near this limit: each repair removes a contradiction between state and signs, of which a
+/// sorted list of n values, with m = 2 n certificates and elements, has n^2 / 2 = m^2 / 8 (its pairs).
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::count_repair(Slot slot, double time) {
+  if (repaired_at_ != time) repairs_ = 0;
+  repaired_at_ = time;
+  if (++repairs_ <= 1000) return;
+  const std::uint64_t m = measures_.held + elements_.size();
+  if (repairs_ > 1000 + m * m) {
+    fail_use("slot " + std::to_string(slot) + ": repair() does not end: it has been called " +
+             std::to_string(repairs_ - 1) + " times at " + std::to_string(time));
+  }
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
@@ -217,16 +293,18 @@ void Kinetic<Rule, Listener, Queue, Solver>::finish(bool in_event) {
     schedule_.resize(repair_.marks_.size());
   }
   for (const Slot slot : repair_.marked_) {
-    if (repair_.marks_[slot] == Repair<Element>::Mark::retire) {
+    if (repair_.marks_[slot] == Mark::retire) {
       schedule_.clear(slot);
       hold(slot, false);
     } else {
       certify(slot, in_event);
     }
-    repair_.marks_[slot] = Repair<Element>::Mark::none;
+    repair_.marks_[slot] = Mark::none;
   }
   repair_.marked_.clear();
+  if (!in_event) repairs_ = 0;
   crossed_ = {};
+  tell_followers(in_event);
   measures_.most_held = std::max(measures_.most_held, measures_.held);
   busy_ = false;
 }
@@ -292,3 +370,4 @@ void Kinetic<Rule, Listener, Queue, Solver>::extend_horizon(double now, double h
 #include "kds/framework/kinetic_audit.hpp"
 #include "kds/framework/kinetic_edits.hpp"
 #include "kds/framework/kinetic_samples.hpp"
+#include "kds/framework/kinetic_standing.hpp"

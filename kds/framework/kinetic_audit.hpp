@@ -20,6 +20,11 @@ void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
   const auto fail = [](Slot slot, const char* what) {
     throw AuditFailure(Rule::name + (": slot " + std::to_string(slot)) + ": " + what);
   };
+  if constexpr (is_outer) {
+    if (this->inner_->reports_ != followed_reports_) {
+      throw AuditFailure(Rule::name + std::string(": the structure that it stands on has changed without it"));
+    }
+  }
   for (Slot slot = 0; slot < held_.size(); ++slot) {
     if (!held_[slot]) {
       if (schedule_.contains(slot)) fail(slot, "an event without certificate");
@@ -65,9 +70,12 @@ void Kinetic<Rule, Listener, Queue, Solver>::archive(Archive& archive) {
                 "kinetic rule: to be saved it needs `template <class Archive> void archive(Archive&)`");
   rule_.archive(archive);
   archive(held_, schedule_, measures_, last_, backwards_);
+  if constexpr (ReportsChanges<Rule>) archive(this->reports_);
+  if constexpr (is_outer) archive(followed_reports_);
   if constexpr (Archive::loading) {
     if (schedule_.queue().slots() != held_.size()) throw std::runtime_error("snapshot: it is damaged");
-    repair_.marks_.assign(held_.size(), Repair<Element>::Mark::none);
+    untold_.clear();
+    repair_.marks_.assign(held_.size(), Mark::none);
   }
 }
 

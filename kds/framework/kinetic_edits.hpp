@@ -18,32 +18,45 @@ namespace kds {
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::inserted(Id id, double now) {
   begin(now);
-  rule_.insert(id, repair_);
+  if constexpr (detail::Inserts<Rule>) rule_.insert(id, repair_);
   finish(false);
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::removing(Id id, double now) {
   begin(now);
-  rule_.remove(id, repair_);
+  if constexpr (detail::Removes<Rule>) rule_.remove(id, repair_);
   finish(false);
 }
 
-/// The change is one call of the rule in two parts: it is finished in changed().
+/// The change is one call of the rule in two parts: it is finished in changed(). A rule that stands on another one is
+/// called when that has taken up the new motion, and so only then.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::changing(Id id, const Element& next, double now) {
-  begin(now);
-  keeps_ = TakesUpMotions<Rule>;
-  if constexpr (ChoosesMotions<Rule>) keeps_ = rule_.keeps(id, next, repair_);
-  if (!keeps_) rule_.remove(id, repair_);
+  if constexpr (!is_outer) {
+    begin(now);
+    keeps_ = TakesUpMotions<Rule>;
+    if constexpr (ChoosesMotions<Rule>) keeps_ = rule_.keeps(id, next, repair_);
+    if (!keeps_) rule_.remove(id, repair_);
+  }
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
-void Kinetic<Rule, Listener, Queue, Solver>::changed(Id id, double /*now*/) {
-  if constexpr (TakesUpMotions<Rule>) {
-    if (keeps_) rule_.change(id, repair_);
+void Kinetic<Rule, Listener, Queue, Solver>::changed(Id id, double now) {
+  if constexpr (is_outer) {
+    begin(now);
+    if constexpr (TakesUpMotions<Rule>) {
+      rule_.change(id, repair_);
+    } else {
+      if constexpr (detail::Removes<Rule>) rule_.remove(id, repair_);
+      if constexpr (detail::Inserts<Rule>) rule_.insert(id, repair_);
+    }
+  } else {
+    if constexpr (TakesUpMotions<Rule>) {
+      if (keeps_) rule_.change(id, repair_);
+    }
+    if (!keeps_) rule_.insert(id, repair_);
   }
-  if (!keeps_) rule_.insert(id, repair_);
   finish(false);
 }
 
@@ -51,11 +64,28 @@ template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::require_ready() const {
   if (busy_) fail_use("the elements may not be edited from within the rule");
   if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
+  if constexpr (is_outer) {
+    if (inner_->reports_ != followed_reports_) fail_use("the structure that it stands on has changed without it");
+  }
+}
+
+/// The structure that it stands on first, and in the end those that stand on it: they may have other sets of elements.
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::process_due(double now) {
+  if constexpr (Standing::on_motions) {
+    if (inner_->next_time() <= now) inner_->elements_.process_due(now);
+  }
+  process_own_due(now);
+  if constexpr (ReportsChanges<Rule>) {
+    for (std::size_t i = 0; i < this->followers_.size(); ++i) {
+      if (this->followers_[i]->next_time() <= now) this->followers_[i]->process_due(now);
+    }
+  }
 }
 
 /// Processes the failures that are due up to now. Samples that are due can wait until after the edit.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
-void Kinetic<Rule, Listener, Queue, Solver>::process_due(double now) {
+void Kinetic<Rule, Listener, Queue, Solver>::process_own_due(double now) {
   require_ready();
   if (now < last_) {
     fail_use("an edit at " + std::to_string(now) + " comes after a change at " + std::to_string(last_));

@@ -7,74 +7,16 @@
 #include "kds/framework/certificate_choice.hpp"
 #include "kds/framework/measures.hpp"
 #include "kds/framework/moving_set.hpp"
+#include "kds/framework/standing_on.hpp"
 #include "kds/member_named.hpp"
 
 #include <concepts>
-#include <cstdint>
 #include <iterator>
+#include <span>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace kds {
-
-/// A change that a rule is making: its time, the elements, and the slots that have got a new certificate.
-///
-/// Slots that are marked are certified when the rule is done, each once: a rule may mark more slots than it must, in
-/// any order, while its state is incomplete.
-template <MovingElement E>
-class Repair {
- public:
-  double now() const { return now_; }
-  const E& operator[](Id id) const { return elements_[id]; }
-  const MovingSet<E>& elements() const { return elements_; }
-
-  /// Sign of a certificate at now+, exact; of sampled elements that of their samples.
-  template <class C>
-  int sign(const C& certificate) const {
-    return exact_sign(certificate, now_);
-  }
-
-  /// The slot's certificate has changed, or there is none any more: certificate() will be called for it.
-  void certify(Slot slot) { mark(slot, Mark::certify); }
-  /// The slot is given up: certificate() will not be called for it.
-  void retire(Slot slot) { mark(slot, Mark::retire); }
-
-  /// For rules made of rules: while `part` runs, its slot s is the slot first + stride * s of the whole. Returns what
-  /// part() returns, which must not be void.
-  template <class Part>
-  auto nested(Slot first, Slot stride, Part&& part) {
-    const Slot first_before = std::exchange(first_, first_ + stride_ * first);
-    const Slot stride_before = std::exchange(stride_, stride_ * stride);
-    const auto result = part();
-    first_ = first_before;
-    stride_ = stride_before;
-    return result;
-  }
-  /// The slots marked so far, in the numbering of the whole.
-  const std::vector<Slot>& marked() const { return marked_; }
-
- private:
-  template <class, class, EventQueue, class>
-  friend class Kinetic;
-  enum class Mark : std::uint8_t { none, certify, retire };
-
-  explicit Repair(const MovingSet<E>& elements) : elements_(elements) {}
-
-  void mark(Slot slot, Mark what) {
-    slot = first_ + stride_ * slot;
-    if (slot >= marks_.size()) marks_.resize(slot + std::size_t{1}, Mark::none);
-    if (marks_[slot] == Mark::none) marked_.push_back(slot);
-    marks_[slot] = what;
-  }
-
-  const MovingSet<E>& elements_;
-  std::vector<Slot> marked_;
-  std::vector<Mark> marks_;
-  double now_ = 0;
-  Slot first_ = 0;
-  Slot stride_ = 1;
-};
 
 namespace detail {
 
@@ -98,13 +40,36 @@ concept NamesMembers = requires(const R& rule, Slot slot) {
   { *std::begin(rule.members(slot)) } -> std::convertible_to<Id>;
 };
 template <class R>
-concept Repairs = requires(R& rule, Slot slot, Repair<typename R::Element>& repair) {
+concept Repairs = requires(R& rule, Slot slot, RepairOf<R>& repair) {
   { rule.repair(slot, repair) } -> std::same_as<Effect>;
 };
 template <class R>
-concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>& repair) {
+concept Inserts = requires(R& rule, Id id, RepairOf<R>& repair) {
   rule.insert(id, repair);
+};
+template <class R>
+concept Removes = requires(R& rule, Id id, RepairOf<R>& repair) {
   rule.remove(id, repair);
+};
+template <class R>
+concept Follows = OuterRule<R> && ReportsChanges<typename R::Inner> &&
+    requires(R& rule, std::span<const typename R::Inner::Change> changes, RepairOf<R>& repair) {
+  { rule.follow(changes, repair) } -> std::same_as<Effect>;
+};
+template <class R>
+concept TellsItsState = requires(const R& rule) {
+  { rule.changes_from_nothing() } -> std::same_as<std::vector<typename R::Change>>;
+};
+
+template <class R>
+struct CertificateOf {};
+template <class R>
+requires requires(const R& rule, Slot slot, const MovingSet<typename R::Element>& elements) {
+  rule.certificate(slot, elements);
+}
+struct CertificateOf<R> {
+  static constexpr bool checked = RightCertificate<std::remove_cvref_t<decltype(
+      std::declval<const R&>().certificate(Slot{}, std::declval<const MovingSet<typename R::Element>&>()))>>::checked;
 };
 
 }  // namespace detail
@@ -121,21 +86,24 @@ concept InsertsAndRemoves = requires(R& rule, Id id, Repair<typename R::Element>
 ///
 /// and, optionally, what the concepts below describe: change, keeps, build, audit; and archive, so that it can be saved
 /// (ArchivedBy). A member with one of these names that does not fit its concept does not compile: it would never be
-/// called.
+/// called. A rule on which others stand has a Change (ReportsChanges); one that stands on another has follow() in place
+/// of insert and remove (StandsOn).
 ///
 /// Semantic laws: (1) certificates that hold, all of them, prove the state; (2) what a slot's certificate is depends on
 /// the rule's state and the motions only; (3) repair() decides by exact signs at now+ (Repair::sign), and is called
 /// only for a slot whose certificate has failed there; each call removes a contradiction between state and signs, and
-/// makes none again that was removed at the same time (see docs/termination.md); (4) every slot whose certificate is
+/// makes none again that was removed at the same time (see docs/termination.md), so that there are at most m^2 at one
+/// time, for m certificates and elements; (4) every slot whose certificate is
 /// changed by a call has been marked in it; (5) insert, remove and change are called with a valid state; (6) none of
 /// these functions edits the elements or throws (except audit(), and when memory is exhausted).
 template <class R>
 concept KineticRule = detail::NamesElement<R> && detail::HasName<R> && detail::Certifies<R> &&
-    detail::NamesMembers<R> && detail::Repairs<R> && detail::InsertsAndRemoves<R>;
+    detail::NamesMembers<R> && detail::Repairs<R> &&
+    (detail::Follows<R> || (detail::Inserts<R> && detail::Removes<R>));
 
 /// `void change(Id id, Repair<Element>& repair)`: take up a new motion of an element. Without it: remove and insert.
 template <class R>
-concept TakesUpMotions = requires(R& rule, Id id, Repair<typename R::Element>& repair) {
+concept TakesUpMotions = requires(R& rule, Id id, RepairOf<R>& repair) {
   { rule.change(id, repair) } -> std::same_as<void>;
 };
 
@@ -144,14 +112,14 @@ concept TakesUpMotions = requires(R& rule, Id id, Repair<typename R::Element>& r
 /// change(). Without it: change() takes up every motion.
 template <class R>
 concept ChoosesMotions = TakesUpMotions<R> &&
-    requires(R& rule, Id id, const typename R::Element& next, Repair<typename R::Element>& repair) {
+    requires(R& rule, Id id, const typename R::Element& next, RepairOf<R>& repair) {
   { rule.keeps(id, next, repair) } -> std::same_as<bool>;
 };
 
 /// `void build(Repair<Element>& repair)`: take up all of repair.elements() at once. Without it: insert one after
 /// another.
 template <class R>
-concept BuildsAtOnce = requires(R& rule, Repair<typename R::Element>& repair) {
+concept BuildsAtOnce = requires(R& rule, RepairOf<R>& repair) {
   { rule.build(repair) } -> std::same_as<void>;
 };
 

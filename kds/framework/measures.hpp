@@ -17,6 +17,7 @@ enum class Effect : std::uint8_t { internal, external };
 struct Measures {
   std::uint64_t events = 0;            ///< certificates that failed; samples taken for one count too
   std::uint64_t external = 0;          ///< events that changed the attribute that is maintained, not only its proof
+  std::uint64_t followed = 0;          ///< events of the structure that it stands on, which it has taken up
   std::uint64_t touched = 0;           ///< certificates made, replaced or given up in all events
   std::uint64_t most_touched = 0;      ///< ... in one event
   std::uint64_t held = 0;              ///< certificates now, with or without an event to come

@@ -113,6 +113,18 @@ class MovingSet {
   /// Precondition: contains(id). The reference holds until the next insertion, and shows later motions.
   const Element& operator[](Id id) const { return elements_[id]; }
 
+  /// An id that is not in use: one that has become free, else end_id(). With insert(free_id(), ...) in place of
+  /// add(), a set (and the structures, which store by id and by slot too) needs the memory of the most elements at a
+  /// time, and not of all that ever were; but an id is then that of several elements, one after the other. O(1) on
+  /// average.
+  Id free_id() {
+    while (!free_.empty() && contains(free_.back())) {
+      listed_[free_.back()] = 0;
+      free_.pop_back();
+    }
+    return free_.empty() ? end_id() : free_.back();
+  }
+
   /// The ids in use, ascending.
   std::vector<Id> ids() const {
     std::vector<Id> result;
@@ -138,7 +150,8 @@ class MovingSet {
     put(id, std::move(element), now);
   }
 
-  /// Inserts under the first id above all that were ever used, and returns it. Throws as insert() does.
+  /// Inserts under the first id above all that were ever used, and returns it: so an id is never that of two elements.
+  /// Throws as insert() does.
   Id add(Element element, double now) {
     require_finite(end_id(), element);
     process_due(now);
@@ -155,6 +168,7 @@ class MovingSet {
     require(id);  // A listener of an event that was due may have removed it.
     for (Observer* observer : observers_) observer->removing(id, now);
     present_[id] = 0;
+    if (std::exchange(listed_[id], 1) == 0) free_.push_back(id);
     --size_;
   }
 
@@ -210,7 +224,7 @@ class MovingSet {
   template <class Archive>
   void archive(Archive& archive) {
     archive.tag("MovingSet");
-    archive(elements_, present_, size_, samples_, backwards_);
+    archive(elements_, present_, free_, size_, samples_, backwards_);
     if constexpr (Archive::loading) {
       archive.require(present_.size() == elements_.size(), "a set has not as many places as elements");
       std::size_t found = 0;
@@ -221,6 +235,11 @@ class MovingSet {
         ++found;
       }
       archive.require(found == size_, "a set has not as many elements as it says");
+      listed_.assign(present_.size(), 0);
+      for (const Id id : free_) {
+        archive.require(id < end_id(), "a free id of a set has never been used");
+        archive.require(std::exchange(listed_[id], 1) == 0, "a free id of a set is listed twice");
+      }
     }
   }
 
@@ -237,6 +256,7 @@ class MovingSet {
     if (id >= present_.size()) {
       elements_.resize(id + std::size_t{1});
       present_.resize(id + std::size_t{1}, 0);
+      listed_.resize(id + std::size_t{1}, 0);
     }
     elements_[id] = std::move(element);
     present_[id] = 1;
@@ -261,6 +281,8 @@ class MovingSet {
 
   std::vector<Element> elements_;
   std::vector<std::uint8_t> present_;
+  std::vector<Id> free_;              ///< ids of removed elements, each once; some may be in use again
+  std::vector<std::uint8_t> listed_;  ///< whether an id is in free_
   std::size_t size_ = 0;
   std::vector<Observer*> observers_;
   std::function<Element(Id, double)> sampler_;

@@ -61,12 +61,12 @@ struct Cost {
   double per_event() const { return seconds / static_cast<double>(events); }
 };
 
-template <class Structure>
-Cost run(Structure& structure, double end) {
-  Simulator simulator(0, structure);
+template <class... Structures>
+Cost run(double end, Structures&... structures) {
+  Simulator simulator(0, structures...);
   const double start = thread_seconds();
   simulator.advance_to(end);
-  return {thread_seconds() - start, structure.counters().events};
+  return {thread_seconds() - start, simulator.counters().events};
 }
 
 /// Until about 20 n swaps have been made, but at most for a second.
@@ -93,7 +93,7 @@ Cost framework_list(Id n, double end) {
   for (Id id = 0; id < n; ++id) set.insert(id, random_value<Degree>(random), 0);
   Kinetic<examples::ListRule<Motion<Degree>>> list(set, 0);
   list.extend_horizon(0, end);
-  return run(list, end);
+  return run(end, list);
 }
 
 template <int Degree>
@@ -142,7 +142,7 @@ void measure(const char* name, int degree, Id n, double end, int rounds, const R
     for (Id id = 0; id < n; ++id) set.insert(id, make(random), 0);
     Kinetic<Rule> structure(set, 0, rule);
     structure.extend_horizon(0, end);
-    const Cost cost = run(structure, end);
+    const Cost cost = run(end, structure);
     return std::pair(cost, structure.measures());
   });
 }
@@ -155,7 +155,7 @@ void measure(const char* name, Id n, double end, int rounds) {
     Structure structure;
     structure.extend_horizon(0, end);
     for (Id id = 0; id < n; ++id) structure.insert(id, random_value<1>(random), 0);
-    const Cost cost = run(structure, end);
+    const Cost cost = run(end, structure);
     return std::pair(cost, structure.measures());
   });
 }
@@ -165,7 +165,17 @@ void measure_plane(Id n, double end, int rounds) {
   using Path = certificates::PlaneMotion<Degree>;
   measure("convex hull", Degree, n, end, rounds, structures::ConvexHullRule<Path>{}, random_path<Degree>);
   measure("Delaunay", Degree, n, end, rounds, structures::DelaunayRule<Path>{}, random_path<Degree>);
-  measure("closest pair", Degree, n, end, rounds, structures::ClosestPairRule<Path>{}, random_path<Degree>);
+  measure("closest pair, on Delaunay", Degree, n, rounds, [&] {
+    Random random(n);
+    MovingSet<Path> set;
+    for (Id id = 0; id < n; ++id) set.insert(id, random_path<Degree>(random), 0);
+    Kinetic<structures::DelaunayRule<Path>> triangulation(set, 0);
+    Kinetic<structures::ClosestPairRule<Path>> closest(triangulation, 0);
+    triangulation.extend_horizon(0, end);
+    closest.extend_horizon(0, end);
+    const Cost cost = run(end, triangulation, closest);
+    return std::pair(cost, closest.measures());
+  });
 }
 
 template <int Degree>

@@ -1,8 +1,10 @@
 // The kinetic AABB tree against brute force: fat boxes, pairs, reports, queries.
 #include "certificates/plane_motion.hpp"
 #include "certificates/point_motion.hpp"
+#include "kds/testing/trial.hpp"
 #include "structures/aabb_tree.hpp"
-#include "tests/structures/run_structure.hpp"
+#include "tests/structures/random_values.hpp"
+#include "tests/structures/to_log.hpp"
 #include "tests/support/exact_algebra.hpp"
 
 #include <catch2/catch.hpp>
@@ -17,7 +19,7 @@
 namespace kds::structures {
 template <class Path>
 MovingBox<Path> restarted(const MovingBox<Path>& box, double t) {
-  return {kds::tests::restarted_at(box.min, t), kds::tests::restarted_at(box.max, t)};
+  return {testing::detail::restarted_at(box.min, t), testing::detail::restarted_at(box.max, t)};
 }
 }  // namespace kds::structures
 
@@ -31,6 +33,8 @@ using certificates::PointMotion;
 using structures::AabbTreeRule;
 using structures::MovingBox;
 using structures::TreeBox;
+using testing::Findings;
+using testing::try_rule;
 
 template <int Degree>
 auto random_path(Random& random, Kind kind, double now, std::integral_constant<std::size_t, 1>) {
@@ -142,13 +146,14 @@ void run_points(std::uint64_t seed, Kind kind, structures::AabbTreeOptions optio
   using Dimensions = std::integral_constant<std::size_t, Dimension>;
   using Path = decltype(random_path<Degree>(std::declval<Random&>(), kind, 0, Dimensions{}));
   CAPTURE(Degree, Dimension, static_cast<int>(kind), seed, options.slack, options.ahead);
-  std::vector<KineticEvent> log;
   const auto make = [](Random& random, Kind k, double now) {
     return random_path<Degree>(random, k, now, Dimensions{});
   };
-  CHECK(run_structure(seed, kind, {12, 9, 12, seed % 2 == 0 ? never : 0.5, 5}, AabbTreeRule<Path, Dimension>(options),
-                      make, check_tree<Path, Dimension, structures::NoPairListener>, log) == 0);
-  if (kind == Kind::generic && options.slack == 0.125) CHECK(log.size() > 20);
+  const Findings found = try_rule({seed, kind, 12, 9, 12, seed % 2 == 0 ? never : 0.5, 5},
+                                  AabbTreeRule<Path, Dimension>(options), make,
+                                  check_tree<Path, Dimension, structures::NoPairListener>);
+  CHECK(found.first == "");
+  if (kind == Kind::generic && options.slack == 0.125) CHECK(found.events.size() > 20);
 }
 
 }  // namespace
@@ -169,9 +174,9 @@ TEMPLATE_TEST_CASE_SIG("a kinetic AABB tree of boxes, also of such as turn insid
   for (const Kind kind : all_kinds) {
     const std::uint64_t seed = 940;
     CAPTURE(Degree, static_cast<int>(kind), seed);
-    std::vector<KineticEvent> log;
-    CHECK(run_structure(seed, kind, {12, 8, 12, never, 5}, AabbTreeRule<E, 3>({kind == Kind::scales ? 1e3 : 0.0, 0.25}),
-                        random_box<Degree>, check_tree<E, 3, structures::NoPairListener>, log) == 0);
+    CHECK(try_rule({seed, kind, 12, 8, 12, never, 5}, AabbTreeRule<E, 3>({kind == Kind::scales ? 1e3 : 0.0, 0.25}),
+                   random_box<Degree>, check_tree<E, 3, structures::NoPairListener>)
+              .first == "");
   }
 }
 

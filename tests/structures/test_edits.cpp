@@ -2,6 +2,7 @@
 #include "examples/list_in_forty_lines.hpp"
 #include "kds/bounded.hpp"
 #include "kds/framework/kinetic.hpp"
+#include "kds/framework/snapshot.hpp"
 #include "kds/simulator.hpp"
 
 #include <catch2/catch.hpp>
@@ -148,6 +149,33 @@ TEST_CASE("a sample that a structure cannot take up leaves the others as they we
   set.resample(0, 0);
   CHECK(whole.rule().order == std::vector<Id>{0, 1});
   whole.audit(0);
+}
+
+TEST_CASE("free ids are used again where one asks for them, and are saved", "[edits]") {
+  MovingSet<Value> set;
+  Kinetic<ListRule<Value>> list(set, 0);
+  Simulator simulator(0, list);
+  for (Id id = 0; id < 10; ++id) CHECK(set.add({{{1.0 * id, 0}}, 0}, 0) == id);
+  CHECK(set.free_id() == 10);
+  set.remove(4, 0);
+  set.remove(7, 0);
+  set.insert(7, {{{7, 0}}, 0}, 0);  // without asking
+  const Snapshot before = save(simulator, set);
+  CHECK(set.free_id() == 4);
+  CHECK(set.add({{{3, 1}}, 0}, 0) == 10);  // never that of another
+  set.insert(set.free_id(), {{{4, 0}}, 0}, 0);
+  CHECK(set.free_id() == 11);
+  restore(before, simulator, set);
+  CHECK(set.free_id() == 4);
+  const std::size_t bytes = before.bytes().size();
+  for (int i = 0; i < 10000; ++i) {  // ten alive
+    set.insert(set.free_id(), {{{0.5 + i % 7, 1}}, 0}, 0);
+    set.remove(static_cast<Id>(i % 10 == 4 ? 3 : i % 10), 0);
+    if (!set.contains(3)) set.insert(3, {{{3, 0}}, 0}, 0), set.remove(static_cast<Id>((i + 5) % 10), 0);
+  }
+  simulator.audit();
+  CHECK(set.end_id() <= 11);
+  CHECK(save(simulator, set).bytes().size() < 2 * bytes);
 }
 
 }  // namespace test_edits

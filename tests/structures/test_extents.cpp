@@ -1,8 +1,9 @@
 // Extents in directions, against exact brute force.
 #include "certificates/plane_motion.hpp"
 #include "certificates/point_motion.hpp"
+#include "kds/testing/trial.hpp"
 #include "structures/extents.hpp"
-#include "tests/structures/run_structure.hpp"
+#include "tests/structures/random_values.hpp"
 #include "tests/support/exact_algebra.hpp"
 
 #include <catch2/catch.hpp>
@@ -21,6 +22,8 @@ using certificates::PlaneMotion;
 using certificates::PointMotion;
 using structures::ExtentsRule;
 using structures::kdop_directions;
+using testing::Findings;
+using testing::try_rule;
 
 /// How far in a direction, as a function of the clock.
 template <class Path, std::size_t Dimension>
@@ -60,11 +63,11 @@ TEMPLATE_TEST_CASE_SIG("the extents of a k-DOP are those of the extreme points, 
     for (const int k : {6, Degree == 1 ? 26 : 18}) {
       const std::uint64_t seed = 700 + static_cast<std::uint64_t>(k);
       CAPTURE(Degree, static_cast<int>(kind), k, seed);
-      std::vector<KineticEvent> log;
-      CHECK(run_structure(seed, kind, {8, 7, 12, k == 6 ? never : 0.5},
-                          ExtentsRule<PointMotion<Degree>, 3>(kdop_directions(k)), random_point_motion<Degree>,
-                          check_extents<PointMotion<Degree>, 3>, log) == 0);
-      events += log.size();
+      const Findings found = try_rule({seed, kind, 8, 7, 12, k == 6 ? never : 0.5},
+                                      ExtentsRule<PointMotion<Degree>, 3>(kdop_directions(k)),
+                                      random_point_motion<Degree>, check_extents<PointMotion<Degree>, 3>);
+      CHECK(found.first == "");
+      events += found.events.size();
     }
   }
   CHECK(events > 20);

@@ -184,7 +184,7 @@ namespace {
 /// Edits the elements from within repair(), as it must not.
 struct Meddler : ListRule<Motion<1>> {
   MovingSet<Motion<1>>* set;
-  Effect repair(Slot slot, Repair<Motion<1>>& repair) {
+  Effect repair(Slot slot, Repair<Motion<1>, Change>& repair) {
     set->remove(0, repair.now());
     return ListRule<Motion<1>>::repair(slot, repair);
   }
@@ -249,6 +249,34 @@ TEST_CASE("an audit finds a clock that has run past an event", "[framework]") {
   list.process();
   CHECK_NOTHROW(list.audit(2));
   CHECK_THROWS_AS(list.audit(0), AuditFailure);
+}
+
+TEST_CASE("a repair that repairs nothing is named", "[framework]") {
+  struct Idle : ListRule<Motion<1>> {
+    Effect repair(Slot, Repair<Motion<1>, Change>&) { return Effect::external; }
+  };
+  MovingSet<Motion<1>> set;
+  Kinetic<Idle> list(set, 0);
+  set.insert(4, {{{0, 1}}, 0}, 0);
+  set.insert(7, {{{1, 0}}, 0}, 0);
+  Simulator simulator(0, list);
+  CHECK_THROWS_WITH(simulator.advance_to(5),
+                    Catch::Contains("ListRule: slot 4: repair() does not end: it has been called 1009 times at 1.0"));
+}
+
+TEST_CASE("a right rule may repair as often as it has pairs, at one time", "[framework]") {
+  const Id n = 100;
+  std::uint64_t at_once = 0;
+  const auto count = [&](const ListRule<Motion<1>>&, const KineticEvent& event) {
+    at_once += event.time == 0x1p52 + 1;
+  };
+  MovingSet<Motion<1>> late;  // all meet half a second after a clock whose doubles are a second apart
+  for (Id id = 0; id < n; ++id) late.insert(id, {{{0.0 + id, -2.0 * id}}, 0x1p52}, 0x1p52);
+  Kinetic<ListRule<Motion<1>>, decltype(count)> reversed(late, 0x1p52, {}, count);
+  Simulator simulator(0x1p52, reversed);
+  simulator.advance_to(0x1p52 + 1);
+  simulator.audit();
+  CHECK(at_once == n * (n - 1) / 2);
 }
 
 }  // namespace test_framework

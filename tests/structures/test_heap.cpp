@@ -1,6 +1,7 @@
 // The kinetic heap against the exact maximum and the exact order of each parent and child.
+#include "kds/testing/trial.hpp"
 #include "structures/heap.hpp"
-#include "tests/structures/run_structure.hpp"
+#include "tests/structures/random_values.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -15,6 +16,9 @@ using namespace kds::tests;
 using structures::ByValue;
 using structures::Heap;
 using structures::HeapRule;
+using testing::Findings;
+using testing::TrialOptions;
+using testing::try_rule;
 
 template <int Degree>
 oracle::Value value(const Motion<Degree>& motion) {
@@ -42,11 +46,11 @@ TEMPLATE_TEST_CASE_SIG("a kinetic heap has a greatest value on top, exactly", "[
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 600; seed < 603; ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
-      std::vector<KineticEvent> log;
-      const RunOptions options{24, 3 + 6 * (seed % 3), 24, seed % 2 == 0 ? never : 0.4};
-      CHECK(run_structure(seed, kind, options, HeapRule<ByValue<Motion<Degree>>>{}, random_motion<Degree>,
-                          check_heap<Degree>, log) == 0);
-      events += log.size();
+      const TrialOptions options{seed, kind, 24, 3 + 6 * (seed % 3), 24, seed % 2 == 0 ? never : 0.4};
+      const Findings found =
+          try_rule(options, HeapRule<ByValue<Motion<Degree>>>{}, random_motion<Degree>, check_heap<Degree>);
+      CHECK(found.first == "");
+      events += found.events.size();
     }
   }
   CHECK(events > 20);
@@ -57,10 +61,12 @@ TEMPLATE_TEST_CASE_SIG("a heap is right where many children pass many parents at
   std::size_t together = 0;  // events at the time of the one before
   for (std::uint64_t seed = 620; seed < 720; ++seed) {
     CAPTURE(Degree, seed);
-    std::vector<KineticEvent> log;
-    REQUIRE(run_structure(seed, Kind::coarse, {24, 3 + 6 * (seed % 3), 24}, HeapRule<ByValue<Motion<Degree>>>{},
-                          random_motion<Degree>, check_heap<Degree>, log) == 0);
-    for (std::size_t i = 1; i < log.size(); ++i) together += log[i].time == log[i - 1].time;
+    const Findings found = try_rule({seed, Kind::coarse, 24, 3 + 6 * (seed % 3), 24},
+                                    HeapRule<ByValue<Motion<Degree>>>{}, random_motion<Degree>, check_heap<Degree>);
+    REQUIRE(found.first == "");
+    for (std::size_t i = 1; i < found.events.size(); ++i) {
+      together += found.events[i].time == found.events[i - 1].time;
+    }
   }
   CHECK(together > 100);
 }

@@ -169,7 +169,7 @@ TEST_CASE("a Delaunay triangulation of moving samples is that of the truth where
   set.sample_with(sample, tick);
   for (Id id = 0; id < n; ++id) set.insert(id, sample(id, 0), 0);
   Kinetic<DelaunayRule<BoundedAccelerationPoint>> delaunay(set, 0);
-  Kinetic<structures::ClosestPairRule<BoundedAccelerationPoint>> pair(set, 0);
+  Kinetic<structures::ClosestPairRule<BoundedAccelerationPoint>> pair(delaunay, 0);
   Simulator simulator(0, delaunay, pair);
   InCircleTests tests;
   for (double t = 0.125; t <= end; t += 0.125) {

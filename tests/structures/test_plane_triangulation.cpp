@@ -1,10 +1,12 @@
 // Delaunay triangulation and convex hull against exact brute force.
 #include "certificates/plane_motion.hpp"
+#include "kds/testing/trial.hpp"
 #include "structures/convex_hull.hpp"
 #include "structures/delaunay.hpp"
 #include "tests/structures/check_triangulation.hpp"
-#include "tests/structures/run_structure.hpp"
+#include "tests/structures/random_values.hpp"
 #include "tests/structures/sampled_orbits.hpp"
+#include "tests/structures/to_log.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -21,6 +23,9 @@ using certificates::PlaneMotion;
 using structures::ConvexHullRule;
 using structures::Criterion;
 using structures::DelaunayRule;
+using testing::Findings;
+using testing::TrialOptions;
+using testing::try_rule;
 
 }  // namespace
 
@@ -30,11 +35,12 @@ TEMPLATE_TEST_CASE_SIG("a kinetic Delaunay triangulation is Delaunay, exactly", 
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 800; seed < (Degree == 1 ? 803u : 801u); ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
-      std::vector<KineticEvent> log;
-      const RunOptions options{Degree == 1 ? 10 : 6, 4 + 4 * (seed % 3), 12, seed % 2 == 0 ? never : 0.4, 6};
-      CHECK(run_structure(seed, kind, options, DelaunayRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
-                          check_triangulation<Degree, Criterion::delaunay>, log) == 0);
-      events += log.size();
+      const double window = seed % 2 == 0 ? never : 0.4;
+      const TrialOptions options{seed, kind, Degree == 1 ? 10 : 6, 4 + 4 * (seed % 3), 12, window, 6};
+      const Findings found = try_rule(options, DelaunayRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
+                                      check_triangulation<Degree, Criterion::delaunay>);
+      CHECK(found.first == "");
+      events += found.events.size();
     }
   }
   CHECK(events > 20);
@@ -45,11 +51,11 @@ TEMPLATE_TEST_CASE_SIG("a kinetic convex hull is the hull, exactly", "[hull]", (
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 810; seed < 813; ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
-      std::vector<KineticEvent> log;
-      const RunOptions options{12, 4 + 4 * (seed % 3), 14, seed % 2 == 0 ? never : 0.4, 2};
-      CHECK(run_structure(seed, kind, options, ConvexHullRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
-                          check_triangulation<Degree, Criterion::hull>, log) == 0);
-      events += log.size();
+      const TrialOptions options{seed, kind, 12, 4 + 4 * (seed % 3), 14, seed % 2 == 0 ? never : 0.4, 2};
+      const Findings found = try_rule(options, ConvexHullRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
+                                      check_triangulation<Degree, Criterion::hull>);
+      CHECK(found.first == "");
+      events += found.events.size();
     }
   }
   CHECK(events > 20);

@@ -176,7 +176,7 @@ TEST_CASE("hull, triangulation and closest pair go back the way they came", "[re
     for (Id id = 0; id < 16; ++id) points.insert(id, {{coordinate(), coordinate()}, random.between(-1, 1)}, 0);
     Kinetic<structures::ConvexHullRule<Path>> hull(points, 0);
     Kinetic<structures::DelaunayRule<Path>> delaunay(points, 0);
-    Kinetic<structures::ClosestPairRule<Path>> pair(points, 0);
+    Kinetic<structures::ClosestPairRule<Path>> pair(delaunay, 0);
     Simulator simulator(0, hull, delaunay, pair);
     const auto hull_at_first = hull.rule().hull();
     const auto edges = [&] {

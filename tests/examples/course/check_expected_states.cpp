@@ -61,7 +61,8 @@ Expected highest_of_sorted(const CoursePage& page, double t) {
 /// The ball is below the ceiling, by the sign of their difference.
 Expected sign(const CoursePage& page, double t) {
   Expected expected;
-  const bool below = sign_after(Order<2>{page.value(0, t), page.value(1, t)}, t) >= 0;
+  const Motion<2> ball = page.value(0, t), ceiling = page.value(1, t);
+  const bool below = sign_after(Order<2>{ball, ceiling}, t) >= 0;
   expected.text = below ? "f \u2265 0" : "f < 0";
   return expected;
 }

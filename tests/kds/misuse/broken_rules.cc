@@ -2,7 +2,9 @@
 #include "kds/framework/kinetic.hpp"
 #include "kds/framework/snapshot.hpp"
 
+#include <concepts>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -68,6 +70,49 @@ struct AuditsByChanging : Base {
   void audit(const MovingSet<Value>&, double) {}
 };
 
+// Certificates that are none.
+template <class Certificate>
+struct Certified : Base {
+  Certificate certificate(Slot, const MovingSet<Value>&) const { return {}; }
+};
+struct WithoutDegree {
+  template <class Number>
+  Polynomial<1, Number> polynomial(double) const {
+    return {};
+  }
+};
+struct InDoubles {
+  static constexpr int degree = 1;
+  Polynomial<1> polynomial(double) const { return {}; }
+};
+struct OfAnotherDegree : WithoutDegree {
+  static constexpr int degree = 2;
+};
+
+/// Of a copy all marks would be lost.
+struct RepairsACopy : Base {
+  Effect repair(Slot, Repair<Value>) { return Effect::internal; }
+};
+static_assert(!KineticRule<RepairsACopy>);
+
+// Rules on rules.
+struct Silent : StandsOn<Base> {
+  static constexpr const char* name = "Silent";
+  std::optional<PolynomialCertificate<1>> certificate(Slot, const MovingSet<Value>&) const { return {}; }
+  std::vector<Id> members(Slot) const { return {}; }
+  Effect repair(Slot, Repair<Value>&) { return Effect::internal; }
+};
+struct Reports : Base {
+  using Change = int;
+};
+struct Deaf : StandsOn<Reports> {
+  static constexpr const char* name = "Deaf";
+  std::optional<PolynomialCertificate<1>> certificate(Slot, const MovingSet<Value>&) const { return {}; }
+  std::vector<Id> members(Slot) const { return {}; }
+  Effect repair(Slot, Repair<Value>&) { return Effect::internal; }
+  void follow(std::span<const int>, Repair<Value>&) {}
+};
+
 template <class Rule>
 using With = Kinetic<Rule>;
 constexpr std::size_t sizes[] = {sizeof(With<WithoutElement>),   sizeof(With<WithoutName>),
@@ -76,6 +121,11 @@ constexpr std::size_t sizes[] = {sizeof(With<WithoutElement>),   sizeof(With<Wit
                                  sizeof(With<KeepsOnly>),        sizeof(With<ChangesLate>),
                                  sizeof(With<KeepsUnknown>),     sizeof(With<BuildsForItself>),
                                  sizeof(With<AuditsByChanging>), sizeof(With<KeepsAndChanges>),
+                                 sizeof(With<Certified<WithoutDegree>>),
+                                 sizeof(With<Certified<std::optional<InDoubles>>>),
+                                 sizeof(With<Certified<OfAnotherDegree>>),
+                                 sizeof(With<RepairsACopy>),     sizeof(With<Silent>),
+                                 sizeof(With<Deaf>),             sizeof(With<Reports>),
                                  sizeof(Kinetic<Base, NoListener, DefaultEventQueue, int>)};
 
 struct LateSolver : CertifiedSolver {

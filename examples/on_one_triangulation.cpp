@@ -1,0 +1,58 @@
+// You learn: to stand several structures on one, which is kept once; to write one more in a few lines.
+// How to run: build/dev/examples/on_one_triangulation
+// What you see: 118 flips; another closest pair 7 times, another spanning tree 49 times
+#include "certificates/plane_motion.hpp"
+#include "kds/framework/kinetic.hpp"
+#include "kds/simulator.hpp"
+#include "structures/closest_pair.hpp"
+#include "structures/spanning_tree.hpp"
+
+#include <array>
+#include <cstddef>
+#include <iostream>
+#include <optional>
+#include <span>
+#include <vector>
+
+using namespace kds;
+using Path = certificates::PlaneMotion<1>;
+using Delaunay = structures::DelaunayRule<Path>;
+
+/// How many neighbours each point has in the triangulation: proved by that alone, so it has no certificates of its own.
+struct DegreesRule : StandsOn<Delaunay> {
+  static constexpr const char* name = "Degrees";
+  std::vector<int> degree;
+
+  std::optional<certificates::DistanceOrder<Path>> certificate(Slot, const MovingSet<Path>&) const { return {}; }
+  std::array<Id, 0> members(Slot) const { return {}; }
+  Effect repair(Slot, Repair<Path>&) { return Effect::internal; }
+  Effect follow(std::span<const structures::EdgeChange> changes, Repair<Path>& repair) {
+    degree.resize(repair.elements().end_id());
+    for (const auto& change : changes) {
+      if (change.what == structures::EdgeChange::What::moved) continue;
+      for (const Id end : change.ends) degree[end] += change.what == structures::EdgeChange::What::came ? 1 : -1;
+    }
+    return Effect::external;
+  }
+};
+
+int main() {
+  MovingSet<Path> points;
+  for (int i = 0; i < 30; ++i) {  // spread over a square, and on their ways in all directions
+    const double x = i * 7 % 30 + 0.25 * (i % 3), y = i * 11 % 30 - 0.125 * (i % 5);
+    points.add({{{{{x, (i * 13 % 17 - 8) / 4.0}}, {{y, (i * 5 % 19 - 9) / 4.0}}}}, 0}, 0);
+  }
+  Kinetic<Delaunay> triangulation(points, 0);
+  Kinetic<structures::ClosestPairRule<Path>> closest(triangulation, 0);
+  Kinetic<structures::SpanningTreeRule<Path>> tree(triangulation, 0);
+  Kinetic<DegreesRule> degrees(triangulation, 0);
+  Simulator simulator(0, triangulation, closest, tree, degrees);
+  simulator.advance_to(4);
+  simulator.audit();
+
+  int ends = 0;
+  for (const int degree : degrees.rule().degree) ends += degree;
+  std::cout << triangulation.measures().external << " flips; another closest pair " << closest.measures().external
+            << " times, another spanning tree " << tree.measures().external << " times\n"
+            << tree.rule().edges().size() << " of " << ends / 2 << " edges are in the tree\n";
+}

@@ -1,0 +1,108 @@
+// The best of the candidates that an inner structure has: edges, gaps.
+#pragma once
+
+#include "kds/audit.hpp"
+#include "kds/framework/kinetic_rule.hpp"
+#include "structures/bracket.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kds::structures {
+
+/// A rule that stands on another and keeps the best of candidates that come and go in that: a tournament, each match of
+/// which has a certificate that its loser is not better than its winner. `Rule`, which derives from it, says what the
+/// candidates are, in terms of inner():
+///
+///     candidate(change) const            number of the candidate that a change of the inner rule concerns
+///     takes_part(candidate) const        whether there is such a candidate
+///     better(i, j, elements) const       certificate that candidate i is not worse than j
+///     ids(candidate) const               the elements that it is made of, an array of ids
+///     find_answer() const -> Answer      what is maintained: champion() in terms of elements
+///
+/// Events are external if they change the answer. Slot: the number of a match.
+///
+/// Cost: O(log n) certificates for an event, and for each candidate that the inner rule changes; O(n) for n candidates
+/// (compact), and each is in O(log n) certificates (local if an element is in few candidates).
+template <class Rule, class Inner, class Better, class Answer = std::optional<std::array<Id, 2>>>
+class ChampionRule : public StandsOn<Inner> {
+ public:
+  using Element = typename StandsOn<Inner>::Element;
+  using Pen = RepairOf<ChampionRule>;
+  using Candidate = Bracket::Entrant;
+  static constexpr Candidate none = Bracket::nobody;
+
+  /// A candidate that is not worse than any; none if there is no candidate.
+  Candidate champion() const { return bracket_.winner(); }
+  /// Slots are below this.
+  Slot end_slot() const { return static_cast<Slot>(bracket_.capacity()); }
+
+  std::optional<Better> certificate(Slot match, const MovingSet<Element>& x) const {
+    if (!bracket_.two_play(match)) return std::nullopt;
+    return rule().better(bracket_.winner(match), bracket_.loser(match), x);
+  }
+  std::vector<Id> members(Slot match) const {
+    const auto winner = rule().ids(bracket_.winner(match)), loser = rule().ids(bracket_.loser(match));
+    std::vector<Id> ids(winner.begin(), winner.end());
+    ids.insert(ids.end(), loser.begin(), loser.end());
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    return ids;
+  }
+
+  Effect repair(Slot match, Pen& repair) {
+    bracket_.climb(match, Bracket::nobody, beats(repair), marks(repair));
+    return renew_answer();
+  }
+  Effect follow(std::span<const typename Inner::Change> changes, Pen& repair) {
+    candidates_.clear();
+    for (const auto& change : changes) candidates_.push_back(rule().candidate(change));
+    bracket_.update(
+        candidates_, [this](Candidate c) { return rule().takes_part(c); }, beats(repair), marks(repair));
+    return renew_answer();
+  }
+
+  void audit(const MovingSet<Element>& /*elements*/, double /*now*/) const {
+    bracket_.audit(Rule::name);
+    for (Candidate c = 0; c < bracket_.capacity(); ++c) {
+      if (rule().takes_part(c) != bracket_.contains(c)) {
+        throw AuditFailure(Rule::name + (": candidate " + std::to_string(c)) + ": is missing or gone");
+      }
+    }
+  }
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(bracket_, answer_);
+  }
+
+ protected:
+  const Answer& answer() const { return answer_; }
+  /// To be called where the answer changes and champion() does not.
+  Effect renew_answer() {
+    const Answer before = std::exchange(answer_, rule().find_answer());
+    return answer_ == before ? Effect::internal : Effect::external;
+  }
+
+ private:
+  const Rule& rule() const { return static_cast<const Rule&>(*this); }
+  auto beats(const Pen& repair) const {
+    return [this, &repair](Candidate i, Candidate j) {
+      return repair.sign(rule().better(i, j, repair.elements())) >= 0;
+    };
+  }
+  static auto marks(Pen& repair) {
+    return [&repair](std::size_t match) { repair.certify(static_cast<Slot>(match)); };
+  }
+
+  Bracket bracket_;
+  Answer answer_{};
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace kds::structures

@@ -1,0 +1,95 @@
+// The spanning tree against exact brute force.
+#include "kds/testing/trial.hpp"
+#include "structures/spanning_tree.hpp"
+#include "tests/structures/exact_plane.hpp"
+#include "tests/structures/random_values.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <map>
+#include <vector>
+
+namespace test_spanning_tree {
+namespace {
+
+using namespace kds;
+using namespace kds::tests;
+using certificates::PlaneMotion;
+using structures::DelaunayRule;
+using structures::SpanningTreeRule;
+using testing::Findings;
+using testing::TrialOptions;
+using testing::try_rule;
+
+/// A tree that joins all points, in which no edge of a path is longer than the distance of the path's ends.
+template <int Degree>
+int check_tree(const SpanningTreeRule<PlaneMotion<Degree>>& rule, const MovingSet<PlaneMotion<Degree>>& set,
+               double now) {
+  const ExactPlane plane(set, now);
+  std::vector<Id> vertices;
+  for (const Id id : plane.ids()) {
+    if (rule.inner().vertex(id) == id) vertices.push_back(id);
+  }
+  const auto edges = rule.edges();
+  if (rule.inner().flat()) return !edges.empty();
+  if (edges.size() + 1 != vertices.size()) return 1;
+  int wrong = 0;
+  std::map<Id, std::vector<Id>> neighbours;
+  for (const auto& [a, b] : edges) neighbours[a].push_back(b), neighbours[b].push_back(a);
+  for (const Id from : vertices) {
+    std::map<Id, std::array<Id, 2>> longest{{from, {from, from}}};  // of the edges on the path there
+    std::vector<Id> open{from};
+    while (!open.empty()) {
+      const Id at = open.back();
+      open.pop_back();
+      for (const Id to : neighbours[at]) {
+        if (longest.contains(to)) continue;
+        const auto [a, b] = longest[at];
+        longest[to] = plane.compare_distances(at, to, a, b) > 0 ? std::array{at, to} : std::array{a, b};
+        wrong += plane.compare_distances(longest[to][0], longest[to][1], from, to) > 0;
+        open.push_back(to);
+      }
+    }
+    wrong += longest.size() != vertices.size();
+  }
+  return wrong;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE_SIG("the kinetic spanning tree is a shortest one, exactly", "[spanning_tree]",
+                       ((int Degree), Degree), 1, 2) {
+  std::size_t events = 0;
+  for (const Kind kind : all_kinds) {
+    for (std::uint64_t seed = Degree == 1 ? 600 : 601; seed < (Degree == 1 ? 603u : 602u); ++seed) {
+      CAPTURE(Degree, static_cast<int>(kind), seed);
+      const TrialOptions options{seed, kind, 6, 2 + 3 * (seed % 3), 9, seed % 2 == 0 ? never : 0.4, 16};
+      const Findings found = try_rule(options, SpanningTreeRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
+                                      check_tree<Degree>);
+      CHECK(found.first == "");
+      events += found.events.size();
+    }
+  }
+  CHECK(events > 200);
+}
+
+TEST_CASE("a spanning tree keeps to its measures", "[spanning_tree]") {
+  const std::uint64_t seed = 610, n = 40;
+  CAPTURE(seed);
+  Random random(seed);
+  MovingSet<PlaneMotion<1>> set;
+  for (Id id = 0; id < n; ++id) set.insert(id, random_plane_motion<1>(random, Kind::generic, 0), 0);
+  Kinetic<DelaunayRule<PlaneMotion<1>>> triangulation(set, 0);
+  Kinetic<SpanningTreeRule<PlaneMotion<1>>> tree(triangulation, 0);
+  Simulator simulator(0, triangulation, tree);
+  simulator.advance_to(1);
+  simulator.audit();
+  const Measures m = tree.measures();
+  CHECK(check_tree(tree.rule(), set, 1) == 0);
+  CHECK(m.external > 10);
+  CHECK(m.external < m.events / 2);
+  CHECK(m.most_held <= 3 * n);   // compact
+  CHECK(m.most_touched <= 6);    // responsive: an edge comes and one goes
+}
+
+}  // namespace test_spanning_tree
