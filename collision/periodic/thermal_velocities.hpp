@@ -37,7 +37,9 @@ class ThermalVelocities {
   /// Two independent normal numbers of variance 1.
   Eigen::Vector2d normal_pair() {
     for (;;) {
-      const Eigen::Vector2d p(2 * uniform() - 1, 2 * uniform() - 1);
+      const double x = 2 * uniform() - 1;
+      const double y = 2 * uniform() - 1;
+      const Eigen::Vector2d p(x, y);
       const double square = p[0] * p[0] + p[1] * p[1];
       if (square > 0 && square < 1) return p * std::sqrt(2 * exponential() / square);
     }
