@@ -97,7 +97,7 @@ Gas::Gas(const GasOptions& options)
   }
   world_.reserve(size());
   for (std::size_t i = 0; i < size(); ++i) {
-    Vector3d velocity = velocities[i] / std::sqrt(energy / (1.5 * double(size())));
+    Vector3d velocity = velocities[i] / std::sqrt(energy / (1.5 * double(size() - 1)));
     velocity[0] += options.shear_rate * places[i][1];
     world_.add_body({.shape = Sphere{radii_[i]},
                      .motion = {{{places[i], velocity}, 0}},
@@ -135,7 +135,7 @@ double Gas::temperature() const {
   const std::vector<Vector3d> velocities = peculiar_velocities();
   double sum = 0;
   for (std::size_t i = 0; i < size(); ++i) sum += mass(i) * velocities[i].squaredNorm();
-  return sum / (3 * double(size()));
+  return sum / (3 * double(size() - 1));
 }
 
 }  // namespace granular_gas

@@ -56,7 +56,8 @@ class Gas final : private PeriodicListener<1> {
 
   /// Velocities about the mean flow, which is in proportion to y.
   std::vector<Eigen::Vector3d> peculiar_velocities() const;
-  double temperature() const;  ///< two thirds of the mean energy of the peculiar velocities
+  /// Two thirds of the energy of the peculiar velocities, over the number of balls less 1: they have no mean momentum.
+  double temperature() const;
   const ContactSums& sums() const { return sums_; }
   const PeriodicWorld<1>& world() const { return world_; }
 
