@@ -192,7 +192,7 @@ class PeriodicWorld final : private WorldListener<Degree> {
   // places.cpp: ends of the box and images
   Ends ends(const Real& body, int coordinate) const;
   bool follows(const Real& body, int coordinate) const;
-  kds::Motion<Degree> coordinate(const Real& body, int which) const;
+  kds::Motion<Degree> coordinate(const Real& body, const Motion& motion, int which) const;
   Span span(const Real& body, int which) const { return span_of(body.zones[std::size_t(which)], ends(body, which)); }
   std::int64_t periods_into_box(double x, int axis) const;
   Offset way_into_box(const Motion& motion) const;

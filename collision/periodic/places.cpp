@@ -42,8 +42,7 @@ bool PeriodicWorld<Degree>::follows(const Real& body, int which) const {
 }
 
 template <int Degree>
-kds::Motion<Degree> PeriodicWorld<Degree>::coordinate(const Real& body, int which) const {
-  const Motion& motion = world_.motion(body.in_world);
+kds::Motion<Degree> PeriodicWorld<Degree>::coordinate(const Real& body, const Motion& motion, int which) const {
   return which == layer_above ? lattice_.moved(motion, {body.shift, 1, 0}).axis(0) : motion.axis(which);
 }
 
@@ -125,7 +124,7 @@ void PeriodicWorld<Degree>::find_layer_above(Real& body) {
 template <int Degree>
 bool PeriodicWorld<Degree>::correct(Real& body, int which) {
   using Within = certificates::WithinLimit<kds::Motion<Degree>>;
-  const auto x = coordinate(body, which);
+  const auto x = coordinate(body, world_.motion(body.in_world), which);
   const auto side = outside(x, span(body, which), now());
   if (!side) return false;
   const Ends e = ends(body, which);
@@ -150,7 +149,7 @@ template <int Degree>
 void PeriodicWorld<Degree>::leave(Real& body, int which, int side) {
   if (which == layer_above) {
     body.shift -= side;
-    const double x = coordinate(body, which)(now());
+    const double x = coordinate(body, world_.motion(body.in_world), which)(now());
     body.zones[layer_above] = zone_at(x, ends(body, which));
     return;
   }
@@ -248,9 +247,12 @@ void PeriodicWorld<Degree>::end_image(const Image& image) {
 
 template <int Degree>
 void PeriodicWorld<Degree>::schedule(Real& body) {
+  const Motion& motion = world_.motion(body.in_world);
+  const double t = now();
   double first = never;
   for (int which = 0; which <= layer_above; ++which) {
-    if (follows(body, which)) first = std::min(first, earliest_exit(coordinate(body, which), span(body, which), now()));
+    if (!follows(body, which)) continue;
+    first = std::min(first, earliest_exit(coordinate(body, motion, which), span(body, which), t));
   }
   leaving_.set(slot_of(body), first);
   body.certain = false;
@@ -261,9 +263,11 @@ template <int Degree>
 void PeriodicWorld<Degree>::cross() {
   Real& body = reals_[leaving_.top().slot];
   if (!body.certain) {
+    const Motion& motion = world_.motion(body.in_world);
     double first = never;
     for (int which = 0; which <= layer_above; ++which) {
-      if (follows(body, which)) first = std::min(first, exit_time(coordinate(body, which), span(body, which), now()));
+      if (!follows(body, which)) continue;
+      first = std::min(first, exit_time(coordinate(body, motion, which), span(body, which), now()));
     }
     leaving_.set(slot_of(body), first);
     body.certain = true;
@@ -288,7 +292,7 @@ void PeriodicWorld<Degree>::audit() const {
     const Motion& motion = world_.motion(body.in_world);
     for (int which = 0; which <= layer_above; ++which) {
       if (!follows(body, which)) continue;
-      require(!outside(coordinate(body, which), span(body, which), now()), "is not where it is taken to be");
+      require(!outside(coordinate(body, motion, which), span(body, which), now()), "is not where it is taken to be");
     }
     std::vector<Offset> needed = needed_images(body), there;
     for (const Image& image : body.images) {

@@ -184,7 +184,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void update_volume(BodySlot slot, const KineticBox<Motion::degree>& box);
 
   // motion_edits.cpp: bodies that are moved
-  void require_clock_for(BodySlot slot, std::span<const Motion> pieces, const std::string& name) const;
+  void require_clock_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const;
   void give(BodySlot slot, const Motion& motion);
   void set_motion(BodySlot slot, const Motion& motion, bool jumped);
 
