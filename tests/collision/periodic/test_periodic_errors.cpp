@@ -90,7 +90,7 @@ TEST_CASE("periodic world: bodies that it cannot have are refused, and nothing i
   world.audit();
 
   PeriodicWorld<1> far({.min = {1e12, 0, 0}, .max = {1e12 + 64, 8, 8}});
-  CHECK_THROWS_WITH(far.add_body(good), Contains("too small for the coordinates of the box along x"));
+  CHECK_THROWS_WITH(far.add_body(good), Contains("too small for the coordinates of a box of the period along x"));
 }
 
 TEST_CASE("periodic world: ids of images and of bodies that were removed") {

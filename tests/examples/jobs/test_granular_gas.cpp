@@ -41,7 +41,7 @@ TEST_CASE("granular gas: packing, momentum and temperature at the start, and no 
   CHECK(gas.temperature() == Approx(1));
   const auto [least, most] = std::minmax_element(gas.radii().begin(), gas.radii().end());
   CHECK(*most / *least <= ratio);
-  CHECK(*most / *least > 1 + 0.9 * (ratio - 1));
+  CHECK(*most / *least >= 1 + 0.9 * (ratio - 1));
   for (double t = 0.2; t <= 2; t += 0.2) {
     gas.advance_to(t);
     CHECK(nearest_pair(gas) > 1 - 1e-12);
@@ -56,8 +56,8 @@ TEST_CASE("granular gas: pressure and collision rate of Carnahan and Starling, a
   const auto packing = GENERATE(0.1, 0.3);
   const auto ratio = GENERATE(1.0, 1.5);
   CAPTURE(packing, ratio);
-  const Equilibrium gas = equilibrium({.balls = 108, .packing = packing, .size_ratio = ratio, .seed = 1}, 20'000);
-  CHECK(gas.contacts == Approx(20'000).epsilon(0.1));
+  const Equilibrium gas = equilibrium({.balls = 108, .packing = packing, .size_ratio = ratio, .seed = 1}, 12'000);
+  CHECK(gas.contacts == Approx(12'000).epsilon(0.1));
   CHECK(gas.temperature == Approx(1).epsilon(1e-12));
   const auto near = [](const Mean& mean, double theory) {
     CAPTURE(mean.value, mean.error, theory);
@@ -66,10 +66,15 @@ TEST_CASE("granular gas: pressure and collision rate of Carnahan and Starling, a
   };
   near(gas.compressibility, gas.theory_compressibility);
   near(gas.rate, gas.theory_rate);
+  double far = 0;  // where balls know nothing of each other
+  for (std::size_t bin = RadialDistribution::bins - 30; bin < RadialDistribution::bins; ++bin) {
+    far += gas.radial.value(bin) / 30;
+  }
+  CHECK(far == Approx(1).epsilon(0.03));
   // In the collision rate of equal balls is the contact value, and in the pressure too: one is a function of the other.
   if (ratio == 1) {
     CHECK(gas.diffusion.value == Approx(gas.simulated_diffusion).epsilon(0.12));
-    CHECK(gas.contact_value == Approx(gas.theory_contact_value).epsilon(0.1));
+    CHECK(gas.contact_value == Approx(gas.theory_contact_value).epsilon(0.25));
     const double from_rate = 1 + 4 * packing * gas.theory_contact_value * gas.rate.value / gas.theory_rate;
     CHECK(gas.compressibility.value == Approx(from_rate).epsilon(0.01));
   }
@@ -78,7 +83,7 @@ TEST_CASE("granular gas: pressure and collision rate of Carnahan and Starling, a
 TEST_CASE("granular gas: a sheared gas reaches a temperature, at which shear and collisions are in balance") {
   std::vector<ShearedState> states;
   const Sheared steady = sheared({.balls = 108, .packing = 0.25, .restitution = 0.8, .shear_rate = 2, .seed = 2},
-                                 20'000, [&](const ShearedState& state) { states.push_back(state); });
+                                 10'000, [&](const ShearedState& state) { states.push_back(state); });
   REQUIRE(states.size() == 100);
   const double power = 2 * steady.stress.value, error = 2 * steady.stress.error + steady.dissipation.error;
   CAPTURE(power, steady.dissipation.value, error);
