@@ -74,6 +74,7 @@ Equilibrium equilibrium(const GasOptions& options, std::uint64_t contacts) {
   const std::size_t from = intervals(10), to = std::max(from + 1, intervals(30));
   const double contact_value = mixture.contact_value(1, 1), packing = mixture.packing;
   const bool equal = equal_balls(options);
+  const Mean diffusion = displacements.diffusion(from, to);
   return {.balls = gas.size(),
           .contacts = gas.sums().contacts - start.contacts,
           .temperature = gas.temperature(),
@@ -81,7 +82,9 @@ Equilibrium equilibrium(const GasOptions& options, std::uint64_t contacts) {
           .theory_compressibility = mixture.compressibility(),
           .rate = mean_of(rates),
           .theory_rate = theory_rate,
-          .diffusion = displacements.diffusion(from, to),
+          .diffusion = diffusion,
+          .diffusion_of_large_box =
+              equal ? diffusion.value + diffusion_lost(packing, contact_value, gas.side()) : unknown,
           .theory_diffusion = equal ? enskog_diffusion(packing, contact_value) : unknown,
           .simulated_diffusion = equal ? simulated_diffusion(packing) : unknown,
           .contact_value = radial.at_contact(),
@@ -94,7 +97,9 @@ Equilibrium equilibrium(const GasOptions& options, std::uint64_t contacts) {
 Sheared sheared(const GasOptions& options, std::uint64_t contacts,
                 const std::function<void(const ShearedState&)>& tell) {
   if (options.shear_rate == 0) throw std::invalid_argument("shear-rate: must not be 0");
-  if (options.restitution == 1) throw std::invalid_argument("restitution: a sheared gas that is elastic gets hotter for ever");
+  if (options.restitution == 1) {
+    throw std::invalid_argument("restitution: a sheared gas that is elastic gets hotter for ever");
+  }
   constexpr std::size_t spans = 100;
   constexpr std::size_t samples = 10;  // in a span
   Gas gas(options);

@@ -21,6 +21,7 @@ struct Equilibrium {
   Mean rate;  ///< contacts of a ball in unit time
   double theory_rate;
   Mean diffusion;
+  double diffusion_of_large_box;  ///< with diffusion_lost() added
   double theory_diffusion, simulated_diffusion;
   double contact_value;
   double theory_contact_value;

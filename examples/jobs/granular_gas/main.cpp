@@ -139,7 +139,9 @@ void run_gas(const Arguments& arguments) {
   print("pressure, P V / (N T)", text(gas.compressibility), gas.theory_compressibility, "Carnahan and Starling");
   print("collisions of a ball / s", text(gas.rate), gas.theory_rate, "Enskog");
   print("diffusion", text(gas.diffusion), gas.theory_diffusion, "Enskog");
-  if (!std::isnan(gas.simulated_diffusion)) print("", "", gas.simulated_diffusion, "Speedy's fit to simulations");
+  if (!std::isnan(gas.diffusion_of_large_box)) {
+    print("  in a large box", text(gas.diffusion_of_large_box), gas.simulated_diffusion, "Speedy's fit to simulations");
+  }
   print("distribution at contact", text(gas.contact_value), gas.theory_contact_value, "Carnahan and Starling");
   csv.out() << "distance,radial_distribution,,time,mean_square_displacement\n";
   const Displacements& moved = gas.displacements;
@@ -156,20 +158,20 @@ void run_gas(const Arguments& arguments) {
 
 void run_equation(Arguments arguments) {
   CsvFile csv(arguments.csv);
-  csv.out() << "packing,compressibility,error,theory,rate,error,theory,diffusion,error,theory,fit,contact,theory\n";
-  std::cout << "packing  P V / (N T), theory              collisions / s, Enskog          diffusion, Enskog, fit\n";
+  csv.out() << "packing,compressibility,error,theory,rate,error,theory,diffusion,error,large_box,theory,fit,contact,theory\n";
+  std::cout << "packing  P V / (N T), theory              collisions / s, Enskog          diffusion, in a large box, fit\n";
   for (int i = 1; i <= 9; ++i) {
     arguments.gas.packing = 0.05 * i;
     const Equilibrium gas = equilibrium(arguments.gas, collisions(arguments, 1000));
     std::cout << std::left << std::setw(9) << arguments.gas.packing << std::setw(20) << text(gas.compressibility)
               << std::setw(12) << gas.theory_compressibility << std::setw(20) << text(gas.rate) << std::setw(12)
-              << gas.theory_rate << std::setw(22) << text(gas.diffusion) << std::setw(10) << gas.theory_diffusion
+              << gas.theory_rate << std::setw(22) << text(gas.diffusion) << std::setw(10) << gas.diffusion_of_large_box
               << gas.simulated_diffusion << std::endl;
     const auto& of = gas;
     csv.out() << arguments.gas.packing << ',' << of.compressibility.value << ',' << of.compressibility.error << ','
               << of.theory_compressibility << ',' << of.rate.value << ',' << of.rate.error << ',' << of.theory_rate
-              << ',' << of.diffusion.value << ',' << of.diffusion.error << ',' << of.theory_diffusion << ','
-              << of.simulated_diffusion << ',' << of.contact_value << ',' << of.theory_contact_value << '\n';
+              << ',' << of.diffusion.value << ',' << of.diffusion.error << ',' << of.diffusion_of_large_box << ','
+              << of.theory_diffusion << ',' << of.simulated_diffusion << ',' << of.contact_value << ',' << of.theory_contact_value << '\n';
   }
   csv.finish();
 }

@@ -19,7 +19,7 @@ set yrange [0.4:1.4]
 n(x) = 6 * x / pi
 plot (1 - n(x) / 1.09) * (1 + n(x)**2 * (0.4 - 0.83 * n(x)**2)) * (1 - x / 2) / (1 - x)**3 with lines lc rgb red \
        title "fit of Speedy", \
-     "equation.csv" using 1:($8 / $10):($9 / $10) skip 1 with yerrorbars pt 7 ps 0.7 lc rgb blue title "measured"
+     "equation.csv" using 1:($10 / $11):($9 / $11) skip 1 with yerrorbars pt 7 ps 0.7 lc rgb blue title "measured"
 set autoscale y
 set key top right
 set xrange [1:3]

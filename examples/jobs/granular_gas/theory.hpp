@@ -71,6 +71,12 @@ inline double enskog_viscosity(double packing, double contact_value) {
          (1 / contact_value + 0.8 * b + 0.7614 * b * b * contact_value);
 }
 
+/// How much less diffusion there is in a periodic box than in a large one, since balls drag each other's images along
+/// [Yeh04]: 2.837 T / (6 pi viscosity side).
+inline double diffusion_lost(double packing, double contact_value, double side) {
+  return 2.837297 / (6 * std::numbers::pi * enskog_viscosity(packing, contact_value) * side);
+}
+
 /// The temperature at which a sheared gas loses as much in contacts as shear brings in, with Enskog's viscosity and
 /// rate: a contact takes (1 - e^2) T on the average.
 inline double steady_temperature(double packing, double contact_value, double restitution, double shear_rate) {

@@ -66,14 +66,12 @@ TEST_CASE("granular gas: pressure and collision rate of Carnahan and Starling, a
   };
   near(gas.compressibility, gas.theory_compressibility);
   near(gas.rate, gas.theory_rate);
-  double far = 0;  // where balls know nothing of each other
-  for (std::size_t bin = RadialDistribution::bins - 30; bin < RadialDistribution::bins; ++bin) {
-    far += gas.radial.value(bin) / 30;
-  }
-  CHECK(far == Approx(1).epsilon(0.03));
+  double far = 0;  // where balls know little of each other, and still nearer than half the side
+  for (std::size_t bin = 50; bin < 75; ++bin) far += gas.radial.value(bin) / 25;
+  CHECK(far == Approx(1).epsilon(0.05));
   // In the collision rate of equal balls is the contact value, and in the pressure too: one is a function of the other.
   if (ratio == 1) {
-    CHECK(gas.diffusion.value == Approx(gas.simulated_diffusion).epsilon(0.12));
+    CHECK(gas.diffusion_of_large_box == Approx(gas.simulated_diffusion).epsilon(0.1));
     CHECK(gas.contact_value == Approx(gas.theory_contact_value).epsilon(0.25));
     const double from_rate = 1 + 4 * packing * gas.theory_contact_value * gas.rate.value / gas.theory_rate;
     CHECK(gas.compressibility.value == Approx(from_rate).epsilon(0.01));
