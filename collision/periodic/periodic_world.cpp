@@ -18,10 +18,8 @@
 namespace kds::collision {
 namespace {
 
-/// Categories are the lower half of the world's bits for bodies and the upper half for images, so that images meet
-/// bodies and no images.
-constexpr int image_bits = 16;
-constexpr std::uint32_t body_categories = (1u << image_bits) - 1;
+/// The bits of the categories of bodies: see PeriodicWorld::image_bits.
+constexpr std::uint32_t body_categories = 0xffff;
 
 /// Two bodies part at least at this rate, relative to their speeds: more than what roundings may leave of an approach.
 constexpr double least_rebound = 0x1p-44;
@@ -171,7 +169,8 @@ void PeriodicWorld<Degree>::set_restitution(BodyId id, double restitution) {
 template <int Degree>
 bool PeriodicWorld<Degree>::step(double limit) {
   if (!(limit < never)) {
-    throw std::invalid_argument("PeriodicWorld::step: bodies may cross the ends of the box for ever, so it needs a limit");
+    throw std::invalid_argument(
+        "PeriodicWorld::step: bodies may cross the ends of the box for ever, so it needs a limit");
   }
   for (;;) {
     const double next = leaving_.empty() ? never : leaving_.top().time;
@@ -219,8 +218,8 @@ template <int Degree>
 PeriodicEvent PeriodicWorld<Degree>::event_of(const PairEvent& pair) const {
   const Role& a = role(pair.a);
   const Role& b = role(pair.b);
-  PeriodicEvent event{id_of(a.owner), id_of(b.owner), b.offset + -a.offset, pair.contact,
-                      0,              pair.user_data_a, pair.user_data_b};
+  PeriodicEvent event{id_of(a.owner),   id_of(b.owner),  b.offset + -a.offset, pair.contact, 0,
+                      pair.user_data_a, pair.user_data_b};
   const bool swap = a.owner > b.owner;
   if (swap) {
     std::swap(event.a, event.b);

@@ -56,8 +56,8 @@ struct PeriodicCounters {
 /// 5. *When.* Functions that change bodies may be called between steps and in callbacks; others that run the world only
 ///    between steps. What a World says of exceptions is true of this too.
 ///
-/// Cost: an image is a body. The bodies within two radii or so of an end have one, so a gas of N balls of diameter 1 has
-/// some 4 N^(2/3) images, and of each body's contacts with the world's events there are few more; what it adds to a
+/// Cost: an image is a body. The bodies within two radii or so of an end have one, so a gas of N balls of diameter 1
+/// has some 4 N^(2/3) images, and of each body's contacts with the world's events there are few more; what it adds to a
 /// contact is measured in docs/granular_gas.md.
 ///
 /// An id that was never given, or whose body was removed, throws std::out_of_range.
@@ -70,7 +70,8 @@ class PeriodicWorld final : private WorldListener<Degree> {
   using Description = BodyDescription<Degree>;
   using Listener = PeriodicListener<Degree>;
 
-  /// Throws what validate() and the constructor of a World throw. The listener, if there is one, must outlive the world.
+  /// Throws what validate() and the constructor of a World throw. The listener, if there is one, must outlive the
+  /// world.
   explicit PeriodicWorld(const PeriodicOptions& options, Listener* listener = nullptr);
   PeriodicWorld(const PeriodicWorld&) = delete;
   PeriodicWorld& operator=(const PeriodicWorld&) = delete;
@@ -144,19 +145,20 @@ class PeriodicWorld final : private WorldListener<Degree> {
     BodyId in_world = 0;
     double inverse_mass = 0;
     double restitution = 1;
-    double radius = 0;                ///< of its bounding ball
+    double radius = 0;                    ///< of its bounding ball
     std::array<double, 4> orientation{};  ///< of its shape: x, y, z, w
-    double last_contact = -never;     ///< s
-    double placed_at = -never;        ///< s: when the caller put it where it is
+    double last_contact = -never;         ///< s
+    double placed_at = -never;            ///< s: when the caller put it where it is
     Offset crossings{};
-    std::int64_t shift = 0;           ///< under shear: periods in x of its image in the layer above
-    std::array<Zone, 4> zones{};      ///< of x, y, z, and of the image's x in the layer above
-    bool certain = false;             ///< whether its time in the queue is exact
+    std::int64_t shift = 0;       ///< under shear: periods in x of its image in the layer above
+    std::array<Zone, 4> zones{};  ///< of x, y, z, and of the image's x in the layer above
+    bool certain = false;         ///< whether its time in the queue is exact
     std::vector<Image> images{};
 
     template <class Archive>
     void archive(Archive& to) {
-      to(alive, generation, in_world, inverse_mass, restitution, radius, orientation, last_contact, placed_at, crossings, shift, zones, images);
+      to(alive, generation, in_world, inverse_mass, restitution, radius, orientation, last_contact, placed_at,
+         crossings, shift, zones, images);
     }
   };
   /// What a slot of the world is: a body, or an image of one.
@@ -169,6 +171,9 @@ class PeriodicWorld final : private WorldListener<Degree> {
       to(owner, offset);
     }
   };
+  /// Categories and masks of the caller have 16 bits. In the world those of bodies are the lower bits, and images have
+  /// the same this much higher, which no mask of an image contains: so images meet bodies, and no images.
+  static constexpr int image_bits = 16;
   static constexpr int layer_above = 3;  ///< the coordinate after x, y, z: see Real::zones
 
   // periodic_world.cpp: what callers do, and contacts
@@ -220,8 +225,8 @@ class PeriodicWorld final : private WorldListener<Degree> {
   std::vector<Role> roles_;     ///< by slot of the world
   std::size_t size_ = 0;
   double greatest_radius_ = 0;
-  double slack_ = 0;  ///< Ends::slack
-  bool told_ = false;  ///< an event has been told since the step began
+  double slack_ = 0;         ///< Ends::slack
+  bool told_ = false;        ///< an event has been told since the step began
   CalendarQueue<> leaving_;  ///< slots: when a coordinate of a body leaves its zone, or a time before
   ThermalVelocities thermal_;
   PeriodicCounters counters_;

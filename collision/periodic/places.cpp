@@ -12,8 +12,6 @@
 namespace kds::collision {
 namespace {
 
-constexpr int image_bits = 16;
-
 /// Ends::slack: more makes wraps rarer and images last longer, and there are more of them. Half and twice as much cost
 /// less than 1 % more instructions a contact.
 constexpr double slack_in_radii = 0.25;
@@ -102,8 +100,7 @@ template <int Degree>
 void PeriodicWorld<Degree>::find_zones(Real& body) {
   const Eigen::Vector3d x = world_.motion(body.in_world).position(now());
   for (int axis = 0; axis < 3; ++axis) {
-    body.zones[static_cast<std::size_t>(axis)] =
-        lattice_.periodic(axis) ? zone_at(x[axis], ends(body, axis)) : Zone{};
+    body.zones[static_cast<std::size_t>(axis)] = lattice_.periodic(axis) ? zone_at(x[axis], ends(body, axis)) : Zone{};
   }
   find_layer_above(body);
 }
@@ -213,8 +210,8 @@ void PeriodicWorld<Degree>::match_images(Real& body) {
   std::for_each(rest, body.images.end(), [&](const Image& image) { end_image(image); });
   body.images.erase(rest, body.images.end());
   for (const Offset& offset : needed) {
-    const bool there = std::any_of(body.images.begin(), body.images.end(),
-                                   [&](const Image& image) { return image.offset == offset; });
+    const bool there =
+        std::any_of(body.images.begin(), body.images.end(), [&](const Image& image) { return image.offset == offset; });
     if (!there) add_image(body, offset);
   }
 }
@@ -296,9 +293,9 @@ void PeriodicWorld<Degree>::audit() const {
     std::vector<Offset> needed = needed_images(body), there;
     for (const Image& image : body.images) {
       there.push_back(image.offset);
-      require(world_.contains(image.id) && role(image.id).owner == slot_of(body) &&
-                  role(image.id).offset == image.offset,
-              "has an image that is none");
+      require(
+          world_.contains(image.id) && role(image.id).owner == slot_of(body) && role(image.id).offset == image.offset,
+          "has an image that is none");
       const Eigen::Vector3d off =
           world_.motion(image.id).position(now()) - lattice_.moved(motion, image.offset).position(now());
       require(off.cwiseAbs().maxCoeff() <= slack_ * 0x1p-8, "has an image that does not follow it");

@@ -33,7 +33,7 @@ struct Zone {
   friend bool operator==(const Zone&, const Zone&) = default;
 };
 
-inline Zone zone_at(double x, const Ends& ends) { return {x < ends.min + ends.near, x > ends.max - ends.near}; }
+inline Zone zone_at(double x, const Ends& ends) { return {x<ends.min + ends.near, x> ends.max - ends.near}; }
 
 /// The values for which a zone is right.
 struct Span {

@@ -75,23 +75,23 @@ Equilibrium equilibrium(const GasOptions& options, std::uint64_t contacts) {
   const double contact_value = mixture.contact_value(1, 1), packing = mixture.packing;
   const bool equal = equal_balls(options);
   const Mean diffusion = displacements.diffusion(from, to);
-  return {.balls = gas.size(),
-          .contacts = gas.sums().contacts - start.contacts,
-          .temperature = gas.temperature(),
-          .compressibility = mean_of(compressibilities),
-          .theory_compressibility = mixture.compressibility(),
-          .rate = mean_of(rates),
-          .theory_rate = theory_rate,
-          .diffusion = diffusion,
-          .diffusion_of_large_box =
-              equal ? diffusion.value + diffusion_lost(packing, contact_value, gas.side()) : unknown,
-          .theory_diffusion = equal ? enskog_diffusion(packing, contact_value) : unknown,
-          .simulated_diffusion = equal ? simulated_diffusion(packing) : unknown,
-          .contact_value = radial.at_contact(),
-          .theory_contact_value = equal ? contact_value : unknown,
-          .cpu_seconds = seconds,
-          .displacements = std::move(displacements),
-          .radial = std::move(radial)};
+  return {
+      .balls = gas.size(),
+      .contacts = gas.sums().contacts - start.contacts,
+      .temperature = gas.temperature(),
+      .compressibility = mean_of(compressibilities),
+      .theory_compressibility = mixture.compressibility(),
+      .rate = mean_of(rates),
+      .theory_rate = theory_rate,
+      .diffusion = diffusion,
+      .diffusion_of_large_box = equal ? diffusion.value + diffusion_lost(packing, contact_value, gas.side()) : unknown,
+      .theory_diffusion = equal ? enskog_diffusion(packing, contact_value) : unknown,
+      .simulated_diffusion = equal ? simulated_diffusion(packing) : unknown,
+      .contact_value = radial.at_contact(),
+      .theory_contact_value = equal ? contact_value : unknown,
+      .cpu_seconds = seconds,
+      .displacements = std::move(displacements),
+      .radial = std::move(radial)};
 }
 
 Sheared sheared(const GasOptions& options, std::uint64_t contacts,
@@ -143,10 +143,9 @@ Sheared sheared(const GasOptions& options, std::uint64_t contacts,
           .stress = mean_of(stresses),
           .dissipation = mean_of(dissipations),
           .rate = mean_of(rates),
-          .theory_temperature = equal_balls(options)
-                                    ? steady_temperature(mixture.packing, mixture.contact_value(1, 1),
-                                                         options.restitution, options.shear_rate)
-                                    : unknown};
+          .theory_temperature = equal_balls(options) ? steady_temperature(mixture.packing, mixture.contact_value(1, 1),
+                                                                          options.restitution, options.shear_rate)
+                                                     : unknown};
 }
 
 double seconds_a_contact(const GasOptions& options, std::uint64_t contacts) {

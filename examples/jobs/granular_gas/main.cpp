@@ -146,11 +146,15 @@ void run_gas(const Arguments& arguments) {
   csv.out() << "distance,radial_distribution,,time,mean_square_displacement\n";
   const Displacements& moved = gas.displacements;
   for (std::size_t i = 0; i < std::max(RadialDistribution::bins, moved.longest()); ++i) {
-    if (i < RadialDistribution::bins) csv.out() << RadialDistribution::distance(i) << ',' << gas.radial.value(i);
-    else csv.out() << ',';
+    if (i < RadialDistribution::bins)
+      csv.out() << RadialDistribution::distance(i) << ',' << gas.radial.value(i);
+    else
+      csv.out() << ',';
     csv.out() << ",,";
-    if (i < moved.longest()) csv.out() << double(i + 1) * moved.interval() << ',' << moved.mean_square(i + 1);
-    else csv.out() << ',';
+    if (i < moved.longest())
+      csv.out() << double(i + 1) * moved.interval() << ',' << moved.mean_square(i + 1);
+    else
+      csv.out() << ',';
     csv.out() << '\n';
   }
   csv.finish();
@@ -158,8 +162,10 @@ void run_gas(const Arguments& arguments) {
 
 void run_equation(Arguments arguments) {
   CsvFile csv(arguments.csv);
-  csv.out() << "packing,compressibility,error,theory,rate,error,theory,diffusion,error,large_box,theory,fit,contact,theory\n";
-  std::cout << "packing  P V / (N T), theory              collisions / s, Enskog          diffusion, in a large box, fit\n";
+  csv.out()
+      << "packing,compressibility,error,theory,rate,error,theory,diffusion,error,large_box,theory,fit,contact,theory\n";
+  std::cout
+      << "packing  P V / (N T), theory              collisions / s, Enskog          diffusion, in a large box, fit\n";
   for (int i = 1; i <= 9; ++i) {
     arguments.gas.packing = 0.05 * i;
     const Equilibrium gas = equilibrium(arguments.gas, collisions(arguments, 1000));
@@ -171,7 +177,8 @@ void run_equation(Arguments arguments) {
     csv.out() << arguments.gas.packing << ',' << of.compressibility.value << ',' << of.compressibility.error << ','
               << of.theory_compressibility << ',' << of.rate.value << ',' << of.rate.error << ',' << of.theory_rate
               << ',' << of.diffusion.value << ',' << of.diffusion.error << ',' << of.diffusion_of_large_box << ','
-              << of.theory_diffusion << ',' << of.simulated_diffusion << ',' << of.contact_value << ',' << of.theory_contact_value << '\n';
+              << of.theory_diffusion << ',' << of.simulated_diffusion << ',' << of.contact_value << ','
+              << of.theory_contact_value << '\n';
   }
   csv.finish();
 }
@@ -179,11 +186,10 @@ void run_equation(Arguments arguments) {
 void run_shear(const Arguments& arguments) {
   CsvFile csv(arguments.csv);
   csv.out() << "time,temperature,stress,dissipation,rate\n";
-  const Sheared steady =
-      sheared(arguments.gas, collisions(arguments, 500), [&](const ShearedState& state) {
-        csv.out() << state.time << ',' << state.temperature << ',' << state.stress << ',' << state.dissipation << ','
-                  << state.rate << '\n';
-      });
+  const Sheared steady = sheared(arguments.gas, collisions(arguments, 500), [&](const ShearedState& state) {
+    csv.out() << state.time << ',' << state.temperature << ',' << state.stress << ',' << state.dissipation << ','
+              << state.rate << '\n';
+  });
   csv.finish();
   std::cout << "sheared at " << arguments.gas.shear_rate << ", restitution " << arguments.gas.restitution
             << ", packing " << arguments.gas.packing << ": steady state of the second half\n";

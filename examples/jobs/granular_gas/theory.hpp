@@ -60,15 +60,13 @@ inline double enskog_diffusion(double packing, double contact_value) {
 /// The same by a fit to simulations, within some per cent [Speedy87].
 inline double simulated_diffusion(double packing) {
   const double n = 6 / std::numbers::pi * packing;
-  return 1.0190 * std::sqrt(1 / std::numbers::pi) * 3 / 8 / n * (1 - n / 1.09) *
-         (1 + n * n * (0.4 - 0.83 * n * n));
+  return 1.0190 * std::sqrt(1 / std::numbers::pi) * 3 / 8 / n * (1 - n / 1.09) * (1 + n * n * (0.4 - 0.83 * n * n));
 }
 
 /// Enskog's viscosity at temperature 1.
 inline double enskog_viscosity(double packing, double contact_value) {
   const double b = 4 * packing;
-  return 1.016 * 5 / 16 / std::sqrt(std::numbers::pi) *
-         (1 / contact_value + 0.8 * b + 0.7614 * b * b * contact_value);
+  return 1.016 * 5 / 16 / std::sqrt(std::numbers::pi) * (1 / contact_value + 0.8 * b + 0.7614 * b * b * contact_value);
 }
 
 /// How much less diffusion there is in a periodic box than in a large one, since balls drag each other's images along

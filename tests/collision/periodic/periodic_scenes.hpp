@@ -17,8 +17,8 @@ using namespace kds::collision;
 /// Balls that do not overlap, of masses by their volumes, in random places, with velocities of temperature 1; radii
 /// from 0.3 to 0.5. Precondition: there is room for them.
 template <int Degree>
-std::vector<BodyDescription<Degree>> random_balls(std::size_t count, const PeriodicOptions& options,
-                                                  std::uint64_t seed, double restitution = 1) {
+std::vector<BodyDescription<Degree>> random_balls(std::size_t count, const PeriodicOptions& options, std::uint64_t seed,
+                                                  double restitution = 1) {
   ThermalVelocities random(seed);
   std::vector<BodyDescription<Degree>> balls;
   while (balls.size() < count) {

@@ -29,8 +29,8 @@ struct Meeting {
 
 class Gas {
  public:
-  /// A period of 0 stands for an axis that is not periodic. Sheared: the copy above in y moves at `sliding` in x, and is
-  /// in line with the box at time 0.
+  /// A period of 0 stands for an axis that is not periodic. Sheared: the copy above in y moves at `sliding` in x, and
+  /// is in line with the box at time 0.
   Gas(std::vector<Ball> balls, Vector period, Real sliding, Real time)
       : balls_(std::move(balls)), period_(period), sliding_(sliding), time_(time) {}
 
@@ -105,8 +105,7 @@ class Gas {
     speed[0] += meeting.copy[1] * sliding_;
     const Real length = std::sqrt(dot(normal, normal));
     for (Real& n : normal) n /= length;
-    meeting.impulse =
-        -(1 + std::min(a.restitution, b.restitution)) * dot(normal, speed) / (1 / a.mass + 1 / b.mass);
+    meeting.impulse = -(1 + std::min(a.restitution, b.restitution)) * dot(normal, speed) / (1 / a.mass + 1 / b.mass);
     a.v = sum(a.v, normal, -meeting.impulse / a.mass);
     b.v = sum(b.v, normal, meeting.impulse / b.mass);
     return meeting;

@@ -38,12 +38,12 @@ reference::Gas reference_of(const PeriodicWorld<1>& world, const std::vector<Bod
     }
     place[0] += static_cast<long double>(crossings[1]) * static_cast<long double>(lattice.sliding()) *
                 static_cast<long double>(world.now());
-    copies.push_back({place, {v[0], v[1], v[2]}, std::get<Sphere>(balls[i].shape).radius, balls[i].mass,
-                      balls[i].restitution});
+    copies.push_back(
+        {place, {v[0], v[1], v[2]}, std::get<Sphere>(balls[i].shape).radius, balls[i].mass, balls[i].restitution});
   }
   const auto& lattice = world.lattice();
-  return reference::Gas(std::move(copies), {lattice.period(0), lattice.period(1), lattice.period(2)},
-                        lattice.sliding(), world.now());
+  return reference::Gas(std::move(copies), {lattice.period(0), lattice.period(1), lattice.period(2)}, lattice.sliding(),
+                        world.now());
 }
 
 /// Rounding errors grow some tenfold with each contact of a ball, so the reference starts anew from the state of the

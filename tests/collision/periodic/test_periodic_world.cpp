@@ -78,8 +78,8 @@ TEST_CASE("periodic world: the same events, bit for bit, with each broad phase, 
     CHECK(expected.overlaps + expected.passed == 0);
     CHECK((expected.walls > 0) == (seed == 2));
   }
-  for (const BroadPhaseKind kind : {BroadPhaseKind::kinetic_sap, BroadPhaseKind::grid, BroadPhaseKind::sap,
-                                    BroadPhaseKind::all_pairs}) {
+  for (const BroadPhaseKind kind :
+       {BroadPhaseKind::kinetic_sap, BroadPhaseKind::grid, BroadPhaseKind::sap, BroadPhaseKind::all_pairs}) {
     PeriodicOptions other = options;
     other.world.broad_phase = kind;
     other.world.rate = kind == BroadPhaseKind::sap ? 50 : 0;
@@ -97,8 +97,8 @@ TEST_CASE("periodic world: the same events, bit for bit, with each broad phase, 
   CHECK(world.size() == 70);
   world.advance_to(3);
   world.audit();
-  CHECK((rest.numbers == std::vector<double>(expected.numbers.begin() + std::ptrdiff_t(numbers_then),
-                                            expected.numbers.end())));
+  CHECK((rest.numbers ==
+         std::vector<double>(expected.numbers.begin() + std::ptrdiff_t(numbers_then), expected.numbers.end())));
 }
 
 /// Until rounding errors, which differ between the two, have grown.
