@@ -118,15 +118,15 @@ BodyId PeriodicWorld<Degree>::add_body(const Description& description) {
   free_.empty() ? void(reals_.emplace_back()) : free_.pop_back();
   make_room(leaving_, reals_.size());
   set_role(in_world, slot, {});
-  reals_[slot] = {.alive = true,
-                  .generation = reals_[slot].generation,
-                  .in_world = in_world,
+  reals_[slot] = {.in_world = in_world,
                   .inverse_mass = description.fixed ? 0 : 1 / description.mass,
                   .restitution = description.restitution,
                   .radius = radius,
-                  .orientation = {q.x(), q.y(), q.z(), q.w()},
+                  .generation = reals_[slot].generation,
+                  .alive = true,
                   .placed_at = now(),
-                  .crossings = -into};
+                  .crossings = -into,
+                  .orientation = {q.x(), q.y(), q.z(), q.w()}};
   ++size_;
   if (radius > greatest_radius_) grow_reach(radius);
   find_zones(reals_[slot]);
@@ -209,7 +209,7 @@ void PeriodicWorld<Degree>::follow(Real& body) {
 
 template <int Degree>
 void PeriodicWorld<Degree>::move_images(Real& body) {
-  if (body.images.empty()) return;
+  if (!body.near_an_end()) return;
   const Motion motion = world_.motion(body.in_world);
   for (const Image& image : body.images) world_.update_motion(image.id, lattice_.moved(motion, image.offset));
 }

@@ -139,21 +139,25 @@ class PeriodicWorld final : private WorldListener<Degree> {
     }
   };
   /// A body of the caller's, or a place for one.
-  struct Real {
-    bool alive = false;
-    std::uint32_t generation = 0;  ///< as in body_id.hpp
+  struct alignas(64) Real {
+    // What each contact needs is in one cache line ...
     BodyId in_world = 0;
     double inverse_mass = 0;
     double restitution = 1;
-    double radius = 0;                    ///< of its bounding ball
-    std::array<double, 4> orientation{};  ///< of its shape: x, y, z, w
-    double last_contact = -never;         ///< s
-    double placed_at = -never;            ///< s: when the caller put it where it is
+    double radius = 0;             ///< of its bounding ball
+    double last_contact = -never;  ///< s
+    std::int64_t shift = 0;        ///< under shear: periods in x of its image in the layer above
+    std::array<Zone, 4> zones{};   ///< of x, y, z, and of the image's x in the layer above
+    std::uint32_t generation = 0;  ///< as in body_id.hpp
+    bool alive = false;
+    bool certain = false;  ///< whether its time in the queue is exact
+    // ... and what few need is not.
+    std::vector<Image> images{};  ///< none unless x, y or z is near an end
+    double placed_at = -never;    ///< s: when the caller put it where it is
     Offset crossings{};
-    std::int64_t shift = 0;       ///< under shear: periods in x of its image in the layer above
-    std::array<Zone, 4> zones{};  ///< of x, y, z, and of the image's x in the layer above
-    bool certain = false;         ///< whether its time in the queue is exact
-    std::vector<Image> images{};
+    std::array<double, 4> orientation{};  ///< of its shape: x, y, z, w
+
+    bool near_an_end() const { return zones[0] != Zone{} || zones[1] != Zone{} || zones[2] != Zone{}; }
 
     template <class Archive>
     void archive(Archive& to) {
