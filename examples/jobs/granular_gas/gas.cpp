@@ -24,8 +24,7 @@ std::size_t cells(const GasOptions& options) {
 
 std::vector<double> draw_radii(const GasOptions& options) {
   ThermalVelocities random(options.seed);
-  const std::size_t m = cells(options);
-  std::vector<double> radii(4 * m * m * m);
+  std::vector<double> radii(balls_on_lattice(options));
   const double smallest = 1 / (1 + options.size_ratio);  // the mean is 1/2
   for (double& radius : radii) radius = smallest + smallest * (options.size_ratio - 1) * random.uniform();
   return radii;
@@ -69,6 +68,11 @@ void validate(const GasOptions& options) {
   require(options.size_ratio >= 1 && options.size_ratio <= 100, "size-ratio: must be in [1, 100]");
   require(options.restitution > 0 && options.restitution <= 1, "restitution: must be in (0, 1]");
   require(std::abs(options.shear_rate) <= 1e6, "shear-rate: must be in [-1e6, 1e6]");
+}
+
+std::size_t balls_on_lattice(const GasOptions& options) {
+  const std::size_t m = cells(options);
+  return 4 * m * m * m;
 }
 
 Gas::Gas(const GasOptions& options)

@@ -25,6 +25,8 @@ struct GasOptions {
 
 /// Throws std::invalid_argument, naming the option that is out of range, or the greatest packing for this size ratio.
 void validate(const GasOptions& options);
+/// How many balls there will be.
+std::size_t balls_on_lattice(const GasOptions& options);
 
 /// Of all contacts so far.
 struct ContactSums {

@@ -204,7 +204,7 @@ void run_shear(const Arguments& arguments) {
 void run_speed(const Arguments& arguments) {
   const std::uint64_t count = collisions(arguments, 100);
   const double seconds = seconds_a_contact(arguments.gas, count);
-  std::cout << arguments.gas.balls << " balls, packing " << arguments.gas.packing << ": " << seconds * 1e6
+  std::cout << balls_on_lattice(arguments.gas) << " balls, packing " << arguments.gas.packing << ": " << seconds * 1e6
             << " us of CPU time a collision, " << 1 / seconds << " collisions / s\n";
 }
 
