@@ -57,8 +57,8 @@ struct PeriodicCounters {
 ///    between steps. What a World says of exceptions is true of this too.
 ///
 /// Cost: an image is a body, and a body that is within two radii or so of an end has one: of N balls at a packing of a
-/// quarter there are some 3 N^(2/3). Moving them, and finding out when bodies cross an end, takes 20 to 40 % more than a
-/// World with walls needs for a contact (docs/granular_gas.md).
+/// quarter there are some 3 N^(2/3). Moving them, and finding out when bodies cross an end, takes 20 to 40 % more
+/// instructions than a World with walls needs for a contact (docs/granular_gas.md).
 ///
 /// An id that was never given, or whose body was removed, throws std::out_of_range.
 template <int Degree>
@@ -77,9 +77,9 @@ class PeriodicWorld final : private WorldListener<Degree> {
   PeriodicWorld& operator=(const PeriodicWorld&) = delete;
 
   /// Adds a body, wherever its copy in the box is, and returns its id: 0, 1, 2, ... as long as none has been removed
-  /// (body_id.hpp). Throws std::invalid_argument, naming the member that is wrong, as World::add_body, and also for more
-  /// than one piece of motion, a start after now(), a sensor, a box function, a mesh that bends, a category beyond 16
-  /// bits (of `collides_with` only these count), a bounding radius that is not below half of each period, or is too
+  /// (body_id.hpp). Throws std::invalid_argument, naming the member that is wrong, as World::add_body, and also for
+  /// more than one piece of motion, a start after now(), a sensor, a box function, a mesh that bends, a category beyond
+  /// 16 bits (of `collides_with` only these count), a bounding radius that is not below half of each period, or is too
   /// small for the coordinates (2^-32 of the ends of the box), and a place more than 2^31 periods away.
   BodyId add_body(const Description& description);
   void remove_body(BodyId id);
