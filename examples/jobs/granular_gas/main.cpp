@@ -1,4 +1,5 @@
 // A gas of hard balls in a periodic box, at rest or sheared, beside theory: docs/granular_gas.md.
+#include "examples/jobs/arguments.hpp"
 #include "examples/jobs/granular_gas/experiments.hpp"
 
 #include <algorithm>
@@ -33,21 +34,8 @@ struct Arguments {
   std::string csv;
 };
 
-double number(const std::string& option, const std::string& text) {
-  std::size_t used = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  if (used == 0 || used != text.size() || !std::isfinite(value)) {
-    throw std::invalid_argument(option + ": " + text + " is not a number");
-  }
-  return value;
-}
-
 std::uint64_t whole(const std::string& option, const std::string& text) {
-  const double value = number(option, text);
+  const double value = jobs::number(option, text);
   if (!(value >= 0 && value <= 0x1p53 && value == std::floor(value))) {
     throw std::invalid_argument(option + ": " + text + " is not a whole number >= 0");
   }
@@ -66,13 +54,13 @@ Arguments parse(int argc, char** argv) {
     if (option == "--balls") {
       arguments.gas.balls = whole(option, value);
     } else if (option == "--packing" && arguments.what != "equation") {
-      arguments.gas.packing = number(option, value);
+      arguments.gas.packing = jobs::number(option, value);
     } else if (option == "--size-ratio") {
-      arguments.gas.size_ratio = number(option, value);
+      arguments.gas.size_ratio = jobs::number(option, value);
     } else if (option == "--restitution") {
-      arguments.gas.restitution = number(option, value);
+      arguments.gas.restitution = jobs::number(option, value);
     } else if (option == "--shear-rate") {
-      arguments.gas.shear_rate = number(option, value);
+      arguments.gas.shear_rate = jobs::number(option, value);
     } else if (option == "--collisions") {
       arguments.collisions = double(whole(option, value));
       if (arguments.collisions == 0) throw std::invalid_argument("--collisions: must be > 0");
