@@ -24,8 +24,8 @@ struct PeriodicEvent {
 template <int Degree>
 class PeriodicWorld;
 
-/// Told of events in order of time, and at one time in the order of BasicWorldListener. Callbacks may add, remove and
-/// move bodies.
+/// Told of events in order of time; at one time as BasicWorldListener says, by slots of PeriodicWorld::world(), and of
+/// `wrapped` last. Callbacks may add, remove and move bodies.
 template <int Degree>
 class PeriodicListener {
  public:
