@@ -20,11 +20,12 @@ namespace kds::collision {
 /// Throws std::invalid_argument, naming the piece `name`[i], unless their numbers are in range and each starts later
 /// than the one before.
 template <class Motion>
-void require_pieces(std::span<const Motion> pieces, const std::string& name) {
+void require_pieces(std::span<const Motion> pieces, const char* name) {
+  const auto name_of = [name](std::size_t i) { return std::string(name) + "[" + std::to_string(i) + "]"; };
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (!in_range(pieces[i])) refuse_motion(pieces[i], name + "[" + std::to_string(i) + "]");
+    if (!in_range(pieces[i])) refuse_motion(pieces[i], name_of(i));
     if (i > 0 && !(path_of(pieces[i]).start > path_of(pieces[i - 1]).start)) {
-      throw std::invalid_argument(name + "[" + std::to_string(i) + "].start: pieces must be sorted by start");
+      throw std::invalid_argument(name_of(i) + ".start: pieces must be sorted by start");
     }
   }
 }

@@ -23,10 +23,13 @@ void Engine<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
   require_editable("World::update_motion");
   const BodySlot slot = bodies_.slot_of(id);
   require_own_motion(slot, "World::update_motion");
-  const std::string name = "World::update_motion: motion";
-  if (pieces.empty()) throw std::invalid_argument(name + ": has no piece");
-  if (pieces.size() == 1 && !in_range(pieces[0])) refuse_motion(pieces[0], name);
-  require_pieces(pieces, name);
+  constexpr const char* name = "World::update_motion: motion";
+  if (pieces.empty()) throw std::invalid_argument(std::string(name) + ": has no piece");
+  if (pieces.size() > 1) {
+    require_pieces(pieces, name);
+  } else if (!in_range(pieces[0])) {
+    refuse_motion(pieces[0], name);
+  }
   if (path_of(pieces[0]).start > clock_.now) {
     throw std::invalid_argument("World::update_motion: the motion starts at " +
                                 std::to_string(path_of(pieces[0]).start) + ", after the clock at " +
@@ -48,12 +51,12 @@ void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
   require_editable("World::append_motion");
   const BodySlot slot = bodies_.slot_of(id);
   require_own_motion(slot, "World::append_motion");
-  const std::string name = "World::append_motion: motion";
+  constexpr const char* name = "World::append_motion: motion";
   require_pieces(pieces, name);
   if (pieces.empty()) return;
   const double last = std::max(scripts_.last_start(slot), clock_.now);
   if (!(path_of(pieces[0]).start > last)) {
-    throw std::invalid_argument(name + "[0].start: " + std::to_string(path_of(pieces[0]).start) +
+    throw std::invalid_argument(std::string(name) + "[0].start: " + std::to_string(path_of(pieces[0]).start) +
                                 " is not after the clock and the last piece, " + std::to_string(last));
   }
   require_clock_for(slot, pieces, name);
@@ -63,12 +66,12 @@ void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
 
 /// Of a body that precesses.
 template <class Motion>
-void Engine<Motion>::require_clock_for(BodySlot slot, std::span<const Motion> pieces, const std::string& name) const {
+void Engine<Motion>::require_clock_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const {
   if constexpr (turns<Motion>) {
     if (!tumbling_.has(slot)) return;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const std::string index = pieces.size() == 1 ? "" : "[" + std::to_string(i) + "]";
-      require_steady_clock(pieces[i], clock_.now, name + index);
+      require_steady_clock(pieces[i], clock_.now, std::string(name) + index);
     }
   }
 }

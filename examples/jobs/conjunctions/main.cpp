@@ -1,4 +1,5 @@
 // Conjunction screening of a made-up catalogue: docs/conjunctions.md.
+#include "examples/jobs/arguments.hpp"
 #include "examples/jobs/conjunctions/catalogue.hpp"
 #include "examples/jobs/conjunctions/screening.hpp"
 #include "examples/jobs/conjunctions/sieve.hpp"
@@ -30,19 +31,6 @@ struct Arguments {
   std::string csv;
 };
 
-double number(const std::string& option, const std::string& text) {
-  std::size_t used = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  if (used == 0 || used != text.size() || !(value > 0)) {
-    throw std::invalid_argument(option + ": " + text + " is not a number > 0");
-  }
-  return value;
-}
-
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
   for (int i = 1; i < argc; i += 2) {
@@ -50,15 +38,15 @@ Arguments parse(int argc, char** argv) {
     if (i + 1 == argc) throw std::invalid_argument(option + ": a value is missing");
     const std::string value = argv[i + 1];
     if (option == "--objects") {
-      arguments.objects = static_cast<std::size_t>(number(option, value));
+      arguments.objects = static_cast<std::size_t>(jobs::positive_number(option, value));
     } else if (option == "--hours") {
-      arguments.screening.hours = number(option, value);
+      arguments.screening.hours = jobs::positive_number(option, value);
     } else if (option == "--distance") {
-      arguments.screening.distance = number(option, value);
+      arguments.screening.distance = jobs::positive_number(option, value);
     } else if (option == "--seed") {
-      arguments.seed = static_cast<std::uint64_t>(number(option, value));
+      arguments.seed = static_cast<std::uint64_t>(jobs::positive_number(option, value));
     } else if (option == "--step") {
-      arguments.step = number(option, value);
+      arguments.step = jobs::positive_number(option, value);
     } else if (option == "--csv") {
       arguments.csv = value;
     } else if (option == "--method" && (value == "windows" || value == "world" || value == "sieve")) {

@@ -1,9 +1,9 @@
 #include "examples/jobs/conjunctions/screening.hpp"
 
 #include "collision/world.hpp"
-#include "examples/jobs/conjunctions/cpu_time.hpp"
 #include "examples/jobs/conjunctions/passes.hpp"
 #include "examples/jobs/conjunctions/trajectory.hpp"
+#include "examples/jobs/cpu_time.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -62,7 +62,7 @@ ScreeningCost screen(std::span<const Elements> catalogue, const Screening& optio
                      const std::function<void(const Conjunction&)>& found) {
   check(options);
   ScreeningCost cost;
-  CpuTime time;
+  jobs::CpuTime time;
   const double end = options.hours * 3600;
   Passes passes(options.distance, found);
   Listener listener(passes);

@@ -1,7 +1,7 @@
 #include "examples/jobs/conjunctions/sieve.hpp"
 
 #include "examples/jobs/conjunctions/cells.hpp"
-#include "examples/jobs/conjunctions/cpu_time.hpp"
+#include "examples/jobs/cpu_time.hpp"
 
 #include <Eigen/Core>
 
@@ -60,7 +60,7 @@ class OrbitPair {
 SieveCost sieve(std::span<const Elements> catalogue, const Screening& options, double step,
                 const std::function<void(const Conjunction&)>& found) {
   SieveCost cost;
-  CpuTime time;
+  jobs::CpuTime time;
   const double end = options.hours * 3600, d = options.distance, half = step / 2;
   std::vector<Orbit> orbits;
   double fastest = 0, sharpest = 0;  // at perigee

@@ -1,9 +1,9 @@
 // Screening by windows of time.
 #include "examples/jobs/conjunctions/cells.hpp"
-#include "examples/jobs/conjunctions/cpu_time.hpp"
 #include "examples/jobs/conjunctions/passes.hpp"
 #include "examples/jobs/conjunctions/screening.hpp"
 #include "examples/jobs/conjunctions/trajectory.hpp"
+#include "examples/jobs/cpu_time.hpp"
 
 #include <Eigen/Core>
 
@@ -81,7 +81,7 @@ ScreeningCost screen_by_windows(std::span<const Elements> catalogue, const Scree
                                 const std::function<void(const Conjunction&)>& found) {
   check(options);
   ScreeningCost cost;
-  CpuTime time;
+  jobs::CpuTime time;
   const double end = options.hours * 3600;
   Passes passes(options.distance, found);
   std::vector<Trajectory> trajectories(catalogue.begin(), catalogue.end());

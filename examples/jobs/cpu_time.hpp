@@ -4,7 +4,7 @@
 #include <ctime>
 #include <utility>
 
-namespace conjunctions {
+namespace jobs {
 
 /// CPU seconds of this thread, charged to one kind of work after another.
 class CpuTime {
@@ -25,4 +25,4 @@ class CpuTime {
   double since_ = seconds();
 };
 
-}  // namespace conjunctions
+}  // namespace jobs
