@@ -2,9 +2,10 @@
 #include "certificates/point_motion.hpp"
 #include "certificates/weighted_point.hpp"
 #include "kds/framework/reverse.hpp"
+#include "kds/testing/trial.hpp"
 #include "structures/spatial_triangulation.hpp"
 #include "tests/structures/exact_space.hpp"
-#include "tests/structures/run_structure.hpp"
+#include "tests/structures/random_values.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -56,16 +57,17 @@ TEMPLATE_TEST_CASE("a triangulation in space is the only regular one, exactly", 
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 900; seed < 900 + seeds(); ++seed) {
       CAPTURE(Path::degree, static_cast<int>(kind), seed);
-      std::vector<KineticEvent> log;
-      const RunOptions options{8, 6 + seed % 3, 10, kind == Kind::generic ? 0.4 : never, 4};
+      const double window = kind == Kind::generic ? 0.4 : never;
+      const testing::TrialOptions options{seed, kind, 8, 6 + seed % 3, 10, window, 4};
       const auto check = [&](const auto& rule, const auto& set, double now) {
         ++checks;
         hidden += rule.hidden().size();
         return check_space(rule, set, now);
       };
-      CHECK(run_structure(seed, kind, options, SpatialTriangulationRule<Path>{}, random_element<Path>, check, log) ==
-            0);
-      events += log.size();
+      const testing::Findings found =
+          testing::try_rule(options, SpatialTriangulationRule<Path>{}, random_element<Path>, check);
+      CHECK(found.first == "");
+      events += found.events.size();
     }
   }
   CHECK(events > 40);
