@@ -25,6 +25,7 @@ using namespace kds::collision;
 using certificates::RigidMotion;
 using Eigen::Vector3d;
 using kds::tests::Random;
+using kds::tests::random_vector;
 using Turning = TurningWorld<1>;
 using Body = Turning::Description;
 

@@ -25,6 +25,7 @@ using certificates::RigidMotion;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using kds::tests::Random;
+using kds::tests::random_vector;
 using kds::tests::TurningOracle;
 
 template <int Degree>
