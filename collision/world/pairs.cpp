@@ -202,6 +202,11 @@ template <class Motion>
 void Pairs<Motion>::remove(BodySlot id) {
   while (!links(id).empty()) end(links(id).back().slot);
   if (id < of_.size()) links_.free(of_[id]);
+  // The next body of this slot has done nothing of what this one did.
+  if (jumped_at_ == clock_.now) std::erase(jumped_, id);
+  if (filtered_at_ != clock_.now) return;
+  std::erase_if(filtered_, [&](const Filtered& one) { return one.first == id; });
+  std::erase_if(unignored_, [&](const Ignored& one) { return one.first == id || one.second == id; });
 }
 
 template <class Motion>

@@ -127,7 +127,7 @@ TEST_CASE("command line: --view writes a page that needs nothing else") {
   CHECK(outcome.code == 0);
   const std::string page = read_file(folder / "v.html");
   CHECK_THAT(page, Catch::StartsWith("<!DOCTYPE html>") && Catch::Contains("OrbitControls = function"));
-  CHECK_THAT(page, Catch::Contains("\"touches\":[[1,0,0,1],[3,1,0,1]]"));
+  CHECK_THAT(page, Catch::Contains("\"touches\":[[1,0,0,1,2,0,0,1,0,0],[3,1,0,1,"));
 }
 
 TEST_CASE("command line: --view shows how bodies turn") {

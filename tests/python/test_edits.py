@@ -43,7 +43,7 @@ class Attached(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "attached to another itself"):
             world.attach_sensor(alarm, kds.sphere(1))
         world.remove_body(a)
-        self.assertFalse(world.contains(alarm))
+        self.assertNotIn(alarm, world)
 
     def test_groups_and_pairs_that_are_ignored(self):
         for group in (0, 3):

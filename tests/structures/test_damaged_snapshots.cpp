@@ -61,7 +61,13 @@ Outcome damage_everywhere(const Make& make) {
           simulator.audit();
         } catch (const AuditFailure&) {
         }
-        for (int i = 0; i < most_steps && simulator.step(); ++i) {
+        try {
+          for (int i = 0; i < most_steps && simulator.step(); ++i) {
+          }
+        } catch (const std::logic_error& error) {
+          // Quick answers are promised for lists that are in order, which a damaged one need not be; in builds that
+          // check them (docs/testing.md) that is noticed.
+          if (std::string(error.what()).find("certificate ") != 0) throw;
         }
       });
     }

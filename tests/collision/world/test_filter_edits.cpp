@@ -223,6 +223,36 @@ TEST_CASE("Filters change alike, whatever the broad phase, in callbacks and with
   CHECK(count > 20);
 }
 
+/// The new ball stands where the old one stood, flies off the other ball, which it just touches, and is turned back at
+/// once: where sorted lists tell of boxes, the pair begins only then.
+TEST_CASE("A body that gets the slot of one whose filter has changed at that instant begins anew") {
+  EventLog<1> log;
+  WorldOptions options = with_response(Response::none);
+  options.broad_phase = GENERATE(BroadPhaseKind::all_pairs, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap);
+  World<1> world(options, &log);
+  auto first = ball<1>(0.5, {1.5, 0, 0});
+  first.group = 1;
+  auto other = ball<1>(1, zero);
+  other.group = 1;
+  world.add_body(first);
+  const BodyId still = world.add_body(other);
+  world.advance_to(1);
+  world.set_group(0, 0);
+  world.remove_body(0);
+  const BodyId second = world.add_body(body<1>(Sphere{0.5}, motion<1>({1.5, 0, 0}, {3, 0, 0}, zero, 1)));
+  REQUIRE(body_slot(second) == 0);
+  CHECK(log.events.empty());
+  log.then = [&](World<1>& w, const Event& e) {
+    if (e.kind == Kind::overlap) w.update_motion(second, World<1>::Motion::line({1.5, 0, 0}, {-3, 0, 0}, 1));
+  };
+  world.add_body(ball<1>(0.5, {1.75, 0, 0}));  // in contact with the second
+  world.advance_to(1.1);
+  REQUIRE(log.events.size() == 2);
+  CHECK(log.events[1].kind == Kind::contact);
+  CHECK(log.events[1].a == second);
+  CHECK(log.events[1].b == still);
+}
+
 TEST_CASE("A ball whose mask leaves out the floor under it wakes and falls, and rests on if it does not") {
   struct Told final : WorldListener<2> {
     std::vector<std::pair<BodyId, BodyId>> woken;
