@@ -23,13 +23,13 @@ struct Result {
   std::size_t calls = 0;
 };
 
-constexpr std::size_t bodies = 1200;
+constexpr std::size_t bodies = 500;
 constexpr double end = 0.25;  // s
 
 /// Many bodies enter at once, some of them in contact; as many again enter while it runs, and some are moved.
 Result run(Response response, const Way& way) {
   WorldOptions options = with_response(response);
-  options.walls = Walls{{-12, -12, -12}, {12, 12, 12}, 1};
+  options.walls = Walls{{-9, -9, -9}, {9, 9, 9}, 1};
   options.broad_phase = way.method;
   options.rate = 30;
   options.report_pairs = false;
@@ -43,7 +43,7 @@ Result run(Response response, const Way& way) {
   const auto add = [&] {
     for (std::size_t i = 0; i < bodies; ++i) {
       auto described = body<2>(i % 8 == 0 ? Shape(Box{{0.3, 0.4, 0.5}}) : Shape(Sphere{0.4}),
-                               motion<2>(vector(11), vector(4), vector(1), world->now()));
+                               motion<2>(vector(8), vector(4), vector(1), world->now()));
       described.sensor = i % 50 == 0;
       world->add_body(described);
     }
@@ -62,7 +62,7 @@ Result run(Response response, const Way& way) {
   add();
   advance(0.1);
   add();
-  for (BodyId id = 0; id < 40; ++id) world->update_motion(id, motion<2>(vector(11), vector(4), zero, world->now()));
+  for (BodyId id = 0; id < 40; ++id) world->update_motion(id, motion<2>(vector(8), vector(4), zero, world->now()));
   advance(end);
   world->audit();
   result.events = log.events;
@@ -72,7 +72,7 @@ Result run(Response response, const Way& way) {
 TEST_CASE("What is done for budgets gives the log that is made in one go") {
   const auto response = GENERATE(Response::none, Response::elastic);
   const Result whole = run(response, {});
-  CHECK(whole.events.size() > 400);
+  CHECK(whole.events.size() > 60);
   for (const auto method : {BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::sap}) {
     for (const bool snapshots : {false, true}) {
       CAPTURE(static_cast<int>(method), snapshots);

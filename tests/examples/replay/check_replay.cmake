@@ -24,7 +24,7 @@ execute_process(
   COMMAND "${CHROMIUM}" --headless --no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader
     --disable-dev-shm-usage --disable-extensions --disable-background-networking --disable-component-update
     --disable-sync --no-first-run --hide-scrollbars "--user-data-dir=${FOLDER}/profile" --window-size=900,700
-    --virtual-time-budget=5000 --dump-dom "file://${FOLDER}/driven.html"
+    --virtual-time-budget=1500 --dump-dom "file://${FOLDER}/driven.html"
   RESULT_VARIABLE failed OUTPUT_VARIABLE document ERROR_FILE "${FOLDER}/chromium.log" TIMEOUT 120)
 file(REMOVE_RECURSE "${FOLDER}/profile")
 string(REGEX MATCH "<pre id=\"report\">[^<]*" report "${document}")
