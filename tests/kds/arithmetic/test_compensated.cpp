@@ -84,7 +84,9 @@ TEST_CASE("beyond its limits a compensated value says so", "[compensated]") {
   CHECK(compensated_value(Polynomial<2>{{1, 1, 1}}, 0x1p50).radius == infinity);
   CHECK(compensated_value(Polynomial<2>{{0x1p-700, 0x1p-700, 0}}, 1.0).radius == infinity);
   CHECK(certain_sign(compensated_value(Polynomial<2>{{1, 0x1p1000, 0x1p1000}}, 0x1p30)) == 0);
-  CHECK(certain_sign(compensated_value(Polynomial<1>{{1, 0x1p1020}}, 1.0)) == 0);  // the splitting overflows
+  // Where there is no fused multiply-add the splitting overflows.
+  const int sign = certain_sign(compensated_value(Polynomial<1>{{1, 0x1p1020}}, 1.0));
+  CHECK((sign == 0 || sign == 1));
   CHECK(certain_sign(compensated_value(Polynomial<1>{{std::nan(""), 1}}, 1.0)) == 0);
 }
 
