@@ -57,9 +57,9 @@ bool parallel(const HullDifference& hulls, const std::array<DifferenceEdge, 2>& 
 /// An edge as doubles see it: its direction, and those in its two faces that lead away from it, which for a segment are
 /// left out.
 struct SeenEdge {
-  Vector3d along;
-  std::array<Vector3d, 2> inward;
-  std::size_t faces;
+  Vector3d along = Vector3d::Zero();
+  std::array<Vector3d, 2> inward{Vector3d::Zero(), Vector3d::Zero()};
+  std::size_t faces = 0;
 };
 
 /// Unit vectors known to 2^-48: normals and the ways between points are known to some roundings, and so are their
@@ -74,7 +74,8 @@ std::vector<SeenEdge> seen_edges(const ConvexCore& core, const PlacedShape& shap
   std::vector<SeenEdge> edges;
   for (const HullEdge& edge : structure.edges) {
     const Vector3d u = normalized(core.points()[edge.ends[1]] - core.points()[edge.ends[0]]);
-    SeenEdge& seen = edges.emplace_back(SeenEdge{sign * rotated(shape.rotation, u), {}, 0});
+    SeenEdge& seen = edges.emplace_back();
+    seen.along = sign * rotated(shape.rotation, u);
     if (edge.faces[0] == HullStructure::no_face) continue;
     seen.faces = 2;
     seen.inward[0] = sign * rotated(shape.rotation, cross(normals[edge.faces[0]], u));

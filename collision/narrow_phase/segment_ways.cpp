@@ -34,7 +34,7 @@ void every_way(const PlacedTriangle& triangle, const Vector3d& centre, const Vec
     const double on_half = dot(cross(from, edge), normal) / sine_square;
     if (!(on_edge > 0 && on_edge < 1 && std::abs(on_half) < 1)) continue;
     const Vector3d out = unit(normal);
-    visit(SegmentWay{dot(out, from) * out, 2, {}, on_half});
+    visit(SegmentWay{dot(out, from) * out, 2, Vector3d::Zero(), on_half});
   }
 }
 
