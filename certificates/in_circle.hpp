@@ -1,6 +1,7 @@
 // A moving point outside the circle through three others: the certificate of Delaunay triangulations.
 #pragma once
 
+#include "certificates/squared.hpp"
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
 #include "kds/lasting.hpp"
@@ -39,22 +40,13 @@ struct InCircle {
   }
 
  private:
-  template <class T>
-  static auto squared(const T& x) {
-    if constexpr (requires { square(x); }) {
-      return square(x);
-    } else {
-      return x * x;
-    }
-  }
-
   template <class From>
   auto value(const From& from_d) const {
     const auto ax = from_d(a, 0), ay = from_d(a, 1);
     const auto bx = from_d(b, 0), by = from_d(b, 1);
     const auto cx = from_d(c, 0), cy = from_d(c, 1);
-    return (squared(ax) + squared(ay)) * (by * cx - bx * cy) + (squared(bx) + squared(by)) * (cy * ax - cx * ay) +
-           (squared(cx) + squared(cy)) * (ay * bx - ax * by);
+    return (detail::squared(ax) + detail::squared(ay)) * (by * cx - bx * cy) + (detail::squared(bx) + detail::squared(by)) * (cy * ax - cx * ay) +
+           (detail::squared(cx) + detail::squared(cy)) * (ay * bx - ax * by);
   }
 };
 

@@ -2,6 +2,7 @@
 // space.
 #pragma once
 
+#include "certificates/squared.hpp"
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
 #include "kds/motion.hpp"
@@ -46,15 +47,6 @@ struct InSphere {
   }
 
  private:
-  template <class T>
-  static auto squared(const T& x) {
-    if constexpr (requires { square(x); }) {
-      return square(x);
-    } else {
-      return x * x;
-    }
-  }
-
   template <class From>
   auto value(const From& from) const {
     const auto ax = from(a.axis(0), e.axis(0)), ay = from(a.axis(1), e.axis(1)), az = from(a.axis(2), e.axis(2));
@@ -62,7 +54,7 @@ struct InSphere {
     const auto cx = from(c.axis(0), e.axis(0)), cy = from(c.axis(1), e.axis(1)), cz = from(c.axis(2), e.axis(2));
     const auto dx = from(d.axis(0), e.axis(0)), dy = from(d.axis(1), e.axis(1)), dz = from(d.axis(2), e.axis(2));
     const auto height = [&](const Path& p, const auto& x, const auto& y, const auto& z) {
-      const auto sum = squared(x) + squared(y) + squared(z);
+      const auto sum = detail::squared(x) + detail::squared(y) + detail::squared(z);
       if constexpr (Weighted<Path>) {
         return sum - from(p.weight(), e.weight());
       } else {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -291,30 +292,24 @@ std::string Record::to_json(const Scene& scene, const std::string& title) const 
     }
     text += '}';
   }
+  const auto append_events = [&](const std::vector<Event>& events, const auto& names_of) {
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      text += i > 0 ? ",[" : "[";
+      append_number(text, events[i].time - scene.begin_time);
+      for (const std::uint32_t name : names_of(events[i])) {
+        text += ',';
+        append_number(text, name);
+      }
+      append_place(text, events[i]);
+      text += ']';
+    }
+  };
   text += "],\n\"touches\":[";
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    const Event& touch = touches_[i];
-    text += i > 0 ? ",[" : "[";
-    append_number(text, touch.time - scene.begin_time);
-    for (const std::uint32_t value : {static_cast<std::uint32_t>(touch.kind), touch.a, touch.b}) {
-      text += ',';
-      append_number(text, value);
-    }
-    append_place(text, touch);
-    text += ']';
-  }
+  append_events(touches_, [](const Event& touch) {
+    return std::array{static_cast<std::uint32_t>(touch.kind), touch.a, touch.b};
+  });
   text += "],\n\"walls\":[";
-  for (std::size_t i = 0; i < walls_.size(); ++i) {
-    const Event& wall = walls_[i];
-    text += i > 0 ? ",[" : "[";
-    append_number(text, wall.time - scene.begin_time);
-    for (const std::uint32_t value : {wall.a, wall.b}) {
-      text += ',';
-      append_number(text, value);
-    }
-    append_place(text, wall);
-    text += ']';
-  }
+  append_events(walls_, [](const Event& wall) { return std::array{wall.a, wall.b}; });
   text += "],\n\"rests\":[";
   for (std::size_t i = 0; i < rests_.size(); ++i) {
     const Event& rest = rests_[i];

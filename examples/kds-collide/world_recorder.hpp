@@ -85,44 +85,31 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
 
  private:
   void contact(World& world, const PairEvent& event) override {
-    note(world, EventKind::contact, event);
-    listener_.contact(world, event);
-    see_both(world, event);
+    relay(world, EventKind::contact, event, &Listener::contact);
   }
   void separation(World& world, const PairEvent& event) override {
-    note(world, EventKind::separation, event);
-    listener_.separation(world, event);
-    see_both(world, event);
+    relay(world, EventKind::separation, event, &Listener::separation);
   }
   void overlap(World& world, const PairEvent& event) override {
-    note(world, EventKind::overlap, event);
-    listener_.overlap(world, event);
-    see_both(world, event);
-  }
-  void wall(World& world, const WallEvent& event) override {
-    note_wall(world, EventKind::wall, event);
-    listener_.wall(world, event);
-    see_if_there(world, event.body);
+    relay(world, EventKind::overlap, event, &Listener::overlap);
   }
   void rests(World& world, const PairEvent& event) override {
-    note(world, EventKind::rest, event);
-    listener_.rests(world, event);
-    see_both(world, event);
+    relay(world, EventKind::rest, event, &Listener::rests);
   }
   void wakes(World& world, const PairEvent& event) override {
-    note(world, EventKind::wake, event);
-    listener_.wakes(world, event);
-    see_both(world, event);
+    relay(world, EventKind::wake, event, &Listener::wakes);
+  }
+  void passes(World& world, const PairEvent& event) override {
+    relay(world, EventKind::pass, event, &Listener::passes);
+  }
+  void wall(World& world, const WallEvent& event) override {
+    relay(world, EventKind::wall, event, &Listener::wall);
   }
   void rests_at_wall(World& world, const WallEvent& event) override {
-    note_wall(world, EventKind::rest_at_wall, event);
-    listener_.rests_at_wall(world, event);
-    see_if_there(world, event.body);
+    relay(world, EventKind::rest_at_wall, event, &Listener::rests_at_wall);
   }
   void wakes_at_wall(World& world, const WallEvent& event) override {
-    note_wall(world, EventKind::wake_at_wall, event);
-    listener_.wakes_at_wall(world, event);
-    see_if_there(world, event.body);
+    relay(world, EventKind::wake_at_wall, event, &Listener::wakes_at_wall);
   }
   void moved(World& world, BodyId id) override {
     listener_.moved(world, id);
@@ -140,21 +127,25 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
   void rebound_suppressed_at_wall(World& world, const WallEvent& event) override {
     listener_.rebound_suppressed_at_wall(world, event);
   }
-  void passes(World& world, const PairEvent& event) override {
-    note(world, EventKind::pass, event);
-    listener_.passes(world, event);
-  }
   void pair_began(World& world, BodyId a, BodyId b, double t) override { listener_.pair_began(world, a, b, t); }
   void pair_ended(World& world, BodyId a, BodyId b, double t) override { listener_.pair_ended(world, a, b, t); }
 
+  /// Notes an event, tells the listener, and records what that has changed.
+  template <class AnyEvent>
+  void relay(World& world, EventKind kind, const AnyEvent& event, void (Listener::*tell)(World&, const AnyEvent&)) {
+    note(world, kind, event);
+    (listener_.*tell)(world, event);
+    see_bodies(world, event);
+  }
+
   /// Of bodies that have been removed only what was seen of them before counts.
   void note(const World& world, EventKind kind, const PairEvent& event) {
-    see_both(world, event);
+    see_bodies(world, event);
     const auto a = places_.find(event.a), b = places_.find(event.b);
     if (a == places_.end() || b == places_.end()) return;
     record_.on_event({event.contact.time, kind, a->second, b->second, event.contact.point, event.contact.normal, {}, {}});
   }
-  void note_wall(const World& world, EventKind kind, const WallEvent& event) {
+  void note(const World& world, EventKind kind, const WallEvent& event) {
     see_if_there(world, event.body);
     const auto body = places_.find(event.body);
     if (body == places_.end()) return;
@@ -163,10 +154,11 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
     record_.on_event({c.time, kind, body->second, wall, c.point, c.normal, {}, {}});
   }
 
-  void see_both(const World& world, const PairEvent& event) {
+  void see_bodies(const World& world, const PairEvent& event) {
     see_if_there(world, event.a);
     see_if_there(world, event.b);
   }
+  void see_bodies(const World& world, const WallEvent& event) { see_if_there(world, event.body); }
   void see_if_there(const World& world, BodyId id) {
     if (world.contains(id)) return see(world, id);
     const auto place = places_.find(id);

@@ -54,9 +54,10 @@ Motion<Degree> random_motion(Random& random, Kind kind, double now) {
       motion.start = now + random.integer(-1, 1);
       break;
     case Kind::scales: {
-      const double scale = random.one_in(2) ? 1e-6 : 1e6;
+      constexpr double small = 1e-6, large = 1e6;
+      const double scale = random.one_in(2) ? small : large;
       for (double& x : c) x = random.between(-scale, scale);
-      if (random.one_in(3)) c[1] = random.between(-1e6, 1e6);
+      if (random.one_in(3)) c[1] = random.between(-large, large);
       break;
     }
     case Kind::coarse:  // A few seconds from one to the next, half of them with an acceleration in common.
