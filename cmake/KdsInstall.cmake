@@ -28,6 +28,14 @@ if(TARGET kds_gsl)
   install(EXPORT kdsGslTargets NAMESPACE kds:: DESTINATION "${config_dir}" COMPONENT gsl EXCLUDE_FROM_ALL)
 endif()
 
+# kds::io reads mesh files by assimp: only who asks for the component has to have that.
+if(TARGET kds_io)
+  install(TARGETS kds_io EXPORT kdsIoTargets
+    ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT io
+    FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kds" COMPONENT io)
+  install(EXPORT kdsIoTargets NAMESPACE kds:: DESTINATION "${config_dir}" COMPONENT io)
+endif()
+
 # For programs that are not built by CMake: `pkg-config --cflags --libs kds`, or kds-turning.
 # They may be moved with their folder.
 file(RELATIVE_PATH to_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
@@ -49,6 +57,13 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_DEBIAN_KDS_PACKAGE_NAME libkds-dev)
   set(CPACK_DEBIAN_KDS_PACKAGE_SECTION libdevel)
   set(CPACK_DEBIAN_KDS_PACKAGE_DEPENDS "libboost-dev (>= 1.74), libeigen3-dev (>= 3.4)")
+  if(TARGET kds_io)
+    list(APPEND CPACK_COMPONENTS_ALL io)
+    set(CPACK_COMPONENT_IO_DESCRIPTION "Mesh files, scenes and replays for libkds-dev\n Headers and a static library.")
+    set(CPACK_DEBIAN_IO_PACKAGE_NAME libkds-io-dev)
+    set(CPACK_DEBIAN_IO_PACKAGE_SECTION libdevel)
+    set(CPACK_DEBIAN_IO_PACKAGE_DEPENDS "libkds-dev (= ${PROJECT_VERSION}), libassimp-dev, zlib1g-dev")
+  endif()
   if(TARGET kds-collide)
     list(APPEND CPACK_COMPONENTS_ALL kds-collide)
     set(CPACK_COMPONENT_KDS-COLLIDE_DESCRIPTION "Exact collision detection of scenes of moving bodies\n A tool.")

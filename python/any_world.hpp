@@ -8,7 +8,7 @@
 #include "collision/world_counters.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
-#include "examples/kds-collide/scene.hpp"
+#include "io/scene.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "python/rows.hpp"
 
@@ -41,7 +41,7 @@ class AnyWorld {
   virtual ~AnyWorld() = default;
 
   virtual BodyId add_body(const Description& body) = 0;
-  virtual BodyId add_body(const kds_collide::SceneBody& body) = 0;
+  virtual BodyId add_body(const kds::io::SceneBody& body) = 0;
   virtual void reserve(std::size_t bodies) = 0;
   virtual void remove_body(BodyId id) = 0;
   /// All or none: throws before anything is changed.

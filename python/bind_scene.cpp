@@ -1,11 +1,11 @@
 // kds._kds.Scene: scene files, read and run as the tool kds-collide does.
-#include "examples/kds-collide/event_csv.hpp"
 #include "examples/kds-collide/generator.hpp"
-#include "examples/kds-collide/output_file.hpp"
-#include "examples/kds-collide/replay.hpp"
-#include "examples/kds-collide/run.hpp"
-#include "examples/kds-collide/scene_reader.hpp"
-#include "examples/kds-collide/stats_json.hpp"
+#include "io/event_csv.hpp"
+#include "io/output_file.hpp"
+#include "io/replay.hpp"
+#include "io/run.hpp"
+#include "io/scene_reader.hpp"
+#include "io/stats_json.hpp"
 #include "python/bindings.hpp"
 #include "python/py_world.hpp"
 
@@ -22,6 +22,8 @@ namespace {
 
 namespace py = pybind11;
 using namespace kds_collide;
+using namespace kds::io;
+using namespace kds::io;
 
 /// Keeps the events of a run if they are wanted, bodies by their places in the scene. Lets Ctrl-C end it.
 class Gatherer final : public EventSink {

@@ -3,7 +3,7 @@
 #include "collision/response/inertia.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh.hpp"
-#include "examples/kds-collide/mesh_file.hpp"
+#include "io/mesh_file.hpp"
 #include "python/bindings.hpp"
 #include "python/py_world.hpp"
 
@@ -76,8 +76,8 @@ void bind_shapes(py::module_& module) {
   module.def("mesh", mesh_shape);
   module.def("read_mesh", [](const std::string& file, double scale) {
     try {
-      auto data = kds_collide::read_mesh_file(file);
-      const std::vector<std::size_t> left_out = kds_collide::leave_out_degenerate(data);
+      auto data = kds::io::read_mesh_file(file);
+      const std::vector<std::size_t> left_out = kds::io::leave_out_degenerate(data);
       return py::make_tuple(mesh_shape(std::move(data.vertices), std::move(data.triangles), scale), left_out);
     } catch (const std::exception& error) {  // which do not name the file
       throw std::invalid_argument(file + ": " + error.what());
@@ -317,7 +317,7 @@ void bind_world(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(EventRow, time, kind, a, b, point, normal, feature_a, feature_b, user_data_a, user_data_b);
   PYBIND11_NUMPY_DTYPE(NearRow, body, distance, point);
   module.attr("event_dtype") = py::dtype::of<EventRow>();
-  std::vector<std::string_view> kinds(kds_collide::event_kind_names.begin(), kds_collide::event_kind_names.end());
+  std::vector<std::string_view> kinds(kds::io::event_kind_names.begin(), kds::io::event_kind_names.end());
   kinds.insert(kinds.end(), {"piece", "timer"});
   module.attr("event_kinds") = kinds;
   bind_shapes(module);

@@ -4,7 +4,7 @@
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/shapes/feature.hpp"
-#include "examples/kds-collide/events.hpp"
+#include "io/events.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -28,14 +28,14 @@ struct FeatureRow {
 };
 
 // Kinds of events that the tool does not have come after its own.
-inline constexpr std::int64_t piece_kind = kds_collide::event_kind_names.size();
+inline constexpr std::int64_t piece_kind = kds::io::event_kind_names.size();
 inline constexpr std::int64_t timer_kind = piece_kind + 1;
 inline constexpr std::size_t event_kinds = timer_kind + 1;
 
 /// An event, or a hit of a query.
 struct EventRow {
   double time;
-  std::int64_t kind;  ///< kds_collide::EventKind, piece_kind or timer_kind
+  std::int64_t kind;  ///< kds::io::EventKind, piece_kind or timer_kind
   std::uint64_t a;    ///< a body; or a timer
   std::uint64_t b;    ///< a body; of a wall its number, 0 to 5; of one thing alone a itself
   std::array<double, 3> point;

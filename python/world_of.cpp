@@ -1,8 +1,8 @@
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
 #include "collision/world.hpp"
-#include "examples/kds-collide/events.hpp"
-#include "examples/kds-collide/scene_world.hpp"
+#include "io/events.hpp"
+#include "io/scene_world.hpp"
 #include "python/any_world.hpp"
 
 #include <stdexcept>
@@ -12,7 +12,7 @@ namespace kds_python {
 namespace {
 
 using namespace kds::collision;
-using kds_collide::EventKind;
+using kds::io::EventKind;
 
 /// Hands on what a world of some motion reports.
 template <class M>
@@ -68,7 +68,7 @@ M narrowed(const Motion& motion, const std::string& name) {
   if (!turns<M> && !motion.angular_velocity.isZero(0)) {
     throw std::invalid_argument(name + ".angular_velocity: must be 0 in a world that is not turning");
   }
-  return kds_collide::to_motion<M>(motion);
+  return kds::io::to_motion<M>(motion);
 }
 
 template <class M>
@@ -97,8 +97,8 @@ class WorldOf final : public AnyWorld {
     own.user_data = body.user_data;
     return world_.add_body(own);
   }
-  BodyId add_body(const kds_collide::SceneBody& body) override {
-    return world_.add_body(kds_collide::describe<M>(body));
+  BodyId add_body(const kds::io::SceneBody& body) override {
+    return world_.add_body(kds::io::describe<M>(body));
   }
   void reserve(std::size_t bodies) override { world_.reserve(bodies); }
   void remove_body(BodyId id) override { world_.remove_body(id); }
@@ -240,7 +240,7 @@ class WorldOf final : public AnyWorld {
 
   /// Of a body that is to enter later the motion is that of its start.
   Motion widened(const M& motion, BodyId id) const {
-    Motion wide = kds_collide::to_piece(motion);
+    Motion wide = kds::io::to_piece(motion);
     if constexpr (!turns<M>) wide.orientation = Eigen::Quaterniond(world_.shape(id).rotation);
     return wide.start() < world_.now() ? wide.restarted(world_.now()) : wide;
   }

@@ -27,6 +27,13 @@ if(NOT output MATCHES "the balls meet at t = 1 ")
   message(FATAL_ERROR "two_balls says: ${output}")
 endif()
 
+run(${configure} -B "${FOLDER}/build_io" -DCOMPONENT=io)
+run("${CMAKE_COMMAND}" --build "${FOLDER}/build_io" --target scene_run)
+run("${FOLDER}/build_io/scene_run")
+if(NOT output MATCHES "1 contact, and a record of [0-9][0-9][0-9]+ bytes")
+  message(FATAL_ERROR "scene_run says: ${output}")
+endif()
+
 # The same by pkg-config, and from the Debian package as it is unpacked.
 find_program(pkg_config pkg-config)
 if(pkg_config)
@@ -43,7 +50,8 @@ if(pkg_config)
 endif()
 find_program(dpkg_deb dpkg-deb)
 if(dpkg_deb)
-  run("${CMAKE_CPACK_COMMAND}" --config "${BUILD}/CPackConfig.cmake" -B "${FOLDER}/packages" -D CPACK_COMPONENTS_ALL=kds)
+  run("${CMAKE_CPACK_COMMAND}" --config "${BUILD}/CPackConfig.cmake" -B "${FOLDER}/packages" -D CPACK_COMPONENTS_ALL=kds
+    -D CPACK_DEBIAN_COMPRESSION_TYPE=none)
   file(GLOB package "${FOLDER}/packages/libkds-dev_*.deb")
   run("${dpkg_deb}" --extract "${package}" "${FOLDER}/unpacked")
   run("${CMAKE_COMMAND}" -S "${ROOT}/tests/install" "-DCMAKE_PREFIX_PATH=${FOLDER}/unpacked/usr"

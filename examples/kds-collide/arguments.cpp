@@ -1,8 +1,8 @@
 #include "examples/kds-collide/arguments.hpp"
 
 #include "collision/broad_phase/broad_phase_kind.hpp"
-#include "examples/kds-collide/number_text.hpp"
-#include "examples/kds-collide/output_file.hpp"
+#include "io/number_text.hpp"
+#include "io/output_file.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -16,6 +16,9 @@
 #include <vector>
 
 namespace kds_collide {
+
+using namespace kds::io;
+
 namespace {
 
 /// A run that is asked for more results than this would take hours: each is some 6 ns.

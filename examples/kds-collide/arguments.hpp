@@ -2,8 +2,8 @@
 #pragma once
 
 #include "examples/kds-collide/generator.hpp"
-#include "examples/kds-collide/run.hpp"
-#include "examples/kds-collide/scene.hpp"
+#include "io/run.hpp"
+#include "io/scene.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -20,7 +20,7 @@ struct Arguments {
   std::string view;
   std::string gltf;
   std::optional<double> until;  ///< s
-  RunOptions run;
+  kds::io::RunOptions run;
   bool quiet = false;
   bool generate = false;
   GeneratorOptions generator;
@@ -39,6 +39,6 @@ void describe(CLI::App& app, Arguments& arguments);
 void check(const Arguments& arguments);
 
 /// Throws ArgumentError for those that make none with this scene.
-void check(const Arguments& arguments, const Scene& scene);
+void check(const Arguments& arguments, const kds::io::Scene& scene);
 
 }  // namespace kds_collide

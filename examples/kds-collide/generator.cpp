@@ -1,7 +1,7 @@
 #include "examples/kds-collide/generator.hpp"
 
 #include "examples/kds-collide/model_meshes.hpp"
-#include "examples/kds-collide/number_text.hpp"
+#include "io/number_text.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -14,6 +14,9 @@
 #include <unordered_map>
 
 namespace kds_collide {
+
+using namespace kds::io;
+
 namespace {
 
 using Eigen::Vector3d;

@@ -1,14 +1,14 @@
 // kds-collide: a scene in, events out.
 #include "collision/broad_phase/broad_phase_kind.hpp"
 #include "examples/kds-collide/arguments.hpp"
-#include "examples/kds-collide/event_csv.hpp"
-#include "examples/kds-collide/gltf.hpp"
-#include "examples/kds-collide/one_line.hpp"
-#include "examples/kds-collide/output_file.hpp"
 #include "examples/kds-collide/progress_bar.hpp"
-#include "examples/kds-collide/replay.hpp"
-#include "examples/kds-collide/scene_reader.hpp"
-#include "examples/kds-collide/stats_json.hpp"
+#include "io/event_csv.hpp"
+#include "io/gltf.hpp"
+#include "io/one_line.hpp"
+#include "io/output_file.hpp"
+#include "io/replay.hpp"
+#include "io/scene_reader.hpp"
+#include "io/stats_json.hpp"
 
 #include <unistd.h>
 
@@ -23,6 +23,7 @@
 namespace {
 
 using namespace kds_collide;
+using namespace kds::io;
 
 constexpr int done = 0;
 constexpr int run_failed = 1;

@@ -9,6 +9,9 @@
 #include <numbers>
 
 namespace kds_collide {
+
+using namespace kds::io;
+
 namespace {
 
 using Eigen::Vector3d;

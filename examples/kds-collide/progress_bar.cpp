@@ -6,6 +6,8 @@
 
 namespace kds_collide {
 
+using namespace kds::io;
+
 ProgressBar::ProgressBar(double begin, double end) : begin_(begin), end_(end), time_(begin) {}
 
 ProgressBar::~ProgressBar() {

@@ -1,7 +1,7 @@
 // A progress bar on standard error.
 #pragma once
 
-#include "examples/kds-collide/events.hpp"
+#include "io/events.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -10,11 +10,11 @@ namespace kds_collide {
 
 /// Draws how far the clock has come, how many contacts there were and how long the rest will take, at most ten times
 /// a second, and wipes itself away when it goes. Use it only where standard error is a terminal.
-class ProgressBar final : public EventSink {
+class ProgressBar final : public kds::io::EventSink {
  public:
   ProgressBar(double begin, double end);
   ~ProgressBar() override;
-  void on_event(const Event& event) override;
+  void on_event(const kds::io::Event& event) override;
   void on_time(double time) override;
 
  private:

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "examples/kds-collide/generator.hpp"
-#include "examples/kds-collide/scene_reader.hpp"
+#include "io/scene_reader.hpp"
 
 #include <unistd.h>
 
@@ -13,12 +13,12 @@
 namespace kds::benchmarks {
 
 /// Generates and reads back, by way of a folder of this process that is removed again.
-inline kds_collide::Scene generated_scene(const kds_collide::GeneratorOptions& options) {
+inline kds::io::Scene generated_scene(const kds_collide::GeneratorOptions& options) {
   const kds_collide::GeneratedScene generated = kds_collide::generate_scene(options);
   const auto folder = std::filesystem::temp_directory_path() / ("kds-bench-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   for (const auto& mesh : generated.meshes) std::ofstream(folder / mesh.name) << mesh.text;
-  kds_collide::Scene scene = kds_collide::parse_scene(generated.json, folder / "scene.json");
+  kds::io::Scene scene = kds::io::parse_scene(generated.json, folder / "scene.json");
   std::filesystem::remove_all(folder);
   return scene;
 }

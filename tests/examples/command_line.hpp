@@ -1,7 +1,7 @@
 // Runs of the tool, as a shell would run it.
 #pragma once
 
-#include "tests/examples/temporary_folder.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 #include <sys/wait.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace kds_collide::tests {
+namespace kds::io::tests {
 
 struct Outcome {
   int code;
@@ -41,4 +41,4 @@ inline constexpr const char* head_on = R"({"scene": 1, "end_time": 3, "response"
   {"name": "a", "shape": {"sphere": {"radius": 1}}, "motion": [{"start": 0, "position": [[0,0,0], [1,0,0]]}]},
   {"name": "b", "shape": {"sphere": {"radius": 1}}, "motion": [{"start": 0, "position": [[4,0,0], [-1,0,0]]}]}]})";
 
-}  // namespace kds_collide::tests
+}  // namespace kds::io::tests

@@ -1,9 +1,9 @@
 #include "collision/shapes/mesh_script.hpp"
 #include "examples/kds-collide/generator.hpp"
-#include "examples/kds-collide/replay.hpp"
-#include "examples/kds-collide/run.hpp"
-#include "examples/kds-collide/scene_reader.hpp"
-#include "tests/examples/temporary_folder.hpp"
+#include "io/replay.hpp"
+#include "io/run.hpp"
+#include "io/scene_reader.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -15,7 +15,8 @@
 
 namespace test_bending_scenes {
 using namespace kds_collide;
-using kds_collide::tests::TemporaryFolder;
+using namespace kds::io;
+using kds::io::tests::TemporaryFolder;
 using nlohmann::json;
 
 namespace {

@@ -9,12 +9,12 @@
 
 namespace test_command_line {
 
-using kds_collide::tests::head_on;
-using kds_collide::tests::kds_collide_in;
-using kds_collide::tests::lines_of;
-using kds_collide::tests::Outcome;
-using kds_collide::tests::read_file;
-using kds_collide::tests::TemporaryFolder;
+using kds::io::tests::head_on;
+using kds::io::tests::kds_collide_in;
+using kds::io::tests::lines_of;
+using kds::io::tests::Outcome;
+using kds::io::tests::read_file;
+using kds::io::tests::TemporaryFolder;
 
 TEST_CASE("command line: a scene in, events out") {
   const TemporaryFolder folder;

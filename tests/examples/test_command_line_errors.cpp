@@ -8,12 +8,12 @@
 
 namespace test_command_line_errors {
 
-using kds_collide::tests::head_on;
-using kds_collide::tests::kds_collide_in;
-using kds_collide::tests::lines_of;
-using kds_collide::tests::Outcome;
-using kds_collide::tests::read_file;
-using kds_collide::tests::TemporaryFolder;
+using kds::io::tests::head_on;
+using kds::io::tests::kds_collide_in;
+using kds::io::tests::lines_of;
+using kds::io::tests::Outcome;
+using kds::io::tests::read_file;
+using kds::io::tests::TemporaryFolder;
 
 TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, and leave nothing behind") {
   const TemporaryFolder folder;

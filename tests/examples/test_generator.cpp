@@ -1,7 +1,7 @@
 #include "examples/kds-collide/generator.hpp"
-#include "examples/kds-collide/mesh_file.hpp"
-#include "examples/kds-collide/scene_reader.hpp"
-#include "tests/examples/temporary_folder.hpp"
+#include "io/mesh_file.hpp"
+#include "io/scene_reader.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -14,7 +14,8 @@
 namespace test_generator {
 
 using namespace kds_collide;
-using kds_collide::tests::TemporaryFolder;
+using namespace kds::io;
+using kds::io::tests::TemporaryFolder;
 
 namespace {
 

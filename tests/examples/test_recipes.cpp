@@ -1,11 +1,11 @@
 // The code of docs/recipes.md that reads files and writes replays: what is quoted there stands here.
 #include "collision/shapes/mesh.hpp"
-#include "examples/kds-collide/mesh_file.hpp"
-#include "examples/kds-collide/replay.hpp"
-#include "examples/kds-collide/run.hpp"
-#include "examples/kds-collide/scene_reader.hpp"
-#include "examples/kds-collide/world_recorder.hpp"
-#include "tests/examples/temporary_folder.hpp"
+#include "io/mesh_file.hpp"
+#include "io/replay.hpp"
+#include "io/run.hpp"
+#include "io/scene_reader.hpp"
+#include "io/world_recorder.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -14,8 +14,8 @@
 
 namespace test_recipes {
 
-using namespace kds_collide;
-using kds_collide::tests::TemporaryFolder;
+using namespace kds::io;
+using kds::io::tests::TemporaryFolder;
 
 TEST_CASE("recipe: a mesh from a file") {
   const TemporaryFolder folder;

@@ -2,9 +2,9 @@
 //
 // The input's first byte chooses the format: 'o' is OBJ, anything else STL.
 #include "collision/shapes/mesh.hpp"
-#include "examples/kds-collide/mesh_file.hpp"
-#include "tests/examples/temporary_folder.hpp"
+#include "io/mesh_file.hpp"
 #include "tests/fuzz/check.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 #include <string>
 #include <string_view>
@@ -13,7 +13,7 @@
 namespace kds::fuzz {
 namespace {
 
-using namespace kds_collide;
+using namespace kds::io;
 
 void check_message(const std::string_view message) {
   require(!message.empty(), "the error says nothing");
@@ -31,7 +31,7 @@ void check_sound(const MeshData& mesh) {
 
 void run(std::span<const std::uint8_t> input) {
   if (input.empty()) return;
-  static const kds_collide::tests::TemporaryFolder folder;
+  static const kds::io::tests::TemporaryFolder folder;
   const bool obj = input[0] == 'o';
   const std::string text(input.begin() + 1, input.end());
   const auto file = folder.write(obj ? "a.obj" : "a.stl", text);

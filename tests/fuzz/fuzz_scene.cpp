@@ -1,7 +1,7 @@
 // The scene reader on any bytes: a scene that a world takes, or one line that says what is wrong.
 #include "collision/world.hpp"
-#include "examples/kds-collide/scene_reader.hpp"
-#include "examples/kds-collide/scene_world.hpp"
+#include "io/scene_reader.hpp"
+#include "io/scene_world.hpp"
 #include "tests/fuzz/check.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace kds::fuzz {
 namespace {
 
-using namespace kds_collide;
+using namespace kds::io;
 
 /// Where meshes are looked for; none there, other than by a name like "/dev/stdin", which is no mesh file.
 constexpr const char* file = "no-such-folder/scene.json";
@@ -33,7 +33,7 @@ void check_accepted(const Scene& scene) {
   collision::WorldOptions options;
   options.start_time = scene.begin_time;
   options.response = scene.response;
-  if (scene.domain && scene.domain->walls == kds_collide::Walls::reflect) {
+  if (scene.domain && scene.domain->walls == kds::io::Walls::reflect) {
     options.walls = collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
   collision::BasicWorld<Motion> world(options);

@@ -4,7 +4,7 @@
 
 #include "collision/world.hpp"
 #include "examples/kds-collide/generator.hpp"
-#include "examples/kds-collide/scene_reader.hpp"
+#include "io/scene_reader.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <Eigen/Core>
@@ -40,7 +40,7 @@ Scene<Degree> generated(const std::string& name, const std::string& what,
   const auto folder = std::filesystem::temp_directory_path() / ("kds-accuracy-" + name);
   std::filesystem::create_directories(folder);
   for (const auto& mesh : text.meshes) std::ofstream(folder / mesh.name) << mesh.text;
-  const auto read = kds_collide::parse_scene(text.json, folder / "scene.json");
+  const auto read = kds::io::parse_scene(text.json, folder / "scene.json");
   std::filesystem::remove_all(folder);
   Scene<Degree> scene{name, what, {}, options.end_time};
   for (const auto& body : read.bodies) {

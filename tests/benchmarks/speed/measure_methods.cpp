@@ -1,7 +1,7 @@
 // Our methods by number of bodies and by rate ([Coming06] Figures 7 and 8), and what swept volumes cost in tests at 1 Hz:
 // rings of 64 triangles, elastic, as the tool runs them. Each figure is the mean over some scenes of different seeds.
 #include "collision/profile.hpp"
-#include "examples/kds-collide/run.hpp"
+#include "io/run.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/generated_scene.hpp"
 #include "tests/benchmarks/speed/isolated.hpp"
@@ -24,7 +24,7 @@ using kds::benchmarks::open_csv;
 using kds::benchmarks::tell;
 using kds::collision::Work;
 using kds_collide::GeneratorOptions;
-using kds_collide::Scene;
+using kds::io::Scene;
 
 std::vector<Scene> samples_of(GeneratorOptions options, int samples) {
   std::vector<Scene> scenes;
@@ -66,12 +66,12 @@ using Parts = std::array<double, kinds_of_work.size()>;
 /// CPU s by kind of work; of some runs the one with the least, after one that is not counted.
 Parts split(const Scene& scene, const std::string& method, double rate) {
   const auto run_once = [&] {
-    kds_collide::RunOptions options;
+    kds::io::RunOptions options;
     options.broad_phase = method;
     options.rate = rate;
     options.profile = true;
-    kds_collide::EventSink nobody;
-    const auto result = kds_collide::run(scene, options, nobody);
+    kds::io::EventSink nobody;
+    const auto result = kds::io::run(scene, options, nobody);
     Parts parts{};
     for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = result.profile.seconds(kinds_of_work[i]);
     return parts;

@@ -1,6 +1,6 @@
 #include "tests/benchmarks/speed/race_of_scene.hpp"
 
-#include "examples/kds-collide/run.hpp"
+#include "io/run.hpp"
 #include "tests/benchmarks/speed/methods.hpp"
 
 #include <bit>
@@ -9,9 +9,9 @@
 namespace speed {
 namespace {
 
-struct Hasher final : kds_collide::EventSink {
+struct Hasher final : kds::io::EventSink {
   Run run;
-  void on_event(const kds_collide::Event& e) override {
+  void on_event(const kds::io::Event& e) override {
     ++run.events;
     run.hash += (std::bit_cast<std::uint64_t>(e.time) ^ (std::uint64_t{e.a} << 32 | e.b)) * 0x9E3779B97F4A7C15u;
   }
@@ -19,12 +19,12 @@ struct Hasher final : kds_collide::EventSink {
 
 }  // namespace
 
-Run run_scene(const kds_collide::Scene& scene, const std::string& method, double rate) {
+Run run_scene(const kds::io::Scene& scene, const std::string& method, double rate) {
   Hasher sink;
-  kds_collide::RunOptions options;
+  kds::io::RunOptions options;
   options.broad_phase = method;
   options.rate = rate;
-  const auto result = kds_collide::run(scene, options, sink);
+  const auto result = kds::io::run(scene, options, sink);
   Run run = sink.run;
   run.setup = result.setup_cpu_seconds;
   run.run = result.run_cpu_seconds;
@@ -37,7 +37,7 @@ Run run_scene(const kds_collide::Scene& scene, const std::string& method, double
   return run;
 }
 
-std::vector<Result> race_methods(const kds_collide::Scene& scene, double rate, bool quick) {
+std::vector<Result> race_methods(const kds::io::Scene& scene, double rate, bool quick) {
   std::vector<Entrant> entrants;
   for (const Method& m : methods()) {
     if (scene.bodies.size() > m.most_bodies) continue;

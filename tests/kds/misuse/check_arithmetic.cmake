@@ -4,7 +4,13 @@ function(expect_refusal options)
           simd/two_doubles simd/four_doubles simd/four_floats)
     separate_arguments(list UNIX_COMMAND "${options}")
     file(WRITE "${FOLDER}/uses_header.cpp" "#include \"kds/${header}.hpp\"\n")
-    execute_process(COMMAND "${COMPILER}" -std=c++20 -O2 ${list} -fsyntax-only "-I${ROOT}" "${FOLDER}/uses_header.cpp"
+    # Refusals are there before anything is compiled.
+    if(options STREQUAL "")
+      set(until -fsyntax-only)
+    else()
+      set(until -E -o /dev/null)
+    endif()
+    execute_process(COMMAND "${COMPILER}" -std=c++20 -O2 ${list} ${until} "-I${ROOT}" "${FOLDER}/uses_header.cpp"
                     RESULT_VARIABLE failed ERROR_VARIABLE said OUTPUT_VARIABLE said)
     string(FIND "${said}" "kds: compile" found)
     if(NOT options STREQUAL "" AND (NOT failed OR found EQUAL -1))

@@ -1,0 +1,75 @@
+#include "io/event_csv.hpp"
+
+#include "io/number_text.hpp"
+
+namespace kds::io {
+namespace {
+
+void append_name(std::string& text, std::string_view name) {
+  if (name.find_first_of(",\"") == std::string_view::npos) {
+    text += name;
+    return;
+  }
+  text += '"';
+  for (const char c : name) {
+    if (c == '"') text += '"';
+    text += c;
+  }
+  text += '"';
+}
+
+void append_columns(std::string& text, const Eigen::Vector3d& v) {
+  for (int d = 0; d < 3; ++d) {
+    text += ',';
+    // Adding zero turns -0 into 0, which says the same and compares equal as text.
+    append_number(text, v[d] + 0.0);
+  }
+}
+
+}  // namespace
+
+void append_csv_line(std::string& text, const Event& event, const Scene& scene) {
+  append_number(text, event.time);
+  text += ',';
+  text += event_kind_names[static_cast<std::size_t>(event.kind)];
+  text += ',';
+  append_name(text, scene.bodies[event.a].name);
+  text += ',';
+  append_name(text, event.is_at_wall() ? wall_names[event.b] : std::string_view(scene.bodies[event.b].name));
+  if (event.is_about_volumes()) {
+    text += ",,,,,,,-,-\n";
+    return;
+  }
+  append_columns(text, event.point);
+  append_columns(text, event.normal);
+  text += ',';
+  text += to_string(event.feature_a);
+  text += ',';
+  text += to_string(event.feature_b);
+  text += '\n';
+}
+
+EventCsv::EventCsv(const std::string& path, const Scene& scene) : file_(path), scene_(scene) {
+  buffer_ = event_csv_header;
+}
+
+void EventCsv::on_event(const Event& event) {
+  constexpr std::size_t enough = 1 << 16;  // bytes
+  append_csv_line(buffer_, event, scene_);
+  if (buffer_.size() < enough) return;
+  file_.write(buffer_);
+  buffer_.clear();
+}
+
+void EventCsv::close() {
+  if (!buffer_.empty()) file_.write(buffer_);
+  buffer_.clear();
+  file_.close();
+}
+
+void EventCsv::commit() {
+  close();
+  file_.commit();
+}
+
+}  // namespace kds::io

@@ -1,0 +1,31 @@
+// Events as lines of comma-separated values.
+#pragma once
+
+#include "io/events.hpp"
+#include "io/output_file.hpp"
+
+#include <string>
+
+namespace kds::io {
+
+inline constexpr std::string_view event_csv_header = "time,kind,a,b,px,py,pz,nx,ny,nz,feature_a,feature_b\n";
+
+/// Appends the line of one event. Numbers are the shortest that read back to the same double; names are quoted where
+/// they hold a comma or a quote (RFC 4180). Point and normal of pair_begin and pair_end are empty.
+void append_csv_line(std::string& text, const Event& event, const Scene& scene);
+
+/// Writes every event to a file; close() and commit() are those of OutputFile.
+class EventCsv final : public EventSink {
+ public:
+  EventCsv(const std::string& path, const Scene& scene);
+  void on_event(const Event& event) override;
+  void close();
+  void commit();
+
+ private:
+  OutputFile file_;
+  const Scene& scene_;
+  std::string buffer_;
+};
+
+}  // namespace kds::io

@@ -1,0 +1,40 @@
+// Triangle meshes from OBJ and STL files.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+namespace kds::io {
+
+struct MeshData {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// What is wrong with a mesh file; the message does not name the file.
+struct MeshFileError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads .obj (tinyobjloader) or .stl (assimp, in single precision). Vertices of an OBJ file keep its order and its
+/// numbers to the last bit, polygons are cut into triangles; equal vertices of an STL file, which repeats them for
+/// every triangle, become one. Throws MeshFileError, and std::filesystem::filesystem_error for a file that cannot be
+/// looked at; whether the triangles make a sound mesh is not checked here.
+MeshData read_mesh_file(const std::filesystem::path& file);
+
+/// Removes the triangles that no mesh can have (collision::is_degenerate), which ordinary files contain: they have no
+/// area, so that at most a crack as wide as roundings is left. The others keep their order; where there are none,
+/// nothing is removed. Returns which they were, by their places among all triangles, from 0. Precondition: what
+/// read_mesh_file() gives.
+std::vector<std::size_t> leave_out_degenerate(MeshData& mesh);
+
+/// The text of an OBJ file that read_mesh_file gives back bit for bit.
+std::string to_obj(const MeshData& mesh);
+
+}  // namespace kds::io

@@ -1,0 +1,55 @@
+// A file that is there whole or not at all.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace kds::io {
+
+/// Cannot be written; the message is one line `FILE: file: what is wrong`.
+struct OutputError : std::runtime_error {
+  OutputError(const std::string& line, bool when_opening) : std::runtime_error(line), on_opening(when_opening) {}
+  bool on_opening;  ///< so the name is wrong; else the disk is full or failing
+};
+
+/// Where `path` leads if it is a symbolic link to a file that is not there yet; else `path`.
+std::filesystem::path past_dangling_links(const std::filesystem::path& path);
+
+/// For programs, not for libraries in them: from now on temporary files of OutputFile, up to 8 at a time, are removed
+/// when the process is told to stop (SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU) or nobody reads its standard output any
+/// more (SIGPIPE); a file that grows beyond a limit (SIGXFSZ, ignored) is an error like any other.
+void remove_temporaries_at_signals();
+
+/// Writes to a temporary file beside the one that `path` leads to; commit() renames it, and until then nothing is
+/// there, or what was there before. Destroyed without commit(), the temporary file is removed. "-" is standard output;
+/// it, pipes and devices are written directly. Links stay links. A file that was there leaves its permissions to the
+/// new one, but not its owner or its other names (hard links).
+///
+/// All members but the destructor throw OutputError.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::string& path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(std::string_view text);
+  /// Ends the writing, and throws if it failed. Called of several files before the first commit(), it makes all of them
+  /// appear or none, but for a rename that fails in between: a folder that others have meanwhile changed.
+  void close();
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error, bool on_opening = false) const;
+
+  std::string path_;
+  std::filesystem::path target_;     ///< path_, with symbolic links resolved
+  std::filesystem::path temporary_;  ///< empty where path_ is written directly
+  std::FILE* file_ = nullptr;
+  int slot_ = -1;  ///< of the names a signal removes
+};
+
+}  // namespace kds::io

@@ -1,0 +1,191 @@
+#include "io/run.hpp"
+
+#include "collision/world.hpp"
+#include "io/scene_world.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace kds::io {
+namespace {
+
+using kds::collision::body_slot;
+using kds::collision::BodyId;
+using kds::collision::BroadPhaseKind;
+using kds::collision::Contact;
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::uint64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+BroadPhaseKind choose(const std::string& name) {
+  for (const auto& broad_phase : kds::collision::broad_phases) {
+    if (broad_phase.name == name) return broad_phase.kind;
+  }
+  throw std::invalid_argument("--broad-phase: there is no \"" + name + "\"; --broad-phase list names them");
+}
+
+/// Hands on what the world tells. Bodies are added in the order of the scene and none is removed: their slots are
+/// their places in it.
+template <class Motion>
+class Teller final : public kds::collision::BasicWorldListener<Motion> {
+ public:
+  using World = kds::collision::BasicWorld<Motion>;
+  using PairEvent = kds::collision::PairEvent;
+  using WallEvent = kds::collision::WallEvent;
+
+  Teller(EventSink& sink, Response response) : sink_(sink), response_(response) {}
+
+  void contact(World& world, const PairEvent& event) override {
+    tell(EventKind::contact, event);
+    tell_motions(world, event);
+  }
+  void separation(World&, const PairEvent& event) override { tell(EventKind::separation, event); }
+  void overlap(World&, const PairEvent& event) override { tell(EventKind::overlap, event); }
+  void rebound_suppressed(World& world, const PairEvent& event) override { tell_motions(world, event); }
+  void moved(World& world, BodyId id) override { tell_motion(world, id); }
+
+  void wall(World& world, const WallEvent& event) override {
+    tell_wall(EventKind::wall, event);
+    tell_motion(world, event.body);
+  }
+  void rests(World&, const PairEvent& event) override { tell(EventKind::rest, event); }
+  void wakes(World&, const PairEvent& event) override { tell(EventKind::wake, event); }
+  void rests_at_wall(World&, const WallEvent& event) override { tell_wall(EventKind::rest_at_wall, event); }
+  void wakes_at_wall(World&, const WallEvent& event) override { tell_wall(EventKind::wake_at_wall, event); }
+  void passes(World&, const PairEvent& event) override { tell(EventKind::pass, event); }
+  void pair_began(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_begin, a, b, t); }
+  void pair_ended(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_end, a, b, t); }
+
+ private:
+  void tell(EventKind kind, const PairEvent& event) {
+    const Contact& c = event.contact;
+    sink_.on_event({c.time, kind, body_slot(event.a), body_slot(event.b), c.point, c.normal, c.feature_a, c.feature_b});
+  }
+  void tell_wall(EventKind kind, const WallEvent& event) {
+    const Contact& c = event.contact;
+    const auto wall = static_cast<std::uint32_t>(event.wall);
+    sink_.on_event({c.time, kind, body_slot(event.body), wall, c.point, c.normal, {}, {}});
+  }
+  void tell_volumes(EventKind kind, BodyId a, BodyId b, double t) {
+    sink_.on_event({t, kind, body_slot(a), body_slot(b), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}});
+  }
+  void tell_motions(const World& world, const PairEvent& event) {
+    if (response_ == Response::none) return;
+    tell_motion(world, event.a);
+    tell_motion(world, event.b);
+  }
+  void tell_motion(const World& world, BodyId id) {
+    if (!world.contains(id)) return;
+    sink_.on_motion(body_slot(id), to_piece(world.motion(id)));
+  }
+
+  EventSink& sink_;
+  Response response_;
+};
+
+template <class Motion>
+RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sink) {
+  const BroadPhaseKind broad_phase = choose(options.broad_phase);
+  if (broad_phase == BroadPhaseKind::sap && !(options.rate > 0)) {
+    throw std::invalid_argument("--rate: must be > 0 for the broad phase \"sap\"");
+  }
+  kds::collision::WorldOptions world_options;
+  world_options.start_time = scene.begin_time;
+  world_options.response = scene.response;
+  world_options.broad_phase = broad_phase;
+  world_options.kdop = options.kdop;
+  world_options.orientation_error = options.orientation_error;
+  world_options.rate = options.rate;
+  world_options.report_pairs = options.pairs;
+  world_options.profile = options.profile;
+  world_options.threads = options.threads;
+  if (scene.end_time > scene.begin_time) world_options.window = scene.end_time - scene.begin_time;
+  if (scene.domain && scene.domain->walls == Walls::reflect) {
+    world_options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
+  }
+
+  RunResult result;
+  const double begin = scene.begin_time;
+  const double end = scene.end_time;
+  const double setup_start = cpu_seconds();
+  Teller<Motion> teller(sink, scene.response);
+  kds::collision::BasicWorld<Motion> world(world_options, &teller);
+  for (const SceneBody& body : scene.bodies) {
+    const auto description = describe<Motion>(body);
+    const BodyId id = world.add_body(description);
+    // Of a body that precesses the first piece is none of the scene's.
+    if (!(world.motion(id) == description.motion.front())) sink.on_motion(body_slot(id), to_piece(world.motion(id)));
+  }
+  world.advance_to(begin);
+  const double run_start = cpu_seconds();
+
+  double rate = options.rate;
+  if (options.steady_progress && end > begin) {
+    const double steady = 100 / (end - begin);
+    if (std::isfinite(steady)) rate = std::max(rate, steady);  // not of a run below 1e-306 s
+  }
+  if (rate > 0) {
+    for (std::uint64_t frame = 1;; ++frame) {
+      const double t = begin + static_cast<double>(frame) / rate;
+      if (!(t < end)) break;
+      world.advance_to(t);
+      sink.on_time(t);
+    }
+  }
+  world.advance_to(end);
+  sink.on_time(end);
+  const double run_end = cpu_seconds();
+
+  const kds::collision::WorldCounters counters = world.counters();
+  result.broad_phase = world.broad_phase();
+  result.setup_cpu_seconds = run_start - setup_start;
+  result.run_cpu_seconds = run_end - run_start;
+  result.sim_seconds = end - begin;
+  result.bodies = scene.bodies.size();
+  result.swaps = counters.broad_phase.swaps;
+  result.certificates = counters.broad_phase.certificates;
+  result.box_updates = counters.broad_phase.box_updates;
+  result.pairs_begun = counters.pairs_begun;
+  result.pair_tests = counters.pair_tests;
+  result.contacts = counters.contacts;
+  result.separations = counters.separations;
+  result.overlaps = counters.overlaps;
+  result.wall_contacts = counters.wall_contacts;
+  result.motion_updates = counters.motion_updates;
+  result.rotation_pieces = counters.rotation_pieces;
+  result.orientation_resets = counters.orientation_resets;
+  result.held = counters.rebounds_suppressed;
+  result.peak_memory_bytes = peak_memory();
+  result.profile = world.work_profile();
+  return result;
+}
+
+}  // namespace
+
+RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
+  using kds::certificates::PointMotion;
+  using kds::certificates::RigidMotion;
+  if (scene.turning) {
+    return scene.degree() == 2 ? run_with<RigidMotion<2>>(scene, options, sink)
+                               : run_with<RigidMotion<1>>(scene, options, sink);
+  }
+  return scene.degree() == 2 ? run_with<PointMotion<2>>(scene, options, sink)
+                             : run_with<PointMotion<1>>(scene, options, sink);
+}
+
+}  // namespace kds::io

@@ -1,0 +1,54 @@
+// Runs a scene.
+#pragma once
+
+#include "collision/profile.hpp"
+#include "io/events.hpp"
+#include "io/scene.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kds::io {
+
+struct RunOptions {
+  std::string broad_phase = "auto";  ///< a name in collision/broad_phase/broad_phase_kind.hpp
+  int kdop = 6;                      ///< 6, boxes, or, for "kinetic-sap", 14, 18 or 26
+  double orientation_error = 1e-3;   ///< rad, of bodies that precess: WorldOptions
+  double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
+  bool pairs = false;                ///< tell of bounding volumes too
+  bool steady_progress = false;      ///< call on_time about a hundred times, or more, in a run of 1e-306 s or more
+  bool profile = false;              ///< measure where the time goes
+  std::size_t threads = 1;           ///< how many take in bodies, where there are many; 0: as many as the machine has
+};
+
+/// What a run took and did.
+struct RunResult {
+  std::string broad_phase;       ///< the one used, as World::broad_phase() names it
+  double setup_cpu_seconds = 0;  ///< making the world and all that happens at begin_time
+  double run_cpu_seconds = 0;    ///< from there on
+  double sim_seconds = 0;        ///< simulated time
+  std::uint64_t bodies = 0;
+  std::uint64_t swaps = 0;         ///< exchanges of neighbours in the sorted lists
+  std::uint64_t certificates = 0;  ///< failure times computed by the broad phase
+  std::uint64_t box_updates = 0;   ///< bounding volumes computed or changed
+  std::uint64_t pairs_begun = 0;   ///< pairs handed on by the broad phase
+  std::uint64_t pair_tests = 0;    ///< dynamic intersection tests
+  std::uint64_t contacts = 0;
+  std::uint64_t separations = 0;
+  std::uint64_t overlaps = 0;
+  std::uint64_t wall_contacts = 0;
+  std::uint64_t motion_updates = 0;
+  std::uint64_t rotation_pieces = 0;     ///< of bodies that precess
+  std::uint64_t orientation_resets = 0;  ///< times such a body was not turned as it should have been for too long
+  std::uint64_t held = 0;                ///< times the policy for endless bounces acted
+  std::uint64_t peak_memory_bytes = 0;
+  kds::collision::Profile profile;  ///< where the time went, if asked for
+};
+
+/// Runs the scene from its begin_time to its end_time, and tells `sink`. Throws std::invalid_argument for options it
+/// cannot follow, and what the sink throws.
+RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink);
+
+}  // namespace kds::io

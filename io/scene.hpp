@@ -1,0 +1,87 @@
+// A scene: bodies, how they move, and the space they move in.
+#pragma once
+
+#include "certificates/turning/rigid_motion.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "collision/shapes/shape.hpp"
+#include "collision/world_options.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kds::io {
+
+/// A piece of a body's motion: a path, linear or quadratic, and an orientation, which turns only in scenes that say so.
+/// It holds until the next piece's start.
+using MotionPiece = kds::certificates::RigidMotion<2>;
+
+/// Of two bodies that meet, the lower counts of each.
+struct SurfaceNumbers {
+  double restitution = 1;             ///< in [0, 1]
+  double friction = 0;                ///< >= 0
+  double tangential_restitution = 0;  ///< in [-1, 1]
+};
+
+struct SceneBody {
+  std::string name;
+  kds::collision::Shape shape;
+  std::shared_ptr<const kds::collision::Mesh> bent{};  ///< of a mesh that bends: the one that gives it its triangles
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit; that of the first piece
+  double mass = 1;
+  double inertia = 0;                               ///< about every axis; 0: that of a solid of the shape
+  std::optional<Eigen::Matrix3d> inertia_tensor{};  ///< in place of it, in the axes of the body; checked where it turns
+  bool fixed = false;                               ///< infinite mass
+  bool sensor = false;                              ///< only reports
+  bool self_contacts = false;                       ///< of a mesh that bends: those with itself are events
+  double restitution = 1;                           ///< in [0, 1]; of two bodies the lower counts
+  double friction = 0;                              ///< and here; 0 where nothing turns
+  double tangential_restitution = 0;
+  std::vector<MotionPiece> motion;  ///< not empty; starts ascend
+};
+
+struct SceneMesh {
+  std::string name;
+  std::string file;  ///< as written in the scene; empty if it was made for a body with a pivot
+  std::shared_ptr<const kds::collision::Mesh> mesh;
+};
+
+using kds::collision::Response;  ///< a scene has `none` or `elastic`
+enum class Walls { open, reflect };
+
+struct Domain {
+  Eigen::Vector3d min;
+  Eigen::Vector3d max;
+  Walls walls = Walls::open;
+  double restitution = 1;  ///< of the walls
+};
+
+/// What a scene file says, checked.
+struct Scene {
+  /// The earliest start of a first piece. A body whose first piece starts later enters then.
+  double begin_time = 0;
+  double end_time = 0;
+  Response response = Response::none;
+  bool turning = false;  ///< its bodies turn, or contacts may make them: the scene speaks of it
+  std::optional<Domain> domain;
+  std::vector<SceneMesh> meshes;
+  std::vector<SceneBody> bodies;
+  /// What was mended in what the scene names, each as one line `FILE: WHERE: what`.
+  std::vector<std::string> warnings;
+
+  /// 2 where any piece accelerates, else 1.
+  int degree() const;
+};
+
+/// What is wrong with a scene, as one line `FILE: WHERE: what is wrong`.
+class SceneError : public std::runtime_error {
+ public:
+  SceneError(const std::string& file, const std::string& where, const std::string& what);
+};
+
+}  // namespace kds::io

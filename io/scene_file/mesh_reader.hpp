@@ -1,0 +1,15 @@
+// The meshes that a scene names.
+#pragma once
+
+#include "io/scene.hpp"
+#include "io/scene_file/json_node.hpp"
+
+#include <filesystem>
+
+namespace kds::io {
+
+/// Reads the files that `node`, the scene's "meshes", names, relative to a folder, into scene.meshes. Triangles that
+/// are degenerate are left out, and scene.warnings say how many: one must not make a model useless. Throws JsonError.
+void read_meshes(const JsonNode& node, const std::filesystem::path& folder, Scene& scene);
+
+}  // namespace kds::io

@@ -1,0 +1,385 @@
+#include "io/scene_reader.hpp"
+
+#include "certificates/turning/turned_orientation.hpp"
+#include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/world.hpp"
+#include "io/number_text.hpp"
+#include "io/scene_file/json_node.hpp"
+#include "io/scene_file/material_reader.hpp"
+#include "io/scene_file/mesh_reader.hpp"
+#include "io/scene_file/pivot.hpp"
+#include "io/scene_world.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+#include <variant>
+
+namespace kds::io {
+namespace {
+
+using nlohmann::json;
+
+/// For numbers that were computed and not given: six digits.
+std::string about(double value) {
+  char digits[32];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 6);
+  return {digits, end};
+}
+
+using kds::collision::Shape;
+using Meshes = std::vector<SceneMesh>;
+
+Shape read_sphere(const JsonNode& node, const Meshes&) {
+  return kds::collision::Sphere{node["sphere"].object({"radius"})["radius"].positive()};
+}
+
+Shape read_box(const JsonNode& node, const Meshes&) {
+  const JsonNode half = node["box"].object({"half_extents"})["half_extents"];
+  const std::vector<JsonNode> parts = half.tuple(3);
+  return kds::collision::Box{{parts[0].positive(), parts[1].positive(), parts[2].positive()}};
+}
+
+Shape read_capsule(const JsonNode& node, const Meshes&) {
+  const JsonNode capsule = node["capsule"];
+  capsule.object({"radius", "half_length"});
+  return kds::collision::Capsule{capsule["radius"].positive(), capsule["half_length"].length()};
+}
+
+Shape read_hull(const JsonNode& node, const Meshes&) {
+  const JsonNode points = node["hull"].object({"points"})["points"];
+  const std::vector<JsonNode> places = points.elements();
+  std::vector<Eigen::Vector3d> corners;
+  for (const JsonNode& place : places) corners.push_back(place.vector());
+  try {
+    const Shape hull = kds::collision::convex_hull(std::move(corners));
+    kds::collision::place(hull, Eigen::Quaterniond::Identity());
+    return hull;
+  } catch (const kds::collision::InvalidHull& error) {
+    if (error.point()) {
+      const std::string what = error.what();  // "point 4: ..."
+      places[*error.point()].fail(what.substr(what.find(": ") + 2));
+    }
+    points.fail(error.what());
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();  // "hull: ..."
+    points.fail(what.substr(what.find(": ") + 2));
+  }
+}
+
+Shape read_mesh_shape(const JsonNode& node, const Meshes& meshes) {
+  const std::string name = node["mesh"].string();
+  const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const SceneMesh& m) { return m.name == name; });
+  if (found == meshes.end()) node["mesh"].fail("there is no mesh \"" + name + "\" in \"meshes\"");
+  const double scale = node.has("scale") ? node["scale"].positive() : 1.0;
+  const double radius = found->mesh->bounding_radius() * scale;
+  if (radius < smallest_size || radius > largest_number) {
+    const std::string reaches = node.has("scale") ? "makes the mesh reach " : "reaches ";
+    const std::string limit =
+        radius < smallest_size ? "at least " + number_text(smallest_size) : "at most " + number_text(largest_number);
+    node[node.has("scale") ? "scale" : "mesh"].fail(reaches + about(radius) + " from its origin; " + limit +
+                                                    " is supported");
+  }
+  return kds::collision::MeshShape{found->mesh, scale};
+}
+
+struct ShapeReader {
+  const char* key;
+  Shape (*read)(const JsonNode& node, const Meshes& meshes);
+};
+constexpr const char* one_shape = "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\" and \"hull\"";
+constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},
+                                         {"box", read_box},
+                                         {"mesh", read_mesh_shape},
+                                         {"capsule", read_capsule},
+                                         {"hull", read_hull}};
+
+Shape read_shape(const JsonNode& node, const Meshes& meshes) {
+  node.object({"sphere", "box", "mesh", "capsule", "hull", "scale"});
+  const ShapeReader* found = nullptr;
+  for (const ShapeReader& each : shape_readers) {
+    if (!node.has(each.key)) continue;
+    if (found) node.fail(one_shape);
+    found = &each;
+  }
+  if (!found) node.fail(one_shape);
+  if (node.has("scale") && !node.has("mesh")) node["scale"].fail("is for meshes only");
+  return found->read(node, meshes);
+}
+
+/// `vertices`: keyframes of the vertices of the body's mesh, which then bends.
+void read_vertices(const JsonNode& node, SceneBody& body, Response response) {
+  const auto* const shape = std::get_if<kds::collision::MeshShape>(&body.shape);
+  if (!shape) node.fail("is for meshes only");
+  if (shape->scale != 1) node.fail("is for meshes without a scale: positions are as they are given");
+  if (response == Response::elastic && !body.sensor && !body.fixed) {
+    node.fail("contacts do not move a mesh that bends: \"fixed\": true for this body, or \"sensor\": true");
+  }
+  const std::size_t count = shape->mesh->vertices().size();
+  std::vector<kds::collision::MeshScript::Keyframe> keyframes;
+  for (const JsonNode& each : node.elements()) {
+    each.object({"time", "positions"});
+    kds::collision::MeshScript::Keyframe keyframe{each["time"].number(), {}};
+    if (!keyframes.empty() && !(keyframe.time > keyframes.back().time)) {
+      each["time"].fail("must be later than that of the keyframe before, " + number_text(keyframes.back().time));
+    }
+    const std::vector<JsonNode> positions = each["positions"].elements();
+    if (positions.size() != count) {
+      each["positions"].fail("has " + std::to_string(positions.size()) + " positions, and the mesh has " +
+                             std::to_string(count) + " vertices");
+    }
+    for (const JsonNode& position : positions) keyframe.positions.push_back(position.vector());
+    keyframes.push_back(std::move(keyframe));
+  }
+  if (keyframes.empty()) node.fail("must have at least one keyframe");
+  const auto triangles = shape->mesh->triangles();
+  body.bent = shape->mesh;
+  body.shape = kds::collision::BendingMesh{std::make_shared<const kds::collision::MeshScript>(
+      std::move(keyframes), std::vector<kds::collision::Mesh::Triangle>(triangles.begin(), triangles.end()))};
+}
+
+Eigen::Quaterniond read_orientation(const JsonNode& node) {
+  const std::vector<JsonNode> parts = node.tuple(4);
+  const Eigen::Quaterniond q(parts[0].number(), parts[1].number(), parts[2].number(), parts[3].number());
+  const double norm = q.norm();
+  if (!(std::abs(norm - 1) <= orientation_tolerance)) {
+    node.fail("must be a unit quaternion; its norm is " + about(norm));
+  }
+  return q.normalized();
+}
+
+/// `start` and `position` of a piece.
+kds::certificates::PointMotion<2> read_path(const JsonNode& node) {
+  kds::certificates::PointMotion<2> path;
+  path.start = node["start"].number();
+  const JsonNode position = node["position"];
+  const std::vector<JsonNode> coefficients = position.elements();
+  if (coefficients.empty()) position.fail("must have at least one coefficient");
+  if (coefficients.size() > path.coefficients.size()) {
+    position.fail("has " + std::to_string(coefficients.size()) +
+                  " coefficients; at most 3 (position, velocity, half the acceleration) are supported");
+  }
+  path.coefficients.fill(Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < coefficients.size(); ++i) path.coefficients[i] = coefficients[i].vector();
+  return path;
+}
+
+/// A piece goes on with the orientation that the one before has led to, unless it has its own.
+std::vector<MotionPiece> read_motion(const JsonNode& node, const Eigen::Quaterniond& orientation, Response response) {
+  const std::vector<JsonNode> pieces = node.elements();
+  if (pieces.empty()) node.fail("must have at least one piece");
+  std::vector<MotionPiece> motion;
+  for (const JsonNode& each : pieces) {
+    each.object({"start", "position", "orientation", "angular_velocity", "pivot"});
+    MotionPiece piece{read_path(each), orientation};
+    if (!motion.empty()) {
+      if (!(motion.back().start() < piece.start())) {
+        each["start"].fail("must be later than the start of the piece before, " + number_text(motion.back().start()));
+      }
+      piece.orientation =
+          kds::certificates::turned_orientation(motion.back().orientation, motion.back().spin(), piece.start());
+    }
+    if (each.has("orientation")) {
+      if (motion.empty()) each["orientation"].fail("the first piece begins with the \"orientation\" of the body");
+      piece.orientation = read_orientation(each["orientation"]);
+    }
+    if (each.has("angular_velocity")) piece.angular_velocity = each["angular_velocity"].vector();
+    motion.push_back(piece);
+  }
+  if (motion.size() > 1 && response == Response::elastic) {
+    pieces[1].fail("with \"response\": \"elastic\" a body has only one piece of motion");
+  }
+  return motion;
+}
+
+/// Whether anything is said of how the body turns.
+bool speaks_of_turning(const JsonNode& node) {
+  const std::vector<JsonNode> pieces = node["motion"].elements();
+  const auto turns = [](const JsonNode& piece) {
+    return piece.has("angular_velocity") || piece.has("orientation") || piece.has("pivot");
+  };
+  return node.has("inertia") || std::any_of(pieces.begin(), pieces.end(), turns);
+}
+
+SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbers& of_scene) {
+  node.object({"name", "shape", "vertices", "orientation", "mass", "inertia", "fixed", "sensor", "self_contacts",
+               "restitution", "friction", "tangential_restitution", "motion"});
+  SceneBody body;
+  body.name = node["name"].string();
+  body.shape = read_shape(node["shape"], scene.meshes);
+  if (node.has("orientation")) body.orientation = read_orientation(node["orientation"]);
+  if (node.has("mass")) body.mass = node["mass"].positive();
+  if (node.has("inertia")) {
+    const auto inertia = read_inertia(node["inertia"]);
+    if (const auto* moment = std::get_if<double>(&inertia)) body.inertia = *moment;
+    if (const auto* tensor = std::get_if<Eigen::Matrix3d>(&inertia)) body.inertia_tensor = *tensor;
+  }
+  if (node.has("fixed")) body.fixed = node["fixed"].boolean();
+  if (node.has("sensor")) body.sensor = node["sensor"].boolean();
+  if (node.has("self_contacts")) {
+    if (!node.has("vertices")) node["self_contacts"].fail("is for meshes that bend");
+    body.self_contacts = node["self_contacts"].boolean();
+  }
+  if (node.has("vertices")) read_vertices(node["vertices"], body, scene.response);
+  const SurfaceNumbers surface = read_surface(node, of_scene);
+  body.restitution = surface.restitution, body.friction = surface.friction;
+  body.tangential_restitution = surface.tangential_restitution;
+  body.motion = read_motion(node["motion"], body.orientation, scene.response);
+  if (const auto pivot = read_pivot(node["motion"])) {
+    const JsonNode at = node["motion"].elements().front()["pivot"];
+    if (scene.response == Response::elastic && !body.fixed && !body.sensor) {
+      at.fail("a body that contacts move turns about its centre of mass: make it fixed, or a sensor");
+    }
+    body.shape = about_pivot(body.shape, *pivot, at);
+  }
+  return body;
+}
+
+Domain read_domain(const JsonNode& node, const SurfaceNumbers& of_scene) {
+  node.object({"min", "max", "walls", "restitution"});
+  Domain domain;
+  domain.min = node["min"].vector();
+  domain.max = node["max"].vector();
+  const std::vector<JsonNode> ends = node["max"].elements();
+  for (std::size_t d = 0; d < 3; ++d) {
+    const auto i = static_cast<Eigen::Index>(d);
+    if (!(domain.min[i] < domain.max[i])) ends[d].fail("must be > domain.min[" + std::to_string(d) + "]");
+  }
+  domain.walls = node["walls"].choice({"open", "reflect"}) == 1 ? Walls::reflect : Walls::open;
+  domain.restitution = read_surface(node, of_scene).restitution;
+  return domain;
+}
+
+/// With reflecting walls every piece of motion begins inside them.
+void check_inside_walls(const JsonNode& node, const SceneBody& body, const Domain& domain) {
+  const double radius = kds::collision::place(body.shape, body.orientation).bounding_radius;
+  const std::vector<JsonNode> pieces = node["motion"].elements();
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const Eigen::Vector3d& at = body.motion[p].path.coefficients[0];
+    for (int d = 0; d < 3; ++d) {
+      const bool inside = at[d] - domain.min[d] >= radius && domain.max[d] - at[d] >= radius;
+      if (inside) continue;
+      pieces[p]["position"].fail(std::string("begins outside the reflecting walls: ") + "xyz"[d] + " = " +
+                                 number_text(at[d]) + " with a bounding radius of " + about(radius) + ", between " +
+                                 number_text(domain.min[d]) + " and " + number_text(domain.max[d]));
+    }
+  }
+}
+
+/// Every piece stays within the largest number while it holds, by the sum of its terms.
+void check_range(const JsonNode& node, const SceneBody& body, const Scene& scene) {
+  const std::vector<JsonNode> pieces = node["motion"].elements();
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const kds::certificates::PointMotion<2>& piece = body.motion[p].path;
+    const double end = p + 1 < pieces.size() ? std::min(body.motion[p + 1].start(), scene.end_time) : scene.end_time;
+    const double elapsed = std::max(0.0, end - piece.start);
+    for (int d = 0; d < 3; ++d) {
+      const auto& c = piece.coefficients;
+      const double largest = std::abs(c[0][d]) + elapsed * (std::abs(c[1][d]) + elapsed * std::abs(c[2][d]));
+      if (largest <= largest_number) continue;
+      pieces[p]["position"].fail("may reach a magnitude of " + about(largest) + " by t = " + about(end) + "; at most " +
+                                 number_text(largest_number) + " is supported");
+    }
+  }
+}
+
+/// Not every body can turn: which one cannot, and why, is for a world to say, which begins with the member that is
+/// wrong.
+void check_turns(const std::vector<JsonNode>& nodes, const Scene& scene) {
+  kds::collision::BasicWorld<MotionPiece> world({.response = scene.response});
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    try {
+      world.remove_body(world.add_body(describe<MotionPiece>(scene.bodies[i])));
+    } catch (const std::invalid_argument& error) {
+      const std::string what = error.what();
+      const std::size_t colon = what.find(": ");
+      if (colon == std::string::npos) nodes[i].fail(what);
+      std::string member = what.substr(0, colon);
+      if (member == "mass_properties") member = "shape";  // which is no solid
+      throw JsonError(nodes[i].path() + '.' + member, what.substr(colon + 2));
+    }
+  }
+}
+
+Scene read_document(const JsonNode& root, const std::filesystem::path& folder, std::optional<double> until) {
+  root.object({"scene", "end_time", "response", "restitution", "friction", "tangential_restitution", "domain", "meshes",
+               "bodies"});
+  if (!root["scene"].is(1)) root["scene"].fail("must be 1, the only format there is");
+  Scene scene;
+  scene.end_time = root["end_time"].number();
+  if (root.has("response")) {
+    scene.response = root["response"].choice({"none", "elastic"}) == 1 ? Response::elastic : Response::none;
+  }
+  const SurfaceNumbers surface = read_surface(root, {});
+  if (root.has("domain")) scene.domain = read_domain(root["domain"], surface);
+  if (root.has("meshes")) read_meshes(root["meshes"], folder, scene);
+  const std::vector<JsonNode> bodies = root["bodies"].elements();
+  std::map<std::string, std::string> names;
+  for (const JsonNode& node : bodies) {
+    scene.bodies.push_back(read_body(node, scene, surface));
+    const auto [entry, is_new] = names.try_emplace(scene.bodies.back().name, node.path());
+    if (!is_new) node["name"].fail('"' + entry->first + "\" is the name of " + entry->second + " too");
+    scene.turning = scene.turning || speaks_of_turning(node);
+  }
+  for (const SceneBody& body : scene.bodies) {  // made by pivots
+    const auto mesh = mesh_of(body.shape);
+    const auto is_it = [&](const SceneMesh& known) { return known.mesh == mesh; };
+    if (!mesh || std::any_of(scene.meshes.begin(), scene.meshes.end(), is_it)) continue;
+    scene.meshes.push_back({body.name, "", mesh});
+  }
+  if (scene.turning) {
+    check_turns(bodies, scene);
+  } else {
+    refuse_friction(root, bodies);
+  }
+
+  if (!scene.bodies.empty()) scene.begin_time = scene.bodies.front().motion.front().start();
+  for (const SceneBody& body : scene.bodies) scene.begin_time = std::min(scene.begin_time, body.motion.front().start());
+  if (scene.end_time < scene.begin_time) {
+    root["end_time"].fail("must be >= " + number_text(scene.begin_time) + ", where the motion begins");
+  }
+  scene.end_time = until.value_or(scene.end_time);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    check_range(bodies[i], scene.bodies[i], scene);
+    if (scene.domain && scene.domain->walls == Walls::reflect && !scene.bodies[i].sensor) {
+      check_inside_walls(bodies[i], scene.bodies[i], *scene.domain);
+    }
+  }
+  return scene;
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view json_text, const std::filesystem::path& file, std::optional<double> until) {
+  try {
+    const json document = parse_json(json_text);
+    Scene scene = read_document(JsonNode(document, ""), file.parent_path(), until);
+    for (std::string& warning : scene.warnings) warning.insert(0, file.string() + ": ");
+    return scene;
+  } catch (const JsonError& error) {
+    throw SceneError(file.string(), error.where, error.what());
+  }
+}
+
+Scene read_scene(const std::filesystem::path& file, std::optional<double> until) {
+  const auto fail = [&](const std::string& why) { throw SceneError(file.string(), "file", "cannot be read: " + why); };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) fail("Is a directory");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) fail(std::strerror(errno));
+  std::ostringstream content;
+  if (in.peek() != std::ifstream::traits_type::eof()) content << in.rdbuf();
+  if (in.bad() || !content) fail("read error");
+  return parse_scene(content.view(), file, until);
+}
+
+}  // namespace kds::io

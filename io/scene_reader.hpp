@@ -1,0 +1,23 @@
+// Reads a scene file: strict, and exact about what is wrong where.
+#pragma once
+
+#include "io/scene.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace kds::io {
+
+/// How far from 1 the norm of an orientation may be: files carry few digits. It is normalised.
+inline constexpr double orientation_tolerance = 1e-6;
+
+/// Reads the file and the meshes it names; the scene ends at `until`, in seconds, instead of its end_time, if that is
+/// given. Throws SceneError.
+Scene read_scene(const std::filesystem::path& file, std::optional<double> until = {});
+
+/// The same from text; `file` is named in errors, and meshes are looked for beside it.
+Scene parse_scene(std::string_view text, const std::filesystem::path& file, std::optional<double> until = {});
+
+}  // namespace kds::io

@@ -1,0 +1,148 @@
+#include "io/mesh_file.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+
+namespace test_mesh_file {
+
+using namespace kds::io;
+using kds::io::tests::TemporaryFolder;
+
+TEST_CASE("mesh file: OBJ keeps the order and every bit of its vertices") {
+  const TemporaryFolder folder;
+  const MeshData mesh = read_mesh_file(folder.write("a.obj",
+                                                    "# a comment\n"
+                                                    "o thing\n"
+                                                    "v 0.3 0.1 1e-7\r\n"
+                                                    "v 5 5 5\n"  // in no face
+                                                    "\tv  1 0 -0.7  1.0\n"
+                                                    "v +2 1.1 0\n"
+                                                    "vn 0 0 1\nvt 0 0\n"
+                                                    "f 4/1/1 3//1 1\n"
+                                                    "usemtl none\n"
+                                                    "f -4 -2 -1\n"));
+  REQUIRE(mesh.vertices.size() == 4);
+  CHECK(mesh.vertices[0] == Eigen::Vector3d(0.3, 0.1, 1e-7));
+  CHECK(mesh.vertices[2] == Eigen::Vector3d(1, 0, -0.7));
+  CHECK(mesh.vertices[3] == Eigen::Vector3d(2, 1.1, 0));
+  REQUIRE(mesh.triangles.size() == 2);
+  CHECK(mesh.triangles[0] == std::array<std::uint32_t, 3>{3, 2, 0});
+  CHECK(mesh.triangles[1] == std::array<std::uint32_t, 3>{0, 2, 3});
+}
+
+TEST_CASE("mesh file: polygons are cut into triangles") {
+  const TemporaryFolder folder;
+  const MeshData mesh = read_mesh_file(folder.write("a.obj",
+                                                    "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 1 2 0\n"
+                                                    "f 1 2 3 4\nf 1 2 3 5 4\n"));
+  CHECK(mesh.triangles.size() == 5);
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    area += 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
+  }
+  CHECK(area == Approx(2 + 3));
+}
+
+TEST_CASE("mesh file: what is written is read back bit for bit") {
+  const TemporaryFolder folder;
+  MeshData mesh;
+  for (int i = 0; i < 20; ++i) mesh.vertices.emplace_back(std::sin(i), std::cos(i) * 1e-9, std::tan(i) * 1e9);
+  for (std::uint32_t i = 0; i + 2 < 20; ++i) mesh.triangles.push_back({i, i + 1, i + 2});
+  const MeshData again = read_mesh_file(folder.write("a.obj", to_obj(mesh)));
+  CHECK(again.vertices == mesh.vertices);
+  CHECK(again.triangles == mesh.triangles);
+}
+
+TEST_CASE("mesh file: equal vertices of an STL file become one") {
+  const TemporaryFolder folder;
+  const std::string ascii =
+      "solid s\n"
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+      "facet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1e-3 0\nvertex 0 1 0\nendloop\nendfacet\n"
+      "endsolid s\n";
+  const MeshData mesh = read_mesh_file(folder.write("a.stl", ascii));
+  CHECK(mesh.vertices.size() == 4);
+  REQUIRE(mesh.triangles.size() == 2);
+  CHECK(mesh.triangles[1] == std::array<std::uint32_t, 3>{1, 3, 2});
+
+  std::string binary(80, ' ');
+  const auto append = [&binary](auto value) { binary.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  append(std::uint32_t{2});
+  for (const auto& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) append(0.0F);
+    for (const std::uint32_t v : triangle) {
+      for (int d = 0; d < 3; ++d) append(static_cast<float>(mesh.vertices[v][d]));
+    }
+    append(std::uint16_t{0});
+  }
+  const MeshData same = read_mesh_file(folder.write("B.STL", binary));
+  CHECK(same.vertices == mesh.vertices);
+  CHECK(same.triangles == mesh.triangles);
+}
+
+TEST_CASE("mesh file: coordinates of an STL file that are not finite are refused with their triangle") {
+  const TemporaryFolder folder;
+  const std::string coordinate = GENERATE("nan", "inf", "-inf", "1e39");
+  INFO(coordinate);
+  const std::string good =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  const std::string bad =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 " + coordinate + " 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  const auto file = folder.write("a.stl", "solid s\n" + good + bad + "endsolid s\n");
+  CHECK_THROWS_WITH(read_mesh_file(file), "triangle 1: has a coordinate that is not finite");
+}
+
+TEST_CASE("mesh file: degenerate triangles are left out") {
+  const TemporaryFolder folder;
+  MeshData mesh = read_mesh_file(folder.write("a.obj",
+                                              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 0 0 0\nv 0.5 1e-18 0\n"
+                                              "f 1 1 2\n"  // a vertex twice
+                                              "f 1 2 3\n"
+                                              "f 1 2 4\n"  // in a line
+                                              "f 1 5 3\n"  // two vertices in one place
+                                              "f 1 6 2\n"  // in a line, up to roundings
+                                              "f 3 2 4\n"));
+  CHECK(leave_out_degenerate(mesh) == std::vector<std::size_t>{0, 2, 3, 4});
+  using Triangle = std::array<std::uint32_t, 3>;
+  CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}});
+  CHECK(mesh.vertices.size() == 6);
+  CHECK(leave_out_degenerate(mesh).empty());
+}
+
+TEST_CASE("mesh file: files that are no mesh") {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::filesystem::path& file) {
+    try {
+      read_mesh_file(file);
+      return std::string("no error");
+    } catch (const MeshFileError& e) {
+      return std::string(e.what());
+    }
+  };
+  CHECK(error(folder / "none.obj") == "no such file");
+  CHECK(error(folder.write("a.ply", "ply\n")) == "only .obj and .stl files are read");
+  CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n")) == "a face has fewer than three corners");
+  CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n")) != "no error");
+  CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf a b c\n")) != "no error");
+  CHECK(error(folder.write("a.obj", std::string("\0\1\2garbage", 10))) == "has no triangles");
+  const auto face_of = [&](const std::string& corners) {
+    return error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf " + corners + "\n"));
+  };
+  CHECK(face_of("1 2 3") == "no error");
+  CHECK(face_of("+1/7/8 2//3 3/4") == "no error");
+  CHECK(face_of("1.9 2 3") == "line 5: \"1.9\" is not the number of a vertex");
+  CHECK(face_of("1 2 4294967297") == "line 5: \"4294967297\" is not the number of a vertex");
+  CHECK(face_of("1 2x/1 3") == "line 5: \"2x/1\" is not the number of a vertex");
+  CHECK(face_of("0 1 2") == "line 5: \"0\" is not the number of a vertex");
+  CHECK(face_of("1\v2 3 1 2") != "no error");
+  CHECK(face_of("1 2 3\r# a comment\rf 1.9 2 3") == "line 5: a line ends in CR alone; LF or CR LF is read");
+  CHECK(error(folder.write("a.stl", "solid s\nendsolid s\n")) != "no error");
+  CHECK(error(folder.write("a.stl", "x")) != "no error");
+}
+
+}  // namespace test_mesh_file

@@ -1,0 +1,92 @@
+#include "io/output_file.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <string>
+
+namespace test_output_file {
+
+using namespace kds::io;
+using kds::io::tests::read_file;
+using kds::io::tests::TemporaryFolder;
+
+TEST_CASE("output file: what was there stays until the new one is whole") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a.txt", "old").string();
+  {
+    OutputFile file(path);
+    file.write("new");
+  }
+  CHECK(read_file(path) == "old");
+  CHECK(folder.file_count() == 1);
+  OutputFile file(path);
+  file.write("new");
+  file.commit();
+  CHECK(read_file(path) == "new");
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("output file: a symbolic link stays one, a device is written as it is") {
+  const TemporaryFolder folder;
+  const auto target = folder.write("a.txt", "old");
+  std::filesystem::create_symlink(target, folder / "link.txt");
+  OutputFile file((folder / "link.txt").string());
+  file.write("new");
+  file.commit();
+  CHECK(std::filesystem::is_symlink(folder / "link.txt"));
+  CHECK(read_file(target) == "new");
+
+  OutputFile null("/dev/null");
+  null.write("gone");
+  null.commit();
+  CHECK(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_CASE("output file: a link that leads nowhere yet leads to the new file") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "below");
+  std::filesystem::create_symlink("below/second", folder / "first");  // relative to the folder of the link
+  std::filesystem::create_symlink("../a.txt", folder / "below/second");
+  //   CHECK(past_dangling_links((folder / "first").string()) == folder / "below/../a.txt");
+  OutputFile file((folder / "first").string());
+  file.write("new");
+  file.commit();
+  CHECK(std::filesystem::is_symlink(folder / "first"));
+  CHECK(std::filesystem::is_symlink(folder / "below/second"));
+  CHECK(read_file(folder / "a.txt") == "new");
+  CHECK(folder.file_count() == 3);
+
+  std::filesystem::create_symlink("circle", folder / "circle");
+  CHECK_THROWS_WITH(OutputFile((folder / "circle").string()), Catch::Contains("Too many levels of symbolic links"));
+}
+
+TEST_CASE("output file: who may read and write it stays as it was") {
+  using std::filesystem::perms;
+  const TemporaryFolder folder;
+  const auto path = folder.write("a.txt", "old");
+  const auto mode = GENERATE(perms{0600}, perms{0666}, perms{0755});
+  std::filesystem::permissions(path, mode);
+  OutputFile file(path.string());
+  file.write("new");
+  file.commit();
+  CHECK(std::filesystem::status(path).permissions() == mode);
+}
+
+TEST_CASE("output file: a place that cannot be written is named") {
+  const TemporaryFolder folder;
+  const auto error = [](const std::string& path) {
+    try {
+      OutputFile file(path);
+      return std::string("no error");
+    } catch (const OutputError& e) {
+      CHECK(e.on_opening);
+      return std::string(e.what());
+    }
+  };
+  const std::string missing = (folder / "none/a.txt").string();
+  CHECK(error(missing) == missing + ": file: cannot be written: No such file or directory");
+  CHECK(error((folder / "").string()) == (folder / "").string() + ": file: cannot be written: Is a directory");
+}
+
+}  // namespace test_output_file
