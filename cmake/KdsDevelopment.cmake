@@ -10,7 +10,3 @@ mark_as_advanced(CCACHE_PROGRAM)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
 endif()
-
-# g++ begins to collect garbage at 128 MB, which most files here reach and few exceed tenfold: to let it grow to 1 GB
-# saves a fourteenth of the time to compile.
-add_compile_options($<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>)
