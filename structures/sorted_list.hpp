@@ -8,6 +8,7 @@
 #include "kds/events/place_schedule.hpp"
 #include "kds/framework/archived_by.hpp"
 #include "kds/framework/measures.hpp"
+#include "kds/large_vector.hpp"
 #include "kds/motion.hpp"
 
 #include <algorithm>
@@ -220,8 +221,8 @@ class SortedList {
     }
   }
 
-  std::vector<Entry> order_;
-  std::vector<std::uint32_t> position_;  // of an id in order_, or `absent`
+  LargeVector<Entry> order_;
+  LargeVector<std::uint32_t> position_;  // of an id in order_, or `absent`
   PlaceSchedule schedule_;               // slot i: the pair of places i and i + 1
   Listener listener_;
   Measures measures_;          // those that do not follow from pairs and counters: touched, most_touched, most_held

@@ -72,7 +72,7 @@ void SortedList<Degree, Listener>::sort(std::span<const Entry> entries, double n
   }
   // The vector's memory is used again, unless it is where the entries are.
   const std::less<const Entry*> before;
-  std::vector<Entry> own;
+  LargeVector<Entry> own;
   if (!before(entries.data(), order_.data()) && before(entries.data(), order_.data() + order_.size())) {
     own.swap(order_);
   }

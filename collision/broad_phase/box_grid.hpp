@@ -6,6 +6,7 @@
 #include "collision/broad_phase/cell_table.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/broad_phase/tuning.hpp"
+#include "kds/large_vector.hpp"
 #include "kds/simd/two_doubles.hpp"
 
 #include <boost/container/small_vector.hpp>
@@ -282,8 +283,8 @@ class BoxGrid {
               CellTable::Found& found);
 
   CellTuning tuning_;
-  std::vector<Item> items_;       // by id
-  std::vector<BoxSlant> slants_;  // by id; empty as long as there has been none
+  LargeVector<Item> items_;       // by id
+  LargeVector<BoxSlant> slants_;  // by id; empty as long as there has been none
   std::vector<Level> levels_;     // finest first
   CellTable natives_;
   CellTable guests_;

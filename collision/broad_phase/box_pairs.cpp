@@ -53,7 +53,7 @@ bool BoxPairs::choose_cells(std::span<const StaticBox> boxes) {
 /// Counting sort; within a cell in the order of numbers.
 bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
   const std::size_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
-  std::vector<Index> cells(boxes.size());
+  LargeVector<Index> cells(boxes.size());
   const auto whole = [](double x) { return static_cast<std::size_t>(static_cast<std::int64_t>(x)); };
   in_parts(boxes.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -92,7 +92,7 @@ bool BoxPairs::sort(std::span<const StaticBox> boxes, std::size_t threads) {
 
 /// Pairs of which one box is in these rows of cells, the other in the same cell or a later one.
 void BoxPairs::search(std::span<const StaticBox> boxes, std::size_t first_row, std::size_t last_row,
-                      std::vector<Pair>& found) const {
+                      LargeVector<Pair>& found) const {
   const std::size_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
   const Rough* const rough = rough_.data();  // so that they are not loaded each time
   const Index* const cell = cell_.data();
@@ -131,7 +131,7 @@ bool BoxPairs::find(std::span<const StaticBox> boxes, std::size_t threads) {
   if (boxes.empty() || !choose_cells(boxes)) return false;
   threads = threads_for(boxes.size(), threads);
   if (!sort(boxes, threads)) return false;
-  std::vector<std::vector<Pair>> found(threads);
+  std::vector<LargeVector<Pair>> found(threads);
   in_parts(cells_[1] * cells_[2], threads, [&](std::size_t part, std::size_t first_row, std::size_t last_row) {
     search(boxes, first_row, last_row, found[part]);
   });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/swept_box.hpp"
+#include "kds/large_vector.hpp"
 #include "kds/simd/four_floats.hpp"
 
 #include <array>
@@ -32,7 +33,7 @@ class BoxPairs {
   bool find(std::span<const StaticBox> boxes, std::size_t threads = 1);
 
   /// In spatial order.
-  const std::vector<Pair>& pairs() const { return pairs_; }
+  std::span<const Pair> pairs() const { return pairs_; }
   /// Boxes in spatial order.
   std::span<const Index> order() const { return order_; }
 
@@ -48,16 +49,16 @@ class BoxPairs {
   bool choose_cells(std::span<const StaticBox> boxes);
   bool sort(std::span<const StaticBox> boxes, std::size_t threads);
   void search(std::span<const StaticBox> boxes, std::size_t first_row, std::size_t last_row,
-              std::vector<Pair>& found) const;
+              LargeVector<Pair>& found) const;
 
   Eigen::Array3d corner_;               ///< least coordinates
   double scale_ = 0;                    ///< cells per unit
   std::array<std::size_t, 3> cells_{};  ///< along each axis
-  std::vector<Index> begin_;            ///< first place of each cell, x fastest, and the end
-  std::vector<Index> order_;
-  std::vector<Index> cell_;   ///< of each place
-  std::vector<Rough> rough_;  ///< in order
-  std::vector<Pair> pairs_;
+  LargeVector<Index> begin_;            ///< first place of each cell, x fastest, and the end
+  LargeVector<Index> order_;
+  LargeVector<Index> cell_;   ///< of each place
+  LargeVector<Rough> rough_;  ///< in order
+  LargeVector<Pair> pairs_;
 };
 
 }  // namespace kds::collision

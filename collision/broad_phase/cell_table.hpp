@@ -1,6 +1,8 @@
 // A hash table from cells of space to the boxes in them.
 #pragma once
 
+#include "kds/large_vector.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -131,8 +133,8 @@ class CellTable {
   };
   Where where(std::size_t place, Ends ends, std::uint32_t number);
 
-  std::vector<Bucket> buckets_ = std::vector<Bucket>(1);  // a power of two
-  std::vector<Bucket> chained_;
+  LargeVector<Bucket> buckets_ = LargeVector<Bucket>(1);  // a power of two
+  LargeVector<Bucket> chained_;
   std::uint32_t free_ = none;
   std::size_t size_ = 0;
   int shift_ = 63;

@@ -6,6 +6,7 @@
 #include "collision/broad_phase/tuning.hpp"
 #include "collision/degrees.hpp"
 #include "kds/events/calendar_queue.hpp"
+#include "kds/large_vector.hpp"
 
 #include <array>
 #include <cstdint>
@@ -150,7 +151,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   void report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener);
 
   GridTuning tuning_;
-  std::vector<Body> bodies_;  // by id
+  LargeVector<Body> bodies_;  // by id
   BoxGrid fat_boxes_;
   CalendarQueue<> expiry_;  // slots are bodies; no time is later than the horizon
   std::size_t threads_;

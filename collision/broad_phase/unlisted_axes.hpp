@@ -6,6 +6,7 @@
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/degrees.hpp"
 #include "kds/events/dary_queue.hpp"
+#include "kds/large_vector.hpp"
 #include "kds/simd/four_floats.hpp"
 #include "kds/statistics.hpp"
 
@@ -128,7 +129,7 @@ class UnlistedAxes {
     bool alive = false;
   };
   struct PairRank {
-    const std::vector<Pair>* pairs;
+    const LargeVector<Pair>* pairs;
     std::uint64_t operator()(std::uint32_t slot) const {
       return std::uint64_t{(*pairs)[slot].a} << 32 | (*pairs)[slot].b;
     }
@@ -156,12 +157,12 @@ class UnlistedAxes {
   std::size_t count_ = 0;
   std::vector<std::size_t> more_;  // all other directions without a list
   double horizon_ = never;
-  std::vector<KineticBox<Degree>> boxes_;        // by body
-  std::vector<Hull> hulls_;                      // by body
+  LargeVector<KineticBox<Degree>> boxes_;        // by body
+  LargeVector<Hull> hulls_;                      // by body
   std::vector<KineticSlab<Degree>> slabs_;       // by body and direction, if there are more than the axes
   std::vector<float> more_hulls_;                // by body and direction of more_: from, to
-  std::vector<std::vector<PairSlot>> pairs_of_;  // by body
-  std::vector<Pair> pairs_;                      // those that overlap, or will before the horizon
+  LargeVector<std::vector<PairSlot>> pairs_of_;  // by body
+  LargeVector<Pair> pairs_;                      // those that overlap, or will before the horizon
   std::vector<PairSlot> free_;
   DaryQueue<PairRank> queue_;
   Counters counters_;

@@ -10,6 +10,7 @@
 #include "collision/shapes/shape.hpp"
 #include "collision/world/attachments.hpp"
 #include "collision/world/ignored_pairs.hpp"
+#include "kds/large_vector.hpp"
 
 #include <Eigen/Core>
 
@@ -232,9 +233,9 @@ class Bodies {
   std::uint32_t generation(BodySlot slot) const { return slot < generations_.size() ? generations_[slot] : 0; }
   BodySlot new_slot();
 
-  std::vector<Mover> movers_;
-  std::vector<Motion> motions_;  ///< by slot, where bodies turn
-  std::vector<Body> bodies_;
+  LargeVector<Mover> movers_;
+  LargeVector<Motion> motions_;  ///< by slot, where bodies turn
+  LargeVector<Body> bodies_;
   /// By slot, up to the last from which a body was removed: the generation of the body that is there, or of the next.
   std::vector<std::uint32_t> generations_;
   std::vector<BodySlot> free_;

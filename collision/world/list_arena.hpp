@@ -1,6 +1,8 @@
 // Many short lists in one block of memory.
 #pragma once
 
+#include "kds/large_vector.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -99,13 +101,19 @@ class ListArena {
 
   /// Memory that is not used yet is not written to.
   void enlarge(std::size_t room) {
-    auto memory = std::make_unique_for_overwrite<T[]>(room);
+    Memory memory(LargeAllocator<T>().allocate(room), Release{room});
     std::copy_n(memory_.get(), std::min(used_, room_), memory.get());
     memory_ = std::move(memory);
     room_ = room;
   }
 
-  std::unique_ptr<T[]> memory_;
+  struct Release {
+    std::size_t room = 0;
+    void operator()(T* memory) const { LargeAllocator<T>().deallocate(memory, room); }
+  };
+  using Memory = std::unique_ptr<T[], Release>;
+
+  Memory memory_;
   std::size_t room_ = 0;                             ///< in memory_
   std::size_t used_ = 0;                             ///< of it: lists and what has been given back
   std::array<std::vector<std::uint32_t>, 32> free_;  ///< beginnings, by the logarithm of their room

@@ -16,6 +16,7 @@
 #include "collision/world_options.hpp"
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
+#include "kds/large_vector.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -47,7 +48,7 @@ struct Pair {
 };
 
 struct PairRank {
-  const std::vector<Pair>* pairs = nullptr;
+  const LargeVector<Pair>* pairs = nullptr;
   std::uint64_t operator()(std::uint32_t slot) const {
     return std::uint64_t{(*pairs)[slot].a} << 32 | (*pairs)[slot].b;
   }
@@ -231,13 +232,13 @@ class Pairs final : public PairListener {
   WorldCounters& counters_;
   Profile* profile_;
 
-  std::vector<Pair> pairs_;
+  LargeVector<Pair> pairs_;
   std::vector<Slot> free_;
   ListArena<Link> links_;
-  std::vector<typename ListArena<Link>::List> of_;  ///< the pairs of each body, up to the last that has had one
+  LargeVector<typename ListArena<Link>::List> of_;  ///< the pairs of each body, up to the last that has had one
   std::vector<Slot> dirty_;
-  std::vector<double> estimates_;             ///< by place in dirty_: see estimate_balls()
-  std::vector<FoundTouch> found_;             ///< by pair, if known; not valid once a motion has changed
+  LargeVector<double> estimates_;             ///< by place in dirty_: see estimate_balls()
+  LargeVector<FoundTouch> found_;             ///< by pair, if known; not valid once a motion has changed
   CalendarQueue<detail::PairRank> contacts_;  ///< slots are pairs
   DaryQueue<detail::PairRank> boxes_;         ///< slots are pairs; used where follows_boxes_
   std::size_t unlisted_ = 0;                  ///< pairs that the broad phase does not list

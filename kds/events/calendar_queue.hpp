@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/events/event_queue.hpp"
+#include "kds/large_vector.hpp"
 
 #include <algorithm>
 #include <array>
@@ -116,10 +117,10 @@ class CalendarQueue {
   double day_length(double& earliest) const;
 
   // Mutable: top() may open the next day or year, which changes nothing that callers can see.
-  mutable std::vector<Node> nodes_;          // by slot
-  mutable std::vector<std::uint32_t> days_;  // first slot of each day; days_[year_] is that of the years to come
+  mutable LargeVector<Node> nodes_;          // by slot
+  mutable LargeVector<std::uint32_t> days_;  // first slot of each day; days_[year_] is that of the years to come
   mutable std::vector<std::uint64_t> busy_;  // a bit for each of days_ that is not empty
-  mutable std::vector<Key> present_;         // binary heap, least first
+  mutable LargeVector<Key> present_;         // binary heap, least first
   mutable std::uint32_t year_ = 0;           // days in this year
   mutable std::uint32_t today_ = 0;
   mutable double begin_ = 0;            // time at which the year begins
@@ -129,7 +130,7 @@ class CalendarQueue {
   mutable double tomorrow_ = -detail::no_event;
   mutable double year_end_ = -detail::no_event;
   mutable std::size_t bill_ = 0;  // cost of long days, in slots; beyond the number of events a new year is begun
-  std::vector<std::uint64_t> ranks_;  // by slot, as they were when it was set; empty for SlotRank
+  LargeVector<std::uint64_t> ranks_;  // by slot, as they were when it was set; empty for SlotRank
   std::size_t size_ = 0;
   std::uint64_t operations_ = 0;
   [[no_unique_address]] Rank rank_;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -42,7 +43,7 @@ Numbers brute_force(const std::vector<StaticBox>& boxes) {
   return pairs;
 }
 
-Numbers sorted(const std::vector<BoxPairs::Pair>& pairs) {
+Numbers sorted(std::span<const BoxPairs::Pair> pairs) {
   Numbers numbers;
   for (const auto& [a, b] : pairs) numbers.emplace_back(std::min(a, b), std::max(a, b));
   std::sort(numbers.begin(), numbers.end());
