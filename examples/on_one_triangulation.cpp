@@ -5,6 +5,7 @@
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
 #include "structures/closest_pair.hpp"
+#include "structures/nearest_neighbours.hpp"
 #include "structures/spanning_tree.hpp"
 
 #include <array>
@@ -45,14 +46,21 @@ int main() {
   Kinetic<Delaunay> triangulation(points, 0);
   Kinetic<structures::ClosestPairRule<Path>> closest(triangulation, 0);
   Kinetic<structures::SpanningTreeRule<Path>> tree(triangulation, 0);
+  Kinetic<structures::NearestNeighboursRule<Path>> nearest(triangulation, 0);
   Kinetic<DegreesRule> degrees(triangulation, 0);
-  Simulator simulator(0, triangulation, closest, tree, degrees);
+  Simulator simulator(0, triangulation, closest, tree, nearest, degrees);
   simulator.advance_to(4);
   simulator.audit();
 
   int ends = 0;
   for (const int degree : degrees.rule().degree) ends += degree;
+  int mutual = 0;
+  for (const kds::Id id : points.ids()) {
+    const auto other = nearest.rule().nearest(id);
+    mutual += other && nearest.rule().nearest(*other) == id;
+  }
   std::cout << triangulation.measures().external << " flips; another closest pair " << closest.measures().external
             << " times, another spanning tree " << tree.measures().external << " times\n"
-            << tree.rule().edges().size() << " of " << ends / 2 << " edges are in the tree\n";
+            << tree.rule().edges().size() << " of " << ends / 2 << " edges are in the tree\n"
+            << mutual << " points are the nearest of their nearest\n";
 }

@@ -1,0 +1,178 @@
+// Kinetic all nearest neighbours in the plane.
+#pragma once
+
+#include "certificates/plane_certificates.hpp"
+#include "kds/audit.hpp"
+#include "structures/delaunay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kds::structures {
+
+/// Keeps for each point of the plane another that is nearest to it. It stands on a Delaunay triangulation, in which the
+/// two are joined by an edge [Shamos75]: so each point compares the edges that it has, and a certificate says of each
+/// other edge that it is not shorter than the one chosen.
+///
+/// Cost, besides that of the triangulation: for a point of k edges, k - 1 certificates for an event of its own, and for
+/// each of its edges that comes or goes (responsive on average: k is 6 then); fewer than 6 n certificates (compact); a
+/// point is in as many as it and its neighbours have edges. Each event is external: a point has another neighbour; a
+/// flip may be.
+///
+/// While three or more points all stay on one line nothing is known (DelaunayRule::flat).
+template <class Path>
+class NearestNeighboursRule : public StandsOn<DelaunayRule<Path>> {
+ public:
+  static constexpr const char* name = "NearestNeighbours";
+  using Element = Path;
+  using Pen = RepairOf<NearestNeighboursRule>;
+
+  /// The nearest point, any if several are; none if there is no other, or none is known. O(1), but O(n) while points
+  /// share a vertex, or where there is no triangle.
+  std::optional<Id> nearest(Id id) const;
+
+  std::optional<certificates::DistanceOrder<Path>> certificate(Slot slot, const MovingSet<Path>& x) const {
+    if (!listed(slot) || chosen_[from(slot)] == slot) return std::nullopt;
+    return order(chosen_[from(slot)], slot, x);
+  }
+  std::vector<Id> members(Slot slot) const { return {from(slot), to(slot), to(chosen_[from(slot)])}; }
+
+  Effect repair(Slot slot, Pen& repair) {
+    chosen_[from(slot)] = slot;
+    for (const Slot other : leaving_[from(slot)]) repair.certify(other);
+    return Effect::external;
+  }
+  Effect follow(std::span<const EdgeChange> changes, Pen& repair);
+
+  void insert(Id id, Pen& /*repair*/) {
+    make_room(id);
+    present_[id] = 1;
+  }
+  void remove(Id id, Pen& /*repair*/) { present_[id] = 0; }
+
+  void audit(const MovingSet<Path>& elements, double now) const;
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(ends_, leaving_, chosen_, present_);
+  }
+
+ private:
+  // A slot is an edge as it leaves one of its ends: twice its number, and 1 for the higher id.
+  static constexpr Slot none = std::numeric_limits<Slot>::max();
+
+  bool listed(Slot slot) const { return slot / 2 < ends_.size() && ends_[slot / 2][0] != nobody; }
+  Id from(Slot slot) const { return ends_[slot / 2][slot % 2]; }
+  Id to(Slot slot) const { return ends_[slot / 2][1 - slot % 2]; }
+  certificates::DistanceOrder<Path> order(Slot nearer, Slot farther, const MovingSet<Path>& x) const {
+    const Path& at = x[from(nearer)];
+    return {at, x[to(nearer)], at, x[to(farther)]};
+  }
+  void make_room(Id id) {
+    if (id < chosen_.size()) return;
+    leaving_.resize(id + std::size_t{1});
+    chosen_.resize(id + std::size_t{1}, none);
+    present_.resize(id + std::size_t{1}, 0);
+  }
+  void let_go(TriangulationEdges::Number edge, Pen& repair);
+  void take_up(TriangulationEdges::Number edge);
+
+  std::vector<std::array<Id, 2>> ends_;     ///< by edge, the lower id first; nobody if it is not there
+  std::vector<std::vector<Slot>> leaving_;  ///< by point
+  std::vector<Slot> chosen_;                ///< by point: the shortest of these
+  std::vector<std::uint8_t> present_;       ///< by point
+  std::vector<Id> changed_;                 ///< points whose edges have changed
+};
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <class Path>
+std::optional<Id> NearestNeighboursRule<Path>::nearest(Id id) const {
+  if (id >= present_.size() || !present_[id]) return std::nullopt;
+  const DelaunayRule<Path>& delaunay = this->inner();
+  if (delaunay.has_shared_vertices()) {
+    if (delaunay.vertex(id) != id) return delaunay.vertex(id);
+    for (Id other = 0; other < present_.size(); ++other) {
+      if (other != id && present_[other] && delaunay.vertex(other) == id) return other;
+    }
+  }
+  if (chosen_[id] != none) return to(chosen_[id]);
+  std::optional<Id> only;
+  for (Id other = 0; other < present_.size(); ++other) {
+    if (other == id || !present_[other]) continue;
+    if (only) return std::nullopt;
+    only = other;
+  }
+  return only;
+}
+
+template <class Path>
+void NearestNeighboursRule<Path>::let_go(TriangulationEdges::Number edge, Pen& repair) {
+  for (const Slot slot : {2 * edge, 2 * edge + 1}) {
+    if (!listed(slot)) return;
+    const Id id = from(slot);
+    std::erase(leaving_[id], slot);
+    if (chosen_[id] == slot) chosen_[id] = none;
+    changed_.push_back(id);
+    repair.certify(slot);
+  }
+  ends_[edge] = {nobody, nobody};
+}
+
+template <class Path>
+void NearestNeighboursRule<Path>::take_up(TriangulationEdges::Number edge) {
+  if (edge >= ends_.size()) ends_.resize(edge + std::size_t{1}, {nobody, nobody});
+  if (listed(2 * edge)) return;
+  ends_[edge] = this->inner().edges().ends(edge);
+  make_room(ends_[edge][1]);
+  for (const Slot slot : {2 * edge, 2 * edge + 1}) {
+    leaving_[from(slot)].push_back(slot);
+    changed_.push_back(from(slot));
+  }
+}
+
+template <class Path>
+Effect NearestNeighboursRule<Path>::follow(std::span<const EdgeChange> changes, Pen& repair) {
+  changed_.clear();
+  for (const EdgeChange& change : changes) let_go(change.edge, repair);
+  for (const EdgeChange& change : changes) {
+    if (this->inner().edges().contains(change.edge)) take_up(change.edge);
+  }
+  std::sort(changed_.begin(), changed_.end());
+  changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+  for (const Id id : changed_) {
+    for (const Slot slot : leaving_[id]) {
+      Slot& chosen = chosen_[id];
+      if (chosen == none || repair.sign(order(chosen, slot, repair.elements())) < 0) chosen = slot;
+      repair.certify(slot);
+    }
+  }
+  return changed_.empty() ? Effect::internal : Effect::external;
+}
+
+template <class Path>
+void NearestNeighboursRule<Path>::audit(const MovingSet<Path>& /*elements*/, double /*now*/) const {
+  const auto require = [](bool right, Id id, const char* what) {
+    if (!right) throw AuditFailure(std::string(name) + ": point " + std::to_string(id) + ": " + what);
+  };
+  const TriangulationEdges& edges = this->inner().edges();
+  for (TriangulationEdges::Number edge = 0; edge < std::max<std::size_t>(edges.end(), ends_.size()); ++edge) {
+    require(edges.contains(edge) == listed(2 * edge), 0, "an edge of the triangulation is missing or gone");
+    if (listed(2 * edge)) require(ends_[edge] == edges.ends(edge), ends_[edge][0], "an edge has other ends");
+  }
+  for (Id id = 0; id < chosen_.size(); ++id) {
+    require((chosen_[id] == none) == leaving_[id].empty(), id, "has no neighbour");
+    for (const Slot slot : leaving_[id]) require(listed(slot) && from(slot) == id, id, "has the edge of another");
+    require(chosen_[id] == none || (listed(chosen_[id]) && from(chosen_[id]) == id), id, "has another's neighbour");
+  }
+}
+
+}  // namespace kds::structures
