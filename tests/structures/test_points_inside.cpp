@@ -1,0 +1,172 @@
+// Points in balls and boxes that move, against exact signs.
+#include "kds/framework/kinetic.hpp"
+#include "kds/framework/reverse.hpp"
+#include "kds/framework/snapshot.hpp"
+#include "kds/simulator.hpp"
+#include "structures/points_inside.hpp"
+#include "tests/structures/random_values.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace test_points_inside {
+namespace {
+
+using namespace kds;
+using namespace kds::tests;
+using certificates::PlaneMotion;
+using certificates::PointMotion;
+using structures::MovingBall;
+using structures::MovingBox;
+using structures::PointsInsideRule;
+
+void make(Random& random, Kind kind, double now, PlaneMotion<1>& path) {
+  path = random_plane_motion<1>(random, kind, now);
+}
+void make(Random& random, Kind kind, double now, PlaneMotion<2>& path) {
+  path = random_plane_motion<2>(random, kind, now);
+}
+void make(Random& random, Kind kind, double now, PointMotion<1>& path) {
+  path = random_point_motion<1>(random, kind, now);
+}
+template <class Path>
+void make(Random& random, Kind kind, double now, MovingBall<Path>& ball) {
+  make(random, kind, now, ball.centre);
+  ball.radius = random_motion<Path::degree>(random, kind, now);
+}
+template <class Path>
+void make(Random& random, Kind kind, double now, MovingBox<Path>& box) {
+  make(random, kind, now, box.low);
+  make(random, kind, now, box.high);
+}
+template <class T>
+T made(Random& random, Kind kind, double now) {
+  T result{};
+  make(random, kind, now, result);
+  return result;
+}
+
+template <class Region>
+struct Scene {
+  using Point = typename Region::Point;
+  MovingSet<Point> points{};
+  MovingSet<Region> region_set{};
+  Kinetic<ElementsRule<Region>> regions;
+  Kinetic<PointsInsideRule<Region>> inside;
+  Simulator<Kinetic<ElementsRule<Region>>, Kinetic<PointsInsideRule<Region>>> simulator;
+
+  explicit Scene(double begin)
+      : regions(region_set, begin), inside(points, regions, begin), simulator(begin, regions, inside) {}
+
+  /// Pairs that are not as the exact signs of all sides say.
+  int wrong() const {
+    int count = 0;
+    for (const Id r : region_set.ids()) {
+      std::vector<Id> in;
+      for (const Id p : points.ids()) {
+        bool all = true;
+        for (std::size_t side = 0; side < Region::sides; ++side) {
+          kds::detail::with_certificate(region_set[r].side(side, points[p], 1), [&](const auto& certificate) {
+            all = all && sign_after(certificate, simulator.now()) >= 0;
+          });
+        }
+        count += all != inside.rule().contains(r, p);
+        if (all) in.push_back(p);
+      }
+      count += in != inside.rule().points_in(r);
+    }
+    return count;
+  }
+  int run_to(double t) {
+    int count = 0;
+    while (simulator.step(t)) {
+      simulator.audit();
+      if (simulator.next_time() > simulator.now()) count += wrong();
+    }
+    simulator.advance_to(t);
+    return count + wrong();
+  }
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("points are in the regions that they are in", "[points_inside]", MovingBall<PlaneMotion<1>>,
+                   MovingBox<PlaneMotion<1>>, MovingBall<PointMotion<1>>, MovingBox<PlaneMotion<2>>) {
+  using Point = typename TestType::Point;
+  std::uint64_t events = 0;
+  for (const Kind kind : all_kinds) {
+    for (std::uint64_t seed = 420; seed < 424; ++seed) {
+      CAPTURE(static_cast<int>(kind), seed);
+      Random random(seed);
+      Scene<TestType> scene(beginning(kind));
+      for (Id id = 0; id < 8; ++id) scene.points.insert(id, made<Point>(random, kind, beginning(kind)), beginning(kind));
+      for (Id id = 0; id < 3; ++id) {
+        scene.region_set.insert(2 * id, made<TestType>(random, kind, beginning(kind)), beginning(kind));
+      }
+      int wrong = scene.wrong();
+      for (int step = 0; step < 10; ++step) {
+        wrong += scene.run_to(scene.simulator.now() + random_delay(random, kind));
+        const double now = scene.simulator.now();
+        const Id point = static_cast<Id>(random.below(8)), region = 2 * static_cast<Id>(random.below(3));
+        switch (random.below(4)) {
+          case 0:
+            scene.points.update(point, made<Point>(random, kind, now), now);
+            break;
+          case 1:
+            scene.region_set.update(region, made<TestType>(random, kind, now), now);
+            break;
+          case 2:
+            scene.region_set.remove(region, now);
+            wrong += scene.inside.rule().contains(region, point);
+            scene.region_set.insert(region, made<TestType>(random, kind, now), now);
+            break;
+          default:
+            scene.points.remove(point, now);
+            wrong += scene.inside.rule().contains(region, point);
+            scene.points.insert(point, made<Point>(random, kind, now), now);
+        }
+        scene.simulator.audit();
+        wrong += scene.wrong();
+      }
+      const Snapshot snapshot = save(scene.simulator, scene.points, scene.region_set);
+      const double end = scene.simulator.now();
+      wrong += scene.run_to(end + random_delay(random, kind));
+      const auto before = scene.inside.measures().events;
+      const double last = scene.simulator.now();
+      restore(snapshot, scene.simulator, scene.points, scene.region_set);
+      wrong += scene.wrong();
+      wrong += scene.run_to(last);
+      wrong += scene.inside.measures().events != before;
+      reverse(scene.simulator, scene.points, scene.region_set);
+      wrong += scene.run_to(scene.simulator.now() + random_delay(random, kind));
+      CHECK(wrong == 0);
+      events += scene.inside.measures().events;
+    }
+  }
+  CHECK(events > 100);
+}
+
+TEST_CASE("a disc that grows takes in points one by one, and none while its radius is negative", "[points_inside]") {
+  using Disc = MovingBall<PlaneMotion<1>>;
+  Scene<Disc> scene(0);
+  const auto at = [](double x, double y) { return PlaneMotion<1>{{{{{x, 0}}, {{y, 0}}}}, 0}; };
+  scene.points.insert(0, at(0, 0), 0);
+  scene.points.insert(1, at(3, 4), 0);
+  scene.region_set.insert(7, {at(0, 0), {{{-1, 1}}, 0}}, 0);
+  const auto points = [&] { return scene.inside.rule().points_in(7); };
+  CHECK(points().empty());
+  scene.simulator.advance_to(1);
+  CHECK(points() == std::vector<Id>{0});
+  scene.simulator.advance_to(5.5);
+  CHECK(points() == std::vector<Id>{0});
+  scene.simulator.advance_to(6);
+  CHECK(points() == std::vector<Id>{0, 1});
+  CHECK(scene.inside.measures().external == 2);
+  CHECK_FALSE(scene.inside.rule().contains(3, 0));
+}
+
+}  // namespace test_points_inside
