@@ -55,6 +55,12 @@ Shape read_capsule(const JsonNode& node, const Meshes&) {
   return kds::collision::Capsule{capsule["radius"].positive(), capsule["half_length"].length()};
 }
 
+Shape read_half_space(const JsonNode& node, const Meshes&) {
+  const JsonNode half_space = node["half_space"];
+  half_space.object({"normal", "offset"});
+  return kds::collision::HalfSpace{half_space["normal"].vector(), half_space["offset"].number()};
+}
+
 Shape read_hull(const JsonNode& node, const Meshes&) {
   const JsonNode points = node["hull"].object({"points"})["points"];
   const std::vector<JsonNode> places = points.elements();
@@ -96,15 +102,17 @@ struct ShapeReader {
   const char* key;
   Shape (*read)(const JsonNode& node, const Meshes& meshes);
 };
-constexpr const char* one_shape = "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\" and \"hull\"";
+constexpr const char* one_shape =
+    "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\", \"hull\" and \"half_space\"";
 constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},
                                          {"box", read_box},
                                          {"mesh", read_mesh_shape},
                                          {"capsule", read_capsule},
-                                         {"hull", read_hull}};
+                                         {"hull", read_hull},
+                                         {"half_space", read_half_space}};
 
 Shape read_shape(const JsonNode& node, const Meshes& meshes) {
-  node.object({"sphere", "box", "mesh", "capsule", "hull", "scale"});
+  node.object({"sphere", "box", "mesh", "capsule", "hull", "half_space", "scale"});
   const ShapeReader* found = nullptr;
   for (const ShapeReader& each : shape_readers) {
     if (!node.has(each.key)) continue;

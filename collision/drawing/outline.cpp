@@ -64,10 +64,26 @@ class Outline {
   void operator()(const BendingMesh& mesh) {
     edges(mesh.script->triangles(), [&](std::uint32_t vertex) { return mesh.script->position(vertex, t_); });
   }
+  /// A square patch of its plane, about the point nearest to the centre of the body, and the way out of it.
+  void operator()(const HalfSpace& half_space) {
+    const Vector3d out = half_space.normal.normalized();
+    const Vector3d middle = half_space.offset * out;
+    int least = 0;
+    out.cwiseAbs().minCoeff(&least);
+    const Vector3d u = out.cross(Vector3d::Unit(least)).normalized();
+    const Vector3d v = out.cross(u);
+    for (int i = -patch; i <= patch; ++i) {
+      line(middle + i * u - patch * v, middle + i * u + patch * v);
+      line(middle + i * v - patch * u, middle + i * v + patch * u);
+    }
+    line(middle, middle + out);
+  }
 
   std::vector<Segment> take() { return std::move(lines_); }
 
  private:
+  static constexpr int patch = 10;  ///< half the side of a patch, in units of length
+
   void line(const Vector3d& from, const Vector3d& to) { lines_.push_back({from, to}); }
 
   /// So many quarters of an ellipse, from centre + u through centre + v.

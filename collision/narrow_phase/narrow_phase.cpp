@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/bending_contact.hpp"
 #include "collision/narrow_phase/capsule_contact.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
+#include "collision/narrow_phase/half_space_contact.hpp"
 #include "collision/narrow_phase/hull_contact.hpp"
 #include "collision/narrow_phase/mesh_and_hull.hpp"
 #include "collision/narrow_phase/mesh_contact.hpp"
@@ -28,6 +29,9 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   table.template add<ConvexHull, Sphere, Box, Capsule, ConvexHull>(HullContact<Degree>{});
   table.template add<MeshShape, Sphere, Box, Capsule, MeshShape>(MeshContact<Degree>{});
   table.template add<MeshShape, ConvexHull>(MeshHullContact<Degree>{});
+  table.template add<HalfSpace, Sphere, Box, Capsule, MeshShape, ConvexHull>(HalfSpaceContact<Degree>{});
+  table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<Degree>{});
+  table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<Degree>{});
   if constexpr (Degree <= 2) {
     table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(BendingContact<Degree>{});
   }

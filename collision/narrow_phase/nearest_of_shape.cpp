@@ -2,6 +2,7 @@
 
 #include "collision/narrow_phase/nearest_point.hpp"
 #include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/half_space.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/polytope.hpp"
@@ -128,6 +129,11 @@ NearestOfShape nearest_of_mesh(const MeshShape& shape, const Matrix3d& rotation,
   return nearest.best();
 }
 
+NearestOfShape nearest_of_half_space(const HalfSpace& placed, const Vector3d& to) {
+  const double above = dot(placed.normal, to) - placed.offset;
+  return above > 0 ? NearestOfShape{above, to - above * placed.normal} : NearestOfShape{0, to};
+}
+
 NearestOfShape nearest_of_bending_mesh(const MeshScript& script, const Matrix3d& rotation, const Vector3d& to,
                                        double t) {
   Nearest nearest(to);
@@ -152,6 +158,7 @@ NearestOfShape nearest_of_shape(const PlacedShape& shape, const Vector3d& to, do
     return nearest_of_hull(*hull->polytope, shape.rotation, to);
   }
   if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) return nearest_of_mesh(*mesh, shape.rotation, to);
+  if (unbounded(shape.shape)) return nearest_of_half_space(placed_half_space(shape), to);
   return nearest_of_bending_mesh(*std::get<BendingMesh>(shape.shape).script, shape.rotation, to, t);
 }
 

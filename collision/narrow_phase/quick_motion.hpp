@@ -62,7 +62,12 @@ class QuickMotion {
   /// Tests whether one side of a gap, open at the end, can only open further from there on. If so, `whole` becomes
   /// true.
   void note_parting(const Along& p, double distance) {
-    whole_ = whole_ || opens_for_good(p, 1, distance) || opens_for_good(p, -1, distance);
+    note_opening(p, 1, distance);
+    note_opening(p, -1, distance);
+  }
+  /// The same of one side, where the other is no gap.
+  void note_opening(const Along& p, double side, double distance) {
+    whole_ = whole_ || opens_for_good(p, side, distance);
   }
 
   /// Shrinks the window, within [0, end()], to times at which the gap may be closed; false if there are none.

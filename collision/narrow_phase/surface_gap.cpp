@@ -1,6 +1,8 @@
 #include "collision/narrow_phase/surface_gap.hpp"
 
 #include "collision/narrow_phase/capsule_contact.hpp"
+#include "collision/narrow_phase/lowest_place.hpp"
+#include "collision/shapes/half_space.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/rotation.hpp"
 #include "collision/shapes/rounded_core.hpp"
@@ -19,6 +21,11 @@ using Eigen::Vector3d;
 double extent_along(const PlacedShape& shape, const Vector3d& along) {
   const double radius = ball_radius(shape.shape);
   if (radius > 0) return radius;
+  if (unbounded(shape.shape)) {  // Along its normal; in other directions it has no end.
+    const HalfSpace placed = placed_half_space(shape);
+    return dot(placed.normal, along) > 1 - 0x1p-40 ? placed.offset : never;
+  }
+  if (has_mesh(shape.shape)) return -LowestOfShape(shape, -along).height();
   if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
     double most = -never;
     for (const std::uint32_t i : hull->polytope->structure().corners) {

@@ -15,12 +15,12 @@ struct SurfaceGap {
 };
 
 /// The gap between a and b at t, in doubles: accurate to some roundings of the coordinates. Precondition: neither is a
-/// mesh.
+/// mesh or a half-space.
 template <int Degree>
 SurfaceGap surface_gap(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t);
 
 /// The gap of a and b along a unit vector from a to b: negative where their slabs overlap. Shapes with a gap > 0 along
-/// any direction do not touch. Precondition: neither is a mesh.
+/// any direction do not touch. Precondition: neither bends, and the normal is that of a half-space, if one is.
 template <int Degree>
 double gap_along(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Eigen::Vector3d& normal,
                  double t);

@@ -52,6 +52,7 @@ void require_supported(const BodyDescription<Degree>& description, double now) {
   if (description.sensor) fail("sensor: a periodic world has none");
   if (description.box) fail("box: a periodic world has no box functions");
   if (bends(description.shape)) fail("shape: a mesh that bends cannot be in a periodic world");
+  if (unbounded(description.shape)) fail("shape: a half-space cannot be in a periodic world");
   if (description.category > body_categories) fail("category: a periodic world has 16 bits for it");
 }
 

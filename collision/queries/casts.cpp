@@ -35,6 +35,7 @@ void require_way(const char* function, const PlacedShape& shape, const Ray& way)
   if (!is_placed(shape))
     throw std::invalid_argument(std::string(function) + ": the shape is not what place() makes of it");
   if (bends(shape.shape)) throw std::invalid_argument(std::string(function) + ": a mesh that bends cannot be cast");
+  if (unbounded(shape.shape)) throw std::invalid_argument(std::string(function) + ": a half-space cannot be cast");
 }
 
 /// A shape on its way, at times from 0 to 1.

@@ -71,7 +71,7 @@ template <class Motion, class Accept>
 std::optional<Hit> first_met(const BasicWorld<Motion>& world, const MovingShape<Motion>& mover, double until,
                              ContactMode mode, const Accept& accept) {
   std::optional<Hit> first;
-  world.visit_swept(box_of(mover), until, [&](BodyId id) {
+  const auto look = [&](BodyId id) {
     if (!accept(id)) return;
     const PlacedShape shape = world.shape(id);
     const MovingShape<Motion> body{shape, world.motion(id)};
@@ -79,7 +79,12 @@ std::optional<Hit> first_met(const BasicWorld<Motion>& world, const MovingShape<
     if (!contact) return;
     const Hit hit{id, *contact};
     if (!first || detail::sooner(hit, *first)) first = hit;
-  });
+  };
+  if (unbounded(mover.shape.shape)) {
+    world.visit_overlapping(Vector3d::Constant(-never), Vector3d::Constant(never), look);
+  } else {
+    world.visit_swept(box_of(mover), until, look);
+  }
   return first;
 }
 

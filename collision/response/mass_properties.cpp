@@ -223,6 +223,10 @@ MassProperties of(const ConvexHull& hull, double mass) {
   return of_surface("hull", *hull.polytope->surface(), 1, mass);
 }
 
+MassProperties of(const HalfSpace&, double) {
+  throw std::invalid_argument("mass_properties: a half-space has no mass");
+}
+
 MassProperties of(const BendingMesh&, double) {
   throw std::invalid_argument("shape: a mesh that bends has no mass properties of its own");
 }

@@ -60,16 +60,25 @@ struct BendingMesh {
   std::shared_ptr<const MeshScript> script;
 };
 
-/// Each kind says in a file of its own what the functions below have to know of it: sphere.hpp, box.hpp,
-/// mesh_shape.hpp, capsule.hpp, convex_hull.hpp. To add one: a struct, its place in this list, its file, and its row in
-/// the table of pair tests (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
-using Shape = std::variant<Sphere, Box, MeshShape, Capsule, ConvexHull, BendingMesh>;
+/// All points x with normal . x <= offset, seen from the body's centre: a floor, a wall. The normal is of unit length up
+/// to 1e-6 (it is normalised); the offset is in units of length. Nothing of it bounds it, so its body is in no broad
+/// phase: it is tested with each body that it may collide with (world/unbounded.hpp).
+struct HalfSpace {
+  Eigen::Vector3d normal;
+  double offset = 0;
+};
 
-/// "sphere", "box", "mesh", "capsule", "hull", "bending mesh".
+/// Each kind says in a file of its own what the functions below have to know of it: sphere.hpp, box.hpp,
+/// mesh_shape.hpp, capsule.hpp, convex_hull.hpp, half_space.hpp. To add one: a struct, its place in this list, its file, and its row in
+/// the table of pair tests (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
+using Shape = std::variant<Sphere, Box, MeshShape, Capsule, ConvexHull, BendingMesh, HalfSpace>;
+
+/// "sphere", "box", "mesh", "capsule", "hull", "bending mesh", "half-space".
 const char* kind_name(const Shape& shape);
 
 /// The numbers of the shape: half of what it measures along its own axes; of a mesh its scale, thrice; of a capsule its
-/// radius twice, and its half length; of a hull 1, thrice.
+/// radius twice, and its half length; of a hull 1, thrice; of a half-space
+/// infinity, thrice.
 Eigen::Vector3d measures(const Shape& shape);
 
 /// The radius of what looks alike from all sides; 0 of other shapes.
@@ -83,6 +92,9 @@ inline bool has_mesh(const Shape& shape) { return std::holds_alternative<MeshSha
 
 /// Whether the shape changes while the body rests.
 inline bool bends(const Shape& shape) { return std::holds_alternative<BendingMesh>(shape); }
+
+/// Whether no ball holds the shape: its bounds are infinite.
+inline bool unbounded(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape); }
 
 /// The mesh of a MeshShape, else null.
 std::shared_ptr<const Mesh> mesh_of(const Shape& shape);
@@ -111,7 +123,7 @@ PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation);
 /// Whether it is what place_turned() makes of its shape and rotation, which throws if they cannot be placed.
 bool is_placed(const PlacedShape& shape);
 
-/// The shape as a zonotope grown by a radius. Precondition: it is no mesh and no hull.
+/// The shape as a zonotope grown by a radius. Precondition: it is no mesh, no hull and no half-space.
 RoundedCore rounded_core(const PlacedShape& shape);
 
 /// From where to where the shape reaches about its centre along a direction: least and greatest direction . x, rounded

@@ -5,6 +5,7 @@
 #include "collision/shapes/box.hpp"
 #include "collision/shapes/capsule.hpp"
 #include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/half_space.hpp"
 #include "collision/shapes/mesh_shape.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/shapes/sphere.hpp"

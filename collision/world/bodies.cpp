@@ -32,7 +32,7 @@ template <class Motion>
 bool Bodies<Motion>::is_jump(BodySlot slot, const Motion& to, double t) const {
   const Eigen::Vector3d before = path(slot).position(t);
   const Eigen::Vector3d after = path_of(to).position(t);
-  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + bodies_[slot].bounding_radius;
+  const double scale = before.cwiseAbs().maxCoeff() + after.cwiseAbs().maxCoeff() + finite_radius(slot);
   double farthest = (after - before).cwiseAbs().maxCoeff();
   if constexpr (turns<Motion>) {
     const certificates::Rotation from = motion(slot).rotation(t), into = to.rotation(t);

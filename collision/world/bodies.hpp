@@ -192,6 +192,11 @@ class Bodies {
   bool filters() const { return filters_; }
   /// Whether there is anything that it may collide with. Bodies that collide with nothing are not in the broad phase.
   bool collides(BodySlot slot) const { return filter(slot).category != 0 && filter(slot).collides_with != 0; }
+  /// Whether no box holds it. Such bodies are not in the broad phase either (unbounded.hpp).
+  bool unbounded(BodySlot slot) const { return bodies_[slot].bounding_radius == never; }
+  bool in_broad_phase(BodySlot slot) const { return collides(slot) && !unbounded(slot); }
+  /// Its bounding radius; 0 of one that has none.
+  double finite_radius(BodySlot slot) const { return unbounded(slot) ? 0 : bodies_[slot].bounding_radius; }
   const CollisionFilter& filter(BodySlot slot) const { return bodies_[slot].filter; }
   bool may_collide(BodySlot a, BodySlot b) const {
     return filter(a).meets(filter(b)) && !(!ignored_.empty() && ignored_.contains(a, b)) &&

@@ -200,7 +200,7 @@ bool Engine<Motion>::bounce_or_rest(BodySlot a, BodySlot b, const Contact& conta
   double pressed = 0;
   if constexpr (Motion::degree >= 2) pressed = -2 * relative(2);
   const double size = motion_a.coefficients[0].cwiseAbs().maxCoeff() + motion_b.coefficients[0].cwiseAbs().maxCoeff() +
-                      bodies_[a].bounding_radius + bodies_[b].bounding_radius;
+                      bodies_.finite_radius(a) + bodies_.finite_radius(b);
   if (stays(restitution * approach, pressed, size, burst)) {
     begin_rest(a, b, contact);
     return true;

@@ -43,14 +43,19 @@ bool ContactGaps<Motion>::balls(const Contact& contact) const {
 }
 
 template <class Motion>
+bool ContactGaps<Motion>::on_plane(const Contact& contact) const {
+  return contact.b == no_body || bodies_.unbounded(contact.a) || bodies_.unbounded(contact.b);
+}
+
+template <class Motion>
 bool ContactGaps<Motion>::has_mesh(const Contact& contact) const {
-  if (contact.b == no_body || balls(contact)) return false;
+  if (on_plane(contact) || balls(contact)) return false;
   return collision::has_mesh(bodies_.shape(contact.a).shape) || collision::has_mesh(bodies_.shape(contact.b).shape);
 }
 
 template <class Motion>
 bool ContactGaps<Motion>::turns(const Contact& contact) const {
-  if (contact.b == no_body) return false;
+  if (on_plane(contact)) return false;
   if (balls(contact)) return true;
   const PlacedShape a = bodies_.shape(contact.a);
   const PlacedShape b = bodies_.shape(contact.b);
@@ -100,7 +105,7 @@ double ContactGaps<Motion>::along_normal(const Contact& contact) const {
 
 template <class Motion>
 double ContactGaps<Motion>::nearest(Contact& contact) const {
-  if (contact.b == no_body || has_mesh(contact)) return along_normal(contact);
+  if (on_plane(contact) || has_mesh(contact)) return along_normal(contact);
   if (balls(contact)) {
     const SurfaceGap gap = after(contact, Vector3d::Zero());
     contact.normal = gap.normal;
@@ -135,7 +140,7 @@ bool ContactGaps<Motion>::renew(Contact& contact) const {
   contact.gap = nearest(contact);
   contact.since = now;
   if (contact.gap > cluster::kept_gap * size(contact)) return false;
-  if (contact.b == no_body) return true;
+  if (on_plane(contact)) return true;
   const auto a = bodies_.moving(contact.a);
   const auto b = bodies_.moving(contact.b);
   const bool round = is_round(a.shape) || is_round(b.shape);

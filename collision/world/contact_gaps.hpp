@@ -26,7 +26,9 @@ class ContactGaps {
 
   /// The bounding radius of the smaller of the two.
   double size(const Contact& contact) const;
-  /// Whether one of the two is a mesh, whose surface is known only where it touches.
+  /// Whether one of the two is a wall or a half-space: the normal is the same everywhere, and nothing slides off.
+  bool on_plane(const Contact& contact) const;
+  /// Whether one of the two is a mesh, not on a plane, whose surface is known only where it touches.
   bool has_mesh(const Contact& contact) const;
   /// Whether its normal turns while the two slide over each other: one is round, and does not touch a face of a box.
   bool turns(const Contact& contact) const;

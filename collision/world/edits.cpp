@@ -60,6 +60,12 @@ void validate(const BasicBodyDescription<Motion>& description) {
     default:
       fail("volume: unknown");
   }
+  if (unbounded(description.shape)) {
+    const std::string name = kind_name(description.shape);
+    if (!description.fixed) fail("fixed: a " + name + " has no mass: it has to be fixed");
+    if (description.box) fail("box: a " + name + " has no bounding box");
+    if (description.volume != BoundingVolume::shape) fail("volume: a " + name + " has no bounding sphere");
+  }
   if (description.self_contacts && !bends(description.shape)) {
     fail(std::string("self_contacts: a ") + kind_name(description.shape) + " does not bend, and never meets itself");
   }
@@ -113,6 +119,19 @@ BodyId Engine<Motion>::add_attached(const Description& description) {
   return id;
 }
 
+/// Meshes that bend are not tested with half-spaces, so a world has only one of the two kinds.
+template <class Motion>
+void Engine<Motion>::require_tests_of(const Shape& shape) const {
+  const bool is_unbounded = unbounded(shape);
+  if (!is_unbounded && !collision::bends(shape)) return;
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (!bodies_.alive(slot) || !(is_unbounded ? bends(slot) : bodies_.unbounded(slot))) continue;
+    throw std::invalid_argument(std::string("shape: a ") + kind_name(shape) + " and a " +
+                                kind_name(bodies_.shape(slot).shape) + ", body " +
+                                std::to_string(bodies_.id_of(slot)) + ", cannot be in one world");
+  }
+}
+
 template <class Motion>
 BodyId Engine<Motion>::add_body(const Description& description) {
   require_editable("World::add_body");
@@ -122,6 +141,7 @@ BodyId Engine<Motion>::add_body(const Description& description) {
       !description.fixed) {
     throw std::invalid_argument("fixed: contacts do not move a mesh that bends: it has to be fixed, or a sensor");
   }
+  require_tests_of(description.shape);
   std::optional<PrincipalInertia> principal;  // of one that precesses
   if constexpr (turns<Motion>) {
     // Nothing else changes how a body turns.
@@ -190,7 +210,7 @@ void Engine<Motion>::make_room_for_meshes() {
 /// Reports a volume to the broad phase that has changed although nothing has moved.
 template <class Motion>
 void Engine<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degree>& box) {
-  if (bodies_.collides(slot)) broad_phase_->update(slot, box, clock_.now, pairs_);
+  if (bodies_.in_broad_phase(slot)) broad_phase_->update(slot, box, clock_.now, pairs_);
   pairs_.box_changed(slot);
   volumes_.schedule(slot);
 }
@@ -207,7 +227,7 @@ void Engine<Motion>::expect_new_bodies() {
   boxes.reserve(waiting.size() / step + 1);
   for (std::size_t i = 0; i < waiting.size(); i += step) {
     const BodySlot slot = waiting[i];
-    if (!bodies_.collides(slot) || volumes_.from_caller(slot)) continue;
+    if (!bodies_.in_broad_phase(slot) || volumes_.from_caller(slot)) continue;
     boxes.push_back(volumes_.renew(slot));
     entries.push_back({slot, &boxes.back()});
   }
@@ -221,12 +241,17 @@ void Engine<Motion>::enter_new_bodies(std::size_t most) {
   // Events of the others that are due now come first, so that they are not attributed to the new bodies.
   while (broad_phase_->advance(clock_.now, pairs_)) {
   }
+  std::vector<BodySlot> unbounded;
   std::vector<Entry> entries;
   entries.reserve(entering.size());
   for (const BodySlot slot : entering) {
     Body& b = bodies_[slot];
     if (!b.alive || b.entered) continue;
     b.entered = true;
+    if (bodies_.unbounded(slot)) {
+      unbounded.push_back(slot);
+      continue;
+    }
     entries.push_back({slot, nullptr});
   }
   const auto boxes = std::make_unique_for_overwrite<KineticBox<Motion::degree>[]>(entries.size());
@@ -241,7 +266,7 @@ void Engine<Motion>::enter_new_bodies(std::size_t most) {
   std::size_t colliding = entries.size();
   if (bodies_.filters()) {
     const auto rest = std::stable_partition(entries.begin(), entries.end(),
-                                            [&](const Entry& entry) { return bodies_.collides(entry.slot); });
+                                            [&](const Entry& entry) { return bodies_.in_broad_phase(entry.slot); });
     colliding = static_cast<std::size_t>(rest - entries.begin());
   }
   pairs_.set_begin(Begin::entering);
@@ -249,6 +274,10 @@ void Engine<Motion>::enter_new_bodies(std::size_t most) {
     const Stopwatch watch(profile(), Work::update);
     broad_phase_->insert(all.first(colliding), clock_.now, pairs_);
   }
+  if (!unbounded_.empty()) {
+    for (const Entry& entry : entries) unbounded_.begin_pairs(entry.slot);
+  }
+  for (const BodySlot slot : unbounded) unbounded_.add(slot);
   pairs_.set_begin(Begin::moving);
   walls_.schedule(entries);
   for (const Entry& entry : entries) {
@@ -292,7 +321,8 @@ void Engine<Motion>::take_out(BodySlot slot) {
   scripts_.clear(slot);
   tumbling_.remove(slot);
   walls_.remove(slot);
-  if (bodies_[slot].entered && bodies_.collides(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
+  if (bodies_[slot].entered && bodies_.in_broad_phase(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
+  unbounded_.remove(slot);
   volumes_.remove(slot);
   pairs_.remove(slot);
   if (!reports_.empty()) reports_.forget(bodies_.id_of(slot), bodies_[slot].user_data);

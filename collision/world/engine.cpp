@@ -55,6 +55,7 @@ Engine<Motion>::Engine(BasicWorld<Motion>& world, const WorldOptions& options, L
       walls_(bodies_, options_.walls, clock_),
       resting_(bodies_, options_, clock_, *this),
       pairs_(bodies_, volumes_, resting_, reports_, options_, clock_, counters_, profile()),
+      unbounded_(bodies_, clock_, pairs_),
       self_contacts_(bodies_, clock_),
       callers_now_(options.start_time) {
   make_broad_phase();
@@ -76,13 +77,15 @@ void Engine<Motion>::rebuild_broad_phase() {
   std::vector<Entry> entries;
   std::vector<KineticBox<Motion::degree>> boxes;
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-    if (!bodies_[slot].entered || !bodies_.collides(slot)) continue;
+    if (!bodies_[slot].entered || !bodies_.in_broad_phase(slot)) continue;
     entries.push_back({slot, nullptr});
     boxes.push_back(volumes_.renew(slot));
     volumes_.schedule(slot);
   }
   for (std::size_t i = 0; i < entries.size(); ++i) entries[i].box = &boxes[i];
   broad_phase_->insert(entries, clock_.now, found);
+  unbounded_.find();
+  unbounded_.every_pair([&](BodySlot a, BodySlot b) { found.pair_began(a, b, clock_.now); });
   std::sort(found.pairs.begin(), found.pairs.end());
   pairs_.list_anew(found.pairs);
 }

@@ -19,6 +19,7 @@
 #include "collision/world/self_contacts.hpp"
 #include "collision/world/timers.hpp"
 #include "collision/world/turning/tumbling.hpp"
+#include "collision/world/unbounded.hpp"
 #include "collision/world/volumes.hpp"
 #include "collision/world/wall_times.hpp"
 #include "collision/world_counters.hpp"
@@ -184,6 +185,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void report_resting(const Reports::Report& event, const PairEvent& pair);
 
   // edits.cpp: bodies that are added and removed
+  void require_tests_of(const Shape& shape) const;
   BodyId add_attached(const Description& description);
   BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape,
                const std::optional<PrincipalInertia>& principal);
@@ -289,6 +291,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   Reports reports_;
   Resting resting_;
   Pairs<Motion> pairs_;
+  Unbounded<Motion> unbounded_;
   SelfContacts<Motion> self_contacts_;
   std::unique_ptr<BroadPhase<Motion::degree>> broad_phase_;
   EditLimit edits_;

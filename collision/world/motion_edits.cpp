@@ -125,7 +125,7 @@ void Engine<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped
   bodies_.move(slot, motion);
   pairs_.prefetch(slot);  // in parallel with the work of the broad phase
   if (jumped) pairs_.set_begin(Begin::jumping);
-  if (bodies_.collides(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
+  if (bodies_.in_broad_phase(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
   pairs_.set_begin(Begin::moving);
   pairs_.motion_changed(slot, jumped);
   walls_.schedule(slot);

@@ -27,9 +27,10 @@ void Engine<Motion>::answer(const char* function, const Ask& ask, const Meets& m
   if (!broad_phase_is_ahead) ask(look);
   if (broad_phase_is_ahead || bodies_.filters()) {
     for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-      if (bodies_.entered(slot) && (broad_phase_is_ahead || !bodies_.collides(slot))) look(slot);
+      if (bodies_.entered(slot) && (broad_phase_is_ahead || !bodies_.in_broad_phase(slot))) look(slot);
     }
   }
+  for (const BodySlot slot : unbounded_.bodies()) look(slot);
   if (bounced_ != no_body) look(bounced_);  // The broad phase knows the motion before.
   for (const BodySlot slot : bodies_.waiting()) {
     if (bodies_.alive(slot) && !bodies_.entered(slot)) look(slot);
@@ -74,7 +75,7 @@ void Engine<Motion>::visit_swept(const KineticBox<Motion::degree>& box, double u
     }
   };
   answer(
-      "World::visit_swept", ask, [&](BodySlot slot) { return volumes_.swept(slot, from, until).overlaps(swept); },
+      "World::visit_swept", ask, [&](BodySlot slot) { return volumes_.meets_swept(slot, swept, from, until); },
       visit);
 }
 

@@ -171,7 +171,7 @@ void Pairs<Motion>::finish_test(Slot slot) {
   Pair& pair = pairs_[slot];
   pair.fresh = false;
   if (pair.listed) {
-    if (follows_boxes_) test_boxes(slot);
+    if (follows_boxes_ && !unbounded(pair)) test_boxes(slot);
   } else if (!pair.overlapping) {
     release(slot);
   }

@@ -53,7 +53,9 @@ void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
   pair.fresh = pair.fresh || fresh;
   ++counters_.pairs_begun;
   mark_dirty(slot);
-  if (options_.report_pairs && exact_) report_boxes(true, a, b);
+  if (!options_.report_pairs) return;
+  pair.boxes_overlap = !exact_ && unbounded(pair);
+  if (exact_ || pair.boxes_overlap) report_boxes(true, a, b);
 }
 
 template <class Motion>

@@ -36,7 +36,7 @@ struct Pair {
   BodySlot a = 0, b = 0;
   std::uint32_t place_in_a = 0, place_in_b = 0;  ///< in the lists of the two bodies
   bool alive = false;
-  bool listed = false;  ///< by the broad phase
+  bool listed = false;  ///< by the broad phase, or by Unbounded
   bool dirty = false;   ///< to be tested
   bool fresh = false;   ///< one of the bodies has entered or jumped at this instant
   /// In contact, in mode `none`; in the modes that resolve contacts, let pass. Its next event is that they separate.
@@ -196,6 +196,7 @@ class Pairs final : public PairListener {
   std::span<const Link> links(BodySlot id) const {
     return id < of_.size() ? links_.items(of_[id]) : std::span<const Link>();
   }
+  bool unbounded(const Pair& pair) const { return bodies_.unbounded(pair.a) || bodies_.unbounded(pair.b); }
   Slot find(BodySlot a, BodySlot b) const;
   Slot add(BodySlot a, BodySlot b);
   void link(Slot slot, std::uint32_t first_room = first_pairs);

@@ -57,13 +57,15 @@ void Engine<Motion>::filter_anew(BodySlot slot, const Change& change) {
   while (broad_phase_->advance(clock_.now, pairs_)) {
   }
   const Motion free = free_motion(bodies_.id_of(slot));
-  if (bodies_.collides(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
+  if (bodies_.in_broad_phase(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
+  unbounded_.end_pairs(slot);
   change();
-  if (bodies_.collides(slot)) {
+  if (bodies_.in_broad_phase(slot)) {
     const KineticBox<Motion::degree> box = volumes_.renew(slot);
     const Entry entry{slot, &box};
     broad_phase_->insert({&entry, 1}, clock_.now, pairs_);
   }
+  unbounded_.begin_pairs(slot);
   volumes_.schedule(slot);
   if (resting_.drop_filtered(slot)) move_freely(slot, free);
 }

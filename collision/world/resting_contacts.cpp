@@ -143,7 +143,8 @@ template <class Motion>
 double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
   const auto a = bodies_.moving(id_a);
   const auto b = bodies_.moving(id_b);
-  if (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape)) {
+  const bool plane = bodies_.unbounded(id_a) || bodies_.unbounded(id_b);
+  if (plane || (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape))) {
     if (keeps_apart(find(id_a, id_b))) return never;
     return first_contact(a, b, clock_.now, clock_.horizon, ContactMode::resolved);
   }

@@ -3,12 +3,14 @@
 #include "collision/broad_phase/box_overlap.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/motions.hpp"
+#include "collision/shapes/half_space.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/raised_flag.hpp"
 #include "structures/extents.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -24,6 +26,22 @@ std::vector<KdopDirection> directions_of(const WorldOptions& options) {
   }
   const auto all = structures::kdop_directions(k);
   return {all.begin() + 3, all.end()};
+}
+
+/// Whether a half-space, with its centre somewhere in a box, may have a point of another box: rounded outward. Either
+/// box may be infinite.
+bool reaches(const PlacedShape& half_space, const StaticBox& centre, const StaticBox& box) {
+  const HalfSpace plane = placed_half_space(half_space);
+  double lowest = -plane.offset, size = std::abs(plane.offset);
+  for (int d = 0; d < 3; ++d) {
+    const double n = plane.normal[d];
+    if (n == 0) continue;
+    const double least = n > 0 ? box.min[d] - centre.max[d] : box.max[d] - centre.min[d];
+    lowest += n * least;
+    size += std::abs(n) * (std::abs(n > 0 ? centre.max[d] : centre.min[d]) + std::abs(least));
+  }
+  constexpr double roundings = 0x1p-48;
+  return !(lowest > roundings * size);
 }
 
 /// Whether two boxes overlap, with their rounded edges, by more than the rounding errors of this test.
@@ -61,6 +79,7 @@ void Volumes<Motion>::add(BodySlot slot, const BoxFunction& function) {
 /// The bounds of a body that is new, has another shape, or bends on. Its volume is not the caller's.
 template <class Motion>
 void Volumes<Motion>::note_shape(BodySlot slot) {
+  if (bodies_.unbounded(slot)) return;
   const detail::Body<Motion>& b = bodies_[slot];
   if (b.shape && collision::bends(b.shape->shape) && b.volume == BoundingVolume::shape && !from_caller(slot)) {
     if (bent_.size() <= slot) bent_.resize(slot + std::size_t{1});
@@ -98,6 +117,7 @@ KineticBox<Motion::degree> Volumes<Motion>::renew(BodySlot slot) {
 
 template <class Motion>
 void Volumes<Motion>::set_end(BodySlot slot) {
+  if (bodies_.unbounded(slot)) return;
   double until = from_caller(slot) ? given_[slot]->box.valid_until : clearance_until(slot);
   if (bends(slot)) until = std::min(until, bent_[slot]->until);
   if (until <= clock_.horizon && until < never) {
@@ -165,6 +185,7 @@ KineticSlab<Motion::degree> Volumes<Motion>::slab(BodySlot slot, std::size_t i, 
 
 template <class Motion>
 bool Volumes<Motion>::overlap(BodySlot a, BodySlot b, double t, bool exact) const {
+  if (bodies_.unbounded(a) || bodies_.unbounded(b)) return !(bodies_.unbounded(a) && bodies_.unbounded(b));
   const auto broken = [t](const kds::Motion<Motion::degree>& left, const kds::Motion<Motion::degree>& right) {
     return sign_after(certificates::Order<Motion::degree>{left, right}, t) < 0;
   };
@@ -192,6 +213,7 @@ KineticBox<Motion::degree> Volumes<Motion>::box_or_ball(BodySlot slot) const {
 
 template <class Motion>
 bool Volumes<Motion>::meets(BodySlot slot, const StaticBox& box, double t) const {
+  if (bodies_.unbounded(slot)) return reaches(*bodies_[slot].shape, swept_path(slot, t, t), box);
   if (!box_at(box_or_ball(slot), t).overlaps(box)) return false;
   for (std::size_t i = 0; i < directions_.size() && asked(slot); ++i) {
     const auto [low, high] = slab_at(slab(slot, i, t), t);
@@ -207,6 +229,19 @@ StaticBox Volumes<Motion>::swept(BodySlot slot, double from, double until) const
   const PlacedShape& shape = *bodies_[slot].shape;
   return bounded_swept_box(grown(slot, box_around<Motion::degree>(bodies_.path(slot), shape.low, shape.high)), from,
                            until);
+}
+
+/// Of its centre.
+template <class Motion>
+StaticBox Volumes<Motion>::swept_path(BodySlot slot, double from, double until) const {
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  return bounded_swept_box(box_around<Motion::degree>(bodies_.path(slot), none, none), from, until);
+}
+
+template <class Motion>
+bool Volumes<Motion>::meets_swept(BodySlot slot, const StaticBox& swept, double from, double until) const {
+  if (bodies_.unbounded(slot)) return reaches(*bodies_[slot].shape, swept_path(slot, from, until), swept);
+  return this->swept(slot, from, until).overlaps(swept);
 }
 
 #define KDS_INSTANTIATE(motion) template class Volumes<motion>;

@@ -70,13 +70,15 @@ class Volumes {
   /// A new box for the present motion. Throws what the caller's function throws, and std::invalid_argument if its box
   /// is not valid. If there are no such functions, several threads may call it at once.
   Box renew(BodySlot slot);
-  /// Whether the volumes that the broad phase sees overlap just after t. `exact`: as for the broad phase.
+  /// Whether the volumes that the broad phase sees overlap just after t. `exact`: as for the broad phase. The volume of
+  /// an unbounded body is all of space; that of another unbounded body does not count.
   bool overlap(BodySlot a, BodySlot b, double t, bool exact) const;
 
-  /// Whether a body's volume, rounded outward, meets a box at t; and its swept AABB. If the caller's function has not
-  /// been called yet, since the body is still to enter, the box is that around its ball.
+  /// Whether a body's volume, rounded outward, meets a box at t; and whether its swept AABB meets a swept one. If the
+  /// caller's function has not been called yet, since the body is still to enter, the box is that around its ball. A
+  /// half-space meets a box as it is.
   bool meets(BodySlot slot, const StaticBox& box, double t) const;
-  StaticBox swept(BodySlot slot, double from, double until) const;
+  bool meets_swept(BodySlot slot, const StaticBox& swept, double from, double until) const;
 
   /// Notes until when the body's box contains it.
   void schedule(BodySlot slot) {
@@ -98,6 +100,8 @@ class Volumes {
 
   bool asked(BodySlot slot) const { return bodies_[slot].entered || !from_caller(slot); }
   Box box_or_ball(BodySlot slot) const;
+  StaticBox swept(BodySlot slot, double from, double until) const;
+  StaticBox swept_path(BodySlot slot, double from, double until) const;
   Box bare_box(BodySlot slot) const;
   Box rigid_box(BodySlot slot) const;
   bool is_round(BodySlot slot) const;

@@ -20,7 +20,7 @@ inline void WallTimes<Motion>::make_room(std::size_t slots) {
 /// Notes that a body meets no wall before a time. Precondition: there is room for it.
 template <class Motion>
 inline void WallTimes<Motion>::note(BodySlot slot, double earliest) {
-  if (bodies_[slot].sensor) return;
+  if (bodies_[slot].sensor || bodies_.unbounded(slot)) return;
   wall_[slot] = none_yet;
   // An earlier one is a lower bound as well: most are replaced again before they are due.
   if (times_.contains(slot) && times_.time(slot) > clock_.now && times_.time(slot) <= earliest) return;

@@ -36,6 +36,7 @@ std::string shapes_of(const Scenario& scenario) {
   has(ShapeKind::capsule, " capsules");
   has(ShapeKind::hull, " hulls");
   has(ShapeKind::mesh, " meshes");
+  has(ShapeKind::half_space, " half-spaces");
   return result;
 }
 

@@ -142,6 +142,14 @@ BodyPlan draw_body(Random& random, const Style& style) {
     body.box_validity = 0.25 * random.integer(1, 6);
     body.box_edits = random.one_in(4);
   }
+  // As above: some of the fixed ones are half-spaces, through their places.
+  if (body.fixed && body.mesh % 2 == 0) {
+    const int axis = body.size[0] < body.size[1] ? 0 : 2;
+    body.shape = ShapeKind::half_space;
+    body.size = body.size[2] < body.size[1] ? Vector3d(-Vector3d::Unit(axis)) : Vector3d(Vector3d::Unit(axis));
+    body.volume = collision::BoundingVolume::shape;
+    body.box_function = false;
+  }
   return body;
 }
 

@@ -46,6 +46,7 @@ void edit(Random& random, const Style& style, Size size, Scenario& scenario) {
 void add_lattice(Random& random, const Style& style, Scenario& scenario) {
   BodyPlan body = draw_body(random, style);
   const int side = body.shape == ShapeKind::mesh ? 4 : random.integer(5, 7);  // meshes take ten times as long
+  if (body.shape == ShapeKind::half_space) body.shape = ShapeKind::ball;
   body.size = Vector3d::Constant(0.25 * random.integer(1, 2));
   body.orientation = Eigen::Quaterniond::Identity();
   body.fixed = false;

@@ -134,6 +134,9 @@ BodyDescription<Degree> Player<Degree>::description(const BodyPlan& plan) {
     case ShapeKind::hull:
       result.shape = collision::convex_hull(cut_box(size));
       break;
+    case ShapeKind::half_space:
+      result.shape = collision::HalfSpace{plan.size};
+      break;
     case ShapeKind::mesh:
       result.shape = collision::MeshShape{sample_meshes()[plan.mesh], size[0]};
       break;

@@ -104,6 +104,9 @@ void print_body(const Scenario& scenario, std::size_t number_of_body) {
       std::printf("p.length * Vector3d%s, ", vector(corner).c_str());
     std::printf("});\n");
   }
+  if (body.shape == ShapeKind::half_space) {
+    std::printf("  d.shape = HalfSpace{Vector3d%s};\n", vector(body.size).c_str());
+  }
   if (body.shape == ShapeKind::mesh) {
     std::printf("  d.shape = MeshShape{mesh_%zu(), p.length * %s};\n", body.mesh, number(body.size[0]).c_str());
   }

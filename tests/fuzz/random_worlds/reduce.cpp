@@ -118,6 +118,10 @@ class Reducer {
   void simplify_body(std::size_t i) {
     const auto body = [&](auto&& change) { attempt([&](Scenario& s) { change(s.bodies[i]); }); };
     const BodyPlan plain;
+    if (best_.scenario.bodies[i].shape == ShapeKind::half_space) {
+      body([&](BodyPlan& b) { b.shape = ShapeKind::ball, b.size = plain.size; });
+      return;
+    }
     if (best_.scenario.bodies[i].shape != ShapeKind::ball) body([](BodyPlan& b) { b.shape = ShapeKind::ball; });
     if (best_.scenario.bodies[i].shape == ShapeKind::mesh) body([](BodyPlan& b) { b.shape = ShapeKind::box; });
     if (best_.scenario.bodies[i].shape == ShapeKind::mesh) body([](BodyPlan& b) { b.shape = ShapeKind::capsule; });
