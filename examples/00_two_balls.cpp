@@ -1,5 +1,6 @@
-// You learn: to add bodies to a world and be told of their contacts. How to run: scripts/demo, then
-// build/release/examples/00_two_balls What you see: the balls meet at t = 1 in (2, 0, 0)
+// You learn: to add bodies to a world and be told of their contacts.
+// How to run: scripts/demo, then build/release/examples/00_two_balls
+// What you see: the balls meet at t = 1 in (2, 0, 0)
 #include "collision/world.hpp"
 
 #include <iostream>

@@ -1,6 +1,6 @@
-// You learn: to use your own type of moving element, and motion in pieces. How to run:
-// build/dev/examples/04_your_own_motion, then open the page that it names What you see: after 8 bounces and 15 swaps
-// the highest ball is c
+// You learn: to use your own type of moving element, and motion in pieces.
+// How to run: build/dev/examples/04_your_own_motion, then open the page that it names
+// What you see: after 8 bounces and 15 swaps the highest ball is c
 #include "examples/course/facts.hpp"
 #include "examples/list_in_forty_lines.hpp"
 #include "kds/framework/kinetic.hpp"

@@ -1,6 +1,6 @@
-// You learn: how degenerate cases work without a tolerance: touches, three at one point, equal for ever, four on a
-// circle. How to run: build/dev/examples/08_degeneracies, then open the page that it names What you see: 3 events at t
-// = 4, none at t = 2, none between the equal ones
+// You learn: degenerate cases without a tolerance: touches, three at one point, equal for ever, four on a circle.
+// How to run: build/dev/examples/08_degeneracies, then open the page that it names
+// What you see: 3 events at t = 4, none at t = 2, none between the equal ones
 #include "examples/course/facts.hpp"
 #include "examples/list_in_forty_lines.hpp"
 #include "kds/framework/kinetic.hpp"

@@ -1,6 +1,6 @@
-// You learn: kinetic sweep and prune with boxes of your own: which pairs overlap, from when until when. How to run:
-// build/dev/examples/09_sweep_and_prune, then open the page that it names What you see: 10 pairs have overlapped; 117
-// swaps
+// You learn: kinetic sweep and prune with boxes of your own: which pairs overlap, from when until when.
+// How to run: build/dev/examples/09_sweep_and_prune, then open the page that it names
+// What you see: 10 pairs have overlapped; 117 swaps
 #include "collision/broad_phase/box_overlap.hpp"
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "examples/course/arcs.hpp"

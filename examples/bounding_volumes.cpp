@@ -1,6 +1,6 @@
 // You learn: to bound moving points: all of them by a k-DOP, each by a fat box in a tree that reports which are near.
-// How to run: build/dev/examples/bounding_volumes What you see: the 14-DOP has changed its extreme points 12 times; it
-// extends from z = 0.0608 to 2.3808
+// How to run: build/dev/examples/bounding_volumes
+// What you see: the 14-DOP has changed its extreme points 12 times; it extends from z = 0.0608 to 2.3808
 #include "certificates/point_motion.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"

@@ -1,5 +1,6 @@
-// You learn: to maintain the closest pair of moving points, and to be told when it changes. How to run:
-// build/dev/examples/closest_aircraft What you see: nearest of all were AB0 and AB1, at 1.29944 km
+// You learn: to maintain the closest pair of moving points, and to be told when it changes.
+// How to run: build/dev/examples/closest_aircraft
+// What you see: nearest of all were AB0 and AB1, at 1.29944 km
 #include "certificates/plane_motion.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"

@@ -1,5 +1,6 @@
-// You learn: to find when a vertex meets a face whose points each move on their own. How to run:
-// build/dev/examples/vertex_meets_face What you see: they meet at s = 0.5 within 1e-06 of each other
+// You learn: to find when a vertex meets a face whose points each move on their own.
+// How to run: build/dev/examples/vertex_meets_face
+// What you see: they meet at s = 0.5 within 1e-06 of each other
 #include "certificates/features/feature_contact.hpp"
 
 #include <array>

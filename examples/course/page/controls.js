@@ -97,7 +97,11 @@ function markEvents(number) {
 
 // Under the slider: what has happened and will, and when the certificates of now fail. Some of those will never come to
 // it: an event before may put others in their place.
-const ribbonX = (t) => 8 + (t - data.begin) / duration * ($('ribbon').clientWidth - 16);
+// It has the time axis of the picture, and so has the slider.
+const ribbonX = (t) => {
+  const {from, to} = view.axis();
+  return from + (t - data.begin) / duration * (to - from);
+};
 function drawRibbon() {
   $('ribbon').replaceChildren();
   data.events.forEach((event, k) => {
@@ -142,15 +146,22 @@ function tick(moment) {
   if (now >= data.end) play(false); else requestAnimationFrame(tick);
 }
 
-let laidOut = 0;
+// The picture takes the height that the rest of the stage leaves of the window, if that is enough for it.
+let laidOut = '';
 function resize() {
   const width = $('frame').clientWidth;
-  if (width === laidOut) return;
-  laidOut = width;
-  const height = Math.round(Math.max(260, Math.min(width * (width < 520 ? 0.95 : 0.62), innerHeight * 0.66)));
+  const rest = $('stage').offsetHeight - $('figure').getBoundingClientRect().height;
+  const room = innerHeight - rest - $('stage').offsetTop - 24;
+  const height = Math.round(Math.max(260, Math.min(width * (width < 520 ? 0.95 : 0.62), room)));
+  if (`${width} ${height}` === laidOut) return;
+  laidOut = `${width} ${height}`;
   set($('figure'), {viewBox: `0 0 ${width} ${height}`, height});
   view.layout(width, height);
   set($('ribbon'), {viewBox: `0 0 ${$('ribbon').clientWidth} 24`});
+  // The middle of a slider's thumb (16 pixels wide, by the style) goes from 8 to its width less 8.
+  const {from, to} = view.axis();
+  $('time').style.marginLeft = `${from - 8}px`;
+  $('time').style.width = `${to - from + 16}px`;
   drawRibbon();
   draw();
 }
@@ -160,8 +171,9 @@ $('play').addEventListener('click', () => play(!playing));
 $('before').addEventListener('click', () => goToEvent(-1));
 $('after').addEventListener('click', () => goToEvent(1));
 $('ribbon').addEventListener('click', (click) => {
-  const {left, width} = $('ribbon').getBoundingClientRect();
-  setTime(data.begin + (click.clientX - left - 8) / (width - 16) * duration);
+  const {left} = $('ribbon').getBoundingClientRect();
+  const {from, to} = view.axis();
+  setTime(data.begin + (click.clientX - left - from) / (to - from) * duration);
 });
 if (view.timeAt) {
   const drag = (event) => {
@@ -177,15 +189,32 @@ document.addEventListener('keydown', (event) => {
   const onButton = event.target.tagName === 'BUTTON';
   const actions = {
     n: () => goToEvent(1), p: () => goToEvent(-1), Home: () => setTime(data.begin), End: () => setTime(data.end),
+    l: () => $('larger').click(), f: fullScreen,
     ArrowRight: () => setTime(now + duration / 200), ArrowLeft: () => setTime(now - duration / 200),
   };
   if (!onButton) actions[' '] = () => play(!playing);
   const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
   if (!action) return;
   event.preventDefault();
-  if (event.key !== ' ') play(false);
+  if (!' lf'.includes(event.key.toLowerCase())) play(false);
   action();
 });
+
+function larger(on) {
+  document.documentElement.classList.toggle('larger', on);
+  $('larger').setAttribute('aria-pressed', on);
+  resize();
+}
+function fullScreen() {
+  const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
+  done.catch(() => { $('full').disabled = true; });  // a browser may refuse, within a frame for example
+}
+$('larger').addEventListener('click', () => larger($('larger').getAttribute('aria-pressed') !== 'true'));
+$('full').addEventListener('click', fullScreen);
+document.addEventListener('fullscreenchange', () => {
+  $('full').setAttribute('aria-pressed', document.fullscreenElement !== null);
+});
+addEventListener('resize', () => requestAnimationFrame(resize));
 
 /** For whoever drives the page from outside: the same numbers that are drawn. */
 window.course = {

@@ -140,5 +140,8 @@ function lineView(svg) {
     });
   }
 
-  return {layout, draw, timeAt: (x) => data.begin + (x - left) / (scale.x(data.end) - left) * duration};
+  /** Where the time axis begins and ends, in pixels from the left edge of the picture. */
+  const axis = () => ({from: scale.x(data.begin), to: scale.x(data.end)});
+
+  return {layout, draw, axis, timeAt: (x) => data.begin + (x - left) / (scale.x(data.end) - left) * duration};
 }

@@ -128,5 +128,8 @@ function planeView(svg) {
     });
   }
 
-  return {layout, draw, timeAt: null};
+  /** There is no time axis in the picture: the slider has the whole width. */
+  const axis = () => ({from: 8, to: size.width - 8});
+
+  return {layout, draw, axis, timeAt: null};
 }

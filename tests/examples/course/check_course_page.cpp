@@ -124,6 +124,14 @@ int main(int argc, char** argv) {
     for (const json& error : report["errors"]) wrong("error on the page: ", error);
     for (const json& pair : report["overlaps"]) wrong("texts overlap: ", pair[0], " and ", pair[1]);
     if (report["width"][0] > report["width"][1]) wrong("the page is wider than its window: ", report["width"]);
+    if (report["widened"][0] > report["widened"][1]) wrong("larger text is wider than the window: ", report["widened"]);
+    if (!(report["larger"][0] > report["larger"][1])) wrong("larger text is not larger: ", report["larger"]);
+    if (page.on_line() != report.contains("axes")) wrong("the ends of the time axis are not reported");
+    for (const json& end : report.value("axes", json::array())) {
+      if (std::abs(end[0].get<double>() - end[1].get<double>()) > 0.5) {
+        wrong("slider and picture do not share the time axis: an end is at ", end[0], " and at ", end[1]);
+      }
+    }
     if (report["frames"].size() < 5) wrong("the slider has not been moved");
     for (const json& frame : report["frames"]) {
       const double asked = frame["wanted"];

@@ -76,6 +76,17 @@ window.addEventListener('load', () => {
     const apart = p.x + p.width <= q.x || q.x + q.width <= p.x || p.y + p.height <= q.y || q.y + q.height <= p.y;
     if (!apart) report.overlaps.push([a, b]);
   }));
+  if (window.course.data.view === 'line') {
+    const [thumb, picture] = [slider.getBoundingClientRect(), figure.getBoundingClientRect()];
+    const x = (t) => picture.left + Number(figure.dataset.x0) + t * Number(figure.dataset.kx);
+    report.axes = [[thumb.left + 8, x(begin)], [thumb.right - 8, x(end)]];
+  }
+  const plain = figure.querySelector('text').getBBox().height;
+  press('l');
+  report.larger = [figure.querySelector('text').getBBox().height, plain];
+  report.widened = [document.documentElement.scrollWidth, window.innerWidth];
+  press('l');
+  report.keys.splice(-2);
   report.width = [document.documentElement.scrollWidth, window.innerWidth];
 
   // Play, and pause a moment later.
