@@ -58,10 +58,11 @@ PyShape mesh_shape(std::vector<Eigen::Vector3d> vertices, std::vector<Mesh::Tria
 
 void bind_shapes(py::module_& module) {
   py::class_<PyShape>(module, "Shape",
-                      "The shape of bodies: made by sphere(), box(), capsule(), hull(), mesh(), read_mesh().")
+                      "The shape of bodies: made by sphere(), box(), capsule(), hull(), mesh(), read_mesh(), "
+                      "half_space().")
       .def_property_readonly(
           "kind", [](const PyShape& of) { return kind_name(of.shape); },
-          "'sphere', 'box', 'capsule', 'hull' or 'mesh'.")
+          "'sphere', 'box', 'capsule', 'hull', 'mesh' or 'half-space'.")
       .def_property_readonly("bounding_radius", &bounding_radius,
                              "The radius of the ball about the centre that contains the shape.")
       .def("__repr__", [](const PyShape& of) {
@@ -73,6 +74,9 @@ void bind_shapes(py::module_& module) {
   module.def("box", [](const Eigen::Vector3d& half_extents) { return checked(Box{half_extents}); });
   module.def("capsule", [](double radius, double half_length) { return checked(Capsule{radius, half_length}); });
   module.def("hull", [](std::vector<Eigen::Vector3d> points) { return checked(convex_hull(std::move(points))); });
+  module.def("half_space", [](const Eigen::Vector3d& normal, double offset) {
+    return checked(HalfSpace{normal, offset});
+  });
   module.def("mesh", mesh_shape);
   module.def("read_mesh", [](const std::string& file, double scale) {
     try {

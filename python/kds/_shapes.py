@@ -33,6 +33,14 @@ def hull(points: ArrayLike) -> Shape:
     return _kds.hull(doubles("points", points, (None, 3)))
 
 
+def half_space(normal: ArrayLike, offset: float = 0.0) -> Shape:
+    """All that is not beyond a plane: normal . x <= offset, seen from the body's centre. A floor, or a wall.
+
+    The normal (3,) leads out of it, and is of unit length. For fixed bodies of worlds that do not turn.
+    """
+    return _kds.half_space(vector("normal", normal), number("offset", offset))
+
+
 def mesh(vertices: ArrayLike, triangles: ArrayLike, scale: float = 1.0) -> Shape:
     """A surface of triangles, about the origin as the body's centre; it has no inside. Use one for many bodies.
 

@@ -166,6 +166,23 @@ TEST_CASE("recipe: a mesh from vertices") {
   CHECK_THROWS_AS(Mesh({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}), InvalidMesh);
 }
 
+TEST_CASE("recipe: a room whose walls meet the shapes of bodies") {
+  World<2> world({.response = Response::elastic});
+  std::vector<BodyId> walls;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {  // solid is what is 5 or more from the middle
+      walls.push_back(world.add_body({.shape = HalfSpace{-side * Vector3d::Unit(axis), -5},
+                                      .motion = {Parabola::line({0, 0, 0}, {0, 0, 0})},
+                                      .fixed = true}));
+    }
+  }
+  const BodyId box = world.add_body(
+      {.shape = Box{{1, 1, 2}}, .motion = {Parabola::parabola({0, 0, 0}, {4, 0, 0}, {0, 0, -8})}, .restitution = 0.5});
+  world.advance_to(30);
+  CHECK(world.resting(walls[4], box));  // on the floor, and slides to and fro
+  CHECK(world.motion(box).position(30)[2] == Approx(-3));
+}
+
 TEST_CASE("recipe: gravity, restitution, walls") {
   World<2> world({.walls = Walls{{-5, -5, 0}, {5, 5, 9}}});
   const Vector3d gravity(0, 0, -2);

@@ -59,6 +59,18 @@ class Bulk(unittest.TestCase):
         self.assertEqual([world.shape(i).kind for i in range(6)], ["box"] * 3 + ["sphere", "capsule", "hull"])
         np.testing.assert_array_equal(world.positions(), np.vstack([places, places + 20]))
 
+    def test_a_box_meets_a_floor(self):
+        world = kds.World()
+        world.add_body(kds.half_space((0, 0, 1), -1), (0, 0, 0), fixed=True)
+        world.add_body(kds.box((1, 1, 0.5)), (3, 4, 2), (0, 0, -1))
+        events = world.advance_to(10)
+        self.assertEqual([(e["kind"], e["time"]) for e in events][:1], [(kds.EventKind.CONTACT, 2.5)])
+        np.testing.assert_array_equal(events[0]["normal"], (0, 0, 1))
+        with self.assertRaisesRegex(ValueError, "normal.*unit length"):
+            kds.half_space((0, 0, 2))
+        with self.assertRaisesRegex(ValueError, "fixed"):
+            world.add_body(kds.half_space((0, 0, 1)), (0, 0, 0))
+
     def test_none_is_added_if_one_is_wrong(self):
         world = kds.World()
         radii = np.ones(5)
