@@ -21,7 +21,7 @@ void free_large_pages(void* memory) noexcept;
 
 /// Allocates little memory as std::allocator does, and much in large pages. What touches many places of a large array
 /// in no order spends most of its time on finding the addresses of ordinary pages: a gas of 100 000 balls takes a fifth
-/// less time, a thin one of 400 000 two fifths (docs/speed.md). Cost: a large page is used whole.
+/// less time, a thin one of 400 000 two fifths (docs/what-was-tried.md). Cost: a large page is used whole.
 template <class T>
 struct LargeAllocator {
   using value_type = T;

@@ -26,7 +26,7 @@ concept Region = MovingElement<R> && requires(const R& region, const typename R:
 
 /// A disc (PlaneMotion) or ball (PointMotion). Nothing is in it while its radius is negative.
 template <class Path>
-struct MovingBall {
+struct BallRegion {
   using Point = Path;
   using Radius = Motion<Path::degree>;
   using Side = std::variant<certificates::InBall<Path>, certificates::OnSide<Path::degree>>;
@@ -40,19 +40,19 @@ struct MovingBall {
     return certificates::OnSide<Path::degree>{Radius{{}, radius.start}, radius, sign};
   }
 
-  bool finite() const { return detail::finite(centre) && is_finite(radius); }
+  bool finite() const { return kds::detail::finite(centre) && is_finite(radius); }
   template <class Archive>
   void archive(Archive& archive) {
     archive(centre, radius);
   }
-  friend bool operator==(const MovingBall&, const MovingBall&) = default;
-  friend MovingBall reversed(const MovingBall& ball) { return {reversed(ball.centre), reversed(ball.radius)}; }
+  friend bool operator==(const BallRegion&, const BallRegion&) = default;
+  friend BallRegion reversed(const BallRegion& ball) { return {reversed(ball.centre), reversed(ball.radius)}; }
 };
 
 /// A rectangle (PlaneMotion) or box (PointMotion), between two corners. Nothing is in it while the low one is above the
 /// high one in any coordinate.
 template <class Path>
-struct MovingBox {
+struct BoxRegion {
   using Point = Path;
   using Side = certificates::OnSide<Path::degree>;
   static constexpr std::size_t sides = 2 * certificates::dimensions<Path>;
@@ -65,13 +65,13 @@ struct MovingBox {
     return {point.axis(axis), high.axis(axis), sign};
   }
 
-  bool finite() const { return detail::finite(low) && detail::finite(high); }
+  bool finite() const { return kds::detail::finite(low) && kds::detail::finite(high); }
   template <class Archive>
   void archive(Archive& archive) {
     archive(low, high);
   }
-  friend bool operator==(const MovingBox&, const MovingBox&) = default;
-  friend MovingBox reversed(const MovingBox& box) { return {reversed(box.low), reversed(box.high)}; }
+  friend bool operator==(const BoxRegion&, const BoxRegion&) = default;
+  friend BoxRegion reversed(const BoxRegion& box) { return {reversed(box.low), reversed(box.high)}; }
 };
 
 }  // namespace kds::structures

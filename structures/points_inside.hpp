@@ -124,7 +124,7 @@ class PointsInsideRule : public StandsOn<ElementsRule<R>> {
     for (std::uint8_t side = 0; side < R::sides; ++side) {
       const auto holds = this->inner()[pair.region].side(side, repair[pair.point], 1);
       bool beyond = false;
-      detail::with_certificate(holds, [&](const auto& certificate) { beyond = repair.sign(certificate) < 0; });
+      kds::detail::with_certificate(holds, [&](const auto& certificate) { beyond = repair.sign(certificate) < 0; });
       if (beyond) return side;
     }
     return inside;

@@ -20,8 +20,8 @@ using namespace kds;
 using namespace kds::tests;
 using certificates::PlaneMotion;
 using certificates::PointMotion;
-using structures::MovingBall;
-using structures::MovingBox;
+using structures::BallRegion;
+using structures::BoxRegion;
 using structures::PointsInsideRule;
 
 void make(Random& random, Kind kind, double now, PlaneMotion<1>& path) {
@@ -34,12 +34,12 @@ void make(Random& random, Kind kind, double now, PointMotion<1>& path) {
   path = random_point_motion<1>(random, kind, now);
 }
 template <class Path>
-void make(Random& random, Kind kind, double now, MovingBall<Path>& ball) {
+void make(Random& random, Kind kind, double now, BallRegion<Path>& ball) {
   make(random, kind, now, ball.centre);
   ball.radius = random_motion<Path::degree>(random, kind, now);
 }
 template <class Path>
-void make(Random& random, Kind kind, double now, MovingBox<Path>& box) {
+void make(Random& random, Kind kind, double now, BoxRegion<Path>& box) {
   make(random, kind, now, box.low);
   make(random, kind, now, box.high);
 }
@@ -94,8 +94,8 @@ struct Scene {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("points are in the regions that they are in", "[points_inside]", MovingBall<PlaneMotion<1>>,
-                   MovingBox<PlaneMotion<1>>, MovingBall<PointMotion<1>>, MovingBox<PlaneMotion<2>>) {
+TEMPLATE_TEST_CASE("points are in the regions that they are in", "[points_inside]", BallRegion<PlaneMotion<1>>,
+                   BoxRegion<PlaneMotion<1>>, BallRegion<PointMotion<1>>, BoxRegion<PlaneMotion<2>>) {
   using Point = typename TestType::Point;
   std::uint64_t events = 0;
   for (const Kind kind : all_kinds) {
@@ -151,7 +151,7 @@ TEMPLATE_TEST_CASE("points are in the regions that they are in", "[points_inside
 }
 
 TEST_CASE("a disc that grows takes in points one by one, and none while its radius is negative", "[points_inside]") {
-  using Disc = MovingBall<PlaneMotion<1>>;
+  using Disc = BallRegion<PlaneMotion<1>>;
   Scene<Disc> scene(0);
   const auto at = [](double x, double y) { return PlaneMotion<1>{{{{{x, 0}}, {{y, 0}}}}, 0}; };
   scene.points.insert(0, at(0, 0), 0);
