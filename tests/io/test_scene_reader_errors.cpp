@@ -102,9 +102,11 @@ TEST_CASE("scene reader: each bad value is named with its place") {
       {"/bodies/1/name", "\"a\\nb\"", "bodies[1].name: must not hold control characters"},
       {"/bodies/0/shape", "", "bodies[0].shape: is missing"},
       {"/bodies/0/shape", "{}",
-       "bodies[0].shape: must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\" and \"hull\""},
+       "bodies[0].shape: must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\", \"hull\" and "
+       "\"half_space\""},
       {"/bodies/0/shape/box", "{}",
-       "bodies[0].shape: must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\" and \"hull\""},
+       "bodies[0].shape: must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\", \"hull\" and "
+       "\"half_space\""},
       {"/bodies/0/shape/cone", "{}", "bodies[0].shape.cone: unknown key"},
       {"/bodies/0/shape/scale", "2", "bodies[0].shape.scale: is for meshes only"},
       {"/bodies/0/shape/sphere/radius", "0", "bodies[0].shape.sphere.radius: must be > 0"},
@@ -122,6 +124,7 @@ TEST_CASE("scene reader: each bad value is named with its place") {
        "bodies[0].shape.capsule.half_length: must be 0, or at least 1e-30"},
       {"/bodies/0/shape", R"({"capsule": {"radius": 1, "half_length": 1, "axis": 2}})",
        "bodies[0].shape.capsule.axis: unknown key"},
+      {"/bodies/0/shape", R"({"half_space": {"normal": [0, 0, 1]}})", "bodies[0].shape.half_space.offset: is missing"},
       {"/bodies/0/shape", R"({"hull": {}})", "bodies[0].shape.hull.points: is missing"},
       {"/bodies/0/shape", R"({"hull": {"points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1]]}})",
        "bodies[0].shape.hull.points[4]: must be an array of 3 numbers"},
