@@ -21,7 +21,7 @@ inline constexpr int dimensions<PlaneMotion<Degree>> = 2;
 template <int Degree>
 inline constexpr int dimensions<PointMotion<Degree>> = 3;
 
-/// sign (b(t) - a(t)) >= 0, for two coordinates, or anything else that moves on a line.
+/// sign (b(t) - a(t)) >= 0, for two coordinates. Order is the same of motions that last; these are made on the spot.
 template <int Degree>
 struct OnSide {
   static constexpr int degree = Degree;

@@ -1,5 +1,6 @@
 #include "collision/shapes/half_space.hpp"
 
+#include "collision/shapes/number_text.hpp"
 #include "collision/shapes/rotation.hpp"
 #include "collision/vectors.hpp"
 
@@ -28,7 +29,7 @@ namespace detail {
 void ShapeKind<HalfSpace>::place(const HalfSpace& half_space, PlacedShape& placed) {
   if (!half_space.normal.allFinite()) throw std::invalid_argument("normal: must be finite");
   if (!(std::abs(norm(half_space.normal) - 1) <= normal_tolerance)) {
-    throw std::invalid_argument("normal: must be of unit length, to 1e-6");
+    throw std::invalid_argument("normal: must be of unit length, to " + number_text(normal_tolerance));
   }
   if (!(std::abs(half_space.offset) <= largest_magnitude)) {
     throw std::invalid_argument("offset: must be finite, and at most 2^205 (5.1e61) in magnitude");

@@ -27,7 +27,7 @@ void Engine<Motion>::answer(const char* function, const Ask& ask, const Meets& m
   if (!broad_phase_is_ahead) ask(look);
   if (broad_phase_is_ahead || bodies_.filters()) {
     for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-      if (bodies_.entered(slot) && (broad_phase_is_ahead || !bodies_.in_broad_phase(slot))) look(slot);
+      if (bodies_.entered(slot) && (broad_phase_is_ahead || !bodies_.collides(slot))) look(slot);
     }
   }
   for (const BodySlot slot : unbounded_.bodies()) look(slot);
