@@ -27,6 +27,11 @@ namespace kds::collision {
 template <class BodyMotionType>
 class Engine;
 
+namespace detail {
+template <class Motion>
+struct EngineOf;
+}
+
 /// Moves bodies through time and reports their contacts at exact times. The type of motion is a template parameter
 /// (body_motion.hpp): most worlds are a World<Degree>, below, whose bodies keep their orientation.
 ///
@@ -233,6 +238,8 @@ class BasicWorld final {
   void archive(Archive& archive);
 
  private:
+  friend struct detail::EngineOf<Motion>;
+
   std::unique_ptr<Engine<Motion>> engine_;
 };
 

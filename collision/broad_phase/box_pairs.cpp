@@ -1,6 +1,6 @@
 #include "collision/broad_phase/box_pairs.hpp"
 
-#include "collision/parallel.hpp"
+#include "collision/in_parts.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include "collision/broad_phase/kinetic_grid.hpp"
 #include "collision/broad_phase/typical_spacing.hpp"
 #include "collision/degrees.hpp"
-#include "collision/parallel.hpp"
+#include "collision/in_parts.hpp"
 
 #include <algorithm>
 #include <array>

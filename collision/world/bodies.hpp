@@ -225,6 +225,16 @@ class Bodies {
   /// Takes those that have waited longest, all or so many.
   std::vector<BodySlot> take_waiting(std::size_t most);
 
+  /// Where bodies are those of another world (transfer.cpp), the slots that they have there, by slot: the order of
+  /// events of one time, and of the two bodies of a pair, is that of numbers. Else slots are numbers.
+  const LargeVector<BodySlot>& numbers() const { return numbers_; }
+  bool numbered() const { return !numbers_.empty(); }
+  BodySlot number(BodySlot slot) const { return numbers_.empty() ? slot : numbers_[slot]; }
+  /// Adds a body of another world as it is there. It has not entered.
+  BodySlot take_in(const Bodies& from, BodySlot slot);
+  /// A body that is here as well goes on as it does in another world.
+  void follow(BodySlot slot, const Bodies& from, BodySlot there);
+
   /// The whole state as plain data, for snapshots.
   struct Image;
   Image image() const;
@@ -245,6 +255,7 @@ class Bodies {
   std::vector<std::uint32_t> generations_;
   std::vector<BodySlot> free_;
   std::vector<BodySlot> waiting_;
+  LargeVector<BodySlot> numbers_;
   IgnoredPairs ignored_;
   Attachments attachments_;
   std::size_t alive_ = 0;

@@ -1,6 +1,6 @@
 // How bodies are added to the world and removed.
 #include "collision/motions.hpp"
-#include "collision/parallel.hpp"
+#include "collision/in_parts.hpp"
 #include "collision/profile.hpp"
 #include "collision/response/inertia.hpp"
 #include "collision/response/mass_properties.hpp"
@@ -237,7 +237,11 @@ void Engine<Motion>::expect_new_bodies() {
 template <class Motion>
 void Engine<Motion>::enter_new_bodies(std::size_t most) {
   if (most < bodies_.waiting().size() && expected_ < bodies_.slots()) expect_new_bodies();
-  const std::vector<BodySlot> entering = bodies_.take_waiting(most);
+  enter(bodies_.take_waiting(most), Begin::entering);
+}
+
+template <class Motion>
+void Engine<Motion>::enter(std::span<const BodySlot> entering, Begin begin) {
   // Events of the others that are due now come first, so that they are not attributed to the new bodies.
   while (broad_phase_->advance(clock_.now, pairs_)) {
   }
@@ -269,7 +273,7 @@ void Engine<Motion>::enter_new_bodies(std::size_t most) {
                                             [&](const Entry& entry) { return bodies_.in_broad_phase(entry.slot); });
     colliding = static_cast<std::size_t>(rest - entries.begin());
   }
-  pairs_.set_begin(Begin::entering);
+  pairs_.set_begin(begin);
   {
     const Stopwatch watch(profile(), Work::update);
     broad_phase_->insert(all.first(colliding), clock_.now, pairs_);
@@ -277,7 +281,7 @@ void Engine<Motion>::enter_new_bodies(std::size_t most) {
   if (!unbounded_.empty()) {
     for (const Entry& entry : entries) unbounded_.begin_pairs(entry.slot);
   }
-  for (const BodySlot slot : unbounded) unbounded_.add(slot);
+  for (const BodySlot slot : unbounded) unbounded_.add(slot, begin);
   pairs_.set_begin(Begin::moving);
   walls_.schedule(entries);
   for (const Entry& entry : entries) {

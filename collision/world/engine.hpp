@@ -94,6 +94,36 @@ class Engine final : private RestingListener<BodyMotionType> {
   template <class Archive>
   void archive(Archive& archive);
 
+  // transfer.cpp: bodies that several worlds have, each for a part of the scene (parallel/parallel_world.hpp). A world
+  // takes in bodies of another one in the middle of their history, and what follows is the same, bit for bit: their
+  // motions and counts are those of the other world, their pairs begin as those of bodies that move past each other do,
+  // and pairs that overlap there overlap here.
+  /// Two bodies, by slots, that overlap, and Pair::passes_at.
+  struct Overlap {
+    BodySlot a, b;
+    double passes_at;
+  };
+  /// Whether nothing decides later events but the motions and counts of bodies and the pairs that overlap.
+  bool is_divisible() const requires(!turns<Motion>);
+  /// Takes in bodies of another world with the same options and clock, whose slots there are their numbers here.
+  /// Those that have not entered there enter with the next step. Returns their slots, in the same order.
+  std::vector<BodySlot> take_in(const Engine& from, std::span<const BodySlot> numbers) requires(!turns<Motion>);
+  /// Removes bodies that another world goes on with: nothing is reported.
+  void let_go(std::span<const BodySlot> slots);
+  /// The overlaps of bodies that have been taken in, by their slots here.
+  void go_on_overlapping(std::span<const Overlap> overlaps);
+  std::vector<Overlap> overlaps() const;
+  /// A body of this world is as another world has it, whose body it is.
+  /// The first, for different bodies, may be called by several threads at once.
+  void follow(BodySlot slot, const Engine& from, BodySlot there) requires(!turns<Motion>);
+  void follow_meeting(BodySlot slot, const Engine& from, BodySlot there) requires(!turns<Motion>);
+  /// All bodies have entered.
+  void note_entered();
+  /// Forgets all but the bodies, until go_on().
+  void set_aside() requires(!turns<Motion>);
+  /// Goes on at t with the bodies as they are then.
+  void go_on(double t, std::span<const Overlap> overlaps) requires(!turns<Motion>);
+
  private:
   using Body = detail::Body<Motion>;
   using Mover = typename Bodies<Motion>::Mover;
@@ -191,6 +221,7 @@ class Engine final : private RestingListener<BodyMotionType> {
                const std::optional<PrincipalInertia>& principal);
   void make_room_for_meshes();
   void enter_new_bodies(std::size_t most);
+  void enter(std::span<const BodySlot> entering, Begin begin);
   void expect_new_bodies();
   void take_out(BodySlot slot);
   void update_volume(BodySlot slot, const KineticBox<Motion::degree>& box);

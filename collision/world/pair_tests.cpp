@@ -4,7 +4,7 @@
 #include "certificates/conjunction.hpp"
 #include "collision/broad_phase/box_overlap.hpp"
 #include "collision/motions.hpp"
-#include "collision/parallel.hpp"
+#include "collision/in_parts.hpp"
 #include "collision/profile.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/world/pairs.hpp"

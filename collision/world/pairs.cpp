@@ -20,8 +20,8 @@ Pairs<Motion>::Pairs(const Bodies<Motion>& bodies, const Volumes<Motion>& volume
       clock_(clock),
       counters_(counters),
       profile_(profile),
-      contacts_(detail::PairRank{&pairs_}),
-      boxes_(detail::PairRank{&pairs_}) {}
+      contacts_(detail::PairRank{&pairs_, &bodies.numbers()}),
+      boxes_(detail::PairRank{&pairs_, &bodies.numbers()}) {}
 
 /// Reserves room for them and some more, if they are the first.
 template <class Motion>
@@ -60,6 +60,7 @@ void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
 
 template <class Motion>
 inline typename Pairs<Motion>::Slot Pairs<Motion>::add(BodySlot a, BodySlot b) {
+  if (bodies_.number(a) > bodies_.number(b)) std::swap(a, b);
   Slot slot;
   if (free_.empty()) {
     slot = static_cast<Slot>(pairs_.size());
@@ -84,7 +85,7 @@ inline typename Pairs<Motion>::Slot Pairs<Motion>::add(BodySlot a, BodySlot b) {
 template <class Motion>
 inline void Pairs<Motion>::link(Slot slot, std::uint32_t first_room) {
   Pair& pair = pairs_[slot];
-  if (of_.size() <= pair.b) of_.resize(bodies_.slots());
+  if (of_.size() <= std::max(pair.a, pair.b)) of_.resize(bodies_.slots());
   pair.place_in_a = of_[pair.a].size;
   pair.place_in_b = of_[pair.b].size;
   links_.push_back(of_[pair.a], {pair.b, slot}, first_room);
@@ -110,7 +111,7 @@ void Pairs<Motion>::list_anew(std::span<const std::pair<BodySlot, BodySlot>> lis
   for (Slot slot = 0; slot < pairs_.size(); ++slot) {
     const Pair& pair = pairs_[slot];
     if (!pair.alive || !pair.listed) continue;
-    if (!std::binary_search(listed.begin(), listed.end(), std::pair(pair.a, pair.b))) {
+    if (!std::binary_search(listed.begin(), listed.end(), IgnoredPairs::pair(pair.a, pair.b))) {
       pair_ended(pair.a, pair.b, clock_.now);
     }
   }
@@ -153,7 +154,8 @@ void Pairs<Motion>::release(Slot slot) {
     const Link moved = of_body.back();
     of_body[place] = moved;
     links_.pop_back(of_[id]);
-    (id < moved.other ? pairs_[moved.slot].place_in_a : pairs_[moved.slot].place_in_b) = place;
+    Pair& other = pairs_[moved.slot];
+    (id == other.a ? other.place_in_a : other.place_in_b) = place;
   }
   contacts_.clear(slot);
   --unlisted_;
@@ -184,6 +186,18 @@ void Pairs<Motion>::let_pass(BodySlot a, BodySlot b) {
   pair.overlapping = true;
   pair.fresh = false;
   pair.passes_at = clock_.now;
+  mark_dirty(slot);
+}
+
+template <class Motion>
+void Pairs<Motion>::go_on_overlapping(BodySlot a, BodySlot b, double passes_at) {
+  Slot slot = find(a, b);
+  if (slot == none) {
+    slot = add(a, b);
+    ++unlisted_;
+  }
+  pairs_[slot].overlapping = true;
+  pairs_[slot].passes_at = passes_at;
   mark_dirty(slot);
 }
 

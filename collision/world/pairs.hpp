@@ -30,7 +30,7 @@ namespace detail {
 
 using PairSlot = std::uint32_t;
 
-/// Two bodies that may meet. It exists while the broad phase lists it, and while the two overlap: so its state is a
+/// Two bodies that may meet, the one with the lower number first. It exists while the broad phase lists it, and while the two overlap: so its state is a
 /// function of the history of the two bodies, whatever the broad phase.
 struct Pair {
   BodySlot a = 0, b = 0;
@@ -47,10 +47,14 @@ struct Pair {
   double passes_at = -never;  ///< at this time it counts as overlapping, whatever else happens then
 };
 
+/// The order of pairs: by the numbers of their bodies (Bodies::numbers).
 struct PairRank {
   const LargeVector<Pair>* pairs = nullptr;
+  const LargeVector<BodySlot>* numbers = nullptr;
   std::uint64_t operator()(std::uint32_t slot) const {
-    return std::uint64_t{(*pairs)[slot].a} << 32 | (*pairs)[slot].b;
+    const auto [a, b] = std::pair((*pairs)[slot].a, (*pairs)[slot].b);
+    if (numbers->empty()) return std::uint64_t{a} << 32 | b;
+    return std::uint64_t{(*numbers)[a]} << 32 | (*numbers)[b];
   }
 };
 
@@ -119,6 +123,17 @@ class Pairs final : public PairListener {
   /// Lets a pair pass until it has separated, and at this time whatever else happens, even if its boxes do not overlap
   /// just now.
   void let_pass(BodySlot a, BodySlot b);
+  /// Two bodies overlap, since they do in another world; let pass at `passes_at`, as there.
+  void go_on_overlapping(BodySlot a, BodySlot b, double passes_at);
+  /// Calls visit(a, b, passes_at) for each pair that overlaps.
+  template <class Visit>
+  void every_overlap(const Visit& visit) const {
+    for (const Pair& pair : pairs_) {
+      if (pair.alive && pair.overlapping) visit(pair.a, pair.b, pair.passes_at);
+    }
+  }
+  /// Forgets all pairs.
+  void clear();
   /// Calls visit(slot) for each body that passes through this one and overlaps it.
   void visit_overlapped(BodySlot id, SlotVisitor visit) const;
   /// A body is removed; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.

@@ -56,6 +56,12 @@ void Pairs<Motion>::become(const Image& image) {
 }
 
 template <class Motion>
+void Pairs<Motion>::clear() {
+  become({});
+  pairs_.shrink_to_fit(), found_.shrink_to_fit(), dirty_.shrink_to_fit(), of_ = {};
+}
+
+template <class Motion>
 template <class Archive>
 void Pairs<Motion>::Image::archive(Archive& archive) {
   archive.each(pairs, [&](One& one) {

@@ -60,6 +60,7 @@ bool RestingContacts<Motion>::soon_back(const Contact& contact, double rate) con
 /// Makes a cluster of all that leans on a body, with a span that ends then.
 template <class Motion>
 void RestingContacts<Motion>::gather(BodySlot id, double ends) {
+  if (bodies_.numbered()) throw RestsInPart();
   if (bodies_.fixed(id)) return;
   const Island island = find_island(id);
   bool woken = false;

@@ -65,6 +65,7 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const 
 
 template <class Motion>
 void RestingContacts<Motion>::add(const Contact& contact) {
+  if (bodies_.numbered()) throw RestsInPart();
   for (const Slot slot : member(contact.a).contacts) {
     Contact& other = contacts_[slot];
     if (other.a != contact.a || other.b != contact.b || !(dot(other.normal, contact.normal) > detail::same_normal))

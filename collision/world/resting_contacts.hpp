@@ -64,6 +64,12 @@ class RestingListener {
   ~RestingListener() = default;
 };
 
+/// Thrown where contacts would begin to rest in a world of bodies that are those of another one (transfer.cpp): what
+/// rests on each other is not divided among worlds.
+struct RestsInPart : std::exception {
+  const char* what() const noexcept override { return "World: a part of a world, in which something comes to rest"; }
+};
+
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
 /// docs/resting.md states the law.
 ///
@@ -160,6 +166,8 @@ class RestingContacts {
   void halt(BodySlot id);
   /// Two bodies that are not fixed have met.
   void note_meeting(BodySlot a, BodySlot b) { member(std::max(a, b)), of_[a].met = of_[b].met = true; }
+  bool has_met(BodySlot id) const { return id < of_.size() && of_[id].met; }
+  void note_meeting(BodySlot id) { member(id).met = true; }
   /// Makes a cluster of all that leans on a body that is not fixed.
   void gather(BodySlot id) { gather(id, clock_.now); }
   /// Whether a cluster of the two would have a span: something accelerates them.

@@ -27,10 +27,10 @@ class Unbounded {
   bool empty() const { return slots_.empty(); }
   std::span<const BodySlot> bodies() const { return slots_; }
 
-  /// An unbounded body has entered. Its pairs begin as others do whose bodies enter.
-  void add(BodySlot slot) {
+  /// An unbounded body has entered.
+  void add(BodySlot slot, typename Pairs<Motion>::Begin begin) {
     slots_.push_back(slot);
-    pairs_.set_begin(Pairs<Motion>::Begin::entering);
+    pairs_.set_begin(begin);
     begin_pairs(slot);
     pairs_.set_begin(Pairs<Motion>::Begin::moving);
   }

@@ -80,8 +80,7 @@ void WallTimes<Motion>::extend_horizon() {
 
 template <class Motion>
 void WallTimes<Motion>::become() {
-  times_.resize(0);
-  wall_.clear();
+  forget_all();
   extend_horizon();
 }
 

@@ -45,6 +45,11 @@ class WallTimes {
   int next_wall() const { return wall_[next_body()]; }
   void extend_horizon();
 
+  /// Forgets all times.
+  void forget_all() {
+    times_.resize(0);
+    wall_.clear();
+  }
   /// All bodies have been replaced. Times are not saved or loaded: they are functions of the motions.
   void become();
 

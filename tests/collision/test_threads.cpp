@@ -1,5 +1,5 @@
 // Bodies that come many at once are shared out among threads: nothing that can be seen depends on how many.
-#include "collision/parallel.hpp"
+#include "collision/in_parts.hpp"
 #include "collision/world.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/support/random_numbers.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <thread>
@@ -16,6 +17,32 @@ inline std::size_t threads_for(std::size_t items, std::size_t most) {
   if (most == 1 || items < 2 * items_per_thread) return 1;
   if (most == 0) most = std::max<std::size_t>(std::thread::hardware_concurrency(), 1);
   return std::min(items / items_per_thread, most);
+}
+
+/// Calls work(i) for each i in [0, tasks), in so many threads, of which this is one; a thread that has done one takes the
+/// next. No task may depend on what another one changes. Returns when all are done; if some threw, throws the exception
+/// of the lowest of them.
+template <class Work>
+void in_turn(std::size_t tasks, std::size_t threads, const Work& work) {
+  std::vector<std::exception_ptr> failures(tasks);
+  std::atomic<std::size_t> next{0};
+  const auto run = [&] {
+    for (std::size_t task = next++; task < tasks; task = next++) {
+      try {
+        work(task);
+      } catch (...) {
+        failures[task] = std::current_exception();
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t i = 1; i < std::min(threads, tasks); ++i) others.emplace_back(run);
+    run();
+  }
+  for (const auto& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
 }
 
 /// Cuts [0, items) into `threads` parts of equal size, in order, and calls work(part, begin, end) for parts 0, 1 ...,

@@ -1,0 +1,278 @@
+#include "collision/parallel/domain.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace kds::collision {
+namespace {
+
+using detail::DomainEvent;
+
+/// The options of a world of a domain.
+WorldOptions for_domain(WorldOptions options, double now) {
+  options.start_time = now;
+  options.threads = 1;
+  options.profile = false;
+  return options;
+}
+
+/// Domains run until nothing that is told can come before; a pair is in two logs, so bits are compared.
+template <class Motion>
+bool same_bits(const Motion& a, const Motion& b) {
+  return std::memcmp(static_cast<const void*>(&a), static_cast<const void*>(&b), sizeof(Motion)) == 0;
+}
+
+}  // namespace
+
+template <class Motion>
+Domain<Motion>::Domain(const WorldOptions& options, const Share& share, std::size_t index, double now)
+    : share_(share),
+      index_(index),
+      world_(for_domain(options, now), this),
+      engine_(detail::EngineOf<Motion>::of(world_)),
+      local_(share.owner.size(), no_body) {
+  const StaticBox& cell = share.partition.cell(index);
+  for (std::size_t other = 0; other < share.partition.size(); ++other) {
+    if (other != index && outside(share.partition.cell(other), cell) <= 3 * share.halo) near_.push_back(other);
+  }
+}
+
+template <class Motion>
+void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const Engine<Motion>& store,
+                              std::span<const Overlap> overlaps) {
+  std::vector<BodySlot> slots;
+  for (const BodySlot number : go) slots.push_back(std::exchange(local_[number], no_body));
+  if (!slots.empty()) engine_.let_go(slots);
+  if (come.empty()) return;
+  slots = engine_.take_in(store, come);
+  for (std::size_t i = 0; i < come.size(); ++i) local_[come[i]] = slots[i];
+  std::vector<Overlap> here;
+  const auto comes = [&](BodySlot number) { return std::binary_search(come.begin(), come.end(), number); };
+  for (const Overlap& overlap : overlaps) {
+    const BodySlot a = local_[overlap.a], b = local_[overlap.b];
+    if (a != no_body && b != no_body && (comes(overlap.a) || comes(overlap.b))) here.push_back({a, b, overlap.passes_at});
+  }
+  engine_.go_on_overlapping(here);
+}
+
+template <class Motion>
+void Domain<Motion>::sort_bodies() {
+  const auto& bodies = engine_.bodies();
+  const StaticBox& cell = share_.partition.cell(index_);
+  const double now = world_.now();
+  role_.assign(bodies.slots(), Role::still), place_.resize(bodies.slots()), has_changed_.assign(bodies.slots(), 0);
+  followed_.clear(), copies_.clear();
+  owned_ = 0;
+  for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
+    if (!bodies.alive(slot)) continue;
+    const std::uint8_t owner = share_.owner[number(slot)];
+    if (owner == Share::nobody) continue;
+    if (owner != index_) {
+      role_[slot] = Role::copy;
+      copies_.push_back(number(slot));
+      continue;
+    }
+    ++owned_;
+    if (inside(bodies.path(slot).position(now), cell) - share_.bulge > 2 * share_.halo) {
+      role_[slot] = Role::deep;
+      continue;
+    }
+    role_[slot] = Role::followed;
+    place_[slot] = static_cast<std::uint32_t>(followed_.size());
+    followed_.push_back({slot, now, bodies.motion(slot)});
+  }
+  std::sort(copies_.begin(), copies_.end());
+}
+
+template <class Motion>
+void Domain<Motion>::run(double until) {
+  changed_.clear(), changes_.clear(), events_.clear();
+  nearest_.fill(never);
+  overshoot_ = 0;
+  told_ = {};
+  computed_ = 0;
+  divisible_ = stayed_ = true;
+  try {
+    world_.advance_to(until);
+  } catch (const RestsInPart&) {
+    divisible_ = false;
+  }
+  if (!divisible_) return;
+  for (Followed& body : followed_) follow(body, until);
+  const auto& bodies = engine_.bodies();
+  for (BodySlot slot = 0; slot < role_.size() && stayed_; ++slot) {
+    if (role_[slot] == Role::deep) stayed_ = stays_deep(bodies.path(slot).position(until));
+  }
+  std::stable_sort(changes_.begin(), changes_.end(),
+                   [](const Change& a, const Change& b) { return a.number < b.number; });
+}
+
+template <class Motion>
+void Domain<Motion>::follow(Followed& body, double until) {
+  const StaticBox swept = swept_point(body.motion, body.since, until);
+  overshoot_ = std::max(overshoot_, reach_outside(swept, share_.partition.cell(index_)));
+  const detail::DomainMask known = share_.known[number(body.slot)];
+  for (const std::size_t other : near_) {
+    if ((known >> other & 1) != 0) continue;
+    nearest_[other] = std::min(nearest_[other], outside(swept, share_.partition.cell(other)));
+  }
+}
+
+template <class Motion>
+std::span<const typename Domain<Motion>::Change> Domain<Motion>::changes_of(BodySlot number) const {
+  const auto [first, last] = std::equal_range(changes_.begin(), changes_.end(), Change{number, {}, 0},
+                                              [](const Change& a, const Change& b) { return a.number < b.number; });
+  return {first, last};
+}
+
+template <class Motion>
+void Domain<Motion>::compare(std::span<const std::unique_ptr<Domain>> all, const Engine<Motion>& store) {
+  wrong_.clear();
+  nearest_wrong_ = never;
+  const StaticBox& cell = share_.partition.cell(index_);
+  for (const BodySlot number : copies_) {
+    const auto mine = changes_of(number);
+    const auto right = all[share_.owner[number]]->changes_of(number);
+    std::size_t same = 0;
+    while (same < std::min(mine.size(), right.size()) && mine[same].time == right[same].time &&
+           same_bits(mine[same].motion, right[same].motion))
+      ++same;
+    if (same == mine.size() && same == right.size()) continue;
+    wrong_.push_back(number);
+    const double from = std::min(same < mine.size() ? mine[same].time : never, same < right.size() ? right[same].time : never);
+    for (const auto changes : {mine, right}) {
+      const Motion* motion = same > 0 ? &mine[same - 1].motion : &store.bodies().motion(number);
+      double since = from;
+      for (std::size_t i = same; i <= changes.size(); ++i) {
+        const double until = i < changes.size() ? changes[i].time : world_.now();
+        nearest_wrong_ = std::min(nearest_wrong_, outside(swept_point(*motion, since, until), cell));
+        if (i < changes.size()) motion = &changes[i].motion, since = until;
+      }
+    }
+  }
+}
+
+template <class Motion>
+void Domain<Motion>::commit(Engine<Motion>& store) const {
+  for (const BodySlot slot : changed_) store.follow(number(slot), engine_, slot);
+}
+
+template <class Motion>
+void Domain<Motion>::commit_meetings(Engine<Motion>& store) const {
+  for (const BodySlot slot : changed_) store.follow_meeting(number(slot), engine_, slot);
+}
+
+template <class Motion>
+std::vector<typename Domain<Motion>::Overlap> Domain<Motion>::overlaps() const {
+  std::vector<Overlap> all;
+  for (const Overlap& overlap : engine_.overlaps()) {
+    const BodySlot a = number(overlap.a), b = number(overlap.b);
+    const std::uint8_t teller = share_.owner[a] != Share::nobody ? share_.owner[a] : share_.owner[b];
+    if (teller == index_ || teller == Share::nobody) all.push_back({a, b, overlap.passes_at});
+  }
+  return all;
+}
+
+template <class Motion>
+void Domain<Motion>::find_moves() {
+  moves_.clear();
+  const double now = world_.now();
+  for (const Followed& body : followed_) {
+    const Eigen::Vector3d place = engine_.bodies().path(body.slot).position(now);
+    Move move{number(body.slot), static_cast<std::uint8_t>(share_.partition.cell_of(place)), 0};
+    if (outside(place, share_.partition.cell(index_)) <= share_.halo) move.known = detail::DomainMask{1} << index_;
+    for (const std::size_t other : near_) {
+      if (outside(place, share_.partition.cell(other)) <= share_.halo) move.known |= detail::DomainMask{1} << other;
+    }
+    if (move.owner != index_ || move.known != share_.known[move.number]) moves_.push_back(move);
+  }
+}
+
+/// A body has another motion: what others are to compare, and whether it has stayed where it had to.
+template <class Motion>
+void Domain<Motion>::changed(BodySlot slot, double t) {
+  const Role role = role_[slot];
+  if (role == Role::still) return;
+  const Motion& motion = engine_.bodies().motion(slot);
+  if (role != Role::copy && !has_changed_[slot]) {
+    has_changed_[slot] = 1;
+    changed_.push_back(slot);
+  }
+  if (role == Role::deep) {
+    stayed_ = stayed_ && stays_deep(motion.position(t));
+    return;
+  }
+  if (role == Role::followed) {
+    Followed& body = followed_[place_[slot]];
+    follow(body, t);
+    body.since = t, body.motion = motion;
+    if (share_.known[number(slot)] == detail::DomainMask{1} << index_) return;
+  }
+  changes_.push_back({number(slot), motion, t});
+}
+
+template <class Motion>
+void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
+  ++computed_;
+  const BodySlot a = number(body_slot(event.a)), b = number(body_slot(event.b));
+  const std::uint8_t of_a = share_.owner[a], of_b = share_.owner[b];
+  const bool fixed = of_a == Share::nobody && of_b == Share::nobody;
+  const bool mine = fixed ? share_.partition.cell_of(event.contact.point) == index_ : of_a == index_ || of_b == index_;
+  if (!mine) return;
+  const bool shared = !fixed && of_a != of_b && of_a != Share::nobody && of_b != Share::nobody;
+  // Of a shared one the owner of the first body counts it.
+  if (!shared || of_a == index_) ++told_[static_cast<std::size_t>(kind)];
+  if (!share_.logs) return;
+  const std::uint8_t other = of_a == index_ ? of_b : of_a;
+  put({kind, shared ? other : DomainEvent::nobody, a, b, event.contact});
+}
+
+/// Independent events of one time come in the order of slots; those of contacts, which may follow from each other, are
+/// in the order of numbers already.
+template <class Motion>
+void Domain<Motion>::put(const DomainEvent& event) {
+  auto place = events_.end();
+  if (event.kind == DomainEvent::Kind::overlap || event.kind == DomainEvent::Kind::wall) {
+    const auto before = [&](const DomainEvent& other) {
+      if (other.kind != event.kind || other.contact.time != event.contact.time) return true;
+      return event.kind == DomainEvent::Kind::wall ? other.a <= event.a : other.order() < event.order();
+    };
+    while (place != events_.begin() && !before(*std::prev(place))) --place;
+  }
+  events_.insert(place, event);
+}
+
+template <class Motion>
+void Domain<Motion>::contact(World&, const PairEvent& event) {
+  record(DomainEvent::Kind::contact, event);
+  const BodySlot a = body_slot(event.a), b = body_slot(event.b);
+  if (!share_.resolves || engine_.bodies()[a].sensor || engine_.bodies()[b].sensor) return;
+  changed(a, event.contact.time);
+  changed(b, event.contact.time);
+}
+
+template <class Motion>
+void Domain<Motion>::separation(World&, const PairEvent& event) {
+  record(DomainEvent::Kind::separation, event);
+}
+
+template <class Motion>
+void Domain<Motion>::overlap(World&, const PairEvent& event) {
+  record(DomainEvent::Kind::overlap, event);
+}
+
+template <class Motion>
+void Domain<Motion>::wall(World&, const WallEvent& event) {
+  ++computed_;
+  const BodySlot slot = body_slot(event.body);
+  if (role_[slot] != Role::copy) ++told_[static_cast<std::size_t>(DomainEvent::Kind::wall)];
+  if (role_[slot] != Role::copy && share_.logs) {
+    put({DomainEvent::Kind::wall, DomainEvent::nobody, number(slot), static_cast<BodySlot>(event.wall), event.contact});
+  }
+  changed(slot, event.contact.time);
+}
+
+template class Domain<certificates::PointMotion<1>>;
+template class Domain<certificates::PointMotion<2>>;
+
+}  // namespace kds::collision

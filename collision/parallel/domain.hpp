@@ -1,0 +1,177 @@
+// A world that knows a part of a scene: the bodies of a cell and those near it.
+#pragma once
+
+#include "collision/parallel/parallel_options.hpp"
+#include "collision/parallel/partition.hpp"
+#include "collision/parallel/world_events.hpp"
+#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
+#include "kds/large_vector.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+
+namespace detail {
+
+/// The engine behind a world.
+template <class Motion>
+struct EngineOf {
+  static Engine<Motion>& of(BasicWorld<Motion>& world) { return *world.engine_; }
+};
+
+/// Which domains know a body.
+using DomainMask = std::uint64_t;
+
+/// What the domains of a scene share. Changed only between windows, each entry by one domain.
+struct DomainShare {
+  static constexpr std::uint8_t nobody = DomainEvent::nobody;
+
+  Partition partition;
+  double halo = 0;             ///< how far outside a cell its domain knows bodies
+  double greatest_radius = 0;  ///< of bodies that have owners
+  bool logs = false;           ///< whether events are recorded
+  bool resolves = false;       ///< whether contacts change motions
+  double bulge = 0;            ///< how far a path may leave the chord between two of its places within a window
+  std::vector<std::uint8_t> owner;  ///< by number: the domain whose cell it is in; `nobody` of fixed bodies at rest
+  std::vector<DomainMask> known;    ///< by number
+
+  /// Rounding of places, and what else is far below a halo.
+  double margin() const { return 0x1p-20 * halo; }
+};
+
+}  // namespace detail
+
+/// A domain: a cell of space, and a world that knows the bodies in it, which it *owns*, and *copies* of those that are
+/// not farther outside than the halo. It runs them for a window. Far out copies go wrong, since what is beyond them is
+/// not known. When the owners have told what happened to the bodies, each domain finds out how near to its cell
+/// anything came that it did not know, or knew wrongly; parallel_world.hpp says what follows.
+///
+/// Owned bodies deeper in the cell than twice the halo are not followed one by one: that they stay deeper than the halo
+/// is checked.
+template <class Motion>
+class Domain final : private BasicWorldListener<Motion> {
+ public:
+  using World = BasicWorld<Motion>;
+  using Overlap = typename Engine<Motion>::Overlap;
+  using Share = detail::DomainShare;
+  using Mask = detail::DomainMask;
+
+  Domain(const WorldOptions& options, const Share& share, std::size_t index, double now);
+  Domain(const Domain&) = delete;
+  Domain& operator=(const Domain&) = delete;
+
+  /// Lets bodies go, and takes others in as `store` has them. `overlaps`: of all bodies of the scene that overlap, by
+  /// their numbers.
+  void exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const Engine<Motion>& store,
+                std::span<const Overlap> overlaps);
+  /// To be called after share.owner and share.known have changed: finds out which bodies are whose.
+  void sort_bodies();
+
+  /// Runs to the end of a window.
+  void run(double until);
+  /// Compares the copies with what their owners know. After all have run.
+  void compare(std::span<const std::unique_ptr<Domain>> all, const Engine<Motion>& store);
+
+  /// Whether the run went through, and what was not followed has stayed where it had to.
+  bool went_through() const { return divisible_ && stayed_; }
+  /// Whether nothing has happened that is not divided: nothing has come to rest, and no pair is let pass.
+  bool is_divisible() const { return divisible_; }
+  /// How far owned bodies have come out of the cell.
+  double overshoot() const { return overshoot_; }
+  /// How near to the cell of another domain a body has come that is owned here and not known there.
+  double nearest(std::size_t other) const { return nearest_[other]; }
+  /// How near to this cell copies have come, from when they were wrong: as they were or as they should have been.
+  double nearest_wrong() const { return nearest_wrong_; }
+  /// Numbers of copies that have gone wrong, ascending.
+  std::span<const BodySlot> wrong() const { return wrong_; }
+
+  std::vector<detail::DomainEvent> take_events() { return std::move(events_); }
+  /// How many events of each kind the domain tells for the whole scene, and how many it has computed.
+  const std::array<std::uint64_t, 4>& told() const { return told_; }
+  std::uint64_t computed() const { return computed_; }
+  std::size_t owned() const { return owned_; }
+  std::size_t known() const { return world_.size(); }
+
+  /// Tells `store` of the owned bodies that have changed. Domains may do the first at once, the second one by one.
+  void commit(Engine<Motion>& store) const;
+  void commit_meetings(Engine<Motion>& store) const;
+  /// The pairs that overlap of which this domain knows all, by numbers; the lower first.
+  std::vector<Overlap> overlaps() const;
+  /// Owned bodies that have moved where others are to know or own them.
+  struct Move {
+    BodySlot number;
+    std::uint8_t owner;
+    Mask known;
+  };
+  void find_moves();
+  const std::vector<Move>& moves() const { return moves_; }
+
+ private:
+  enum class Role : std::uint8_t { still, deep, followed, copy };
+  /// A followed body: how it moves, and since when that is recorded.
+  struct Followed {
+    BodySlot slot;
+    double since;
+    Motion motion;
+  };
+  struct Change {
+    BodySlot number;
+    Motion motion;
+    double time;
+  };
+
+  void contact(World&, const PairEvent& event) override;
+  void separation(World&, const PairEvent& event) override;
+  void overlap(World&, const PairEvent& event) override;
+  void wall(World&, const WallEvent& event) override;
+  void rebound_suppressed(World&, const PairEvent&) override { divisible_ = false; }
+  void rebound_suppressed_at_wall(World&, const WallEvent&) override { divisible_ = false; }
+  void passes(World&, const PairEvent&) override { divisible_ = false; }
+
+  BodySlot number(BodySlot slot) const { return engine_.bodies().number(slot); }
+  void record(detail::DomainEvent::Kind kind, const PairEvent& event);
+  void put(const detail::DomainEvent& event);
+  void changed(BodySlot slot, double t);
+  void follow(Followed& body, double until);
+  std::span<const Change> changes_of(BodySlot number) const;
+  bool stays_deep(const Eigen::Vector3d& place) const {
+    return inside(place, share_.partition.cell(index_)) - share_.bulge >= share_.halo;
+  }
+
+  const Share& share_;
+  const std::size_t index_;
+  World world_;
+  Engine<Motion>& engine_;
+  std::vector<BodySlot> local_;  ///< by number: the slot here, no_body of one that is not known
+  std::vector<Role> role_;       ///< by slot
+  std::vector<std::uint32_t> place_;  ///< by slot, of followed bodies: in followed_
+  std::vector<char> has_changed_;     ///< by slot, in this window
+  std::vector<Followed> followed_;
+  std::vector<BodySlot> copies_;  ///< numbers, ascending
+  std::vector<BodySlot> changed_;  ///< slots of owned bodies
+  std::vector<Change> changes_;    ///< of bodies that others know or own; sorted by number when the window is over
+  std::vector<detail::DomainEvent> events_;
+  std::vector<Move> moves_;
+  std::vector<BodySlot> wrong_;
+  std::array<double, most_domains> nearest_{};
+  std::vector<std::size_t> near_;  ///< the domains whose cells followed bodies may come near
+  double nearest_wrong_ = never;
+  double overshoot_ = 0;
+  std::size_t owned_ = 0;
+  std::array<std::uint64_t, 4> told_{};
+  std::uint64_t computed_ = 0;
+  bool divisible_ = true;
+  bool stayed_ = true;
+};
+
+extern template class Domain<certificates::PointMotion<1>>;
+extern template class Domain<certificates::PointMotion<2>>;
+
+}  // namespace kds::collision

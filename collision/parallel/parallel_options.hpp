@@ -1,0 +1,43 @@
+// How a scene is divided among worlds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace kds::collision {
+
+struct ParallelOptions {
+  std::size_t threads = 0;  ///< 0 for as many as the machine has
+  /// Into how many domains the scene is divided, at most `most_domains`. 0: one for each thread, or fewer, so that each
+  /// has some 10 000 bodies. A scene with one domain runs as one world.
+  std::size_t domains = 0;
+  /// How far beyond its domain a world knows bodies: this many mean distances of neighbours, and the greatest diameter
+  /// of a body that contacts move. > 0. More makes windows longer and the worlds larger.
+  double halo = 4;
+  /// s, > 0: the longest window. The engine finds out how long windows can be; this is a bound for tests.
+  double longest_window = 1e300;
+};
+
+inline constexpr std::size_t most_domains = 64;
+
+/// What a ParallelWorld has done so far. Only the first four are of the scene; the others say how it was run.
+struct ParallelCounters {
+  std::uint64_t contacts = 0;
+  std::uint64_t separations = 0;
+  std::uint64_t overlaps = 0;
+  std::uint64_t wall_contacts = 0;
+  std::uint64_t windows = 0;          ///< that held
+  std::uint64_t windows_failed = 0;   ///< that were run again, shorter or as one world
+  std::uint64_t stretches_whole = 0;  ///< stretches of time that were run as one world
+  std::uint64_t divisions = 0;        ///< times the scene was divided anew
+  std::uint64_t bodies_owned = 0;     ///< by all domains, summed over windows
+  std::uint64_t bodies_known = 0;     ///< copies included; the ratio is the redundancy in bodies
+  std::uint64_t events_computed = 0;  ///< in windows that held, those of copies included
+  std::uint64_t copies_corrected = 0;
+  std::uint64_t copies_made = 0;
+};
+
+/// Throws std::invalid_argument, naming the option, for one that is out of range.
+void validate(const ParallelOptions& options);
+
+}  // namespace kds::collision

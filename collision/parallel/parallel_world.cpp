@@ -1,0 +1,513 @@
+#include "collision/parallel/parallel_world.hpp"
+
+#include "collision/in_parts.hpp"
+#include "collision/parallel/domain.hpp"
+#include "collision/parallel/window_length.hpp"
+#include "kds/raised_flag.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace kds::collision {
+
+void validate(const ParallelOptions& options) {
+  const auto fail = [](const char* what) { throw std::invalid_argument(std::string("ParallelOptions.") + what); };
+  if (options.domains > most_domains) fail("domains: must be at most 64");
+  if (!(options.halo > 0 && std::isfinite(options.halo))) fail("halo: must be > 0 and finite");
+  if (!(options.longest_window > 0)) fail("longest_window: must be > 0");
+}
+
+namespace {
+
+using detail::DomainEvent;
+using detail::DomainMask;
+using detail::DomainShare;
+using detail::EventMerge;
+
+const ParallelOptions& validated(const ParallelOptions& options) {
+  validate(options);
+  return options;
+}
+
+constexpr DomainMask bit(std::size_t domain) { return DomainMask{1} << domain; }
+
+}  // namespace
+
+/// Runs the scene in windows, or as one world.
+template <class BodyMotionType>
+class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListener<BodyMotionType> {
+ public:
+  Runner(const WorldOptions& options, const ParallelOptions& parallel, ParallelListener* listener)
+      : options_(options),
+        parallel_(validated(parallel)),
+        threads_(parallel.threads > 0 ? parallel.threads : std::max(1u, std::thread::hardware_concurrency())),
+        listener_(listener),
+        world_(options, this),
+        store_(detail::EngineOf<Motion>::of(world_)),
+        now_(options.start_time) {}
+
+  World& whole() {
+    require_outside("ParallelWorld::whole");
+    if (divided()) gather();
+    return world_;
+  }
+  const World& world() const { return world_; }
+  bool divided() const { return !domains_.empty(); }
+  std::size_t domains() const { return divided() ? domains_.size() : 1; }
+  double now() const { return now_; }
+  const ParallelCounters& counters() const { return counters_; }
+
+  void advance_to(double t) {
+    require_outside("ParallelWorld::advance_to");
+    if (!(t >= now_ && t != never)) {
+      throw std::invalid_argument("ParallelWorld::advance_to: " + std::to_string(t) +
+                                  " is not a finite time from now on (" + std::to_string(now_) + ")");
+    }
+    if (!divided() && world_.now() != now_) {
+      throw std::logic_error("ParallelWorld::advance_to: the whole world has been advanced by itself");
+    }
+    tell_events();
+    do {
+      if (!divided() && !divide()) {
+        run_whole(t);
+      } else {
+        run_window(t);
+      }
+      tell_events();
+    } while (now_ < t);
+  }
+
+ private:
+  using Overlap = typename Engine<Motion>::Overlap;
+
+  void require_outside(const char* function) const {
+    if (telling_) throw std::logic_error(std::string(function) + ": must not be called from within a callback");
+  }
+
+  template <class Work>
+  void in_domains(const Work& work) {
+    in_turn(domains_.size(), threads_, work);
+  }
+
+  // One world.
+
+  /// A stretch of time as one world, up to t. Each is longer than the one before, until the scene can be divided.
+  void run_whole(double t) {
+    const double end = stretch_ > 0 && now_ + stretch_ > now_ ? std::min(t, now_ + stretch_) : t;
+    stretch_ *= 2;
+    ++counters_.stretches_whole;
+    unstarted_ = false;
+    const kds::detail::RaisedFlag telling(telling_);
+    try {
+      world_.advance_to(end);
+    } catch (...) {
+      now_ = world_.now();
+      throw;
+    }
+    now_ = end;
+  }
+
+  // What is told while the scene is run as one world.
+  void contact(World&, const PairEvent& event) override {
+    ++counters_.contacts;
+    if (listener_) listener_->contact(event);
+  }
+  void separation(World&, const PairEvent& event) override {
+    ++counters_.separations;
+    if (listener_) listener_->separation(event);
+  }
+  void overlap(World&, const PairEvent& event) override {
+    ++counters_.overlaps;
+    if (listener_) listener_->overlap(event);
+  }
+  void wall(World&, const WallEvent& event) override {
+    ++counters_.wall_contacts;
+    if (listener_) listener_->wall(event);
+  }
+  void rebound_suppressed(World&, const PairEvent& event) override { pass_on(&ParallelListener::rebound_suppressed, event); }
+  void rests(World&, const PairEvent& event) override { pass_on(&ParallelListener::rests, event); }
+  void wakes(World&, const PairEvent& event) override { pass_on(&ParallelListener::wakes, event); }
+  void passes(World&, const PairEvent& event) override { pass_on(&ParallelListener::passes, event); }
+  void rebound_suppressed_at_wall(World&, const WallEvent& event) override {
+    pass_on(&ParallelListener::rebound_suppressed_at_wall, event);
+  }
+  void rests_at_wall(World&, const WallEvent& event) override { pass_on(&ParallelListener::rests_at_wall, event); }
+  void wakes_at_wall(World&, const WallEvent& event) override { pass_on(&ParallelListener::wakes_at_wall, event); }
+
+  template <class Event>
+  void pass_on(void (ParallelListener::*tell)(const Event&), const Event& event) {
+    if (listener_) (listener_->*tell)(event);
+  }
+
+  // Division.
+
+  /// What decides how the scene is divided.
+  struct Measure {
+    std::vector<Eigen::Vector3d> places;  ///< of bodies that have owners
+    double greatest_radius = 0;
+    double greatest_speed = 0;
+    double greatest_bend = 0;  ///< half an acceleration, along an axis
+    double greatest_place = 0;
+  };
+
+  bool has_owner(BodySlot slot) const {
+    if (!store_.bodies().fixed(slot)) return true;
+    const auto& path = store_.bodies().path(slot);
+    for (std::size_t i = 1; i <= Motion::degree; ++i) {
+      if (!path.coefficients[i].isZero(0)) return true;
+    }
+    return false;
+  }
+
+  Measure measure() const {
+    Measure all;
+    const auto& bodies = store_.bodies();
+    for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
+      if (!bodies.alive(slot) || !has_owner(slot)) continue;
+      const auto& path = bodies.path(slot);
+      all.places.push_back(path.position(now_));
+      all.greatest_place = std::max(all.greatest_place, all.places.back().cwiseAbs().maxCoeff());
+      all.greatest_radius = std::max(all.greatest_radius, bodies[slot].bounding_radius);
+      all.greatest_speed = std::max(all.greatest_speed, path.velocity(now_).cwiseAbs().maxCoeff());
+      if constexpr (Motion::degree == 2) {
+        all.greatest_bend = std::max(all.greatest_bend, path.coefficients[2].cwiseAbs().maxCoeff());
+      }
+    }
+    return all;
+  }
+
+  /// The mean distance of neighbours; along axes in which all places are much the same it does not count.
+  static double spacing(const std::vector<Eigen::Vector3d>& places) {
+    Eigen::Array3d low = places.front().array(), high = low;
+    for (const Eigen::Vector3d& place : places) low = low.min(place.array()), high = high.max(place.array());
+    const Eigen::Array3d extents = high - low;
+    double volume = 1;
+    int axes = 0;
+    for (int d = 0; d < 3; ++d) {
+      if (extents[d] > 1e-3 * extents.maxCoeff()) volume *= extents[d], ++axes;
+    }
+    return axes > 0 ? std::pow(volume / static_cast<double>(places.size()), 1.0 / axes) : 0;
+  }
+
+  std::size_t domains_wanted(std::size_t bodies) const {
+    constexpr std::size_t bodies_per_domain = 10'000;  // fewer are mostly copies of others'
+    if (parallel_.domains > 0) return bodies > 1 ? parallel_.domains : 1;
+    return std::min({threads_, bodies / bodies_per_domain, most_domains});
+  }
+
+  /// Whether each cell is wide enough for bodies that only its own domain knows.
+  static bool wide_enough(const Partition& partition, double halo) {
+    for (std::size_t i = 0; i < partition.size(); ++i) {
+      if (!((partition.cell(i).max - partition.cell(i).min).minCoeff() > 6 * halo)) return false;
+    }
+    return true;
+  }
+
+  /// Divides the scene; false if it is to be run as one world.
+  bool divide() {
+    if (domains_wanted(world_.size()) < 2) {
+      stretch_ = 0;
+      return false;
+    }
+    if (!unstarted_) {  // What callers have changed at this time has its consequences first.
+      const kds::detail::RaisedFlag telling(telling_);
+      world_.advance_to(now_);
+    }
+    if (!store_.is_divisible()) return false;
+    Measure all = measure();
+    if (all.places.size() < 2) return false;
+    const double halo = 2 * all.greatest_radius + parallel_.halo * spacing(all.places);
+    if (!(halo > 0x1p-20 * all.greatest_place)) return false;
+    std::size_t wanted = domains_wanted(all.places.size());
+    Partition partition(all.places, wanted);
+    while (wanted > 1 && parallel_.domains == 0 && !wide_enough(partition, halo)) {
+      partition = Partition(all.places, --wanted);
+    }
+    if (partition.size() < 2) return false;
+    share_ = std::make_unique<DomainShare>(DomainShare{.partition = std::move(partition),
+                                                       .halo = halo,
+                                                       .greatest_radius = all.greatest_radius,
+                                                       .logs = listener_ != nullptr,
+                                                       .resolves = options_.response == Response::elastic,
+                                                       .bulge = 0,
+                                                       .owner = {},
+                                                       .known = {}});
+    bend_ = all.greatest_bend;
+    if (!(length_.seconds() > 0)) {
+      const double fastest = all.greatest_speed + std::sqrt(all.greatest_bend * halo);
+      length_ = WindowLength(fastest > 0 ? (halo - 2 * all.greatest_radius) / (8 * fastest) : parallel_.longest_window);
+    }
+    overlaps_ = store_.overlaps();
+    store_.set_aside();
+    distribute();
+    make_domains();
+    ++counters_.divisions;
+    windows_since_division_ = 0;
+    return true;
+  }
+
+  /// The scene is one world again.
+  void gather() {
+    domains_.clear();
+    share_.reset();
+    store_.go_on(now_, overlaps_);
+  }
+
+  /// Who owns and who knows each body.
+  void distribute() {
+    const auto& bodies = store_.bodies();
+    const std::size_t slots = bodies.slots();
+    share_->owner.assign(slots, DomainShare::nobody);
+    share_->known.assign(slots, 0);
+    for (BodySlot slot = 0; slot < slots; ++slot) {
+      if (!bodies.alive(slot)) continue;
+      const Eigen::Vector3d place = bodies.path(slot).position(now_);
+      const bool owned = has_owner(slot);
+      if (owned) share_->owner[slot] = static_cast<std::uint8_t>(share_->partition.cell_of(place));
+      const double reach = share_->halo + (owned ? 0 : bodies[slot].bounding_radius);
+      for (std::size_t i = 0; i < share_->partition.size(); ++i) {
+        if (outside(place, share_->partition.cell(i)) <= reach) share_->known[slot] |= bit(i);
+      }
+    }
+  }
+
+  /// A path may leave the chord between two of its places by this much; windows are so short that it is far less than
+  /// the halo.
+  double window() {
+    double seconds = std::min(length_.seconds(), parallel_.longest_window);
+    if (bend_ > 0) seconds = std::min(seconds, std::sqrt(share_->halo / bend_));
+    share_->bulge = bend_ * seconds * seconds / 4;
+    return seconds;
+  }
+
+  void make_domains() {
+    planned_ = window();
+    const std::size_t count = share_->partition.size();
+    std::vector<std::vector<BodySlot>> known(count);
+    for (BodySlot number = 0; number < share_->known.size(); ++number) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if ((share_->known[number] & bit(i)) != 0) known[i].push_back(number);
+      }
+    }
+    domains_.clear();
+    domains_.resize(count);
+    in_domains([&](std::size_t i) {
+      domains_[i] = std::make_unique<Domain<Motion>>(options_, *share_, i, now_);
+      domains_[i]->exchange({}, known[i], store_, overlaps_);
+      domains_[i]->sort_bodies();
+    });
+  }
+
+  // Windows.
+
+  /// How much of the halo was needed: more than 1 if the window does not hold.
+  double halo_used() const {
+    double used = 0;
+    for (std::size_t i = 0; i < domains_.size(); ++i) {
+      double nearest = domains_[i]->nearest_wrong();
+      for (const auto& other : domains_) nearest = std::min(nearest, other->nearest(i));
+      const double reach = domains_[i]->overshoot() + 2 * share_->greatest_radius + share_->margin();
+      if (!(reach <= share_->halo && nearest > reach)) return 2;
+      used = std::max(used, 1 - (nearest - reach) / (share_->halo - 2 * share_->greatest_radius));
+    }
+    return used;
+  }
+
+  void run_window(double t) {
+    const double end = std::min(t, now_ + planned_);
+    if (!(end > now_ || t == now_)) return run_undivided(t);  // Windows would be shorter than a rounding of the clock.
+    in_domains([&](std::size_t i) { domains_[i]->run(end); });
+    double used = 2;
+    const auto all = [&](bool (Domain<Motion>::*what)() const) {
+      return std::all_of(domains_.begin(), domains_.end(), [&](const auto& domain) { return (*domain.*what)(); });
+    };
+    if (all(&Domain<Motion>::went_through)) {
+      in_domains([&](std::size_t i) { domains_[i]->compare(domains_, store_); });
+      used = halo_used();
+    }
+    if (used <= 1) {
+      const double length = end - now_;
+      commit(end);
+      length_.held(length, used);
+      stretch_ = 0;
+      return exchange();
+    }
+    ++counters_.windows_failed;
+    constexpr std::size_t most_failures = 6;
+    if (!all(&Domain<Motion>::is_divisible) || length_.failures() >= most_failures) return run_undivided(t);
+    length_.failed();
+    make_domains();
+  }
+
+  /// A stretch of time that no windows lead through.
+  void run_undivided(double t) {
+    length_ = WindowLength(planned_);
+    stretch_ = std::max(stretch_, 4 * planned_);
+    gather();
+    run_whole(t);
+  }
+
+  void commit(double end) {
+    std::vector<Overlap> overlaps;
+    for (const auto& domain : domains_) {
+      const auto of_domain = domain->overlaps();
+      overlaps.insert(overlaps.end(), of_domain.begin(), of_domain.end());
+    }
+    // Those of bodies at rest are told by all that know both.
+    std::sort(overlaps.begin(), overlaps.end(), [](const Overlap& a, const Overlap& b) {
+      return std::pair(a.a, a.b) < std::pair(b.a, b.b);
+    });
+    overlaps.erase(std::unique(overlaps.begin(), overlaps.end(),
+                               [](const Overlap& a, const Overlap& b) { return a.a == b.a && a.b == b.b; }),
+                   overlaps.end());
+    overlaps_ = std::move(overlaps);
+    if (std::exchange(unstarted_, false)) store_.note_entered();
+    in_domains([&](std::size_t i) { domains_[i]->commit(store_); });
+    for (const auto& domain : domains_) {
+      domain->commit_meetings(store_);
+      counters_.overlaps += domain->told()[0], counters_.wall_contacts += domain->told()[1];
+      counters_.contacts += domain->told()[2], counters_.separations += domain->told()[3];
+      counters_.events_computed += domain->computed();
+      counters_.bodies_owned += domain->owned(), counters_.bodies_known += domain->known();
+    }
+    ++counters_.windows;
+    now_ = end;
+    if (!listener_) return;
+    std::vector<std::vector<DomainEvent>> logs;
+    for (const auto& domain : domains_) logs.push_back(domain->take_events());
+    events_ = EventMerge(std::move(logs));
+  }
+
+  /// Bodies that have moved get other owners, and copies are made, corrected and dropped.
+  void exchange() {
+    if (++windows_since_division_ % 16 == 0 && unbalanced()) return gather();
+    std::vector<std::vector<BodySlot>> go(domains_.size()), come(domains_.size());
+    for (std::size_t i = 0; i < domains_.size(); ++i) {
+      for (const BodySlot number : domains_[i]->wrong()) go[i].push_back(number), come[i].push_back(number);
+      counters_.copies_corrected += domains_[i]->wrong().size();
+    }
+    in_domains([&](std::size_t i) { domains_[i]->find_moves(); });
+    for (const auto& domain : domains_) {
+      for (const auto& move : domain->moves()) {
+        const DomainMask before = share_->known[move.number];
+        for (std::size_t i = 0; i < domains_.size(); ++i) {
+          const bool knew = (before & bit(i)) != 0, knows = (move.known & bit(i)) != 0;
+          if (knew == knows) continue;
+          counters_.copies_made += knows;
+          if (knows) {
+            come[i].push_back(move.number);
+          } else if (std::binary_search(domains_[i]->wrong().begin(), domains_[i]->wrong().end(), move.number)) {
+            std::erase(come[i], move.number);
+          } else {
+            go[i].push_back(move.number);
+          }
+        }
+        share_->owner[move.number] = move.owner;
+        share_->known[move.number] = move.known;
+      }
+    }
+    planned_ = window();
+    in_domains([&](std::size_t i) {
+      std::sort(come[i].begin(), come[i].end());
+      domains_[i]->exchange(go[i], come[i], store_, overlaps_);
+      domains_[i]->sort_bodies();
+    });
+  }
+
+  bool unbalanced() const {
+    std::size_t most = 0, all = 0;
+    for (const auto& domain : domains_) most = std::max(most, domain->owned()), all += domain->owned();
+    return most * domains_.size() > all + all / 2;
+  }
+
+  void tell_events() {
+    const kds::detail::RaisedFlag telling(telling_);
+    const auto& bodies = store_.bodies();
+    while (!events_.empty()) {
+      const DomainEvent& event = events_.take_next();
+      const auto user_data = [&](BodySlot slot) { return bodies[slot].user_data; };
+      if (event.kind == DomainEvent::Kind::wall) {
+        listener_->wall({bodies.id_of(event.a), static_cast<int>(event.b), event.contact, user_data(event.a)});
+        continue;
+      }
+      const PairEvent pair{bodies.id_of(event.a), bodies.id_of(event.b), event.contact, user_data(event.a),
+                           user_data(event.b)};
+      if (event.kind == DomainEvent::Kind::contact) listener_->contact(pair);
+      if (event.kind == DomainEvent::Kind::separation) listener_->separation(pair);
+      if (event.kind == DomainEvent::Kind::overlap) listener_->overlap(pair);
+    }
+  }
+
+  const WorldOptions options_;
+  const ParallelOptions parallel_;
+  const std::size_t threads_;
+  ParallelListener* listener_;
+  World world_;            ///< runs the scene while it is one world; else only its bodies count
+  Engine<Motion>& store_;  ///< of world_
+  double now_;
+  std::unique_ptr<DomainShare> share_;
+  std::vector<std::unique_ptr<Domain<Motion>>> domains_;  ///< none while the scene is one world
+  std::vector<Overlap> overlaps_;  ///< pairs that overlap at now_, by numbers, while the scene is divided
+  EventMerge events_;              ///< that have not been told yet
+  WindowLength length_;
+  double planned_ = 0;  ///< s: the longest that the next window may be
+  double bend_ = 0;     ///< the greatest half acceleration along an axis
+  double stretch_ = 0;  ///< s: how long the scene is run as one world before it is divided again; 0: to the end
+  std::size_t windows_since_division_ = 0;
+  ParallelCounters counters_;
+  bool unstarted_ = true;  ///< no body has entered
+  bool telling_ = false;
+};
+
+template <class Motion>
+BasicParallelWorld<Motion>::BasicParallelWorld(const WorldOptions& options, const ParallelOptions& parallel,
+                                               ParallelListener* listener)
+    : runner_(std::make_unique<Runner>(options, parallel, listener)) {}
+
+template <class Motion>
+BasicParallelWorld<Motion>::~BasicParallelWorld() = default;
+
+template <class Motion>
+typename BasicParallelWorld<Motion>::World& BasicParallelWorld<Motion>::whole() {
+  return runner_->whole();
+}
+
+template <class Motion>
+void BasicParallelWorld<Motion>::advance_to(double t) {
+  runner_->advance_to(t);
+}
+
+template <class Motion>
+double BasicParallelWorld<Motion>::now() const {
+  return runner_->now();
+}
+
+template <class Motion>
+std::size_t BasicParallelWorld<Motion>::size() const {
+  return runner_->world().size();
+}
+
+template <class Motion>
+const Motion& BasicParallelWorld<Motion>::motion(BodyId id) const {
+  return runner_->world().motion(id);
+}
+
+template <class Motion>
+std::size_t BasicParallelWorld<Motion>::domains() const {
+  return runner_->domains();
+}
+
+template <class Motion>
+ParallelCounters BasicParallelWorld<Motion>::counters() const {
+  return runner_->counters();
+}
+
+template class BasicParallelWorld<certificates::PointMotion<1>>;
+template class BasicParallelWorld<certificates::PointMotion<2>>;
+
+}  // namespace kds::collision

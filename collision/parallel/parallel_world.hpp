@@ -1,0 +1,92 @@
+// A world that is run as several, each for a part of the scene, by several threads.
+#pragma once
+
+#include "collision/parallel/parallel_options.hpp"
+#include "collision/world.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace kds::collision {
+
+/// Told of the events of a ParallelWorld: those of a WorldListener that are about contacts, in the same order. It must
+/// not call functions of the world that is telling it.
+class ParallelListener {
+ public:
+  virtual ~ParallelListener() = default;
+  virtual void contact(const PairEvent&) {}
+  virtual void separation(const PairEvent&) {}
+  virtual void overlap(const PairEvent&) {}
+  virtual void wall(const WallEvent&) {}
+  // These happen only while the scene is run as one world.
+  virtual void rebound_suppressed(const PairEvent&) {}
+  virtual void rebound_suppressed_at_wall(const WallEvent&) {}
+  virtual void rests(const PairEvent&) {}
+  virtual void rests_at_wall(const WallEvent&) {}
+  virtual void wakes(const PairEvent&) {}
+  virtual void wakes_at_wall(const WallEvent&) {}
+  virtual void passes(const PairEvent&) {}
+};
+
+/// A world of many bodies, divided into domains: cells of space, each with a world of its own that knows the bodies in
+/// the cell and copies of those near it. The domains run a *window* of time by themselves, in as many threads as there
+/// are; then it is seen whether what each has computed of the bodies in its cell is what happens in the whole scene. The
+/// events are those of a World with the same bodies, in the same order, the same bits, whatever the number of threads
+/// and domains and the lengths of windows: docs/parallel.md has the laws and why they hold.
+///
+/// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; something rests on something;
+/// scripts, timers, meshes that bend, attached sensors, ignored pairs, box functions; response `callback`; reports of
+/// pairs or of pieces. What this costs is in docs/parallel.md.
+///
+/// Cost: copies are (1 + 2 halo / size of a cell)^3 - 1 of the bodies, and all they do is computed twice. Memory for
+/// the worlds of all domains, and some 200 bytes more for each body.
+template <class BodyMotionType>
+class BasicParallelWorld final {
+ public:
+  using Motion = BodyMotionType;
+  using World = BasicWorld<Motion>;
+  using Description = BasicBodyDescription<Motion>;
+
+  /// Throws what validate() and the constructor of World throw. WorldOptions::threads counts where the scene is run as
+  /// one world. The listener, if there is one, must outlive this.
+  explicit BasicParallelWorld(const WorldOptions& options, const ParallelOptions& parallel = {},
+                              ParallelListener* listener = nullptr);
+  ~BasicParallelWorld();
+  BasicParallelWorld(const BasicParallelWorld&) = delete;
+  BasicParallelWorld& operator=(const BasicParallelWorld&) = delete;
+
+  /// As of a World.
+  BodyId add_body(const Description& description) { return whole().add_body(description); }
+  void reserve(std::size_t bodies) { whole().reserve(bodies); }
+
+  /// The scene as one world, at now(): for all changes, queries, audits and snapshots. It must not be advanced, and is
+  /// valid until the next advance_to(). Costs, after an advance_to(), what adding all bodies costs.
+  World& whole();
+
+  /// Processes everything up to and including t. Throws as World::advance_to(), and std::logic_error if called from
+  /// within a callback. If a listener throws, its event counts as told, and the next call goes on with the next one.
+  void advance_to(double t);
+
+  double now() const;
+  std::size_t size() const;
+  /// Throws std::out_of_range as World::motion().
+  const Motion& motion(BodyId id) const;
+  /// Into how many domains the scene is divided: 1 while it is run as one world.
+  std::size_t domains() const;
+  ParallelCounters counters() const;
+
+ private:
+  class Runner;
+
+  std::unique_ptr<Runner> runner_;
+};
+
+/// Of bodies that keep their orientation, on straight paths (degree 1) or parabolas (degree 2).
+template <int Degree>
+using ParallelWorld = BasicParallelWorld<certificates::PointMotion<Degree>>;
+
+extern template class BasicParallelWorld<certificates::PointMotion<1>>;
+extern template class BasicParallelWorld<certificates::PointMotion<2>>;
+
+}  // namespace kds::collision

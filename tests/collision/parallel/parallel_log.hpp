@@ -1,0 +1,38 @@
+// The events of a ParallelWorld, to be compared with those of a World.
+#pragma once
+
+#include "collision/parallel/parallel_world.hpp"
+#include "tests/collision/event_log.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace kds::collision::tests {
+
+/// Writes down what EventLog writes down, then calls `then`, if there is one.
+struct ParallelLog final : ParallelListener {
+  std::vector<Event> events;
+  std::function<void(const Event&)> then;
+
+  void note(const Event& event) {
+    events.push_back(event);
+    if (then) then(event);
+  }
+  void contact(const PairEvent& e) override { note({Kind::contact, e.a, e.b, e.contact}); }
+  void separation(const PairEvent& e) override { note({Kind::separation, e.a, e.b, e.contact}); }
+  void overlap(const PairEvent& e) override { note({Kind::overlap, e.a, e.b, e.contact}); }
+  void wall(const WallEvent& e) override { note({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact}); }
+  void rebound_suppressed(const PairEvent& e) override { note({Kind::rebound_suppressed, e.a, e.b, e.contact}); }
+};
+
+/// The first event in which two logs differ, or the length of both.
+inline std::size_t first_difference(const std::vector<Event>& a, const std::vector<Event>& b) {
+  const std::size_t both = std::min(a.size(), b.size());
+  for (std::size_t i = 0; i < both; ++i) {
+    if (!(a[i] == b[i])) return i;
+  }
+  return both;
+}
+
+}  // namespace kds::collision::tests
