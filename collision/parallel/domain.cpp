@@ -56,20 +56,23 @@ void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const Body
 }
 
 template <class Motion>
-void Domain<Motion>::sort_bodies() {
+void Domain<Motion>::begin_window() {
   const auto& bodies = engine_.bodies();
   const StaticBox& cell = share_.partition.cell(index_);
   const double now = world_.now();
   role_.assign(bodies.slots(), Role::still), place_.resize(bodies.slots()), has_changed_.assign(bodies.slots(), 0);
-  followed_.clear(), copies_.clear();
+  followed_.clear(), copies_.clear(), changes_.clear(), changed_.clear();
+  nearest_.fill(never);
+  overshoot_ = 0;
   owned_ = 0;
+  divisible_ = stayed_ = true;
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
     const std::uint8_t owner = share_.owner[number(slot)];
     if (owner == Share::nobody) continue;
     if (owner != index_) {
       role_[slot] = Role::copy;
-      copies_.push_back(number(slot));
+      copies_.push_back({number(slot), bodies.motion(slot)});
       continue;
     }
     ++owned_;
@@ -81,17 +84,16 @@ void Domain<Motion>::sort_bodies() {
     place_[slot] = static_cast<std::uint32_t>(followed_.size());
     followed_.push_back({slot, now, bodies.motion(slot)});
   }
-  std::sort(copies_.begin(), copies_.end());
+  std::sort(copies_.begin(), copies_.end(), [](const Copy& a, const Copy& b) { return a.number < b.number; });
 }
 
 template <class Motion>
 void Domain<Motion>::run(double until) {
-  changed_.clear(), changes_.clear(), events_.clear();
-  nearest_.fill(never);
-  overshoot_ = 0;
+  for (const BodySlot slot : changed_) has_changed_[slot] = 0;
+  const std::size_t sorted = changes_.size();
+  changed_.clear(), events_.clear();
   told_ = {};
   computed_ = 0;
-  divisible_ = stayed_ = true;
   try {
     world_.advance_to(until);
   } catch (const RestsInPart&) {
@@ -103,8 +105,9 @@ void Domain<Motion>::run(double until) {
   for (BodySlot slot = 0; slot < role_.size() && stayed_; ++slot) {
     if (role_[slot] == Role::deep) stayed_ = stays_deep(bodies.path(slot).position(until));
   }
-  std::stable_sort(changes_.begin(), changes_.end(),
-                   [](const Change& a, const Change& b) { return a.number < b.number; });
+  const auto by_number = [](const Change& a, const Change& b) { return a.number < b.number; };
+  std::stable_sort(changes_.begin() + static_cast<std::ptrdiff_t>(sorted), changes_.end(), by_number);
+  std::inplace_merge(changes_.begin(), changes_.begin() + static_cast<std::ptrdiff_t>(sorted), changes_.end(), by_number);
 }
 
 template <class Motion>
@@ -119,20 +122,23 @@ void Domain<Motion>::follow(Followed& body, double until) {
 }
 
 template <class Motion>
-std::span<const typename Domain<Motion>::Change> Domain<Motion>::changes_of(BodySlot number) const {
-  const auto [first, last] = std::equal_range(changes_.begin(), changes_.end(), Change{number, {}, 0},
-                                              [](const Change& a, const Change& b) { return a.number < b.number; });
-  return {first, last};
-}
-
-template <class Motion>
-void Domain<Motion>::compare(std::span<const std::unique_ptr<Domain>> all, const Engine<Motion>& store) {
+void Domain<Motion>::compare(std::span<const std::unique_ptr<Domain>> all) {
   wrong_.clear();
   nearest_wrong_ = never;
   const StaticBox& cell = share_.partition.cell(index_);
-  for (const BodySlot number : copies_) {
-    const auto mine = changes_of(number);
-    const auto right = all[share_.owner[number]]->changes_of(number);
+  // The changes of a body, of those of a domain, which are sorted, as the copies are.
+  std::vector<std::size_t> next(all.size(), 0);
+  const auto changes_of = [&](BodySlot number, std::size_t domain) {
+    const std::vector<Change>& changes = all[domain]->changes_;
+    std::size_t& last = next[domain];
+    while (last < changes.size() && changes[last].number < number) ++last;
+    const std::size_t first = last;
+    while (last < changes.size() && changes[last].number == number) ++last;
+    return std::span(changes).subspan(first, last - first);
+  };
+  for (const auto& [number, begun] : copies_) {
+    const auto mine = changes_of(number, index_);
+    const auto right = changes_of(number, share_.owner[number]);
     std::size_t same = 0;
     while (same < std::min(mine.size(), right.size()) && mine[same].time == right[same].time &&
            same_bits(mine[same].motion, right[same].motion))
@@ -141,7 +147,7 @@ void Domain<Motion>::compare(std::span<const std::unique_ptr<Domain>> all, const
     wrong_.push_back(number);
     const double from = std::min(same < mine.size() ? mine[same].time : never, same < right.size() ? right[same].time : never);
     for (const auto changes : {mine, right}) {
-      const Motion* motion = same > 0 ? &mine[same - 1].motion : &store.bodies().motion(number);
+      const Motion* motion = same > 0 ? &mine[same - 1].motion : &begun;
       double since = from;
       for (std::size_t i = same; i <= changes.size(); ++i) {
         const double until = i < changes.size() ? changes[i].time : world_.now();

@@ -71,15 +71,16 @@ class Domain final : private BasicWorldListener<Motion> {
   /// their numbers.
   void exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const Engine<Motion>& store,
                 std::span<const Overlap> overlaps);
-  /// To be called after share.owner and share.known have changed: finds out which bodies are whose.
-  void sort_bodies();
+  /// Begins a window: finds out which bodies are whose, as share.owner and share.known say.
+  void begin_window();
 
-  /// Runs to the end of a window.
+  /// Runs a step of the window.
   void run(double until);
   /// Compares the copies with what their owners know. After all have run.
-  void compare(std::span<const std::unique_ptr<Domain>> all, const Engine<Motion>& store);
+  void compare(std::span<const std::unique_ptr<Domain>> all);
 
-  /// Whether the run went through, and what was not followed has stayed where it had to.
+  // Of the window so far.
+  /// Whether it went through, and what was not followed has stayed where it had to.
   bool went_through() const { return divisible_ && stayed_; }
   /// Whether nothing has happened that is not divided: nothing has come to rest, and no pair is let pass.
   bool is_divisible() const { return divisible_; }
@@ -92,6 +93,7 @@ class Domain final : private BasicWorldListener<Motion> {
   /// Numbers of copies that have gone wrong, ascending.
   std::span<const BodySlot> wrong() const { return wrong_; }
 
+  // Of the last step.
   std::vector<detail::DomainEvent> take_events() { return std::move(events_); }
   /// How many events of each kind the domain tells for the whole scene, and how many it has computed.
   const std::array<std::uint64_t, 4>& told() const { return told_; }
@@ -121,6 +123,10 @@ class Domain final : private BasicWorldListener<Motion> {
     double since;
     Motion motion;
   };
+  struct Copy {
+    BodySlot number;
+    Motion motion;  ///< when the window began
+  };
   struct Change {
     BodySlot number;
     Motion motion;
@@ -140,7 +146,6 @@ class Domain final : private BasicWorldListener<Motion> {
   void put(const detail::DomainEvent& event);
   void changed(BodySlot slot, double t);
   void follow(Followed& body, double until);
-  std::span<const Change> changes_of(BodySlot number) const;
   bool stays_deep(const Eigen::Vector3d& place) const {
     return inside(place, share_.partition.cell(index_)) - share_.bulge >= share_.halo;
   }
@@ -154,9 +159,9 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<std::uint32_t> place_;  ///< by slot, of followed bodies: in followed_
   std::vector<char> has_changed_;     ///< by slot, in this window
   std::vector<Followed> followed_;
-  std::vector<BodySlot> copies_;  ///< numbers, ascending
+  std::vector<Copy> copies_;  ///< by number
   std::vector<BodySlot> changed_;  ///< slots of owned bodies
-  std::vector<Change> changes_;    ///< of bodies that others know or own; sorted by number when the window is over
+  std::vector<Change> changes_;    ///< of bodies that others know or own; sorted by number when a step is over
   std::vector<detail::DomainEvent> events_;
   std::vector<Move> moves_;
   std::vector<BodySlot> wrong_;

@@ -240,7 +240,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
     bend_ = all.greatest_bend;
     if (!(length_.seconds() > 0)) {
       const double fastest = all.greatest_speed + std::sqrt(all.greatest_bend * halo);
-      length_ = WindowLength(fastest > 0 ? (halo - 2 * all.greatest_radius) / (8 * fastest) : parallel_.longest_window);
+      length_ = WindowLength(fastest > 0 ? (halo - 2 * all.greatest_radius) / (4 * fastest) : parallel_.longest_window);
     }
     overlaps_ = store_.overlaps();
     store_.set_aside();
@@ -278,15 +278,15 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
 
   /// A path may leave the chord between two of its places by this much; windows are so short that it is far less than
   /// the halo.
-  double window() {
-    double seconds = std::min(length_.seconds(), parallel_.longest_window);
-    if (bend_ > 0) seconds = std::min(seconds, std::sqrt(share_->halo / bend_));
-    share_->bulge = bend_ * seconds * seconds / 4;
-    return seconds;
+  void begin_window() {
+    window_begun_ = now_;
+    longest_ = parallel_.longest_window;
+    if (bend_ > 0) longest_ = std::min(longest_, std::sqrt(share_->halo / bend_));
+    share_->bulge = bend_ > 0 ? bend_ * longest_ * longest_ / 4 : 0;
   }
 
   void make_domains() {
-    planned_ = window();
+    begin_window();
     const std::size_t count = share_->partition.size();
     std::vector<std::vector<BodySlot>> known(count);
     for (BodySlot number = 0; number < share_->known.size(); ++number) {
@@ -299,7 +299,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
     in_domains([&](std::size_t i) {
       domains_[i] = std::make_unique<Domain<Motion>>(options_, *share_, i, now_);
       domains_[i]->exchange({}, known[i], store_, overlaps_);
-      domains_[i]->sort_bodies();
+      domains_[i]->begin_window();
     });
   }
 
@@ -318,23 +318,26 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
     return used;
   }
 
+  /// A step of a window, up to t.
   void run_window(double t) {
-    const double end = std::min(t, now_ + planned_);
-    if (!(end > now_ || t == now_)) return run_undivided(t);  // Windows would be shorter than a rounding of the clock.
+    const double end = std::min({t, now_ + length_.step(), window_begun_ + longest_});
+    if (!(end > now_ || t == now_)) return run_undivided(t);  // Steps would be shorter than a rounding of the clock.
     in_domains([&](std::size_t i) { domains_[i]->run(end); });
     double used = 2;
     const auto all = [&](bool (Domain<Motion>::*what)() const) {
       return std::all_of(domains_.begin(), domains_.end(), [&](const auto& domain) { return (*domain.*what)(); });
     };
     if (all(&Domain<Motion>::went_through)) {
-      in_domains([&](std::size_t i) { domains_[i]->compare(domains_, store_); });
+      in_domains([&](std::size_t i) { domains_[i]->compare(domains_); });
       used = halo_used();
     }
     if (used <= 1) {
-      const double length = end - now_;
       commit(end);
-      length_.held(length, used);
       stretch_ = 0;
+      const double elapsed = now_ - window_begun_;
+      if (length_.goes_on(elapsed, used) && now_ < window_begun_ + longest_) return;
+      length_.held(elapsed, used);
+      ++counters_.windows;
       return exchange();
     }
     ++counters_.windows_failed;
@@ -346,8 +349,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
 
   /// A stretch of time that no windows lead through.
   void run_undivided(double t) {
-    length_ = WindowLength(planned_);
-    stretch_ = std::max(stretch_, 4 * planned_);
+    stretch_ = std::max(stretch_, 4 * length_.seconds());
+    length_ = WindowLength(length_.seconds());
     gather();
     run_whole(t);
   }
@@ -375,7 +378,6 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
       counters_.events_computed += domain->computed();
       counters_.bodies_owned += domain->owned(), counters_.bodies_known += domain->known();
     }
-    ++counters_.windows;
     now_ = end;
     if (!listener_) return;
     std::vector<std::vector<DomainEvent>> logs;
@@ -411,11 +413,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
         share_->known[move.number] = move.known;
       }
     }
-    planned_ = window();
+    begin_window();
     in_domains([&](std::size_t i) {
       std::sort(come[i].begin(), come[i].end());
       domains_[i]->exchange(go[i], come[i], store_, overlaps_);
-      domains_[i]->sort_bodies();
+      domains_[i]->begin_window();
     });
   }
 
@@ -455,7 +457,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
   std::vector<Overlap> overlaps_;  ///< pairs that overlap at now_, by numbers, while the scene is divided
   EventMerge events_;              ///< that have not been told yet
   WindowLength length_;
-  double planned_ = 0;  ///< s: the longest that the next window may be
+  double window_begun_ = 0;  ///< s
+  double longest_ = 0;       ///< s: the longest that the window may be
   double bend_ = 0;     ///< the greatest half acceleration along an axis
   double stretch_ = 0;  ///< s: how long the scene is run as one world before it is divided again; 0: to the end
   std::size_t windows_since_division_ = 0;

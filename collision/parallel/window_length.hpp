@@ -6,36 +6,41 @@
 
 namespace kds::collision {
 
-/// The length of the windows of a ParallelWorld: as long as what is unknown or wrong stays clear of the cells, with
-/// some room to spare. Changes nothing but the cost.
+/// The length of the windows of a ParallelWorld: as long as what is unknown or wrong stays clear of the cells. What is
+/// unknown comes nearer at the speed of bodies, and what is wrong at that of the news of their contacts: so much of the
+/// halo is used a second. A window is run in steps, and ends when with the next one it might not hold. Changes nothing
+/// but the cost.
 class WindowLength {
  public:
-  explicit WindowLength(double first = 0) : length_(first) {}
+  /// `seconds`: how long a window may be, about.
+  explicit WindowLength(double seconds = 0) : seconds_(seconds) {}
 
-  double seconds() const { return length_; }
+  double seconds() const { return seconds_; }
+  double step() const { return seconds_ / steps; }
 
-  /// A window of this length held, and `used` of the halo was needed, in [0, 1].
-  void held(double length, double used) {
+  /// Whether a window of which this much has been run, and that has used so much of the halo, in [0, 1], may go on.
+  bool goes_on(double elapsed, double used) const { return used * (elapsed + step()) <= most_used * elapsed; }
+
+  void held(double elapsed, double used) {
     failures_ = 0;
-    const double next = length * std::clamp(aim / std::max(used, least_used), 0.5, 2.0);
-    // One that ended early says how long one might be, but shorter ones come of that only if it was full.
-    if (length < length_ && next < length_) {
-      if (used > aim) length_ = next;
-      return;
-    }
-    length_ = next;
+    if (!(elapsed > 0 && used > 0)) return;
+    rate_ = std::max(used / elapsed, forget * rate_);
+    seconds_ = std::min(most_growth * std::max(seconds_, elapsed), most_used / rate_);
   }
   void failed() {
     ++failures_;
-    length_ /= 2;
+    seconds_ /= 2;
   }
   std::size_t failures() const { return failures_; }  ///< since a window last held
 
  private:
-  static constexpr double aim = 0.7;  ///< of the halo; the minimum of the cost is flat from 0.6 to 0.85
-  static constexpr double least_used = 0.05;
+  static constexpr double steps = 4;          ///< more find the end of a window better, and each costs a comparison
+  static constexpr double most_used = 0.85;   ///< of the halo: with one step more. A window that fails costs a division
+  static constexpr double forget = 0.8;       ///< what fast bodies have used counts for some windows
+  static constexpr double most_growth = 2;    ///< from window to window
 
-  double length_;
+  double seconds_;
+  double rate_ = 0;  ///< of the halo, in a second
   std::size_t failures_ = 0;
 };
 
