@@ -1,5 +1,6 @@
 #include "io/run.hpp"
 
+#include "collision/parallel/parallel_world.hpp"
 #include "collision/world.hpp"
 #include "io/scene_world.hpp"
 
@@ -39,8 +40,17 @@ BroadPhaseKind choose(const std::string& name) {
   throw std::invalid_argument("--broad-phase: there is no \"" + name + "\"; --broad-phase list names them");
 }
 
-/// Hands on what the world tells. Bodies are added in the order of the scene and none is removed: their slots are
-/// their places in it.
+/// Bodies are added in the order of the scene and none is removed: their slots are their places in it.
+Event to_event(EventKind kind, const kds::collision::PairEvent& event) {
+  const Contact& c = event.contact;
+  return {c.time, kind, body_slot(event.a), body_slot(event.b), c.point, c.normal, c.feature_a, c.feature_b};
+}
+Event to_event(EventKind kind, const kds::collision::WallEvent& event) {
+  const Contact& c = event.contact;
+  return {c.time, kind, body_slot(event.body), static_cast<std::uint32_t>(event.wall), c.point, c.normal, {}, {}};
+}
+
+/// Hands on what the world tells.
 template <class Motion>
 class Teller final : public kds::collision::BasicWorldListener<Motion> {
  public:
@@ -72,15 +82,8 @@ class Teller final : public kds::collision::BasicWorldListener<Motion> {
   void pair_ended(World&, BodyId a, BodyId b, double t) override { tell_volumes(EventKind::pair_end, a, b, t); }
 
  private:
-  void tell(EventKind kind, const PairEvent& event) {
-    const Contact& c = event.contact;
-    sink_.on_event({c.time, kind, body_slot(event.a), body_slot(event.b), c.point, c.normal, c.feature_a, c.feature_b});
-  }
-  void tell_wall(EventKind kind, const WallEvent& event) {
-    const Contact& c = event.contact;
-    const auto wall = static_cast<std::uint32_t>(event.wall);
-    sink_.on_event({c.time, kind, body_slot(event.body), wall, c.point, c.normal, {}, {}});
-  }
+  void tell(EventKind kind, const PairEvent& event) { sink_.on_event(to_event(kind, event)); }
+  void tell_wall(EventKind kind, const WallEvent& event) { sink_.on_event(to_event(kind, event)); }
   void tell_volumes(EventKind kind, BodyId a, BodyId b, double t) {
     sink_.on_event({t, kind, body_slot(a), body_slot(b), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}});
   }
@@ -98,8 +101,29 @@ class Teller final : public kds::collision::BasicWorldListener<Motion> {
   Response response_;
 };
 
-template <class Motion>
-RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sink) {
+/// The same of a scene that is divided, whose listener is not told of motions.
+class DividedTeller final : public kds::collision::ParallelListener {
+ public:
+  using PairEvent = kds::collision::PairEvent;
+  using WallEvent = kds::collision::WallEvent;
+
+  explicit DividedTeller(EventSink& sink) : sink_(sink) {}
+
+  void contact(const PairEvent& event) override { sink_.on_event(to_event(EventKind::contact, event)); }
+  void separation(const PairEvent& event) override { sink_.on_event(to_event(EventKind::separation, event)); }
+  void overlap(const PairEvent& event) override { sink_.on_event(to_event(EventKind::overlap, event)); }
+  void wall(const WallEvent& event) override { sink_.on_event(to_event(EventKind::wall, event)); }
+  void rests(const PairEvent& event) override { sink_.on_event(to_event(EventKind::rest, event)); }
+  void wakes(const PairEvent& event) override { sink_.on_event(to_event(EventKind::wake, event)); }
+  void rests_at_wall(const WallEvent& event) override { sink_.on_event(to_event(EventKind::rest_at_wall, event)); }
+  void wakes_at_wall(const WallEvent& event) override { sink_.on_event(to_event(EventKind::wake_at_wall, event)); }
+  void passes(const PairEvent& event) override { sink_.on_event(to_event(EventKind::pass, event)); }
+
+ private:
+  EventSink& sink_;
+};
+
+kds::collision::WorldOptions world_options(const Scene& scene, const RunOptions& options) {
   const BroadPhaseKind broad_phase = choose(options.broad_phase);
   if (broad_phase == BroadPhaseKind::sap && !(options.rate > 0)) {
     throw std::invalid_argument("--rate: must be > 0 for the broad phase \"sap\"");
@@ -118,18 +142,18 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   if (scene.domain && scene.domain->walls == Walls::reflect) {
     world_options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
+  return world_options;
+}
 
-  RunResult result;
+/// Fills a world with the bodies of a scene and runs it. `added(id, description)` is called for each body.
+template <class World, class Added>
+RunResult run_in(World& world, const Scene& scene, const RunOptions& options, EventSink& sink, double setup_start,
+                 const Added& added) {
   const double begin = scene.begin_time;
   const double end = scene.end_time;
-  const double setup_start = cpu_seconds();
-  Teller<Motion> teller(sink, scene.response);
-  kds::collision::BasicWorld<Motion> world(world_options, &teller);
   for (const SceneBody& body : scene.bodies) {
-    const auto description = describe<Motion>(body);
-    const BodyId id = world.add_body(description);
-    // Of a body that precesses the first piece is none of the scene's.
-    if (!(world.motion(id) == description.motion.front())) sink.on_motion(body_slot(id), to_piece(world.motion(id)));
+    const auto description = describe<typename World::Motion>(body);
+    added(world.add_body(description), description);
   }
   world.advance_to(begin);
   const double run_start = cpu_seconds();
@@ -151,27 +175,60 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   sink.on_time(end);
   const double run_end = cpu_seconds();
 
-  const kds::collision::WorldCounters counters = world.counters();
+  RunResult result;
   result.broad_phase = world.broad_phase();
   result.setup_cpu_seconds = run_start - setup_start;
   result.run_cpu_seconds = run_end - run_start;
   result.sim_seconds = end - begin;
   result.bodies = scene.bodies.size();
-  result.swaps = counters.broad_phase.swaps;
-  result.certificates = counters.broad_phase.certificates;
-  result.box_updates = counters.broad_phase.box_updates;
-  result.pairs_begun = counters.pairs_begun;
-  result.pair_tests = counters.pair_tests;
-  result.contacts = counters.contacts;
-  result.separations = counters.separations;
-  result.overlaps = counters.overlaps;
-  result.wall_contacts = counters.wall_contacts;
-  result.motion_updates = counters.motion_updates;
-  result.rotation_pieces = counters.rotation_pieces;
-  result.orientation_resets = counters.orientation_resets;
-  result.held = counters.rebounds_suppressed;
   result.peak_memory_bytes = peak_memory();
+  return result;
+}
+
+/// The work of a world, or of the worlds of all domains.
+void note_work(const kds::collision::WorldCounters& work, RunResult& result) {
+  result.swaps = work.broad_phase.swaps;
+  result.certificates = work.broad_phase.certificates;
+  result.box_updates = work.broad_phase.box_updates;
+  result.pairs_begun = work.pairs_begun;
+  result.pair_tests = work.pair_tests;
+  result.contacts = work.contacts;
+  result.separations = work.separations;
+  result.overlaps = work.overlaps;
+  result.wall_contacts = work.wall_contacts;
+  result.motion_updates = work.motion_updates;
+  result.rotation_pieces = work.rotation_pieces;
+  result.orientation_resets = work.orientation_resets;
+  result.held = work.rebounds_suppressed;
+}
+
+template <class Motion>
+RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sink) {
+  const double setup_start = cpu_seconds();
+  Teller<Motion> teller(sink, scene.response);
+  kds::collision::BasicWorld<Motion> world(world_options(scene, options), &teller);
+  RunResult result = run_in(world, scene, options, sink, setup_start, [&](BodyId id, const auto& description) {
+    // Of a body that precesses the first piece is none of the scene's.
+    if (!(world.motion(id) == description.motion.front())) sink.on_motion(body_slot(id), to_piece(world.motion(id)));
+  });
+  note_work(world.counters(), result);
   result.profile = world.work_profile();
+  return result;
+}
+
+template <int Degree>
+RunResult run_divided(const Scene& scene, const RunOptions& options, EventSink& sink) {
+  const double setup_start = cpu_seconds();
+  DividedTeller teller(sink);
+  kds::collision::ParallelWorld<Degree> world(world_options(scene, options),
+                                              {.threads = options.threads, .domains = options.domains}, &teller);
+  RunResult result = run_in(world, scene, options, sink, setup_start, [](BodyId, const auto&) {});
+  note_work(world.work(), result);
+  const auto counters = world.counters();
+  result.contacts = counters.contacts, result.separations = counters.separations;
+  result.overlaps = counters.overlaps, result.wall_contacts = counters.wall_contacts;
+  result.domains = world.domains();
+  result.windows = counters.windows, result.windows_failed = counters.windows_failed;
   return result;
 }
 
@@ -180,6 +237,12 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
 RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
   using kds::certificates::PointMotion;
   using kds::certificates::RigidMotion;
+  const bool divided = options.domains != 1;
+  if (scene.turning && divided) throw std::invalid_argument("--domains: a scene in which bodies turn is not divided");
+  if (divided && (options.pairs || options.profile)) {
+    throw std::invalid_argument("--domains: in a scene that is divided, volumes are not told of, and work is not profiled");
+  }
+  if (divided) return scene.degree() == 2 ? run_divided<2>(scene, options, sink) : run_divided<1>(scene, options, sink);
   if (scene.turning) {
     return scene.degree() == 2 ? run_with<RigidMotion<2>>(scene, options, sink)
                                : run_with<RigidMotion<1>>(scene, options, sink);

@@ -21,6 +21,9 @@ struct RunOptions {
   bool steady_progress = false;      ///< call on_time about a hundred times, or more, in a run of 1e-306 s or more
   bool profile = false;              ///< measure where the time goes
   std::size_t threads = 1;           ///< how many take in bodies, where there are many; 0: as many as the machine has
+  /// Into how many domains the scene is divided, which the threads run; 0: as many as is best for them. With more than
+  /// one the sink is not told of motions, so there are no pictures. The events do not depend on it.
+  std::size_t domains = 1;
 };
 
 /// What a run took and did.
@@ -43,6 +46,9 @@ struct RunResult {
   std::uint64_t rotation_pieces = 0;     ///< of bodies that precess
   std::uint64_t orientation_resets = 0;  ///< times such a body was not turned as it should have been for too long
   std::uint64_t held = 0;                ///< times the policy for endless bounces acted
+  std::uint64_t domains = 1;             ///< into which the scene was divided at the end
+  std::uint64_t windows = 0;             ///< of a divided scene
+  std::uint64_t windows_failed = 0;
   std::uint64_t peak_memory_bytes = 0;
   kds::collision::Profile profile;  ///< where the time went, if asked for
 };

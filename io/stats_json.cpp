@@ -27,6 +27,11 @@ std::string to_json(const RunResult& result, const RunOptions& options, double r
   json["rotation_pieces"] = result.rotation_pieces;
   json["orientation_resets"] = result.orientation_resets;
   json["held"] = result.held;
+  if (options.domains != 1) {
+    json["domains"] = result.domains;
+    json["windows"] = result.windows;
+    json["windows_failed"] = result.windows_failed;
+  }
   json["peak_memory_bytes"] = result.peak_memory_bytes;
   return json.dump(2) + '\n';
 }

@@ -100,6 +100,7 @@ class Domain final : private BasicWorldListener<Motion> {
   std::uint64_t computed() const { return computed_; }
   std::size_t owned() const { return owned_; }
   std::size_t known() const { return world_.size(); }
+  WorldCounters work() const { return world_.counters(); }
 
   /// Tells `store` of the owned bodies that have changed. Domains may do the first at once, the second one by one.
   void commit(Engine<Motion>& store) const;

@@ -61,6 +61,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
   std::size_t domains() const { return divided() ? domains_.size() : 1; }
   double now() const { return now_; }
   const ParallelCounters& counters() const { return counters_; }
+  WorldCounters work() const {
+    WorldCounters all = work_ + world_.counters();
+    for (const auto& domain : domains_) all = all + domain->work();
+    return all;
+  }
 
   void advance_to(double t) {
     require_outside("ParallelWorld::advance_to");
@@ -253,7 +258,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
 
   /// The scene is one world again.
   void gather() {
-    domains_.clear();
+    end_domains();
     share_.reset();
     store_.go_on(now_, overlaps_);
   }
@@ -285,6 +290,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
     share_->bulge = bend_ > 0 ? bend_ * longest_ * longest_ / 4 : 0;
   }
 
+  void end_domains() {
+    for (const auto& domain : domains_) work_ = work_ + domain->work();
+    domains_.clear();
+  }
+
   void make_domains() {
     begin_window();
     const std::size_t count = share_->partition.size();
@@ -294,7 +304,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
         if ((share_->known[number] & bit(i)) != 0) known[i].push_back(number);
       }
     }
-    domains_.clear();
+    end_domains();
     domains_.resize(count);
     in_domains([&](std::size_t i) {
       domains_[i] = std::make_unique<Domain<Motion>>(options_, *share_, i, now_);
@@ -463,6 +473,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
   double stretch_ = 0;  ///< s: how long the scene is run as one world before it is divided again; 0: to the end
   std::size_t windows_since_division_ = 0;
   ParallelCounters counters_;
+  WorldCounters work_;  ///< of domains that there were
   bool unstarted_ = true;  ///< no body has entered
   bool telling_ = false;
 };
@@ -508,6 +519,16 @@ std::size_t BasicParallelWorld<Motion>::domains() const {
 template <class Motion>
 ParallelCounters BasicParallelWorld<Motion>::counters() const {
   return runner_->counters();
+}
+
+template <class Motion>
+WorldCounters BasicParallelWorld<Motion>::work() const {
+  return runner_->work();
+}
+
+template <class Motion>
+std::string_view BasicParallelWorld<Motion>::broad_phase() const {
+  return runner_->world().broad_phase();
 }
 
 template class BasicParallelWorld<certificates::PointMotion<1>>;

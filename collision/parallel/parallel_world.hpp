@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 namespace kds::collision {
 
@@ -75,6 +76,10 @@ class BasicParallelWorld final {
   /// Into how many domains the scene is divided: 1 while it is run as one world.
   std::size_t domains() const;
   ParallelCounters counters() const;
+  /// The work of all worlds so far: that on copies, and that of windows that failed, counts too.
+  WorldCounters work() const;
+  /// As of a World.
+  std::string_view broad_phase() const;
 
  private:
   class Runner;

@@ -1,6 +1,7 @@
 #include "examples/kds-collide/arguments.hpp"
 
 #include "collision/broad_phase/broad_phase_kind.hpp"
+#include "collision/parallel/parallel_options.hpp"
 #include "io/number_text.hpp"
 #include "io/output_file.hpp"
 
@@ -116,6 +117,9 @@ void describe(CLI::App& app, Arguments& arguments) {
   add_number<std::size_t>(app, "--threads", arguments.run.threads,
                           "Threads that take in the bodies of large scenes; 0 = all")
       ->type_name("N");
+  add_number<std::size_t>(app, "--domains", arguments.run.domains,
+                          "Divide the scene among the threads into so many parts; 0 = as many as is best")
+      ->type_name("N");
   app.add_flag("--pairs", arguments.run.pairs, "Write events of kinetic bounding volumes too");
   app.add_option("--view", arguments.view, "Write a replay that any browser shows")
       ->type_name("FILE.html")
@@ -179,6 +183,10 @@ void check(const Arguments& arguments) {
     throw ArgumentError("--kdop: more than 6 is for --broad-phase kinetic-sap alone");
   }
   if (run.broad_phase == "sap" && run.rate == 0) throw ArgumentError("--rate: must be > 0 for the broad phase \"sap\"");
+  if (run.domains > kds::collision::most_domains) throw ArgumentError("--domains: at most 64");
+  const bool pictures = !arguments.view.empty() || !arguments.gltf.empty();
+  if (run.domains != 1 && pictures) throw ArgumentError("--domains: there are no pictures of a scene that is divided");
+  if (run.domains != 1 && run.pairs) throw ArgumentError("--domains: volumes are not told of in a scene that is divided");
   check_files_differ(arguments);
 }
 
