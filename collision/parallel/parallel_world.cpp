@@ -227,7 +227,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
     Measure all = measure();
     if (all.places.size() < 2) return false;
     const double halo = 2 * all.greatest_radius + parallel_.halo * spacing(all.places);
-    if (!(halo > 0x1p-20 * all.greatest_place)) return false;
+    if (!(halo > 0x1p-20 * all.greatest_place && std::isfinite(halo))) return false;
     std::size_t wanted = domains_wanted(all.places.size());
     Partition partition(all.places, wanted);
     while (wanted > 1 && parallel_.domains == 0 && !wide_enough(partition, halo)) {

@@ -94,9 +94,11 @@ class Partition {
     const auto before = [axis](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[axis] < b[axis]; };
     std::nth_element(first, middle, last, before);
     at = (*middle)[axis];
-    if (at == low[axis]) at = (*std::min_element(middle, last, [&](const auto& a, const auto& b) {
-      return (a[axis] > low[axis] ? a[axis] : high[axis]) < (b[axis] > low[axis] ? b[axis] : high[axis]);
-    }))[axis];
+    if (at > low[axis]) return true;
+    at = high[axis];  // Many are at the lowest place: the cut is just above it.
+    for (const Eigen::Vector3d* place = first; place != last; ++place) {
+      if ((*place)[axis] > low[axis]) at = std::min(at, (*place)[axis]);
+    }
     return true;
   }
 

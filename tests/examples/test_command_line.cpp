@@ -110,6 +110,35 @@ TEST_CASE("command line: all broad phases write the same events of generated sce
   CHECK(events("--broad-phase kinetic-sap --kdop 26 --rate 60") == events(""));
 }
 
+TEST_CASE("command line: scenes that are divided have the same events and the same numbers of them") {
+  const TemporaryFolder folder;
+  const auto kind = std::string(GENERATE(as<std::string>(), "rings", "spheres", "boxes"));
+  INFO(kind);
+  REQUIRE(kds_collide_in(folder, "--generate " + kind + " --bodies 300 --density 0.1 --seed 5").code == 0);
+  const auto events = [&](const std::string& options) {
+    const Outcome outcome = kds_collide_in(folder, kind + ".json --quiet --until 2 --events - " + options);
+    CHECK(outcome.code == 0);
+    CHECK(outcome.err.empty());
+    return outcome.out;
+  };
+  const std::string expected = events("--stats one.json");
+  CHECK(lines_of(expected).size() > 20);
+  for (const std::string options : {"--domains 2", "--domains 3 --threads 2", "--domains 8 --threads 0 --rate 7"}) {
+    const bool same = events(options + " --stats divided.json") == expected;
+    INFO(options);
+    CHECK(same);
+    const auto one = nlohmann::json::parse(folder.read("one.json"));
+    const auto divided = nlohmann::json::parse(folder.read("divided.json"));
+    for (const char* count : {"contacts", "separations", "overlaps", "wall_contacts", "bodies"}) {
+      CHECK(one[count] == divided[count]);
+    }
+    CHECK(divided["domains"] > 1);
+    CHECK(!one.contains("domains"));
+  }
+  const bool few_bodies = events("--domains 0") == expected;
+  CHECK(few_bodies);
+}
+
 TEST_CASE("command line: --pairs adds the events of bounding volumes") {
   const TemporaryFolder folder;
   folder.write("scene.json", head_on);

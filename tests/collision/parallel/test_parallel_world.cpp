@@ -185,7 +185,7 @@ TEST_CASE("Domains: cradles whose pulses go through all of them, touching and al
     trial.what = "cradles, gap " + std::to_string(gap);
     Seen seen;
     for (const std::size_t domains : {2, 11}) compare(trial, {.threads = 2, .domains = domains, .halo = 2}, 2, seen);
-    CHECK(seen.events > 500);
+    CHECK(seen.events > 250);
   }
 }
 

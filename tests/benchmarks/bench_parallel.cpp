@@ -1,0 +1,163 @@
+// What a scene in domains costs beside one world: gases of balls, with one thread and with two.
+//
+//     bench_parallel [DIRECTORY [BODIES...]]      -> parallel.csv; the sizes, 10 000 to 1 000 000 unless given
+//
+// Elastic balls of diameter 1 in a cube, on the places of a lattice, with speeds of a normal distribution. They run until
+// each has had some contacts. One world and the same scene in domains take turns; the best of the rounds counts. The
+// number of contacts and a hash of all of them must be the same.
+
+#include "collision/parallel/parallel_world.hpp"
+#include "collision/world.hpp"
+#include "tests/benchmarks/csv_file.hpp"
+#include "tests/benchmarks/thread_time.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <stdexcept>
+#include <vector>
+
+namespace {
+
+using namespace kds::collision;
+using kds::benchmarks::tell;
+using kds::benchmarks::wall_seconds;
+using Eigen::Vector3d;
+
+/// Seconds of CPU time of all threads.
+double cpu_seconds() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+struct ContactHash {
+  std::uint64_t hash = 14695981039346656037u;
+  void add(const PairEvent& event) {
+    for (const std::uint64_t value : {std::bit_cast<std::uint64_t>(event.contact.time), event.a, event.b}) {
+      hash = (hash ^ value) * 1099511628211u;
+    }
+  }
+};
+struct WorldHash final : WorldListener<1> {
+  ContactHash of;
+  void contact(World<1>&, const PairEvent& event) override { of.add(event); }
+};
+struct DividedHash final : ParallelListener {
+  ContactHash of;
+  void contact(const PairEvent& event) override { of.add(event); }
+};
+
+struct Gas {
+  WorldOptions options;
+  std::vector<BodyDescription<1>> bodies;
+  double end = 0;
+};
+
+Gas gas(std::size_t bodies, double packing) {
+  Gas result;
+  const double side = std::cbrt(static_cast<double>(bodies) * 0.5235987755982988 / packing);
+  const auto row = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(bodies))));
+  const double apart = side / static_cast<double>(row);
+  result.options.response = Response::elastic;
+  result.options.walls = Walls{Vector3d::Zero(), Vector3d::Constant(side)};
+  kds::tests::Random random(2);
+  const auto place = [&](std::size_t i) { return (static_cast<double>(i) + 0.5) * apart; };
+  for (std::size_t i = 0; i < bodies; ++i) {
+    BodyDescription<1> ball;
+    ball.shape = Sphere{0.5};
+    World<1>::Motion motion{};
+    motion.coefficients[0] = {place(i % row), place(i / row % row), place(i / row / row)};
+    for (int d = 0; d < 3; ++d) {  // the sum of uniform ones is near enough to normal
+      motion.coefficients[1][d] = 0;
+      for (int k = 0; k < 4; ++k) motion.coefficients[1][d] += random.between(-0.5, 0.5);
+    }
+    ball.motion = {motion};
+    result.bodies.push_back(ball);
+  }
+  result.end = packing > 0.1 ? 1 : 8;
+  return result;
+}
+
+struct Time {
+  double entry_wall = 1e300, run_wall = 1e300, run_cpu = 1e300;
+  void note(double entry, double wall, double cpu) {
+    entry_wall = std::min(entry_wall, entry), run_wall = std::min(run_wall, wall), run_cpu = std::min(run_cpu, cpu);
+  }
+};
+
+template <class World>
+void run(World& world, const Gas& gas, Time& time) {
+  const double begin = wall_seconds();
+  world.reserve(gas.bodies.size());
+  for (const auto& ball : gas.bodies) world.add_body(ball);
+  world.advance_to(0);
+  const double entered = wall_seconds(), cpu = cpu_seconds();
+  world.advance_to(gas.end);
+  time.note(entered - begin, wall_seconds() - entered, cpu_seconds() - cpu);
+}
+
+void measure(std::ofstream& csv, std::size_t bodies, double packing) {
+  const Gas scene = gas(bodies, packing);
+  Time whole;
+  struct Way {
+    std::size_t threads, domains;
+    Time time{};
+    ParallelCounters counters{};
+  };
+  std::vector<Way> ways{{1, 2}, {2, 2}, {2, 0}};
+  if (bodies >= 100'000) ways.push_back({1, 8}), ways.push_back({2, 8});
+  const int rounds = bodies >= 300'000 ? 2 : 3;
+  for (int round = 0; round < rounds; ++round) {
+    WorldHash right;
+    World<1> world(scene.options, &right);
+    run(world, scene, whole);
+    for (Way& way : ways) {
+      DividedHash hash;
+      ParallelWorld<1> divided(scene.options, {.threads = way.threads, .domains = way.domains}, &hash);
+      run(divided, scene, way.time);
+      way.counters = divided.counters();
+      if (hash.of.hash != right.of.hash) throw std::runtime_error("a scene in domains has other contacts");
+    }
+  }
+  for (const Way& way : ways) {
+    const ParallelCounters& c = way.counters;
+    const auto ratio = [](std::uint64_t a, std::uint64_t b) { return b ? static_cast<double>(a) / static_cast<double>(b) : 1; };
+    tell(csv, "%zu,%g,%zu,%zu,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%llu,%llu\n", bodies, packing, way.threads,
+         way.domains, static_cast<unsigned long long>(c.contacts), whole.entry_wall, whole.run_wall,
+         way.time.entry_wall, way.time.run_wall, whole.run_wall / way.time.run_wall, way.time.run_cpu / whole.run_cpu,
+         ratio(c.bodies_known, c.bodies_owned), ratio(c.events_computed, c.contacts + c.wall_contacts),
+         static_cast<unsigned long long>(c.windows), static_cast<unsigned long long>(c.windows_failed));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    std::ofstream csv = kds::benchmarks::open_csv(argc > 1 ? argv[1] : ".", "parallel.csv");
+    tell(csv, "bodies,packing,threads,domains,contacts,world_entry_s,world_run_s,entry_s,run_s,speed_up,cpu_ratio,"
+              "known_per_owned,computed_per_event,windows,failed\n");
+    std::vector<std::size_t> sizes;
+    for (int i = 2; i < argc; ++i) sizes.push_back(std::strtoull(argv[i], nullptr, 10));
+    if (sizes.empty()) sizes = {10'000, 30'000, 100'000, 300'000, 1'000'000};
+    for (const double packing : {0.25, 0.01}) {
+      for (const std::size_t bodies : sizes) measure(csv, bodies, packing);
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_parallel: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,90 @@
+#include "collision/parallel/partition.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace kds::collision::test_partition {
+namespace {
+
+using Eigen::Vector3d;
+using kds::tests::Random;
+
+constexpr double all = std::numeric_limits<double>::infinity();
+
+std::vector<Vector3d> places(Random& random, std::size_t n, bool coarse) {
+  std::vector<Vector3d> result;
+  for (std::size_t i = 0; i < n; ++i) {
+    Vector3d place;
+    for (int d = 0; d < 3; ++d) place[d] = coarse ? random.integer(0, 3) : random.between(-5, 5);
+    result.push_back(place);
+  }
+  return result;
+}
+
+bool contains(const StaticBox& cell, const Vector3d& place) {
+  return (cell.min <= place.array()).all() && (place.array() < cell.max).all();
+}
+
+}  // namespace
+
+TEST_CASE("Partition: each place is in one cell, the one that is named", "[parallel]") {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Random random(seed);
+    const bool coarse = random.one_in(2);
+    const std::size_t wanted = 1 + random.below(20);
+    const auto of = places(random, 1 + random.below(400), coarse);
+    const Partition partition(of, wanted);
+    INFO("seed " << seed << ", " << of.size() << " places, " << wanted << " cells");
+    REQUIRE(partition.size() >= 1);
+    REQUIRE(partition.size() <= wanted);
+    auto asked = places(random, 200, coarse);
+    asked.insert(asked.end(), of.begin(), of.end());
+    asked.push_back({1e9, -1e9, 0});
+    std::vector<std::size_t> count(partition.size(), 0);
+    for (const Vector3d& place : asked) {
+      std::size_t holders = 0;
+      for (std::size_t i = 0; i < partition.size(); ++i) holders += contains(partition.cell(i), place);
+      REQUIRE(holders == 1);
+      const std::size_t cell = partition.cell_of(place);
+      REQUIRE(contains(partition.cell(cell), place));
+      REQUIRE(outside(place, partition.cell(cell)) == 0);
+      REQUIRE(inside(place, partition.cell(cell)) >= 0);
+    }
+    for (const Vector3d& place : of) ++count[partition.cell_of(place)];
+    // Where places differ, none of the cells is much larger than its share.
+    if (coarse || of.size() < 10 * wanted) continue;
+    REQUIRE(partition.size() == wanted);
+    for (const std::size_t bodies : count) REQUIRE(bodies <= 2 * of.size() / wanted + 2);
+  }
+}
+
+TEST_CASE("Partition: places that coincide are not divided", "[parallel]") {
+  CHECK(Partition(std::vector<Vector3d>(10, Vector3d(1, 2, 3)), 8).size() == 1);
+  std::vector<Vector3d> two(9, Vector3d::Zero());
+  two.push_back({0, 1, 0});
+  const Partition partition(two, 8);
+  REQUIRE(partition.size() == 2);
+  CHECK(partition.cell_of({0, 0, 0}) != partition.cell_of({0, 1, 0}));
+}
+
+TEST_CASE("Partition: how far boxes are outside a cell, and how far they reach out of it", "[parallel]") {
+  const StaticBox cell{{0, -all, -all}, {10, all, 4}};
+  const auto box = [](double x, double z, double half) {
+    return StaticBox{{x - half, -half, z - half}, {x + half, half, z + half}};
+  };
+  CHECK(outside(box(5, 0, 1), cell) == 0);
+  CHECK(reach_outside(box(5, 0, 1), cell) == 0);
+  CHECK(outside(box(10, 0, 1), cell) == 0);
+  CHECK(reach_outside(box(10, 0, 1), cell) == 1);
+  CHECK(outside(box(13, 8, 1), cell) == 3);
+  CHECK(reach_outside(box(13, 8, 1), cell) == 5);
+  CHECK(outside(Vector3d(-2, 100, 5), cell) == 2);
+  CHECK(inside(Vector3d(3, 100, 3), cell) == 1);
+  CHECK(inside(Vector3d(-3, 100, 3), cell) == -3);
+}
+
+}  // namespace kds::collision::test_partition

@@ -1,0 +1,98 @@
+#include "collision/parallel/world_events.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace kds::collision::test_world_events {
+namespace {
+
+using detail::DomainEvent;
+using detail::EventMerge;
+using Kind = DomainEvent::Kind;
+using kds::tests::Random;
+
+DomainEvent event(double t, BodySlot a, BodySlot b, Kind kind = Kind::contact) {
+  return {kind, DomainEvent::nobody, a, b, Contact{.time = t}};
+}
+
+/// A log of one world, given to domains: body n is of domain n % domains.
+std::vector<std::vector<DomainEvent>> divided(const std::vector<DomainEvent>& log, std::size_t domains) {
+  std::vector<std::vector<DomainEvent>> logs(domains);
+  for (DomainEvent one : log) {
+    const std::size_t of_a = one.a % domains, of_b = one.kind == Kind::wall ? of_a : one.b % domains;
+    one.other_owner = of_a == of_b ? DomainEvent::nobody : static_cast<std::uint8_t>(of_b);
+    logs[of_a].push_back(one);
+    if (of_a == of_b) continue;
+    one.other_owner = static_cast<std::uint8_t>(of_a);
+    logs[of_b].push_back(one);
+  }
+  return logs;
+}
+
+}  // namespace
+
+TEST_CASE("Events of domains are merged into the order of one world, cascades at one time included", "[parallel]") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    Random random(seed);
+    // A queue of pairs: an event may put pairs of its bodies into it again, at the same time, before or after others.
+    struct Due {
+      double t;
+      BodySlot a, b;
+      bool operator<(const Due& other) const { return std::tuple(t, a, b) < std::tuple(other.t, other.a, other.b); }
+    };
+    std::vector<Due> queue;
+    const auto bodies = static_cast<std::uint32_t>(3 + random.below(12));
+    const auto put = [&](double t, BodySlot a, BodySlot b) {
+      if (a != b) queue.push_back({t, std::min(a, b), std::max(a, b)});
+    };
+    for (int i = 0; i < 20; ++i) put(random.integer(0, 3), random.below(bodies), random.below(bodies));
+    std::vector<DomainEvent> log;
+    while (!queue.empty() && log.size() < 200) {
+      const auto first = std::min_element(queue.begin(), queue.end());
+      const Due due = *first;
+      queue.erase(first);
+      log.push_back(event(due.t, due.a, due.b));
+      // What either of the two was to meet is found anew; an event depends on nothing but those of its bodies.
+      std::erase_if(queue, [&](const Due& d) {
+        const bool shares = d.a == due.a || d.a == due.b || d.b == due.a || d.b == due.b;
+        return shares && random.one_in(3);
+      });
+      if (random.one_in(2)) put(due.t + (random.one_in(2) ? 0 : 1), due.a, random.below(bodies));
+    }
+    INFO("seed " << seed);
+    for (const std::size_t domains : {1, 2, 3, 5}) {
+      EventMerge merge(divided(log, domains));
+      for (const DomainEvent& right : log) {
+        REQUIRE(!merge.empty());
+        REQUIRE(merge.take_next().order() == right.order());
+      }
+      REQUIRE(merge.empty());
+    }
+  }
+}
+
+TEST_CASE("Of events of one time overlaps are told first, then walls, then contacts", "[parallel]") {
+  std::vector<DomainEvent> log{event(1, 2, 3, Kind::overlap), event(1, 5, 1, Kind::wall), event(1, 0, 1)};
+  EventMerge merge(divided(log, 2));
+  CHECK(merge.take_next().kind == Kind::overlap);
+  CHECK(merge.take_next().kind == Kind::wall);
+  CHECK(merge.take_next().kind == Kind::contact);
+  CHECK(merge.empty());
+}
+
+TEST_CASE("Logs that are not of one history are refused", "[parallel]") {
+  auto logs = divided({event(1, 0, 1), event(2, 2, 3)}, 2);
+  logs[1].erase(logs[1].begin());
+  EventMerge merge(std::move(logs));
+  CHECK_THROWS_AS((merge.take_next(), merge.take_next(), merge.take_next()), std::logic_error);
+}
+
+}  // namespace kds::collision::test_world_events
