@@ -67,9 +67,13 @@ std::optional<Instant> first_below(const Value& a, const Value& b, double from, 
 }
 
 bool overlap_after(const MovingBox& a, const MovingBox& b, double t) {
-  const auto conditions = overlap_conditions(a, b);
-  return std::all_of(conditions.begin(), conditions.end(),
-                     [&](const Polynomial& p) { return p.sign_after(rational(t)) > 0; });
+  // Up to the first that does not hold: most boxes are apart.
+  const Rational now = rational(t);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if ((polynomial(a.high[axis]) - polynomial(b.low[axis])).sign_after(now) <= 0) return false;
+    if ((polynomial(b.high[axis]) - polynomial(a.low[axis])).sign_after(now) <= 0) return false;
+  }
+  return true;
 }
 
 std::vector<Stretch> overlaps(const MovingBox& a, const MovingBox& b, double begin, double end) {

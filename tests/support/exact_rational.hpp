@@ -27,6 +27,9 @@ class Rational {
   Rational(Integer value) : n_(std::move(value)) { strip(); }  // NOLINT(google-explicit-constructor)
   Rational(const Integer& n, const Integer& d) : Rational(Rational(n) / Rational(d)) {}
 
+  /// n 2^exponent.
+  static Rational scaled(Integer n, int exponent) { return {std::move(n), 1, exponent}; }
+
   int sign() const { return n_.sign(); }
 
   /// The number is odd_numerator() 2^exponent() / odd_denominator().
@@ -39,8 +42,8 @@ class Rational {
     return a;
   }
   friend Rational operator+(const Rational& a, const Rational& b) {
-    if (a.n_ == 0) return b;
-    if (b.n_ == 0) return a;
+    if (a.n_.is_zero()) return b;
+    if (b.n_.is_zero()) return a;
     if (a.e_ < b.e_) return b + a;
     const int shift = a.e_ - b.e_;
     if (a.d_ == b.d_) return Rational((a.n_ << shift) + b.n_, a.d_, b.e_);
@@ -59,7 +62,10 @@ class Rational {
   Rational& operator*=(const Rational& b) { return *this = *this * b; }
   Rational& operator/=(const Rational& b) { return *this = *this / b; }
 
-  friend bool operator==(const Rational& a, const Rational& b) { return (a - b).sign() == 0; }
+  friend bool operator==(const Rational& a, const Rational& b) {
+    if (a.d_ == b.d_) return a.e_ == b.e_ && a.n_ == b.n_;
+    return (a - b).sign() == 0;
+  }
   friend std::strong_ordering operator<=>(const Rational& a, const Rational& b) {
     if (a.sign() != b.sign()) return a.sign() <=> b.sign();
     return (a - b).sign() <=> 0;
@@ -69,14 +75,18 @@ class Rational {
   Rational(Integer n, Integer d, int e) : n_(std::move(n)), d_(std::move(d)), e_(e) { strip(); }
 
   void strip() {
-    if (n_ == 0) {
+    if (n_.is_zero()) {
       d_ = 1;
       e_ = 0;
       return;
     }
-    const auto twos = lsb(n_ < 0 ? Integer(-n_) : n_);
-    n_ = n_ < 0 ? Integer(-(-n_ >> twos)) : Integer(n_ >> twos);
-    e_ += static_cast<int>(twos);
+    const bool negative = n_.sign() < 0;
+    if (negative) n_.backend().negate();
+    if (const auto twos = lsb(n_); twos != 0) {
+      n_ >>= twos;
+      e_ += static_cast<int>(twos);
+    }
+    if (negative) n_.backend().negate();
   }
 
   Integer n_ = 0;
@@ -88,17 +98,14 @@ inline Rational abs(const Rational& x) { return x.sign() < 0 ? -x : x; }
 inline Rational square(const Rational& x) { return x * x; }
 
 /// 2^exponent.
-inline Rational power_of_two(int exponent) {
-  const Rational power(Integer(1) << std::abs(exponent));
-  return exponent >= 0 ? power : Rational(1) / power;
-}
+inline Rational power_of_two(int exponent) { return Rational::scaled(1, exponent); }
 
 /// The exact value of a double. Precondition: finite.
 inline Rational rational(double value) {
   if (value == 0) return {};
   int exponent = 0;
   const double fraction = std::frexp(value, &exponent);
-  return Rational(static_cast<long long>(std::ldexp(fraction, 53))) * power_of_two(exponent - 53);
+  return Rational::scaled(static_cast<long long>(std::ldexp(fraction, 53)), exponent - 53);
 }
 
 /// The same for the end of a time; empty for infinity.

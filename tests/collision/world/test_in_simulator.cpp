@@ -172,7 +172,8 @@ TEST_CASE("To look for what never comes, or to run until nothing comes, changes 
     WorldOptions options;
     options.broad_phase = method;
     std::size_t met = 0;
-    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    // A grid renews the boxes of bodies that fly apart to the end of time after each call, so few seeds take seconds.
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
       INFO("seed " << seed);
       Log log_plain, log_looked, log_run;
       World<1> plain(options, &log_plain), looked(options, &log_looked), run(options, &log_run);
@@ -182,7 +183,7 @@ TEST_CASE("To look for what never comes, or to run until nothing comes, changes 
         const auto vector = [&](double size) {
           return Vector3d(random.between(-size, size), random.between(-size, size), random.between(-size, size));
         };
-        const Vector3d at = vector(2);
+        const Vector3d at = vector(1);
         const BodyDescription<1> body{.shape = Sphere{0.3}, .motion = {motion<1>(at, vector(3), zero, t)}};
         for (World<1>* world : {&plain, &looked, &run}) world->add_body(body);
         looked.next_time();

@@ -2,6 +2,7 @@
 #include "kds/arithmetic/double_double.hpp"
 #include "tests/support/exact_rational.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/sanitized.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -71,7 +72,7 @@ TEST_CASE("two_sum and two_product lose nothing", "[double_double]") {
   const std::uint64_t seed = 10;
   CAPTURE(seed);
   Random random(seed);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < kds::tests::rounds_here(20000); ++i) {
     const auto [a, b] = random_pair(random, -300, 300);
     INFO(std::hexfloat << a << ", " << b);
     const DoubleDouble sum = kds::two_sum(a, b);
@@ -91,7 +92,7 @@ TEST_CASE("two_sum is exact over the whole range, below the normal numbers too",
   const std::uint64_t seed = 11;
   CAPTURE(seed);
   Random random(seed);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < kds::tests::rounds_here(20000); ++i) {
     const double a = random.scaled(-1074, 1000);
     const double b = random.one_in(2) ? random.scaled(-1074, 1000) : random.scaled(-1074, -1000);
     const DoubleDouble sum = kds::two_sum(a, b);
@@ -110,7 +111,7 @@ TEST_CASE("operations on double-doubles are right to 2^-102 and keep the parts a
   CAPTURE(seed);
   Random random(seed);
   int cancelled = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < kds::tests::rounds_here(20000); ++i) {
     const auto [a, b] = random_operands(random);
     const double x = random.one_in(3) ? -a.high : random.scaled(-60, 60);
     const Rational ra = exact(a);
@@ -134,7 +135,7 @@ TEST_CASE("operations on double-doubles are right to 2^-102 and keep the parts a
     check("a x", a * x, ra * rx);
     check("-a", -a, Rational(0) - ra);
   }
-  CHECK(cancelled > 1000);
+  CHECK(cancelled > kds::tests::rounds_here(1000));
 }
 
 TEST_CASE("a double is a double-double without a low part", "[double_double]") {

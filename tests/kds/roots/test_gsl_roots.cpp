@@ -2,6 +2,7 @@
 #ifdef KDS_WITH_GSL
 
 #include "kds/roots/gsl_roots.hpp"
+#include "tests/kds/roots/check_failure_time.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -79,7 +80,7 @@ TEST_CASE("through the GSL: what is not finite is refused", "[gsl]") {
 }
 
 TEMPLATE_TEST_CASE_SIG("through the GSL: the certified failure times, where roots are simple and apart", "[gsl]",
-                       ((int Degree), Degree), 1, 2, 3, 4, 5, 6, 7, 8) {
+                       FOR_DEGREES_TO_8) {
   const std::uint64_t seed = 60;
   CAPTURE(Degree, seed);
   Random random(seed);

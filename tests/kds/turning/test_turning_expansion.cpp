@@ -3,6 +3,7 @@
 #include "kds/turning/turning_expansion.hpp"
 #include "tests/kds/turning/written_sum.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/sanitized.hpp"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <catch2/catch.hpp>
@@ -82,7 +83,7 @@ TEMPLATE_TEST_CASE_SIG("expansions hold the truth", "[turning_expansion]",
   Random random(seed);
   Widths doubles, double_slopes, extended, extended_slopes, exact, exact_slopes;
   int wrong = 0;
-  for (int round = 0; round < (Harmonics == 1 ? 200 : 30); ++round) {
+  for (int round = 0; round < kds::tests::rounds_here(Harmonics == 1 ? 200 : 30); ++round) {
     const double rate = random.one_in(2) ? 1 : std::pow(10.0, random.between(-9, 4));
     const auto f = random_sum<Degree, Harmonics>(random, rate);
     const double m = random.between(-5, 5) / rate;

@@ -4,6 +4,7 @@
 #include "tests/kds/turning/check_turning_failure_time.hpp"
 #include "tests/kds/turning/written_sum.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/sanitized.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -327,7 +328,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of random sums are refuted by no sign", "[
   int wrong = 0;
   int found = 0;
   int touching = 0;
-  constexpr int rounds = Harmonics == 1 ? 400 : 60;
+  constexpr int rounds = tests::rounds_here(Harmonics == 1 ? 400 : 60);
   for (int round = 0; round < rounds; ++round) {
     const bool coarse = random.one_in(3);
     const double rate = coarse ? 1 : (random.one_in(2) ? 1.0 : std::pow(10.0, random.between(-9, 4)));
