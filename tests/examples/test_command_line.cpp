@@ -127,8 +127,8 @@ TEST_CASE("command line: scenes that are divided have the same events and the sa
     const bool same = events(options + " --stats divided.json") == expected;
     INFO(options);
     CHECK(same);
-    const auto one = nlohmann::json::parse(folder.read("one.json"));
-    const auto divided = nlohmann::json::parse(folder.read("divided.json"));
+    const auto one = nlohmann::json::parse(read_file(folder / "one.json"));
+    const auto divided = nlohmann::json::parse(read_file(folder / "divided.json"));
     for (const char* count : {"contacts", "separations", "overlaps", "wall_contacts", "bodies"}) {
       CHECK(one[count] == divided[count]);
     }
