@@ -240,7 +240,7 @@ RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
   const bool divided = options.domains != 1;
   if (scene.turning && divided) throw std::invalid_argument("--domains: a scene in which bodies turn is not divided");
   if (divided && (options.pairs || options.profile)) {
-    throw std::invalid_argument("--domains: in a scene that is divided, volumes are not told of, and work is not profiled");
+    throw std::invalid_argument("--domains: volumes are not told of, nor work profiled, in a scene that is divided");
   }
   if (divided) return scene.degree() == 2 ? run_divided<2>(scene, options, sink) : run_divided<1>(scene, options, sink);
   if (scene.turning) {

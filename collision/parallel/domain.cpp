@@ -16,7 +16,7 @@ WorldOptions for_domain(WorldOptions options, double now) {
   return options;
 }
 
-/// Domains run until nothing that is told can come before; a pair is in two logs, so bits are compared.
+/// Not whether they are equal: 0 and -0 are, and may have different consequences.
 template <class Motion>
 bool same_bits(const Motion& a, const Motion& b) {
   return std::memcmp(static_cast<const void*>(&a), static_cast<const void*>(&b), sizeof(Motion)) == 0;
@@ -25,15 +25,17 @@ bool same_bits(const Motion& a, const Motion& b) {
 }  // namespace
 
 template <class Motion>
-Domain<Motion>::Domain(const WorldOptions& options, const Share& share, std::size_t index, double now)
-    : share_(share),
+Domain<Motion>::Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs)
+    : division_(division),
       index_(index),
+      logs_(logs),
+      resolves_(options.response == Response::elastic),
       world_(for_domain(options, now), this),
       engine_(detail::EngineOf<Motion>::of(world_)),
-      local_(share.owner.size(), no_body) {
-  const StaticBox& cell = share.partition.cell(index);
-  for (std::size_t other = 0; other < share.partition.size(); ++other) {
-    if (other != index && outside(share.partition.cell(other), cell) <= 3 * share.halo) near_.push_back(other);
+      local_(division.owner.size(), no_body) {
+  const StaticBox& cell = division.partition.cell(index);
+  for (std::size_t other = 0; other < division.partition.size(); ++other) {
+    if (other != index && outside(division.partition.cell(other), cell) <= 3 * division.halo) near_.push_back(other);
   }
 }
 
@@ -50,7 +52,8 @@ void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const Body
   const auto comes = [&](BodySlot number) { return std::binary_search(come.begin(), come.end(), number); };
   for (const Overlap& overlap : overlaps) {
     const BodySlot a = local_[overlap.a], b = local_[overlap.b];
-    if (a != no_body && b != no_body && (comes(overlap.a) || comes(overlap.b))) here.push_back({a, b, overlap.passes_at});
+    if (a != no_body && b != no_body && (comes(overlap.a) || comes(overlap.b)))
+      here.push_back({a, b, overlap.passes_at});
   }
   engine_.go_on_overlapping(here);
 }
@@ -58,7 +61,7 @@ void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const Body
 template <class Motion>
 void Domain<Motion>::begin_window() {
   const auto& bodies = engine_.bodies();
-  const StaticBox& cell = share_.partition.cell(index_);
+  const StaticBox& cell = division_.partition.cell(index_);
   const double now = world_.now();
   role_.assign(bodies.slots(), Role::still), place_.resize(bodies.slots()), has_changed_.assign(bodies.slots(), 0);
   followed_.clear(), copies_.clear(), changes_.clear(), changed_.clear();
@@ -68,15 +71,15 @@ void Domain<Motion>::begin_window() {
   divisible_ = stayed_ = true;
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
-    const std::uint8_t owner = share_.owner[number(slot)];
-    if (owner == Share::nobody) continue;
+    const std::uint8_t owner = division_.owner[number(slot)];
+    if (owner == Division::nobody) continue;
     if (owner != index_) {
       role_[slot] = Role::copy;
       copies_.push_back({number(slot), bodies.motion(slot)});
       continue;
     }
     ++owned_;
-    if (inside(bodies.path(slot).position(now), cell) - share_.bulge > 2 * share_.halo) {
+    if (inside(bodies.path(slot).position(now), cell) - division_.bulge > 2 * division_.halo) {
       role_[slot] = Role::deep;
       continue;
     }
@@ -107,17 +110,18 @@ void Domain<Motion>::run(double until) {
   }
   const auto by_number = [](const Change& a, const Change& b) { return a.number < b.number; };
   std::stable_sort(changes_.begin() + static_cast<std::ptrdiff_t>(sorted), changes_.end(), by_number);
-  std::inplace_merge(changes_.begin(), changes_.begin() + static_cast<std::ptrdiff_t>(sorted), changes_.end(), by_number);
+  std::inplace_merge(changes_.begin(), changes_.begin() + static_cast<std::ptrdiff_t>(sorted), changes_.end(),
+                     by_number);
 }
 
 template <class Motion>
 void Domain<Motion>::follow(Followed& body, double until) {
   const StaticBox swept = swept_point(body.motion, body.since, until);
-  overshoot_ = std::max(overshoot_, reach_outside(swept, share_.partition.cell(index_)));
-  const detail::DomainMask known = share_.known[number(body.slot)];
+  overshoot_ = std::max(overshoot_, reach_outside(swept, division_.partition.cell(index_)));
+  const DomainMask known = division_.known[number(body.slot)];
   for (const std::size_t other : near_) {
     if ((known >> other & 1) != 0) continue;
-    nearest_[other] = std::min(nearest_[other], outside(swept, share_.partition.cell(other)));
+    nearest_[other] = std::min(nearest_[other], outside(swept, division_.partition.cell(other)));
   }
 }
 
@@ -125,7 +129,7 @@ template <class Motion>
 void Domain<Motion>::compare(std::span<const std::unique_ptr<Domain>> all) {
   wrong_.clear();
   nearest_wrong_ = never;
-  const StaticBox& cell = share_.partition.cell(index_);
+  const StaticBox& cell = division_.partition.cell(index_);
   // The changes of a body, of those of a domain, which are sorted, as the copies are.
   std::vector<std::size_t> next(all.size(), 0);
   const auto changes_of = [&](BodySlot number, std::size_t domain) {
@@ -138,14 +142,15 @@ void Domain<Motion>::compare(std::span<const std::unique_ptr<Domain>> all) {
   };
   for (const auto& [number, begun] : copies_) {
     const auto mine = changes_of(number, index_);
-    const auto right = changes_of(number, share_.owner[number]);
+    const auto right = changes_of(number, division_.owner[number]);
     std::size_t same = 0;
     while (same < std::min(mine.size(), right.size()) && mine[same].time == right[same].time &&
            same_bits(mine[same].motion, right[same].motion))
       ++same;
     if (same == mine.size() && same == right.size()) continue;
     wrong_.push_back(number);
-    const double from = std::min(same < mine.size() ? mine[same].time : never, same < right.size() ? right[same].time : never);
+    const double from =
+        std::min(same < mine.size() ? mine[same].time : never, same < right.size() ? right[same].time : never);
     for (const auto changes : {mine, right}) {
       const Motion* motion = same > 0 ? &mine[same - 1].motion : &begun;
       double since = from;
@@ -173,8 +178,8 @@ std::vector<typename Domain<Motion>::Overlap> Domain<Motion>::overlaps() const {
   std::vector<Overlap> all;
   for (const Overlap& overlap : engine_.overlaps()) {
     const BodySlot a = number(overlap.a), b = number(overlap.b);
-    const std::uint8_t teller = share_.owner[a] != Share::nobody ? share_.owner[a] : share_.owner[b];
-    if (teller == index_ || teller == Share::nobody) all.push_back({a, b, overlap.passes_at});
+    const std::uint8_t teller = division_.owner[a] != Division::nobody ? division_.owner[a] : division_.owner[b];
+    if (teller == index_ || teller == Division::nobody) all.push_back({a, b, overlap.passes_at});
   }
   return all;
 }
@@ -185,12 +190,12 @@ void Domain<Motion>::find_moves() {
   const double now = world_.now();
   for (const Followed& body : followed_) {
     const Eigen::Vector3d place = engine_.bodies().path(body.slot).position(now);
-    Move move{number(body.slot), static_cast<std::uint8_t>(share_.partition.cell_of(place)), 0};
-    if (outside(place, share_.partition.cell(index_)) <= share_.halo) move.known = detail::DomainMask{1} << index_;
+    Move move{number(body.slot), static_cast<std::uint8_t>(division_.partition.cell_of(place)), 0};
+    if (outside(place, division_.partition.cell(index_)) <= division_.halo) move.known = domain_bit(index_);
     for (const std::size_t other : near_) {
-      if (outside(place, share_.partition.cell(other)) <= share_.halo) move.known |= detail::DomainMask{1} << other;
+      if (outside(place, division_.partition.cell(other)) <= division_.halo) move.known |= domain_bit(other);
     }
-    if (move.owner != index_ || move.known != share_.known[move.number]) moves_.push_back(move);
+    if (move.owner != index_ || move.known != division_.known[move.number]) moves_.push_back(move);
   }
 }
 
@@ -212,7 +217,7 @@ void Domain<Motion>::changed(BodySlot slot, double t) {
     Followed& body = followed_[place_[slot]];
     follow(body, t);
     body.since = t, body.motion = motion;
-    if (share_.known[number(slot)] == detail::DomainMask{1} << index_) return;
+    if (division_.known[number(slot)] == domain_bit(index_)) return;
   }
   changes_.push_back({number(slot), motion, t});
 }
@@ -221,14 +226,15 @@ template <class Motion>
 void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   ++computed_;
   const BodySlot a = number(body_slot(event.a)), b = number(body_slot(event.b));
-  const std::uint8_t of_a = share_.owner[a], of_b = share_.owner[b];
-  const bool fixed = of_a == Share::nobody && of_b == Share::nobody;
-  const bool mine = fixed ? share_.partition.cell_of(event.contact.point) == index_ : of_a == index_ || of_b == index_;
+  const std::uint8_t of_a = division_.owner[a], of_b = division_.owner[b];
+  const bool fixed = of_a == Division::nobody && of_b == Division::nobody;
+  const bool mine =
+      fixed ? division_.partition.cell_of(event.contact.point) == index_ : of_a == index_ || of_b == index_;
   if (!mine) return;
-  const bool shared = !fixed && of_a != of_b && of_a != Share::nobody && of_b != Share::nobody;
+  const bool shared = !fixed && of_a != of_b && of_a != Division::nobody && of_b != Division::nobody;
   // Of a shared one the owner of the first body counts it.
   if (!shared || of_a == index_) ++told_[static_cast<std::size_t>(kind)];
-  if (!share_.logs) return;
+  if (!logs_) return;
   const std::uint8_t other = of_a == index_ ? of_b : of_a;
   put({kind, shared ? other : DomainEvent::nobody, a, b, event.contact});
 }
@@ -252,7 +258,7 @@ template <class Motion>
 void Domain<Motion>::contact(World&, const PairEvent& event) {
   record(DomainEvent::Kind::contact, event);
   const BodySlot a = body_slot(event.a), b = body_slot(event.b);
-  if (!share_.resolves || engine_.bodies()[a].sensor || engine_.bodies()[b].sensor) return;
+  if (!resolves_ || engine_.bodies()[a].sensor || engine_.bodies()[b].sensor) return;
   changed(a, event.contact.time);
   changed(b, event.contact.time);
 }
@@ -272,7 +278,7 @@ void Domain<Motion>::wall(World&, const WallEvent& event) {
   ++computed_;
   const BodySlot slot = body_slot(event.body);
   if (role_[slot] != Role::copy) ++told_[static_cast<std::size_t>(DomainEvent::Kind::wall)];
-  if (role_[slot] != Role::copy && share_.logs) {
+  if (role_[slot] != Role::copy && logs_) {
     put({DomainEvent::Kind::wall, DomainEvent::nobody, number(slot), static_cast<BodySlot>(event.wall), event.contact});
   }
   changed(slot, event.contact.time);

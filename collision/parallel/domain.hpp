@@ -1,6 +1,7 @@
 // A world that knows a part of a scene: the bodies of a cell and those near it.
 #pragma once
 
+#include "collision/parallel/division.hpp"
 #include "collision/parallel/parallel_options.hpp"
 #include "collision/parallel/partition.hpp"
 #include "collision/parallel/world_events.hpp"
@@ -26,26 +27,6 @@ struct EngineOf {
   static Engine<Motion>& of(BasicWorld<Motion>& world) { return *world.engine_; }
 };
 
-/// Which domains know a body.
-using DomainMask = std::uint64_t;
-
-/// What the domains of a scene share. Changed only between windows, each entry by one domain.
-struct DomainShare {
-  static constexpr std::uint8_t nobody = DomainEvent::nobody;
-
-  Partition partition;
-  double halo = 0;             ///< how far outside a cell its domain knows bodies
-  double greatest_radius = 0;  ///< of bodies that have owners
-  bool logs = false;           ///< whether events are recorded
-  bool resolves = false;       ///< whether contacts change motions
-  double bulge = 0;            ///< how far a path may leave the chord between two of its places within a window
-  std::vector<std::uint8_t> owner;  ///< by number: the domain whose cell it is in; `nobody` of fixed bodies at rest
-  std::vector<DomainMask> known;    ///< by number
-
-  /// Rounding of places, and what else is far below a halo.
-  double margin() const { return 0x1p-20 * halo; }
-};
-
 }  // namespace detail
 
 /// A domain: a cell of space, and a world that knows the bodies in it, which it *owns*, and *copies* of those that are
@@ -60,10 +41,9 @@ class Domain final : private BasicWorldListener<Motion> {
  public:
   using World = BasicWorld<Motion>;
   using Overlap = typename Engine<Motion>::Overlap;
-  using Share = detail::DomainShare;
-  using Mask = detail::DomainMask;
 
-  Domain(const WorldOptions& options, const Share& share, std::size_t index, double now);
+  /// `logs`: whether events are recorded. The division must outlive the domain.
+  Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs);
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
@@ -71,7 +51,7 @@ class Domain final : private BasicWorldListener<Motion> {
   /// their numbers.
   void exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const Engine<Motion>& store,
                 std::span<const Overlap> overlaps);
-  /// Begins a window: finds out which bodies are whose, as share.owner and share.known say.
+  /// Begins a window: finds out which bodies are whose, as the division says.
   void begin_window();
 
   /// Runs a step of the window.
@@ -111,7 +91,7 @@ class Domain final : private BasicWorldListener<Motion> {
   struct Move {
     BodySlot number;
     std::uint8_t owner;
-    Mask known;
+    DomainMask known;
   };
   void find_moves();
   const std::vector<Move>& moves() const { return moves_; }
@@ -148,19 +128,21 @@ class Domain final : private BasicWorldListener<Motion> {
   void changed(BodySlot slot, double t);
   void follow(Followed& body, double until);
   bool stays_deep(const Eigen::Vector3d& place) const {
-    return inside(place, share_.partition.cell(index_)) - share_.bulge >= share_.halo;
+    return inside(place, division_.partition.cell(index_)) - division_.bulge >= division_.halo;
   }
 
-  const Share& share_;
+  const Division& division_;
   const std::size_t index_;
+  const bool logs_;
+  const bool resolves_;  ///< whether contacts change motions
   World world_;
   Engine<Motion>& engine_;
-  std::vector<BodySlot> local_;  ///< by number: the slot here, no_body of one that is not known
-  std::vector<Role> role_;       ///< by slot
+  std::vector<BodySlot> local_;       ///< by number: the slot here, no_body of one that is not known
+  std::vector<Role> role_;            ///< by slot
   std::vector<std::uint32_t> place_;  ///< by slot, of followed bodies: in followed_
   std::vector<char> has_changed_;     ///< by slot, in this window
   std::vector<Followed> followed_;
-  std::vector<Copy> copies_;  ///< by number
+  std::vector<Copy> copies_;       ///< by number
   std::vector<BodySlot> changed_;  ///< slots of owned bodies
   std::vector<Change> changes_;    ///< of bodies that others know or own; sorted by number when a step is over
   std::vector<detail::DomainEvent> events_;

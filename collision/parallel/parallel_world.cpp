@@ -1,7 +1,9 @@
 #include "collision/parallel/parallel_world.hpp"
 
 #include "collision/in_parts.hpp"
+#include "collision/parallel/division.hpp"
 #include "collision/parallel/domain.hpp"
+#include "collision/parallel/relayed_events.hpp"
 #include "collision/parallel/window_length.hpp"
 #include "kds/raised_flag.hpp"
 
@@ -25,8 +27,6 @@ void validate(const ParallelOptions& options) {
 namespace {
 
 using detail::DomainEvent;
-using detail::DomainMask;
-using detail::DomainShare;
 using detail::EventMerge;
 
 const ParallelOptions& validated(const ParallelOptions& options) {
@@ -34,25 +34,29 @@ const ParallelOptions& validated(const ParallelOptions& options) {
   return options;
 }
 
-constexpr DomainMask bit(std::size_t domain) { return DomainMask{1} << domain; }
-
 }  // namespace
 
 /// Runs the scene in windows, or as one world.
 template <class BodyMotionType>
-class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListener<BodyMotionType> {
+class BasicParallelWorld<BodyMotionType>::Runner final {
  public:
   Runner(const WorldOptions& options, const ParallelOptions& parallel, ParallelListener* listener)
       : options_(options),
         parallel_(validated(parallel)),
         threads_(parallel.threads > 0 ? parallel.threads : std::max(1u, std::thread::hardware_concurrency())),
         listener_(listener),
-        world_(options, this),
+        relayed_(listener, counters_),
+        world_(options, &relayed_),
         store_(detail::EngineOf<Motion>::of(world_)),
         now_(options.start_time) {}
 
   World& whole() {
     require_outside("ParallelWorld::whole");
+    if (!events_.empty()) {
+      throw std::logic_error(
+          "ParallelWorld::whole: a listener has thrown, and the events after that are still to be told, "
+          "by advance_to()");
+    }
     if (divided()) gather();
     return world_;
   }
@@ -117,105 +121,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
     now_ = end;
   }
 
-  // What is told while the scene is run as one world.
-  void contact(World&, const PairEvent& event) override {
-    ++counters_.contacts;
-    if (listener_) listener_->contact(event);
-  }
-  void separation(World&, const PairEvent& event) override {
-    ++counters_.separations;
-    if (listener_) listener_->separation(event);
-  }
-  void overlap(World&, const PairEvent& event) override {
-    ++counters_.overlaps;
-    if (listener_) listener_->overlap(event);
-  }
-  void wall(World&, const WallEvent& event) override {
-    ++counters_.wall_contacts;
-    if (listener_) listener_->wall(event);
-  }
-  void rebound_suppressed(World&, const PairEvent& event) override { pass_on(&ParallelListener::rebound_suppressed, event); }
-  void rests(World&, const PairEvent& event) override { pass_on(&ParallelListener::rests, event); }
-  void wakes(World&, const PairEvent& event) override { pass_on(&ParallelListener::wakes, event); }
-  void passes(World&, const PairEvent& event) override { pass_on(&ParallelListener::passes, event); }
-  void rebound_suppressed_at_wall(World&, const WallEvent& event) override {
-    pass_on(&ParallelListener::rebound_suppressed_at_wall, event);
-  }
-  void rests_at_wall(World&, const WallEvent& event) override { pass_on(&ParallelListener::rests_at_wall, event); }
-  void wakes_at_wall(World&, const WallEvent& event) override { pass_on(&ParallelListener::wakes_at_wall, event); }
-
-  template <class Event>
-  void pass_on(void (ParallelListener::*tell)(const Event&), const Event& event) {
-    if (listener_) (listener_->*tell)(event);
-  }
-
   // Division.
-
-  /// What decides how the scene is divided.
-  struct Measure {
-    std::vector<Eigen::Vector3d> places;  ///< of bodies that have owners
-    double greatest_radius = 0;
-    double greatest_speed = 0;
-    double greatest_bend = 0;  ///< half an acceleration, along an axis
-    double greatest_place = 0;
-  };
-
-  bool has_owner(BodySlot slot) const {
-    if (!store_.bodies().fixed(slot)) return true;
-    const auto& path = store_.bodies().path(slot);
-    for (std::size_t i = 1; i <= Motion::degree; ++i) {
-      if (!path.coefficients[i].isZero(0)) return true;
-    }
-    return false;
-  }
-
-  Measure measure() const {
-    Measure all;
-    const auto& bodies = store_.bodies();
-    for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
-      if (!bodies.alive(slot) || !has_owner(slot)) continue;
-      const auto& path = bodies.path(slot);
-      all.places.push_back(path.position(now_));
-      all.greatest_place = std::max(all.greatest_place, all.places.back().cwiseAbs().maxCoeff());
-      all.greatest_radius = std::max(all.greatest_radius, bodies[slot].bounding_radius);
-      all.greatest_speed = std::max(all.greatest_speed, path.velocity(now_).cwiseAbs().maxCoeff());
-      if constexpr (Motion::degree == 2) {
-        all.greatest_bend = std::max(all.greatest_bend, path.coefficients[2].cwiseAbs().maxCoeff());
-      }
-    }
-    return all;
-  }
-
-  /// The mean distance of neighbours; along axes in which all places are much the same it does not count.
-  static double spacing(const std::vector<Eigen::Vector3d>& places) {
-    Eigen::Array3d low = places.front().array(), high = low;
-    for (const Eigen::Vector3d& place : places) low = low.min(place.array()), high = high.max(place.array());
-    const Eigen::Array3d extents = high - low;
-    double volume = 1;
-    int axes = 0;
-    for (int d = 0; d < 3; ++d) {
-      if (extents[d] > 1e-3 * extents.maxCoeff()) volume *= extents[d], ++axes;
-    }
-    return axes > 0 ? std::pow(volume / static_cast<double>(places.size()), 1.0 / axes) : 0;
-  }
-
-  std::size_t domains_wanted(std::size_t bodies) const {
-    constexpr std::size_t bodies_per_domain = 10'000;  // fewer are mostly copies of others'
-    if (parallel_.domains > 0) return bodies > 1 ? parallel_.domains : 1;
-    return std::min({threads_, bodies / bodies_per_domain, most_domains});
-  }
-
-  /// Whether each cell is wide enough for bodies that only its own domain knows.
-  static bool wide_enough(const Partition& partition, double halo) {
-    for (std::size_t i = 0; i < partition.size(); ++i) {
-      if (!((partition.cell(i).max - partition.cell(i).min).minCoeff() > 6 * halo)) return false;
-    }
-    return true;
-  }
 
   /// Divides the scene; false if it is to be run as one world.
   bool divide() {
-    if (domains_wanted(world_.size()) < 2) {
+    if (domains_wanted(parallel_, threads_, world_.size()) < 2) {
       stretch_ = 0;
       return false;
     }
@@ -224,32 +134,15 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
       world_.advance_to(now_);
     }
     if (!store_.is_divisible()) return false;
-    Measure all = measure();
-    if (all.places.size() < 2) return false;
-    const double halo = 2 * all.greatest_radius + parallel_.halo * spacing(all.places);
-    if (!(halo > 0x1p-20 * all.greatest_place && std::isfinite(halo))) return false;
-    std::size_t wanted = domains_wanted(all.places.size());
-    Partition partition(all.places, wanted);
-    while (wanted > 1 && parallel_.domains == 0 && !wide_enough(partition, halo)) {
-      partition = Partition(all.places, --wanted);
-    }
-    if (partition.size() < 2) return false;
-    share_ = std::make_unique<DomainShare>(DomainShare{.partition = std::move(partition),
-                                                       .halo = halo,
-                                                       .greatest_radius = all.greatest_radius,
-                                                       .logs = listener_ != nullptr,
-                                                       .resolves = options_.response == Response::elastic,
-                                                       .bulge = 0,
-                                                       .owner = {},
-                                                       .known = {}});
-    bend_ = all.greatest_bend;
+    auto division = collision::divide(store_.bodies(), now_, parallel_, threads_);
+    if (!division) return false;
+    division_ = std::make_unique<Division>(std::move(*division));
     if (!(length_.seconds() > 0)) {
-      const double fastest = all.greatest_speed + std::sqrt(all.greatest_bend * halo);
-      length_ = WindowLength(fastest > 0 ? (halo - 2 * all.greatest_radius) / (4 * fastest) : parallel_.longest_window);
+      const double fastest = division_->greatest_speed + std::sqrt(division_->greatest_bend * division_->halo);
+      length_ = WindowLength(fastest > 0 ? division_->room() / (4 * fastest) : parallel_.longest_window);
     }
     overlaps_ = store_.overlaps();
     store_.set_aside();
-    distribute();
     make_domains();
     ++counters_.divisions;
     windows_since_division_ = 0;
@@ -259,26 +152,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
   /// The scene is one world again.
   void gather() {
     end_domains();
-    share_.reset();
+    division_.reset();
     store_.go_on(now_, overlaps_);
-  }
-
-  /// Who owns and who knows each body.
-  void distribute() {
-    const auto& bodies = store_.bodies();
-    const std::size_t slots = bodies.slots();
-    share_->owner.assign(slots, DomainShare::nobody);
-    share_->known.assign(slots, 0);
-    for (BodySlot slot = 0; slot < slots; ++slot) {
-      if (!bodies.alive(slot)) continue;
-      const Eigen::Vector3d place = bodies.path(slot).position(now_);
-      const bool owned = has_owner(slot);
-      if (owned) share_->owner[slot] = static_cast<std::uint8_t>(share_->partition.cell_of(place));
-      const double reach = share_->halo + (owned ? 0 : bodies[slot].bounding_radius);
-      for (std::size_t i = 0; i < share_->partition.size(); ++i) {
-        if (outside(place, share_->partition.cell(i)) <= reach) share_->known[slot] |= bit(i);
-      }
-    }
   }
 
   /// A path may leave the chord between two of its places by this much; windows are so short that it is far less than
@@ -286,8 +161,9 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
   void begin_window() {
     window_begun_ = now_;
     longest_ = parallel_.longest_window;
-    if (bend_ > 0) longest_ = std::min(longest_, std::sqrt(share_->halo / bend_));
-    share_->bulge = bend_ > 0 ? bend_ * longest_ * longest_ / 4 : 0;
+    const double bend = division_->greatest_bend;
+    if (bend > 0) longest_ = std::min(longest_, std::sqrt(division_->halo / bend));
+    division_->bulge = bend > 0 ? bend * longest_ * longest_ / 4 : 0;
   }
 
   void end_domains() {
@@ -297,17 +173,17 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
 
   void make_domains() {
     begin_window();
-    const std::size_t count = share_->partition.size();
+    const std::size_t count = division_->partition.size();
     std::vector<std::vector<BodySlot>> known(count);
-    for (BodySlot number = 0; number < share_->known.size(); ++number) {
+    for (BodySlot number = 0; number < division_->known.size(); ++number) {
       for (std::size_t i = 0; i < count; ++i) {
-        if ((share_->known[number] & bit(i)) != 0) known[i].push_back(number);
+        if ((division_->known[number] & domain_bit(i)) != 0) known[i].push_back(number);
       }
     }
     end_domains();
     domains_.resize(count);
     in_domains([&](std::size_t i) {
-      domains_[i] = std::make_unique<Domain<Motion>>(options_, *share_, i, now_);
+      domains_[i] = std::make_unique<Domain<Motion>>(options_, *division_, i, now_, listener_ != nullptr);
       domains_[i]->exchange({}, known[i], store_, overlaps_);
       domains_[i]->begin_window();
     });
@@ -321,9 +197,9 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
     for (std::size_t i = 0; i < domains_.size(); ++i) {
       double nearest = domains_[i]->nearest_wrong();
       for (const auto& other : domains_) nearest = std::min(nearest, other->nearest(i));
-      const double reach = domains_[i]->overshoot() + 2 * share_->greatest_radius + share_->margin();
-      if (!(reach <= share_->halo && nearest > reach)) return 2;
-      used = std::max(used, 1 - (nearest - reach) / (share_->halo - 2 * share_->greatest_radius));
+      const double reach = domains_[i]->overshoot() + 2 * division_->greatest_radius + division_->margin();
+      if (!(reach <= division_->halo && nearest > reach)) return 2;
+      used = std::max(used, 1 - (nearest - reach) / division_->room());
     }
     return used;
   }
@@ -332,7 +208,12 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
   void run_window(double t) {
     const double end = std::min({t, now_ + length_.step(), window_begun_ + longest_});
     if (!(end > now_ || t == now_)) return run_undivided(t);  // Steps would be shorter than a rounding of the clock.
-    in_domains([&](std::size_t i) { domains_[i]->run(end); });
+    try {
+      in_domains([&](std::size_t i) { domains_[i]->run(end); });
+    } catch (...) {
+      gather();  // as it was at now_
+      throw;
+    }
     double used = 2;
     const auto all = [&](bool (Domain<Motion>::*what)() const) {
       return std::all_of(domains_.begin(), domains_.end(), [&](const auto& domain) { return (*domain.*what)(); });
@@ -354,6 +235,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
     constexpr std::size_t most_failures = 6;
     if (!all(&Domain<Motion>::is_divisible) || length_.failures() >= most_failures) return run_undivided(t);
     length_.failed();
+    assign_bodies(*division_, store_.bodies(), now_);
     make_domains();
   }
 
@@ -372,9 +254,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
       overlaps.insert(overlaps.end(), of_domain.begin(), of_domain.end());
     }
     // Those of bodies at rest are told by all that know both.
-    std::sort(overlaps.begin(), overlaps.end(), [](const Overlap& a, const Overlap& b) {
-      return std::pair(a.a, a.b) < std::pair(b.a, b.b);
-    });
+    std::sort(overlaps.begin(), overlaps.end(),
+              [](const Overlap& a, const Overlap& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
     overlaps.erase(std::unique(overlaps.begin(), overlaps.end(),
                                [](const Overlap& a, const Overlap& b) { return a.a == b.a && a.b == b.b; }),
                    overlaps.end());
@@ -397,7 +278,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
 
   /// Bodies that have moved get other owners, and copies are made, corrected and dropped.
   void exchange() {
-    if (++windows_since_division_ % 16 == 0 && unbalanced()) return gather();
+    if (++windows_since_division_ % 16 == 0 && unbalanced()) return divide_anew();
     std::vector<std::vector<BodySlot>> go(domains_.size()), come(domains_.size());
     for (std::size_t i = 0; i < domains_.size(); ++i) {
       for (const BodySlot number : domains_[i]->wrong()) go[i].push_back(number), come[i].push_back(number);
@@ -406,9 +287,9 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
     in_domains([&](std::size_t i) { domains_[i]->find_moves(); });
     for (const auto& domain : domains_) {
       for (const auto& move : domain->moves()) {
-        const DomainMask before = share_->known[move.number];
+        const DomainMask before = division_->known[move.number];
         for (std::size_t i = 0; i < domains_.size(); ++i) {
-          const bool knew = (before & bit(i)) != 0, knows = (move.known & bit(i)) != 0;
+          const bool knew = (before & domain_bit(i)) != 0, knows = (move.known & domain_bit(i)) != 0;
           if (knew == knows) continue;
           counters_.copies_made += knows;
           if (knows) {
@@ -419,8 +300,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
             go[i].push_back(move.number);
           }
         }
-        share_->owner[move.number] = move.owner;
-        share_->known[move.number] = move.known;
+        division_->owner[move.number] = move.owner;
+        division_->known[move.number] = move.known;
       }
     }
     begin_window();
@@ -429,6 +310,15 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
       domains_[i]->exchange(go[i], come[i], store_, overlaps_);
       domains_[i]->begin_window();
     });
+  }
+
+  void divide_anew() {
+    auto division = collision::divide(store_.bodies(), now_, parallel_, threads_);
+    if (!division) return gather();
+    end_domains();
+    *division_ = std::move(*division);
+    ++counters_.divisions;
+    make_domains();
   }
 
   bool unbalanced() const {
@@ -459,21 +349,21 @@ class BasicParallelWorld<BodyMotionType>::Runner final : private BasicWorldListe
   const ParallelOptions parallel_;
   const std::size_t threads_;
   ParallelListener* listener_;
+  ParallelCounters counters_;
+  RelayedEvents<Motion> relayed_;
   World world_;            ///< runs the scene while it is one world; else only its bodies count
   Engine<Motion>& store_;  ///< of world_
   double now_;
-  std::unique_ptr<DomainShare> share_;
+  std::unique_ptr<Division> division_;
   std::vector<std::unique_ptr<Domain<Motion>>> domains_;  ///< none while the scene is one world
   std::vector<Overlap> overlaps_;  ///< pairs that overlap at now_, by numbers, while the scene is divided
   EventMerge events_;              ///< that have not been told yet
   WindowLength length_;
   double window_begun_ = 0;  ///< s
   double longest_ = 0;       ///< s: the longest that the window may be
-  double bend_ = 0;     ///< the greatest half acceleration along an axis
-  double stretch_ = 0;  ///< s: how long the scene is run as one world before it is divided again; 0: to the end
+  double stretch_ = 0;       ///< s: how long the scene is run as one world before it is divided again; 0: to the end
   std::size_t windows_since_division_ = 0;
-  ParallelCounters counters_;
-  WorldCounters work_;  ///< of domains that there were
+  WorldCounters work_;     ///< of domains that there were
   bool unstarted_ = true;  ///< no body has entered
   bool telling_ = false;
 };

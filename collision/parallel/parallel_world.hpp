@@ -32,9 +32,9 @@ class ParallelListener {
 
 /// A world of many bodies, divided into domains: cells of space, each with a world of its own that knows the bodies in
 /// the cell and copies of those near it. The domains run a *window* of time by themselves, in as many threads as there
-/// are; then it is seen whether what each has computed of the bodies in its cell is what happens in the whole scene. The
-/// events are those of a World with the same bodies, in the same order, the same bits, whatever the number of threads
-/// and domains and the lengths of windows: docs/parallel.md has the laws and why they hold.
+/// are; then it is seen whether what each has computed of the bodies in its cell is what happens in the whole scene.
+/// The events are those of a World with the same bodies, in the same order, the same bits, whatever the number of
+/// threads and domains and the lengths of windows: docs/parallel.md has the laws and why they hold.
 ///
 /// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; something rests on something;
 /// scripts, timers, meshes that bend, attached sensors, ignored pairs, box functions; response `callback`; reports of

@@ -12,8 +12,8 @@
 
 namespace kds::collision {
 
-/// How far outside a cell a box is, its nearest place, along the axis in which that is farthest: 0 if they meet. Ends of
-/// cells may be infinite.
+/// How far outside a cell a box is, its nearest place, along the axis in which that is farthest: 0 if they meet. Ends
+/// of cells may be infinite.
 inline double outside(const StaticBox& box, const StaticBox& cell) {
   return std::max({0.0, (cell.min - box.max).maxCoeff(), (box.min - cell.max).maxCoeff()});
 }
@@ -40,7 +40,8 @@ class Partition {
   /// Precondition: at least one place, all finite; cells > 0. There are fewer cells where places coincide.
   Partition(std::vector<Eigen::Vector3d> places, std::size_t cells) {
     const double all = std::numeric_limits<double>::infinity();
-    cut(places.data(), places.data() + places.size(), cells, {Eigen::Array3d::Constant(-all), Eigen::Array3d::Constant(all)});
+    cut(places.data(), places.data() + places.size(), cells,
+        {Eigen::Array3d::Constant(-all), Eigen::Array3d::Constant(all)});
   }
 
   std::size_t size() const { return cells_.size(); }

@@ -18,8 +18,8 @@ class WindowLength {
   double seconds() const { return seconds_; }
   double step() const { return step_; }
 
-  /// Whether a window of which this much has been run, and that has used so much of the halo, in [0, 1], may go on. Then
-  /// step() is that of the next step.
+  /// Whether a window of which this much has been run, and that has used so much of the halo, in [0, 1], may go on.
+  /// Then step() is that of the next step.
   bool goes_on(double elapsed, double used) {
     const double least = seconds_ / steps / 2;
     step_ = std::max(seconds_ / steps, elapsed / 2);
@@ -43,10 +43,10 @@ class WindowLength {
   std::size_t failures() const { return failures_; }  ///< since a window last held
 
  private:
-  static constexpr double steps = 4;          ///< at first; more find the end of a window better, and each costs a comparison
-  static constexpr double most_used = 0.85;   ///< of the halo: with one step more. A window that fails costs a division
-  static constexpr double forget = 0.8;       ///< what fast bodies have used counts for some windows
-  static constexpr double most_growth = 2;    ///< from window to window
+  static constexpr double steps = 4;  ///< at first; more find the end of a window better, and each costs a comparison
+  static constexpr double most_used = 0.85;  ///< of the halo: with one step more. A window that fails costs a division
+  static constexpr double forget = 0.8;      ///< what fast bodies have used counts for some windows
+  static constexpr double most_growth = 2;   ///< from window to window
 
   double seconds_;
   double step_;

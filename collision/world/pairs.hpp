@@ -30,8 +30,8 @@ namespace detail {
 
 using PairSlot = std::uint32_t;
 
-/// Two bodies that may meet, the one with the lower number first. It exists while the broad phase lists it, and while the two overlap: so its state is a
-/// function of the history of the two bodies, whatever the broad phase.
+/// Two bodies that may meet, the one with the lower number first. It exists while the broad phase lists it, and while
+/// the two overlap: so its state is a function of the history of the two bodies, whatever the broad phase.
 struct Pair {
   BodySlot a = 0, b = 0;
   std::uint32_t place_in_a = 0, place_in_b = 0;  ///< in the lists of the two bodies

@@ -2,9 +2,9 @@
 //
 //     bench_parallel [DIRECTORY [BODIES...]]      -> parallel.csv; the sizes, 10 000 to 1 000 000 unless given
 //
-// Elastic balls of diameter 1 in a cube, on the places of a lattice, with speeds of a normal distribution. They run until
-// each has had some contacts. One world and the same scene in domains take turns; the best of the rounds counts. The
-// number of contacts and a hash of all of them must be the same.
+// Elastic balls of diameter 1 in a cube, on the places of a lattice, with speeds of a normal distribution. They run
+// until each has had some contacts. One world and the same scene in domains take turns; the best of the rounds counts.
+// The number of contacts and a hash of all of them must be the same.
 
 #include "collision/parallel/parallel_world.hpp"
 #include "collision/world.hpp"
@@ -29,9 +29,9 @@
 namespace {
 
 using namespace kds::collision;
+using Eigen::Vector3d;
 using kds::benchmarks::tell;
 using kds::benchmarks::wall_seconds;
-using Eigen::Vector3d;
 
 /// Seconds of CPU time of all threads.
 double cpu_seconds() {
@@ -134,7 +134,9 @@ void measure(std::ofstream& csv, std::size_t bodies, double packing) {
   }
   for (const Way& way : ways) {
     const ParallelCounters& c = way.counters;
-    const auto ratio = [](std::uint64_t a, std::uint64_t b) { return b ? static_cast<double>(a) / static_cast<double>(b) : 1; };
+    const auto ratio = [](std::uint64_t a, std::uint64_t b) {
+      return b ? static_cast<double>(a) / static_cast<double>(b) : 1;
+    };
     tell(csv, "%zu,%g,%zu,%zu,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%llu,%llu\n", bodies, packing, way.threads,
          way.domains, static_cast<unsigned long long>(c.contacts), whole.entry_wall, whole.run_wall,
          way.time.entry_wall, way.time.run_wall, whole.run_wall / way.time.run_wall, way.time.run_cpu / whole.run_cpu,
@@ -148,8 +150,9 @@ void measure(std::ofstream& csv, std::size_t bodies, double packing) {
 int main(int argc, char** argv) {
   try {
     std::ofstream csv = kds::benchmarks::open_csv(argc > 1 ? argv[1] : ".", "parallel.csv");
-    tell(csv, "bodies,packing,threads,domains,contacts,world_entry_s,world_run_s,entry_s,run_s,speed_up,cpu_ratio,"
-              "known_per_owned,computed_per_event,windows,failed\n");
+    tell(csv,
+         "bodies,packing,threads,domains,contacts,world_entry_s,world_run_s,entry_s,run_s,speed_up,cpu_ratio,"
+         "known_per_owned,computed_per_event,windows,failed\n");
     std::vector<std::size_t> sizes;
     for (int i = 2; i < argc; ++i) sizes.push_back(std::strtoull(argv[i], nullptr, 10));
     if (sizes.empty()) sizes = {10'000, 30'000, 100'000, 300'000, 1'000'000};

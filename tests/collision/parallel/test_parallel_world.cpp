@@ -18,13 +18,13 @@
 namespace kds::collision::test_parallel_world {
 namespace {
 
+using Eigen::Vector3d;
 using tests::Event;
 using tests::EventLog;
 using tests::Kind;
 using tests::ParallelLog;
 using tests::Random;
 using tests::Scene;
-using Eigen::Vector3d;
 
 /// A scene, and how it is run.
 template <int Degree>
@@ -55,7 +55,8 @@ Trial<Degree> trial(std::uint64_t seed) {
     for (auto& body : result.scene.bodies) body.sensor = random.one_in(8);
   }
   if (random.one_in(3)) {
-    for (auto& body : result.scene.bodies) body.category = 1u << random.below(2), body.collides_with = 1u + random.below(3);
+    for (auto& body : result.scene.bodies)
+      body.category = 1u << random.below(2), body.collides_with = 1u + random.below(3);
   }
   if (random.one_in(Degree == 1 ? 4 : 10)) {
     for (auto& body : result.scene.bodies) body.restitution = random.between(0.3, 1);
@@ -254,7 +255,8 @@ TEST_CASE("Domains: bodies that are added, removed and moved between windows, an
     std::erase_if(right.events, [](const Event& e) { return e.kind == Kind::rests || e.kind == Kind::wakes; });
     std::erase_if(later.events, [](const Event& e) { return e.kind == Kind::rests || e.kind == Kind::wakes; });
     REQUIRE(log.events == right.events);
-    REQUIRE(later.events == std::vector<Event>(log.events.begin() + static_cast<std::ptrdiff_t>(before), log.events.end()));
+    REQUIRE(later.events ==
+            std::vector<Event>(log.events.begin() + static_cast<std::ptrdiff_t>(before), log.events.end()));
   }
 }
 
@@ -319,9 +321,10 @@ TEST_CASE("Domains: what they are asked wrongly is refused", "[parallel]") {
     in_callback = message([&] { divided.whole(); }) + ", " + message([&] { divided.advance_to(9); });
   };
   divided.advance_to(1);
-  CHECK(in_callback ==
-        "ParallelWorld::whole: must not be called from within a callback, ParallelWorld::advance_to: must not be called "
-        "from within a callback");
+  CHECK(
+      in_callback ==
+      "ParallelWorld::whole: must not be called from within a callback, ParallelWorld::advance_to: must not be called "
+      "from within a callback");
   CHECK(divided.domains() == 2);
   CHECK_THROWS_AS(divided.advance_to(0.5), std::invalid_argument);
   CHECK_THROWS_AS(divided.advance_to(never), std::invalid_argument);

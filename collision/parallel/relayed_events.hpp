@@ -1,0 +1,51 @@
+// The events of a scene while it is run as one world.
+#pragma once
+
+#include "collision/parallel/parallel_options.hpp"
+#include "collision/parallel/parallel_world.hpp"
+
+namespace kds::collision {
+
+/// Passes on what a World tells to the listener of a ParallelWorld, and counts it.
+template <class Motion>
+class RelayedEvents final : public BasicWorldListener<Motion> {
+ public:
+  using World = BasicWorld<Motion>;
+
+  /// `listener`: null if there is none.
+  RelayedEvents(ParallelListener* listener, ParallelCounters& counters)
+      : listener_(listener ? *listener : silent_), counters_(counters) {}
+
+  void contact(World&, const PairEvent& event) override {
+    ++counters_.contacts;
+    listener_.contact(event);
+  }
+  void separation(World&, const PairEvent& event) override {
+    ++counters_.separations;
+    listener_.separation(event);
+  }
+  void overlap(World&, const PairEvent& event) override {
+    ++counters_.overlaps;
+    listener_.overlap(event);
+  }
+  void wall(World&, const WallEvent& event) override {
+    ++counters_.wall_contacts;
+    listener_.wall(event);
+  }
+  void rebound_suppressed(World&, const PairEvent& event) override { listener_.rebound_suppressed(event); }
+  void rebound_suppressed_at_wall(World&, const WallEvent& event) override {
+    listener_.rebound_suppressed_at_wall(event);
+  }
+  void rests(World&, const PairEvent& event) override { listener_.rests(event); }
+  void rests_at_wall(World&, const WallEvent& event) override { listener_.rests_at_wall(event); }
+  void wakes(World&, const PairEvent& event) override { listener_.wakes(event); }
+  void wakes_at_wall(World&, const WallEvent& event) override { listener_.wakes_at_wall(event); }
+  void passes(World&, const PairEvent& event) override { listener_.passes(event); }
+
+ private:
+  ParallelListener silent_;
+  ParallelListener& listener_;
+  ParallelCounters& counters_;
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,72 @@
+#include "collision/parallel/division.hpp"
+#include "collision/world.hpp"
+#include "tests/collision/event_log.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cstddef>
+#include <memory>
+
+namespace kds::collision::test_division {
+namespace {
+
+using Eigen::Vector3d;
+using kds::tests::Random;
+
+/// Balls on the places of a lattice, and a plate at rest on which they lie.
+Bodies<certificates::PointMotion<1>> lattice(int side) {
+  Random random(4);
+  Bodies<certificates::PointMotion<1>> bodies;
+  const auto add = [&](const BodyDescription<1>& body) {
+    const auto shape = std::make_shared<const PlacedShape>(place(body.shape, body.orientation));
+    bodies.add(body, shape, body.motion[0]);
+  };
+  for (int i = 0; i < side * side * side; ++i) {
+    const Vector3d velocity(random.between(-2, 2), random.between(-2, 2), 0);
+    add(tests::ball<1>(0.25, Vector3d(i % side, i / side % side, i / side / side), velocity));
+  }
+  add(tests::fixed_body<1>(Box{{100, 100, 0.5}}, tests::motion<1>({0, 0, -2})));
+  add(tests::fixed_body<1>(Sphere{1}, tests::motion<1>({3, 3, 3}, {1, 0, 0})));
+  return bodies;
+}
+
+}  // namespace
+
+TEST_CASE("Division: bodies are owned where they are, and known as far as the halo", "[parallel]") {
+  const auto bodies = lattice(12);
+  const auto division = divide(bodies, 0, {.domains = 4, .halo = 2}, 1);
+  REQUIRE(division);
+  CHECK(division->partition.size() == 4);
+  CHECK(division->greatest_radius == 1);  // of what moves, whoever moves it
+  CHECK(division->halo == Approx(2 + 2 * 11.0 / 12).epsilon(1e-3));
+  CHECK(division->greatest_speed <= 2);
+  const BodySlot plate = 12 * 12 * 12, sphere = plate + 1;
+  CHECK(division->owner[plate] == Division::nobody);
+  CHECK(division->known[plate] == 0b1111);
+  CHECK(division->owner[sphere] != Division::nobody);
+  std::size_t copies = 0;
+  for (BodySlot slot = 0; slot < plate; ++slot) {
+    const Vector3d place = bodies.path(slot).position(0);
+    CHECK(division->owner[slot] == division->partition.cell_of(place));
+    for (std::size_t i = 0; i < 4; ++i) {
+      const bool near = outside(place, division->partition.cell(i)) <= division->halo;
+      CHECK(near == ((division->known[slot] & domain_bit(i)) != 0));
+      copies += near;
+    }
+  }
+  CHECK(copies > plate);
+}
+
+TEST_CASE("Division: a scene has one domain where more would not pay, or places are not known", "[parallel]") {
+  const auto bodies = lattice(12);
+  CHECK(domains_wanted({}, 2, 19'999) == 1);
+  CHECK(domains_wanted({}, 2, 20'000) == 2);
+  CHECK(domains_wanted({}, 100, 10'000'000) == most_domains);
+  CHECK(domains_wanted({.domains = 5}, 2, 10) == 5);
+  CHECK_FALSE(divide(bodies, 0, {}, 2));  // too few bodies
+  CHECK_FALSE(divide(bodies, 1e9, {.domains = 2, .halo = 1e-9}, 2));
+  CHECK_FALSE(divide(Bodies<certificates::PointMotion<1>>(), 0, {.domains = 2}, 2));
+}
+
+}  // namespace kds::collision::test_division
