@@ -29,7 +29,9 @@ std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from,
       if (body.shape && has_mesh(body.shape->shape)) make_room_for_meshes();
       const BodySlot slot = bodies_.take_in(from.bodies_, number);
       volumes_.add(slot, {});
-      if (from.resting_.has_met(number)) resting_.note_meeting(slot);
+      if constexpr (!turns<Motion>) {
+        if (from.resting_.has_met(number)) resting_.note_meeting(slot);
+      }
       taken.push_back(slot);
       if (body.entered) {
         entering.push_back(slot);
@@ -71,7 +73,9 @@ void Engine<Motion>::follow(BodySlot slot, const Engine& from, BodySlot there) r
 
 template <class Motion>
 void Engine<Motion>::follow_meeting(BodySlot slot, const Engine& from, BodySlot there) requires(!turns<Motion>) {
-  if (from.resting_.has_met(there)) resting_.note_meeting(slot);
+  if constexpr (!turns<Motion>) {
+    if (from.resting_.has_met(there)) resting_.note_meeting(slot);
+  }
 }
 
 template <class Motion>

@@ -56,7 +56,7 @@ Trial<Degree> trial(std::uint64_t seed) {
   }
   if (random.one_in(3)) {
     for (auto& body : result.scene.bodies)
-      body.category = 1u << random.below(2), body.collides_with = 1u + random.below(3);
+      body.category = 1u << random.below(2), body.collides_with = static_cast<std::uint32_t>(1 + random.below(3));
   }
   if (random.one_in(Degree == 1 ? 4 : 10)) {
     for (auto& body : result.scene.bodies) body.restitution = random.between(0.3, 1);
@@ -162,7 +162,7 @@ Trial<1> lattice(int side, double gap) {
 
 TEST_CASE("Domains: simultaneous contacts by the thousand", "[parallel]") {
   Seen seen;
-  for (const std::size_t domains : {2, 3, 8}) {
+  for (const std::size_t domains : {2u, 3u, 8u}) {
     compare(lattice(9, 2), {.threads = 2, .domains = domains, .halo = 1}, 1, seen);
     compare(lattice(8, 1.5), {.threads = 2, .domains = domains, .halo = 1.5}, 3, seen);
   }
@@ -185,7 +185,7 @@ TEST_CASE("Domains: cradles whose pulses go through all of them, touching and al
     trial.options.walls = Walls{Vector3d(-4, -1, -1), Vector3d(77 * (1 + gap), 7, 1)};
     trial.what = "cradles, gap " + std::to_string(gap);
     Seen seen;
-    for (const std::size_t domains : {2, 11}) compare(trial, {.threads = 2, .domains = domains, .halo = 2}, 2, seen);
+    for (const std::size_t domains : {2u, 11u}) compare(trial, {.threads = 2, .domains = domains, .halo = 2}, 2, seen);
     CHECK(seen.events > 250);
   }
 }
@@ -201,7 +201,7 @@ TEST_CASE("Domains: bodies larger than a domain, and some that are nowhere near"
   floor.fixed = true;
   one.scene.bodies.push_back(floor);
   Seen seen;
-  for (const std::size_t domains : {2, 5}) compare(one, {.threads = 1, .domains = domains, .halo = 1}, 1, seen);
+  for (const std::size_t domains : {2u, 5u}) compare(one, {.threads = 1, .domains = domains, .halo = 1}, 1, seen);
   CHECK(seen.events > 50);
 }
 

@@ -53,7 +53,8 @@ TEST_CASE("Events of domains are merged into the order of one world, cascades at
     const auto put = [&](double t, BodySlot a, BodySlot b) {
       if (a != b) queue.push_back({t, std::min(a, b), std::max(a, b)});
     };
-    for (int i = 0; i < 20; ++i) put(random.integer(0, 3), random.below(bodies), random.below(bodies));
+    const auto any = [&] { return static_cast<BodySlot>(random.below(bodies)); };
+    for (int i = 0; i < 20; ++i) put(random.integer(0, 3), any(), any());
     std::vector<DomainEvent> log;
     while (!queue.empty() && log.size() < 200) {
       const auto first = std::min_element(queue.begin(), queue.end());
@@ -65,10 +66,10 @@ TEST_CASE("Events of domains are merged into the order of one world, cascades at
         const bool shares = d.a == due.a || d.a == due.b || d.b == due.a || d.b == due.b;
         return shares && random.one_in(3);
       });
-      if (random.one_in(2)) put(due.t + (random.one_in(2) ? 0 : 1), due.a, random.below(bodies));
+      if (random.one_in(2)) put(due.t + (random.one_in(2) ? 0 : 1), due.a, any());
     }
     INFO("seed " << seed);
-    for (const std::size_t domains : {1, 2, 3, 5}) {
+    for (const std::size_t domains : {1u, 2u, 3u, 5u}) {
       EventMerge merge(divided(log, domains));
       for (const DomainEvent& right : log) {
         REQUIRE(!merge.empty());
