@@ -44,7 +44,8 @@ set(KDS_WASM_COMPILE ${CMAKE_CXX_COMPILER_LAUNCHER} "${KDS_WASM_CXX}" --target=w
   -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections "-I${PROJECT_SOURCE_DIR}"
   -isystem "${CMAKE_CURRENT_BINARY_DIR}/wasm/others"
   # Of the standard library for wasm32-wasi std::filesystem is left out.
-  -DJSON_HAS_FILESYSTEM=0 -DJSON_HAS_EXPERIMENTAL_FILESYSTEM=0)
+  -DJSON_HAS_FILESYSTEM=0 -DJSON_HAS_EXPERIMENTAL_FILESYSTEM=0
+  CACHE INTERNAL "how a file is compiled to WebAssembly")
 
 # kds_wasm_object(SOURCE VARIABLE): compiles a file; the object's path is put into the variable.
 function(kds_wasm_object source variable)
@@ -59,13 +60,14 @@ endfunction()
 
 # What of the library those programs link. An object of a source above is that of one custom target, so that two programs
 # do not compile it at the same time.
-set(KDS_WASM_OBJECTS "")
+set(objects "")
 foreach(source IN ITEMS kds/large_vector kds/arithmetic/exact kds/roots/failure_time certificates/order
                         certificates/plane_certificates examples/course/page examples/course/browser/write
                         examples/course/browser/exceptions)
   kds_wasm_object("${PROJECT_SOURCE_DIR}/${source}.cpp" object)
-  list(APPEND KDS_WASM_OBJECTS "${object}")
+  list(APPEND objects "${object}")
 endforeach()
+set(KDS_WASM_OBJECTS "${objects}" CACHE INTERNAL "what all programs in pages link")
 add_custom_target(kds_wasm_objects DEPENDS ${KDS_WASM_OBJECTS})
 
 # kds_runs_in_its_page(TARGET SOURCE): the program once more, in the pages that it writes.
