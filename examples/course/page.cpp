@@ -49,7 +49,7 @@ std::string Page::names(const std::vector<Id>& ids) const {
   return all;
 }
 
-/// The page itself gives them so; it has none to give that are refused here.
+/// The motions of motions(), read from text. In the plane they have x and y, on a line y alone.
 std::vector<Page::Piece> Page::given(const std::string& text, std::size_t most, bool on_line) {
   const auto refuse = [](std::size_t element, const std::string& why) {
     throw std::invalid_argument("Page: motion " + std::to_string(element) + ": " + why);

@@ -81,4 +81,5 @@ function(kds_runs_in_its_page target source)
     DEPENDS "${object}" kds_wasm_objects ${KDS_WASM_OBJECTS} "${PROJECT_SOURCE_DIR}/examples/course/browser/embed.cmake"
     BYPRODUCTS "${wasm}" COMMENT "Linking ${target}.wasm" VERBATIM)
   target_sources(${target} PRIVATE "${wasm}.cpp")
+  set_target_properties(${target} PROPERTIES KDS_IN_ITS_PAGE ON)
 endfunction()

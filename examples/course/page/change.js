@@ -14,7 +14,7 @@ const coordinates = data.view === 'line' ? ['y'] : ['x', 'y'];
 function rounded(number) {
   const {ky} = $('figure').dataset;
   const range = $('figure').getBoundingClientRect().height / Math.abs(ky);
-  return Number(number.toFixed(Math.max(0, 2 - Math.floor(Math.log10(range)))));
+  return Number(number.toFixed(Math.max(0, 3 - Math.floor(Math.log10(range)))));
 }
 
 /** Runs the program. If it refuses the motions, all stays as it was. */
