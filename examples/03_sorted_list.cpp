@@ -8,24 +8,25 @@
 
 #include <iostream>
 #include <string>
+#include <vector>
 
 using namespace kds;
 using List = examples::ListRule<Motion<2>>;  // the rule that its author writes: 40 lines
 
 int main(int argc, char** argv) {
   course::Page page(course::View::line, "03 The sorted list",
-                    "Five values, each on a parabola, and their order. Each two neighbours have a certificate, "
+                    "Values, each on a parabola, and their order. Each two neighbours have a certificate, "
                     "lower \u2264 upper. When one fails the two swap, and up to three certificates are new; "
                     "nothing happens in between.", 0, 8);
   page.legend.event = "a swap";
 
-  // The elements. A set of elements has no clock; edits are given their time, here 0.
+  // The elements. A set of elements has no clock; edits are given their time, here 0. The page may give other motions.
   MovingSet<Motion<2>> values;
-  const Motion<2> motions[] = {
+  const std::vector<Motion<2>> usual{
       {{{1, 0.2, 0.09}}, 0}, {{{2.5, 1.9, -0.24}}, 0}, {{{4, -0.4, 0.11}}, 0}, {{{5.2, -1.7, 0.14}}, 0},
       {{{7, 0.5, -0.14}}, 0},
   };
-  for (const auto& motion : motions) {
+  for (const auto& motion : page.motions(argc, argv, usual)) {
     const Id id = values.add(motion, 0);
     page.element(id, std::string(1, static_cast<char>('a' + id)));
     page.moves(id, motion, 0);

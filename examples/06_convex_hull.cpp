@@ -29,14 +29,14 @@ std::vector<Id> without(const std::vector<Id>& ids, const std::vector<Id>& other
 int main(int argc, char** argv) {
   const double end = 10;
   course::Page page(course::View::plane, "06 Convex hull",
-                    "Ten points on parabolas, and the rubber band around them. It is proved by a triangulation: every "
+                    "Points on parabolas, and the rubber band around them. It is proved by a triangulation: every "
                     "triangle turns left, and so does the outline. Most events change only that proof.", 0, end);
   page.legend.outline = "the hull";
   page.legend.edges = "its proof";
   page.play_time = 24;
 
   MovingSet<Path> points;
-  for (const Path& path : course::arcs(10, 6, end)) {
+  for (const Path& path : page.motions(argc, argv, course::arcs(10, 6, end))) {
     const Id id = points.add(path, 0);
     page.element(id, std::string(1, static_cast<char>('a' + id)));
     page.moves(id, path, 0);

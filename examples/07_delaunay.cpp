@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   page.play_time = 30;
 
   MovingSet<Path> points;
-  for (const Path& path : course::arcs(11, 71, end)) {
+  for (const Path& path : page.motions(argc, argv, course::arcs(11, 71, end))) {
     const Id id = points.add(path, 0);
     page.element(id, std::string(1, static_cast<char>('a' + id)));
     page.moves(id, path, 0);

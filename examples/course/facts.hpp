@@ -27,7 +27,9 @@ class Facts {
 
   template <int Degree>
   Held of(const certificates::Order<Degree>& c) const {
-    return {name(c.lower) + " \u2264 " + name(c.upper), {id(c.lower), id(c.upper)}};
+    return {.fact = name(c.lower) + " \u2264 " + name(c.upper),
+            .members = {id(c.lower), id(c.upper)},
+            .function = name(c.upper) + "(t) \u2212 " + name(c.lower) + "(t)"};
   }
   template <class Path>
   Held of(const certificates::Orientation<Path>& c) const {
@@ -82,6 +84,10 @@ std::vector<Held> certificates_of(const Rule& rule, Slot end, const MovingSet<ty
       const Facts<typename Rule::Element> facts(page, elements, {std::begin(members), std::end(members)});
       Held held = facts.of(certificate);
       held.fails = failure_time(certificate, now);
+      if constexpr (requires { certificate.template polynomial<double>(now); }) {
+        const auto polynomial = certificate.template polynomial<double>(page.begin());
+        held.polynomial.assign(polynomial.c.begin(), polynomial.c.end());
+      }
       all.push_back(std::move(held));
     });
   }

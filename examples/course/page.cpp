@@ -5,10 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <iostream>
+#include <cmath>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 namespace kds::course {
@@ -16,20 +14,6 @@ namespace kds::course {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::string_view page_template =
-#include "page_template.inc"
-    ;
-constexpr std::string_view style =
-#include "style.inc"
-    ;
-constexpr std::string_view scripts[] = {
-#include "scripts.inc"
-};
-
-void replace(std::string& text, std::string_view mark, std::string_view part) {
-  text.replace(text.find(mark), mark.size(), part);
-}
 
 template <class List>
 void put(ordered_json& object, const char* key, const List& list) {
@@ -63,6 +47,33 @@ std::string Page::names(const std::vector<Id>& ids) const {
   std::string all;
   for (const Id id : ids) all += (all.empty() ? "" : " ") + name(id);
   return all;
+}
+
+/// The motions of motions(), read from text. In the plane they have x and y, on a line y alone.
+std::vector<Page::Piece> Page::given(const std::string& text, std::size_t most, bool on_line) {
+  const auto refuse = [](std::size_t element, const std::string& why) {
+    throw std::invalid_argument("Page: motion " + std::to_string(element) + ": " + why);
+  };
+  const ordered_json list = ordered_json::parse(text);
+  if (!list.is_array() || list.empty() || list.size() > 26) {
+    throw std::invalid_argument("Page: motions must be an array of 1 to 26");
+  }
+  std::vector<Piece> pieces;
+  for (const ordered_json& motion : list) {
+    const std::size_t i = pieces.size();
+    const auto read = [&](const char* name) {
+      const auto coefficients = motion.at(name).get<std::vector<double>>();
+      if (coefficients.size() > most) refuse(i, std::string(name) + " has more than " + std::to_string(most) + " numbers");
+      for (const double c : coefficients) {
+        if (!std::isfinite(c)) refuse(i, std::string(name) + " has a number that is not finite");
+      }
+      return coefficients;
+    };
+    const double start = motion.value("start", 0.0);
+    if (!std::isfinite(start)) refuse(i, "start is not finite");
+    pieces.push_back({0, start, on_line ? std::vector<double>() : read("x"), read("y")});
+  }
+  return pieces;
 }
 
 void Page::add_piece(Id id, Piece piece) {
@@ -106,6 +117,7 @@ std::string Page::json() const {
   page["begin"] = begin_;
   page["end"] = end_;
   page["play"] = play_time;
+  if (coefficients_ > 0) page["coefficients"] = coefficients_;
   page["names"] = {{"event", legend.event},
                    {"marked", legend.marked},
                    {"outline", legend.outline},
@@ -147,31 +159,11 @@ std::string Page::json() const {
   for (const auto& [held, from, until] : spans_) {
     ordered_json entry{{"fact", held.fact}, {"members", held.members}, {"from", from}, {"until", until}};
     entry["fails"] = held.fails == never ? ordered_json() : ordered_json(held.fails);
+    if (!held.function.empty()) entry["function"] = held.function;
+    put(entry, "polynomial", held.polynomial);
     page["certificates"].push_back(std::move(entry));
   }
   return page.dump();
-}
-
-std::string Page::html() const {
-  std::string page(page_template);
-  std::string code;
-  for (const std::string_view script : scripts) code += script;
-  // The last mark is replaced first, since inserted text may contain marks.
-  replace(page, "/*{SCRIPTS}*/", code);
-  std::string data = json();
-  for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos; ++at) data.replace(at, 2, "<\\/");
-  replace(page, "/*{DATA}*/", data);
-  replace(page, "/*{STYLE}*/", style);
-  return page;
-}
-
-void Page::write(int argc, char** argv, const std::string& name) const {
-  const std::filesystem::path path = argc > 1 ? argv[1] : name + ".html";
-  std::ofstream file(path, std::ios::binary);
-  file << html();
-  file.close();
-  if (!file) throw std::runtime_error("cannot write " + path.string());
-  std::cout << "page: " << path.string() << " (open it in a browser)\n";
 }
 
 }  // namespace kds::course

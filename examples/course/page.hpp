@@ -6,8 +6,9 @@
 #include "kds/framework/moving_set.hpp"
 #include "kds/motion.hpp"
 
+#include <algorithm>
 #include <array>
-#include <filesystem>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct Held {
   std::string fact;         ///< in words
   std::vector<Id> members;  ///< the elements that it is about; for a circle first the three that are on it
   double fails = never;     ///< s
+  std::string function;     ///< what is not negative while it holds: "e \u2212 d"
+  std::vector<double> polynomial;  ///< its coefficients in the time since the page begins, rounded
 
   friend bool operator==(const Held&, const Held&) = default;
 };
@@ -52,11 +55,37 @@ class Page {
  public:
   Page(View view, std::string title, std::string about, double begin, double end);
 
+  /// The motions of the elements, each for the whole run: `usual`, or those of the program's second argument, in JSON: an
+  /// array of 1 to 26 objects like {"start": 0, "y": [1, 0.2, 0.09]}, in the plane with "x" too. Whoever opens the page
+  /// may then change them there, and it runs the program anew, if that is in the page (program_in_page.hpp). Throws
+  /// std::invalid_argument for motions that are too many, too long or not finite, and what nlohmann::json throws for
+  /// text that is something else.
+  template <int Degree>
+  std::vector<Motion<Degree>> motions(int argc, char** argv, std::vector<Motion<Degree>> usual) {
+    coefficients_ = Degree + 1;
+    if (argc <= 2) return usual;
+    std::vector<Motion<Degree>> all;
+    for (const Piece& piece : given(argv[2], Degree + 1, true)) all.push_back({polynomial<Degree>(piece.y), piece.start});
+    return all;
+  }
+  template <int Degree>
+  std::vector<certificates::PlaneMotion<Degree>> motions(int argc, char** argv,
+                                                         std::vector<certificates::PlaneMotion<Degree>> usual) {
+    coefficients_ = Degree + 1;
+    if (argc <= 2) return usual;
+    std::vector<certificates::PlaneMotion<Degree>> all;
+    for (const Piece& piece : given(argv[2], Degree + 1, false)) {
+      all.push_back({{polynomial<Degree>(piece.x), polynomial<Degree>(piece.y)}, piece.start});
+    }
+    return all;
+  }
+
   /// A moving element: a dot, or a ball of this radius, or a box of these half widths. Names of one or two letters are
   /// written in the dot, of longer ones the first letter.
   void element(Id id, std::string name, double radius = 0);
   void box(Id id, std::string name, std::array<double, 2> half);
   const std::string& name(Id id) const;
+  double begin() const { return begin_; }
   /// "a b c".
   std::string names(const std::vector<Id>& ids) const;
 
@@ -91,7 +120,7 @@ class Page {
   std::string json() const;
   std::string html() const;
   /// Writes to the path given as first argument, else to `name`.html here, and says so. Throws std::runtime_error if it
-  /// cannot.
+  /// cannot. In a browser it writes json() to the standard output.
   void write(int argc, char** argv, const std::string& name) const;
 
  private:
@@ -121,6 +150,13 @@ class Page {
   static std::vector<double> list(const Polynomial<Degree>& p) {
     return {p.c.begin(), p.c.end()};
   }
+  template <int Degree>
+  static Polynomial<Degree> polynomial(const std::vector<double>& coefficients) {
+    Polynomial<Degree> p{};
+    std::copy(coefficients.begin(), coefficients.end(), p.c.begin());
+    return p;
+  }
+  static std::vector<Piece> given(const std::string& text, std::size_t most, bool on_line);
   void add_piece(Id id, Piece piece);
   Element& find(Id id);
   void add_state(State state);
@@ -128,6 +164,7 @@ class Page {
   View view_;
   std::string title_, about_;
   double begin_, end_;
+  int coefficients_ = 0;  ///< of a motion that may be changed, in a coordinate; 0: none may be
   std::vector<Element> elements_;
   std::vector<Event> events_;
   std::vector<State> states_;

@@ -16,7 +16,9 @@ function setTime(t) {
 
 function draw() {
   const number = stateNumber(now);
+  if (number !== shown && answered && shown !== -1) answered = false;  // the time has been moved: another question
   view.draw(now, number, lit);
+  drawHandles();
   $('figure').dataset.time = now;
   $('now').textContent = `t = ${seconds(now)} s`;
   $('time').setAttribute('aria-valuetext', `${seconds(now)} seconds`);
@@ -25,6 +27,8 @@ function draw() {
   shown = number;
   $('state').textContent = data.states[number].text;
   showNext(number);
+  showFormula(number);
+  drawGuess();
   showCertificates(number);
   markEvents(number);
   drawRibbon();
@@ -40,8 +44,32 @@ function showNext(number) {
   $('next').append(`Next to fail: ${next.fact}, at `, time);
 }
 
+/** A polynomial in the time since the page begins, rounded to so many digits as are read at a glance. */
+function formula(coefficients) {
+  const power = (k) => (k === 0 ? '' : ` ${data.begin === 0 ? 't' : `(t \u2212 ${data.begin})`}` +
+    (k === 1 ? '' : String(k).replace(/./g, (digit) => '\u2070\u00B9\u00B2\u00B3\u2074\u2075\u2076\u2077\u2078\u2079'[digit])));
+  let text = '';
+  coefficients.forEach((c, k) => {
+    if (c === 0) return;
+    const size = String(Number(Math.abs(c).toPrecision(3)));
+    const sign = text === '' ? (c < 0 ? '\u2212' : '') : (c < 0 ? ' \u2212 ' : ' + ');
+    text += sign + size + power(k);
+  });
+  return text || '0';
+}
+
+function showFormula(number) {
+  const next = nextToFail(number);
+  const polynomial = next?.polynomial;
+  $('formula').textContent = polynomial
+    ? `${next.function ?? 'f(t)'} = ${formula(polynomial)}, negative after t = ${seconds(next.fails)}` : '';
+  $('formula').hidden = !data.certificates.some((held) => held.polynomial);
+}
+
 function showCertificates(number) {
-  const all = certificatesAt(number), most = 60;
+  const all = [...certificatesAt(number)], most = 60;
+  // Their order would give away which one fails first.
+  if (guessing && !answered) all.sort((a, b) => (a.fact < b.fact ? -1 : 1));
   const next = nextToFail(number);
   $('certificates-title').textContent = `Certificates that hold: ${all.length}`;
   $('certificates').replaceChildren(...all.slice(0, most).map((held) => {
@@ -53,6 +81,11 @@ function showCertificates(number) {
     row.append(fact, time);
     row.addEventListener('mouseenter', () => { lit = held.members; draw(); });
     row.addEventListener('mouseleave', () => { lit = []; draw(); });
+    if (guessing && !answered) {
+      set(row, {role: 'button', tabindex: 0});
+      row.addEventListener('click', () => guess(held));
+      row.addEventListener('keydown', ({key}) => { if (key === 'Enter') guess(held); });
+    }
     return row;
   }));
   if (all.length > most) {
@@ -66,6 +99,7 @@ function showCertificates(number) {
 
 function listEvents() {
   $('events-title').textContent = `Events: ${data.events.length}`;
+  $('events').replaceChildren();
   data.events.forEach((event, k) => {
     const row = document.createElement('li');
     const button = document.createElement('button');
@@ -151,10 +185,19 @@ let laidOut = '';
 function resize() {
   const width = $('frame').clientWidth;
   const rest = $('stage').offsetHeight - $('figure').getBoundingClientRect().height;
-  const room = innerHeight - rest - $('stage').offsetTop - 24;
+  const footer = document.querySelector('footer');
+  const below = $('stage').offsetTop + footer.offsetHeight + parseFloat(getComputedStyle(footer).marginTop) +
+    parseFloat(getComputedStyle(document.body).paddingBottom);
+  const room = innerHeight - rest - below;
   const height = Math.round(Math.max(260, Math.min(width * (width < 520 ? 0.95 : 0.62), room)));
   if (`${width} ${height}` === laidOut) return;
   laidOut = `${width} ${height}`;
+  layOut(width, height);
+  // Side by side, lists that are longer than the picture scroll.
+  $('aside').style.maxHeight = getComputedStyle($('stage')).gridColumnStart && $('stage').offsetWidth < innerWidth * 0.9
+    ? `${Math.max($('stage').offsetHeight, 560)}px` : '';
+}
+function layOut(width, height) {
   set($('figure'), {viewBox: `0 0 ${width} ${height}`, height});
   view.layout(width, height);
   set($('ribbon'), {viewBox: `0 0 ${$('ribbon').clientWidth} 24`});
@@ -164,6 +207,16 @@ function resize() {
   $('time').style.width = `${to - from + 16}px`;
   drawRibbon();
   draw();
+}
+
+/** Another run of the program in place of the one that is shown. */
+function showRun(run) {
+  takeUp(run);
+  shown = -1;
+  lit = [];
+  drawLegend();
+  listEvents();
+  layOut(...laidOut.split(' ').map(Number));
 }
 
 $('time').addEventListener('input', () => { play(false); now = Number($('time').value); draw(); });
@@ -185,18 +238,18 @@ if (view.timeAt) {
   $('figure').addEventListener('pointermove', drag);
 }
 document.addEventListener('keydown', (event) => {
-  if (event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === 'SELECT') return;
+  if (event.ctrlKey || event.altKey || event.metaKey || event.target.matches('select, input[type=number]')) return;
   const onButton = event.target.tagName === 'BUTTON';
   const actions = {
     n: () => goToEvent(1), p: () => goToEvent(-1), Home: () => setTime(data.begin), End: () => setTime(data.end),
-    l: () => $('larger').click(), f: fullScreen,
+    l: () => $('larger').click(), f: fullScreen, g: () => $('game').click(),
     ArrowRight: () => setTime(now + duration / 200), ArrowLeft: () => setTime(now - duration / 200),
   };
   if (!onButton) actions[' '] = () => play(!playing);
   const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
   if (!action) return;
   event.preventDefault();
-  if (!' lf'.includes(event.key.toLowerCase())) play(false);
+  if (!' lfg'.includes(event.key.toLowerCase())) play(false);
   action();
 });
 
@@ -215,18 +268,3 @@ document.addEventListener('fullscreenchange', () => {
   $('full').setAttribute('aria-pressed', document.fullscreenElement !== null);
 });
 addEventListener('resize', () => requestAnimationFrame(resize));
-
-/** For whoever drives the page from outside: the same numbers that are drawn. */
-window.course = {
-  data, setTime, position, now: () => now,
-  state: (t) => ({...data.states[stateNumber(t)], number: stateNumber(t), certificates: certificatesAt(stateNumber(t))}),
-};
-
-drawLegend();
-listEvents();
-const wanted = /^#t=(.+)$/.exec(location.hash);
-if (wanted && Number.isFinite(Number(wanted[1]))) now = Math.min(data.end, Math.max(data.begin, Number(wanted[1])));
-$('time').value = now;
-// In the next frame, for the picture's height follows its width, and the observer would hear of that amidst its work.
-new ResizeObserver(() => requestAnimationFrame(resize)).observe($('frame'));
-resize();

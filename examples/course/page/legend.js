@@ -1,5 +1,6 @@
 // What the signs in the picture mean: of those only that occur.
 function drawLegend() {
+  document.getElementById('legend').replaceChildren();
   const entry = (text, tag, attributes) => {
     const row = document.createElement('li');
     const picture = make('svg', {viewBox: '0 0 22 18', 'aria-hidden': true});

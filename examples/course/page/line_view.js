@@ -2,7 +2,7 @@
 function lineView(svg) {
   const left = 46, bottom = 34, top = 12;
   let right = 16;
-  let scale, moving = {};
+  let scale, moving = {}, kept;
 
   /** The world line of an element from a to b, both within one run. */
   function worldLine(element, a, b) {
@@ -25,6 +25,7 @@ function lineView(svg) {
   }
 
   function range() {
+    if (rangeKept && kept) return kept;
     let low = Infinity, high = -Infinity;
     for (const element of data.elements) {
       for (let k = 0; k <= 400; ++k) {
@@ -34,7 +35,7 @@ function lineView(svg) {
     }
     if (data.window) [low, high] = data.window;
     const margin = 0.06 * (high - low || 1);
-    return [low - margin, high + margin];
+    return kept = [low - margin, high + margin];
   }
 
   function layout(width, height) {
@@ -118,7 +119,8 @@ function lineView(svg) {
       const kind = held === next ? ' next' : '';
       if (held.members.length === 2) {
         const [a, b] = held.members.map((id) => scale.y(position(id, t).y));
-        make('path', {class: 'held' + kind, d: `M${scale.x(t)} ${a}V${b}`}, moving.held);
+        const number = data.certificates.indexOf(held);
+        make('path', {class: 'held' + kind, 'data-held': number, d: `M${scale.x(t)} ${a}V${b}`}, moving.held);
       }
       if (held.fails === null || held.fails > data.end) continue;
       const x = scale.x(held.fails), y = scale.y(position(held.members[0], held.fails).y);

@@ -2,7 +2,23 @@
 // nothing at all on it decides who is in order, on the hull or in touch: that is read from the recorded states.
 const data = JSON.parse(document.getElementById('data').textContent);
 const duration = data.end - data.begin;
-const elements = new Map(data.elements.map((element) => [element.id, element]));
+const elements = new Map(), colour = new Map(), certificatesOf = new Map();
+let colourful;  // a colour for each element while there are few
+
+/** Shows another run of the same program: the one that was recorded is the first. */
+function takeUp(run) {
+  Object.assign(data, run);
+  for (const of of [elements, colour, certificatesOf]) of.clear();
+  colourful = data.elements.length <= 8;
+  data.elements.forEach((element, i) => {
+    elements.set(element.id, element);
+    colour.set(element.id, colourful ? `var(--e${i})` : 'var(--point)');
+  });
+}
+takeUp(data);
+
+/** While somebody drags, the picture keeps its scale. */
+let rangeKept = false;
 
 function value(coefficients, elapsed) {
   let sum = 0;
@@ -40,7 +56,6 @@ function stateNumber(t) {
   return low;
 }
 
-const certificatesOf = new Map();
 /** The certificates of a state, the one that fails first in front. `fails` is null for those that never do. */
 function certificatesAt(number) {
   if (!certificatesOf.has(number)) {
@@ -59,10 +74,6 @@ function nextToFail(number) {
 
 const digits = Math.max(0, Math.min(9, 3 - Math.floor(Math.log10(duration / 4))));
 const seconds = (t) => t.toFixed(digits);
-
-// Colours: one for each element while there are few.
-const colourful = data.elements.length <= 8;
-const colour = new Map(data.elements.map((e, i) => [e.id, colourful ? `var(--e${i})` : 'var(--point)']));
 
 function make(tag, attributes, parent) {
   const node = document.createElementNS('http://www.w3.org/2000/svg', tag);

@@ -1,9 +1,10 @@
 // The plane, seen from above: points, balls and boxes, what is known of them, and the certificate that fails next.
 function planeView(svg) {
-  let scale, moving = {}, size;
+  let scale, moving = {}, size, kept;
 
   function bounds() {
     if (data.window) return data.window;
+    if (rangeKept && kept) return kept;
     let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
     for (const element of data.elements) {
       const w = element.half ? element.half[0] : element.radius ?? 0;
@@ -13,7 +14,7 @@ function planeView(svg) {
         x0 = Math.min(x0, x - w), x1 = Math.max(x1, x + w), y0 = Math.min(y0, y - h), y1 = Math.max(y1, y + h);
       }
     }
-    return [x0, y0, x1, y1];
+    return kept = [x0, y0, x1, y1];
   }
 
   function layout(width, height) {

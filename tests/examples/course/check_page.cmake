@@ -1,5 +1,6 @@
 # Runs a program of the course, drives its page in Chromium and has what was seen there checked.
 # -DNAME= -DPROGRAM= -DCHROMIUM= -DCHECKER= -DDRIVER= -DFOLDER= (written to) -DWIDTH=
+# -DCHANGES=ON: the driver changes motions, and the checker compares what follows with the program itself.
 file(REMOVE_RECURSE "${FOLDER}")
 file(MAKE_DIRECTORY "${FOLDER}")
 set(page "${FOLDER}/${NAME}.html")
@@ -33,7 +34,12 @@ if(failed)
   message(FATAL_ERROR "${CHROMIUM} failed (${failed}):\n${log}")
 endif()
 
-execute_process(COMMAND "${CHECKER}" "${NAME}" "${page}" "${FOLDER}/document.html" RESULT_VARIABLE failed)
+if(CHANGES)
+  set(arguments "${PROGRAM}" "${FOLDER}/document.html" "${FOLDER}")
+else()
+  set(arguments "${NAME}" "${page}" "${FOLDER}/document.html")
+endif()
+execute_process(COMMAND "${CHECKER}" ${arguments} RESULT_VARIABLE failed)
 if(failed)
   message(FATAL_ERROR "the page of ${NAME} is not right; see ${FOLDER}")
 endif()

@@ -54,6 +54,29 @@ TEST_CASE("a page is one file whose data cannot end its script", "[course]") {
   CHECK(html.find("https://") == std::string::npos);
 }
 
+TEST_CASE("a program takes the motions that its page gives it", "[course]") {
+  std::string motions;
+  const auto given = [&](const std::string& text) {
+    motions = text;
+    char program[] = "program", file[] = "page.html";
+    char* arguments[] = {program, file, motions.data()};
+    Page page(View::line, "t", "a", 0, 1);
+    return page.motions(3, arguments, std::vector<Motion<2>>{{{{1, 2, 3}}, 4}});
+  };
+  Page page(View::line, "t", "a", 0, 1);
+  CHECK(page.motions(1, nullptr, std::vector<Motion<2>>{{{{1, 2, 3}}, 4}}).size() == 1);
+  const auto two = given(R"([{"y": [0.1, -2]}, {"start": 0.5, "y": [1e-300, 0, 7]}])");
+  REQUIRE(two.size() == 2);
+  CHECK((two[0].start == 0 && two[0].position.c == std::array<double, 3>{0.1, -2, 0}));
+  CHECK((two[1].start == 0.5 && two[1].position.c == std::array<double, 3>{1e-300, 0, 7}));
+  CHECK_THROWS_WITH(given("[]"), "Page: motions must be an array of 1 to 26");
+  CHECK_THROWS_WITH(given("{}"), "Page: motions must be an array of 1 to 26");
+  CHECK_THROWS_WITH(given(R"([{"y": [1]}, {"y": [1, 2, 3, 4]}])"), "Page: motion 1: y has more than 3 numbers");
+  CHECK_THROWS_AS(given(R"([{"x": [1]}])"), std::exception);
+  CHECK_THROWS_AS(given(R"([{"y": ["a"]}])"), std::exception);
+  CHECK_THROWS_AS(given("[{"), std::exception);
+}
+
 TEST_CASE("a page refuses what it could not show", "[course]") {
   CHECK_THROWS_AS(Page(View::line, "", "", 1, 1), std::invalid_argument);
   Page page(View::line, "", "", 0, 1);
