@@ -7,7 +7,6 @@
 #include "collision/parallel/world_events.hpp"
 #include "collision/world.hpp"
 #include "collision/world/engine.hpp"
-#include "kds/large_vector.hpp"
 
 #include <array>
 #include <cstddef>
@@ -32,7 +31,7 @@ struct EngineOf {
 /// A domain: a cell of space, and a world that knows the bodies in it, which it *owns*, and *copies* of those that are
 /// not farther outside than the halo. It runs them for a window. Far out copies go wrong, since what is beyond them is
 /// not known. When the owners have told what happened to the bodies, each domain finds out how near to its cell
-/// anything came that it did not know, or knew wrongly; parallel_world.hpp says what follows.
+/// anything came that it did not know, or knew wrongly; docs/parallel.md says what follows.
 ///
 /// Owned bodies deeper in the cell than twice the halo are not followed one by one: that they stay deeper than the halo
 /// is checked.
@@ -140,7 +139,7 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<BodySlot> local_;       ///< by number: the slot here, no_body of one that is not known
   std::vector<Role> role_;            ///< by slot
   std::vector<std::uint32_t> place_;  ///< by slot, of followed bodies: in followed_
-  std::vector<char> has_changed_;     ///< by slot, in this window
+  std::vector<char> has_changed_;     ///< by slot, of owned bodies: in this step
   std::vector<Followed> followed_;
   std::vector<Copy> copies_;       ///< by number
   std::vector<BodySlot> changed_;  ///< slots of owned bodies
