@@ -176,7 +176,7 @@ void Pairs<Motion>::changed(BodySlot a, BodySlot b) {
 }
 
 template <class Motion>
-void Pairs<Motion>::let_pass(BodySlot a, BodySlot b) {
+void Pairs<Motion>::go_on_overlapping(BodySlot a, BodySlot b, double passes_at) {
   Slot slot = find(a, b);
   if (slot == none) {
     slot = add(a, b);
@@ -185,19 +185,7 @@ void Pairs<Motion>::let_pass(BodySlot a, BodySlot b) {
   Pair& pair = pairs_[slot];
   pair.overlapping = true;
   pair.fresh = false;
-  pair.passes_at = clock_.now;
-  mark_dirty(slot);
-}
-
-template <class Motion>
-void Pairs<Motion>::go_on_overlapping(BodySlot a, BodySlot b, double passes_at) {
-  Slot slot = find(a, b);
-  if (slot == none) {
-    slot = add(a, b);
-    ++unlisted_;
-  }
-  pairs_[slot].overlapping = true;
-  pairs_[slot].passes_at = passes_at;
+  pair.passes_at = passes_at;
   mark_dirty(slot);
 }
 

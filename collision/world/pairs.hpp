@@ -122,8 +122,8 @@ class Pairs final : public PairListener {
   void changed(BodySlot a, BodySlot b);
   /// Lets a pair pass until it has separated, and at this time whatever else happens, even if its boxes do not overlap
   /// just now.
-  void let_pass(BodySlot a, BodySlot b);
-  /// Two bodies overlap, since they do in another world; let pass at `passes_at`, as there.
+  void let_pass(BodySlot a, BodySlot b) { go_on_overlapping(a, b, clock_.now); }
+  /// Two bodies overlap from now on, and are or were let pass at `passes_at` (of pairs that are not, -never).
   void go_on_overlapping(BodySlot a, BodySlot b, double passes_at);
   /// Calls visit(a, b, passes_at) for each pair that overlaps.
   template <class Visit>

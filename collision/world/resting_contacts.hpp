@@ -165,7 +165,7 @@ class RestingContacts {
   /// The cluster of a body moves as one for a span, since its impacts do not end.
   void halt(BodySlot id);
   /// Two bodies that are not fixed have met.
-  void note_meeting(BodySlot a, BodySlot b) { member(std::max(a, b)), of_[a].met = of_[b].met = true; }
+  void note_meeting(BodySlot a, BodySlot b) { note_meeting(a), note_meeting(b); }
   bool has_met(BodySlot id) const { return id < of_.size() && of_[id].met; }
   void note_meeting(BodySlot id) { member(id).met = true; }
   /// Makes a cluster of all that leans on a body that is not fixed.
