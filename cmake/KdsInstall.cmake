@@ -28,12 +28,13 @@ if(TARGET kds_gsl)
   install(EXPORT kdsGslTargets NAMESPACE kds:: DESTINATION "${config_dir}" COMPONENT gsl EXCLUDE_FROM_ALL)
 endif()
 
-# kds::io reads mesh files by assimp: only who asks for the component has to have that.
+# kds::io reads mesh files by assimp, and tables of bodies by HDF5: only who asks for the component has to have these.
 if(TARGET kds_io)
   install(TARGETS kds_io EXPORT kdsIoTargets
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT io
     FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kds" COMPONENT io)
   install(EXPORT kdsIoTargets NAMESPACE kds:: DESTINATION "${config_dir}" COMPONENT io)
+  install(FILES "${CMAKE_CURRENT_LIST_DIR}/KdsHdf5.cmake" DESTINATION "${config_dir}" COMPONENT io)
 endif()
 
 # For programs that are not built by CMake: `pkg-config --cflags --libs kds`, or kds-turning.
@@ -62,7 +63,7 @@ if(PROJECT_IS_TOP_LEVEL)
     set(CPACK_COMPONENT_IO_DESCRIPTION "Mesh files, scenes and replays for libkds-dev\n Headers and a static library.")
     set(CPACK_DEBIAN_IO_PACKAGE_NAME libkds-io-dev)
     set(CPACK_DEBIAN_IO_PACKAGE_SECTION libdevel)
-    set(CPACK_DEBIAN_IO_PACKAGE_DEPENDS "libkds-dev (= ${PROJECT_VERSION}), libassimp-dev, zlib1g-dev")
+    set(CPACK_DEBIAN_IO_PACKAGE_DEPENDS "libkds-dev (= ${PROJECT_VERSION}), libassimp-dev, zlib1g-dev, libhdf5-dev")
   endif()
   if(TARGET kds-collide)
     list(APPEND CPACK_COMPONENTS_ALL kds-collide)

@@ -19,4 +19,11 @@ inline std::string number_text(double value) {
   return text;
 }
 
+/// For numbers that were computed and not given: six digits.
+inline std::string about(double value) {
+  char digits[32];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 6);
+  return {digits, end};
+}
+
 }  // namespace kds::io

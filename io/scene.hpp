@@ -28,6 +28,9 @@ struct SurfaceNumbers {
   double tangential_restitution = 0;  ///< in [-1, 1]
 };
 
+/// How far from 1 the norm of an orientation may be: files carry few digits. It is normalised.
+inline constexpr double orientation_tolerance = 1e-6;
+
 struct SceneBody {
   std::string name;
   kds::collision::Shape shape;
@@ -71,6 +74,7 @@ struct Scene {
   std::optional<Domain> domain;
   std::vector<SceneMesh> meshes;
   std::vector<SceneBody> bodies;
+  std::vector<std::string> table_files;  ///< of tables of bodies, as written in the scene
   /// What was mended in what the scene names, each as one line `FILE: WHERE: what`.
   std::vector<std::string> warnings;
 

@@ -1,19 +1,18 @@
 #include "io/scene_reader.hpp"
 
 #include "certificates/turning/turned_orientation.hpp"
-#include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh_script.hpp"
-#include "collision/world.hpp"
 #include "io/number_text.hpp"
+#include "io/scene_file/body_checks.hpp"
 #include "io/scene_file/json_node.hpp"
 #include "io/scene_file/material_reader.hpp"
 #include "io/scene_file/mesh_reader.hpp"
 #include "io/scene_file/pivot.hpp"
-#include "io/scene_world.hpp"
+#include "io/scene_file/shape_reader.hpp"
+#include "io/scene_file/table_reader.hpp"
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -28,101 +27,6 @@ namespace kds::io {
 namespace {
 
 using nlohmann::json;
-
-/// For numbers that were computed and not given: six digits.
-std::string about(double value) {
-  char digits[32];
-  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 6);
-  return {digits, end};
-}
-
-using kds::collision::Shape;
-using Meshes = std::vector<SceneMesh>;
-
-Shape read_sphere(const JsonNode& node, const Meshes&) {
-  return kds::collision::Sphere{node["sphere"].object({"radius"})["radius"].positive()};
-}
-
-Shape read_box(const JsonNode& node, const Meshes&) {
-  const JsonNode half = node["box"].object({"half_extents"})["half_extents"];
-  const std::vector<JsonNode> parts = half.tuple(3);
-  return kds::collision::Box{{parts[0].positive(), parts[1].positive(), parts[2].positive()}};
-}
-
-Shape read_capsule(const JsonNode& node, const Meshes&) {
-  const JsonNode capsule = node["capsule"];
-  capsule.object({"radius", "half_length"});
-  return kds::collision::Capsule{capsule["radius"].positive(), capsule["half_length"].length()};
-}
-
-Shape read_half_space(const JsonNode& node, const Meshes&) {
-  const JsonNode half_space = node["half_space"];
-  half_space.object({"normal", "offset"});
-  return kds::collision::HalfSpace{half_space["normal"].vector(), half_space["offset"].number()};
-}
-
-Shape read_hull(const JsonNode& node, const Meshes&) {
-  const JsonNode points = node["hull"].object({"points"})["points"];
-  const std::vector<JsonNode> places = points.elements();
-  std::vector<Eigen::Vector3d> corners;
-  for (const JsonNode& place : places) corners.push_back(place.vector());
-  try {
-    const Shape hull = kds::collision::convex_hull(std::move(corners));
-    kds::collision::place(hull, Eigen::Quaterniond::Identity());
-    return hull;
-  } catch (const kds::collision::InvalidHull& error) {
-    if (error.point()) {
-      const std::string what = error.what();  // "point 4: ..."
-      places[*error.point()].fail(what.substr(what.find(": ") + 2));
-    }
-    points.fail(error.what());
-  } catch (const std::invalid_argument& error) {
-    const std::string what = error.what();  // "hull: ..."
-    points.fail(what.substr(what.find(": ") + 2));
-  }
-}
-
-Shape read_mesh_shape(const JsonNode& node, const Meshes& meshes) {
-  const std::string name = node["mesh"].string();
-  const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const SceneMesh& m) { return m.name == name; });
-  if (found == meshes.end()) node["mesh"].fail("there is no mesh \"" + name + "\" in \"meshes\"");
-  const double scale = node.has("scale") ? node["scale"].positive() : 1.0;
-  const double radius = found->mesh->bounding_radius() * scale;
-  if (radius < smallest_size || radius > largest_number) {
-    const std::string reaches = node.has("scale") ? "makes the mesh reach " : "reaches ";
-    const std::string limit =
-        radius < smallest_size ? "at least " + number_text(smallest_size) : "at most " + number_text(largest_number);
-    node[node.has("scale") ? "scale" : "mesh"].fail(reaches + about(radius) + " from its origin; " + limit +
-                                                    " is supported");
-  }
-  return kds::collision::MeshShape{found->mesh, scale};
-}
-
-struct ShapeReader {
-  const char* key;
-  Shape (*read)(const JsonNode& node, const Meshes& meshes);
-};
-constexpr const char* one_shape =
-    "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\", \"hull\" and \"half_space\"";
-constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},
-                                         {"box", read_box},
-                                         {"mesh", read_mesh_shape},
-                                         {"capsule", read_capsule},
-                                         {"hull", read_hull},
-                                         {"half_space", read_half_space}};
-
-Shape read_shape(const JsonNode& node, const Meshes& meshes) {
-  node.object({"sphere", "box", "mesh", "capsule", "hull", "half_space", "scale"});
-  const ShapeReader* found = nullptr;
-  for (const ShapeReader& each : shape_readers) {
-    if (!node.has(each.key)) continue;
-    if (found) node.fail(one_shape);
-    found = &each;
-  }
-  if (!found) node.fail(one_shape);
-  if (node.has("scale") && !node.has("mesh")) node["scale"].fail("is for meshes only");
-  return found->read(node, meshes);
-}
 
 /// `vertices`: keyframes of the vertices of the body's mesh, which then bends.
 void read_vertices(const JsonNode& node, SceneBody& body, Response response) {
@@ -158,11 +62,7 @@ void read_vertices(const JsonNode& node, SceneBody& body, Response response) {
 Eigen::Quaterniond read_orientation(const JsonNode& node) {
   const std::vector<JsonNode> parts = node.tuple(4);
   const Eigen::Quaterniond q(parts[0].number(), parts[1].number(), parts[2].number(), parts[3].number());
-  const double norm = q.norm();
-  if (!(std::abs(norm - 1) <= orientation_tolerance)) {
-    node.fail("must be a unit quaternion; its norm is " + about(norm));
-  }
-  return q.normalized();
+  return unit_quaternion(q, [&](const std::string& what) { node.fail(what); });
 }
 
 /// `start` and `position` of a piece.
@@ -267,60 +167,9 @@ Domain read_domain(const JsonNode& node, const SurfaceNumbers& of_scene) {
   return domain;
 }
 
-/// With reflecting walls every piece of motion begins inside them.
-void check_inside_walls(const JsonNode& node, const SceneBody& body, const Domain& domain) {
-  const double radius = kds::collision::place(body.shape, body.orientation).bounding_radius;
-  const std::vector<JsonNode> pieces = node["motion"].elements();
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const Eigen::Vector3d& at = body.motion[p].path.coefficients[0];
-    for (int d = 0; d < 3; ++d) {
-      const bool inside = at[d] - domain.min[d] >= radius && domain.max[d] - at[d] >= radius;
-      if (inside) continue;
-      pieces[p]["position"].fail(std::string("begins outside the reflecting walls: ") + "xyz"[d] + " = " +
-                                 number_text(at[d]) + " with a bounding radius of " + about(radius) + ", between " +
-                                 number_text(domain.min[d]) + " and " + number_text(domain.max[d]));
-    }
-  }
-}
-
-/// Every piece stays within the largest number while it holds, by the sum of its terms.
-void check_range(const JsonNode& node, const SceneBody& body, const Scene& scene) {
-  const std::vector<JsonNode> pieces = node["motion"].elements();
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const kds::certificates::PointMotion<2>& piece = body.motion[p].path;
-    const double end = p + 1 < pieces.size() ? std::min(body.motion[p + 1].start(), scene.end_time) : scene.end_time;
-    const double elapsed = std::max(0.0, end - piece.start);
-    for (int d = 0; d < 3; ++d) {
-      const auto& c = piece.coefficients;
-      const double largest = std::abs(c[0][d]) + elapsed * (std::abs(c[1][d]) + elapsed * std::abs(c[2][d]));
-      if (largest <= largest_number) continue;
-      pieces[p]["position"].fail("may reach a magnitude of " + about(largest) + " by t = " + about(end) + "; at most " +
-                                 number_text(largest_number) + " is supported");
-    }
-  }
-}
-
-/// Not every body can turn: which one cannot, and why, is for a world to say, which begins with the member that is
-/// wrong.
-void check_turns(const std::vector<JsonNode>& nodes, const Scene& scene) {
-  kds::collision::BasicWorld<MotionPiece> world({.response = scene.response});
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    try {
-      world.remove_body(world.add_body(describe<MotionPiece>(scene.bodies[i])));
-    } catch (const std::invalid_argument& error) {
-      const std::string what = error.what();
-      const std::size_t colon = what.find(": ");
-      if (colon == std::string::npos) nodes[i].fail(what);
-      std::string member = what.substr(0, colon);
-      if (member == "mass_properties") member = "shape";  // which is no solid
-      throw JsonError(nodes[i].path() + '.' + member, what.substr(colon + 2));
-    }
-  }
-}
-
 Scene read_document(const JsonNode& root, const std::filesystem::path& folder, std::optional<double> until) {
   root.object({"scene", "end_time", "response", "restitution", "friction", "tangential_restitution", "domain", "meshes",
-               "bodies"});
+               "bodies", "tables"});
   if (!root["scene"].is(1)) root["scene"].fail("must be 1, the only format there is");
   Scene scene;
   scene.end_time = root["end_time"].number();
@@ -330,7 +179,9 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
   const SurfaceNumbers surface = read_surface(root, {});
   if (root.has("domain")) scene.domain = read_domain(root["domain"], surface);
   if (root.has("meshes")) read_meshes(root["meshes"], folder, scene);
-  const std::vector<JsonNode> bodies = root["bodies"].elements();
+  // With tables no others are needed.
+  const bool listed = root.has("bodies") || !root.has("tables");
+  const std::vector<JsonNode> bodies = listed ? root["bodies"].elements() : std::vector<JsonNode>{};
   std::map<std::string, std::string> names;
   for (const JsonNode& node : bodies) {
     scene.bodies.push_back(read_body(node, scene, surface));
@@ -338,16 +189,41 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
     if (!is_new) node["name"].fail('"' + entry->first + "\" is the name of " + entry->second + " too");
     scene.turning = scene.turning || speaks_of_turning(node);
   }
+  std::vector<ReadTable> tables;
+  if (root.has("tables")) {
+    for (const JsonNode& node : root["tables"].elements()) {
+      tables.push_back(read_table(node, folder, surface, scene));
+      scene.table_files.push_back(tables.back().file);
+    }
+  }
+  check_names(tables, names);
   for (const SceneBody& body : scene.bodies) {  // made by pivots
     const auto mesh = mesh_of(body.shape);
     const auto is_it = [&](const SceneMesh& known) { return known.mesh == mesh; };
     if (!mesh || std::any_of(scene.meshes.begin(), scene.meshes.end(), is_it)) continue;
     scene.meshes.push_back({body.name, "", mesh});
   }
+  const auto each_body = [&](const auto& check) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      check(scene.bodies[i], [&](const std::string& member) {
+        return member.empty() ? bodies[i].path() : bodies[i].path() + '.' + member;
+      });
+    }
+    for (const ReadTable& table : tables) {
+      for (std::size_t row = 0; row < table.rows; ++row) {
+        check(scene.bodies[table.first + row],
+              [&](const std::string& member) { return table.member_path(row, member); });
+      }
+    }
+  };
   if (scene.turning) {
-    check_turns(bodies, scene);
+    TurningCheck turning(scene);
+    each_body([&](const SceneBody& body, const MemberPath& path) { turning.check(body, path); });
   } else {
     refuse_friction(root, bodies);
+    for (const ReadTable& table : tables) {
+      if (table.has_friction) throw JsonError(table.path + ".file", table.file + ": has friction: " + nothing_turns);
+    }
   }
 
   if (!scene.bodies.empty()) scene.begin_time = scene.bodies.front().motion.front().start();
@@ -356,12 +232,7 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
     root["end_time"].fail("must be >= " + number_text(scene.begin_time) + ", where the motion begins");
   }
   scene.end_time = until.value_or(scene.end_time);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    check_range(bodies[i], scene.bodies[i], scene);
-    if (scene.domain && scene.domain->walls == Walls::reflect && !scene.bodies[i].sensor) {
-      check_inside_walls(bodies[i], scene.bodies[i], *scene.domain);
-    }
-  }
+  each_body([&](const SceneBody& body, const MemberPath& path) { check_motion(body, scene, path); });
   return scene;
 }
 

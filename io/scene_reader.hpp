@@ -10,9 +10,6 @@
 
 namespace kds::io {
 
-/// How far from 1 the norm of an orientation may be: files carry few digits. It is normalised.
-inline constexpr double orientation_tolerance = 1e-6;
-
 /// Reads the file and the meshes it names; the scene ends at `until`, in seconds, instead of its end_time, if that is
 /// given. Throws SceneError.
 Scene read_scene(const std::filesystem::path& file, std::optional<double> until = {});

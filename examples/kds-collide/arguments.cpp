@@ -149,6 +149,9 @@ void describe(CLI::App& app, Arguments& arguments) {
       ->check(not_empty())
       ->needs(kind)
       ->group(group);
+  app.add_flag("--table", arguments.table, "Write the bodies as columns, into an HDF5 file beside the scene")
+      ->needs(kind)
+      ->group(group);
   for (CLI::Option* option : of_a_run) {
     if (option != app.get_help_ptr()) option->excludes(kind);
   }
@@ -198,13 +201,18 @@ void check(const Arguments& arguments, const Scene& scene) {
     throw ArgumentError("--rate: asks for more than 1e12 results");
   }
   const std::filesystem::path folder = std::filesystem::path(arguments.scene).parent_path();
-  for (const SceneMesh& mesh : scene.meshes) {
-    if (mesh.file.empty()) continue;
+  const auto check_input = [&](const std::string& file, const std::string& where) {
     for (const auto& [option, path] : outputs(arguments)) {
-      if (same_file(folder / mesh.file, path)) {
-        throw ArgumentError(std::string(option) + ": is the same file as meshes." + mesh.name + ".file of the scene");
+      if (same_file(folder / file, path)) {
+        throw ArgumentError(std::string(option) + ": is the same file as " + where + ".file of the scene");
       }
     }
+  };
+  for (const SceneMesh& mesh : scene.meshes) {
+    if (!mesh.file.empty()) check_input(mesh.file, "meshes." + mesh.name);
+  }
+  for (std::size_t i = 0; i < scene.table_files.size(); ++i) {
+    check_input(scene.table_files[i], "tables[" + std::to_string(i) + "]");
   }
 }
 

@@ -25,6 +25,7 @@ struct Arguments {
   bool generate = false;
   GeneratorOptions generator;
   std::string output;
+  bool table = false;  ///< the bodies go into a file of columns beside the scene
 };
 
 /// What is wrong with the arguments, as "WHERE: what is wrong".

@@ -1,6 +1,8 @@
 #include "examples/kds-collide/generator.hpp"
 
 #include "examples/kds-collide/model_meshes.hpp"
+#include "examples/kds-collide/placement.hpp"
+#include "io/body_table.hpp"
 #include "io/number_text.hpp"
 
 #include <Eigen/Core>
@@ -10,8 +12,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
-#include <unordered_map>
 
 namespace kds_collide {
 
@@ -20,93 +20,6 @@ using namespace kds::io;
 namespace {
 
 using Eigen::Vector3d;
-
-/// Random numbers made with nothing but the engine, whose sequence the standard fixes, and operations that IEEE 754
-/// rounds correctly: std::uniform_real_distribution, sin and cos differ from one library to the next.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-
-  /// Uniform in [0, 1): the upper 53 bits.
-  double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-  double uniform(double low, double high) { return low + (high - low) * unit(); }
-
-  /// [Marsaglia72], Choosing a point from the surface of a sphere, Ann. Math. Stat. 43.
-  Vector3d direction() {
-    const auto [x, y, s] = disc();
-    const double root = std::sqrt(1 - s);
-    return {2 * x * root, 2 * y * root, 1 - 2 * s};
-  }
-
-  /// Uniform over rotations; the same paper, in four dimensions.
-  Eigen::Quaterniond rotation() {
-    const auto [x, y, s] = disc();
-    const auto [z, w, t] = disc();
-    const double root = std::sqrt((1 - s) / t);
-    return {x, y, z * root, w * root};
-  }
-
- private:
-  /// A point of the unit disc other than its centre, and its squared distance from it.
-  std::array<double, 3> disc() {
-    for (;;) {
-      const double x = uniform(-1, 1);
-      const double y = uniform(-1, 1);
-      const double s = x * x + y * y;
-      if (s > 0 && s < 1) return {x, y, s};
-    }
-  }
-
-  std::mt19937_64 engine_;
-};
-
-/// Bounding balls placed so far, in a grid of cells as wide as the largest ball.
-class Placement {
- public:
-  Placement(double side, double largest_radius) : cell_(2 * largest_radius) {
-    cells_a_side_ = static_cast<std::int64_t>(side / cell_) + 1;
-  }
-
-  bool is_free(const Vector3d& at, double radius) const {
-    const auto home = cell_of(at);
-    for (std::int64_t x = home[0] - 1; x <= home[0] + 1; ++x) {
-      for (std::int64_t y = home[1] - 1; y <= home[1] + 1; ++y) {
-        for (std::int64_t z = home[2] - 1; z <= home[2] + 1; ++z) {
-          const auto found = cells_.find(key(x, y, z));
-          if (found == cells_.end()) continue;
-          for (const Ball& ball : found->second) {
-            const double radii = ball.radius + radius;
-            if ((ball.centre - at).squaredNorm() <= radii * radii) return false;
-          }
-        }
-      }
-    }
-    return true;
-  }
-
-  void add(const Vector3d& at, double radius) {
-    const auto home = cell_of(at);
-    cells_[key(home[0], home[1], home[2])].push_back({at, radius});
-  }
-
- private:
-  struct Ball {
-    Vector3d centre;
-    double radius;
-  };
-
-  std::array<std::int64_t, 3> cell_of(const Vector3d& at) const {
-    return {static_cast<std::int64_t>(at[0] / cell_), static_cast<std::int64_t>(at[1] / cell_),
-            static_cast<std::int64_t>(at[2] / cell_)};
-  }
-  std::int64_t key(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return ((z + 1) * (cells_a_side_ + 2) + (y + 1)) * (cells_a_side_ + 2) + (x + 1);
-  }
-
-  double cell_;
-  std::int64_t cells_a_side_;
-  std::unordered_map<std::int64_t, std::vector<Ball>> cells_;
-};
 
 void append_array(std::string& text, const Vector3d& v) {
   for (int d = 0; d < 3; ++d) {
@@ -125,12 +38,16 @@ void append_rotation(std::string& text, const Eigen::Quaterniond& q) {
   text.back() = ']';
 }
 
-/// Inscribed in the bounding radius, with edges in random proportions.
-std::string box_shape(double radius, Random& random) {
+/// Of a box inscribed in the bounding radius, with edges in random proportions.
+Vector3d half_extents(double radius, Random& random) {
   Vector3d half;
   for (int d = 0; d < 3; ++d) half[d] = random.uniform(0.5, 1);
+  return half * (radius / half.norm());
+}
+
+std::string box_shape(const Vector3d& half_extents) {
   std::string text = "{\"box\": {\"half_extents\": ";
-  append_array(text, half * (radius / half.norm()));
+  append_array(text, half_extents);
   return text + "}}";
 }
 
@@ -139,9 +56,7 @@ std::string box_shape(double radius, Random& random) {
 std::string spinner_shape(double radius, std::size_t kind) {
   constexpr double slender = 0.125;  // width of a rod, thickness of a plate
   const Vector3d half = std::array{Vector3d(1, 1, 1), Vector3d(slender, slender, 1), Vector3d(1, 1, slender)}[kind % 3];
-  std::string text = "{\"box\": {\"half_extents\": ";
-  append_array(text, half * (radius / half.norm()));
-  text += "}}";
+  std::string text = box_shape(half * (radius / half.norm()));
   if (kind % 3 == 0) return text;
   text += ", \"inertia\": ";
   append_number(text, 2 * radius * radius / 9);
@@ -153,9 +68,7 @@ std::string slender_shape(double radius, bool rod, Random& random) {
   const double thickness = random.uniform(0.08, 0.16);
   const double width = rod ? random.uniform(0.08, 0.16) : random.uniform(0.6, 1);
   const Vector3d half(thickness, width, 1);
-  std::string text = "{\"box\": {\"half_extents\": ";
-  append_array(text, half * (radius / half.norm()));
-  return text + "}}";
+  return box_shape(half * (radius / half.norm()));
 }
 
 /// A rod that is round, as long as one of slender_shape().
@@ -193,6 +106,11 @@ void check(const GeneratorOptions& options) {
         "--generate: there is no \"" + options.kind +
         "\"; use rings, models, spheres, boxes, spinners, spinning-rings, rods, plates, capsules, sheet or crates");
   }
+  const bool in_columns = options.kind == "spheres" || options.kind == "boxes" || options.kind == "rings" ||
+                          options.kind == "models" || options.kind == "spinning-rings";
+  if (!options.table.empty() && !in_columns) {
+    throw std::invalid_argument("--table: is for spheres, boxes, rings, models and spinning-rings");
+  }
   constexpr std::size_t most_bodies = 10'000'000;  // about 3 GB of text
   if (options.bodies == 0) throw std::invalid_argument("--bodies: must be > 0");
   if (options.bodies > most_bodies) throw std::invalid_argument("--bodies: must be at most 10000000");
@@ -201,6 +119,11 @@ void check(const GeneratorOptions& options) {
   if (!(options.density >= lowest_density && options.density <= 0.3)) {
     throw std::invalid_argument("--density: must be from 1e-12 to 0.3");
   }
+}
+
+Vector3d random_spin(Random& random) {
+  const Vector3d axis = random.direction();
+  return axis * random.uniform(0, most_turning);
 }
 
 struct NamedMesh {
@@ -376,7 +299,18 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     json += (i == 0 ? "\"" : ", \"") + meshes[i].name + "\": {\"file\": \"" + meshes[i].name + ".obj\"}";
   }
-  json += "},\n\"bodies\": [\n";
+  json += "},\n";
+  const std::string prefix = options.kind.substr(0, 1);
+  BodyTable table;
+  if (options.table.empty()) {
+    json += "\"bodies\": [\n";
+  } else {
+    json += "\"tables\": [{\"file\": \"" + options.table + "\", \"prefix\": \"" + prefix + '"';
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      json += (i == 0 ? ", \"shapes\": [" : ", ") + mesh_shape(meshes[i].name, 1);
+    }
+    json += meshes.empty() ? "}]\n}\n" : "]}]\n}\n";
+  }
 
   Placement placement(side, largest);
   // A ball of the largest radius finds room in one of about 20 tries at a density of 0.3.
@@ -397,7 +331,22 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     const Vector3d velocity = random.direction() * (random.uniform(0.5, 1.5) * mean_radius);
     const Eigen::Quaterniond q = random.rotation();
 
-    json += "{\"name\": \"" + options.kind.substr(0, 1) + std::to_string(i) + "\", \"shape\": ";
+    if (!options.table.empty()) {
+      table.position.push_back(at);
+      table.velocity.push_back(velocity);
+      table.orientation.emplace_back(q.w(), q.x(), q.y(), q.z());
+      if (!meshes.empty()) {
+        table.shape.push_back(static_cast<std::int64_t>(i % meshes.size()));
+        table.scale.push_back(radii[i] / meshes[i % meshes.size()].radius);
+      } else if (options.kind == "boxes") {
+        table.half_extents.push_back(half_extents(radii[i], random));
+      } else {
+        table.radius.push_back(radii[i]);
+      }
+      if (spins) table.angular_velocity.push_back(random_spin(random));
+      continue;
+    }
+    json += "{\"name\": \"" + prefix + std::to_string(i) + "\", \"shape\": ";
     if (!meshes.empty()) {
       const NamedMesh& mesh = meshes[i % meshes.size()];
       json += mesh_shape(mesh.name, radii[i] / mesh.radius);
@@ -408,7 +357,7 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     } else if (spins) {
       json += spinner_shape(radii[i], i);
     } else {
-      json += options.kind == "boxes" ? box_shape(radii[i], random) : sphere_shape(radii[i]);
+      json += options.kind == "boxes" ? box_shape(half_extents(radii[i], random)) : sphere_shape(radii[i]);
     }
     json += ", \"orientation\": ";
     append_rotation(json, q);
@@ -419,12 +368,15 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
     json += ']';
     if (spins) {
       json += ", \"angular_velocity\": ";
-      const Vector3d axis = random.direction();
-      append_array(json, axis * random.uniform(0, most_turning));
+      append_array(json, random_spin(random));
     }
     json += i + 1 < options.bodies ? "}]},\n" : "}]}\n";
   }
-  json += "]\n}\n";
+  if (options.table.empty()) {
+    json += "]\n}\n";
+  } else {
+    scene.table = to_hdf5(table);
+  }
   return scene;
 }
 

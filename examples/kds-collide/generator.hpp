@@ -19,9 +19,11 @@ struct GeneratorOptions {
   double density = 0.01;       ///< volume of all bounding balls over the volume of the domain, 1e-12 to 0.3
   std::uint64_t seed = 1;
   double end_time = 1;  ///< s
+  /// The name of an HDF5 file that is to hold the bodies, in columns; empty: they are in the scene.
+  std::string table;
 };
 
-/// A scene and the mesh files it names, as the text to be written.
+/// A scene and the files it names, as what is to be written.
 struct GeneratedScene {
   struct File {
     std::string name;
@@ -29,6 +31,7 @@ struct GeneratedScene {
   };
   std::string json;
   std::vector<File> meshes;
+  std::string table;  ///< bytes; empty if none was asked for
 };
 
 /// rings: [Coming06] section 5, tori of 64 triangles. models: [Coming06] Figure 6, closed models of over 6 000

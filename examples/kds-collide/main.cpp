@@ -46,13 +46,16 @@ int list_broad_phases() {
 }
 
 int generate(const Arguments& arguments) {
+  const std::filesystem::path file = arguments.output.empty() ? arguments.generator.kind + ".json" : arguments.output;
+  GeneratorOptions options = arguments.generator;
+  if (arguments.table) options.table = std::filesystem::path(file).replace_extension(".h5").filename().string();
+  if (arguments.table && options.table == file.filename()) throw ArgumentError("--output: is the name of the table too");
   GeneratedScene scene;
   try {
-    scene = generate_scene(arguments.generator);
+    scene = generate_scene(options);
   } catch (const std::invalid_argument& error) {
     throw ArgumentError(error.what());
   }
-  const std::filesystem::path file = arguments.output.empty() ? arguments.generator.kind + ".json" : arguments.output;
   std::list<OutputFile> outputs;
   const auto write = [&outputs](const std::filesystem::path& path, const std::string& text) {
     OutputFile& output = outputs.emplace_back(path.string());
@@ -62,8 +65,9 @@ int generate(const Arguments& arguments) {
   for (const auto& mesh : scene.meshes) {
     if (file.filename() == mesh.name) throw ArgumentError("--output: is the name of the mesh " + mesh.name + " too");
   }
-  // Meshes first: the scene is there only when all it names is.
+  // Meshes and the table first: the scene is there only when all it names is.
   for (const auto& mesh : scene.meshes) write(file.parent_path() / mesh.name, mesh.text);
+  if (arguments.table) write(file.parent_path() / options.table, scene.table);
   write(file, scene.json);
   for (OutputFile& output : outputs) output.commit();
   if (!arguments.quiet) {

@@ -1,9 +1,6 @@
 #include "io/scene_file/json_node.hpp"
 
-#include "io/number_text.hpp"
-
 #include <algorithm>
-#include <cmath>
 
 namespace kds::io {
 
@@ -42,30 +39,11 @@ std::vector<JsonNode> JsonNode::tuple(std::size_t size) const {
   return elements();
 }
 
-double JsonNode::number() const {
+double JsonNode::number(std::string (*problem)(double)) const {
   require(value_.is_number(), "must be a number");
   const auto x = value_.get<double>();
-  require(std::abs(x) <= largest_number, "must be at most " + number_text(largest_number) + " in magnitude");
-  return x;
-}
-
-double JsonNode::positive() const {
-  const double x = number();
-  require(x > 0, "must be > 0");
-  require(x >= smallest_size, "must be at least " + number_text(smallest_size));
-  return x;
-}
-
-double JsonNode::length() const {
-  const double x = number();
-  require(x >= 0, "must be >= 0");
-  require(x == 0 || x >= smallest_size, "must be 0, or at least " + number_text(smallest_size));
-  return x;
-}
-
-double JsonNode::fraction() const {
-  const double x = number();
-  require(x >= 0 && x <= 1, "must be in [0, 1]");
+  const std::string wrong = problem(x);
+  require(wrong.empty(), wrong);
   return x;
 }
 

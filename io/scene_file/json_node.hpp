@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/scene_file/json_document.hpp"
+#include "io/scene_file/number_rules.hpp"
 
 #include <Eigen/Core>
 
@@ -13,11 +14,6 @@
 #include <vector>
 
 namespace kds::io {
-
-/// Largest magnitude of any number of a scene, and smallest of a size, mass or scale: products of four of them, with
-/// room to spare for error bounds, stay normal doubles.
-inline constexpr double largest_number = 1e30;
-inline constexpr double smallest_size = 1e-30;
 
 /// A value and its path (`bodies[3].shape`). Every look at it gives what was asked for or throws JsonError.
 /// It refers to the document, which must outlive it.
@@ -37,10 +33,11 @@ class JsonNode {
   std::vector<JsonNode> elements() const;
   std::vector<JsonNode> tuple(std::size_t size) const;
 
-  double number() const;    ///< of magnitude up to largest_number
-  double positive() const;  ///< from smallest_size on
-  double length() const;    ///< the same, or 0
-  double fraction() const;  ///< in [0, 1]
+  double number() const { return number(number_problem); }
+  double positive() const { return number(positive_problem); }
+  double length() const { return number(length_problem); }
+  double fraction() const { return number(fraction_problem); }
+  double number(std::string (*problem)(double)) const;  ///< that keeps to a rule of number_rules.hpp
   Eigen::Vector3d vector() const;
   std::string string() const;  ///< not empty, without control characters
   bool boolean() const;

@@ -1,28 +1,13 @@
 #include "io/scene_file/material_reader.hpp"
 
 namespace kds::io {
-namespace {
-
-double read_friction(const JsonNode& node) {
-  const double x = node.number();
-  if (!(x >= 0)) node.fail("must be >= 0");
-  return x;
-}
-
-double read_tangential_restitution(const JsonNode& node) {
-  const double x = node.number();
-  if (!(x >= -1 && x <= 1)) node.fail("must be in [-1, 1]");
-  return x;
-}
-
-}  // namespace
 
 SurfaceNumbers read_surface(const JsonNode& node, const SurfaceNumbers& of_scene) {
   SurfaceNumbers surface = of_scene;
   if (node.has("restitution")) surface.restitution = node["restitution"].fraction();
-  if (node.has("friction")) surface.friction = read_friction(node["friction"]);
+  if (node.has("friction")) surface.friction = node["friction"].number(friction_problem);
   if (node.has("tangential_restitution")) {
-    surface.tangential_restitution = read_tangential_restitution(node["tangential_restitution"]);
+    surface.tangential_restitution = node["tangential_restitution"].number(tangential_restitution_problem);
   }
   return surface;
 }
@@ -31,7 +16,7 @@ void refuse_friction(const JsonNode& root, const std::vector<JsonNode>& bodies) 
   const auto refuse = [](const JsonNode& node) {
     for (const char* key : {"friction", "tangential_restitution"}) {
       if (node.has(key)) {
-        node[key].fail("bodies of this scene do not turn: none has an \"angular_velocity\" or an \"inertia\"");
+        node[key].fail(nothing_turns);
       }
     }
   };

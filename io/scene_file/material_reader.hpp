@@ -15,6 +15,10 @@ namespace kds::io {
 /// "tangential_restitution".
 SurfaceNumbers read_surface(const JsonNode& node, const SurfaceNumbers& of_scene);
 
+/// Why there is no friction in a scene.
+inline constexpr const char* nothing_turns =
+    "bodies of this scene do not turn: none has an \"angular_velocity\" or an \"inertia\"";
+
 /// In a scene in which nothing turns: fails at the first word of friction, at the scene or at a body.
 void refuse_friction(const JsonNode& root, const std::vector<JsonNode>& bodies);
 
