@@ -111,10 +111,11 @@ void read_column(hid_t file, const std::string& name, std::vector<Entry>& column
   std::array<hsize_t, 2> extent{0, 1};
   const bool fits = rank == (width == 1 ? 1 : 2) && H5Sget_simple_extent_dims(space, extent.data(), nullptr) >= 0;
   require(fits && extent[1] == width, "must have the shape " + shape_text(width, "rows"));
-  // A file of a few bytes may claim any number of rows. Deflate makes bytes 1032 times fewer at most.
-  constexpr double most_compressed = 2048;
+  // A file of a few bytes may claim any number of rows. Deflate makes bytes 1032 times fewer at most; and a column
+  // whose rows were never written takes none, which is no matter where rows are few.
+  constexpr double most_compressed = 2048, few_bytes = 4096;
   const double bytes = static_cast<double>(extent[0]) * static_cast<double>(width * H5Tget_size(type));
-  require(bytes <= most_compressed * (4096 + static_cast<double>(H5Dget_storage_size(set))),
+  require(bytes <= most_compressed * (few_bytes + static_cast<double>(H5Dget_storage_size(set))),
           "has fewer bytes than its rows need");
   column.resize(extent[0]);
   require(H5Dread(set, native_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, column.data()) >= 0, "cannot be read");
@@ -128,6 +129,16 @@ void write_column(hid_t file, const char* name, hsize_t rows, hsize_t width, hid
   const Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose,
                    "a dataset cannot be made");
   if (H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) throw BodyTableError("a dataset cannot be filled");
+}
+
+/// Every column that is used has as many rows as `position`.
+template <class Error>
+void require_equal_rows(const BodyTable& table) {
+  for_each_column(table, [&](const char* name, const auto& values) {
+    if (values.empty() || values.size() == table.rows()) return;
+    throw Error(std::string(name) + ": has " + std::to_string(values.size()) + " rows, and position has " +
+                std::to_string(table.rows()));
+  });
 }
 
 }  // namespace
@@ -151,20 +162,12 @@ BodyTable read_body_table(const std::filesystem::path& path) {
     if (!known) throw BodyTableError(name + ": is no column of a table of bodies");
   }
   if (table.position.empty()) throw BodyTableError("position: is missing, or has no rows");
-  for_each_column(table, [&](const char* name, const auto& values) {
-    if (values.empty() || values.size() == table.rows()) return;
-    throw BodyTableError(std::string(name) + ": has " + std::to_string(values.size()) + " rows, and position has " +
-                         std::to_string(table.rows()));
-  });
+  require_equal_rows<BodyTableError>(table);
   return table;
 }
 
 std::string to_hdf5(const BodyTable& table) {
-  for_each_column(table, [&](const char* name, const auto& values) {
-    if (values.empty() || values.size() == table.rows()) return;
-    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) +
-                                " rows, and position has " + std::to_string(table.rows()));
-  });
+  require_equal_rows<std::invalid_argument>(table);
   const Silence silence;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "out of memory");
   constexpr std::size_t growth = std::size_t{64} << 20;

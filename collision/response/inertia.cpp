@@ -60,7 +60,7 @@ Matrix3d checked_inertia(const Matrix3d& inertia) {
   if (!(greatest > 0)) refuse_tensor("must not be zero");
   if (!(greatest >= least_entry && greatest <= greatest_entry)) {
     refuse_tensor("its greatest entry is " + detail::number_text(greatest) +
-                  "; from 2^-617 (1.8e-186) to 2^617 (5.4e185) is supported");
+                  "; from " + detail::power_text(least_entry) + " to " + detail::power_text(greatest_entry) + " is supported");
   }
   const double unit = unit_of(inertia);
   Matrix3d m = unit * inertia;

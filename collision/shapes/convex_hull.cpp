@@ -15,8 +15,8 @@ void ShapeKind<ConvexHull>::place(const ConvexHull& hull, PlacedShape& placed) {
   if (!hull.polytope) throw std::invalid_argument("hull: is missing");
   const Polytope& polytope = *hull.polytope;
   if (const double edge = polytope.surface()->shortest_edge(); !(edge >= shortest_edge)) {
-    throw std::invalid_argument("hull: has an edge that is " + number_text(edge) +
-                                " long; at least 2^-110 (7.7e-34) is supported");
+    throw std::invalid_argument("hull: has an edge that is " + number_text(edge) + " long; at least " +
+                                power_text(shortest_edge) + " is supported");
   }
   polytope.surface()->extents(placed.rotation, 1, placed.low, placed.high);
   const double radius = polytope.bounding_radius();

@@ -32,7 +32,8 @@ void ShapeKind<HalfSpace>::place(const HalfSpace& half_space, PlacedShape& place
     throw std::invalid_argument("normal: must be of unit length, to " + number_text(normal_tolerance));
   }
   if (!(std::abs(half_space.offset) <= largest_magnitude)) {
-    throw std::invalid_argument("offset: must be finite, and at most 2^205 (5.1e61) in magnitude");
+    throw std::invalid_argument("offset: must be finite, and at most " + detail::power_text(largest_magnitude) +
+                                " in magnitude");
   }
   placed.low.setConstant(-infinity);
   placed.high.setConstant(infinity);

@@ -14,11 +14,12 @@ void require_range(const Mesh& mesh, double scale) {
   const double radius = mesh.bounding_radius() * scale;
   if (!(edge >= shortest_edge)) {
     throw std::invalid_argument("scale: " + number_text(scale) + " makes an edge of the mesh " + number_text(edge) +
-                                " long; at least 2^-110 (7.7e-34) is supported");
+                                " long; at least " + power_text(shortest_edge) + " is supported");
   }
   if (!(radius <= Mesh::largest_coordinate * (1 + 0x1p-40) * std::sqrt(3.0))) {
     throw std::invalid_argument("scale: " + number_text(scale) + " makes the mesh reach " + number_text(radius) +
-                                " from its origin; at most 2^100 (1.3e30) along each axis is supported");
+                                " from its origin; at most " + power_text(Mesh::largest_coordinate) +
+                                " along each axis is supported");
   }
 }
 

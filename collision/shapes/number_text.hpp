@@ -1,6 +1,8 @@
 // Numbers in messages.
 #pragma once
 
+#include <charconv>
+#include <cmath>
 #include <sstream>
 #include <string>
 
@@ -11,6 +13,15 @@ inline std::string number_text(double value) {
   std::ostringstream out;
   out << value;
   return out.str();
+}
+
+/// A power of two, as limits are: "2^-40 (9.1e-13)".
+inline std::string power_text(double power) {
+  char digits[32];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, power, std::chars_format::scientific, 1);
+  std::string decimal(digits, end);
+  if (const auto plus = decimal.find('+'); plus != std::string::npos) decimal.erase(plus, 1);
+  return "2^" + std::to_string(std::ilogb(power)) + " (" + decimal + ")";
 }
 
 }  // namespace kds::collision::detail

@@ -19,6 +19,7 @@ namespace kds::collision {
 namespace {
 
 using detail::number_text;
+using detail::power_text;
 using detail::rotation_margin;
 
 /// How far from 1 the norm of an orientation may be; scene files carry few digits. The quaternion is normalised.
@@ -39,8 +40,8 @@ auto of_kind(const Shape& shape, const Ask& ask) {
   if (!std::isfinite(value)) throw std::invalid_argument(name + ": must be finite");
   if (!(value > 0)) throw std::invalid_argument(name + ": must be > 0");
   if (value < smallest_size)
-    throw std::invalid_argument(name + ": " + number_text(value) + " is below 2^-205 (1.9e-62)");
-  throw std::invalid_argument(name + ": " + number_text(value) + " is above 2^205 (5.1e61)");
+    throw std::invalid_argument(name + ": " + number_text(value) + " is below " + power_text(smallest_size));
+  throw std::invalid_argument(name + ": " + number_text(value) + " is above " + power_text(largest_magnitude));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "collision/response/mass_properties.hpp"
 #include "collision/response/principal_inertia.hpp"
 #include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/number_text.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/checked_pieces.hpp"
 #include "collision/world/engine.hpp"
@@ -26,6 +27,9 @@
 namespace kds::collision {
 namespace {
 
+/// The least that the least moment of inertia of a body that precesses may be of the greatest.
+constexpr double flattest_inertia = 0x1p-40;
+
 template <class Motion>
 void validate(const BasicBodyDescription<Motion>& description) {
   const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
@@ -44,7 +48,7 @@ void validate(const BasicBodyDescription<Motion>& description) {
     if (description.inertia.moment() != 0) require_size(description.inertia.moment(), "inertia");
     if (description.inertia.tensor()) require_size(checked_inertia(*description.inertia.tensor())(0, 0), "inertia");
     if (!(description.friction >= 0 && description.friction <= largest_magnitude)) {
-      fail("friction: must be in [0, 2^205 (5.1e61)]");
+      fail("friction: must be in [0, " + detail::power_text(largest_magnitude) + "]");
     }
     if (!(std::abs(description.tangential_restitution) <= 1)) fail("tangential_restitution: must be in [-1, 1]");
   } else {
@@ -154,8 +158,9 @@ BodyId Engine<Motion>::add_body(const Description& description) {
         return add_body(whole);
       }
       principal = principal_inertia(tensor);
-      if (!(principal->moments.minCoeff() >= 0x1p-40 * principal->moments.maxCoeff())) {
-        throw std::invalid_argument("inertia: its least moment must be at least 2^-40 (9.1e-13) of the greatest");
+      if (!(principal->moments.minCoeff() >= flattest_inertia * principal->moments.maxCoeff())) {
+        throw std::invalid_argument("inertia: its least moment must be at least " + detail::power_text(flattest_inertia) +
+                                    " of the greatest");
       }
       for (std::size_t i = 0; i < description.motion.size(); ++i) {
         require_steady_clock(description.motion[i], clock_.now, "motion[" + std::to_string(i) + "]");

@@ -60,8 +60,8 @@ Shape read_mesh_shape(const JsonNode& node, const Meshes& meshes) {
   const std::string name = node["mesh"].string();
   const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const SceneMesh& m) { return m.name == name; });
   if (found == meshes.end()) node["mesh"].fail("there is no mesh \"" + name + "\" in \"meshes\"");
-  const double scale = node.has("scale") ? node["scale"].positive() : 1.0;
   const bool scaled = node.has("scale");
+  const double scale = scaled ? node["scale"].positive() : 1.0;
   const std::string problem =
       mesh_size_problem(found->mesh->bounding_radius() * scale, scaled ? "makes the mesh reach " : "reaches ");
   if (!problem.empty()) node[scaled ? "scale" : "mesh"].fail(problem);
