@@ -216,19 +216,52 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   return result;
 }
 
+/// The work of the worlds of all processes, and what the busiest took.
+void share(kds::collision::Team& team, kds::collision::WorldCounters& work, std::uint64_t& bytes, RunResult& result) {
+  static_assert(std::is_trivially_copyable_v<kds::collision::WorldCounters>);
+  const auto mine = [&](auto& writer) {
+    writer(work, bytes, result.setup_cpu_seconds, result.run_cpu_seconds, result.peak_memory_bytes);
+  };
+  kds::collision::WorldCounters all = work;
+  std::uint64_t all_bytes = bytes, most_memory = result.peak_memory_bytes;
+  double longest_setup = result.setup_cpu_seconds, longest_run = result.run_cpu_seconds;
+  team.exchange([&](std::size_t, auto& writer) { mine(writer); },
+                [&](std::size_t, auto& reader) {
+                  kds::collision::WorldCounters its_work;
+                  std::uint64_t its_bytes = 0, its_memory = 0;
+                  double its_setup = 0, its_run = 0;
+                  reader(its_work, its_bytes, its_setup, its_run, its_memory);
+                  all = all + its_work;
+                  all_bytes += its_bytes;
+                  longest_setup = std::max(longest_setup, its_setup), longest_run = std::max(longest_run, its_run);
+                  most_memory = std::max(most_memory, its_memory);
+                });
+  work = all, bytes = all_bytes;
+  result.setup_cpu_seconds = longest_setup, result.run_cpu_seconds = longest_run;
+  result.peak_memory_bytes = most_memory;
+}
+
 template <int Degree>
 RunResult run_divided(const Scene& scene, const RunOptions& options, EventSink& sink) {
   const double setup_start = cpu_seconds();
   DividedTeller teller(sink);
   kds::collision::ParallelWorld<Degree> world(world_options(scene, options),
-                                              {.threads = options.threads, .domains = options.domains}, &teller);
+                                              {.threads = options.threads, .domains = options.domains}, &teller,
+                                              options.processes);
   RunResult result = run_in(world, scene, options, sink, setup_start, [](BodyId, const auto&) {});
-  note_work(world.work(), result);
+  auto work = world.work();
+  const auto messages = world.messages();
+  result.exchanges = messages.exchanges, result.bytes_exchanged = messages.bytes;
+  kds::collision::Team team(options.processes);
+  result.processes = team.count();
+  share(team, work, result.bytes_exchanged, result);
+  note_work(work, result);
   const auto counters = world.counters();
   result.contacts = counters.contacts, result.separations = counters.separations;
   result.overlaps = counters.overlaps, result.wall_contacts = counters.wall_contacts;
   result.domains = world.domains();
   result.windows = counters.windows, result.windows_failed = counters.windows_failed;
+  result.bodies_owned = counters.bodies_owned, result.bodies_known = counters.bodies_known;
   return result;
 }
 
@@ -237,7 +270,7 @@ RunResult run_divided(const Scene& scene, const RunOptions& options, EventSink& 
 RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
   using kds::certificates::PointMotion;
   using kds::certificates::RigidMotion;
-  const bool divided = options.domains != 1;
+  const bool divided = options.domains != 1 || options.processes;
   if (scene.turning && divided) throw std::invalid_argument("--domains: a scene in which bodies turn is not divided");
   if (divided && (options.pairs || options.profile)) {
     throw std::invalid_argument("--domains: volumes are not told of, nor work profiled, in a scene that is divided");

@@ -1,6 +1,7 @@
 // Runs a scene.
 #pragma once
 
+#include "collision/parallel/processes.hpp"
 #include "collision/profile.hpp"
 #include "io/events.hpp"
 #include "io/scene.hpp"
@@ -24,9 +25,13 @@ struct RunOptions {
   /// Into how many domains the scene is divided, which the threads run; 0: as many as is best for them. With more than
   /// one the sink is not told of motions, so there are no pictures. The events do not depend on it.
   std::size_t domains = 1;
+  /// If not null, these run the scene together, divided into domains: all call run() with the same scene and options.
+  /// The sink of process 0 is told of events. Must outlive the run.
+  kds::collision::Processes* processes = nullptr;
 };
 
-/// What a run took and did.
+/// What a run took and did. Where several processes ran it, what they did is summed, and what it took is that of the
+/// one that took most.
 struct RunResult {
   std::string broad_phase;       ///< the one used, as World::broad_phase() names it
   double setup_cpu_seconds = 0;  ///< making the world and all that happens at begin_time
@@ -49,6 +54,11 @@ struct RunResult {
   std::uint64_t domains = 1;             ///< into which the scene was divided at the end
   std::uint64_t windows = 0;             ///< of a divided scene
   std::uint64_t windows_failed = 0;
+  std::uint64_t bodies_owned = 0;  ///< summed over domains and the steps of windows
+  std::uint64_t bodies_known = 0;  ///< the same, copies of bodies of other domains included
+  std::uint64_t processes = 1;
+  std::uint64_t exchanges = 0;        ///< of messages between processes
+  std::uint64_t bytes_exchanged = 0;  ///< in these
   std::uint64_t peak_memory_bytes = 0;
   kds::collision::Profile profile;  ///< where the time went, if asked for
 };

@@ -27,10 +27,17 @@ std::string to_json(const RunResult& result, const RunOptions& options, double r
   json["rotation_pieces"] = result.rotation_pieces;
   json["orientation_resets"] = result.orientation_resets;
   json["held"] = result.held;
-  if (options.domains != 1) {
+  if (options.domains != 1 || options.processes) {
     json["domains"] = result.domains;
     json["windows"] = result.windows;
     json["windows_failed"] = result.windows_failed;
+    json["bodies_owned"] = result.bodies_owned;
+    json["bodies_known"] = result.bodies_known;
+  }
+  if (options.processes) {
+    json["processes"] = result.processes;
+    json["exchanges"] = result.exchanges;
+    json["bytes_exchanged"] = result.bytes_exchanged;
   }
   json["peak_memory_bytes"] = result.peak_memory_bytes;
   return json.dump(2) + '\n';

@@ -16,4 +16,10 @@ struct Contact {
   Feature feature_b{};
 };
 
+template <class Archive>
+void archive_members(Archive& archive, Contact& contact) {
+  archive(contact.time, contact.feature_a, contact.feature_b);
+  for (Eigen::Vector3d* v : {&contact.point, &contact.normal}) archive((*v)[0], (*v)[1], (*v)[2]);
+}
+
 }  // namespace kds::collision

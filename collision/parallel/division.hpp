@@ -22,6 +22,18 @@ namespace kds::collision {
 using DomainMask = std::uint64_t;
 constexpr DomainMask domain_bit(std::size_t domain) { return DomainMask{1} << domain; }
 
+/// A body, by its number, is owned or known by others than before.
+struct BodyMove {
+  BodySlot number;
+  std::uint8_t owner;
+  DomainMask known;
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(number, owner, known);
+  }
+};
+
 /// What the domains of a scene share. Bodies by their numbers.
 struct Division {
   static constexpr std::uint8_t nobody = detail::DomainEvent::nobody;

@@ -65,10 +65,8 @@ void Domain<Motion>::begin_window() {
   const double now = world_.now();
   role_.assign(bodies.slots(), Role::still), place_.resize(bodies.slots()), has_changed_.assign(bodies.slots(), 0);
   followed_.clear(), copies_.clear(), changes_.clear(), changed_.clear();
-  nearest_.fill(never);
-  overshoot_ = 0;
-  owned_ = 0;
-  divisible_ = stayed_ = true;
+  report_ = {.known = world_.size()};
+  report_.nearest.fill(never);
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
     const std::uint8_t owner = division_.owner[number(slot)];
@@ -78,7 +76,7 @@ void Domain<Motion>::begin_window() {
       copies_.push_back({number(slot), bodies.motion(slot)});
       continue;
     }
-    ++owned_;
+    ++report_.owned;
     if (inside(bodies.path(slot).position(now), cell) - division_.bulge > 2 * division_.halo) {
       role_[slot] = Role::deep;
       continue;
@@ -93,52 +91,49 @@ void Domain<Motion>::begin_window() {
 template <class Motion>
 void Domain<Motion>::run(double until) {
   for (const BodySlot slot : changed_) has_changed_[slot] = 0;
-  const std::size_t sorted = changes_.size();
-  changed_.clear(), events_.clear();
-  told_ = {};
-  computed_ = 0;
+  changed_.clear(), events_.clear(), fresh_.clear();
+  report_.told = {};
+  report_.computed = 0;
   try {
     world_.advance_to(until);
   } catch (const RestsInPart&) {
-    divisible_ = false;
+    report_.divisible = false;
   }
-  if (!divisible_) return;
+  if (!report_.divisible) return;
   for (Followed& body : followed_) follow(body, until);
   const auto& bodies = engine_.bodies();
-  for (BodySlot slot = 0; slot < role_.size() && stayed_; ++slot) {
-    if (role_[slot] == Role::deep) stayed_ = stays_deep(bodies.path(slot).position(until));
+  for (BodySlot slot = 0; slot < role_.size() && report_.stayed; ++slot) {
+    if (role_[slot] == Role::deep) report_.stayed = stays_deep(bodies.path(slot).position(until));
   }
-  const auto by_number = [](const Change& a, const Change& b) { return a.number < b.number; };
-  std::stable_sort(changes_.begin() + static_cast<std::ptrdiff_t>(sorted), changes_.end(), by_number);
-  std::inplace_merge(changes_.begin(), changes_.begin() + static_cast<std::ptrdiff_t>(sorted), changes_.end(),
-                     by_number);
+  sort_by_number(fresh_);
+  changes_.append(fresh_);
 }
 
 template <class Motion>
 void Domain<Motion>::follow(Followed& body, double until) {
   const StaticBox swept = swept_point(body.motion, body.since, until);
-  overshoot_ = std::max(overshoot_, reach_outside(swept, division_.partition.cell(index_)));
+  report_.overshoot = std::max(report_.overshoot, reach_outside(swept, division_.partition.cell(index_)));
   const DomainMask known = division_.known[number(body.slot)];
   for (const std::size_t other : near_) {
     if ((known >> other & 1) != 0) continue;
-    nearest_[other] = std::min(nearest_[other], outside(swept, division_.partition.cell(other)));
+    report_.nearest[other] = std::min(report_.nearest[other], outside(swept, division_.partition.cell(other)));
   }
 }
 
 template <class Motion>
-void Domain<Motion>::compare(std::span<const std::unique_ptr<Domain>> all) {
+void Domain<Motion>::compare(std::span<const std::span<const Change>> all) {
   wrong_.clear();
-  nearest_wrong_ = never;
+  report_.nearest_wrong = never;
   const StaticBox& cell = division_.partition.cell(index_);
   // The changes of a body, of those of a domain, which are sorted, as the copies are.
   std::vector<std::size_t> next(all.size(), 0);
   const auto changes_of = [&](BodySlot number, std::size_t domain) {
-    const std::vector<Change>& changes = all[domain]->changes_;
+    const std::span<const Change> changes = all[domain];
     std::size_t& last = next[domain];
     while (last < changes.size() && changes[last].number < number) ++last;
     const std::size_t first = last;
     while (last < changes.size() && changes[last].number == number) ++last;
-    return std::span(changes).subspan(first, last - first);
+    return changes.subspan(first, last - first);
   };
   for (const auto& [number, begun] : copies_) {
     const auto mine = changes_of(number, index_);
@@ -156,21 +151,29 @@ void Domain<Motion>::compare(std::span<const std::unique_ptr<Domain>> all) {
       double since = from;
       for (std::size_t i = same; i <= changes.size(); ++i) {
         const double until = i < changes.size() ? changes[i].time : world_.now();
-        nearest_wrong_ = std::min(nearest_wrong_, outside(swept_point(*motion, since, until), cell));
+        report_.nearest_wrong = std::min(report_.nearest_wrong, outside(swept_point(*motion, since, until), cell));
         if (i < changes.size()) motion = &changes[i].motion, since = until;
       }
     }
   }
+  report_.wrong = wrong_.size();
 }
 
 template <class Motion>
 void Domain<Motion>::commit(Engine<Motion>& store) const {
-  for (const BodySlot slot : changed_) store.follow(number(slot), engine_, slot);
+  for (const BodySlot slot : changed_) store.go_on_from(number(slot), engine_.bodies().progress(slot));
 }
 
 template <class Motion>
 void Domain<Motion>::commit_meetings(Engine<Motion>& store) const {
-  for (const BodySlot slot : changed_) store.follow_meeting(number(slot), engine_, slot);
+  for (const BodySlot slot : changed_) {
+    if (engine_.has_met(slot)) store.note_meeting(number(slot));
+  }
+}
+
+template <class Motion>
+void Domain<Motion>::append_changed(std::vector<BodySlot>& numbers) const {
+  for (const BodySlot slot : changed_) numbers.push_back(number(slot));
 }
 
 template <class Motion>
@@ -185,17 +188,16 @@ std::vector<typename Domain<Motion>::Overlap> Domain<Motion>::overlaps() const {
 }
 
 template <class Motion>
-void Domain<Motion>::find_moves() {
-  moves_.clear();
-  const double now = world_.now();
+void Domain<Motion>::append_moves(const Engine<Motion>& store, double t, std::vector<BodyMove>& moves) const {
   for (const Followed& body : followed_) {
-    const Eigen::Vector3d place = engine_.bodies().path(body.slot).position(now);
-    Move move{number(body.slot), static_cast<std::uint8_t>(division_.partition.cell_of(place)), 0};
+    const BodySlot moved = number(body.slot);
+    const Eigen::Vector3d place = store.bodies().path(moved).position(t);
+    BodyMove move{moved, static_cast<std::uint8_t>(division_.partition.cell_of(place)), 0};
     if (outside(place, division_.partition.cell(index_)) <= division_.halo) move.known = domain_bit(index_);
     for (const std::size_t other : near_) {
       if (outside(place, division_.partition.cell(other)) <= division_.halo) move.known |= domain_bit(other);
     }
-    if (move.owner != index_ || move.known != division_.known[move.number]) moves_.push_back(move);
+    if (move.owner != index_ || move.known != division_.known[moved]) moves.push_back(move);
   }
 }
 
@@ -210,7 +212,7 @@ void Domain<Motion>::changed(BodySlot slot, double t) {
     changed_.push_back(slot);
   }
   if (role == Role::deep) {
-    stayed_ = stayed_ && stays_deep(motion.position(t));
+    report_.stayed = report_.stayed && stays_deep(motion.position(t));
     return;
   }
   if (role == Role::followed) {
@@ -219,12 +221,12 @@ void Domain<Motion>::changed(BodySlot slot, double t) {
     body.since = t, body.motion = motion;
     if (division_.known[number(slot)] == domain_bit(index_)) return;
   }
-  changes_.push_back({number(slot), motion, t});
+  fresh_.push_back({number(slot), motion, t});
 }
 
 template <class Motion>
 void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
-  ++computed_;
+  ++report_.computed;
   const BodySlot a = number(body_slot(event.a)), b = number(body_slot(event.b));
   const std::uint8_t of_a = division_.owner[a], of_b = division_.owner[b];
   const bool fixed = of_a == Division::nobody && of_b == Division::nobody;
@@ -233,7 +235,7 @@ void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   if (!mine) return;
   const bool shared = !fixed && of_a != of_b && of_a != Division::nobody && of_b != Division::nobody;
   // Of a shared one the owner of the first body counts it.
-  if (!shared || of_a == index_) ++told_[static_cast<std::size_t>(kind)];
+  if (!shared || of_a == index_) ++report_.told[static_cast<std::size_t>(kind)];
   if (!logs_) return;
   const std::uint8_t other = of_a == index_ ? of_b : of_a;
   put({kind, shared ? other : DomainEvent::nobody, a, b, event.contact});
@@ -275,9 +277,9 @@ void Domain<Motion>::overlap(World&, const PairEvent& event) {
 
 template <class Motion>
 void Domain<Motion>::wall(World&, const WallEvent& event) {
-  ++computed_;
+  ++report_.computed;
   const BodySlot slot = body_slot(event.body);
-  if (role_[slot] != Role::copy) ++told_[static_cast<std::size_t>(DomainEvent::Kind::wall)];
+  if (role_[slot] != Role::copy) ++report_.told[static_cast<std::size_t>(DomainEvent::Kind::wall)];
   if (role_[slot] != Role::copy && logs_) {
     put({DomainEvent::Kind::wall, DomainEvent::nobody, number(slot), static_cast<BodySlot>(event.wall), event.contact});
   }

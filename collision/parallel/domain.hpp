@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/parallel/division.hpp"
+#include "collision/parallel/motion_changes.hpp"
 #include "collision/parallel/parallel_options.hpp"
 #include "collision/parallel/partition.hpp"
 #include "collision/parallel/world_events.hpp"
@@ -28,6 +29,28 @@ struct EngineOf {
 
 }  // namespace detail
 
+/// What has come of a window, or of its last step, in a domain.
+struct DomainReport {
+  /// Whether nothing has happened that is not divided: nothing has come to rest, and no pair is let pass.
+  bool divisible = true;
+  /// Whether what was not followed has stayed where it had to.
+  bool stayed = true;
+  /// How far owned bodies have come out of the cell.
+  double overshoot = 0;
+  /// How near to the cell of each other domain a body has come that is owned here and not known there.
+  std::array<double, most_domains> nearest{};
+  /// How near to this cell copies have come, from when they were wrong: as they were or as they should have been.
+  double nearest_wrong = never;
+  std::uint64_t wrong = 0;  ///< copies that have gone wrong
+  std::uint64_t owned = 0;
+  std::uint64_t known = 0;
+  // Of the last step.
+  std::array<std::uint64_t, 4> told{};  ///< events of each kind that the domain tells for the whole scene
+  std::uint64_t computed = 0;           ///< all events, those of copies included
+
+  bool went_through() const { return divisible && stayed; }
+};
+
 /// A domain: a cell of space, and a world that knows the bodies in it, which it *owns*, and *copies* of those that are
 /// not farther outside than the halo. It runs them for a window. Far out copies go wrong, since what is beyond them is
 /// not known. When the owners have told what happened to the bodies, each domain finds out how near to its cell
@@ -40,6 +63,7 @@ class Domain final : private BasicWorldListener<Motion> {
  public:
   using World = BasicWorld<Motion>;
   using Overlap = typename Engine<Motion>::Overlap;
+  using Change = MotionChange<Motion>;
 
   /// `logs`: whether events are recorded. The division must outlive the domain.
   Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs);
@@ -55,45 +79,31 @@ class Domain final : private BasicWorldListener<Motion> {
 
   /// Runs a step of the window.
   void run(double until);
-  /// Compares the copies with what their owners know. After all have run.
-  void compare(std::span<const std::unique_ptr<Domain>> all);
+  /// Compares the copies with what their owners know. `changes`: of each domain, those of its bodies known here at
+  /// least.
+  void compare(std::span<const std::span<const Change>> changes);
 
-  // Of the window so far.
-  /// Whether it went through, and what was not followed has stayed where it had to.
-  bool went_through() const { return divisible_ && stayed_; }
-  /// Whether nothing has happened that is not divided: nothing has come to rest, and no pair is let pass.
-  bool is_divisible() const { return divisible_; }
-  /// How far owned bodies have come out of the cell.
-  double overshoot() const { return overshoot_; }
-  /// How near to the cell of another domain a body has come that is owned here and not known there.
-  double nearest(std::size_t other) const { return nearest_[other]; }
-  /// How near to this cell copies have come, from when they were wrong: as they were or as they should have been.
-  double nearest_wrong() const { return nearest_wrong_; }
-  /// Numbers of copies that have gone wrong, ascending.
+  const DomainReport& report() const { return report_; }
+  /// Numbers of copies that have gone wrong in this window, ascending.
   std::span<const BodySlot> wrong() const { return wrong_; }
-
-  // Of the last step.
+  /// The motions that bodies have been given in this window, of copies and of owned bodies that others know.
+  std::span<const Change> changes() const { return changes_.all(); }
+  /// Those of them that the last step has brought.
+  std::span<const Change> fresh() const { return fresh_; }
   std::vector<detail::DomainEvent> take_events() { return std::move(events_); }
-  /// How many events of each kind the domain tells for the whole scene, and how many it has computed.
-  const std::array<std::uint64_t, 4>& told() const { return told_; }
-  std::uint64_t computed() const { return computed_; }
-  std::size_t owned() const { return owned_; }
-  std::size_t known() const { return world_.size(); }
+  std::size_t index() const { return index_; }
   WorldCounters work() const { return world_.counters(); }
 
   /// Tells `store` of the owned bodies that have changed. Domains may do the first at once, the second one by one.
   void commit(Engine<Motion>& store) const;
   void commit_meetings(Engine<Motion>& store) const;
+  /// Numbers of owned bodies that the last step has changed.
+  void append_changed(std::vector<BodySlot>& numbers) const;
   /// The pairs that overlap of which this domain knows all, by numbers; the lower first.
   std::vector<Overlap> overlaps() const;
-  /// Owned bodies that have moved where others are to know or own them.
-  struct Move {
-    BodySlot number;
-    std::uint8_t owner;
-    DomainMask known;
-  };
-  void find_moves();
-  const std::vector<Move>& moves() const { return moves_; }
+  /// Appends the owned bodies that have moved to where others are to own or know them. `store`: has the owned bodies as
+  /// they are at t.
+  void append_moves(const Engine<Motion>& store, double t, std::vector<BodyMove>& moves) const;
 
  private:
   enum class Role : std::uint8_t { still, deep, followed, copy };
@@ -107,19 +117,13 @@ class Domain final : private BasicWorldListener<Motion> {
     BodySlot number;
     Motion motion;  ///< when the window began
   };
-  struct Change {
-    BodySlot number;
-    Motion motion;
-    double time;
-  };
-
   void contact(World&, const PairEvent& event) override;
   void separation(World&, const PairEvent& event) override;
   void overlap(World&, const PairEvent& event) override;
   void wall(World&, const WallEvent& event) override;
-  void rebound_suppressed(World&, const PairEvent&) override { divisible_ = false; }
-  void rebound_suppressed_at_wall(World&, const WallEvent&) override { divisible_ = false; }
-  void passes(World&, const PairEvent&) override { divisible_ = false; }
+  void rebound_suppressed(World&, const PairEvent&) override { report_.divisible = false; }
+  void rebound_suppressed_at_wall(World&, const WallEvent&) override { report_.divisible = false; }
+  void passes(World&, const PairEvent&) override { report_.divisible = false; }
 
   BodySlot number(BodySlot slot) const { return engine_.bodies().number(slot); }
   void record(detail::DomainEvent::Kind kind, const PairEvent& event);
@@ -143,19 +147,12 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<Followed> followed_;
   std::vector<Copy> copies_;       ///< by number
   std::vector<BodySlot> changed_;  ///< slots of owned bodies
-  std::vector<Change> changes_;    ///< of bodies that others know or own; sorted by number when a step is over
+  std::vector<Change> fresh_;      ///< as changes_, of this step; sorted by number when it is over
+  MotionChanges<Motion> changes_;  ///< of this window, of bodies that others know or own
   std::vector<detail::DomainEvent> events_;
-  std::vector<Move> moves_;
   std::vector<BodySlot> wrong_;
-  std::array<double, most_domains> nearest_{};
   std::vector<std::size_t> near_;  ///< the domains whose cells followed bodies may come near
-  double nearest_wrong_ = never;
-  double overshoot_ = 0;
-  std::size_t owned_ = 0;
-  std::array<std::uint64_t, 4> told_{};
-  std::uint64_t computed_ = 0;
-  bool divisible_ = true;
-  bool stayed_ = true;
+  DomainReport report_;
 };
 
 extern template class Domain<certificates::PointMotion<1>>;

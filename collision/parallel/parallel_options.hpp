@@ -7,7 +7,8 @@
 namespace kds::collision {
 
 struct ParallelOptions {
-  std::size_t threads = 0;  ///< 0 for as many as the machine has
+  std::size_t threads =
+      0;  ///< of each process; 0 for as many as the machine has, or one if there are several processes
   /// Into how many domains the scene is divided, at most `most_domains`. 0: one for each thread, or fewer, so that each
   /// has some 10 000 bodies. A scene with one domain runs as one world.
   std::size_t domains = 0;

@@ -1,8 +1,7 @@
 #include "collision/parallel/parallel_world.hpp"
 
-#include "collision/in_parts.hpp"
 #include "collision/parallel/division.hpp"
-#include "collision/parallel/domain.hpp"
+#include "collision/parallel/domains.hpp"
 #include "collision/parallel/relayed_events.hpp"
 #include "collision/parallel/window_length.hpp"
 #include "kds/raised_flag.hpp"
@@ -29,6 +28,12 @@ namespace {
 using detail::DomainEvent;
 using detail::EventMerge;
 
+/// Each of several processes has one thread if nothing else is said: they are one for each core, as a rule.
+std::size_t threads_of_one(const ParallelOptions& options, const Team& team) {
+  if (options.threads > 0) return options.threads;
+  return team.count() > 1 ? 1 : std::max(1u, std::thread::hardware_concurrency());
+}
+
 const ParallelOptions& validated(const ParallelOptions& options) {
   validate(options);
   return options;
@@ -40,15 +45,17 @@ const ParallelOptions& validated(const ParallelOptions& options) {
 template <class BodyMotionType>
 class BasicParallelWorld<BodyMotionType>::Runner final {
  public:
-  Runner(const WorldOptions& options, const ParallelOptions& parallel, ParallelListener* listener)
-      : options_(options),
-        parallel_(validated(parallel)),
-        threads_(parallel.threads > 0 ? parallel.threads : std::max(1u, std::thread::hardware_concurrency())),
-        listener_(listener),
-        relayed_(listener, counters_),
+  Runner(const WorldOptions& options, const ParallelOptions& parallel, ParallelListener* listener, Processes* processes)
+      : parallel_(validated(parallel)),
+        team_(processes),
+        threads_(threads_of_one(parallel, team_)),
+        listener_(team_.rank() == 0 ? listener : nullptr),
+        relayed_(listener_, counters_),
         world_(options, &relayed_),
         store_(detail::EngineOf<Motion>::of(world_)),
-        now_(options.start_time) {}
+        now_(options.start_time),
+        domains_(options, threads_, store_, team_),
+        logs_(team_.of_first(listener != nullptr)) {}
 
   World& whole() {
     require_outside("ParallelWorld::whole");
@@ -61,14 +68,18 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     return world_;
   }
   const World& world() const { return world_; }
-  bool divided() const { return !domains_.empty(); }
-  std::size_t domains() const { return divided() ? domains_.size() : 1; }
+  bool divided() const { return domains_.any(); }
+  std::size_t domains() const { return domains_.size(); }
   double now() const { return now_; }
   const ParallelCounters& counters() const { return counters_; }
-  WorldCounters work() const {
-    WorldCounters all = work_ + world_.counters();
-    for (const auto& domain : domains_) all = all + domain->work();
-    return all;
+  WorldCounters work() const { return domains_.work() + world_.counters(); }
+  const MessageCounters& messages() const { return team_.counters(); }
+  const Motion& motion(BodyId id) const {
+    const Motion& motion = world_.motion(id);
+    if (!domains_.has(body_slot(id))) {
+      throw std::logic_error("ParallelWorld::motion: the body is owned by another process; whole() has all");
+    }
+    return motion;
   }
 
   void advance_to(double t) {
@@ -92,15 +103,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   }
 
  private:
-  using Overlap = typename Engine<Motion>::Overlap;
+  /// Threads of all processes.
+  std::size_t workers() const { return threads_ * team_.count(); }
 
   void require_outside(const char* function) const {
     if (telling_) throw std::logic_error(std::string(function) + ": must not be called from within a callback");
-  }
-
-  template <class Work>
-  void in_domains(const Work& work) {
-    in_turn(domains_.size(), threads_, work);
   }
 
   // One world.
@@ -125,7 +132,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   /// Divides the scene; false if it is to be run as one world.
   bool divide() {
-    if (domains_wanted(parallel_, threads_, world_.size()) < 2) {
+    if (domains_wanted(parallel_, workers(), world_.size()) < 2) {
       stretch_ = 0;
       return false;
     }
@@ -134,94 +141,53 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       world_.advance_to(now_);
     }
     if (!store_.is_divisible()) return false;
-    auto division = collision::divide(store_.bodies(), now_, parallel_, threads_);
+    auto division = collision::divide(store_.bodies(), now_, parallel_, workers());
     if (!division) return false;
-    division_ = std::make_unique<Division>(std::move(*division));
     if (!(length_.seconds() > 0)) {
-      const double fastest = division_->greatest_speed + std::sqrt(division_->greatest_bend * division_->halo);
-      length_ = WindowLength(fastest > 0 ? division_->room() / (4 * fastest) : parallel_.longest_window);
+      const double fastest = division->greatest_speed + std::sqrt(division->greatest_bend * division->halo);
+      length_ = WindowLength(fastest > 0 ? division->room() / (4 * fastest) : parallel_.longest_window);
     }
-    overlaps_ = store_.overlaps();
+    auto overlaps = store_.overlaps();
     store_.set_aside();
-    make_domains();
+    domains_.begin(std::move(*division), std::move(overlaps), logs_);
+    begin_window();
+    domains_.make(now_);
     ++counters_.divisions;
     windows_since_division_ = 0;
     return true;
   }
 
-  /// The scene is one world again.
+  /// The scene is one world again, in every process.
   void gather() {
-    end_domains();
-    division_.reset();
-    store_.go_on(now_, overlaps_);
+    domains_.share_all();
+    const auto overlaps = domains_.end();
+    store_.go_on(now_, overlaps);
   }
 
-  /// A path may leave the chord between two of its places by this much; windows are so short that it is far less than
-  /// the halo.
+  /// A path may leave the chord between two of its places by so much; windows are so short that it is far less than the
+  /// halo.
   void begin_window() {
     window_begun_ = now_;
     longest_ = parallel_.longest_window;
-    const double bend = division_->greatest_bend;
-    if (bend > 0) longest_ = std::min(longest_, std::sqrt(division_->halo / bend));
-    division_->bulge = bend > 0 ? bend * longest_ * longest_ / 4 : 0;
-  }
-
-  void end_domains() {
-    for (const auto& domain : domains_) work_ = work_ + domain->work();
-    domains_.clear();
-  }
-
-  void make_domains() {
-    begin_window();
-    const std::size_t count = division_->partition.size();
-    std::vector<std::vector<BodySlot>> known(count);
-    for (BodySlot number = 0; number < division_->known.size(); ++number) {
-      for (std::size_t i = 0; i < count; ++i) {
-        if ((division_->known[number] & domain_bit(i)) != 0) known[i].push_back(number);
-      }
-    }
-    end_domains();
-    domains_.resize(count);
-    in_domains([&](std::size_t i) {
-      domains_[i] = std::make_unique<Domain<Motion>>(options_, *division_, i, now_, listener_ != nullptr);
-      domains_[i]->exchange({}, known[i], store_, overlaps_);
-      domains_[i]->begin_window();
-    });
+    const Division& division = domains_.division();
+    const double bend = division.greatest_bend;
+    if (bend > 0) longest_ = std::min(longest_, std::sqrt(division.halo / bend));
+    domains_.set_bulge(bend > 0 ? bend * longest_ * longest_ / 4 : 0);
   }
 
   // Windows.
-
-  /// How much of the halo was needed: more than 1 if the window does not hold.
-  double halo_used() const {
-    double used = 0;
-    for (std::size_t i = 0; i < domains_.size(); ++i) {
-      double nearest = domains_[i]->nearest_wrong();
-      for (const auto& other : domains_) nearest = std::min(nearest, other->nearest(i));
-      const double reach = domains_[i]->overshoot() + 2 * division_->greatest_radius + division_->margin();
-      if (!(reach <= division_->halo && nearest > reach)) return 2;
-      used = std::max(used, 1 - (nearest - reach) / division_->room());
-    }
-    return used;
-  }
 
   /// A step of a window, up to t.
   void run_window(double t) {
     const double end = std::min({t, now_ + length_.step(), window_begun_ + longest_});
     if (!(end > now_ || t == now_)) return run_undivided(t);  // Steps would be shorter than a rounding of the clock.
     try {
-      in_domains([&](std::size_t i) { domains_[i]->run(end); });
+      domains_.run(end);
     } catch (...) {
-      gather();  // as it was at now_
+      if (team_.count() == 1) gather();  // as it was at now_
       throw;
     }
-    double used = 2;
-    const auto all = [&](bool (Domain<Motion>::*what)() const) {
-      return std::all_of(domains_.begin(), domains_.end(), [&](const auto& domain) { return (*domain.*what)(); });
-    };
-    if (all(&Domain<Motion>::went_through)) {
-      in_domains([&](std::size_t i) { domains_[i]->compare(domains_); });
-      used = halo_used();
-    }
+    const double used = domains_.went_through() ? domains_.halo_used() : 2;
     if (used <= 1) {
       commit(end);
       stretch_ = 0;
@@ -229,14 +195,15 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       if (length_.goes_on(elapsed, used) && now_ < window_begun_ + longest_) return;
       length_.held(elapsed, used);
       ++counters_.windows;
-      return exchange();
+      return end_window();
     }
     ++counters_.windows_failed;
     constexpr std::size_t most_failures = 6;
-    if (!all(&Domain<Motion>::is_divisible) || length_.failures() >= most_failures) return run_undivided(t);
+    if (!domains_.is_divisible() || length_.failures() >= most_failures) return run_undivided(t);
     length_.failed();
-    assign_bodies(*division_, store_.bodies(), now_);
-    make_domains();
+    domains_.end_window(now_);
+    begin_window();
+    domains_.make(now_);
   }
 
   /// A stretch of time that no windows lead through.
@@ -248,83 +215,41 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   }
 
   void commit(double end) {
-    std::vector<Overlap> overlaps;
-    for (const auto& domain : domains_) {
-      const auto of_domain = domain->overlaps();
-      overlaps.insert(overlaps.end(), of_domain.begin(), of_domain.end());
-    }
-    // Those of bodies at rest are told by all that know both.
-    std::sort(overlaps.begin(), overlaps.end(),
-              [](const Overlap& a, const Overlap& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
-    overlaps.erase(std::unique(overlaps.begin(), overlaps.end(),
-                               [](const Overlap& a, const Overlap& b) { return a.a == b.a && a.b == b.b; }),
-                   overlaps.end());
-    overlaps_ = std::move(overlaps);
     if (std::exchange(unstarted_, false)) store_.note_entered();
-    in_domains([&](std::size_t i) { domains_[i]->commit(store_); });
-    for (const auto& domain : domains_) {
-      domain->commit_meetings(store_);
-      counters_.overlaps += domain->told()[0], counters_.wall_contacts += domain->told()[1];
-      counters_.contacts += domain->told()[2], counters_.separations += domain->told()[3];
-      counters_.events_computed += domain->computed();
-      counters_.bodies_owned += domain->owned(), counters_.bodies_known += domain->known();
+    domains_.commit();
+    for (const DomainReport& report : domains_.reports()) {
+      counters_.overlaps += report.told[0], counters_.wall_contacts += report.told[1];
+      counters_.contacts += report.told[2], counters_.separations += report.told[3];
+      counters_.events_computed += report.computed;
+      counters_.bodies_owned += report.owned, counters_.bodies_known += report.known;
     }
     now_ = end;
-    if (!listener_) return;
-    std::vector<std::vector<DomainEvent>> logs;
-    for (const auto& domain : domains_) logs.push_back(domain->take_events());
-    events_ = EventMerge(std::move(logs));
+    events_ = domains_.take_events();
   }
 
-  /// Bodies that have moved get other owners, and copies are made, corrected and dropped.
-  void exchange() {
+  void end_window() {
     if (++windows_since_division_ % 16 == 0 && unbalanced()) return divide_anew();
-    std::vector<std::vector<BodySlot>> go(domains_.size()), come(domains_.size());
-    for (std::size_t i = 0; i < domains_.size(); ++i) {
-      for (const BodySlot number : domains_[i]->wrong()) go[i].push_back(number), come[i].push_back(number);
-      counters_.copies_corrected += domains_[i]->wrong().size();
-    }
-    in_domains([&](std::size_t i) { domains_[i]->find_moves(); });
-    for (const auto& domain : domains_) {
-      for (const auto& move : domain->moves()) {
-        const DomainMask before = division_->known[move.number];
-        for (std::size_t i = 0; i < domains_.size(); ++i) {
-          const bool knew = (before & domain_bit(i)) != 0, knows = (move.known & domain_bit(i)) != 0;
-          if (knew == knows) continue;
-          counters_.copies_made += knows;
-          if (knows) {
-            come[i].push_back(move.number);
-          } else if (std::binary_search(domains_[i]->wrong().begin(), domains_[i]->wrong().end(), move.number)) {
-            std::erase(come[i], move.number);
-          } else {
-            go[i].push_back(move.number);
-          }
-        }
-        division_->owner[move.number] = move.owner;
-        division_->known[move.number] = move.known;
-      }
-    }
+    for (const DomainReport& report : domains_.reports()) counters_.copies_corrected += report.wrong;
+    domains_.end_window(now_);
     begin_window();
-    in_domains([&](std::size_t i) {
-      std::sort(come[i].begin(), come[i].end());
-      domains_[i]->exchange(go[i], come[i], store_, overlaps_);
-      domains_[i]->begin_window();
-    });
+    counters_.copies_made += domains_.exchange();
   }
 
   void divide_anew() {
-    auto division = collision::divide(store_.bodies(), now_, parallel_, threads_);
+    domains_.share_all();
+    auto division = collision::divide(store_.bodies(), now_, parallel_, workers());
     if (!division) return gather();
-    end_domains();
-    *division_ = std::move(*division);
+    auto overlaps = domains_.end();
+    domains_.begin(std::move(*division), std::move(overlaps), logs_);
+    begin_window();
+    domains_.make(now_);
     ++counters_.divisions;
-    make_domains();
   }
 
   bool unbalanced() const {
-    std::size_t most = 0, all = 0;
-    for (const auto& domain : domains_) most = std::max(most, domain->owned()), all += domain->owned();
-    return most * domains_.size() > all + all / 2;
+    std::uint64_t most = 0, all = 0;
+    for (const DomainReport& report : domains_.reports()) most = std::max(most, report.owned), all += report.owned;
+    return most * domains_.reports().size() > all + all / 2;
   }
 
   void tell_events() {
@@ -345,33 +270,31 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     }
   }
 
-  const WorldOptions options_;
   const ParallelOptions parallel_;
-  const std::size_t threads_;
+  Team team_;
+  const std::size_t threads_;  ///< of this process
   ParallelListener* listener_;
   ParallelCounters counters_;
   RelayedEvents<Motion> relayed_;
   World world_;            ///< runs the scene while it is one world; else only its bodies count
   Engine<Motion>& store_;  ///< of world_
   double now_;
-  std::unique_ptr<Division> division_;
-  std::vector<std::unique_ptr<Domain<Motion>>> domains_;  ///< none while the scene is one world
-  std::vector<Overlap> overlaps_;  ///< pairs that overlap at now_, by numbers, while the scene is divided
-  EventMerge events_;              ///< that have not been told yet
+  Domains<Motion> domains_;  ///< none while the scene is one world
+  const bool logs_;          ///< whether events are told in process 0
+  EventMerge events_;        ///< that have not been told yet
   WindowLength length_;
   double window_begun_ = 0;  ///< s
   double longest_ = 0;       ///< s: the longest that the window may be
   double stretch_ = 0;       ///< s: how long the scene is run as one world before it is divided again; 0: to the end
   std::size_t windows_since_division_ = 0;
-  WorldCounters work_;     ///< of domains that there were
   bool unstarted_ = true;  ///< no body has entered
   bool telling_ = false;
 };
 
 template <class Motion>
 BasicParallelWorld<Motion>::BasicParallelWorld(const WorldOptions& options, const ParallelOptions& parallel,
-                                               ParallelListener* listener)
-    : runner_(std::make_unique<Runner>(options, parallel, listener)) {}
+                                               ParallelListener* listener, Processes* processes)
+    : runner_(std::make_unique<Runner>(options, parallel, listener, processes)) {}
 
 template <class Motion>
 BasicParallelWorld<Motion>::~BasicParallelWorld() = default;
@@ -398,7 +321,7 @@ std::size_t BasicParallelWorld<Motion>::size() const {
 
 template <class Motion>
 const Motion& BasicParallelWorld<Motion>::motion(BodyId id) const {
-  return runner_->world().motion(id);
+  return runner_->motion(id);
 }
 
 template <class Motion>
@@ -414,6 +337,11 @@ ParallelCounters BasicParallelWorld<Motion>::counters() const {
 template <class Motion>
 WorldCounters BasicParallelWorld<Motion>::work() const {
   return runner_->work();
+}
+
+template <class Motion>
+MessageCounters BasicParallelWorld<Motion>::messages() const {
+  return runner_->messages();
 }
 
 template <class Motion>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/parallel/parallel_options.hpp"
+#include "collision/parallel/processes.hpp"
 #include "collision/world.hpp"
 
 #include <cstddef>
@@ -50,9 +51,14 @@ class BasicParallelWorld final {
   using Description = BasicBodyDescription<Motion>;
 
   /// Throws what validate() and the constructor of World throw. WorldOptions::threads counts where the scene is run as
-  /// one world. The listener, if there is one, must outlive this.
+  /// one world. The listener and the processes, if there are any, must outlive this.
+  ///
+  /// `processes`: if not null, they run the scene together. Each constructs a world with the same options, adds the
+  /// same bodies, and makes the same calls of functions that are not const, and each runs some of the domains. The
+  /// listener of process 0 is told of all events; others are not told. A process in which something is thrown leaves
+  /// the others waiting: who calls has to end them (MPI_Abort).
   explicit BasicParallelWorld(const WorldOptions& options, const ParallelOptions& parallel = {},
-                              ParallelListener* listener = nullptr);
+                              ParallelListener* listener = nullptr, Processes* processes = nullptr);
   ~BasicParallelWorld();
   BasicParallelWorld(const BasicParallelWorld&) = delete;
   BasicParallelWorld& operator=(const BasicParallelWorld&) = delete;
@@ -71,13 +77,16 @@ class BasicParallelWorld final {
 
   double now() const;
   std::size_t size() const;
-  /// Throws std::out_of_range as World::motion().
+  /// Throws std::out_of_range as World::motion(), std::logic_error for a body that another process owns; whole() has
+  /// all.
   const Motion& motion(BodyId id) const;
   /// Into how many domains the scene is divided: 1 while it is run as one world.
   std::size_t domains() const;
   ParallelCounters counters() const;
-  /// The work of all worlds so far: that on copies, and that of windows that failed, counts too.
+  /// The work of all worlds of this process so far: that on copies, and that of windows that failed, counts too.
   WorldCounters work() const;
+  /// What this process has sent to others.
+  MessageCounters messages() const;
   /// As of a World.
   std::string_view broad_phase() const;
 

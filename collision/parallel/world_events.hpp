@@ -25,6 +25,11 @@ struct DomainEvent {
   BodySlot b;  ///< of a wall its number
   Contact contact;
 
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(kind, other_owner, a, b, contact);
+  }
+
   /// Contacts and separations of one time come by their bodies alone.
   auto order() const {
     const int phase = kind == Kind::overlap ? 0 : kind == Kind::wall ? 1 : 2;

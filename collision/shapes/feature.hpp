@@ -29,6 +29,11 @@ struct Feature {
   friend constexpr auto operator<=>(const Feature&, const Feature&) = default;
 };
 
+template <class Archive>
+void archive_members(Archive& archive, Feature& feature) {
+  archive(feature.kind, feature.first, feature.second);
+}
+
 /// "-" for none, else "v12", "e3-17", "f40".
 inline std::string to_string(const Feature& feature) {
   switch (feature.kind) {

@@ -91,7 +91,9 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
 template <class Motion>
 BodySlot Bodies<Motion>::take_in(const Bodies& from, BodySlot number) {
   const BodySlot slot = new_slot();
-  follow(slot, from, number);
+  bodies_[slot] = from.bodies_[number];
+  movers_[slot] = from.movers_[number];
+  if constexpr (turns<Motion>) motions_[slot] = from.motions_[number];
   bodies_[slot].entered = false;
   filters_ = filters_ || filter(slot) != CollisionFilter{};
   sensors_ = sensors_ || bodies_[slot].sensor;
@@ -99,13 +101,6 @@ BodySlot Bodies<Motion>::take_in(const Bodies& from, BodySlot number) {
   if (numbers_.size() <= slot) numbers_.resize(bodies_.size());
   numbers_[slot] = number;
   return slot;
-}
-
-template <class Motion>
-void Bodies<Motion>::follow(BodySlot slot, const Bodies& from, BodySlot there) {
-  bodies_[slot] = from.bodies_[there];
-  movers_[slot] = from.movers_[there];
-  if constexpr (turns<Motion>) motions_[slot] = from.motions_[there];
 }
 
 template <class Motion>

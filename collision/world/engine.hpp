@@ -113,10 +113,12 @@ class Engine final : private RestingListener<BodyMotionType> {
   /// The overlaps of bodies that have been taken in, by their slots here.
   void go_on_overlapping(std::span<const Overlap> overlaps);
   std::vector<Overlap> overlaps() const;
-  /// A body of this world is as another world has it, whose body it is.
-  /// The first, for different bodies, may be called by several threads at once.
-  void follow(BodySlot slot, const Engine& from, BodySlot there) requires(!turns<Motion>);
-  void follow_meeting(BodySlot slot, const Engine& from, BodySlot there) requires(!turns<Motion>);
+  /// A body of this world is as another world has it, whose body it is. The first, for different bodies, may be called
+  /// by several threads at once.
+  void go_on_from(BodySlot slot, const BodyProgress<Motion>& progress) requires(!turns<Motion>);
+  void note_meeting(BodySlot slot) requires(!turns<Motion>);
+  /// Whether it has met a body that is not fixed.
+  bool has_met(BodySlot slot) const requires(!turns<Motion>);
   /// All bodies have entered.
   void note_entered();
   /// Forgets all but the bodies, until go_on().
@@ -328,7 +330,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   EditLimit edits_;
   /// When advance_for() is to return. Until then work that may be much at one instant is done in small parts.
   std::optional<WallClock::time_point> deadline_;
-  std::size_t expected_ = 0;  ///< the broad phase has been told of the bodies in slots below this
+  std::size_t expected_ = 0;    ///< the broad phase has been told of the bodies in slots below this
   double callers_now_;          ///< the clock as callers know it
   double idle_until_ = -never;  ///< nothing is due before it; an edit resets it
   bool idle_for_ever_ = false;  ///< no event comes at all; an edit resets it

@@ -17,7 +17,7 @@ namespace detail {
 template <class Archive>
 void archive_members(Archive& archive, detail::Pending& report) {
   archive(report.kind, report.a, report.b, report.contact.time, report.wall, report.user_data_a, report.user_data_b);
-  for (Feature* f : {&report.contact.feature_a, &report.contact.feature_b}) archive(f->kind, f->first, f->second);
+  archive(report.contact.feature_a, report.contact.feature_b);
   image::vector(archive, report.contact.point), image::vector(archive, report.contact.normal);
 }
 

@@ -67,14 +67,21 @@ std::vector<typename Engine<Motion>::Overlap> Engine<Motion>::overlaps() const {
 }
 
 template <class Motion>
-void Engine<Motion>::follow(BodySlot slot, const Engine& from, BodySlot there) requires(!turns<Motion>) {
-  bodies_.follow(slot, from.bodies_, there);
+void Engine<Motion>::go_on_from(BodySlot slot, const BodyProgress<Motion>& progress) requires(!turns<Motion>) {
+  bodies_.go_on_from(slot, progress);
 }
 
 template <class Motion>
-void Engine<Motion>::follow_meeting(BodySlot slot, const Engine& from, BodySlot there) requires(!turns<Motion>) {
-  if constexpr (!turns<Motion>) {
-    if (from.resting_.has_met(there)) resting_.note_meeting(slot);
+void Engine<Motion>::note_meeting(BodySlot slot) requires(!turns<Motion>) {
+  if constexpr (!turns<Motion>) resting_.note_meeting(slot);
+}
+
+template <class Motion>
+bool Engine<Motion>::has_met(BodySlot slot) const requires(!turns<Motion>) {
+  if constexpr (turns<Motion>) {
+    return false;
+  } else {
+    return resting_.has_met(slot);
   }
 }
 

@@ -189,7 +189,8 @@ void check(const Arguments& arguments) {
   if (run.domains > kds::collision::most_domains) throw ArgumentError("--domains: at most 64");
   const bool pictures = !arguments.view.empty() || !arguments.gltf.empty();
   if (run.domains != 1 && pictures) throw ArgumentError("--domains: there are no pictures of a scene that is divided");
-  if (run.domains != 1 && run.pairs) throw ArgumentError("--domains: volumes are not told of in a scene that is divided");
+  if (run.domains != 1 && run.pairs)
+    throw ArgumentError("--domains: volumes are not told of in a scene that is divided");
   check_files_differ(arguments);
 }
 
@@ -199,6 +200,9 @@ void check(const Arguments& arguments, const Scene& scene) {
   }
   if (arguments.run.rate * (scene.end_time - scene.begin_time) > most_results) {
     throw ArgumentError("--rate: asks for more than 1e12 results");
+  }
+  if (scene.turning && (arguments.run.domains != 1 || arguments.run.processes)) {
+    throw ArgumentError("--domains: a scene in which bodies turn is not divided");
   }
   const std::filesystem::path folder = std::filesystem::path(arguments.scene).parent_path();
   const auto check_input = [&](const std::string& file, const std::string& where) {

@@ -1,0 +1,111 @@
+// All domains of a scene, of which this process runs some.
+#pragma once
+
+#include "collision/parallel/division.hpp"
+#include "collision/parallel/domain.hpp"
+#include "collision/parallel/processes.hpp"
+#include "collision/parallel/world_events.hpp"
+#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace kds::collision {
+
+/// The domains of a divided scene, and `store`, which has all bodies: each as it was at the end of the last step that
+/// was committed.
+///
+/// Where several processes run the scene, each runs some of the domains and has a store of its own, in which the bodies
+/// that its domains own are right; those that they know become right whenever a window ends (end_window()), and all
+/// when the processes share all (share_all()). All processes make the same calls; what they decide by, the reports of
+/// all domains, is the same in all.
+template <class Motion>
+class Domains {
+ public:
+  using Overlap = typename Engine<Motion>::Overlap;
+
+  /// `logs`: whether events are recorded. The store must outlive this.
+  Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& store, Team& team);
+
+  bool any() const { return division_ != nullptr; }
+  std::size_t size() const { return any() ? division_->partition.size() : 1; }
+  const Division& division() const { return *division_; }
+  /// Whether the body is right in the store of this process.
+  bool has(BodySlot number) const;
+
+  /// Divides the bodies, which must all be right in the store. `overlaps`: all pairs that overlap, by numbers. Then
+  /// make().
+  void begin(Division division, std::vector<Overlap> overlaps, bool logs);
+  /// There are no domains any more. Returns the pairs that overlap of which this process knows.
+  std::vector<Overlap> end();
+
+  /// In the window that begins next, a path may leave the chord between two of its places by this much.
+  void set_bulge(double bulge) { division_->bulge = bulge; }
+  /// Makes the domains anew, each with a new window, as the store has the bodies at a time.
+  void make(double now);
+  /// Runs a step of a window. Throws what a domain throws; other processes then wait for this one in vain.
+  void run(double until);
+  /// What has come of it, of all domains.
+  const std::vector<DomainReport>& reports() const { return reports_; }
+  bool went_through() const;
+  bool is_divisible() const;
+  /// How much of the halo was needed: more than 1 if the window does not hold.
+  double halo_used() const;
+  /// The step holds: the store follows.
+  void commit();
+  /// The events of the step that was committed, of all domains, in process 0; none in others.
+  detail::EventMerge take_events();
+
+  /// After the last step of a window that was committed, at `now`: finds out who is to own and to know which bodies,
+  /// and tells those who are to know them. Then exchange() or make().
+  void end_window(double now);
+  /// The domains take in and let go what they are to, and begin a new window. Returns how many copies have been made.
+  std::size_t exchange();
+  /// Makes all bodies right in the stores of all processes, and all overlaps known.
+  void share_all();
+
+  /// The work of the domains that this process runs, and has run.
+  WorldCounters work() const;
+
+ private:
+  using Change = MotionChange<Motion>;
+  /// What one process tells another of bodies.
+  struct News;
+
+  template <class Work>
+  void in_each(const Work& work);
+  std::size_t process_of(std::size_t domain) const { return domain * team_.count() / size(); }
+  bool is_here(std::size_t domain) const { return process_of(domain) == team_.rank(); }
+  void share_step();
+  void share_reports();
+  void note_moves(const std::vector<BodyMove>& moves);
+  /// Tells each process of bodies that are right here, by their numbers, and of the overlaps of which it is to know.
+  template <class IsToKnow>
+  void tell(const std::vector<std::vector<BodySlot>>& bodies, const IsToKnow& is_to_know);
+  void sort_overlaps();
+  void drop();
+
+  const WorldOptions options_;
+  const std::size_t threads_;
+  Engine<Motion>& store_;
+  Team& team_;
+  bool logs_ = false;
+  std::unique_ptr<Division> division_;
+  std::vector<DomainMask> of_process_;                    ///< by rank: the domains that it runs
+  std::vector<std::unique_ptr<Domain<Motion>>> domains_;  ///< of this process
+  std::vector<DomainReport> reports_;                     ///< of all
+  std::vector<MotionChanges<Motion>> heard_;              ///< by domain: what other processes have told of their bodies
+  std::vector<BodySlot> changed_;                         ///< owned here, since others were told of them
+  std::vector<std::vector<BodySlot>> go_, come_;  ///< by domain of this process: numbers, from one window to the next
+  std::size_t copies_made_ = 0;
+  /// Pairs that overlap, by numbers: where a window begins all of which a domain of this process knows both bodies.
+  std::vector<Overlap> overlaps_;
+  WorldCounters work_;  ///< of domains that there were
+};
+
+extern template class Domains<certificates::PointMotion<1>>;
+extern template class Domains<certificates::PointMotion<2>>;
+
+}  // namespace kds::collision

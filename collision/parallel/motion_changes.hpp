@@ -1,0 +1,54 @@
+// The motions that bodies are given in a window, as domains compare them.
+#pragma once
+
+#include "collision/body_id.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace kds::collision {
+
+/// A body, by its number, has another motion from a time on.
+template <class Motion>
+struct MotionChange {
+  BodySlot number;
+  Motion motion;
+  double time;  ///< s
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(number, motion, time);
+  }
+};
+
+template <class Motion>
+bool has_lower_number(const MotionChange<Motion>& a, const MotionChange<Motion>& b) {
+  return a.number < b.number;
+}
+
+/// Sorts by numbers; those of one body stay in their order.
+template <class Motion>
+void sort_by_number(std::vector<MotionChange<Motion>>& changes) {
+  std::stable_sort(changes.begin(), changes.end(), has_lower_number<Motion>);
+}
+
+/// Those of a window, by numbers, and of one body in the order of time.
+template <class Motion>
+class MotionChanges {
+ public:
+  void clear() { all_.clear(); }
+  /// Adds those of a step, which must be sorted.
+  void append(std::span<const MotionChange<Motion>> fresh) {
+    const auto before = static_cast<std::ptrdiff_t>(all_.size());
+    all_.insert(all_.end(), fresh.begin(), fresh.end());
+    std::inplace_merge(all_.begin(), all_.begin() + before, all_.end(), has_lower_number<Motion>);
+  }
+  std::span<const MotionChange<Motion>> all() const { return all_; }
+
+ private:
+  std::vector<MotionChange<Motion>> all_;
+};
+
+}  // namespace kds::collision

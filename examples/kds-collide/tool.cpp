@@ -1,0 +1,248 @@
+#include "examples/kds-collide/tool.hpp"
+
+#include "collision/broad_phase/broad_phase_kind.hpp"
+#include "examples/kds-collide/arguments.hpp"
+#include "examples/kds-collide/progress_bar.hpp"
+#include "io/event_csv.hpp"
+#include "io/gltf.hpp"
+#include "io/one_line.hpp"
+#include "io/output_file.hpp"
+#include "io/replay.hpp"
+#include "io/scene_reader.hpp"
+#include "io/stats_json.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <list>
+#include <optional>
+#include <string>
+
+namespace kds_collide {
+namespace {
+
+using namespace kds::io;
+
+void list_broad_phases() {
+  OutputFile out("-");
+  for (const auto& b : kds::collision::broad_phases) {
+    std::string line(b.name);
+    line.resize(std::max<std::size_t>(line.size(), 12), ' ');
+    out.write(line + ' ' + std::string(b.what) + '\n');
+  }
+  out.commit();
+}
+
+void generate(const Arguments& arguments) {
+  const std::filesystem::path file = arguments.output.empty() ? arguments.generator.kind + ".json" : arguments.output;
+  GeneratorOptions options = arguments.generator;
+  if (arguments.table) options.table = std::filesystem::path(file).replace_extension(".h5").filename().string();
+  if (arguments.table && options.table == file.filename())
+    throw ArgumentError("--output: is the name of the table too");
+  GeneratedScene scene;
+  try {
+    scene = generate_scene(options);
+  } catch (const std::invalid_argument& error) {
+    throw ArgumentError(error.what());
+  }
+  std::list<OutputFile> outputs;
+  const auto write = [&outputs](const std::filesystem::path& path, const std::string& text) {
+    OutputFile& output = outputs.emplace_back(path.string());
+    output.write(text);
+    output.close();
+  };
+  for (const auto& mesh : scene.meshes) {
+    if (file.filename() == mesh.name) throw ArgumentError("--output: is the name of the mesh " + mesh.name + " too");
+  }
+  // Meshes and the table first: the scene is there only when all it names is.
+  for (const auto& mesh : scene.meshes) write(file.parent_path() / mesh.name, mesh.text);
+  if (arguments.table) write(file.parent_path() / options.table, scene.table);
+  write(file, scene.json);
+  for (OutputFile& output : outputs) output.commit();
+  if (!arguments.quiet) {
+    std::fprintf(stderr, "%s: %zu %s, density %g, seed %llu\n", file.c_str(), arguments.generator.bodies,
+                 arguments.generator.kind.c_str(), arguments.generator.density,
+                 static_cast<unsigned long long>(arguments.generator.seed));
+  }
+}
+
+void print_summary(const RunResult& result) {
+  std::fprintf(stderr,
+               "%s: %llu bodies, %g s simulated: %llu contacts, %llu swaps, %llu pair tests\n"
+               "CPU: %.4g s set-up, %.4g s run",
+               result.broad_phase.c_str(), static_cast<unsigned long long>(result.bodies), result.sim_seconds,
+               static_cast<unsigned long long>(result.contacts), static_cast<unsigned long long>(result.swaps),
+               static_cast<unsigned long long>(result.pair_tests), result.setup_cpu_seconds, result.run_cpu_seconds);
+  if (result.sim_seconds > 0) {
+    std::fprintf(stderr, " (%.4g s per simulated second)", result.run_cpu_seconds / result.sim_seconds);
+  }
+  if (result.held > 0) {
+    std::fprintf(stderr, "\n%llu contacts came to last: bodies lie or slide on each other",
+                 static_cast<unsigned long long>(result.held));
+  }
+  std::fputc('\n', stderr);
+}
+
+/// A scene that is to be run, and where what is seen goes. In process 0, or where there is one alone, files are opened;
+/// the others write none.
+class Simulation {
+ public:
+  /// All that can go wrong outside the run goes wrong here: outputs are opened, three.js is read.
+  Simulation(Arguments arguments, bool writes) : arguments_(std::move(arguments)), scene_(read()) {
+    const bool quiet = arguments_.quiet || !writes;
+    if (!quiet) {
+      for (const std::string& warning : scene_.warnings) std::fprintf(stderr, "%s\n", one_line(warning).c_str());
+    }
+    check(arguments_, scene_);
+    if (writes && !arguments_.events.empty()) sinks_.add(events_.emplace(arguments_.events, scene_));
+    if (writes && !arguments_.stats.empty()) stats_.emplace(arguments_.stats);
+    if (writes && !arguments_.view.empty()) {
+      replay_page("", default_three_folder());
+      view_.emplace(arguments_.view);
+    }
+    if (writes && !arguments_.gltf.empty()) gltf_.emplace(arguments_.gltf);
+    if (view_ || gltf_) sinks_.add(recorder_.emplace(scene_));
+    if (!quiet && isatty(STDERR_FILENO) != 0) {
+      sinks_.add(progress_.emplace(scene_.begin_time, scene_.end_time));
+      arguments_.run.steady_progress = true;
+    }
+  }
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  void run() {
+    result_ = kds::io::run(scene_, arguments_.run, sinks_);
+    progress_.reset();
+  }
+
+  void write() {
+    const std::string title = std::filesystem::path(arguments_.scene).filename().string();
+    if (view_) view_->write(replay_page(recorder_->to_json(title), default_three_folder()));
+    if (gltf_) gltf_->write(to_gltf(scene_, recorder_->record(), title));
+    if (stats_) stats_->write(to_json(result_, arguments_.run, read_seconds_));
+    const auto each_output = [&](auto&& what) {
+      if (events_) what(*events_);
+      if (view_) what(*view_);
+      if (gltf_) what(*gltf_);
+      if (stats_) what(*stats_);
+    };
+    each_output([](auto& output) { output.close(); });  // All are whole before one appears.
+    each_output([](auto& output) { output.commit(); });
+    if (!arguments_.quiet) print_summary(result_);
+  }
+
+ private:
+  Scene read() {
+    const std::clock_t start = std::clock();
+    Scene scene = read_scene(arguments_.scene, arguments_.until);
+    read_seconds_ = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    return scene;
+  }
+
+  Arguments arguments_;
+  double read_seconds_ = 0;
+  Scene scene_;
+  EventSinks sinks_;
+  std::optional<EventCsv> events_;
+  std::optional<OutputFile> stats_, view_, gltf_;
+  std::optional<ReplayRecorder> recorder_;
+  std::optional<ProgressBar> progress_;
+  RunResult result_;
+};
+
+/// Why the tool ends, if it is not done.
+struct Failure {
+  int code = done;
+  std::string line;
+};
+
+/// What comes of it.
+template <class Call>
+Failure attempt(const std::string& name, const Arguments& arguments, const Call& call) {
+  try {
+    call();
+    return {};
+  } catch (const ArgumentError& error) {
+    return {bad_input, name + ": " + error.what()};
+  } catch (const SceneError& error) {
+    return {bad_input, error.what()};
+  } catch (const OutputError& error) {
+    return {error.on_opening ? bad_input : run_failed, error.what()};
+  } catch (const std::exception& error) {
+    return {run_failed, (arguments.scene.empty() ? name : arguments.scene) + ": run: " + error.what()};
+  }
+}
+
+/// That of the first process that has failed.
+Failure first_of(kds::collision::Team& team, Failure failure) {
+  Failure first = failure;
+  std::size_t rank = failure.code == done ? team.count() : team.rank();
+  team.exchange([&](std::size_t, auto& writer) { writer(failure.code, failure.line); },
+                [&](std::size_t process, auto& reader) {
+                  Failure other;
+                  reader(other.code, other.line);
+                  if (other.code != done && process < rank) rank = process, first = other;
+                });
+  if (rank > 0 && rank < team.count()) first.line = "process " + std::to_string(rank) + ": " + first.line;
+  return first;
+}
+
+int end_with(const Failure& failure, bool says) {
+  if (failure.code != done && says) std::fprintf(stderr, "%s\n", one_line(failure.line).c_str());
+  return failure.code;
+}
+
+}  // namespace
+
+int run_tool(int argc, char** argv, const char* name, const Together* together) {
+  kds::collision::Team team(together ? &together->processes : nullptr);
+  const bool is_first = team.rank() == 0;
+  remove_temporaries_at_signals();
+  Arguments arguments;
+  if (together) {
+    arguments.run.processes = &together->processes;
+    arguments.run.domains = 0;
+  }
+  CLI::App app("Finds when and where moving bodies collide, exactly. Scene in, events out.", name);
+  describe(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return is_first ? app.exit(asked) : done;
+  } catch (const CLI::ParseError& error) {
+    return end_with({bad_input, std::string(name) + ": arguments: " + error.what()}, is_first);
+  }
+  if (arguments.run.broad_phase == "list" || arguments.generate) {
+    if (!is_first) return done;
+    return end_with(attempt(name, arguments,
+                            [&] {
+                              if (arguments.run.broad_phase == "list") return list_broad_phases();
+                              check(arguments);
+                              generate(arguments);
+                            }),
+                    true);
+  }
+
+  std::optional<Simulation> simulation;
+  Failure failure = first_of(team, attempt(name, arguments, [&] {
+                               check(arguments);
+                               simulation.emplace(arguments, is_first);
+                             }));
+  if (failure.code != done) return end_with(failure, is_first);
+  failure = attempt(name, arguments, [&] {
+    simulation->run();
+    if (is_first) simulation->write();
+  });
+  if (failure.code != done && team.count() > 1) {
+    failure.line = "process " + std::to_string(team.rank()) + ": " + failure.line;
+    simulation.reset();  // removes temporary files
+    end_with(failure, true);
+    together->end_all(failure.code);
+  }
+  return end_with(failure, true);
+}
+
+}  // namespace kds_collide
