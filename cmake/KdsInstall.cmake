@@ -37,6 +37,14 @@ if(TARGET kds_io)
   install(FILES "${CMAKE_CURRENT_LIST_DIR}/KdsHdf5.cmake" DESTINATION "${config_dir}" COMPONENT io)
 endif()
 
+# kds::mpi, for those who ask for the component: it is linked with MPI.
+if(TARGET kds_mpi)
+  install(TARGETS kds_mpi EXPORT kdsMpiTargets
+    ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT mpi
+    FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kds" COMPONENT mpi)
+  install(EXPORT kdsMpiTargets NAMESPACE kds:: DESTINATION "${config_dir}" COMPONENT mpi)
+endif()
+
 # For programs that are not built by CMake: `pkg-config --cflags --libs kds`, or kds-turning.
 # They may be moved with their folder.
 file(RELATIVE_PATH to_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")

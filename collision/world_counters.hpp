@@ -36,6 +36,19 @@ struct WorldCounters {
             .rotation_pieces = a.rotation_pieces + b.rotation_pieces,
             .orientation_resets = a.orientation_resets + b.orientation_resets};
   }
+  friend WorldCounters operator-(const WorldCounters& a, const WorldCounters& b) {
+    return {.broad_phase = a.broad_phase - b.broad_phase,
+            .pairs_begun = a.pairs_begun - b.pairs_begun,
+            .pair_tests = a.pair_tests - b.pair_tests,
+            .contacts = a.contacts - b.contacts,
+            .separations = a.separations - b.separations,
+            .overlaps = a.overlaps - b.overlaps,
+            .wall_contacts = a.wall_contacts - b.wall_contacts,
+            .motion_updates = a.motion_updates - b.motion_updates,
+            .rebounds_suppressed = a.rebounds_suppressed - b.rebounds_suppressed,
+            .rotation_pieces = a.rotation_pieces - b.rotation_pieces,
+            .orientation_resets = a.orientation_resets - b.orientation_resets};
+  }
   /// The counters of a kinetic structure: events, and failure times that were computed.
   operator Counters() const {
     return {.events = contacts + separations + overlaps + wall_contacts, .certificates = pair_tests};

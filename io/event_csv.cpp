@@ -53,17 +53,28 @@ EventCsv::EventCsv(const std::string& path, const Scene& scene) : file_(path), s
   buffer_ = event_csv_header;
 }
 
+EventCsv::EventCsv(const std::string& path, const Scene& scene, std::uint64_t from) : file_(path, from), scene_(scene) {
+  if (from == 0) buffer_ = event_csv_header;
+}
+
 void EventCsv::on_event(const Event& event) {
   constexpr std::size_t enough = 1 << 16;  // bytes
   append_csv_line(buffer_, event, scene_);
-  if (buffer_.size() < enough) return;
-  file_.write(buffer_);
+  if (buffer_.size() >= enough) write();
+}
+
+void EventCsv::write() {
+  if (!buffer_.empty()) file_.write(buffer_);
   buffer_.clear();
 }
 
+std::uint64_t EventCsv::flush() {
+  write();
+  return file_.flush();
+}
+
 void EventCsv::close() {
-  if (!buffer_.empty()) file_.write(buffer_);
-  buffer_.clear();
+  write();
   file_.close();
 }
 

@@ -4,6 +4,7 @@
 #include "io/events.hpp"
 #include "io/output_file.hpp"
 
+#include <cstdint>
 #include <string>
 
 namespace kds::io {
@@ -18,11 +19,17 @@ void append_csv_line(std::string& text, const Event& event, const Scene& scene);
 class EventCsv final : public EventSink {
  public:
   EventCsv(const std::string& path, const Scene& scene);
+  /// Of a run that goes on after so many bytes; of one that begins, 0 (OutputFile).
+  EventCsv(const std::string& path, const Scene& scene, std::uint64_t from);
   void on_event(const Event& event) override;
+  /// How many bytes there are; they are in the file then.
+  std::uint64_t flush();
   void close();
   void commit();
 
  private:
+  void write();
+
   OutputFile file_;
   const Scene& scene_;
   std::string buffer_;

@@ -96,9 +96,36 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(past_dang
   file_ = fdopen(descriptor, "wb");
 }
 
+OutputFile::OutputFile(const std::string& path, std::uint64_t from)
+    : path_(path), target_(past_dangling_links(path)), stays_(true) {
+  const std::filesystem::path unfinished = target_.string() + ".unfinished";
+  const auto refuse = [&](const std::string& why) {
+    throw OutputError(unfinished.string() + ": file: cannot be gone on with: " + why, true);
+  };
+  std::error_code error;
+  const file_type kind = std::filesystem::status(target_, error).type();
+  if (kind != file_type::regular && kind != file_type::not_found) fail(EINVAL, true);
+  file_ = std::fopen(unfinished.c_str(), from > 0 ? "r+b" : "wbx");
+  if (!file_) {
+    const int reason = errno;
+    if (from > 0) refuse(std::strerror(reason));
+    if (reason != EEXIST) fail(reason, true);
+    throw OutputError(unfinished.string() + ": file: is there already, of a run that has not ended", true);
+  }
+  temporary_ = unfinished;
+  if (from == 0) return;
+  const std::uintmax_t size = std::filesystem::file_size(unfinished, error);
+  if (error || size < from) {
+    refuse("it has " + std::to_string(error ? 0 : size) + " bytes, and the run had written " + std::to_string(from));
+  }
+  std::filesystem::resize_file(unfinished, from, error);
+  if (error) refuse(error.message());
+  std::fseek(file_, 0, SEEK_END);
+}
+
 OutputFile::~OutputFile() {
   if (file_ && file_ != stdout) std::fclose(file_);
-  if (!temporary_.empty()) {
+  if (!temporary_.empty() && !stays_) {
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
   }
@@ -107,6 +134,11 @@ OutputFile::~OutputFile() {
 
 void OutputFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno);
+}
+
+std::uint64_t OutputFile::flush() {
+  if (std::fflush(file_) != 0) fail(errno);
+  return static_cast<std::uint64_t>(std::ftell(file_));
 }
 
 void OutputFile::close() {

@@ -1,6 +1,7 @@
 // A file that is there whole or not at all.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
@@ -32,6 +33,10 @@ void remove_temporaries_at_signals();
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);
+  /// One that may take several runs to write: to `path` with ".unfinished" after it, which stays if the run ends before
+  /// commit(), so that a later one can go on. `from`: so many bytes of that file, which must be there, are kept, and
+  /// what follows them is dropped; if 0, there must be no such file.
+  OutputFile(const std::string& path, std::uint64_t from);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -41,6 +46,8 @@ class OutputFile {
   /// appear or none, but for a rename that fails in between: a folder that others have meanwhile changed.
   void close();
   void commit();
+  /// How many bytes have been written; they are in the file, whatever happens to this process.
+  std::uint64_t flush();
 
  private:
   [[noreturn]] void fail(int error, bool on_opening = false) const;
@@ -48,6 +55,7 @@ class OutputFile {
   std::string path_;
   std::filesystem::path target_;     ///< path_, with symbolic links resolved
   std::filesystem::path temporary_;  ///< empty where path_ is written directly
+  bool stays_ = false;               ///< the temporary file, if there is no commit()
   std::FILE* file_ = nullptr;
   int slot_ = -1;  ///< of the names a signal removes
 };

@@ -145,41 +145,84 @@ kds::collision::WorldOptions world_options(const Scene& scene, const RunOptions&
   return world_options;
 }
 
-/// Fills a world with the bodies of a scene and runs it. `added(id, description)` is called for each body.
-template <class World, class Added>
-RunResult run_in(World& world, const Scene& scene, const RunOptions& options, EventSink& sink, double setup_start,
-                 const Added& added) {
+/// The times at which something happens `rate` times a second: begin + 1 / rate, begin + 2 / rate...
+class Beat {
+ public:
+  /// `rate`: 0 if there are none. Those up to `now` are over.
+  Beat(double begin, double rate, double now) : begin_(begin), rate_(rate) {
+    if (!(rate > 0)) return;
+    count_ = std::max(1.0, std::floor((now - begin) * rate) - 1);
+    while (next() <= now) ++count_;
+  }
+  double next() const { return rate_ > 0 ? begin_ + count_ / rate_ : kds::never; }
+  void pass() { ++count_; }
+
+ private:
+  double begin_;
+  double rate_;
+  double count_ = 1;
+};
+
+/// Runs a world up to the end of a scene. It has the scene's bodies, at begin_time or as they are when a run goes on.
+template <class World>
+void run_to_end(World& world, const Scene& scene, const RunOptions& options, EventSink& sink) {
   const double begin = scene.begin_time;
   const double end = scene.end_time;
-  for (const SceneBody& body : scene.bodies) {
-    const auto description = describe<typename World::Motion>(body);
-    added(world.add_body(description), description);
-  }
-  world.advance_to(begin);
-  const double run_start = cpu_seconds();
-
   double rate = options.rate;
   if (options.steady_progress && end > begin) {
     const double steady = 100 / (end - begin);
     if (std::isfinite(steady)) rate = std::max(rate, steady);  // not of a run below 1e-306 s
   }
-  if (rate > 0) {
-    for (std::uint64_t frame = 1;; ++frame) {
-      const double t = begin + static_cast<double>(frame) / rate;
-      if (!(t < end)) break;
-      world.advance_to(t);
+  Beat results(begin, rate, world.now());
+  Beat checkpoints(begin, options.checkpoint_every > 0 ? 1 / options.checkpoint_every : 0, world.now());
+  for (;;) {
+    const double t = std::min(results.next(), checkpoints.next());
+    if (!(t < end)) break;
+    world.advance_to(t);
+    if (t == results.next()) {
       sink.on_time(t);
+      results.pass();
+    }
+    if (t == checkpoints.next()) {
+      const Snapshot state = kds::save(world);
+      if (!options.processes || options.processes->rank() == 0) options.checkpoint(state);
+      checkpoints.pass();
     }
   }
   world.advance_to(end);
   sink.on_time(end);
+}
+
+/// Fills a world with the bodies of a scene, or a state to go on from, and runs it. `added(id, description)` is called
+/// for each body that is added, `begun()` before the run.
+template <class World, class Added, class Begun>
+RunResult run_in(World& world, const Scene& scene, const RunOptions& options, EventSink& sink, double setup_start,
+                 const Added& added, const Begun& begun) {
+  if (options.resume) {
+    kds::restore(*options.resume, world);
+    if (world.size() != scene.bodies.size()) {
+      throw std::invalid_argument("the state to go on from is of " + std::to_string(world.size()) +
+                                  " bodies, and the scene has " + std::to_string(scene.bodies.size()));
+    }
+    if (!(world.now() <= scene.end_time)) throw std::invalid_argument("the state to go on from is after the end");
+  } else {
+    for (const SceneBody& body : scene.bodies) {
+      const auto description = describe<typename World::Motion>(body);
+      added(world.add_body(description), description);
+    }
+    world.advance_to(scene.begin_time);
+  }
+  const double begin = world.now();
+  const double run_start = cpu_seconds();
+  begun();
+  run_to_end(world, scene, options, sink);
   const double run_end = cpu_seconds();
 
   RunResult result;
   result.broad_phase = world.broad_phase();
   result.setup_cpu_seconds = run_start - setup_start;
   result.run_cpu_seconds = run_end - run_start;
-  result.sim_seconds = end - begin;
+  result.sim_seconds = scene.end_time - begin;
   result.bodies = scene.bodies.size();
   result.peak_memory_bytes = peak_memory();
   return result;
@@ -207,11 +250,15 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   const double setup_start = cpu_seconds();
   Teller<Motion> teller(sink, scene.response);
   kds::collision::BasicWorld<Motion> world(world_options(scene, options), &teller);
-  RunResult result = run_in(world, scene, options, sink, setup_start, [&](BodyId id, const auto& description) {
+  kds::collision::WorldCounters before;
+  const auto added = [&](BodyId id, const auto& description) {
     // Of a body that precesses the first piece is none of the scene's.
     if (!(world.motion(id) == description.motion.front())) sink.on_motion(body_slot(id), to_piece(world.motion(id)));
+  };
+  RunResult result = run_in(world, scene, options, sink, setup_start, added, [&] {
+    if (options.resume) before = world.counters();
   });
-  note_work(world.counters(), result);
+  note_work(world.counters() - before, result);
   result.profile = world.work_profile();
   return result;
 }
@@ -248,8 +295,13 @@ RunResult run_divided(const Scene& scene, const RunOptions& options, EventSink& 
   kds::collision::ParallelWorld<Degree> world(world_options(scene, options),
                                               {.threads = options.threads, .domains = options.domains}, &teller,
                                               options.processes);
-  RunResult result = run_in(world, scene, options, sink, setup_start, [](BodyId, const auto&) {});
-  auto work = world.work();
+  kds::collision::WorldCounters before;
+  RunResult result = run_in(
+      world, scene, options, sink, setup_start, [](BodyId, const auto&) {},
+      [&] {
+        if (options.resume) before = world.work();
+      });
+  auto work = world.work() - before;
   const auto messages = world.messages();
   result.exchanges = messages.exchanges, result.bytes_exchanged = messages.bytes;
   kds::collision::Team team(options.processes);

@@ -5,9 +5,11 @@
 #include "collision/profile.hpp"
 #include "io/events.hpp"
 #include "io/scene.hpp"
+#include "kds/framework/snapshot.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,13 @@ struct RunOptions {
   /// If not null, these run the scene together, divided into domains: all call run() with the same scene and options.
   /// The sink of process 0 is told of events. Must outlive the run.
   kds::collision::Processes* processes = nullptr;
+  /// s of simulated time, > 0: whenever so much has gone by, `checkpoint` is given the state of the run, after the
+  /// events up to then, in process 0. 0: never.
+  double checkpoint_every = 0;
+  std::function<void(const Snapshot&)> checkpoint{};
+  /// If not null, the run goes on from this one, of a run of the same scene with the same options but `processes`,
+  /// `domains`, `threads` and those about checkpoints. RunResult is about what follows.
+  const Snapshot* resume = nullptr;
 };
 
 /// What a run took and did. Where several processes ran it, what they did is summed, and what it took is that of the

@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.23)
 # What is installed can be found, compiled and linked by a project that has nothing else of this one, and runs; and
 # nobody who does not ask for kds::gsl hears of it.
 # -DROOT= the sources, -DBUILD= a build of them, -DCOMPILER= its compiler, -DFOLDER= where to work, -DGSL= whether there
-# is a kds::gsl.
+# is a kds::gsl, -DMPI= a kds::mpi.
 file(REMOVE_RECURSE "${FOLDER}")
 function(run)
   execute_process(COMMAND ${ARGV} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
@@ -32,6 +32,14 @@ run("${CMAKE_COMMAND}" --build "${FOLDER}/build_io" --target scene_run)
 run("${FOLDER}/build_io/scene_run")
 if(NOT output MATCHES "1 contact, and a record of [0-9][0-9][0-9]+ bytes")
   message(FATAL_ERROR "scene_run says: ${output}")
+endif()
+
+if(MPI)
+  run(${configure} -B "${FOLDER}/build_mpi" -DCOMPONENT=mpi)
+  run("${CMAKE_COMMAND}" --build "${FOLDER}/build_mpi" --target mpi_messages)
+  set(ENV{OMPI_ALLOW_RUN_AS_ROOT} 1)
+  set(ENV{OMPI_ALLOW_RUN_AS_ROOT_CONFIRM} 1)
+  run("${FOLDER}/build_mpi/mpi_messages")
 endif()
 
 # The same by pkg-config, and from the Debian package as it is unpacked.

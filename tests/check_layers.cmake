@@ -1,10 +1,11 @@
 cmake_minimum_required(VERSION 3.23)
 # The law of the layers: a file includes headers of its own layer and of those above it, never of one below.
-set(layers kds certificates structures collision io)
+set(layers kds certificates structures collision mpi io)
 set(allowed_kds kds)
 set(allowed_certificates kds certificates)
 set(allowed_structures kds certificates structures)
 set(allowed_collision kds certificates structures collision)
+set(allowed_mpi kds certificates structures collision mpi)
 set(allowed_io kds certificates structures collision io)
 set(wrong "")
 foreach(layer IN LISTS layers)
@@ -13,7 +14,7 @@ foreach(layer IN LISTS layers)
     file(STRINGS "${file}" includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"][a-z_.]+/")
     foreach(line IN LISTS includes)
       string(REGEX REPLACE "^[ \t]*#[ \t]*include[ \t]*[<\"]([a-z_.]+)/.*$" "\\1" folder "${line}")
-      if(folder MATCHES "^(kds|certificates|structures|collision|io|tests|examples|python|\\.\\.)$"
+      if(folder MATCHES "^(kds|certificates|structures|collision|mpi|io|tests|examples|python|\\.\\.)$"
          AND NOT folder IN_LIST allowed_${layer})
         file(RELATIVE_PATH shown "${ROOT}" "${file}")
         string(APPEND wrong "  ${shown}: ${line}\n")

@@ -68,6 +68,17 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     return world_;
   }
   const World& world() const { return world_; }
+  template <class Archive>
+  void archive(Archive& archive) {
+    whole().archive(archive);
+    if constexpr (Archive::loading) {
+      now_ = world_.now();
+      counters_ = {};
+      length_ = WindowLength();
+      stretch_ = 0;
+      unstarted_ = false;
+    }
+  }
   bool divided() const { return domains_.any(); }
   std::size_t domains() const { return domains_.size(); }
   double now() const { return now_; }
@@ -349,7 +360,18 @@ std::string_view BasicParallelWorld<Motion>::broad_phase() const {
   return runner_->world().broad_phase();
 }
 
-template class BasicParallelWorld<certificates::PointMotion<1>>;
-template class BasicParallelWorld<certificates::PointMotion<2>>;
+template <class Motion>
+template <class Archive>
+void BasicParallelWorld<Motion>::archive(Archive& archive) {
+  runner_->archive(archive);
+}
+
+#define KDS_INSTANTIATE(motion)                                            \
+  template class BasicParallelWorld<motion>;                               \
+  template void BasicParallelWorld<motion>::archive(kds::detail::Writer&); \
+  template void BasicParallelWorld<motion>::archive(kds::detail::Reader&);
+KDS_INSTANTIATE(certificates::PointMotion<1>)
+KDS_INSTANTIATE(certificates::PointMotion<2>)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -75,6 +75,12 @@ class BasicParallelWorld final {
   /// within a callback. If a listener throws, its event counts as told, and the next call goes on with the next one.
   void advance_to(double t);
 
+  /// Saves or loads the scene, as a World does: see save() and restore() in kds/framework/snapshot.hpp. What one of the
+  /// two has saved the other can load, and it does not matter how many domains or processes there were. After loading
+  /// counters() begins at zero. Where several processes run the scene, all of them save and load.
+  template <class Archive>
+  void archive(Archive& archive);
+
   double now() const;
   std::size_t size() const;
   /// Throws std::out_of_range as World::motion(), std::logic_error for a body that another process owns; whole() has

@@ -63,7 +63,8 @@ std::vector<std::pair<const char*, std::string>> outputs(const Arguments& argume
   return {{"--events", arguments.events},
           {"--stats", arguments.stats},
           {"--view", arguments.view},
-          {"--gltf", arguments.gltf}};
+          {"--gltf", arguments.gltf},
+          {"--checkpoint", arguments.checkpoint}};
 }
 
 /// Whether to write to one is to change the other. A device or a pipe may be written to by several.
@@ -77,6 +78,24 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(past_dangling_links(path), ignored), ignored);
   };
   return plain(a) == plain(b);
+}
+
+void check_checkpoints(const Arguments& arguments) {
+  const double every = arguments.run.checkpoint_every;
+  if (arguments.checkpoint.empty()) {
+    if (every != 0) throw ArgumentError("--checkpoint-every: needs --checkpoint");
+    if (arguments.resume) throw ArgumentError("--resume: needs --checkpoint");
+    return;
+  }
+  if (!(every > 0 && std::isfinite(1 / every))) {
+    throw ArgumentError("--checkpoint: needs --checkpoint-every, a time > 0 that is not too short");
+  }
+  if (!arguments.view.empty() || !arguments.gltf.empty()) {
+    throw ArgumentError("--checkpoint: there are no pictures of a run in parts");
+  }
+  for (const std::string& file : {arguments.checkpoint, arguments.events}) {
+    if (file == "-") throw ArgumentError("--checkpoint: the checkpoint and the events must be files");
+  }
 }
 
 /// Two outputs in one file, or an output in place of the scene, would destroy what is wanted.
@@ -127,6 +146,13 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--gltf", arguments.gltf, "Write an animation in the format glTF")
       ->type_name("FILE.gltf")
       ->check(not_empty());
+  app.add_option("--checkpoint", arguments.checkpoint, "Write the state of the run now and then, to go on from")
+      ->type_name("FILE")
+      ->check(not_empty());
+  add_number<double>(app, "--checkpoint-every", arguments.run.checkpoint_every,
+                     "Whenever so much simulated time has gone by, in seconds")
+      ->type_name("S");
+  app.add_flag("--resume", arguments.resume, "Go on from the checkpoint");
   const std::vector<CLI::Option*> of_a_run = app.get_options([](const CLI::Option* o) { return o->nonpositional(); });
   app.add_flag("--quiet", arguments.quiet, "No progress and no summary on standard error");
 
@@ -191,12 +217,17 @@ void check(const Arguments& arguments) {
   if (run.domains != 1 && pictures) throw ArgumentError("--domains: there are no pictures of a scene that is divided");
   if (run.domains != 1 && run.pairs)
     throw ArgumentError("--domains: volumes are not told of in a scene that is divided");
+  check_checkpoints(arguments);
   check_files_differ(arguments);
 }
 
 void check(const Arguments& arguments, const Scene& scene) {
   if (arguments.until && *arguments.until < scene.begin_time) {
     throw ArgumentError("--until: is before the motion begins");
+  }
+  if (scene.end_time - scene.begin_time > most_results * arguments.run.checkpoint_every &&
+      arguments.run.checkpoint_every > 0) {
+    throw ArgumentError("--checkpoint-every: asks for more than 1e12 checkpoints");
   }
   if (arguments.run.rate * (scene.end_time - scene.begin_time) > most_results) {
     throw ArgumentError("--rate: asks for more than 1e12 results");

@@ -21,6 +21,8 @@ struct Arguments {
   std::string gltf;
   std::optional<double> until;  ///< s
   kds::io::RunOptions run;
+  std::string checkpoint;
+  bool resume = false;
   bool quiet = false;
   bool generate = false;
   GeneratorOptions generator;

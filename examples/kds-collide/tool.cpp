@@ -3,6 +3,7 @@
 #include "collision/broad_phase/broad_phase_kind.hpp"
 #include "examples/kds-collide/arguments.hpp"
 #include "examples/kds-collide/progress_bar.hpp"
+#include "io/checkpoint.hpp"
 #include "io/event_csv.hpp"
 #include "io/gltf.hpp"
 #include "io/one_line.hpp"
@@ -97,7 +98,15 @@ class Simulation {
       for (const std::string& warning : scene_.warnings) std::fprintf(stderr, "%s\n", one_line(warning).c_str());
     }
     check(arguments_, scene_);
-    if (writes && !arguments_.events.empty()) sinks_.add(events_.emplace(arguments_.events, scene_));
+    if (!arguments_.checkpoint.empty()) prepare_checkpoints();
+    if (writes && !arguments_.events.empty()) {
+      if (arguments_.checkpoint.empty()) {
+        events_.emplace(arguments_.events, scene_);
+      } else {
+        events_.emplace(arguments_.events, scene_, checkpoint_.events);
+      }
+      sinks_.add(*events_);
+    }
     if (writes && !arguments_.stats.empty()) stats_.emplace(arguments_.stats);
     if (writes && !arguments_.view.empty()) {
       replay_page("", default_three_folder());
@@ -142,7 +151,25 @@ class Simulation {
     return scene;
   }
 
+  void prepare_checkpoints() {
+    const std::uint64_t scene = fingerprint(arguments_.scene);
+    if (arguments_.resume) {
+      checkpoint_ = read_checkpoint(arguments_.checkpoint);
+      if (checkpoint_.scene != scene) throw ArgumentError("--resume: the checkpoint is of another scene");
+      if ((checkpoint_.events > 0) == arguments_.events.empty()) {
+        throw ArgumentError("--resume: give --events if, and only if, the run had it");
+      }
+      arguments_.run.resume = &checkpoint_.world;
+    }
+    checkpoint_.scene = scene;
+    arguments_.run.checkpoint = [this](const kds::Snapshot& world) {
+      write_checkpoint(arguments_.checkpoint,
+                       {.scene = checkpoint_.scene, .events = events_ ? events_->flush() : 0, .world = world});
+    };
+  }
+
   Arguments arguments_;
+  Checkpoint checkpoint_;  ///< from which the run goes on, if it does
   double read_seconds_ = 0;
   Scene scene_;
   EventSinks sinks_;

@@ -139,6 +139,43 @@ TEST_CASE("command line: scenes that are divided have the same events and the sa
   CHECK(few_bodies);
 }
 
+TEST_CASE("command line: a run that has ended early goes on from its last checkpoint") {
+  const TemporaryFolder folder;
+  const auto kind = std::string(GENERATE(as<std::string>(), "spheres", "spinning-rings"));
+  INFO(kind);
+  REQUIRE(kds_collide_in(folder, "--generate " + kind + " --bodies 200 --density 0.1 --seed 5").code == 0);
+  const std::string run = kind + ".json --quiet --until 2 --events ";
+  REQUIRE(kds_collide_in(folder, run + "one.csv").code == 0);
+  const std::string expected = read_file(folder / "one.csv");
+  CHECK(lines_of(expected).size() > 20);
+  const std::string in_parts = run + "parts.csv --checkpoint run.state --checkpoint-every 0.7";
+  REQUIRE(kds_collide_in(folder, in_parts).code == 0);
+  const bool same = read_file(folder / "parts.csv") == expected;
+  CHECK(same);
+  // As if it had been ended after its last checkpoint, in the middle of a line.
+  std::filesystem::rename(folder / "parts.csv", folder / "parts.csv.unfinished");
+  const std::string stays = "parts.csv.unfinished: file: is there already, of a run that has not ended\n";
+  CHECK(kds_collide_in(folder, in_parts).err == stays);
+  std::filesystem::resize_file(folder / "parts.csv.unfinished", expected.size() - 7);
+  CHECK(kds_collide_in(folder, in_parts + " --resume --stats rest.json").code == 0);
+  const bool same_in_parts = read_file(folder / "parts.csv") == expected;
+  CHECK(same_in_parts);
+  const auto rest = nlohmann::json::parse(read_file(folder / "rest.json"));
+  CHECK(rest["sim_seconds"].get<double>() == Approx(0.6));
+
+  const Outcome ended = kds_collide_in(folder, in_parts + " --resume");
+  CHECK(ended.code == 2);
+  CHECK(ended.err == "parts.csv.unfinished: file: cannot be gone on with: No such file or directory\n");
+  const Outcome without = kds_collide_in(folder, kind + ".json --checkpoint run.state --checkpoint-every 1 --resume");
+  CHECK(without.code == 2);
+  CHECK(without.err == "kds-collide: --resume: give --events if, and only if, the run had it\n");
+  folder.write("head_on.json", head_on);
+  const Outcome other =
+      kds_collide_in(folder, "head_on.json --events e.csv --checkpoint run.state --checkpoint-every 1 --resume");
+  CHECK(other.code == 2);
+  CHECK(other.err == "kds-collide: --resume: the checkpoint is of another scene\n");
+}
+
 TEST_CASE("command line: --pairs adds the events of bounding volumes") {
   const TemporaryFolder folder;
   folder.write("scene.json", head_on);

@@ -89,4 +89,33 @@ TEST_CASE("output file: a place that cannot be written is named") {
   CHECK(error((folder / "").string()) == (folder / "").string() + ": file: cannot be written: Is a directory");
 }
 
+TEST_CASE("output file: one that takes several runs stays unfinished, and is gone on with") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "a.txt").string(), unfinished = path + ".unfinished";
+  std::uint64_t length = 0;
+  {
+    OutputFile file(path, 0);
+    file.write("one,");
+    length = file.flush();
+    file.write("what is dropped");
+  }
+  CHECK(length == 4);
+  CHECK(!std::filesystem::exists(path));
+  CHECK(read_file(unfinished) == "one,what is dropped");
+  CHECK_THROWS_WITH(OutputFile(path, 0), unfinished + ": file: is there already, of a run that has not ended");
+  CHECK_THROWS_WITH(OutputFile(path, 20), unfinished +
+                                              ": file: cannot be gone on with: it has 19 bytes, and the run had "
+                                              "written 20");
+  {
+    OutputFile file(path, length);
+    file.write("two");
+    CHECK(file.flush() == 7);
+    file.commit();
+  }
+  CHECK(read_file(path) == "one,two");
+  CHECK(folder.file_count() == 1);
+  CHECK_THROWS_WITH(OutputFile(path, 4), unfinished + ": file: cannot be gone on with: No such file or directory");
+  CHECK_THROWS_AS(OutputFile("/dev/null", 0), OutputError);
+}
+
 }  // namespace test_output_file

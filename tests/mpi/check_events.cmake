@@ -19,6 +19,20 @@ file(SHA256 "${FOLDER}/several.csv" several)
 if(NOT one STREQUAL several)
   message(FATAL_ERROR "the events of ${PROCESSES} processes are not those of one world: ${FOLDER}/several.csv")
 endif()
+
+# A run that has ended early goes on from its last checkpoint, with as many processes as there are then. What it had
+# written after that is dropped.
+run(${MPIRUN} ${PROCESSES} "${MPI_TOOL}" balls.json --until 4 --domains 4 --events parts.csv --checkpoint run.state
+  --checkpoint-every 1.5 --quiet)
+foreach(with IN ITEMS "${MPIRUN};2;${MPI_TOOL};--domains;3" "${MPIRUN};3;${MPI_TOOL}" "${TOOL}" "${TOOL};--domains;5")
+  file(RENAME "${FOLDER}/parts.csv" "${FOLDER}/parts.csv.unfinished")
+  run(${with} balls.json --until 4 --events parts.csv --checkpoint run.state --checkpoint-every 1.5 --resume --quiet)
+  file(SHA256 "${FOLDER}/parts.csv" parts)
+  if(NOT parts STREQUAL one)
+    message(FATAL_ERROR "a run that went on with ${with} has other events: ${FOLDER}/parts.csv")
+  endif()
+endforeach()
+
 file(STRINGS "${FOLDER}/one.csv" lines)
 list(LENGTH lines count)
 file(READ "${FOLDER}/stats.json" stats)
