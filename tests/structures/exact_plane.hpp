@@ -42,6 +42,11 @@ class ExactPlane {
     const auto u = from(a, b), v = from(c, d);
     return (u[0] * u[0] + u[1] * u[1] - (v[0] * v[0] + v[1] * v[1])).sign_after(now_);
   }
+  /// -1 if c is inside the disc that has a and b as ends of a diameter, 0 if it stays on its border.
+  int outside_disc(Id a, Id b, Id c) const {
+    const auto u = from(c, a), v = from(c, b);
+    return (u[0] * v[0] + u[1] * v[1]).sign_after(now_);
+  }
   bool same(Id a, Id b) const {
     const auto u = from(a, b);
     return u[0].sign_after(now_) == 0 && u[1].sign_after(now_) == 0;
