@@ -39,8 +39,8 @@ struct OutsideDisc {
   }
 };
 
-/// sign (4 r^2 - |b - a|^2) >= 0: the smallest disc that contains a and b has at most the radius r. Degree 2 for linear,
-/// 4 for quadratic paths.
+/// sign (4 r^2 - |b - a|^2) >= 0: the smallest disc that contains a and b has at most the radius r. Degree 2 for
+/// linear, 4 for quadratic paths.
 template <class Path>
 struct PairRadius {
   static constexpr int degree = 2 * Path::degree;

@@ -17,8 +17,8 @@
 
 namespace kds::structures {
 
-/// Keeps which two of moving points are Gabriel neighbours: the closed disc that has them as ends of a diameter contains
-/// no other point. It stands on a Delaunay triangulation:
+/// Keeps which two of moving points are Gabriel neighbours: the closed disc that has them as ends of a diameter
+/// contains no other point. It stands on a Delaunay triangulation:
 ///
 ///     Kinetic<DelaunayRule<Path>> triangulation(points, now);
 ///     Kinetic<GabrielGraphRule<Path>> gabriel(triangulation, now);
@@ -36,8 +36,8 @@ namespace kds::structures {
 /// those opposite (as local as the triangulation). External events are changes of the graph; an event is internal only
 /// where another point takes the place of the one that was in a disc (efficient).
 ///
-/// Points that stay in one place count as one (DelaunayRule::vertex). While all points stay on one line nothing is known
-/// (DelaunayRule::flat).
+/// Points that stay in one place count as one (DelaunayRule::vertex). While all points stay on one line nothing is
+/// known (DelaunayRule::flat).
 template <class Path>
 class GabrielGraphRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
  public:
@@ -64,10 +64,7 @@ class GabrielGraphRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
     return condition(slot, x, sign);
   }
   std::array<Id, 3> members(Slot slot) const {
-    const TriangleMesh& mesh = this->inner().mesh();
-    const TriangleMesh::Edge first = this->inner().edges().half_edge(slot / 2);
-    const TriangleMesh::Edge h = slot % 2 == 0 ? first : mesh.twin(first);
-    return {mesh.origin(h), mesh.target(h), mesh.apex(h)};
+    return this->inner().edges().corners_beside(slot / 2, slot % 2, this->inner().mesh());
   }
 
   Effect repair(Slot slot, Pen& repair) {

@@ -27,8 +27,8 @@ struct EdgeChange {
   friend bool operator==(const EdgeChange&, const EdgeChange&) = default;
 };
 
-/// A triangle of a triangulation that has come, gone, or got other corners; or one of whose corners has got a new motion.
-/// Triangles with the vertex at infinity are among them.
+/// A triangle of a triangulation that has come, gone, or got other corners; or one of whose corners has got a new
+/// motion. Triangles with the vertex at infinity are among them.
 struct TriangleChange {
   std::uint32_t triangle;
 
@@ -55,6 +55,12 @@ class TriangulationEdges {
   /// One of an edge's two half-edges. Precondition: contains(edge).
   TriangleMesh::Edge half_edge(Number edge) const { return half_edge_[edge]; }
 
+  /// The ends of an edge, and the third corner of one of the two triangles beside it, 0 or 1: TriangleMesh::infinite on
+  /// the outer side of an edge of the hull. Precondition: contains(edge).
+  std::array<Id, 3> corners_beside(Number edge, std::size_t side, const TriangleMesh& mesh) const {
+    const TriangleMesh::Edge h = side == 0 ? half_edge_[edge] : mesh.twin(half_edge_[edge]);
+    return {mesh.origin(h), mesh.target(h), mesh.apex(h)};
+  }
   /// Calls f with the number of each edge at a vertex of the mesh.
   template <class F>
   void for_each_at(Id vertex, const TriangleMesh& mesh, const F& f) const {

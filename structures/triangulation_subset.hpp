@@ -40,8 +40,8 @@ class TriangulationSubset {
     return result;
   }
 
-  /// Takes a part in, or another in its place, and calls report(What, number, corners) for the one that went and for the
-  /// one that came. Whether there was one to report.
+  /// Takes a part in, or another in its place, and calls report(What, number, corners) for the one that went and for
+  /// the one that came. Whether there was one to report.
   template <class Report>
   bool put(Number part, const Ids& corners, const Report& report) {
     if (contains(part) && corners_[part] == corners) return false;

@@ -22,7 +22,8 @@ template <class... Types>
 struct Changes {};
 
 /// A change that a rule is making: its time, the elements, and the slots that have got a new certificate. `Change` is
-/// what the rule reports to rules that stand on it; Changes<...> if that is of several types; void if it reports nothing.
+/// what the rule reports to rules that stand on it; Changes<...> if that is of several types; void if it reports
+/// nothing.
 ///
 /// Slots that are marked are certified when the rule is done, each once: a rule may mark more slots than it must, in
 /// any order, while its state is incomplete. It is passed by reference: there is one for a structure.

@@ -80,12 +80,13 @@ class Follower {
 ///
 ///     follow(changes, repair) -> Effect           take up what the inner rule has reported, in its order
 ///
-/// and marks the slots whose certificates that changes. `changes` is a std::span<const Heard>. If the inner rule reports
-/// changes of several types (Changes<...>), Heard is the one that the outer rule names, StandsOn<Inner, Heard>, or else
-/// the first of them; of others it is not told.
+/// and marks the slots whose certificates that changes. `changes` is a std::span<const Heard>. If the inner rule
+/// reports changes of several types (Changes<...>), Heard is the one that the outer rule names, StandsOn<Inner, Heard>,
+/// or else the first of them; of others it is not told.
 ///
-/// It needs no insert() and remove(). If it has them, or a change(), they are called after follow(): when an element has come; is to go, and is still there; or has its new
-/// motion (without change(): remove() and then insert()). It has no build() and keeps().
+/// It needs no insert() and remove(). If it has them, or a change(), they are called after follow(): when an element
+/// has come; is to go, and is still there; or has its new motion (without change(): remove() and then insert()). It has
+/// no build() and keeps().
 ///
 /// Laws. (1) Whenever a function of the outer rule is called, inner() is valid: all its events up to that time have
 /// been processed. So its state may be read at any time, and certificates may depend on it; but follow() must mark all
