@@ -47,8 +47,8 @@ struct NeighboursChange {
 ///
 /// It reports each point whose neighbours have become others (NeighboursChange), so that other rules may stand on it.
 ///
-/// Cost, besides that of the triangulation: no certificates and no events of its own; O(neighbours) for each corner of a
-/// triangle that changes, of which a flip has four. All events that it follows are external. Memory: an id for each
+/// Cost, besides that of the triangulation: no certificates and no events of its own; O(neighbours) for each corner of
+/// a triangle that changes, of which a flip has four. All events that it follows are external. Memory: an id for each
 /// neighbour.
 ///
 /// If four or more points stay on one circle, two of them that the triangulation joins are neighbours, and the side
