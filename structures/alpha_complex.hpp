@@ -45,12 +45,12 @@ struct AlphaTriangleChange {
 /// It reports edges and triangles (EdgeChange, AlphaTriangleChange) that come, go, and have a corner that moves
 /// otherwise, so that other rules may stand on it.
 ///
-/// Cost, besides that of the triangulation: an event of its own is one edge or one triangle, at most 3 certificates; a
-/// flip concerns 6 edges and 2 triangles (responsive: 20 marked). At most 3 certificates for each edge and 1 for each
-/// triangle, fewer than 11 n (compact); as local as the triangulation. The circle of a triangle has a certificate of
-/// degree 6 for linear and 12 for quadratic paths, those of edges are of degree 2 and 4. External events are changes of
-/// the complex; of edges that are in it because of a triangle the other conditions are kept too, and their events are
-/// internal.
+/// Cost, besides that of the triangulation: an event of its own is one edge, or a triangle and its edges, at most 10
+/// certificates; a flip concerns 6 edges and 2 triangles (responsive: 20 marked). 1 certificate for each triangle, and
+/// at most 3 for each edge that has no triangle of the complex beside it, fewer than 11 n (compact); as local as the
+/// triangulation. The circle of a triangle has a certificate of degree 6 for linear and 12 for quadratic paths, those
+/// of edges are of degree 2 and 4. External events are changes of the complex; an event is internal only where an edge
+/// that is not in it still misses another condition (efficient).
 ///
 /// If four or more points stay on one circle, triangles and edges are those that the triangulation has. Points that
 /// stay in one place count as one (DelaunayRule::vertex). While all points stay on one line nothing is known
@@ -126,6 +126,7 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
       small_.turn(triangle, 0, meets(slot, repair));
       other = take_up_triangle(triangle, repair);
       for (TriangleMesh::Edge h = 3 * triangle; h < 3 * triangle + 3; ++h) {
+        look_at_edge(this->inner().edges().of(h), repair);
         other = take_up_edge(this->inner().edges().of(h), repair) || other;
       }
     } else {
@@ -193,14 +194,15 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
       small_.let_go(triangle);
     }
   }
+  /// When its triangles have been taken up.
   void look_at_edge(Edge edge, Pen& repair) {
-    if (this->inner().edges().contains(edge)) {
+    if (this->inner().edges().contains(edge) && triangles_beside(edge) == 0) {
       empty_.look(edge, meets(4 * edge, repair));
     } else {
       empty_.let_go(edge);
     }
   }
-  /// Whether the complex has changed. Of an edge: when its triangles have been taken up.
+  /// Whether the complex has changed.
   bool take_up_triangle(Triangle triangle, Pen& repair) {
     repair.certify(4 * triangle + 3);
     const auto report = [&](EdgeChange::What what, Triangle number, const std::array<Id, 3>& corners) {
@@ -219,7 +221,7 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   }
 
   double radius_;
-  Selection<3> empty_;  ///< edges whose own disc is small enough and empty
+  Selection<3> empty_;  ///< edges without a triangle beside them, whose own disc is small enough and empty
   Selection<1> small_;  ///< triangles
   TriangulationSubset<2> edges_;
   TriangulationSubset<3> triangles_;
@@ -300,7 +302,8 @@ void AlphaComplexRule<Path>::audit(const MovingSet<Path>& /*elements*/, double /
   const TriangulationEdges& edges = this->inner().edges();
   sides_.audit(this->inner().mesh(), edges);
   for (Edge edge = 0; edge < std::max(edges.end(), edges_.end()); ++edge) {
-    require(empty_.knows(edge) == edges.contains(edge) && contains_edge(edge) == is_in(edge), "edge", edge);
+    const bool alone = edges.contains(edge) && triangles_beside(edge) == 0;
+    require(empty_.knows(edge) == alone && contains_edge(edge) == is_in(edge), "edge", edge);
     require(!contains_edge(edge) || edges_.corners(edge) == edges.ends(edge), "edge", edge);
   }
   for (Triangle triangle = 0; triangle < std::max(this->inner().mesh().end_triangle(), triangles_.end()); ++triangle) {

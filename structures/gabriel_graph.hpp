@@ -33,8 +33,8 @@ namespace kds::structures {
 /// Cost, besides that of the triangulation: an event of its own is one edge, at most 2 certificates, of degree 2 for
 /// linear and 4 for quadratic paths; a flip concerns 6 edges (responsive: 12 marked). 2 certificates for an edge of the
 /// graph and 1 for any other, in all fewer than 6 n (compact); a point is in at most two for each of its edges and of
-/// those opposite (as local as the triangulation). External events are changes of the graph; an event is internal only
-/// where another point takes the place of the one that was in a disc (efficient).
+/// those opposite (as local as the triangulation). Each event of its own is external, a change of the graph, since of
+/// the two angles opposite an edge of a Delaunay triangulation at most one is obtuse (efficient).
 ///
 /// Points that stay in one place count as one (DelaunayRule::vertex). While all points stay on one line nothing is
 /// known (DelaunayRule::flat).

@@ -4,12 +4,14 @@
 #include "structures/closest_pair.hpp"
 #include "tests/structures/exact_plane.hpp"
 #include "tests/structures/random_values.hpp"
+#include "tests/structures/sampled_orbits.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -219,6 +221,54 @@ TEST_CASE("an alpha complex keeps to its measures", "[alpha_complex]") {
   CHECK(m.most_held < 11 * n);   // compact
   CHECK(m.most_touched <= 20);   // responsive
   CHECK(closest.measures().followed == complex.measures().followed);
+}
+
+TEST_CASE("an alpha complex of sampled points is that of the truth but for a tick", "[alpha_complex][bounded]") {
+  using certificates::BoundedPoint;
+  const std::uint64_t seed = 657;
+  CAPTURE(seed);
+  Random random(seed);
+  const Id n = 12;
+  const Orbits orbits(random, n);  // known to the sampler only
+  const auto sample = [&](Id id, double t) { return BoundedPoint{orbits.position(id, t), orbits.speed(id), t}; };
+  MovingSet<BoundedPoint> set;
+  set.sample_with(sample, 0.01);
+  for (Id id = 0; id < n; ++id) set.insert(id, sample(id, 0), 0);
+  const double radius = 0.3;
+  Kinetic<DelaunayRule<BoundedPoint>> triangulation(set, 0);
+  Kinetic<AlphaComplexRule<BoundedPoint>> complex(triangulation, 0, AlphaComplexRule<BoundedPoint>(radius));
+  Simulator simulator(0, triangulation, complex);
+  std::size_t all = 0, other = 0;
+  std::vector<std::array<Id, 2>> first;
+  bool changes = false;
+  for (double t = 0.125; t <= 8; t += 0.125) {
+    simulator.advance_to(t);
+    simulator.audit();
+    using Path = PlaneMotion<1>;
+    MovingSet<Path> truth;  // at rest, as they are at t
+    for (Id id = 0; id < n; ++id) {
+      const auto [x, y] = orbits.position(id, t);
+      truth.insert(id, Path{{{{{x, 0}}, {{y, 0}}}}, t}, t);
+    }
+    const Kinetic<DelaunayRule<Path>> true_triangulation(truth, t);
+    const auto edges = complex.rule().edges();
+    std::vector<std::array<Id, 2>> expected, missing;
+    std::vector<Id> vertices = truth.ids();
+    for (std::uint32_t edge = 0; edge < true_triangulation.rule().edges().end(); ++edge) {
+      const auto [a, b] = true_triangulation.rule().edges().ends(edge);
+      if (has_empty_disc(ExactPlane(truth, t), vertices, radius, a, b)) expected.push_back({a, b});
+    }
+    std::sort(expected.begin(), expected.end());
+    std::set_symmetric_difference(edges.begin(), edges.end(), expected.begin(), expected.end(),
+                                  std::back_inserter(missing));
+    other += missing.size();
+    all += expected.size();
+    if (first.empty()) first = expected;
+    changes = changes || expected != first;
+  }
+  CHECK(changes);
+  CHECK(all > 500);
+  CHECK(100 * other < all);
 }
 
 }  // namespace test_alpha_complex
