@@ -4,9 +4,12 @@
 #include "certificates/plane_motion.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
+#include "structures/alpha_complex.hpp"
 #include "structures/closest_pair.hpp"
+#include "structures/gabriel_graph.hpp"
 #include "structures/nearest_neighbours.hpp"
 #include "structures/spanning_tree.hpp"
+#include "structures/voronoi_cells.hpp"
 
 #include <array>
 #include <cstddef>
@@ -47,8 +50,11 @@ int main() {
   Kinetic<structures::ClosestPairRule<Path>> closest(triangulation, 0);
   Kinetic<structures::SpanningTreeRule<Path>> tree(triangulation, 0);
   Kinetic<structures::NearestNeighboursRule<Path>> nearest(triangulation, 0);
+  Kinetic<structures::GabrielGraphRule<Path>> gabriel(triangulation, 0);
+  Kinetic<structures::AlphaComplexRule<Path>> shape(triangulation, 0, structures::AlphaComplexRule<Path>(3));
+  Kinetic<structures::VoronoiCellsRule<Path>> cells(triangulation, 0);
   Kinetic<DegreesRule> degrees(triangulation, 0);
-  Simulator simulator(0, triangulation, closest, tree, nearest, degrees);
+  Simulator simulator(0, triangulation, closest, tree, nearest, gabriel, shape, cells, degrees);
   simulator.advance_to(4);
   simulator.audit();
 
@@ -62,5 +68,10 @@ int main() {
   std::cout << triangulation.measures().external << " flips; another closest pair " << closest.measures().external
             << " times, another spanning tree " << tree.measures().external << " times\n"
             << tree.rule().edges().size() << " of " << ends / 2 << " edges are in the tree\n"
-            << mutual << " points are the nearest of their nearest\n";
+            << mutual << " points are the nearest of their nearest\n"
+            << gabriel.rule().edges().size() << " edges are in the Gabriel graph, " << shape.rule().border().size()
+            << " on the border of the alpha shape of radius 3\n"
+            << "the Voronoi cell of point 0 has the corners";
+  for (const auto& [x, y] : cells.rule().cell(0, points, 4).vertices) std::cout << " (" << x << ", " << y << ")";
+  std::cout << "\n";
 }

@@ -59,7 +59,7 @@ class ChampionRule : public StandsOn<Inner> {
     bracket_.climb(match, Bracket::nobody, beats(repair), marks(repair));
     return renew_answer();
   }
-  Effect follow(std::span<const typename Inner::Change> changes, Pen& repair) {
+  Effect follow(std::span<const typename StandsOn<Inner>::Heard> changes, Pen& repair) {
     candidates_.clear();
     for (const auto& change : changes) candidates_.push_back(rule().candidate(change));
     bracket_.update(

@@ -62,7 +62,7 @@ class OrderedRule : public StandsOn<Inner> {
     for (std::size_t k = i > 0 ? i - 1 : 0; k < i + 2; ++k) repair.certify(order_[k]);
     return rule().swapped(order_[i + 1], order_[i]);
   }
-  Effect follow(std::span<const typename Inner::Change> changes, Pen& repair) {
+  Effect follow(std::span<const typename StandsOn<Inner>::Heard> changes, Pen& repair) {
     const std::size_t first_out = take_out(changes, repair);
     const std::size_t first = std::min(first_out, put_in(changes, repair));
     for (std::size_t k = first; k < order_.size(); ++k) rank_[order_[k]] = static_cast<std::uint32_t>(k);
@@ -99,7 +99,7 @@ class OrderedRule : public StandsOn<Inner> {
 
   /// All candidates that have changed come out first, so that those that stay are in order when others look for their
   /// places. Gives the first place that has changed.
-  std::size_t take_out(std::span<const typename Inner::Change> changes, Pen& repair) {
+  std::size_t take_out(std::span<const typename StandsOn<Inner>::Heard> changes, Pen& repair) {
     places_.clear();
     for (const auto& change : changes) {
       const Candidate c = rule().candidate(change);
@@ -116,7 +116,7 @@ class OrderedRule : public StandsOn<Inner> {
     return *std::min_element(places_.begin(), places_.end());
   }
   /// The same for those that are there now.
-  std::size_t put_in(std::span<const typename Inner::Change> changes, Pen& repair) {
+  std::size_t put_in(std::span<const typename StandsOn<Inner>::Heard> changes, Pen& repair) {
     std::size_t first = order_.size();
     for (const auto& change : changes) {
       const Candidate c = rule().candidate(change);

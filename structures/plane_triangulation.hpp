@@ -12,7 +12,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -64,8 +66,8 @@ class PlaneTriangulationRule {
   using Direction = certificates::DirectionOrder<Path, 2>;
   using Choice = std::variant<std::monostate, Orientation, InCircle, Direction>;
 
-  /// What it reports to rules that stand on it; a convex hull reports nothing.
-  using Change = std::conditional_t<What == Criterion::delaunay, EdgeChange, void>;
+  /// What it reports to rules that stand on it: edges, or triangles; a convex hull reports nothing.
+  using Change = std::conditional_t<What == Criterion::delaunay, Changes<EdgeChange, TriangleChange>, void>;
   using Pen = Repair<Path, Change>;
 
   // Slots 4 t, 4 t + 1, 4 t + 2: the edges of triangle t, each known by the lesser of its half-edges; 4 t + 3: its
@@ -79,7 +81,7 @@ class PlaneTriangulationRule {
   void change(Id id, Pen& repair);
   void build(Pen& repair) { rebuild(nobody, repair); }
   void audit(const MovingSet<Path>& x, double now) const;
-  std::vector<EdgeChange> changes_from_nothing() const;
+  std::tuple<std::vector<EdgeChange>, std::vector<TriangleChange>> changes_from_nothing() const;
 
   template <class Archive>
   void archive(Archive& archive) {
@@ -140,12 +142,17 @@ std::vector<Id> PlaneTriangulationRule<Path, What>::hull() const {
 }
 
 template <class Path, Criterion What>
-std::vector<EdgeChange> PlaneTriangulationRule<Path, What>::changes_from_nothing() const {
-  std::vector<EdgeChange> changes;
+auto PlaneTriangulationRule<Path, What>::changes_from_nothing() const
+    -> std::tuple<std::vector<EdgeChange>, std::vector<TriangleChange>> {
+  std::vector<EdgeChange> edges;
   for (TriangulationEdges::Number edge = 0; edge < edges_.end(); ++edge) {
-    if (edges_.contains(edge)) changes.push_back({EdgeChange::What::came, edge, edges_.ends(edge)});
+    if (edges_.contains(edge)) edges.push_back({EdgeChange::What::came, edge, edges_.ends(edge)});
   }
-  return changes;
+  std::vector<TriangleChange> triangles;
+  for (std::uint32_t t = 0; t < mesh_.end_triangle(); ++t) {
+    if (mesh_.in_use(t)) triangles.push_back({t});
+  }
+  return {std::move(edges), std::move(triangles)};
 }
 
 template <class Path, Criterion What>

@@ -140,19 +140,16 @@ template <class Path, Criterion What>
 void PlaneTriangulationRule<Path, What>::report_touched(Pen& repair) {
   if constexpr (What == Criterion::delaunay) {
     edges_.update(mesh_, touched_, [&](const EdgeChange& change) { repair.report(change); });
+    for (const std::uint32_t t : touched_) repair.report(TriangleChange{t});
   }
 }
 
 template <class Path, Criterion What>
 void PlaneTriangulationRule<Path, What>::report_moved(Id id, Pen& repair) {
   if constexpr (What == Criterion::delaunay) {
-    const Edge first = mesh_.from(id);
-    Edge h = first;
-    do {
-      const auto edge = edges_.of(h);
-      if (edge != TriangulationEdges::none) repair.report({EdgeChange::What::moved, edge, edges_.ends(edge)});
-      h = mesh_.clockwise(h);
-    } while (h != first);
+    edges_.for_each_at(id, mesh_, [&](TriangulationEdges::Number edge) {
+      repair.report(EdgeChange{EdgeChange::What::moved, edge, edges_.ends(edge)});
+    });
   }
 }
 

@@ -27,10 +27,19 @@ struct EdgeChange {
   friend bool operator==(const EdgeChange&, const EdgeChange&) = default;
 };
 
+/// A triangle of a triangulation that has come, gone, or got other corners; or one of whose corners has got a new
+/// motion. Triangles with the vertex at infinity are among them.
+struct TriangleChange {
+  std::uint32_t triangle;
+
+  friend bool operator==(const TriangleChange&, const TriangleChange&) = default;
+};
+
 /// Numbers the edges between points: in a flip one goes and one comes, and the other four of its two triangles, whose
 /// half-edges may be others, keep their numbers. Edges to infinity have none.
 ///
-/// Cost: O(k log k) for k triangles that have changed; memory, a number a half-edge and the ends of each edge.
+/// Cost: O(k log k) for k triangles that have changed; memory, a number a half-edge, and of each edge its ends
+/// and a half-edge.
 class TriangulationEdges {
  public:
   using Number = std::uint32_t;
@@ -43,6 +52,25 @@ class TriangulationEdges {
   const std::array<Id, 2>& ends(Number edge) const { return ends_[edge]; }
   /// Of a half-edge; none if it leads to infinity.
   Number of(TriangleMesh::Edge half_edge) const { return of_[half_edge]; }
+  /// One of an edge's two half-edges. Precondition: contains(edge).
+  TriangleMesh::Edge half_edge(Number edge) const { return half_edge_[edge]; }
+
+  /// The ends of an edge, and the third corner of one of the two triangles beside it, 0 or 1: TriangleMesh::infinite on
+  /// the outer side of an edge of the hull. Precondition: contains(edge).
+  std::array<Id, 3> corners_beside(Number edge, std::size_t side, const TriangleMesh& mesh) const {
+    const TriangleMesh::Edge h = side == 0 ? half_edge_[edge] : mesh.twin(half_edge_[edge]);
+    return {mesh.origin(h), mesh.target(h), mesh.apex(h)};
+  }
+  /// Calls f with the number of each edge at a vertex of the mesh.
+  template <class F>
+  void for_each_at(Id vertex, const TriangleMesh& mesh, const F& f) const {
+    const TriangleMesh::Edge first = mesh.from(vertex);
+    TriangleMesh::Edge h = first;
+    do {
+      if (of_[h] != none) f(of_[h]);
+      h = mesh.clockwise(h);
+    } while (h != first);
+  }
 
   /// Takes up the triangles whose corners or neighbours have changed, and calls report(EdgeChange) for each edge that
   /// went, then for each that came. A triangle may be named twice, and need not be in use any more.
@@ -55,6 +83,7 @@ class TriangulationEdges {
       const Number edge = of_[h] == none ? find_again(ends_in(mesh, h)) : none;
       if (edge == none) continue;
       of_[h] = of_[mesh.twin(h)] = edge;
+      half_edge_[edge] = h;
     }
     for (const Number edge : gone_) {
       if (fate_[edge] == Fate::stays) continue;
@@ -66,6 +95,7 @@ class TriangulationEdges {
       if (of_[h] != none) continue;
       const Number edge = create(ends_in(mesh, h));
       of_[h] = of_[mesh.twin(h)] = edge;
+      half_edge_[edge] = h;
       report(EdgeChange{EdgeChange::What::came, edge, ends_[edge]});
     }
   }
@@ -79,6 +109,9 @@ class TriangulationEdges {
       if (numbered ? !contains(edge) || ends_[edge] != ends_in(mesh, h) || of_[mesh.twin(h)] != edge : edge != none) {
         throw AuditFailure("TriangulationEdges: half-edge " + std::to_string(h) + ": has not the number of its edge");
       }
+      if (numbered && half_edge_[edge] != h && half_edge_[edge] != mesh.twin(h)) {
+        throw AuditFailure("TriangulationEdges: edge " + std::to_string(edge) + ": has not a half-edge of its own");
+      }
       half_edges += numbered;
     }
     if (half_edges != 2 * (ends_.size() - free_.size())) {
@@ -88,7 +121,7 @@ class TriangulationEdges {
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(of_, ends_, free_);
+    archive(of_, ends_, half_edge_, free_);
   }
 
  private:
@@ -125,6 +158,7 @@ class TriangulationEdges {
         }
         if (of_[twin] != none) {
           of_[h] = of_[twin];
+          half_edge_[of_[h]] = h;
           fate_[of_[h]] = Fate::stays;
         } else if (h < twin) {
           inner_.push_back(h);
@@ -160,6 +194,7 @@ class TriangulationEdges {
   Number create(const std::array<Id, 2>& ends) {
     if (free_.empty()) {
       ends_.push_back(ends);
+      half_edge_.push_back(TriangleMesh::none);  // which update() sets
       return end() - 1;
     }
     const Number edge = free_.back();
@@ -170,6 +205,7 @@ class TriangulationEdges {
 
   std::vector<Number> of_;  ///< of a half-edge
   std::vector<std::array<Id, 2>> ends_;
+  std::vector<TriangleMesh::Edge> half_edge_;
   std::vector<Number> free_;
 
   // While it updates:

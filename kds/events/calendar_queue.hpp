@@ -149,7 +149,7 @@ void CalendarQueue<Rank>::resize(std::size_t slots) {
   }
   nodes_.resize(slots);
   if constexpr (has_ranks) ranks_.resize(slots);
-  present_.reserve(slots);
+  present_.reserve(nodes_.capacity());  // grows with it, not by one slot at a time
   const std::size_t days = std::bit_ceil(std::max<std::size_t>(days_per_event * slots, 64));
   if (days + 1 <= days_.size()) return;
   const bool used = !days_.empty();

@@ -5,6 +5,7 @@
 
 #include <boost/heap/d_ary_heap.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <vector>
@@ -24,13 +25,15 @@ class DaryQueue {
   ~DaryQueue() = default;
 
   void resize(std::size_t slots) {
-    heap_.reserve(slots);
+    if (slots > handles_.capacity()) {  // doubled, so that slots that come one by one do not copy all others each time
+      handles_.reserve(std::max(slots, 2 * handles_.capacity()));
+      heap_.reserve(handles_.capacity());
+    }
     while (handles_.size() > slots) {
       if (contains(static_cast<Slot>(handles_.size() - 1))) --size_;
       heap_.erase(handles_.back());
       handles_.pop_back();
     }
-    handles_.reserve(slots);
     while (handles_.size() < slots) handles_.push_back(heap_.push(parked(static_cast<Slot>(handles_.size()))));
   }
 

@@ -59,7 +59,7 @@ struct NoListener {
 template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue, class Solver = CertifiedSolver>
 class Kinetic final : public KineticOf<Rule>,
                       private MovingSet<typename Rule::Element>::Observer,
-                      private detail::Follower<typename detail::Standing<Rule>::Change> {
+                      private detail::Follower {
   using Standing = detail::Standing<Rule>;
   static constexpr bool is_outer = OuterRule<Rule>;
   static_assert(detail::NamesElement<Rule>, "kinetic rule: `using Element = ...;` must name what moves");
@@ -74,6 +74,8 @@ class Kinetic final : public KineticOf<Rule>,
                 "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing");
   static_assert(!is_outer || ReportsChanges<typename Standing::Inner>,
                 "kinetic rule: the rule that it stands on has no `Change`, and so tells nothing");
+  static_assert(!is_outer || !ReportsChanges<typename Standing::Inner> || detail::HearsWhatIsReported<Rule>,
+                "kinetic rule: the rule that it stands on does not report the `Heard` that StandsOn names");
   static_assert(!is_outer || detail::Follows<Rule>,
                 "kinetic rule: `Effect follow(std::span<const Inner::Change>, Repair<Element>&)` is missing");
   static_assert(!ReportsChanges<Rule> || detail::TellsItsState<Rule>,
@@ -116,14 +118,14 @@ class Kinetic final : public KineticOf<Rule>,
       rule_.inner_ = &inner.rule();
       build(now);
       inner.followers_.push_back(this);
-      inner.repair_.followed_ = true;
+      ++told().followers_;
     }
   }
   ~Kinetic() {
     elements_.detach(*this);
     if constexpr (is_outer) {
-      std::erase(inner_->followers_, static_cast<detail::Follower<typename Standing::Change>*>(this));
-      inner_->repair_.followed_ = !inner_->followers_.empty();
+      std::erase(inner_->followers_, static_cast<detail::Follower*>(this));
+      --told().followers_;
     }
   }
 
@@ -189,8 +191,12 @@ class Kinetic final : public KineticOf<Rule>,
   void build(double now);
   void tell_followers(bool in_event);
   void call_followers_listeners();
-  void follow(std::span<const typename Standing::Change> changes, double now, bool in_event) override;
+  void follow(double now, bool in_event) override;
   void listen() override;
+  /// What the structure that it stands on reports to it.
+  auto& told() const requires is_outer {
+    return static_cast<detail::Reports<typename Standing::Change>&>(inner_->repair_);
+  }
   void require_inner_first(double time) const;
 
   // Each call of a function of the rule stands between these two: marked slots are certified when it is over.

@@ -14,7 +14,6 @@
 #include <iterator>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 namespace kds {
 
@@ -52,13 +51,15 @@ concept Removes = requires(R& rule, Id id, RepairOf<R>& repair) {
   rule.remove(id, repair);
 };
 template <class R>
+concept HearsWhatIsReported = std::derived_from<RepairOf<typename R::Inner>, Reports<typename R::Heard>>;
+template <class R>
 concept Follows = OuterRule<R> && ReportsChanges<typename R::Inner> &&
-    requires(R& rule, std::span<const typename R::Inner::Change> changes, RepairOf<R>& repair) {
+    requires(R& rule, std::span<const typename R::Heard> changes, RepairOf<R>& repair) {
   { rule.follow(changes, repair) } -> std::same_as<Effect>;
 };
 template <class R>
 concept TellsItsState = requires(const R& rule) {
-  { rule.changes_from_nothing() } -> std::same_as<std::vector<typename R::Change>>;
+  { rule.changes_from_nothing() } -> std::same_as<typename ChangeOf<R>::Lists>;
 };
 
 template <class R>

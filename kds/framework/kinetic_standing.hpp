@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -24,8 +25,13 @@ void Kinetic<Rule, Listener, Queue, Solver>::build(double now) {
   if constexpr (is_outer) followed_reports_ = inner_->reports_;
   begin(now);
   if constexpr (is_outer) {
-    const std::vector<typename Standing::Change> changes = inner_->rule().changes_from_nothing();
-    rule_.follow(std::span(changes), repair_);
+    using List = std::vector<typename Standing::Change>;
+    const auto changes = inner_->rule().changes_from_nothing();
+    if constexpr (std::same_as<decltype(changes), const List>) {
+      rule_.follow(std::span(changes), repair_);
+    } else {
+      rule_.follow(std::span(std::get<List>(changes)), repair_);
+    }
   }
   if constexpr (BuildsAtOnce<Rule>) {
     rule_.build(repair_);
@@ -39,10 +45,10 @@ void Kinetic<Rule, Listener, Queue, Solver>::build(double now) {
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::tell_followers(bool in_event) {
   if constexpr (ReportsChanges<Rule>) {
-    if (repair_.changes_.empty()) return;
+    if (!repair_.has_reports()) return;
     ++this->reports_;
-    for (auto* follower : this->followers_) follower->follow(repair_.changes_, last_, in_event);
-    repair_.changes_.clear();
+    for (auto* follower : this->followers_) follower->follow(last_, in_event);
+    repair_.clear_reports();
   }
 }
 
@@ -55,14 +61,15 @@ void Kinetic<Rule, Listener, Queue, Solver>::call_followers_listeners() {
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
-void Kinetic<Rule, Listener, Queue, Solver>::follow(std::span<const typename Standing::Change> changes,
-                                                    double now, bool in_event) {
+void Kinetic<Rule, Listener, Queue, Solver>::follow(double now, bool in_event) {
   if constexpr (is_outer) {
     if (next_time() < now) {
       fail_use("the structure that it stands on has passed over its event at " + std::to_string(next_time()) +
                ": both must be in one simulator");
     }
     ++followed_reports_;
+    const std::span<const typename Standing::Change> changes = told().changes_;
+    if (changes.empty()) return;  // It is told of other changes.
     begin(now);
     repairs_ = 0;
     const Effect effect = rule_.follow(changes, repair_);

@@ -23,6 +23,15 @@ using Id = std::uint32_t;
 /// No element.
 inline constexpr Id nobody = std::numeric_limits<Id>::max();
 
+/// Names one element and no other, though its id may be given to others when it has been removed: the id, and how many
+/// elements of this id had been removed when it came.
+struct ElementHandle {
+  Id id = nobody;
+  std::uint64_t generation = 0;
+
+  friend bool operator==(const ElementHandle&, const ElementHandle&) = default;
+};
+
 namespace detail {
 template <class E>
 bool finite(const E& element) {
@@ -76,8 +85,9 @@ concept Reversible = MovingElement<E> && requires(const E& element) {
 /// changed; one that is not finite by the set with std::invalid_argument. Any other time is taken for the clock, and
 /// not compared with it.
 ///
-/// Cost: a virtual call a structure and edit; none for an event. Elements are stored by id, so that memory is that of
-/// the greatest id.
+/// Cost: a virtual call a structure and edit; none for an event. Elements are stored by id, and so is most of what
+/// structures know of them, so that memory is that of the greatest id: of the most elements at a time, if they come by
+/// enter().
 template <MovingElement E>
 class MovingSet {
   static_assert(
@@ -107,16 +117,24 @@ class MovingSet {
   MovingSet& operator=(const MovingSet&) = delete;
 
   bool contains(Id id) const { return id < present_.size() && present_[id]; }
+  bool contains(const ElementHandle& handle) const {
+    return contains(handle.id) && generation_[handle.id] == handle.generation;
+  }
   std::size_t size() const { return size_; }
   /// All ids are below this.
   Id end_id() const { return static_cast<Id>(present_.size()); }
   /// Precondition: contains(id). The reference holds until the next insertion, and shows later motions.
   const Element& operator[](Id id) const { return elements_[id]; }
 
-  /// An id that is not in use: one that has become free, else end_id(). With insert(free_id(), ...) in place of
-  /// add(), a set (and the structures, which store by id and by slot too) needs the memory of the most elements at a
-  /// time, and not of all that ever were; but an id is then that of several elements, one after the other. O(1) on
-  /// average.
+  /// The handle of the element that has an id now. Throws std::out_of_range if there is none.
+  ElementHandle handle(Id id) const {
+    require(id);
+    return {id, generation_[id]};
+  }
+  /// The id of an element. Throws std::out_of_range if it has been removed, even if another has its id now.
+  Id id(const ElementHandle& handle) const { return require(handle); }
+
+  /// An id that is not in use: the last one that has become free, else end_id(). O(1) on average.
   Id free_id() {
     while (!free_.empty() && contains(free_.back())) {
       listed_[free_.back()] = 0;
@@ -150,6 +168,17 @@ class MovingSet {
     put(id, std::move(element), now);
   }
 
+  /// Inserts under free_id(), and returns a handle. With this in place of add(), a set (and the structures, which store
+  /// by id and by slot too) needs the memory of the most elements at a time, and not of all that ever were; an id is
+  /// then that of several elements, one after the other, and the handle tells them apart. Throws as insert() does.
+  ElementHandle enter(Element element, double now) {
+    require_finite(free_id(), element);
+    process_due(now);
+    const Id id = free_id();  // A listener may have taken the one before.
+    put(id, std::move(element), now);
+    return {id, generation_[id]};
+  }
+
   /// Inserts under the first id above all that were ever used, and returns it: so an id is never that of two elements.
   /// Throws as insert() does.
   Id add(Element element, double now) {
@@ -160,26 +189,14 @@ class MovingSet {
     return id;
   }
 
-  /// Throws std::out_of_range for an id that is not used, even if only the listener of an event of this time has
-  /// removed it.
-  void remove(Id id, double now) {
-    require(id);
-    process_due(now);
-    require(id);  // A listener of an event that was due may have removed it.
-    for (Observer* observer : observers_) observer->removing(id, now);
-    present_[id] = 0;
-    if (std::exchange(listed_[id], 1) == 0) free_.push_back(id);
-    --size_;
-  }
+  /// Throws std::out_of_range for an id that is not used and for a handle whose element has been removed, even if only
+  /// the listener of an event of this time has removed it.
+  void remove(Id id, double now) { remove_named(id, now); }
+  void remove(const ElementHandle& handle, double now) { remove_named(handle, now); }
 
   /// Gives an element another motion, continuously or with a jump. Throws as insert() and remove() do.
-  void update(Id id, Element element, double now) {
-    require(id);
-    require_finite(id, element);
-    process_due(now);
-    require(id);
-    replace(id, element, now);
-  }
+  void update(Id id, Element element, double now) { update_named(id, element, now); }
+  void update(const ElementHandle& handle, Element element, double now) { update_named(handle, element, now); }
 
   /// Sets the source of new samples: sampler(id, now) gives an element sampled at now. Structures ask for one when the
   /// guarantee of a certificate ends, but not before a member's last one is `tick` seconds old: a certificate that may
@@ -224,9 +241,10 @@ class MovingSet {
   template <class Archive>
   void archive(Archive& archive) {
     archive.tag("MovingSet");
-    archive(elements_, present_, free_, size_, samples_, backwards_);
+    archive(elements_, present_, generation_, free_, size_, samples_, backwards_);
     if constexpr (Archive::loading) {
       archive.require(present_.size() == elements_.size(), "a set has not as many places as elements");
+      archive.require(generation_.size() == elements_.size(), "a set has not as many generations as elements");
       std::size_t found = 0;
       for (std::size_t id = 0; id < present_.size(); ++id) {
         archive.require(present_[id] <= 1, "an element of a set is neither there nor not");
@@ -244,6 +262,25 @@ class MovingSet {
   }
 
  private:
+  template <class Name>
+  void remove_named(const Name& name, double now) {
+    require(name);
+    process_due(now);
+    const Id id = require(name);  // A listener of an event that was due may have removed it.
+    for (Observer* observer : observers_) observer->removing(id, now);
+    present_[id] = 0;
+    ++generation_[id];
+    if (std::exchange(listed_[id], 1) == 0) free_.push_back(id);
+    --size_;
+  }
+
+  template <class Name>
+  void update_named(const Name& name, const Element& element, double now) {
+    require_finite(require(name), element);
+    process_due(now);
+    replace(require(name), element, now);
+  }
+
   void replace(Id id, const Element& element, double now) {
     for (Observer* observer : observers_) observer->changing(id, element, now);
     elements_[id] = element;
@@ -257,6 +294,7 @@ class MovingSet {
       elements_.resize(id + std::size_t{1});
       present_.resize(id + std::size_t{1}, 0);
       listed_.resize(id + std::size_t{1}, 0);
+      generation_.resize(id + std::size_t{1}, 0);
     }
     elements_[id] = std::move(element);
     present_[id] = 1;
@@ -269,8 +307,14 @@ class MovingSet {
     if (contains(id)) throw std::invalid_argument("MovingSet: id " + std::to_string(id) + " is used twice");
   }
 
-  void require(Id id) const {
+  Id require(Id id) const {
     if (!contains(id)) throw std::out_of_range("MovingSet: no element with id " + std::to_string(id));
+    return id;
+  }
+  Id require(const ElementHandle& handle) const {
+    if (contains(handle)) return handle.id;
+    throw std::out_of_range("MovingSet: the element of id " + std::to_string(handle.id) + " and generation " +
+                            std::to_string(handle.generation) + " has been removed");
   }
 
   static void require_finite(Id id, const Element& element) {
@@ -281,8 +325,9 @@ class MovingSet {
 
   std::vector<Element> elements_;
   std::vector<std::uint8_t> present_;
-  std::vector<Id> free_;              ///< ids of removed elements, each once; some may be in use again
-  std::vector<std::uint8_t> listed_;  ///< whether an id is in free_
+  std::vector<std::uint64_t> generation_;  ///< by id: how many elements of it have been removed
+  std::vector<Id> free_;                   ///< ids of removed elements, each once; some may be in use again
+  std::vector<std::uint8_t> listed_;       ///< whether an id is in free_
   std::size_t size_ = 0;
   std::vector<Observer*> observers_;
   std::function<Element(Id, double)> sampler_;

@@ -5,6 +5,7 @@
 #include "kds/framework/moving_set.hpp"
 #include "kds/uncertain.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,8 +16,14 @@ class Kinetic;
 template <class Rule>
 class KineticOf;
 
+/// Several types of changes in place of one `Change`: a rule that stands on one that reports these says of which it is
+/// told (StandsOn).
+template <class... Types>
+struct Changes {};
+
 /// A change that a rule is making: its time, the elements, and the slots that have got a new certificate. `Change` is
-/// what the rule reports to rules that stand on it; void if it reports nothing.
+/// what the rule reports to rules that stand on it; Changes<...> if that is of several types; void if it reports
+/// nothing.
 ///
 /// Slots that are marked are certified when the rule is done, each once: a rule may mark more slots than it must, in
 /// any order, while its state is incomplete. It is passed by reference: there is one for a structure.
@@ -67,13 +74,36 @@ class Repair<E, void> {
   double now_ = 0;
 };
 
-template <MovingElement E, class Change>
-class Repair : public Repair<E> {
+namespace detail {
+
+/// What a rule reports of one type.
+template <class Change>
+class Reports {
  public:
   /// Tells the rules that stand on this one of a change, when this call is over.
   void report(const Change& change) {
-    if (followed_) changes_.push_back(change);
+    if (followers_ > 0) changes_.push_back(change);
   }
+
+ private:
+  template <class, class, EventQueue, class>
+  friend class kds::Kinetic;
+  template <MovingElement, class>
+  friend class kds::Repair;
+
+  std::vector<Change> changes_;
+  std::size_t followers_ = 0;  ///< how many rules are told
+};
+
+}  // namespace detail
+
+template <MovingElement E, class... Types>
+class Repair<E, Changes<Types...>> : public Repair<E>, public detail::Reports<Types>... {
+ public:
+  using detail::Reports<Types>::report...;
+
+ protected:
+  explicit Repair(const MovingSet<E>& elements) : Repair<E>(elements) {}
 
  private:
   template <class, class, EventQueue, class>
@@ -81,10 +111,16 @@ class Repair : public Repair<E> {
   template <class>
   friend class KineticOf;
 
-  explicit Repair(const MovingSet<E>& elements) : Repair<E>(elements) {}
+  bool has_reports() const { return (!detail::Reports<Types>::changes_.empty() || ...); }
+  void clear_reports() { (detail::Reports<Types>::changes_.clear(), ...); }
+};
 
-  std::vector<Change> changes_;
-  bool followed_ = false;  ///< whether any rule stands on this one
+template <MovingElement E, class Change>
+class Repair : public Repair<E, Changes<Change>> {
+  template <class>
+  friend class KineticOf;
+
+  explicit Repair(const MovingSet<E>& elements) : Repair<E, Changes<Change>>(elements) {}
 };
 
 }  // namespace kds

@@ -10,10 +10,12 @@
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
 #include "structures/aabb_tree.hpp"
+#include "structures/alpha_complex.hpp"
 #include "structures/closest_pair.hpp"
 #include "structures/convex_hull.hpp"
 #include "structures/delaunay.hpp"
 #include "structures/extents.hpp"
+#include "structures/gabriel_graph.hpp"
 #include "structures/heap.hpp"
 #include "structures/sorted_list.hpp"
 #include "structures/spatial_triangulation.hpp"
@@ -165,17 +167,23 @@ void measure_plane(Id n, double end, int rounds) {
   using Path = certificates::PlaneMotion<Degree>;
   measure("convex hull", Degree, n, end, rounds, structures::ConvexHullRule<Path>{}, random_path<Degree>);
   measure("Delaunay", Degree, n, end, rounds, structures::DelaunayRule<Path>{}, random_path<Degree>);
-  measure("closest pair, on Delaunay", Degree, n, rounds, [&] {
-    Random random(n);
-    MovingSet<Path> set;
-    for (Id id = 0; id < n; ++id) set.insert(id, random_path<Degree>(random), 0);
-    Kinetic<structures::DelaunayRule<Path>> triangulation(set, 0);
-    Kinetic<structures::ClosestPairRule<Path>> closest(triangulation, 0);
-    triangulation.extend_horizon(0, end);
-    closest.extend_horizon(0, end);
-    const Cost cost = run(end, triangulation, closest);
-    return std::pair(cost, closest.measures());
-  });
+  const auto on_delaunay = [&]<class Rule>(const char* name, const Rule& rule) {
+    measure(name, Degree, n, rounds, [&] {
+      Random random(n);
+      MovingSet<Path> set;
+      for (Id id = 0; id < n; ++id) set.insert(id, random_path<Degree>(random), 0);
+      Kinetic<structures::DelaunayRule<Path>> triangulation(set, 0);
+      Kinetic<Rule> outer(triangulation, 0, rule);
+      triangulation.extend_horizon(0, end);
+      outer.extend_horizon(0, end);
+      const Cost cost = run(end, triangulation, outer);
+      return std::pair(cost, outer.measures());
+    });
+  };
+  on_delaunay("closest pair, on Delaunay", structures::ClosestPairRule<Path>{});
+  on_delaunay("Gabriel graph, on Delaunay", structures::GabrielGraphRule<Path>{});
+  // Of about the points' distances: half of the triangles are in the complex.
+  on_delaunay("alpha complex, on Delaunay", structures::AlphaComplexRule<Path>(0.5 / std::sqrt(n)));
 }
 
 template <int Degree>

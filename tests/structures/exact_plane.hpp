@@ -42,6 +42,22 @@ class ExactPlane {
     const auto u = from(a, b), v = from(c, d);
     return (u[0] * u[0] + u[1] * u[1] - (v[0] * v[0] + v[1] * v[1])).sign_after(now_);
   }
+  /// -1 if c is inside the disc that has a and b as ends of a diameter, 0 if it stays on its border.
+  int outside_disc(Id a, Id b, Id c) const {
+    const auto u = from(c, a), v = from(c, b);
+    return (u[0] * v[0] + u[1] * v[1]).sign_after(now_);
+  }
+  /// Sign of 2 r - |a - b|.
+  int compare_diameter(double r, Id a, Id b) const {
+    return (oracle::Polynomial(4 * oracle::rational(r) * oracle::rational(r)) - squared_distance(a, b)).sign_after(now_);
+  }
+  /// Sign of r - the radius of the circle through a, b, c: by the law of sines at c. Precondition: these turn left.
+  int compare_circle(double r, Id a, Id b, Id c) const {
+    const auto u = from(c, a), v = from(c, b);
+    const auto area = u[0] * v[1] - u[1] * v[0];  // |a - c| |b - c| times the sine
+    const auto product = squared_distance(a, c) * squared_distance(b, c) * squared_distance(a, b);
+    return (area * area * oracle::Polynomial(4 * oracle::rational(r) * oracle::rational(r)) - product).sign_after(now_);
+  }
   bool same(Id a, Id b) const {
     const auto u = from(a, b);
     return u[0].sign_after(now_) == 0 && u[1].sign_after(now_) == 0;
@@ -54,6 +70,10 @@ class ExactPlane {
 
  private:
   using Point = std::array<oracle::Polynomial, 2>;
+  oracle::Polynomial squared_distance(Id a, Id b) const {
+    const auto u = from(a, b);
+    return u[0] * u[0] + u[1] * u[1];
+  }
   Point from(Id a, Id b) const { return {points_.at(b)[0] - points_.at(a)[0], points_.at(b)[1] - points_.at(a)[1]}; }
   std::map<Id, Point> points_;
   oracle::Rational now_;

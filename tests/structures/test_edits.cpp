@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -176,6 +177,70 @@ TEST_CASE("free ids are used again where one asks for them, and are saved", "[ed
   simulator.audit();
   CHECK(set.end_id() <= 11);
   CHECK(save(simulator, set).bytes().size() < 2 * bytes);
+}
+
+TEST_CASE("a handle is that of one element, though its id is given to others", "[edits]") {
+  MovingSet<Value> set;
+  Kinetic<ListRule<Value>> list(set, 0);
+  Simulator simulator(0, list);
+  const Value at_one = at_rest(1), at_two = at_rest(2);
+  const ElementHandle first = set.enter(at_one, 0);
+  CHECK((first.id == 0 && set.contains(first) && set.id(first) == 0 && set.handle(0) == first));
+  const Snapshot before = save(simulator, set);
+  set.remove(first, 0);
+  CHECK(!set.contains(first));
+  CHECK_THROWS_AS(set.handle(0), std::out_of_range);
+  const ElementHandle second = set.enter(at_two, 0);
+  CHECK((second.id == first.id && second != first && set.contains(second) && !set.contains(first)));
+  CHECK_THROWS_WITH(set.remove(first, 0), Catch::Contains("id 0 and generation 0 has been removed"));
+  CHECK_THROWS_AS(set.update(first, at_one, 0), std::out_of_range);
+  CHECK_THROWS_AS(set.id(first), std::out_of_range);
+  CHECK_THROWS_AS(set.id({7, 0}), std::out_of_range);
+  CHECK(set[0] == at_two);
+  set.update(second, at_one, 0);
+  CHECK(set[0] == at_one);
+  set.remove(0, 0);  // by its id
+  CHECK(!set.contains(second));
+  set.insert(0, at_two, 0);
+  CHECK((set.handle(0) != first && set.handle(0) != second));
+  restore(before, simulator, set);
+  CHECK((set.contains(first) && !set.contains(second)));
+  CHECK_THROWS_AS(set.enter({{{std::numeric_limits<double>::infinity(), 0}}, 0}, 0), std::invalid_argument);
+  CHECK((set.size() == 1 && set.free_id() == 1));
+}
+
+TEST_CASE("an edit by handle does not meet another element that a listener puts in its place", "[edits]") {
+  bool exchanged = false;
+  Meeting meeting([&](auto& set, double t) {
+    set.remove(0, t);
+    exchanged = set.enter(at_rest(9), t).id == 0;
+  });
+  const ElementHandle first = meeting.set.handle(0);
+  CHECK_THROWS_AS(meeting.set.update(first, at_rest(5), 1), std::out_of_range);  // processes what is due at 1
+  CHECK(exchanged);
+  CHECK(meeting.set[0] == at_rest(9));
+  CHECK_THROWS_AS(meeting.set.remove(first, 1), std::out_of_range);
+  meeting.check(2);
+}
+
+TEST_CASE("memory follows the elements alive, however many have been", "[edits]") {
+  MovingSet<Value> set;
+  Kinetic<ListRule<Value>> list(set, 0);
+  Simulator simulator(0, list);
+  std::vector<ElementHandle> alive;
+  int stale = 0;
+  for (int i = 0; i < 20000; ++i) {
+    alive.push_back(set.enter({{{0.5 + i % 7, 1}}, 0}, 0));
+    if (alive.size() <= 10) continue;
+    const ElementHandle oldest = alive.front();
+    alive.erase(alive.begin());
+    set.remove(oldest, 0);
+    stale += set.contains(oldest);
+  }
+  CHECK(stale == 0);
+  simulator.audit();
+  CHECK(set.end_id() == 11);
+  CHECK(save(simulator, set).bytes().size() < 2000);
 }
 
 }  // namespace test_edits

@@ -9,8 +9,11 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <variant>
 #include <vector>
 
 namespace test_points_inside {
@@ -22,6 +25,7 @@ using certificates::PlaneMotion;
 using certificates::PointMotion;
 using structures::BallRegion;
 using structures::BoxRegion;
+using structures::InsideChange;
 using structures::PointsInsideRule;
 
 void make(Random& random, Kind kind, double now, PlaneMotion<1>& path) {
@@ -50,6 +54,34 @@ T made(Random& random, Kind kind, double now) {
   return result;
 }
 
+/// Who is inside, by what it has been told alone.
+template <class Region>
+struct ToldRule : StandsOn<PointsInsideRule<Region>> {
+  using Point = typename Region::Point;
+  static constexpr const char* name = "Told";
+  std::vector<std::array<Id, 2>> inside{};  ///< region and point, ascending
+  int wrong = 0;
+
+  std::monostate certificate(Slot, const MovingSet<Point>&) const { return {}; }
+  std::array<Id, 0> members(Slot) const { return {}; }
+  Effect repair(Slot, Repair<Point>&) { return Effect::internal; }
+  Effect follow(std::span<const InsideChange> changes, Repair<Point>&) {
+    for (const auto& [what, region, point] : changes) {
+      const std::array<Id, 2> pair{region, point};
+      const auto at = std::lower_bound(inside.begin(), inside.end(), pair);
+      const bool known = at != inside.end() && *at == pair;
+      wrong += known != (what == InsideChange::What::left);
+      if (known && what == InsideChange::What::left) inside.erase(at);
+      if (!known && what == InsideChange::What::entered) inside.insert(at, pair);
+    }
+    return Effect::external;
+  }
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(inside, wrong);
+  }
+};
+
 template <class Region>
 struct Scene {
   using Point = typename Region::Point;
@@ -57,14 +89,19 @@ struct Scene {
   MovingSet<Region> region_set{};
   Kinetic<ElementsRule<Region>> regions;
   Kinetic<PointsInsideRule<Region>> inside;
-  Simulator<Kinetic<ElementsRule<Region>>, Kinetic<PointsInsideRule<Region>>> simulator;
+  Kinetic<ToldRule<Region>> told;
+  Simulator<Kinetic<ElementsRule<Region>>, Kinetic<PointsInsideRule<Region>>, Kinetic<ToldRule<Region>>> simulator;
 
   explicit Scene(double begin)
-      : regions(region_set, begin), inside(points, regions, begin), simulator(begin, regions, inside) {}
+      : regions(region_set, begin),
+        inside(points, regions, begin),
+        told(inside, begin),
+        simulator(begin, regions, inside, told) {}
 
   /// Pairs that are not as the exact signs of all sides say.
   int wrong() const {
-    int count = 0;
+    int count = told.rule().wrong;
+    std::size_t pairs = 0;
     for (const Id r : region_set.ids()) {
       std::vector<Id> in;
       for (const Id p : points.ids()) {
@@ -77,9 +114,13 @@ struct Scene {
         count += all != inside.rule().contains(r, p);
         if (all) in.push_back(p);
       }
-      count += in != inside.rule().points_in(r);
+      count += in != inside.rule().points_in(r) || in.size() != inside.rule().count(r);
+      for (const Id p : in) {
+        count += !std::binary_search(told.rule().inside.begin(), told.rule().inside.end(), std::array<Id, 2>{r, p});
+      }
+      pairs += in.size();
     }
-    return count;
+    return count + (pairs != told.rule().inside.size());
   }
   int run_to(double t) {
     int count = 0;
@@ -167,6 +208,44 @@ TEST_CASE("a disc that grows takes in points one by one, and none while its radi
   CHECK(points() == std::vector<Id>{0, 1});
   CHECK(scene.inside.measures().external == 2);
   CHECK_FALSE(scene.inside.rule().contains(3, 0));
+  CHECK(scene.inside.rule().count(7) == 2);
+  CHECK(scene.inside.rule().count(3) == 0);
+  Kinetic<ToldRule<Disc>> late(scene.inside, 6);  // is told who is inside already
+  CHECK(late.rule().inside == std::vector<std::array<Id, 2>>{{7, 0}, {7, 1}});
+  scene.region_set.remove(7, 6);
+  CHECK(scene.inside.rule().count(7) == 0);
+  CHECK((late.rule().inside.empty() && late.rule().wrong == 0));
+}
+
+TEST_CASE("points of one moving rectangle are counted, each event one more or one less", "[points_inside]") {
+  const std::uint64_t seed = 430, n = 200;
+  CAPTURE(seed);
+  Random random(seed);
+  using Rectangle = BoxRegion<PlaneMotion<1>>;
+  MovingSet<PlaneMotion<1>> points;
+  MovingSet<Rectangle> rectangles;
+  const auto at = [](double x, double y, double vx) { return PlaneMotion<1>{{{{{x, vx}}, {{y, 0}}}}, 0}; };
+  rectangles.insert(0, {at(-0.5, -0.5, 0.25), at(0.5, 0.5, 0.25)}, 0);
+  for (Id id = 0; id < n; ++id) points.insert(id, random_plane_motion<1>(random, Kind::generic, 0), 0);
+  std::size_t last = 0;
+  int wrong = 0;
+  const auto one_more_or_less = [&](const PointsInsideRule<Rectangle>& rule, const KineticEvent& event) {
+    const std::size_t count = rule.count(0);
+    const bool changed = count == last + 1 || count + 1 == last;
+    wrong += changed != (event.effect == Effect::external) || (!changed && count != last);
+    last = count;
+  };
+  Kinetic<ElementsRule<Rectangle>> regions(rectangles, 0);
+  Kinetic<PointsInsideRule<Rectangle>, decltype(one_more_or_less)> inside(points, regions, 0, {}, one_more_or_less);
+  Simulator simulator(0, regions, inside);
+  last = inside.rule().count(0);
+  simulator.advance_to(2);
+  simulator.audit();
+  const Measures m = inside.measures();
+  CHECK(wrong == 0);
+  CHECK(m.external > 50);
+  CHECK(m.most_touched <= 4);    // responsive
+  CHECK(m.most_held <= 4 * n);   // compact
 }
 
 }  // namespace test_points_inside

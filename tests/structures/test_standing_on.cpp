@@ -13,11 +13,14 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <map>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <tuple>
+#include <variant>
 #include <vector>
 
 namespace test_standing_on {
@@ -126,6 +129,42 @@ struct LastGapRule : StandsOn<SmallestGapReports> {
   }
 };
 
+/// Tells of what comes as an id, and of what goes as another type.
+struct Gone {
+  Id id;
+};
+struct TwoTopicsRule {
+  using Element = Motion<2>;
+  using Change = Changes<Id, Gone>;
+  using Pen = Repair<Element, Change>;
+  static constexpr const char* name = "TwoTopics";
+  std::set<Id> there{};
+
+  std::monostate certificate(Slot, const MovingSet<Element>&) const { return {}; }
+  std::array<Id, 0> members(Slot) const { return {}; }
+  Effect repair(Slot, Pen&) { return Effect::internal; }
+  void insert(Id id, Pen& pen) { there.insert(id), pen.report(id); }
+  void remove(Id id, Pen& pen) { there.erase(id), pen.report(Gone{id}); }
+  std::tuple<std::vector<Id>, std::vector<Gone>> changes_from_nothing() const {
+    return {std::vector<Id>(there.begin(), there.end()), std::vector<Gone>{}};
+  }
+};
+template <class Told>
+struct OneTopicRule : StandsOn<TwoTopicsRule, Told> {
+  static constexpr const char* name = "OneTopic";
+  int calls = 0, changes = 0;
+
+  std::monostate certificate(Slot, const MovingSet<Motion<2>>&) const { return {}; }
+  std::array<Id, 0> members(Slot) const { return {}; }
+  Effect repair(Slot, Repair<Motion<2>>&) { return Effect::internal; }
+  Effect follow(std::span<const Told> told, Repair<Motion<2>>&) {
+    ++calls;
+    changes += static_cast<int>(told.size());
+    return Effect::external;
+  }
+};
+static_assert(std::same_as<StandsOn<TwoTopicsRule>::Heard, Id>);
+
 /// The last of a list of samples.
 struct LastRule : StandsOn<ListRule<Bounded>> {
   static constexpr const char* name = "Last";
@@ -156,6 +195,30 @@ void add_three(MovingSet<Value>& set) {
 }
 
 }  // namespace
+
+TEST_CASE("of a rule that tells of several things each outer rule hears what it asks for", "[standing_on]") {
+  MovingSet<Value> set;
+  add_three(set);
+  Kinetic<TwoTopicsRule> inner(set, 0);
+  Kinetic<OneTopicRule<Id>> comes(inner, 0);
+  CHECK((comes.rule().calls == 1 && comes.rule().changes == 3));  // what leads to the present state
+  set.remove(1, 0);                                               // heard by nobody
+  CHECK(comes.rule().calls == 1);
+  {
+    Kinetic<OneTopicRule<Gone>> goes(inner, 0);
+    CHECK((goes.rule().calls == 1 && goes.rule().changes == 0));
+    set.remove(0, 0);
+    set.insert(4, {{{5, 0, 0}}, 0}, 0);
+    CHECK((goes.rule().calls == 2 && goes.rule().changes == 1));
+    set.update(4, {{{6, 0, 0}}, 0}, 0);  // goes and comes
+    CHECK((goes.rule().calls == 3 && goes.rule().changes == 2));
+    goes.audit(0);
+  }
+  CHECK((comes.rule().calls == 3 && comes.rule().changes == 5));
+  set.remove(2, 0);
+  comes.audit(0);
+  CHECK(comes.rule().calls == 3);
+}
 
 TEMPLATE_TEST_CASE_SIG("a triangulation tells which edges come and go, and nothing else", "[standing_on]",
                        ((int Degree), Degree), 1, 2) {

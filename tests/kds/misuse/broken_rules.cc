@@ -112,6 +112,13 @@ struct Deaf : StandsOn<Reports> {
   Effect repair(Slot, Repair<Value>&) { return Effect::internal; }
   void follow(std::span<const int>, Repair<Value>&) {}
 };
+struct HearsOfOthers : StandsOn<Reports, float> {
+  static constexpr const char* name = "HearsOfOthers";
+  std::optional<PolynomialCertificate<1>> certificate(Slot, const MovingSet<Value>&) const { return {}; }
+  std::vector<Id> members(Slot) const { return {}; }
+  Effect repair(Slot, Repair<Value>&) { return Effect::internal; }
+  Effect follow(std::span<const float>, Repair<Value>&) { return Effect::internal; }
+};
 
 template <class Rule>
 using With = Kinetic<Rule>;
@@ -126,6 +133,7 @@ constexpr std::size_t sizes[] = {sizeof(With<WithoutElement>),   sizeof(With<Wit
                                  sizeof(With<Certified<OfAnotherDegree>>),
                                  sizeof(With<RepairsACopy>),     sizeof(With<Silent>),
                                  sizeof(With<Deaf>),             sizeof(With<Reports>),
+                                 sizeof(With<HearsOfOthers>),
                                  sizeof(Kinetic<Base, NoListener, DefaultEventQueue, int>)};
 
 struct LateSolver : CertifiedSolver {
