@@ -133,7 +133,8 @@ double CompoundContact<Degree>::first_separation(const Body& a, const Body& b, d
 template <int Degree>
 Contact CompoundContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch&) {
   std::optional<Contact> touching;
-  for (const auto& pair : PartPairs<Degree>(a, b, t, t).all()) {
+  const PartPairs<Degree> pairs(a, b, t, t);
+  for (const auto& pair : pairs.all()) {
     const PartTests<Degree> parts(a, b, *pair.a, *pair.b);
     if (!parts.in_contact(t)) continue;
     const Contact contact = parts.contact_at(t);
@@ -142,7 +143,8 @@ Contact CompoundContact<Degree>::contact_at(const Body& a, const Body& b, double
   }
   if (touching) return *touching;
   const double before = next_down(t);
-  for (const auto& pair : PartPairs<Degree>(a, b, before, before).all()) {
+  const PartPairs<Degree> pairs_before(a, b, before, before);
+  for (const auto& pair : pairs_before.all()) {
     const PartTests<Degree> parts(a, b, *pair.a, *pair.b);
     if (parts.in_contact(before)) return parts.contact_at(t);
   }

@@ -61,7 +61,8 @@ class PartPairs {
     }
   }
 
-  std::span<const Pair> all() const { return pairs_; }
+  std::span<const Pair> all() const& { return pairs_; }
+  std::span<const Pair> all() const&& = delete;  // it refers to this
   /// The same, by `from`.
   std::vector<Pair> in_time() const {
     std::vector<Pair> sorted = pairs_;
