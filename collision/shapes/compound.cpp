@@ -13,10 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::string name_of(std::size_t part) { return "part " + std::to_string(part); }
-
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("compound: " + what); }
-
 /// The eight corners of a placed box, numbered as those of a box.
 std::vector<Vector3d> corners_of(const PlacedShape& box) {
   std::vector<Vector3d> corners;
@@ -58,18 +54,18 @@ bool may_be_part(const Shape& shape) {
 }
 
 [[noreturn]] void refuse_kind(std::size_t part, const Shape& shape) {
-  refuse(name_of(part) + " is a " + kind_name(shape) + "; parts are boxes, hulls and meshes");
+  throw InvalidCompound(std::string("is a ") + kind_name(shape) + "; parts are boxes, hulls and meshes", part);
 }
 
 }  // namespace
 
 CompoundParts::CompoundParts(std::vector<Shape> parts) : parts_(std::move(parts)) {
-  if (parts_.empty()) refuse("has no parts");
+  if (parts_.empty()) throw InvalidCompound("has no parts");
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Shape& part = parts_[i];
     const auto* const mesh = std::get_if<MeshShape>(&part);
     if (!mesh && !std::holds_alternative<ConvexHull>(part)) refuse_kind(i, part);
-    if (mesh && mesh->scale != 1) refuse(name_of(i) + ": scale: must be 1");
+    if (mesh && mesh->scale != 1) throw InvalidCompound("scale: must be 1", i);
     has_mesh_ = has_mesh_ || mesh;
   }
 }
@@ -78,12 +74,12 @@ Compound compound(std::span<const CompoundPart> parts) {
   std::vector<Shape> placed;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!may_be_part(parts[i].shape)) refuse_kind(i, parts[i].shape);
-    if (!parts[i].position.allFinite()) refuse(name_of(i) + ": position: must be finite");
+    if (!parts[i].position.allFinite()) throw InvalidCompound("position: must be finite", i);
     try {
       placed.push_back(in_place(parts[i]));
       place(placed.back(), Eigen::Quaterniond::Identity());
     } catch (const std::invalid_argument& error) {
-      refuse(name_of(i) + ": " + error.what());
+      throw InvalidCompound(error.what(), i);
     }
   }
   return {std::make_shared<const CompoundParts>(std::move(placed))};
@@ -119,7 +115,7 @@ void ShapeKind<Compound>::place(const Compound& compound, PlacedShape& placed) {
     try {
       parts.push_back(place_turned(shape, placed.rotation));
     } catch (const std::invalid_argument& error) {
-      refuse(name_of(parts.size()) + ": " + error.what());
+      throw InvalidCompound(error.what(), parts.size());
     }
     const PlacedShape& part = parts.back();
     placed.low = placed.low.cwiseMin(part.low);
@@ -169,13 +165,10 @@ Compound compound_of_points(std::vector<PartPoints> parts) {
       }
     }
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error("snapshot: a compound: " + name_of(shapes.size()) + ": " + error.what());
+    throw std::runtime_error("snapshot: a compound: part " + std::to_string(shapes.size()) + ": " + error.what());
   }
-  try {
-    return {std::make_shared<const CompoundParts>(std::move(shapes))};
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(std::string("snapshot: a ") + error.what());
-  }
+  if (shapes.empty()) throw std::runtime_error("snapshot: a compound: has no parts");
+  return {std::make_shared<const CompoundParts>(std::move(shapes))};
 }
 
 }  // namespace detail

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,20 @@
 #include <vector>
 
 namespace kds::collision {
+
+/// Parts that make no compound. The message names what is wrong; `part` the part that is wrong, from 0, if one is: then
+/// it begins "compound: part 3: ".
+class InvalidCompound : public std::invalid_argument {
+ public:
+  explicit InvalidCompound(const std::string& what, std::optional<std::size_t> part = {})
+      : std::invalid_argument("compound: " + (part ? "part " + std::to_string(*part) + ": " : std::string()) + what),
+        part_(part) {}
+
+  std::optional<std::size_t> part() const { return part_; }
+
+ private:
+  std::optional<std::size_t> part_;
+};
 
 /// A part of a compound: a box, a hull or a mesh, and where it is in the body.
 struct CompoundPart {
@@ -32,7 +47,7 @@ struct CompoundPart {
 /// from each other. Faces that lie inside of the whole, where parts touch, are faces all the same.
 class CompoundParts {
  public:
-  /// Throws std::invalid_argument, naming the part, if there is none or one is neither a hull nor a mesh of scale 1.
+  /// Throws InvalidCompound if there is none, or one is neither a hull nor a mesh of scale 1.
   explicit CompoundParts(std::vector<Shape> parts);
 
   std::span<const Shape> parts() const { return parts_; }
@@ -48,9 +63,9 @@ class CompoundParts {
 /// the hull of its corners, which are numbered as those of a box; points of hulls, and vertices and triangles of meshes
 /// keep their numbers.
 ///
-/// Throws std::invalid_argument, naming the part, in one line: "compound: has no parts", "compound: part 3 is a sphere;
-/// parts are boxes, hulls and meshes", and "compound: part 3: " with what place() says of its shape and orientation, or
-/// Polytope and Mesh of the points that it is made of.
+/// Throws InvalidCompound, in one line: "compound: has no parts", "compound: part 3: is a sphere; parts are boxes, hulls
+/// and meshes", and "compound: part 3: " with what place() says of its shape and orientation, or Polytope and Mesh of
+/// the points that it is made of.
 Compound compound(std::span<const CompoundPart> parts);
 
 namespace detail {
