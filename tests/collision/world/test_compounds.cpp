@@ -275,13 +275,13 @@ TEST_CASE("compounds bounce: momentum and energy stay, and none comes into anoth
 
 TEST_CASE("compounds fall in a heap and come to lie", "[world][compound]") {
   for (const Parts kinds : {Parts::solids, Parts::all}) {
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       INFO("seed " << seed << ", parts " << static_cast<int>(kinds));
       const Scene<2> heap = gas(seed, kinds, true);
       const auto scene = [&](World<2>& world) {
         world.add_body(fixed_body<2>(Box{{50, 50, 1}}, motion<2>({0, 0, -3})));
         for (auto each : heap.bodies) world.add_body(bouncy(each, 0.5));
-        world.advance_to(6);
+        world.advance_to(4);
       };
       with_all_methods(elastic(), scene, [&](World<2>& world, EventLog<2>& log) {
         CHECK(log.count(Kind::contact) > 20);
@@ -297,7 +297,7 @@ TEST_CASE("compounds: a heap of boxes cut in two goes the way of the whole boxes
   const auto heap = [](const auto& shape) {
     return [shape](World<2>& world) {
       world.add_body(floor_box());
-      for (int i = 0; i < 4; ++i) {
+      for (int i = 0; i < 3; ++i) {
         const Vector3d at(0.25 * (i % 2), 0.125 * (i % 3), 1 + 1.5 * i);
         world.add_body(bouncy(body<2>(shape(Vector3d(0.5, 0.5, 0.25)), motion<2>(at, zero, weight)), 0.25));
       }
@@ -310,7 +310,7 @@ TEST_CASE("compounds: a heap of boxes cut in two goes the way of the whole boxes
   const auto cut = heap([](const Vector3d& half) { return Shape(cut_box(half, 0.25)); });
   with_all_methods(elastic(), cut, [&](World<2>& world, EventLog<2>&) {
     // In a cluster they are kept apart by a millionth of their size, as meshes are.
-    for (BodyId id = 1; id <= 4; ++id) {
+    for (BodyId id = 1; id <= 3; ++id) {
       INFO("body " << id);
       CHECK(at_rest(world, id));
       CHECK((world.motion(id).position(5) - boxes.motion(id).position(5)).norm() < 1e-6);
