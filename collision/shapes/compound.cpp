@@ -53,8 +53,8 @@ bool may_be_part(const Shape& shape) {
          std::holds_alternative<MeshShape>(shape);
 }
 
-[[noreturn]] void refuse_kind(std::size_t part, const Shape& shape) {
-  throw InvalidCompound(std::string("is a ") + kind_name(shape) + "; parts are boxes, hulls and meshes", part);
+[[noreturn]] void refuse_kind(std::size_t part, const Shape& shape, const char* kinds) {
+  throw InvalidCompound(std::string("is a ") + kind_name(shape) + "; parts are " + kinds, part);
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ CompoundParts::CompoundParts(std::vector<Shape> parts) : parts_(std::move(parts)
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Shape& part = parts_[i];
     const auto* const mesh = std::get_if<MeshShape>(&part);
-    if (!mesh && !std::holds_alternative<ConvexHull>(part)) refuse_kind(i, part);
+    if (!mesh && !std::holds_alternative<ConvexHull>(part)) refuse_kind(i, part, "hulls and meshes");
     if (mesh && mesh->scale != 1) throw InvalidCompound("scale: must be 1", i);
     has_mesh_ = has_mesh_ || mesh;
   }
@@ -73,7 +73,7 @@ CompoundParts::CompoundParts(std::vector<Shape> parts) : parts_(std::move(parts)
 Compound compound(std::span<const CompoundPart> parts) {
   std::vector<Shape> placed;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (!may_be_part(parts[i].shape)) refuse_kind(i, parts[i].shape);
+    if (!may_be_part(parts[i].shape)) refuse_kind(i, parts[i].shape, "boxes, hulls and meshes");
     if (!parts[i].position.allFinite()) throw InvalidCompound("position: must be finite", i);
     try {
       placed.push_back(in_place(parts[i]));
