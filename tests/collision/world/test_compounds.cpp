@@ -340,6 +340,37 @@ TEST_CASE("compounds: a ball comes to lie between two parts, and a table on its 
   });
 }
 
+TEST_CASE("compounds: what is put into a corner touches all of it, and lies there", "[world][compound]") {
+  const std::vector<CompoundPart> corner{{Box{{2, 2, 0.5}}, {0, 0, -0.5}},
+                                         {Box{{0.5, 2, 2}}, {-2.5, 0, 1}},
+                                         {Box{{2, 0.5, 2}}, {0, -2.5, 1}}};
+  std::size_t near = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    INFO("seed " << seed);
+    Random random(seed);
+    const double w = random.between(0.1, 1), x = random.between(-1, 1), y = random.between(-1, 1);
+    const Eigen::Quaterniond turned = unit_quaternion(w, x, y, random.between(-1, 1));
+    const double half = random.between(0.1, 0.4);
+    const Eigen::Matrix3d axes = turned.toRotationMatrix();
+    const auto scene = [&](World<2>& world) {
+      auto base = fixed_body<2>(compound(corner), motion<2>({1.25, -0.5, 3.1}));
+      base.orientation = turned;
+      world.add_body(base);
+      const Vector3d place = base.motion[0].coefficients[0] + axes * Vector3d(half - 2, half - 2, half);
+      auto guest = bouncy(body<2>(Box{{half, half, half}}, motion<2>(place, zero, axes * Vector3d(-1, -1, -5))), 0);
+      guest.orientation = turned;
+      world.add_body(guest);
+      world.advance_to(1);
+      near += (world.motion(1).position(1) - place).norm() < 1e-6;
+    };
+    with_all_methods(elastic(), scene, [&](World<2>& world, EventLog<2>& log) {
+      CHECK(log.count(Kind::overlap) == 0);
+      CHECK(world.resting(0, 1));
+    });
+  }
+  CHECK(near == 20 * all_methods.size());
+}
+
 TEST_CASE("compounds are saved, and go on as they would have", "[world][compound][snapshot]") {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     INFO("seed " << seed);
