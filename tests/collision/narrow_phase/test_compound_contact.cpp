@@ -79,7 +79,8 @@ std::size_t compare_with_parts(std::uint64_t seed, Parts kinds) {
       CHECK(same);
       contacts += found.size();
       PairMemory memory;
-      const double apart = pair_tests<certificates::PointMotion<Degree>>(a.shape, b.shape).apart_until(a, b, 0, 4, memory);
+      const auto& of_pair = pair_tests<certificates::PointMotion<Degree>>(a.shape, b.shape);
+      const double apart = of_pair.apart_until(a, b, 0, 4, memory);
       CHECK(apart <= (found.empty() ? never : found[0].first));
       for (const auto& [begin, end] : found) {
         if (begin > 0) CHECK(!in_contact(a, b, next_down(begin)));
