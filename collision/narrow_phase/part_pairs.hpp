@@ -23,8 +23,8 @@ inline std::span<const PlacedShape> parts_of(const PlacedShape& shape) {
 /// The pairs of parts of two bodies whose boxes may overlap at some time from now to the horizon, in the order of the
 /// parts of a, then of b.
 ///
-/// Boxes of meshes are as far apart as ContactGap reports contact, at the end of the time that is looked at. Half-spaces
-/// and meshes that bend are not looked at: they may meet each part at all times.
+/// Boxes of meshes are as far apart as ContactGap reports contact, at the end of the time that is looked at.
+/// Half-spaces and meshes that bend are not looked at: they may meet each part at all times.
 ///
 /// Cost: for each part of a at most six roots of QuickMotion, and for those whose boxes meet the box around all of b
 /// within the time as many for each part of b.

@@ -63,8 +63,8 @@ class CompoundParts {
 /// the hull of its corners, which are numbered as those of a box; points of hulls, and vertices and triangles of meshes
 /// keep their numbers.
 ///
-/// Throws InvalidCompound, in one line: "compound: has no parts", "compound: part 3: is a sphere; parts are boxes, hulls
-/// and meshes", and "compound: part 3: " with what place() says of its shape and orientation, or Polytope and Mesh of
+/// Throws InvalidCompound, in one line: "compound: has no parts", "compound: part 3: is a sphere; parts are boxes,
+/// hulls and meshes", and "compound: part 3: " with what place() says of its shape and orientation, or Polytope and Mesh of
 /// the points that it is made of.
 Compound compound(std::span<const CompoundPart> parts);
 
