@@ -64,8 +64,8 @@ class CompoundParts {
 /// keep their numbers.
 ///
 /// Throws InvalidCompound, in one line: "compound: has no parts", "compound: part 3: is a sphere; parts are boxes,
-/// hulls and meshes", and "compound: part 3: " with what place() says of its shape and orientation, or Polytope and Mesh of
-/// the points that it is made of.
+/// hulls and meshes", and "compound: part 3: " with what place() says of its shape and orientation, or Polytope and
+/// Mesh of the points that it is made of.
 Compound compound(std::span<const CompoundPart> parts);
 
 namespace detail {
