@@ -3,6 +3,7 @@
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/polytope.hpp"
+#include "io/pictures/compound_surface.hpp"
 #include "io/pictures/half_space_patch.hpp"
 
 #include <nlohmann/json.hpp>
@@ -345,6 +346,7 @@ class Exporter {
 }  // namespace
 
 std::string to_gltf(const Scene& scene, const Record& record, const std::string& title, double frames_per_second) {
+  if (has_compounds(scene)) return to_gltf(with_surfaces(scene), record, title, frames_per_second);
   if (has_half_spaces(scene)) return to_gltf(with_patches(scene), record, title, frames_per_second);
   if (!(frames_per_second > 0 && std::isfinite(frames_per_second))) {
     throw std::invalid_argument("glTF: frames a second: must be finite and > 0");

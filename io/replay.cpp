@@ -4,6 +4,7 @@
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "io/number_text.hpp"
+#include "io/pictures/compound_surface.hpp"
 #include "io/pictures/half_space_patch.hpp"
 
 #include <nlohmann/json.hpp>
@@ -233,6 +234,7 @@ std::vector<MotionPiece> Record::drawn(const Scene& scene, std::uint32_t place) 
 }
 
 std::string Record::to_json(const Scene& scene, const std::string& title) const {
+  if (has_compounds(scene)) return to_json(with_surfaces(scene), title);
   if (has_half_spaces(scene)) return to_json(with_patches(scene), title);
   std::string text = "{\"title\":" + quoted(title) + ",\"begin\":";
   append_number(text, scene.begin_time);

@@ -59,12 +59,6 @@ void read_vertices(const JsonNode& node, SceneBody& body, Response response) {
       std::move(keyframes), std::vector<kds::collision::Mesh::Triangle>(triangles.begin(), triangles.end()))};
 }
 
-Eigen::Quaterniond read_orientation(const JsonNode& node) {
-  const std::vector<JsonNode> parts = node.tuple(4);
-  const Eigen::Quaterniond q(parts[0].number(), parts[1].number(), parts[2].number(), parts[3].number());
-  return unit_quaternion(q, [&](const std::string& what) { node.fail(what); });
-}
-
 /// `start` and `position` of a piece.
 kds::certificates::PointMotion<2> read_path(const JsonNode& node) {
   kds::certificates::PointMotion<2> path;

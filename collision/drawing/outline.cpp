@@ -1,5 +1,6 @@
 #include "collision/drawing/outline.hpp"
 
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/polytope.hpp"
@@ -63,6 +64,9 @@ class Outline {
   }
   void operator()(const BendingMesh& mesh) {
     edges(mesh.script->triangles(), [&](std::uint32_t vertex) { return mesh.script->position(vertex, t_); });
+  }
+  void operator()(const Compound& compound) {
+    for (const Shape& part : compound.parts->parts()) std::visit(*this, part);
   }
   /// A square patch of its plane, about the point nearest to the centre of the body, and the way out of it.
   void operator()(const HalfSpace& half_space) {

@@ -12,7 +12,7 @@ struct Contact {
   double time = 0;                                    ///< s
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< in world coordinates
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< unit, from a to b
-  Feature feature_a{};                                ///< the feature of a that touches; none for spheres and walls
+  Feature feature_a{};                                ///< of a, or its part, what touches; none for spheres and walls
   Feature feature_b{};
 };
 

@@ -4,6 +4,7 @@
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/bending_contact.hpp"
 #include "collision/narrow_phase/capsule_contact.hpp"
+#include "collision/narrow_phase/compound_contact.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
 #include "collision/narrow_phase/half_space_contact.hpp"
 #include "collision/narrow_phase/hull_contact.hpp"
@@ -32,8 +33,11 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   table.template add<HalfSpace, Sphere, Box, Capsule, MeshShape, ConvexHull>(HalfSpaceContact<Degree>{});
   table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<Degree>{});
   table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<Degree>{});
+  table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(
+      CompoundContact<Degree>{});
   if constexpr (Degree <= 2) {
     table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(BendingContact<Degree>{});
+    table.template add<Compound, BendingMesh>(CompoundContact<Degree>{});
   }
   return table;
 }

@@ -146,6 +146,16 @@ NearestOfShape nearest_of_bending_mesh(const MeshScript& script, const Matrix3d&
   return nearest.best();
 }
 
+/// The first of parts that are as near.
+NearestOfShape nearest_of_parts(const std::vector<PlacedShape>& parts, const Vector3d& to) {
+  NearestOfShape nearest = nearest_of_shape(parts.front(), to);
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const NearestOfShape of_part = nearest_of_shape(parts[i], to);
+    if (of_part.distance < nearest.distance) nearest = of_part;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 NearestOfShape nearest_of_shape(const PlacedShape& shape, const Vector3d& to, double t) {
@@ -158,6 +168,7 @@ NearestOfShape nearest_of_shape(const PlacedShape& shape, const Vector3d& to, do
     return nearest_of_hull(*hull->polytope, shape.rotation, to);
   }
   if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) return nearest_of_mesh(*mesh, shape.rotation, to);
+  if (shape.parts) return nearest_of_parts(*shape.parts, to);
   if (unbounded(shape.shape)) return nearest_of_half_space(placed_half_space(shape), to);
   return nearest_of_bending_mesh(*std::get<BendingMesh>(shape.shape).script, shape.rotation, to, t);
 }

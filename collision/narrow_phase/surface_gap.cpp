@@ -25,6 +25,11 @@ double extent_along(const PlacedShape& shape, const Vector3d& along) {
     const HalfSpace placed = placed_half_space(shape);
     return dot(placed.normal, along) > 1 - 0x1p-40 ? placed.offset : never;
   }
+  if (shape.parts) {
+    double most = -never;
+    for (const PlacedShape& part : *shape.parts) most = std::max(most, extent_along(part, along));
+    return most;
+  }
   if (has_mesh(shape.shape)) return -LowestOfShape(shape, -along).height();
   if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
     double most = -never;

@@ -15,7 +15,7 @@ struct SurfaceGap {
 };
 
 /// The gap between a and b at t, in doubles: accurate to some roundings of the coordinates. Precondition: neither is a
-/// mesh or a half-space.
+/// mesh, a half-space or a compound.
 template <int Degree>
 SurfaceGap surface_gap(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t);
 

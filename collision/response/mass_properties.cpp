@@ -227,6 +227,10 @@ MassProperties of(const HalfSpace&, double) {
   throw std::invalid_argument("mass_properties: a half-space has no mass");
 }
 
+MassProperties of(const Compound&, double) {
+  throw std::invalid_argument("mass_properties: a compound has none of its own: its parts may overlap");
+}
+
 MassProperties of(const BendingMesh&, double) {
   throw std::invalid_argument("shape: a mesh that bends has no mass properties of its own");
 }

@@ -3,6 +3,7 @@
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/box.hpp"
 #include "collision/shapes/capsule.hpp"
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/half_space.hpp"
 #include "collision/shapes/mesh_shape.hpp"
@@ -87,7 +88,8 @@ bool is_placed(const PlacedShape& shape) {
   const PlacedShape again = place_turned(shape.shape, shape.rotation);
   const bool has_axes = of_kind(shape.shape, [](auto kind, const auto&) { return kind.has_half_axes; });
   return again.shape.index() == shape.shape.index() && (!has_axes || again.half_axes == shape.half_axes) &&
-         again.low == shape.low && again.high == shape.high && again.bounding_radius == shape.bounding_radius;
+         again.low == shape.low && again.high == shape.high && again.bounding_radius == shape.bounding_radius &&
+         detail::same_parts(again, shape);
 }
 
 std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction) {
@@ -120,6 +122,11 @@ const char* kind_name(const Shape& shape) {
 
 Eigen::Vector3d measures(const Shape& shape) {
   return of_kind(shape, [](auto kind, const auto& each) { return kind.measures(each); });
+}
+
+bool has_mesh(const Shape& shape) {
+  if (const auto* const compound = std::get_if<Compound>(&shape)) return compound->parts && compound->parts->has_mesh();
+  return std::holds_alternative<MeshShape>(shape);
 }
 
 std::shared_ptr<const Mesh> mesh_of(const Shape& shape) {

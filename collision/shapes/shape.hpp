@@ -7,9 +7,11 @@
 #include <array>
 #include <memory>
 #include <variant>
+#include <vector>
 
 namespace kds::collision {
 
+class CompoundParts;
 class Mesh;
 class MeshScript;
 class Polytope;
@@ -68,17 +70,23 @@ struct HalfSpace {
   double offset = 0;
 };
 
-/// Each kind says in a file of its own what the functions below have to know of it: sphere.hpp, box.hpp,
-/// mesh_shape.hpp, capsule.hpp, convex_hull.hpp, half_space.hpp. To add one: a struct, its place in this list, its file, and its row in
-/// the table of pair tests (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its number in the list.
-using Shape = std::variant<Sphere, Box, MeshShape, Capsule, ConvexHull, BendingMesh, HalfSpace>;
+/// Boxes, hulls and meshes that are one body, each at its place in it, shared by any number of bodies: made by
+/// compound() (compound.hpp).
+struct Compound {
+  std::shared_ptr<const CompoundParts> parts;
+};
 
-/// "sphere", "box", "mesh", "capsule", "hull", "bending mesh", "half-space".
+/// Each kind says in a file of its own what the functions below have to know of it: sphere.hpp, box.hpp,
+/// mesh_shape.hpp, capsule.hpp, convex_hull.hpp, half_space.hpp, compound.hpp. To add one: a struct, its place in this
+/// list, its file, and its row in the table of pair tests (narrow_phase/narrow_phase.cpp). Snapshots name a kind by its
+/// number in the list.
+using Shape = std::variant<Sphere, Box, MeshShape, Capsule, ConvexHull, BendingMesh, HalfSpace, Compound>;
+
+/// "sphere", "box", "mesh", "capsule", "hull", "bending mesh", "half-space", "compound".
 const char* kind_name(const Shape& shape);
 
 /// The numbers of the shape: half of what it measures along its own axes; of a mesh its scale, thrice; of a capsule its
-/// radius twice, and its half length; of a hull 1, thrice; of a half-space
-/// infinity, thrice.
+/// radius twice, and its half length; of a hull and a compound 1, thrice; of a half-space infinity, thrice.
 Eigen::Vector3d measures(const Shape& shape);
 
 /// The radius of what looks alike from all sides; 0 of other shapes.
@@ -87,8 +95,13 @@ inline double ball_radius(const Shape& shape) {
   return ball ? ball->radius : 0;
 }
 
-/// Whether the shape is a surface, which is tested in doubles, with a margin: bounding volumes need room for that.
-inline bool has_mesh(const Shape& shape) { return std::holds_alternative<MeshShape>(shape); }
+/// Whether the shape is or has a surface that is tested in doubles, with a margin: bounding volumes need room for that.
+bool has_mesh(const Shape& shape);
+
+/// Whether the shape need not be convex, so that it may touch a convex one in several places at once.
+inline bool concave(const Shape& shape) {
+  return std::holds_alternative<MeshShape>(shape) || std::holds_alternative<Compound>(shape);
+}
 
 /// Whether the shape changes while the body rests.
 inline bool bends(const Shape& shape) { return std::holds_alternative<BendingMesh>(shape); }
@@ -112,6 +125,8 @@ struct PlacedShape {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();   ///< corner of the bounding box about the centre, rounded outward
   Eigen::Vector3d high = Eigen::Vector3d::Zero();  ///< the other
   double bounding_radius = 0;                      ///< of the ball about the centre that holds the shape
+  /// Of a compound its parts, each in the same orientation and about the same centre. Null for others.
+  std::shared_ptr<const std::vector<PlacedShape>> parts{};
 };
 
 /// Validates and places a shape. Throws std::invalid_argument naming the member that is wrong: sizes must be > 0 and in
@@ -123,7 +138,7 @@ PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation);
 /// Whether it is what place_turned() makes of its shape and rotation, which throws if they cannot be placed.
 bool is_placed(const PlacedShape& shape);
 
-/// The shape as a zonotope grown by a radius. Precondition: it is no mesh, no hull and no half-space.
+/// The shape as a zonotope grown by a radius. Precondition: it is no mesh, hull, half-space or compound.
 RoundedCore rounded_core(const PlacedShape& shape);
 
 /// From where to where the shape reaches about its centre along a direction: least and greatest direction . x, rounded

@@ -4,6 +4,7 @@
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/box.hpp"
 #include "collision/shapes/capsule.hpp"
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/half_space.hpp"
 #include "collision/shapes/mesh_shape.hpp"
@@ -43,6 +44,7 @@ void archive_shape(Archive& archive, PlacedShape& placed, std::uint32_t& mesh,
   for (double& entry : placed.rotation.reshaped()) archive(entry);
   detail::archive_vector(archive, placed.low), detail::archive_vector(archive, placed.high);
   archive(placed.bounding_radius);
+  if constexpr (Archive::loading) detail::place_parts(placed);
 }
 
 }  // namespace kds::collision

@@ -20,7 +20,7 @@ struct SupportingFeature {
   std::vector<Eigen::Vector3d> vertices;  ///< relative to the centre; 1, 2, or more in cyclic order
 };
 
-/// Precondition: the direction is of unit length, and the shape no mesh and no half-space.
+/// Precondition: the direction is of unit length, and the shape no mesh, no half-space and no compound.
 SupportingFeature supporting_feature(const PlacedShape& shape, const Eigen::Vector3d& direction);
 
 }  // namespace kds::collision

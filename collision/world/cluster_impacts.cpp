@@ -38,7 +38,7 @@ class RestingContacts<Motion>::Neighbourhood {
       Contact& contact = all_.contacts_[slot];
       contact.seen = all_.islands_;
       contact.place = 0;
-      if (all_.gaps_.has_mesh(contact)) {  // They touch, or overlap by some roundings.
+      if (all_.gaps_.concave(contact)) {  // They touch, or overlap by some roundings.
         contact.gap = std::min(all_.gaps_.along_normal(contact), 0.0);
         contact.since = all_.clock_.now;
         contact.aim = contact.gap - closing(contact, contact.gap);
@@ -187,7 +187,7 @@ class RestingContacts<Motion>::Neighbourhood {
           contact.place = static_cast<std::uint32_t>(touches_.size());
           Contact here = contact;
           const double gap = all_.gaps_.nearest(here);
-          if (all_.gaps_.has_mesh(contact)) contact.gap = gap, contact.since = all_.clock_.now;
+          if (all_.gaps_.concave(contact)) contact.gap = gap, contact.since = all_.clock_.now;
           add_touch(here, slot, least_rate(here, gap, span_of(here)));
           if (order == Order::accelerations) prepare(contact.place);
         }

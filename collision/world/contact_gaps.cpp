@@ -48,9 +48,9 @@ bool ContactGaps<Motion>::on_plane(const Contact& contact) const {
 }
 
 template <class Motion>
-bool ContactGaps<Motion>::has_mesh(const Contact& contact) const {
+bool ContactGaps<Motion>::concave(const Contact& contact) const {
   if (on_plane(contact) || balls(contact)) return false;
-  return collision::has_mesh(bodies_.shape(contact.a).shape) || collision::has_mesh(bodies_.shape(contact.b).shape);
+  return collision::concave(bodies_.shape(contact.a).shape) || collision::concave(bodies_.shape(contact.b).shape);
 }
 
 template <class Motion>
@@ -64,7 +64,7 @@ bool ContactGaps<Motion>::turns(const Contact& contact) const {
   if (a_round && b_round) return true;
   if (!a_round && !b_round) return false;
   const PlacedShape& other = a_round ? b : a;
-  if (collision::has_mesh(other.shape)) return true;
+  if (collision::concave(other.shape)) return true;
   if (std::holds_alternative<ConvexHull>(other.shape)) {
     const Vector3d towards = a_round ? Vector3d(-contact.normal) : contact.normal;
     return supporting_feature(other, towards).feature.kind != Feature::Kind::face;
@@ -95,7 +95,7 @@ double ContactGaps<Motion>::along_normal(const Contact& contact) const {
     const auto& b = bodies_.mover(contact.b);
     return dot(contact.normal, b.motion.position(now) - a.motion.position(now)) - a.radius - b.radius;
   }
-  if (!has_mesh(contact)) return gap_along(bodies_.moving(contact.a), bodies_.moving(contact.b), contact.normal, now);
+  if (!concave(contact)) return gap_along(bodies_.moving(contact.a), bodies_.moving(contact.b), contact.normal, now);
   if (contact.since == -never) return 0;  // It has come from outside the cluster.
   const auto& a = bodies_.path(contact.a);
   const auto& b = bodies_.path(contact.b);
@@ -105,7 +105,7 @@ double ContactGaps<Motion>::along_normal(const Contact& contact) const {
 
 template <class Motion>
 double ContactGaps<Motion>::nearest(Contact& contact) const {
-  if (on_plane(contact) || has_mesh(contact)) return along_normal(contact);
+  if (on_plane(contact) || concave(contact)) return along_normal(contact);
   if (balls(contact)) {
     const SurfaceGap gap = after(contact, Vector3d::Zero());
     contact.normal = gap.normal;
@@ -144,15 +144,15 @@ bool ContactGaps<Motion>::renew(Contact& contact) const {
   const auto a = bodies_.moving(contact.a);
   const auto b = bodies_.moving(contact.b);
   const bool round = is_round(a.shape) || is_round(b.shape);
-  const bool mesh = has_mesh(contact);
-  if (round && !mesh) return true;
+  const bool in_places = concave(contact);
+  if (round && !in_places) return true;
   // Faces may have slid off each other. First the nearest places are found, then those that are near.
   for (const double part : {nearest_part, cluster::room_of_many}) {
     const Vector3d nearer = -(contact.gap + part * size(contact)) * contact.normal;
     const auto motion = moved(b.motion, nearer);
     const MovingShape<Motion> touching{b.shape, motion};
     if (!in_contact(a, touching, now)) continue;
-    if (!mesh || !round) return true;
+    if (!in_places || !round) return true;
     const collision::Contact touch = contact_at(a, touching, now);
     contact.normal = touch.normal;
     // From the surface of the mesh to that of a ball.

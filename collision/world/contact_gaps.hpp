@@ -28,21 +28,21 @@ class ContactGaps {
   double size(const Contact& contact) const;
   /// Whether one of the two is a wall or a half-space: the normal is the same everywhere, and nothing slides off.
   bool on_plane(const Contact& contact) const;
-  /// Whether one of the two is a mesh, not on a plane, whose surface is known only where it touches.
-  bool has_mesh(const Contact& contact) const;
+  /// Whether one of the two is a mesh or a compound, not on a plane, whose surface is known only where it touches.
+  bool concave(const Contact& contact) const;
   /// Whether its normal turns while the two slide over each other: one is round, and does not touch a face of a box.
   bool turns(const Contact& contact) const;
-  /// turns(), and no mesh: so the normal is known at other places too.
-  bool bends(const Contact& contact) const { return turns(contact) && !has_mesh(contact); }
+  /// turns(), and not concave(): so the normal is known at other places too.
+  bool bends(const Contact& contact) const { return turns(contact) && !concave(contact); }
 
   /// Rate at which the two part along the normal.
   double parting(const Contact& contact) const;
-  /// The gap along the normal. For meshes, the gap at contact.since plus the displacement since then. Precondition:
+  /// The gap along the normal. If concave(), the gap at contact.since plus the displacement since then. Precondition:
   /// they have not changed their motions since.
   double along_normal(const Contact& contact) const;
   /// The gap; the normal becomes that of the places where the two are nearest.
   double nearest(Contact& contact) const;
-  /// The same when b will have moved relative to a. Precondition: turns(), and no mesh.
+  /// The same when b will have moved relative to a. Precondition: turns(), and not concave().
   SurfaceGap after(const Contact& contact, const Eigen::Vector3d& displacement) const;
   /// Recomputes gap and normal. False if the contact has ended.
   bool renew(Contact& contact) const;
@@ -51,8 +51,8 @@ class ContactGaps {
   /// and with half an acceleration: there is a gap now, and the parabola of the gap is above zero at the end.
   bool proven(const Contact& contact, double rate, double half, double span) const;
 
-  /// How far the two overlap; not known for meshes.
-  double overlap(Contact contact) const { return has_mesh(contact) ? 0 : -nearest(contact); }
+  /// How far the two overlap; not known if concave().
+  double overlap(Contact contact) const { return concave(contact) ? 0 : -nearest(contact); }
   /// Whether they overlap by more than that. Boxes that have slid off each other overlap only along the normal.
   bool deeper(const Contact& contact, double by) const;
   /// By how much more they may overlap than when the contact began: by a billionth of the smaller size, and by the

@@ -76,8 +76,15 @@ bool only_touching(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
   for (const PlacedShape* const shape : {&a.shape, &b.shape}) {
     if (bends(shape->shape)) apart = std::max(apart, 1.25 * bending_tolerance * shape->bounding_radius);
   }
-  const Motion place_b = standing(b.motion, t, apart * contact.normal);
-  return !in_contact(MovingShape<Motion>{a.shape, place_a}, MovingShape<Motion>{b.shape, place_b}, t);
+  Vector3d way = apart * contact.normal;
+  // Compounds may touch in several places, as in a corner: they are moved away from one after the other.
+  for (int places = a.shape.parts || b.shape.parts ? 3 : 1;; --places) {
+    const Motion place_b = standing(b.motion, t, way);
+    const MovingShape<Motion> at_a{a.shape, place_a}, at_b{b.shape, place_b};
+    if (!in_contact(at_a, at_b, t)) return true;
+    if (places == 1) return false;
+    way += apart * contact_at(at_a, at_b, t).normal;
+  }
 }
 
 }  // namespace

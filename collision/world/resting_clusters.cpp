@@ -117,7 +117,7 @@ bool RestingContacts<Motion>::slides_on(const Island& island) const {
 template <class Motion>
 bool RestingContacts<Motion>::repeats(const Island& island, std::size_t k) const {
   const Contact& contact = contacts_[island.contacts[k]];
-  if (!gaps_.has_mesh(contact)) return false;
+  if (!gaps_.concave(contact)) return false;
   for (std::size_t i = k; i-- > 0;) {
     const Contact& other = contacts_[island.contacts[i]];
     if (other.a != contact.a || other.b != contact.b) return false;

@@ -54,7 +54,7 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_among(BodyS
 /// The contact of the same bodies and with nearly the same normal; convex bodies have one contact at most.
 template <class Motion>
 typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const Contact& contact) const {
-  if (!gaps_.has_mesh(contact)) return find(contact.a, contact.b, contact.wall);
+  if (!gaps_.concave(contact)) return find(contact.a, contact.b, contact.wall);
   if (!rests(contact.a)) return none;
   for (const Slot slot : of_[contact.a].contacts) {
     const Contact& other = contacts_[slot];
@@ -145,7 +145,7 @@ double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
   const auto a = bodies_.moving(id_a);
   const auto b = bodies_.moving(id_b);
   const bool plane = bodies_.unbounded(id_a) || bodies_.unbounded(id_b);
-  if (plane || (!has_mesh(a.shape.shape) && !has_mesh(b.shape.shape))) {
+  if (plane || (!concave(a.shape.shape) && !concave(b.shape.shape))) {
     if (keeps_apart(find(id_a, id_b))) return never;
     return first_contact(a, b, clock_.now, clock_.horizon, ContactMode::resolved);
   }

@@ -145,7 +145,7 @@ class RestingContacts {
 
   /// Whether a plane is proven to stay between the two bodies of a contact, so that they do not meet until a motion or
   /// the contact changes.
-  bool keeps_apart(Slot contact) const { return contacts_[contact].proven && !gaps_.has_mesh(contacts_[contact]); }
+  bool keeps_apart(Slot contact) const { return contacts_[contact].proven && !gaps_.concave(contacts_[contact]); }
   /// When two bodies that rest on each other may meet elsewhere.
   double next_contact(BodySlot a, BodySlot b);
 

@@ -1,7 +1,9 @@
 #include "io/scene_file/shape_reader.hpp"
 
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "io/number_text.hpp"
+#include "io/scene_file/body_checks.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -68,17 +70,51 @@ Shape read_mesh_shape(const JsonNode& node, const Meshes& meshes) {
   return kds::collision::MeshShape{found->mesh, scale};
 }
 
+kds::collision::CompoundPart read_part(const JsonNode& node, const Meshes& meshes) {
+  node.object({"shape", "position", "orientation"});
+  const JsonNode shape = node["shape"];
+  for (const char* const kind : {"sphere", "capsule", "half_space", "compound"}) {
+    if (shape.has(kind)) shape[kind].fail("cannot be a part of a compound: boxes, hulls and meshes can");
+  }
+  kds::collision::CompoundPart part{read_shape(shape, meshes)};
+  if (node.has("position")) part.position = node["position"].vector();
+  if (node.has("orientation")) part.orientation = read_orientation(node["orientation"]);
+  return part;
+}
+
+Shape read_compound(const JsonNode& node, const Meshes& meshes) {
+  const JsonNode parts = node["compound"].object({"parts"})["parts"];
+  const std::vector<JsonNode> nodes = parts.elements();
+  if (nodes.empty()) parts.fail("must have at least one part");
+  std::vector<kds::collision::CompoundPart> read;
+  for (const JsonNode& each : nodes) read.push_back(read_part(each, meshes));
+  try {
+    return kds::collision::compound(read);
+  } catch (const kds::collision::InvalidCompound& error) {
+    const std::string what = error.what();  // "compound: part 3: ..."
+    const std::size_t name = what.find(": ") + 2;
+    nodes[error.part().value()].fail(what.substr(what.find(": ", name) + 2));
+  }
+}
+
 struct ShapeReader {
   const char* key;
   Shape (*read)(const JsonNode& node, const Meshes& meshes);
 };
 constexpr const char* one_shape =
-    "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\", \"hull\" and \"half_space\"";
-constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},   {"box", read_box},
-                                         {"mesh", read_mesh_shape}, {"capsule", read_capsule},
-                                         {"hull", read_hull},       {"half_space", read_half_space}};
+    "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\", \"hull\", \"half_space\" and \"compound\"";
+constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},         {"box", read_box},
+                                         {"mesh", read_mesh_shape},       {"capsule", read_capsule},
+                                         {"hull", read_hull},             {"half_space", read_half_space},
+                                         {"compound", read_compound}};
 
 }  // namespace
+
+Eigen::Quaterniond read_orientation(const JsonNode& node) {
+  const std::vector<JsonNode> parts = node.tuple(4);
+  const Eigen::Quaterniond q(parts[0].number(), parts[1].number(), parts[2].number(), parts[3].number());
+  return unit_quaternion(q, [&](const std::string& what) { node.fail(what); });
+}
 
 std::string mesh_size_problem(double radius, std::string_view reaches) {
   if (radius >= smallest_size && radius <= largest_number) return {};
@@ -88,7 +124,7 @@ std::string mesh_size_problem(double radius, std::string_view reaches) {
 }
 
 Shape read_shape(const JsonNode& node, const Meshes& meshes) {
-  node.object({"sphere", "box", "mesh", "capsule", "hull", "half_space", "scale"});
+  node.object({"sphere", "box", "mesh", "capsule", "hull", "half_space", "compound", "scale"});
   const ShapeReader* found = nullptr;
   for (const ShapeReader& each : shape_readers) {
     if (!node.has(each.key)) continue;

@@ -1,6 +1,7 @@
 // Runs as glTF: what a player of animations would show is what the run was.
 #include "io/gltf.hpp"
 
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "io/run.hpp"
@@ -140,7 +141,7 @@ TEST_CASE("glTF: accelerated paths and turns are sampled as often as asked for")
   }
 }
 
-TEST_CASE("glTF: surfaces are closed and point outward, with all triangles of meshes and hulls") {
+TEST_CASE("glTF: surfaces are closed and point outward, with all triangles of meshes, hulls and parts") {
   Scene scene;
   scene.end_time = 1;
   const auto add = [&](const kds::collision::Shape& shape) {
@@ -153,11 +154,14 @@ TEST_CASE("glTF: surfaces are closed and point outward, with all triangles of me
   add(kds::collision::Box{{1, 1, 1}});
   add(kds::collision::Capsule{1, 2});
   add(kds::collision::convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  const std::vector<kds::collision::CompoundPart> parts{{kds::collision::Box{{1, 1, 1}}, {5, 0, 0}},
+                                                        {kds::collision::Box{{0.5, 0.5, 0.5}}, {0, 0, 7}}};
+  add(kds::collision::compound(parts));
   const Loaded loaded = exported(scene);
   constexpr double pi = 3.14159265358979;
-  const std::vector<double> volumes{4 * pi / 3, 8, 4 * pi / 3 + 4 * pi, 1.0 / 6};
-  REQUIRE(loaded.root["meshes"].size() == 4);
-  for (std::size_t i = 0; i < 4; ++i) {
+  const std::vector<double> volumes{4 * pi / 3, 8, 4 * pi / 3 + 4 * pi, 1.0 / 6, 9};
+  REQUIRE(loaded.root["meshes"].size() == 5);
+  for (std::size_t i = 0; i < 5; ++i) {
     CAPTURE(i);
     const json& primitive = loaded.root["meshes"][i]["primitives"][0];
     const auto places = loaded.floats(primitive["attributes"]["POSITION"]);

@@ -1,5 +1,6 @@
 #include "io/replay.hpp"
 
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "tests/io/temporary_folder.hpp"
 
@@ -96,6 +97,21 @@ TEST_CASE("replay: a hull is drawn as the triangles of its surface, once for all
   const json data = json::parse(ReplayRecorder(scene).to_json("a"));
   REQUIRE(data["meshes"].size() == 1);
   CHECK(data["meshes"][0]["triangles"].size() == 12);
+  CHECK(data["bodies"][0]["shape"] == 0);
+  CHECK(data["bodies"][1]["shape"] == 0);
+  CHECK(data["bodies"][1]["size"] == json::parse("[1,1,1]"));
+}
+
+TEST_CASE("replay: a compound is drawn as the surfaces of its parts, once for all bodies that share it") {
+  Scene scene = scene_of_two();
+  const std::vector<kds::collision::CompoundPart> parts{
+      {kds::collision::Box{{1, 1, 1}}, {5, 0, 0}},
+      {kds::collision::convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}), {0, 0, 7}}};
+  scene.bodies[0].shape = scene.bodies[1].shape = kds::collision::compound(parts);
+  const json data = json::parse(ReplayRecorder(scene).to_json("a"));
+  REQUIRE(data["meshes"].size() == 1);
+  CHECK(data["meshes"][0]["vertices"].size() == 3 * 12);
+  CHECK(data["meshes"][0]["triangles"].size() == 3 * 16);
   CHECK(data["bodies"][0]["shape"] == 0);
   CHECK(data["bodies"][1]["shape"] == 0);
   CHECK(data["bodies"][1]["size"] == json::parse("[1,1,1]"));

@@ -2,6 +2,7 @@
 #include "collision/shapes/mesh.hpp"
 #include "io/scene_reader.hpp"
 
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "tests/io/sample_scene.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -220,6 +221,21 @@ TEST_CASE("scene reader: a hull of points, some of which are inside") {
   const auto& polytope = *std::get<kds::collision::ConvexHull>(scene.bodies[0].shape).polytope;
   CHECK(polytope.points().size() == 6);
   CHECK(polytope.structure().corners == std::vector<std::uint32_t>{0, 1, 2, 3});
+}
+
+TEST_CASE("scene reader: a compound of a box that is turned and a hull") {
+  const Scene scene = parse_scene(
+      R"({"scene": 1, "end_time": 2, "bodies": [{"name": "a", "shape": {"compound": {"parts": [
+          {"shape": {"box": {"half_extents": [1,2,3]}}, "position": [10,0,0], "orientation": [0.5,0.5,0.5,0.5]},
+          {"shape": {"hull": {"points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}}}]}},
+          "motion": [{"start": 0, "position": [[0,0,0]]}]}]})",
+      "scene.json");
+  const auto parts = std::get<kds::collision::Compound>(scene.bodies[0].shape).parts->parts();
+  REQUIRE(parts.size() == 2);
+  const auto placed = kds::collision::place(parts[0], Eigen::Quaterniond::Identity());
+  CHECK(placed.low == Eigen::Vector3d(7, -1, -2));  // x is where z was
+  CHECK(placed.high == Eigen::Vector3d(13, 1, 2));
+  CHECK(std::get<kds::collision::ConvexHull>(parts[1]).polytope->points()[3] == Eigen::Vector3d(0, 0, 1));
 }
 
 TEST_CASE("scene reader: a capsule, and one of no length") {

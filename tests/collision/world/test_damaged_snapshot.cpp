@@ -1,4 +1,5 @@
 // Snapshots that have been damaged, everywhere and in several ways: they are refused, or give a world that runs.
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/random_scenes.hpp"
@@ -150,6 +151,18 @@ TEST_CASE("damaged: hulls", "[world][snapshot][damaged]") {
     if (i > 0) one.orientation = Eigen::Quaterniond(1, 0.5, 0.25, i).normalized();
     world.add_body(one);
   }
+  world.advance_to(0.25);
+  damage(world, options);
+}
+
+TEST_CASE("damaged: compounds", "[world][snapshot][damaged]") {
+  const WorldOptions options = with_response(Response::elastic);
+  World<1> world(options);
+  const std::vector<CompoundPart> parts{{Box{{0.25, 0.5, 0.25}}, {0.5, 0, 0}}, {MeshShape{tetrahedron(), 0.25}}};
+  auto one = body<1>(compound(parts), motion<1>(zero, {1, 0, 0}));
+  one.orientation = Eigen::Quaterniond(1, 0.5, 0.25, 1).normalized();
+  world.add_body(one);
+  world.add_body(ball<1>(0.5, {1.5, 0.1, 0}));
   world.advance_to(0.25);
   damage(world, options);
 }

@@ -35,6 +35,7 @@ std::string shapes_of(const Scenario& scenario) {
   has(ShapeKind::box, " boxes");
   has(ShapeKind::capsule, " capsules");
   has(ShapeKind::hull, " hulls");
+  has(ShapeKind::compound, " compounds");
   has(ShapeKind::mesh, " meshes");
   has(ShapeKind::half_space, " half-spaces");
   return result;

@@ -110,12 +110,15 @@ BodyPlan draw_body(Random& random, const Style& style) {
   BodyPlan body;
   body.shape = draw_shape_kind(random, style.shapes);
   for (double& x : body.size) x = draw_size(random, style.numbers);
-  // Some boxes are capsules or hulls. Which ones is told from what has been drawn, so that all else stays as it is.
+  // Some boxes are capsules, hulls or compounds. Which ones is told from what has been drawn, so that all else stays as it is.
   if (body.shape == ShapeKind::box && body.size[1] < std::min(body.size[0], body.size[2])) {
     body.shape = ShapeKind::capsule;
   }
   if (body.shape == ShapeKind::box && body.size[2] < 0.5 * std::min(body.size[0], body.size[1])) {
     body.shape = ShapeKind::hull;
+  }
+  if (body.shape == ShapeKind::box && body.size[0] < 0.75 * std::min(body.size[1], body.size[2])) {
+    body.shape = ShapeKind::compound;
   }
   body.mesh = random.below(sample_meshes().size());
   if (body.shape != ShapeKind::ball || random.one_in(8)) body.orientation = draw_orientation(random);

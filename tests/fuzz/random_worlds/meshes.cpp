@@ -58,4 +58,9 @@ std::vector<Eigen::Vector3d> cut_box(const Eigen::Vector3d& half_extents) {
   return corners;
 }
 
+std::vector<collision::CompoundPart> angle(const Eigen::Vector3d& half_extents) {
+  const double x = half_extents[0], y = half_extents[1], z = half_extents[2];
+  return {{collision::Box{{x, y, 0.25 * z}}, {0, 0, -0.75 * z}}, {collision::Box{{0.25 * x, y, z}}, {-0.75 * x, 0, 0}}};
+}
+
 }  // namespace kds::fuzz

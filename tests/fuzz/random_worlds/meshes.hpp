@@ -1,6 +1,7 @@
 // Meshes of several kinds: closed and open, thin, folded, and with many triangles on one edge.
 #pragma once
 
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/mesh.hpp"
 
 #include <memory>
@@ -21,5 +22,8 @@ const std::vector<std::shared_ptr<const collision::Mesh>>& sample_meshes();
 
 /// The corners of a box without one of them.
 std::vector<Eigen::Vector3d> cut_box(const Eigen::Vector3d& half_extents);
+
+/// A plate below and one on the left, of a box with these half extents, which share their edge.
+std::vector<collision::CompoundPart> angle(const Eigen::Vector3d& half_extents);
 
 }  // namespace kds::fuzz

@@ -1,5 +1,6 @@
 #include "tests/fuzz/random_worlds/player.hpp"
 
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/fuzz/random_worlds/meshes.hpp"
@@ -133,6 +134,9 @@ BodyDescription<Degree> Player<Degree>::description(const BodyPlan& plan) {
       break;
     case ShapeKind::hull:
       result.shape = collision::convex_hull(cut_box(size));
+      break;
+    case ShapeKind::compound:
+      result.shape = collision::compound(angle(size));
       break;
     case ShapeKind::half_space:
       result.shape = collision::HalfSpace{plan.size};

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <set>
 #include <string>
+#include <variant>
 
 namespace kds::fuzz {
 namespace {
@@ -102,6 +103,14 @@ void print_body(const Scenario& scenario, std::size_t number_of_body) {
     std::printf("  d.shape = convex_hull({");
     for (const Eigen::Vector3d& corner : cut_box(body.size))
       std::printf("p.length * Vector3d%s, ", vector(corner).c_str());
+    std::printf("});\n");
+  }
+  if (body.shape == ShapeKind::compound) {
+    std::printf("  d.shape = compound(std::vector<CompoundPart>{");
+    for (const collision::CompoundPart& part : angle(body.size)) {
+      std::printf("{Box{p.length * Vector3d%s}, p.length * Vector3d%s}, ",
+                  vector(std::get<collision::Box>(part.shape).half_extents).c_str(), vector(part.position).c_str());
+    }
     std::printf("});\n");
   }
   if (body.shape == ShapeKind::half_space) {

@@ -4,6 +4,7 @@
 namespace kds::fuzz {
 
 inline constexpr const char* program_head = R"(
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/world.hpp"

@@ -125,6 +125,7 @@ class Reducer {
     if (best_.scenario.bodies[i].shape != ShapeKind::ball) body([](BodyPlan& b) { b.shape = ShapeKind::ball; });
     if (best_.scenario.bodies[i].shape == ShapeKind::mesh) body([](BodyPlan& b) { b.shape = ShapeKind::box; });
     if (best_.scenario.bodies[i].shape == ShapeKind::mesh) body([](BodyPlan& b) { b.shape = ShapeKind::capsule; });
+    if (best_.scenario.bodies[i].shape == ShapeKind::compound) body([](BodyPlan& b) { b.shape = ShapeKind::box; });
     if (best_.scenario.bodies[i].shape == ShapeKind::hull) body([](BodyPlan& b) { b.shape = ShapeKind::box; });
     if (best_.scenario.bodies[i].mesh > 0) body([](BodyPlan& b) { b.mesh = 0; });
     if (best_.scenario.bodies[i].box_function) body([](BodyPlan& b) { b.box_function = false; });

@@ -25,12 +25,13 @@ struct Path {
   Vector3d half_acceleration = Vector3d::Zero();  ///< of no effect in worlds of degree 1
 };
 
-enum class ShapeKind : std::uint8_t { ball, box, mesh, capsule, hull, half_space };
+enum class ShapeKind : std::uint8_t { ball, box, mesh, capsule, hull, half_space, compound };
 
 struct BodyPlan {
   ShapeKind shape = ShapeKind::ball;
-  Vector3d size = Vector3d::Ones();  ///< radius in [0], half extents (of a hull: of the box that it is cut from), scale
-                                     ///< of the mesh in [0], or radius and half length, or the normal of a half-space
+  Vector3d size = Vector3d::Ones();  ///< radius in [0], half extents (of a hull: of the box that it is cut from; of a
+                                     ///< compound: of the box around it), scale of the mesh in [0], or radius and half
+                                     ///< length, or the normal of a half-space
   std::size_t mesh = 0;              ///< of sample_meshes()
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   std::vector<Path> pieces{Path{}};

@@ -1,0 +1,36 @@
+// Dynamic tests of bodies of several parts: those of the parts.
+#pragma once
+
+#include "collision/degrees.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
+
+namespace kds::collision {
+
+/// The tests (see pair_tests.hpp) of a compound (a) with any shape, also another compound.
+///
+/// The two are in contact while a part of one is in contact with a part of the other: so times are as exact as those of
+/// the parts. Where contacts are resolved, each pair of parts is judged by itself: one counts if it approaches along
+/// its own normal. Parts move with their body, whose motion is not rounded for it.
+///
+/// The contact at a time is that of the first pair of parts, in the order of those of a, then of b, that are in contact
+/// and approach; if none approaches, of the first in contact; if none is in contact, of the first that was until then,
+/// else of those that are nearest. Its features are those of the two parts.
+///
+/// Cost: a few roots in doubles for each pair of parts (PartPairs), and the tests of those whose boxes meet.
+template <int Degree>
+struct CompoundContact {
+  using Body = TranslatingShape<Degree>;
+
+  static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
+                              FoundTouch* found);
+  static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
+  static bool in_contact(const Body& a, const Body& b, double t);
+  static double first_separation(const Body& a, const Body& b, double t0, double horizon);
+  static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch& found);
+};
+
+#define KDS_DECLARE(degree) extern template struct CompoundContact<degree>;
+KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#undef KDS_DECLARE
+
+}  // namespace kds::collision
