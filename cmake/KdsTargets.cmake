@@ -63,3 +63,25 @@ endfunction()
 add_library(kds_quick_to_compile INTERFACE)
 target_compile_options(kds_quick_to_compile INTERFACE
   $<$<AND:$<CONFIG:RelWithDebInfo>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang>>:-O1>)
+
+# kds_read_headers_once(target...): in a build with tests, the headers of others that are half of most files are compiled
+# once for all these targets, and read as they were compiled. Not our own: whoever changes one waits for what includes it
+# only. Nor for libraries that are linked into the Python module, whose code is compiled otherwise. The preset `release`
+# does without this too.
+function(kds_read_headers_once)
+  if(NOT KDS_COMPILE_TOGETHER OR NOT KDS_BUILD_TESTS)
+    return()
+  endif()
+  if(NOT TARGET kds_headers_of_others)
+    find_package(Catch2 2.13 REQUIRED)
+    set(source "${PROJECT_BINARY_DIR}/headers_of_others.cpp")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "")
+    add_library(kds_headers_of_others OBJECT "${source}")
+    target_link_libraries(kds_headers_of_others PRIVATE kds::collision kds_warnings Catch2::Catch2)
+    target_precompile_headers(kds_headers_of_others PRIVATE
+      <catch2/catch.hpp> <Eigen/Core> <Eigen/Geometry> <boost/heap/d_ary_heap.hpp> <boost/multiprecision/cpp_int.hpp>)
+  endif()
+  foreach(target IN LISTS ARGN)
+    target_precompile_headers(${target} REUSE_FROM kds_headers_of_others)
+  endforeach()
+endfunction()

@@ -28,13 +28,15 @@ struct ParallelCounters {
   std::uint64_t separations = 0;
   std::uint64_t overlaps = 0;
   std::uint64_t wall_contacts = 0;
-  std::uint64_t windows = 0;          ///< that held
-  std::uint64_t windows_failed = 0;   ///< that were run again, shorter or as one world
-  std::uint64_t stretches_whole = 0;  ///< stretches of time that were run as one world
-  std::uint64_t divisions = 0;        ///< times the scene was divided anew
-  std::uint64_t bodies_owned = 0;     ///< by all domains, summed over windows
-  std::uint64_t bodies_known = 0;     ///< copies included; the ratio is the redundancy in bodies
-  std::uint64_t events_computed = 0;  ///< in windows that held, those of copies included
+  std::uint64_t windows = 0;            ///< that held
+  std::uint64_t steps = 0;              ///< of windows; that held
+  std::uint64_t windows_failed = 0;     ///< that were run again, shorter or as one world
+  std::uint64_t stretches_whole = 0;    ///< stretches of time that were run as one world
+  std::uint64_t divisions = 0;          ///< times the scene was divided anew
+  std::uint64_t bodies_owned = 0;       ///< by all domains, summed over steps
+  std::uint64_t bodies_known = 0;       ///< copies included; the ratio is the redundancy in bodies
+  std::uint64_t events_computed = 0;    ///< in steps that held, by all domains, those of copies included
+  std::uint64_t events_of_busiest = 0;  ///< the same, by the domain that computed most in a step
   std::uint64_t copies_corrected = 0;
   std::uint64_t copies_made = 0;
 };

@@ -228,12 +228,16 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   void commit(double end) {
     if (std::exchange(unstarted_, false)) store_.note_entered();
     domains_.commit();
+    std::uint64_t most = 0;
     for (const DomainReport& report : domains_.reports()) {
       counters_.overlaps += report.told[0], counters_.wall_contacts += report.told[1];
       counters_.contacts += report.told[2], counters_.separations += report.told[3];
       counters_.events_computed += report.computed;
       counters_.bodies_owned += report.owned, counters_.bodies_known += report.known;
+      most = std::max(most, report.computed);
     }
+    counters_.events_of_busiest += most;
+    ++counters_.steps;
     now_ = end;
     events_ = domains_.take_events();
   }

@@ -2,21 +2,19 @@
 //
 //     bench_parallel [DIRECTORY [BODIES...]]      -> parallel.csv; the sizes, 10 000 to 1 000 000 unless given
 //
-// Elastic balls of diameter 1 in a cube, on the places of a lattice, with speeds of a normal distribution. They run
-// until each has had some contacts. One world and the same scene in domains take turns; the best of the rounds counts.
-// The number of contacts and a hash of all of them must be the same.
+// The balls (elastic_gas.hpp) run until each has had some contacts. One world and the same scene in domains take turns;
+// the best of the rounds counts. The number of contacts and a hash of all of them must be the same.
 
 #include "collision/parallel/parallel_world.hpp"
 #include "collision/world.hpp"
 #include "tests/benchmarks/csv_file.hpp"
+#include "tests/benchmarks/elastic_gas.hpp"
 #include "tests/benchmarks/thread_time.hpp"
-#include "tests/support/random_numbers.hpp"
 
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -29,7 +27,7 @@
 namespace {
 
 using namespace kds::collision;
-using Eigen::Vector3d;
+using kds::benchmarks::ElasticGas;
 using kds::benchmarks::tell;
 using kds::benchmarks::wall_seconds;
 
@@ -60,36 +58,7 @@ struct DividedHash final : ParallelListener {
   void contact(const PairEvent& event) override { of.add(event); }
 };
 
-struct Gas {
-  WorldOptions options;
-  std::vector<BodyDescription<1>> bodies;
-  double end = 0;
-};
-
-Gas gas(std::size_t bodies, double packing) {
-  Gas result;
-  const double side = std::cbrt(static_cast<double>(bodies) * 0.5235987755982988 / packing);
-  const auto row = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(bodies))));
-  const double apart = side / static_cast<double>(row);
-  result.options.response = Response::elastic;
-  result.options.walls = Walls{Vector3d::Zero(), Vector3d::Constant(side)};
-  kds::tests::Random random(2);
-  const auto place = [&](std::size_t i) { return (static_cast<double>(i) + 0.5) * apart; };
-  for (std::size_t i = 0; i < bodies; ++i) {
-    BodyDescription<1> ball;
-    ball.shape = Sphere{0.5};
-    World<1>::Motion motion{};
-    motion.coefficients[0] = {place(i % row), place(i / row % row), place(i / row / row)};
-    for (int d = 0; d < 3; ++d) {  // the sum of uniform ones is near enough to normal
-      motion.coefficients[1][d] = 0;
-      for (int k = 0; k < 4; ++k) motion.coefficients[1][d] += random.between(-0.5, 0.5);
-    }
-    ball.motion = {motion};
-    result.bodies.push_back(ball);
-  }
-  result.end = packing > 0.1 ? 1 : 8;
-  return result;
-}
+double end_of(double packing) { return packing > 0.1 ? 1 : 8; }
 
 struct Time {
   double entry_wall = 1e300, run_wall = 1e300, run_cpu = 1e300;
@@ -99,18 +68,19 @@ struct Time {
 };
 
 template <class World>
-void run(World& world, const Gas& gas, Time& time) {
+void run(World& world, const ElasticGas& gas, double end, Time& time) {
   const double begin = wall_seconds();
   world.reserve(gas.bodies.size());
   for (const auto& ball : gas.bodies) world.add_body(ball);
   world.advance_to(0);
   const double entered = wall_seconds(), cpu = cpu_seconds();
-  world.advance_to(gas.end);
+  world.advance_to(end);
   time.note(entered - begin, wall_seconds() - entered, cpu_seconds() - cpu);
 }
 
 void measure(std::ofstream& csv, std::size_t bodies, double packing) {
-  const Gas scene = gas(bodies, packing);
+  const ElasticGas scene = kds::benchmarks::elastic_gas(bodies, packing);
+  const double end = end_of(packing);
   Time whole;
   struct Way {
     std::size_t threads, domains;
@@ -123,11 +93,11 @@ void measure(std::ofstream& csv, std::size_t bodies, double packing) {
   for (int round = 0; round < rounds; ++round) {
     WorldHash right;
     World<1> world(scene.options, &right);
-    run(world, scene, whole);
+    run(world, scene, end, whole);
     for (Way& way : ways) {
       DividedHash hash;
       ParallelWorld<1> divided(scene.options, {.threads = way.threads, .domains = way.domains}, &hash);
-      run(divided, scene, way.time);
+      run(divided, scene, end, way.time);
       way.counters = divided.counters();
       if (hash.of.hash != right.of.hash) throw std::runtime_error("a scene in domains has other contacts");
     }

@@ -1,0 +1,222 @@
+// What a scene in domains costs in counts, how well these are predicted, and what follows for many processes.
+//
+//     bench_processes [DIRECTORY [BODIES...]]     -> processes.csv and processes_predicted.csv; 30 000 and 100 000
+//     bodies
+//                                                    unless given
+//
+// The balls of elastic_gas.hpp. Counts do not depend on the machine: up to 8 domains are run by as many processes,
+// which are threads here and send the messages that processes send; more by one. Times are of this machine: what a
+// contact costs in one world, and what it costs to merge the logs of domains. docs/efficiency.md explains the model.
+
+#include "collision/parallel/parallel_world.hpp"
+#include "collision/parallel/world_events.hpp"
+#include "collision/world.hpp"
+#include "tests/benchmarks/csv_file.hpp"
+#include "tests/benchmarks/elastic_gas.hpp"
+#include "tests/benchmarks/thread_time.hpp"
+#include "tests/collision/parallel/thread_processes.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace kds::collision;
+using kds::benchmarks::ElasticGas;
+using kds::benchmarks::tell;
+using kds::benchmarks::wall_seconds;
+using kds::collision::detail::DomainEvent;
+using kds::collision::detail::EventMerge;
+
+// Sizes of what is sent, in bytes (domains.cpp).
+constexpr double change_bytes = 4 + 7 * 8 + 8;              // number, motion, time
+constexpr double news_bytes = 4 + 7 * 8 + 8 + 8 + 1;        // number, motion, what decides later events
+constexpr double report_bytes = 64 * 8 + 13 * 8 + 2;        // of a domain, to each other process
+constexpr double event_bytes = 1 + 1 + 4 + 4 + 8 + 2 * 24;  // kind, owner, bodies, time, point, normal
+constexpr double exchanges_of_step = 3, exchanges_of_window = 2;
+
+/// The cells of a cube that has been halved again and again, along the longest side.
+std::array<double, 3> cells_along_axes(std::size_t domains) {
+  std::array<double, 3> cells{1, 1, 1};
+  for (std::size_t axis = 0; domains > 1; domains /= 2, axis = (axis + 1) % 3) cells[axis] *= 2;
+  return cells;
+}
+
+/// What follows from the number of domains and from the halo, for bodies that are spread evenly over a cube.
+struct Predicted {
+  double known = 1;    ///< bodies known for one owned
+  double busiest = 1;  ///< the same, of a domain that has neighbours on as many sides as any has
+};
+Predicted predicted(std::size_t domains, double halo_over_side) {
+  Predicted result;
+  for (const double cells : cells_along_axes(domains)) {
+    const double neighbours = 2 - 2 / cells, most_neighbours = std::min(2.0, cells - 1);
+    result.known *= std::min(cells, 1 + neighbours * cells * halo_over_side);
+    result.busiest *= std::min(cells, 1 + most_neighbours * cells * halo_over_side);
+  }
+  return result;
+}
+
+/// Bytes that a process sends in a step, if it runs one domain. `copies`: of its bodies, in other domains; `changes`:
+/// of the motion of a body, in a step; `steps`: of a window.
+double predicted_bytes(std::size_t processes, double copies, double changes, double steps, double events) {
+  const double others = static_cast<double>(processes - 1);
+  const double changed_in_window = 1 - std::exp(-changes * steps);
+  return copies * changes * change_bytes + others * report_bytes + events * event_bytes * others / (others + 1) +
+         copies * changed_in_window * news_bytes / steps;
+}
+
+struct Counts {
+  ParallelCounters of{};
+  double bytes = 0;  ///< sent by all processes
+};
+
+/// Runs a gas in domains, up to 8 of them by a process each.
+Counts run_divided(const ElasticGas& gas, std::size_t domains, double end) {
+  Counts counts;
+  std::mutex mutex;
+  const auto run = [&](Processes* processes) {
+    ParallelListener listener;
+    ParallelWorld<1> world(gas.options, {.threads = 1, .domains = domains}, &listener, processes);
+    for (const auto& ball : gas.bodies) world.add_body(ball);
+    world.advance_to(end);
+    const std::scoped_lock lock(mutex);
+    counts.of = world.counters();
+    counts.bytes += static_cast<double>(world.messages().bytes);
+  };
+  if (domains <= 8) {
+    kds::collision::tests::ThreadProcesses(domains).run([&](Processes& processes) { run(&processes); });
+  } else {
+    run(nullptr);
+  }
+  return counts;
+}
+
+/// Seconds to merge the logs of domains, an event: one of eight is of two domains.
+double merge_seconds(std::size_t domains) {
+  constexpr std::size_t events = 400'000;
+  std::vector<std::vector<DomainEvent>> logs(domains);
+  kds::tests::Random random(1);
+  for (std::size_t i = 0; i < events; ++i) {
+    const auto slot = static_cast<BodySlot>(i);
+    DomainEvent event{DomainEvent::Kind::contact, DomainEvent::nobody, slot, slot + 1,
+                      Contact{.time = static_cast<double>(i)}};
+    const std::size_t domain = random.below(domains), other = random.below(domains);
+    const bool shared = other != domain && random.below(8) == 0;
+    if (shared) event.other_owner = static_cast<std::uint8_t>(other);
+    logs[domain].push_back(event);
+    if (!shared) continue;
+    event.other_owner = static_cast<std::uint8_t>(domain);
+    logs[other].push_back(event);
+  }
+  const double begin = wall_seconds();
+  EventMerge merge(std::move(logs));
+  while (!merge.empty()) merge.take_next();
+  return (wall_seconds() - begin) / static_cast<double>(events);
+}
+
+/// What the predictions for many processes start from, of one packing.
+struct Measured {
+  double contact_seconds = 0;        ///< in one world
+  double contacts = 0, changes = 0;  ///< a body and step
+  double steps = 0;                  ///< of a window
+  double halo = 0;                   ///< in mean distances of neighbours
+};
+
+double ratio(double a, double b) { return b != 0 ? a / b : 1; }
+
+Measured measure(std::ofstream& csv, std::size_t bodies, double packing) {
+  const ElasticGas gas = kds::benchmarks::elastic_gas(bodies, packing);
+  const double end = packing > 0.1 ? 1 : 8, n = static_cast<double>(bodies);
+  Measured measured;
+  measured.halo = ParallelOptions{}.halo + 1 / gas.spacing;
+  {
+    World<1> world(gas.options);
+    for (const auto& ball : gas.bodies) world.add_body(ball);
+    world.advance_to(0);
+    const double begin = wall_seconds();
+    world.advance_to(end);
+    measured.contact_seconds = (wall_seconds() - begin) / static_cast<double>(world.counters().contacts);
+  }
+  for (const std::size_t domains : {2, 4, 8, 16, 32, 64}) {
+    const Counts counts = run_divided(gas, domains, end);
+    const ParallelCounters& c = counts.of;
+    const double steps = static_cast<double>(c.steps), k = static_cast<double>(domains);
+    const double events = static_cast<double>(c.contacts + c.wall_contacts);
+    const double known = ratio(static_cast<double>(c.bodies_known), static_cast<double>(c.bodies_owned));
+    const double efficiency = ratio(events, k * static_cast<double>(c.events_of_busiest));
+    measured.contacts = static_cast<double>(c.contacts) / n / steps;
+    measured.changes = static_cast<double>(2 * c.contacts + c.wall_contacts) / n / steps;
+    measured.steps = steps / static_cast<double>(c.windows);
+    const Predicted p = predicted(domains, measured.halo / std::cbrt(n));
+    const double bytes = domains <= 8 ? counts.bytes / k / steps : 0;
+    const double bytes_predicted =
+        predicted_bytes(domains, (p.known - 1) * n / k, measured.changes, measured.steps, events / steps / k);
+    tell(csv, "%zu,%g,%zu,%llu,%.2f,%.3f,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.0f,%.0f\n", bodies, packing, domains,
+         static_cast<unsigned long long>(c.windows), measured.steps, measured.contacts,
+         static_cast<unsigned long long>(c.windows_failed), known, p.known,
+         ratio(static_cast<double>(c.events_computed), events), efficiency, 1 / p.busiest, bytes, bytes_predicted);
+  }
+  return measured;
+}
+
+/// Assumed of the machines: a message costs its sender a microsecond, and they send 10^10 bytes a second each.
+constexpr double message_seconds = 1e-6, bytes_a_second = 1e10;
+
+void predict(std::ofstream& csv, double packing, const Measured& from, double merge) {
+  for (const double n : {1e6, 1e7, 1e8, 1e9}) {
+    for (const std::size_t processes : {8, 64, 1024}) {
+      const double p = static_cast<double>(processes), own = n / p;
+      const Predicted counts = predicted(processes, from.halo / std::cbrt(n));
+      const double events = own * from.contacts;
+      const double bytes = predicted_bytes(processes, (counts.known - 1) * own, from.changes, from.steps, 0);
+      const double messages = (p - 1) * (exchanges_of_step + exchanges_of_window / from.steps) * message_seconds;
+      const double computed = events * from.contact_seconds * counts.busiest;
+      const double step = computed + messages + bytes / bytes_a_second;
+      const double log = p * events * merge + (p - 1) * events * event_bytes / bytes_a_second;
+      const double alone = p * events * from.contact_seconds;
+      tell(csv, "%g,%g,%zu,%.3f,%.3f,%.3f,%.1f,%.2f\n", packing, n, processes, 1 / counts.busiest, alone / p / step,
+           alone / p / (step + log), bytes / 1e6, (300 * n + 790 * own * counts.busiest) / 1e9);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const char* const folder = argc > 1 ? argv[1] : ".";
+    std::ofstream csv = kds::benchmarks::open_csv(folder, "processes.csv");
+    tell(csv,
+         "bodies,packing,domains,windows,steps_a_window,contacts_a_body_and_step,failed,known_per_owned,predicted,"
+         "computed_per_event,efficiency,predicted,bytes_a_step,predicted\n");
+    std::vector<std::size_t> sizes;
+    for (int i = 2; i < argc; ++i) sizes.push_back(std::strtoull(argv[i], nullptr, 10));
+    if (sizes.empty()) sizes = {30'000, 100'000};
+    const std::array<double, 2> packings{0.25, 0.01};
+    std::array<Measured, 2> measured;
+    for (std::size_t i = 0; i < packings.size(); ++i) {
+      for (const std::size_t bodies : sizes) measured[i] = measure(csv, bodies, packings[i]);
+    }
+    const double merge = merge_seconds(64);
+    std::printf("merging 64 logs: %.0f ns an event; a contact in one world: %.0f ns at 0.25, %.0f ns at 0.01\n",
+                merge * 1e9, measured[0].contact_seconds * 1e9, measured[1].contact_seconds * 1e9);
+    std::ofstream table = kds::benchmarks::open_csv(folder, "processes_predicted.csv");
+    tell(table, "packing,bodies,processes,efficiency_by_counts,without_log,with_log,MB_a_step,GB_a_process\n");
+    for (std::size_t i = 0; i < packings.size(); ++i) predict(table, packings[i], measured[i], merge);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_processes: %s\n", error.what());
+    return 1;
+  }
+}
