@@ -1,10 +1,12 @@
 // The event logs of sorted lists and of worlds whose bodies keep their orientation, each with every queue or broad
-// phase: see replay.hpp. The file in the repository is made by: event_log_hash > tests/replay/golden.txt
+// phase, and some in domains: see replay.hpp. The file in the repository is made by: event_log_hash >
+// tests/replay/golden.txt
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
 #include "kds/events/pairing_queue.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
+#include "tests/collision/parallel/parallel_log.hpp"
 #include "tests/replay/replay.hpp"
 #include "tests/replay/scenes.hpp"
 #include "tests/structures/random_values.hpp"
@@ -13,7 +15,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -83,6 +87,26 @@ Replay with_each_broad_phase(std::string name, const WorldOptions& options, cons
   return replay;
 }
 
+/// The same, and in domains: so many, with windows as long as they can be, and shorter ones.
+template <int Degree, class MakeScene>
+Replay with_domains(std::string name, const WorldOptions& options, const MakeScene& scene) {
+  Replay replay = with_each_broad_phase<Degree>(std::move(name), options, scene);
+  for (const auto& [way, domains, longest_window] :
+       {std::tuple("2-domains", 2u, 1e300), std::tuple("3-domains", 3u, 0.1), std::tuple("7-domains", 7u, 0.013)}) {
+    replay.ways.push_back({way, [=, domains = domains, longest_window = longest_window](EventHash& hash) {
+                             const auto made = scene();
+                             collision::tests::ParallelLog log;
+                             collision::ParallelWorld<Degree> world(
+                                 options, {.threads = 1, .domains = domains, .longest_window = longest_window}, &log);
+                             for (const auto& body : made.bodies) world.add_body(body);
+                             world.advance_to(options.start_time + made.end_time);
+                             if (world.counters().steps == 0) throw std::runtime_error("a scene was not divided");
+                             for (const Event& e : log.events) hash.event(e);
+                           }});
+  }
+  return replay;
+}
+
 /// Names are words, so that lines are easily taken apart.
 std::string word(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '-');
@@ -110,6 +134,23 @@ void add_worlds(std::vector<Replay>& replays) {
   }
 }
 
+template <int Degree>
+void add_divided(std::vector<Replay>& replays) {
+  for (const Shapes shapes : {Shapes::spheres, Shapes::boxes, Shapes::mixture}) {
+    for (const Numbers numbers : {Numbers::fine, Numbers::coarse}) {
+      WorldOptions options;
+      options.response = Response::elastic;
+      options.walls = Walls{Vector3d::Constant(-2), Vector3d::Constant(12)};
+      SceneOptions scene{.shapes = shapes, .numbers = numbers, .heterogeneous = true};
+      scene.bodies = 80, scene.side = 10, scene.end_time = Degree == 1 ? 2 : 1;
+      replays.push_back(with_domains<Degree>("domains/" + std::to_string(Degree) + '/' +
+                                                 word(collision::tests::name(shapes)) +
+                                                 (numbers == Numbers::fine ? "/fine" : "/coarse"),
+                                             options, [=] { return random_scene<Degree>(scene, 8); }));
+    }
+  }
+}
+
 void add_bounces(std::vector<Replay>& replays) {
   WorldOptions options;
   options.response = Response::elastic;
@@ -133,6 +174,8 @@ std::vector<Replay> all_replays() {
   add_worlds<2>(replays);
   add_bounces(replays);
   add_bending(replays);
+  add_divided<1>(replays);
+  add_divided<2>(replays);
   return replays;
 }
 
