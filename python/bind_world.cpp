@@ -1,10 +1,8 @@
 // kds._kds.World, and shapes.
 #include "collision/broad_phase/broad_phase_kind.hpp"
 #include "collision/response/inertia.hpp"
-#include "collision/shapes/convex_hull.hpp"
-#include "collision/shapes/mesh.hpp"
-#include "io/mesh_file.hpp"
 #include "python/bindings.hpp"
+#include "python/py_shape.hpp"
 #include "python/py_world.hpp"
 
 #include <pybind11/eigen.h>
@@ -14,7 +12,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <tuple>
@@ -37,56 +34,6 @@ std::vector<BodyId> to_vector(const Ids& ids) { return {ids.data(), ids.data() +
 
 py::array_t<EventRow> to_array(const std::vector<EventRow>& rows) {
   return py::array_t<EventRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
-}
-
-/// A shape that place() has accepted. (A type of its own, since pybind11 takes a std::variant apart.)
-struct PyShape {
-  Shape shape;
-};
-
-double bounding_radius(const PyShape& of) { return place(of.shape, Eigen::Quaterniond::Identity()).bounding_radius; }
-
-PyShape checked(Shape shape) {
-  const PyShape checked{std::move(shape)};
-  bounding_radius(checked);
-  return checked;
-}
-
-PyShape mesh_shape(std::vector<Eigen::Vector3d> vertices, std::vector<Mesh::Triangle> triangles, double scale) {
-  return checked(MeshShape{std::make_shared<const Mesh>(std::move(vertices), std::move(triangles)), scale});
-}
-
-void bind_shapes(py::module_& module) {
-  py::class_<PyShape>(module, "Shape",
-                      "The shape of bodies: made by sphere(), box(), capsule(), hull(), mesh(), read_mesh(), "
-                      "half_space().")
-      .def_property_readonly(
-          "kind", [](const PyShape& of) { return kind_name(of.shape); },
-          "'sphere', 'box', 'capsule', 'hull', 'mesh' or 'half-space'.")
-      .def_property_readonly("bounding_radius", &bounding_radius,
-                             "The radius of the ball about the centre that contains the shape.")
-      .def("__repr__", [](const PyShape& of) {
-        std::ostringstream text;
-        text << "<kds.Shape " << kind_name(of.shape) << ", bounding radius " << bounding_radius(of) << ">";
-        return text.str();
-      });
-  module.def("sphere", [](double radius) { return checked(Sphere{radius}); });
-  module.def("box", [](const Eigen::Vector3d& half_extents) { return checked(Box{half_extents}); });
-  module.def("capsule", [](double radius, double half_length) { return checked(Capsule{radius, half_length}); });
-  module.def("hull", [](std::vector<Eigen::Vector3d> points) { return checked(convex_hull(std::move(points))); });
-  module.def("half_space", [](const Eigen::Vector3d& normal, double offset) {
-    return checked(HalfSpace{normal, offset});
-  });
-  module.def("mesh", mesh_shape);
-  module.def("read_mesh", [](const std::string& file, double scale) {
-    try {
-      auto data = kds::io::read_mesh_file(file);
-      const std::vector<std::size_t> left_out = kds::io::leave_out_degenerate(data);
-      return py::make_tuple(mesh_shape(std::move(data.vertices), std::move(data.triangles), scale), left_out);
-    } catch (const std::exception& error) {  // which do not name the file
-      throw std::invalid_argument(file + ": " + error.what());
-    }
-  });
 }
 
 std::unique_ptr<PyWorld> new_world(int degree, bool turning, bool gather, const std::string& response,
@@ -324,7 +271,6 @@ void bind_world(py::module_& module) {
   std::vector<std::string_view> kinds(kds::io::event_kind_names.begin(), kds::io::event_kind_names.end());
   kinds.insert(kinds.end(), {"piece", "timer"});
   module.attr("event_kinds") = kinds;
-  bind_shapes(module);
 
   py::class_<PyWorld> world(module, "World", py::custom_type_setup(&collect_garbage));
   world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("turning"), py::arg("gather"),

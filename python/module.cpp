@@ -9,6 +9,7 @@
 PYBIND11_MODULE(_kds, module) {
   module.attr("version") = std::to_string(KDS_VERSION_MAJOR) + "." + std::to_string(KDS_VERSION_MINOR) + "." +
                            std::to_string(KDS_VERSION_PATCH);
+  kds_python::bind_shapes(module);
   kds_python::bind_world(module);
   kds_python::bind_scene(module);
   kds_python::bind_structures(module);

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kds import _kds
-from kds._arrays import array_of, doubles, number, path, vector
+from kds._arrays import array_of, doubles, number, path, rows, shape_of, vector
 from kds._kds import Shape
+from kds._motion import UPRIGHT
 
 
 def sphere(radius: float) -> Shape:
@@ -56,6 +58,19 @@ def mesh(vertices: ArrayLike, triangles: ArrayLike, scale: float = 1.0) -> Shape
         found = f"from {corners.min()} to {corners.max()}"
         raise ValueError(f"triangles: must be from 0 to {len(points) - 1}, and go {found}")
     return _kds.mesh(points, corners.astype(np.uint32), number("scale", scale))
+
+
+def compound(parts: Iterable[Shape], positions: ArrayLike = (0, 0, 0), orientations: ArrayLike = UPRIGHT) -> Shape:
+    """Boxes, hulls and meshes as one body: it is in contact while one of its parts is. Use one for many bodies.
+
+    Of each part the position of its centre (n, 3), seen from the body's centre, and its orientation (n, 4): unit
+    quaternions w, x, y, z; or one for all. Parts may overlap. For worlds that do not turn.
+    """
+    if not isinstance(parts, Iterable):
+        raise ValueError(f"parts: must be several kds.Shape, and is {parts!r}")
+    shapes = [shape_of(f"parts[{i}]", part) for i, part in enumerate(parts)]
+    n = len(shapes)
+    return _kds.compound(shapes, rows("positions", positions, n, 3), rows("orientations", orientations, n, 4))
 
 
 def read_mesh(file: str | os.PathLike[str], scale: float = 1.0) -> Shape:

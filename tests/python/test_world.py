@@ -71,6 +71,25 @@ class Bulk(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "fixed"):
             world.add_body(kds.half_space((0, 0, 1)), (0, 0, 0))
 
+    def test_parts_of_a_compound_meet(self):
+        world = kds.World()
+        table = kds.compound([kds.box((2, 2, 0.25))] + 2 * [kds.box((0.25, 0.25, 1))], [[0, 0, 0], [-1, 0, -1], [1, 0, -1]])
+        self.assertEqual(table.kind, "compound")
+        world.add_body(table, (0, 0, 0), fixed=True)
+        world.add_body(kds.sphere(0.5), (0, 0, -10), (0, 0, 1))  # between the legs, to the top
+        world.add_body(kds.sphere(0.5), (1, 0, -10), (0, 0, 1))  # to a leg
+        contacts = [e for e in world.advance_to(20) if e["kind"] == kds.EventKind.CONTACT]
+        self.assertEqual([(e["time"], e["b"]) for e in contacts], [(7.5, 2), (9.25, 1)])
+        turned = kds.compound([kds.box((1, 2, 3))], orientations=(0.5, 0.5, 0.5, 0.5))  # z is where y was
+        self.assertAlmostEqual(turned.bounding_radius, kds.box((1, 2, 3)).bounding_radius)
+        for parts, message in (
+            ([], "has no parts"),
+            ([kds.box((1, 1, 1)), kds.sphere(1)], "part 1: is a sphere"),
+            ([1], r"parts\[0\]: must be a kds.Shape"),
+        ):
+            with self.assertRaisesRegex(ValueError, message):
+                kds.compound(parts)
+
     def test_none_is_added_if_one_is_wrong(self):
         world = kds.World()
         radii = np.ones(5)

@@ -1,0 +1,87 @@
+// Shapes of bodies.
+#include "collision/shapes/compound.hpp"
+#include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "io/mesh_file.hpp"
+#include "python/bindings.hpp"
+#include "python/py_shape.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kds_python {
+namespace {
+
+namespace py = pybind11;
+using namespace kds::collision;
+
+double bounding_radius(const PyShape& of) { return place(of.shape, Eigen::Quaterniond::Identity()).bounding_radius; }
+
+PyShape checked(Shape shape) {
+  const PyShape checked{std::move(shape)};
+  bounding_radius(checked);
+  return checked;
+}
+
+PyShape mesh_shape(std::vector<Eigen::Vector3d> vertices, std::vector<Mesh::Triangle> triangles, double scale) {
+  return checked(MeshShape{std::make_shared<const Mesh>(std::move(vertices), std::move(triangles)), scale});
+}
+
+/// Parts, and of each: position, and orientation as w, x, y, z.
+PyShape compound_shape(const std::vector<PyShape>& parts, const std::vector<Eigen::Vector3d>& positions,
+                       const std::vector<Eigen::Vector4d>& orientations) {
+  std::vector<CompoundPart> placed;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Eigen::Vector4d& q = orientations[i];
+    placed.push_back({parts[i].shape, positions[i], Eigen::Quaterniond(q[0], q[1], q[2], q[3])});
+  }
+  return checked(compound(placed));
+}
+
+}  // namespace
+
+void bind_shapes(py::module_& module) {
+  py::class_<PyShape>(module, "Shape",
+                      "The shape of bodies: made by sphere(), box(), capsule(), hull(), mesh(), read_mesh(), "
+                      "half_space(), compound().")
+      .def_property_readonly(
+          "kind", [](const PyShape& of) { return kind_name(of.shape); },
+          "'sphere', 'box', 'capsule', 'hull', 'mesh', 'half-space' or 'compound'.")
+      .def_property_readonly("bounding_radius", &bounding_radius,
+                             "The radius of the ball about the centre that contains the shape.")
+      .def("__repr__", [](const PyShape& of) {
+        std::ostringstream text;
+        text << "<kds.Shape " << kind_name(of.shape) << ", bounding radius " << bounding_radius(of) << ">";
+        return text.str();
+      });
+  module.def("sphere", [](double radius) { return checked(Sphere{radius}); });
+  module.def("box", [](const Eigen::Vector3d& half_extents) { return checked(Box{half_extents}); });
+  module.def("capsule", [](double radius, double half_length) { return checked(Capsule{radius, half_length}); });
+  module.def("hull", [](std::vector<Eigen::Vector3d> points) { return checked(convex_hull(std::move(points))); });
+  module.def("half_space", [](const Eigen::Vector3d& normal, double offset) {
+    return checked(HalfSpace{normal, offset});
+  });
+  module.def("mesh", mesh_shape);
+  module.def("compound", compound_shape);
+  module.def("read_mesh", [](const std::string& file, double scale) {
+    try {
+      auto data = kds::io::read_mesh_file(file);
+      const std::vector<std::size_t> left_out = kds::io::leave_out_degenerate(data);
+      return py::make_tuple(mesh_shape(std::move(data.vertices), std::move(data.triangles), scale), left_out);
+    } catch (const std::exception& error) {  // which do not name the file
+      throw std::invalid_argument(file + ": " + error.what());
+    }
+  });
+}
+
+}  // namespace kds_python
