@@ -1,5 +1,5 @@
 // Compares what a browser showed of a page of the course with what must be known there.
-// Usage: check_course_page NAME PAGE.html DOCUMENT.html
+// Usage: check_course_page NAME PAGE.html REPORTS.html
 #include "tests/examples/course/expected_states.hpp"
 
 #include <algorithm>
@@ -115,12 +115,12 @@ void check_controls(const CoursePage& page, const json& report) {
 
 int main(int argc, char** argv) {
   if (argc != 4) {
-    std::cerr << "usage: check_course_page NAME PAGE.html DOCUMENT.html\n";
+    std::cerr << "usage: check_course_page NAME PAGE.html REPORTS.html\n";
     return 2;
   }
   try {
     const CoursePage page(script_of(argv[2], "data"));
-    const json report = script_of(argv[3], "report");
+    const json report = script_of(argv[3], argv[1]);
     for (const json& error : report["errors"]) wrong("error on the page: ", error);
     for (const json& pair : report["overlaps"]) wrong("texts overlap: ", pair[0], " and ", pair[1]);
     if (report["width"][0] > report["width"][1]) wrong("the page is wider than its window: ", report["width"]);

@@ -1,5 +1,5 @@
-// Put at the end of a page: uses its controls as somebody would, and writes what is then in the picture into the
-// document, for the checker. The collector of errors stands at the beginning of the page (see check_page.cmake).
+// Put at the end of a page: uses its controls as somebody would, and reports what is then in the picture, for the
+// checker. The collector of errors stands at the beginning of the page (see ../browser/open_pages.cmake).
 window.addEventListener('load', () => {
   const report = {errors: window.pageErrors, frames: [], clicks: [], keys: [], overlaps: []};
   const figure = document.getElementById('figure');
@@ -100,11 +100,7 @@ window.addEventListener('load', () => {
     report.played = window.course.now();
     setTimeout(() => {
       report.stayed = window.course.now() === report.played;
-      const node = document.createElement('script');
-      node.type = 'application/json';
-      node.id = 'report';
-      node.textContent = JSON.stringify(report);
-      document.body.append(node);
+      finished(report);
     }, 100);
   }, 50);
 });
