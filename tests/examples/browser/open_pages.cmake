@@ -32,8 +32,8 @@ file(READ "${CMAKE_CURRENT_LIST_DIR}/one_by_one.html" html)
 string(REPLACE "/*{PAGES}*/" "${list}" html "${html}")
 file(WRITE "${FOLDER}/one_by_one.html" "${html}")
 
-# WebGL without a graphics card, and nothing else drawn by it: that would take longer. The virtual time, in milliseconds,
-# is for all pages; waiting in it costs nothing.
+# WebGL without a graphics card, and nothing else drawn by it: that would take longer. The virtual time, in
+# milliseconds, is for all pages; waiting in it costs nothing.
 execute_process(
   COMMAND "${CHROMIUM}" --headless --no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader
     --disable-gpu-rasterization --disable-gpu-compositing --disable-dev-shm-usage --disable-extensions
