@@ -10,17 +10,18 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kds::course {
 
-/// How a page draws: values over time (a motion of degree 2 is a parabola), or the plane at one time.
-enum class View { line, plane };
+/// How a page draws: values over time (a motion of degree 2 is a parabola), or the plane or space at one time.
+enum class View { line, plane, space };
 
 /// A certificate as a page shows it.
 struct Held {
   std::string fact;         ///< in words
-  std::vector<Id> members;  ///< the elements that it is about; for a circle first the three that are on it
+  std::vector<Id> members;  ///< the elements that it is about; for a circle or sphere first those that are on it
   double fails = never;     ///< s
   std::string function;     ///< what is not negative while it holds: "e \u2212 d"
   std::vector<double> polynomial;  ///< its coefficients in the time since the page begins, rounded
@@ -46,7 +47,8 @@ struct Legend {
   std::string edges = "edge";
 };
 
-/// Collects a run and writes it as one HTML file that needs nothing else: no network, no library.
+/// Collects a run and writes it as one HTML file that needs nothing else: no network, no library. Space is drawn by
+/// three.js, which is in the file; where it is not installed, the page says so in place of the picture.
 ///
 /// Motions are stored as polynomials, so the page can draw any time between `begin` and `end`; states of structures are
 /// stored event by event, so the page decides nothing. Times are in seconds, all numbers are written so that they read
@@ -98,10 +100,12 @@ class Page {
   void moves(Id id, const certificates::PlaneMotion<Degree>& path, double since) {
     add_piece(id, {since, path.start, list(path.coordinate[0]), list(path.coordinate[1])});
   }
-  /// Seen from above: x and y.
+  /// In the plane seen from above: x and y.
   template <int Degree>
   void moves(Id id, const certificates::PointMotion<Degree>& path, double since) {
-    add_piece(id, {since, path.start, list(path.axis(0).position), list(path.axis(1).position)});
+    Piece piece{since, path.start, list(path.axis(0).position), list(path.axis(1).position)};
+    if (view_ == View::space) piece.z = list(path.axis(2).position);
+    add_piece(id, std::move(piece));
   }
 
   /// The state at the beginning; to be called once, before any event.
@@ -126,7 +130,7 @@ class Page {
  private:
   struct Piece {
     double since, start;
-    std::vector<double> x, y;  ///< coefficients; no x on a line
+    std::vector<double> x, y, z = {};  ///< coefficients; no x on a line, a z in space alone
   };
   struct Element {
     Id id;

@@ -1,6 +1,7 @@
 // A page as a file: the template, the style, the scripts, and the program itself where the build could compile it.
 #include "examples/course/page.hpp"
 #include "examples/course/program_in_page.hpp"
+#include "io/replay_page/three_script.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -63,6 +64,14 @@ std::string Page::html() const {
   for (const std::string_view script : scripts) code += script;
   // The last mark is replaced first, since inserted text may contain marks.
   replace(page, "/*{SCRIPTS}*/", code);
+  std::string three;
+  if (view_ == View::space) {
+    for (const char* name : {"build/three.min.js", "examples/js/controls/OrbitControls.js"}) {
+      // A page without it says that it could not be drawn.
+      three += io::three_script(KDS_THREE_FOLDER, name).value_or("") + '\n';
+    }
+  }
+  replace(page, "/*{THREE}*/", three);
   replace(page, "/*{PROGRAM}*/", coefficients_ > 0 ? embedded_program() : "");
   std::string data = json();
   for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos; ++at) data.replace(at, 2, "<\\/");

@@ -8,7 +8,9 @@ string(CONCAT collector "<head><script>window.pageErrors = [];"
   "console.error = console.warn = (...all) => pageErrors.push(all.join(' '));"
   # In virtual time frames come when they like, timers when they are due.
   "requestAnimationFrame = (f) => setTimeout(() => f(performance.now()), 16);"
-  "window.finished = (report) => parent.postMessage(JSON.stringify(report), '*');</script>")
+  "window.finished = (report) => parent.postMessage(JSON.stringify(report), '*');"
+  # Of a driver that does not get to its end: why.
+  "setTimeout(() => finished({unfinished: pageErrors}), 15000);</script>")
 
 file(STRINGS "${PAGES}" lines)
 set(list "")

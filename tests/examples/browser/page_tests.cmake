@@ -4,15 +4,21 @@
 find_program(KDS_CHROMIUM NAMES chromium chromium-browser google-chrome DOC "A browser for the tests of pages")
 set(KDS_BROWSER_TESTS "${CMAKE_CURRENT_LIST_DIR}")
 
+# kds_skipped_page_test(TEST WHAT): a test that says what it would need.
+function(kds_skipped_page_test test what)
+  add_test(NAME "${test}" COMMAND "${CMAKE_COMMAND}" -E echo "no ${what}: scripts/setup tests installs it")
+  set_tests_properties("${test}" PROPERTIES SKIP_REGULAR_EXPRESSION "^no ")
+endfunction()
+
 # kds_page_test(GROUP TEST NAME name SIZE WIDTHxHEIGHT DRIVER file WRITE command... CHECK command...): the command WRITE
 # writes a page; the browser opens it in a window of that size, with the driver, a script, at its end, which calls
-# finished(report) once; the test TEST runs the command CHECK. In both commands {page} is the file of the page, and in
-# CHECK {reports} a document with the report as JSON in its script element with the id NAME.
+# finished(report) once (else the report is {unfinished: [errors]}); the test TEST runs the command CHECK. In both
+# commands {page} is the file of the page, and in CHECK {reports} a document with the report as JSON in its script
+# element with the id NAME.
 function(kds_page_test group test)
   cmake_parse_arguments(PARSE_ARGV 2 of "" "NAME;SIZE;DRIVER" "WRITE;CHECK")
   if(NOT KDS_CHROMIUM)
-    add_test(NAME "${test}" COMMAND "${CMAKE_COMMAND}" -E echo "no chromium: scripts/setup tests installs it")
-    set_tests_properties("${test}" PROPERTIES SKIP_REGULAR_EXPRESSION "no chromium")
+    kds_skipped_page_test("${test}" "Chromium")
     return()
   endif()
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/pages")

@@ -10,6 +10,7 @@
 namespace {
 
 using kds::tests::json;
+using kds::tests::report_of;
 using kds::tests::script_of;
 
 int mistakes = 0;
@@ -35,7 +36,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const json report = script_of(argv[4], argv[1]);
+    const json report = report_of(argv[4], argv[1]);
     for (const json& error : report["errors"]) wrong("error on the page: ", error);
     if (report["ready"] != true) wrong("the program does not run in the page: ", report["says"]);
     std::size_t events = 0;

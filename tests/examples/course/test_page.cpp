@@ -54,6 +54,23 @@ TEST_CASE("a page is one file whose data cannot end its script", "[course]") {
   CHECK(html.find("https://") == std::string::npos);
 }
 
+TEST_CASE("a page of space has all three coordinates, one of the plane has two", "[course]") {
+  const certificates::PointMotion<1> path = certificates::PointMotion<1>::line({1, 2, 3}, {4, 5, 6});
+  for (const View view : {View::plane, View::space}) {
+    Page page(view, "t", "a", 0, 1);
+    page.element(0, "a");
+    page.moves(0, path, 0);
+    page.starts({.text = "s"});
+    const json data = json::parse(page.json());
+    const json& piece = data["elements"][0]["pieces"][0];
+    CHECK(data["view"] == (view == View::space ? "space" : "plane"));
+    CHECK((piece["x"] == json({1.0, 4.0}) && piece["y"] == json({2.0, 5.0})));
+    CHECK(piece.contains("z") == (view == View::space));
+    if (view == View::space) CHECK(piece["z"] == json({3.0, 6.0}));
+    CHECK(page.html().find("/*{THREE}*/") == std::string::npos);
+  }
+}
+
 TEST_CASE("a program takes the motions that its page gives it", "[course]") {
   std::string motions;
   const auto given = [&](const std::string& text) {
