@@ -122,6 +122,8 @@ class Page {
   double play_time = 14;       ///< s that the whole run lasts on the screen
 
   std::string json() const;
+  /// The run in small, as an SVG image: motions over time, or the state at two fifths of the time.
+  std::string picture() const;
   std::string html() const;
   /// Writes to the path given as first argument, else to `name`.html here, and says so. Throws std::runtime_error if it
   /// cannot. In a browser it writes json() to the standard output.
@@ -163,6 +165,8 @@ class Page {
   static std::vector<Piece> given(const std::string& text, std::size_t most, bool on_line);
   void add_piece(Id id, Piece piece);
   Element& find(Id id);
+  /// Where a picture has an element: across and up.
+  std::array<double, 2> seen(const Element& element, double t) const;
   void add_state(State state);
 
   View view_;

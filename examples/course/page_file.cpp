@@ -43,9 +43,10 @@ bool embed_program(std::initializer_list<std::string_view> parts) {
   return true;
 }
 
-std::string embedded_program() {
+namespace {
+
+std::string base64(std::string_view bytes) {
   constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const std::string& bytes = program();
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t three = 0;
@@ -57,6 +58,10 @@ std::string embedded_program() {
   const std::size_t filled = (3 - bytes.size() % 3) % 3;
   return text.replace(text.size() - filled, filled, filled, '=');
 }
+
+}  // namespace
+
+std::string embedded_program() { return base64(program()); }
 
 std::string Page::html() const {
   std::string page(page_template);
@@ -77,6 +82,7 @@ std::string Page::html() const {
   for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos; ++at) data.replace(at, 2, "<\\/");
   replace(page, "/*{DATA}*/", data);
   replace(page, "/*{STYLE}*/", style);
+  replace(page, "/*{PICTURE}*/", base64(picture()));
   return page;
 }
 

@@ -10,25 +10,30 @@ function(kds_skipped_page_test test what)
   set_tests_properties("${test}" PROPERTIES SKIP_REGULAR_EXPRESSION "^no ")
 endfunction()
 
-# kds_page_test(GROUP TEST NAME name SIZE WIDTHxHEIGHT DRIVER file WRITE command... CHECK command...): the command WRITE
-# writes a page; the browser opens it in a window of that size, with the driver, a script, at its end, which calls
-# finished(report) once (else the report is {unfinished: [errors]}); the test TEST runs the command CHECK. In both
-# commands {page} is the file of the page, and in CHECK {reports} a document with the report as JSON in its script
-# element with the id NAME.
+# kds_page_test(GROUP TEST NAME name [PAGE file] SIZE WIDTHxHEIGHT DRIVER file [WRITE command...] CHECK command...): the
+# browser opens PAGE, NAME.html if that is left out, in a window of that size, with the driver, a script, at its end,
+# which calls finished(report) once (else the report is {unfinished: [errors]}); the test TEST runs the command CHECK.
+# The page is written by the command WRITE, or by that of a test of the same group before it. In both commands {folder}
+# is where pages are, {page} is this page there, and {reports} a document with the report as JSON in its script element
+# with the id NAME.
 function(kds_page_test group test)
-  cmake_parse_arguments(PARSE_ARGV 2 of "" "NAME;SIZE;DRIVER" "WRITE;CHECK")
+  cmake_parse_arguments(PARSE_ARGV 2 of "" "NAME;PAGE;SIZE;DRIVER" "WRITE;CHECK")
   if(NOT KDS_CHROMIUM)
     kds_skipped_page_test("${test}" "Chromium")
     return()
   endif()
+  if(NOT of_PAGE)
+    set(of_PAGE "${of_NAME}.html")
+  endif()
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/pages")
-  set(page "${folder}/${of_NAME}.html")
-  string(REPLACE "{page}" "${page}" write "${of_WRITE}")
-  string(REPLACE "{page}" "${page}" check "${of_CHECK}")
-  string(REPLACE "{reports}" "${folder}/reports.html" check "${check}")
-  list(JOIN write "|" write)
-  set_property(GLOBAL APPEND PROPERTY "KDS_PAGES_${group}" "${of_NAME}|${of_SIZE}|${of_DRIVER}|${write}")
-  add_test(NAME "${test}" COMMAND ${check})
+  foreach(command IN ITEMS WRITE CHECK)
+    string(REPLACE "{page}" "${folder}/${of_PAGE}" of_${command} "${of_${command}}")
+    string(REPLACE "{folder}" "${folder}" of_${command} "${of_${command}}")
+    string(REPLACE "{reports}" "${folder}/reports.html" of_${command} "${of_${command}}")
+  endforeach()
+  list(JOIN of_WRITE "|" write)
+  set_property(GLOBAL APPEND PROPERTY "KDS_PAGES_${group}" "${of_NAME}|${of_PAGE}|${of_SIZE}|${of_DRIVER}|${write}")
+  add_test(NAME "${test}" COMMAND ${of_CHECK})
   set_tests_properties("${test}" PROPERTIES FIXTURES_REQUIRED "${group} pages")
 endfunction()
 

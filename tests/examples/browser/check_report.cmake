@@ -1,8 +1,8 @@
-# Fails if a replay's page was not right, or did not get to its end.
-# -DNAME= -DREPORTS= (see ../browser/page_tests.cmake)
+# Fails unless the driver of a page has reported that all of its checks are right.
+# -DNAME= -DREPORTS= (see page_tests.cmake)
 file(READ "${REPORTS}" reports)
 string(REGEX MATCH "<script[^>]* id=\"${NAME}\">[^<]*" report "${reports}")
 if(NOT report MATCHES "\"all [0-9]+ checks are right\"$")
-  message(FATAL_ERROR "The replay of ${NAME} is not right:\n${report}")
+  message(FATAL_ERROR "The page of ${NAME} is not right:\n${report}")
 endif()
 message("${NAME}: ${CMAKE_MATCH_0}")
