@@ -27,6 +27,7 @@ class Facts {
   Facts(const Page& page, const MovingSet<Element>& elements, std::vector<Id> members)
       : page_(page), elements_(elements), members_(std::move(members)) {}
 
+  /// The fact of a certificate whose elements are among the members.
   template <int Degree>
   Held of(const certificates::Order<Degree>& c) const {
     return {.fact = name(c.lower) + " \u2264 " + name(c.upper),

@@ -45,8 +45,8 @@ inline Edges edges_of(const structures::TetrahedronMesh& mesh) {
 
 /// Which edges go and which come: in words, and the points at their ends. Nothing if none does.
 struct EdgeChange {
-  std::string text;
-  std::vector<Id> members;
+  std::string text;         ///< "a-b goes, c-d comes"
+  std::vector<Id> members;  ///< of each edge the two ends
 };
 inline EdgeChange change_of(const Edges& before, const Edges& after, const Page& page) {
   Edges gone, come;

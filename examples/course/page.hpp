@@ -36,15 +36,15 @@ struct State {
   std::vector<Id> outline;              ///< corners of a polygon
   std::vector<std::array<Id, 2>> edges; ///< lines between elements
   std::vector<Id> marked;               ///< elements that stand out: the greatest, say
-  std::vector<Held> certificates;
+  std::vector<Held> certificates;       ///< that hold
 };
 
 /// The names of the parts of a state in the legend.
 struct Legend {
-  std::string event = "an event";
-  std::string marked = "marked";
-  std::string outline = "hull";
-  std::string edges = "edge";
+  std::string event = "an event";  ///< the dots in the space-time diagram
+  std::string marked = "marked";   ///< the elements of State::marked
+  std::string outline = "hull";    ///< the polygon of State::outline
+  std::string edges = "edge";      ///< the lines of State::edges
 };
 
 /// Collects a run and writes it as one HTML file that needs nothing else: no network, no library. Space is drawn by
@@ -55,6 +55,8 @@ struct Legend {
 /// back the same.
 class Page {
  public:
+  /// From `begin` to `end` in s; the title and the text below it are plain text. Throws std::invalid_argument unless
+  /// the end comes after the beginning.
   Page(View view, std::string title, std::string about, double begin, double end);
 
   /// The motions of the elements, each for the whole run: `usual`, or those of the program's second argument, in JSON: an
@@ -86,8 +88,9 @@ class Page {
   /// written in the dot, of longer ones the first letter.
   void element(Id id, std::string name, double radius = 0);
   void box(Id id, std::string name, std::array<double, 2> half);
+  /// The name of an element. Throws std::out_of_range if there is none with this id.
   const std::string& name(Id id) const;
-  double begin() const { return begin_; }
+  double begin() const { return begin_; }  ///< s
   /// "a b c".
   std::string names(const std::vector<Id>& ids) const;
 
@@ -114,16 +117,18 @@ class Page {
   /// drawn at its first member. Throws std::logic_error for one that comes before another.
   void event(double time, std::string text, std::vector<Id> members, State state);
 
-  Legend legend;
+  Legend legend;               ///< words for what is drawn
   std::vector<double> window;  ///< the visible part: least and greatest value; or x, y, x, y. By default all that moves
   std::vector<double> walls;   ///< x, y, x, y of a box to draw in the plane
   bool intervals = false;      ///< draw the shadows of boxes on both axes
   std::string edge_style;      ///< "pair" for a broken line
   double play_time = 14;       ///< s that the whole run lasts on the screen
 
+  /// The recording, for the page's scripts. Throws std::logic_error if an element has no motion.
   std::string json() const;
   /// The run in small, as an SVG image: motions over time, or the state at two fifths of the time.
   std::string picture() const;
+  /// The page as a file.
   std::string html() const;
   /// Writes to the path given as first argument, else to `name`.html here, and says so. Throws std::runtime_error if it
   /// cannot. In a browser it writes json() to the standard output.

@@ -9,6 +9,7 @@ namespace kds::exercises {
 
 using Path = certificates::PlaneMotion<2>;
 
+/// A dog is not farther from its owner than the leash is long.
 struct Leash {
   static constexpr int degree = 4;  // of f as a polynomial of time
   const Path& dog;

@@ -6,6 +6,7 @@
 
 namespace kds::exercises {
 
+/// A lift that starts gently from a height: an element whose motion is of degree 3.
 struct Lift {
   static constexpr int degree = 3;  // of its motion as a polynomial
   double height = 0;

@@ -8,6 +8,7 @@
 
 namespace kds::exercises {
 
+/// The lowest of the values that have been taken up.
 struct LowestOfTaken {
   using Element = Motion<2>;
   using Order = certificates::Order<2>;  // Order{a, b}: a <= b

@@ -8,6 +8,7 @@
 
 namespace kds::exercises {
 
+/// Keeps the lowest of moving values.
 struct LowestRule : LowestOfTaken {
   static constexpr const char* name = "Lowest";
 
