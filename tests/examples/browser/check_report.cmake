@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.23)
 # Fails unless the driver of a page has reported that all of its checks are right.
 # -DNAME= -DREPORTS= (see page_tests.cmake)
 file(READ "${REPORTS}" reports)
