@@ -9,18 +9,19 @@
 
 #include <iostream>
 #include <string>
+#include <vector>
 
 using namespace kds;
 using HeapRule = structures::HeapRule<structures::ByValue<Motion<2>>>;
 
 int main(int argc, char** argv) {
   course::Page page(course::View::line, "05 Who is the highest",
-                    "The highest of six rockets. A heap keeps nobody above its parent: a certificate for each but the "
-                    "top, five in all. Most swaps of a sorted list never happen here.", 0, 10);
+                    "The highest of some rockets. A heap keeps nobody above its parent: a certificate for each but the "
+                    "top. Most swaps of a sorted list never happen here.", 0, 10);
   page.legend.event = "parent and child change places";
   page.legend.marked = "the highest: the upper envelope";
-  // Height, speed, half the acceleration; all lit at time 0.
-  const Motion<2> rockets[] = {
+  // Height, speed, half the acceleration; all lit at time 0. The page may give other motions.
+  const std::vector<Motion<2>> rockets{
       {{{0.5, 0.3, 0.095}}, 0}, {{{3, 2.4, -0.27}}, 0},   {{{1, 1.4, 0.0}}, 0},
       {{{6, 0.2, -0.1}}, 0},    {{{2.2, 2.3, -0.175}}, 0}, {{{9, -4.6, 0.58}}, 0},
   };
@@ -29,7 +30,7 @@ int main(int argc, char** argv) {
   // same clock runs both.
   MovingSet<Motion<2>> values;
   structures::Tournament<2> tournament;
-  for (const auto& motion : rockets) {
+  for (const auto& motion : page.motions(argc, argv, rockets)) {
     const Id id = values.add(motion, 0);
     tournament.insert(id, motion, 0);
     page.element(id, std::string(1, static_cast<char>('a' + id)));

@@ -8,11 +8,8 @@
 #include "kds/simulator.hpp"
 #include "structures/delaunay.hpp"
 
-#include <algorithm>
 #include <iostream>
-#include <iterator>
 #include <string>
-#include <vector>
 
 using namespace kds;
 using Path = certificates::PlaneMotion<2>;
@@ -44,19 +41,7 @@ int main(int argc, char** argv) {
   course::Edges before;
   const auto flipped = [&](const Delaunay& delaunay, const KineticEvent& event) {
     const course::Edges after = course::edges_of(delaunay.mesh());
-    course::Edges gone, come;
-    std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(gone));
-    std::set_difference(after.begin(), after.end(), before.begin(), before.end(), std::back_inserter(come));
-    std::string text;
-    std::vector<Id> members;
-    const auto tell = [&](const course::Edges& edges, const char* what) {
-      for (const auto& [a, b] : edges) {
-        text += (text.empty() ? "" : ", ") + page.name(a) + "-" + page.name(b) + what;
-        members.insert(members.end(), {a, b});
-      }
-    };
-    tell(gone, " goes");
-    tell(come, " comes");
+    auto [text, members] = course::change_of(before, after, page);
     if (text.empty()) text = "a hull edge leads another way";
     page.event(event.time, text, members, known(delaunay, event.time));
     before = after;

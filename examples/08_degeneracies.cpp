@@ -11,6 +11,7 @@
 #include <iostream>
 #include <map>
 #include <string>
+#include <vector>
 
 using namespace kds;
 using List = examples::ListRule<Motion<2>>;
@@ -33,7 +34,7 @@ int main(int argc, char** argv) {
                     "event (a double root); c, d and e meet in one point and turn round in three swaps of one time; "
                     "f and g are equal for ever and stand in the order of their numbers.", 0, 8);
   page.legend.event = "a swap";
-  const Motion<2> motions[] = {
+  const std::vector<Motion<2>> usual{
       {{{1, 0, 0}}, 0},             // a is at rest
       {{{2, -1, 0.25}}, 0},         // b: (t - 2)^2 / 4 above a, touches it at t = 2
       {{{8, -1, 0}}, 0},            // c, d, e: all at 4 when t = 4
@@ -43,7 +44,7 @@ int main(int argc, char** argv) {
       {{{8, 0, -0.0625}}, 4},
   };
   MovingSet<Motion<2>> values;
-  for (const auto& motion : motions) {
+  for (const auto& motion : page.motions(argc, argv, usual)) {
     const Id id = values.add(motion, 0);
     page.element(id, std::string(1, static_cast<char>('a' + id)));
     page.moves(id, motion, 0);

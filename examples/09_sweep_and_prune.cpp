@@ -84,12 +84,13 @@ int main(int argc, char** argv) {
   // A box is a lower and an upper corner, each with a motion: it may grow as well. These only move; flat in z.
   std::vector<KineticBox<2>> boxes;
   std::vector<KineticSweepAndPrune<2>::Entry> entries;
-  const auto arcs = course::arcs(6, 9, end);
+  const auto arcs = page.motions(argc, argv, course::arcs(6, 9, end));
   for (Id id = 0; id < arcs.size(); ++id) {
-    const std::array<double, 2> half{0.06 + 0.015 * id, 0.15 - 0.015 * id};
+    const std::array<double, 2> half{0.06 + 0.015 * (id % 6), 0.15 - 0.015 * (id % 6)};
     Path path;
     const auto& [x, y] = arcs[id].coordinate;
     for (std::size_t i = 0; i <= 2; ++i) path.coefficients[i] = {x.c[i], y.c[i], 0};
+    path.start = arcs[id].start;
     boxes.push_back(box_around<2>(path, {-half[0], -half[1], -1}, {half[0], half[1], 1}));
     page.box(id, std::string(1, static_cast<char>('a' + id)), half);
     page.moves(id, path, 0);

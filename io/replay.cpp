@@ -6,15 +6,14 @@
 #include "io/number_text.hpp"
 #include "io/pictures/compound_surface.hpp"
 #include "io/pictures/half_space_patch.hpp"
+#include "io/replay_page/three_script.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -184,14 +183,9 @@ void append_frames(std::string& text, const kds::collision::MeshScript& script, 
 }
 
 std::string read_script(const std::filesystem::path& folder, const char* name) {
-  const std::filesystem::path file = folder / name;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (folder.empty() || !in || !(text << in.rdbuf())) {
-    throw ReplayError("--view: three.js: " + (folder.empty() ? std::string(name) : file.string()) +
-                      " is not there; install it (Debian and Ubuntu: the package libjs-three) and configure again");
-  }
-  return std::move(text).str();
+  if (auto script = three_script(folder, name)) return *std::move(script);
+  throw ReplayError("--view: three.js: " + (folder.empty() ? std::string(name) : (folder / name).string()) +
+                    " is not there; install it (Debian and Ubuntu: the package libjs-three) and configure again");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 # Links of the documentation to files lead somewhere, and folders and files that it names are there.
-file(GLOB pages "${ROOT}/*.md" "${ROOT}/docs/*.md" "${ROOT}/examples/*.md")
+file(GLOB pages "${ROOT}/*.md" "${ROOT}/docs/*.md" "${ROOT}/examples/*.md"
+  "${ROOT}/examples/course/exercises/*.md")
 set(wrong "")
 foreach(page IN LISTS pages)
   file(READ "${page}" text)

@@ -1,7 +1,8 @@
 cmake_minimum_required(VERSION 3.23)
 # What the documentation quotes is what is compiled, run and tested: each block after "quoted from FILE" stands in that
 # file as it is.
-file(GLOB pages "${ROOT}/README.md" "${ROOT}/docs/*.md" "${ROOT}/examples/*.md")
+file(GLOB pages "${ROOT}/README.md" "${ROOT}/docs/*.md" "${ROOT}/examples/*.md"
+  "${ROOT}/examples/course/exercises/*.md")
 set(mark "<!-- quoted from ")
 set(count 0)
 foreach(page IN LISTS pages)

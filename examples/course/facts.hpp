@@ -4,8 +4,10 @@
 #include "certificates/direction_order.hpp"
 #include "certificates/in_circle.hpp"
 #include "certificates/in_order.hpp"
+#include "certificates/in_sphere.hpp"
 #include "certificates/order.hpp"
 #include "certificates/orientation.hpp"
+#include "certificates/space_orientation.hpp"
 #include "examples/course/page.hpp"
 #include "kds/framework/kinetic_rule.hpp"
 #include "kds/roots/failure_time.hpp"
@@ -25,6 +27,7 @@ class Facts {
   Facts(const Page& page, const MovingSet<Element>& elements, std::vector<Id> members)
       : page_(page), elements_(elements), members_(std::move(members)) {}
 
+  /// The fact of a certificate whose elements are among the members.
   template <int Degree>
   Held of(const certificates::Order<Degree>& c) const {
     return {.fact = name(c.lower) + " \u2264 " + name(c.upper),
@@ -39,6 +42,20 @@ class Facts {
   Held of(const certificates::InCircle<Path>& c) const {
     return {name(c.d) + " is not in the circle " + name(c.a) + ", " + name(c.b) + ", " + name(c.c),
             {id(c.a), id(c.b), id(c.c), id(c.d)}};
+  }
+  template <class Path>
+  Held of(const certificates::InSphere<Path>& c) const {
+    return {name(c.e) + " is not in the sphere " + name(c.a) + ", " + name(c.b) + ", " + name(c.c) + ", " + name(c.d),
+            {id(c.a), id(c.b), id(c.c), id(c.d), id(c.e)}};
+  }
+  template <class Path>
+  Held of(const certificates::SpaceOrientation<Path>& c) const {
+    return {name(c.a) + ", " + name(c.b) + ", " + name(c.c) + ", " + name(c.d) + " have a positive volume",
+            {id(c.a), id(c.b), id(c.c), id(c.d)}};
+  }
+  template <class Path>
+  Held of(const certificates::NormalDirection<Path>& c) const {
+    return {name(c.a) + ", " + name(c.b) + ", " + name(c.c) + " face the way they do", {id(c.a), id(c.b), id(c.c)}};
   }
   template <class Path, std::size_t Dimension>
   Held of(const certificates::DirectionOrder<Path, Dimension>& c) const {

@@ -1,10 +1,15 @@
-// The edges of a triangulation, as a page draws them.
+// The edges of a triangulation, as a page draws them, and what becomes of them in an event.
 #pragma once
 
+#include "examples/course/page.hpp"
+#include "structures/tetrahedron_mesh.hpp"
 #include "structures/triangle_mesh.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <iterator>
+#include <string>
 #include <vector>
 
 namespace kds::course {
@@ -22,6 +27,41 @@ inline Edges edges_of(const structures::TriangleMesh& mesh) {
   }
   std::sort(edges.begin(), edges.end());
   return edges;
+}
+inline Edges edges_of(const structures::TetrahedronMesh& mesh) {
+  Edges edges;
+  for (std::uint32_t t = 0; t < mesh.end_tetrahedron(); ++t) {
+    if (!mesh.in_use(t) || !mesh.finite(t)) continue;
+    auto corners = mesh.corners(t);
+    std::sort(corners.begin(), corners.end());
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t k = i + 1; k < 4; ++k) edges.push_back({corners[i], corners[k]});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+/// Which edges go and which come: in words, and the points at their ends. Nothing if none does.
+struct EdgeChange {
+  std::string text;         ///< "a-b goes, c-d comes"
+  std::vector<Id> members;  ///< of each edge the two ends
+};
+inline EdgeChange change_of(const Edges& before, const Edges& after, const Page& page) {
+  Edges gone, come;
+  std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(gone));
+  std::set_difference(after.begin(), after.end(), before.begin(), before.end(), std::back_inserter(come));
+  EdgeChange change;
+  const auto tell = [&](const Edges& edges, const char* what) {
+    for (const auto& [a, b] : edges) {
+      change.text += (change.text.empty() ? "" : ", ") + page.name(a) + "-" + page.name(b) + what;
+      change.members.insert(change.members.end(), {a, b});
+    }
+  };
+  tell(gone, " goes");
+  tell(come, " comes");
+  return change;
 }
 
 }  // namespace kds::course

@@ -113,7 +113,8 @@ void Page::add_state(State state) {
 }
 
 std::string Page::json() const {
-  ordered_json page{{"title", title_}, {"about", about_}, {"view", view_ == View::line ? "line" : "plane"}};
+  const char* const views[] = {"line", "plane", "space"};
+  ordered_json page{{"title", title_}, {"about", about_}, {"view", views[static_cast<int>(view_)]}};
   page["begin"] = begin_;
   page["end"] = end_;
   page["play"] = play_time;
@@ -138,6 +139,7 @@ std::string Page::json() const {
       ordered_json motion{{"since", piece.since}, {"start", piece.start}};
       put(motion, "x", piece.x);
       motion["y"] = piece.y;
+      put(motion, "z", piece.z);
       entry["pieces"].push_back(std::move(motion));
     }
     page["elements"].push_back(std::move(entry));

@@ -10,17 +10,18 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kds::course {
 
-/// How a page draws: values over time (a motion of degree 2 is a parabola), or the plane at one time.
-enum class View { line, plane };
+/// How a page draws: values over time (a motion of degree 2 is a parabola), or the plane or space at one time.
+enum class View { line, plane, space };
 
 /// A certificate as a page shows it.
 struct Held {
   std::string fact;         ///< in words
-  std::vector<Id> members;  ///< the elements that it is about; for a circle first the three that are on it
+  std::vector<Id> members;  ///< the elements that it is about; for a circle or sphere first those that are on it
   double fails = never;     ///< s
   std::string function;     ///< what is not negative while it holds: "e \u2212 d"
   std::vector<double> polynomial;  ///< its coefficients in the time since the page begins, rounded
@@ -35,24 +36,27 @@ struct State {
   std::vector<Id> outline;              ///< corners of a polygon
   std::vector<std::array<Id, 2>> edges; ///< lines between elements
   std::vector<Id> marked;               ///< elements that stand out: the greatest, say
-  std::vector<Held> certificates;
+  std::vector<Held> certificates;       ///< that hold
 };
 
 /// The names of the parts of a state in the legend.
 struct Legend {
-  std::string event = "an event";
-  std::string marked = "marked";
-  std::string outline = "hull";
-  std::string edges = "edge";
+  std::string event = "an event";  ///< the dots in the space-time diagram
+  std::string marked = "marked";   ///< the elements of State::marked
+  std::string outline = "hull";    ///< the polygon of State::outline
+  std::string edges = "edge";      ///< the lines of State::edges
 };
 
-/// Collects a run and writes it as one HTML file that needs nothing else: no network, no library.
+/// Collects a run and writes it as one HTML file that needs nothing else: no network, no library. Space is drawn by
+/// three.js, which is in the file; where it is not installed, the page says so in place of the picture.
 ///
 /// Motions are stored as polynomials, so the page can draw any time between `begin` and `end`; states of structures are
 /// stored event by event, so the page decides nothing. Times are in seconds, all numbers are written so that they read
 /// back the same.
 class Page {
  public:
+  /// From `begin` to `end` in s; the title and the text below it are plain text. Throws std::invalid_argument unless
+  /// the end comes after the beginning.
   Page(View view, std::string title, std::string about, double begin, double end);
 
   /// The motions of the elements, each for the whole run: `usual`, or those of the program's second argument, in JSON: an
@@ -84,8 +88,9 @@ class Page {
   /// written in the dot, of longer ones the first letter.
   void element(Id id, std::string name, double radius = 0);
   void box(Id id, std::string name, std::array<double, 2> half);
+  /// The name of an element. Throws std::out_of_range if there is none with this id.
   const std::string& name(Id id) const;
-  double begin() const { return begin_; }
+  double begin() const { return begin_; }  ///< s
   /// "a b c".
   std::string names(const std::vector<Id>& ids) const;
 
@@ -98,10 +103,12 @@ class Page {
   void moves(Id id, const certificates::PlaneMotion<Degree>& path, double since) {
     add_piece(id, {since, path.start, list(path.coordinate[0]), list(path.coordinate[1])});
   }
-  /// Seen from above: x and y.
+  /// In the plane seen from above: x and y.
   template <int Degree>
   void moves(Id id, const certificates::PointMotion<Degree>& path, double since) {
-    add_piece(id, {since, path.start, list(path.axis(0).position), list(path.axis(1).position)});
+    Piece piece{since, path.start, list(path.axis(0).position), list(path.axis(1).position)};
+    if (view_ == View::space) piece.z = list(path.axis(2).position);
+    add_piece(id, std::move(piece));
   }
 
   /// The state at the beginning; to be called once, before any event.
@@ -110,14 +117,18 @@ class Page {
   /// drawn at its first member. Throws std::logic_error for one that comes before another.
   void event(double time, std::string text, std::vector<Id> members, State state);
 
-  Legend legend;
+  Legend legend;               ///< words for what is drawn
   std::vector<double> window;  ///< the visible part: least and greatest value; or x, y, x, y. By default all that moves
   std::vector<double> walls;   ///< x, y, x, y of a box to draw in the plane
   bool intervals = false;      ///< draw the shadows of boxes on both axes
   std::string edge_style;      ///< "pair" for a broken line
   double play_time = 14;       ///< s that the whole run lasts on the screen
 
+  /// The recording, for the page's scripts. Throws std::logic_error if an element has no motion.
   std::string json() const;
+  /// The run in small, as an SVG image: motions over time, or the state at two fifths of the time.
+  std::string picture() const;
+  /// The page as a file.
   std::string html() const;
   /// Writes to the path given as first argument, else to `name`.html here, and says so. Throws std::runtime_error if it
   /// cannot. In a browser it writes json() to the standard output.
@@ -126,7 +137,7 @@ class Page {
  private:
   struct Piece {
     double since, start;
-    std::vector<double> x, y;  ///< coefficients; no x on a line
+    std::vector<double> x, y, z = {};  ///< coefficients; no x on a line, a z in space alone
   };
   struct Element {
     Id id;
@@ -159,6 +170,8 @@ class Page {
   static std::vector<Piece> given(const std::string& text, std::size_t most, bool on_line);
   void add_piece(Id id, Piece piece);
   Element& find(Id id);
+  /// Where a picture has an element: across and up.
+  std::array<double, 2> seen(const Element& element, double t) const;
   void add_state(State state);
 
   View view_;

@@ -1,6 +1,7 @@
 // A page as a file: the template, the style, the scripts, and the program itself where the build could compile it.
 #include "examples/course/page.hpp"
 #include "examples/course/program_in_page.hpp"
+#include "io/replay_page/three_script.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -42,9 +43,10 @@ bool embed_program(std::initializer_list<std::string_view> parts) {
   return true;
 }
 
-std::string embedded_program() {
+namespace {
+
+std::string base64(std::string_view bytes) {
   constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const std::string& bytes = program();
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t three = 0;
@@ -57,17 +59,30 @@ std::string embedded_program() {
   return text.replace(text.size() - filled, filled, filled, '=');
 }
 
+}  // namespace
+
+std::string embedded_program() { return base64(program()); }
+
 std::string Page::html() const {
   std::string page(page_template);
   std::string code;
   for (const std::string_view script : scripts) code += script;
   // The last mark is replaced first, since inserted text may contain marks.
   replace(page, "/*{SCRIPTS}*/", code);
+  std::string three;
+  if (view_ == View::space) {
+    for (const char* name : {"build/three.min.js", "examples/js/controls/OrbitControls.js"}) {
+      // A page without it says that it could not be drawn.
+      three += io::three_script(KDS_THREE_FOLDER, name).value_or("") + '\n';
+    }
+  }
+  replace(page, "/*{THREE}*/", three);
   replace(page, "/*{PROGRAM}*/", coefficients_ > 0 ? embedded_program() : "");
   std::string data = json();
   for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos; ++at) data.replace(at, 2, "<\\/");
   replace(page, "/*{DATA}*/", data);
   replace(page, "/*{STYLE}*/", style);
+  replace(page, "/*{PICTURE}*/", base64(picture()));
   return page;
 }
 

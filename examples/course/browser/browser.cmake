@@ -58,11 +58,14 @@ function(kds_wasm_object source variable)
   set(${variable} "${object}" PARENT_SCOPE)
 endfunction()
 
-# What of the library those programs link. An object of a source above is that of one custom target, so that two programs
-# do not compile it at the same time.
+# What of the library those programs link; what one does not use is left out of it. An object of a source above is that
+# of one custom target, so that two programs do not compile it at the same time.
 set(objects "")
 foreach(source IN ITEMS kds/large_vector kds/arithmetic/exact kds/roots/failure_time certificates/order
-                        certificates/plane_certificates examples/course/page examples/course/browser/write
+                        certificates/plane_certificates collision/broad_phase/kinetic_sweep_and_prune
+                        collision/broad_phase/kinetic_sweep_and_prune_axes
+                        collision/broad_phase/kinetic_sweep_and_prune_queries collision/broad_phase/tuning
+                        collision/broad_phase/unlisted_axes examples/course/page examples/course/browser/write
                         examples/course/browser/exceptions)
   kds_wasm_object("${PROJECT_SOURCE_DIR}/${source}.cpp" object)
   list(APPEND objects "${object}")

@@ -105,7 +105,7 @@ function drawHandles() {
   const {x0, kx, y0, ky} = $('figure').dataset;
   handles.replaceChildren();
   if (handles.parentNode !== $('figure')) $('figure').append(handles);
-  if (!program && !guessing) return;
+  if ((!program && !guessing) || kx === undefined) return;  // in space nothing is dragged but the view
   for (const element of data.elements) {
     const piece = pieceAt(element, now);
     const elapsed = now - piece.start;

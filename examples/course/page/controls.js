@@ -1,6 +1,6 @@
 // Time: slider, keys, play and pause, the list of events, the certificates that hold now.
 const $ = (id) => document.getElementById(id);
-const view = (data.view === 'line' ? lineView : planeView)($('figure'));
+const view = {line: lineView, plane: planeView, space: spaceView}[data.view]($('figure'));
 let now = data.begin, shown = -1, playing = false, lit = [];
 
 document.title = data.title;

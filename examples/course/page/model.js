@@ -39,11 +39,12 @@ function pieceAt(element, t) {
   return found;
 }
 
-/** Where an element is: x and y in the plane; on a line x is the time and y the value. */
+/** Where an element is: x and y in the plane, z too in space; on a line x is the time and y the value. */
 function position(id, t) {
   const piece = pieceAt(elements.get(id), t);
   const elapsed = t - piece.start;
-  return {x: piece.x ? value(piece.x, elapsed) : t, y: value(piece.y, elapsed)};
+  const [x, y, z] = [piece.x, piece.y, piece.z].map((coefficients) => coefficients && value(coefficients, elapsed));
+  return {x: x ?? t, y, z: z ?? 0};
 }
 
 /** How many events there have been up to and including t: the number of the state that holds at t+. */

@@ -2,6 +2,7 @@
 /** For whoever drives the page from outside: the same numbers that are drawn. */
 window.course = {
   data, setTime, position, now: () => now,
+  drawn: () => view.drawn?.(),
   state: (t) => ({...data.states[stateNumber(t)], number: stateNumber(t), certificates: certificatesAt(stateNumber(t))}),
 };
 

@@ -1,5 +1,5 @@
-// Put at the end of a page whose program is in it: changes motions as somebody would, and writes down what the page then
-// shows, for the checker (check_page.cmake puts a collector of errors at the beginning of the page).
+// Put at the end of a page whose program is in it: changes motions as somebody would, and reports what the page then
+// shows, for the checker (../browser/open_pages.cmake puts a collector of errors at the beginning of the page).
 window.addEventListener('load', async () => {
   const ready = await window.course.ready;
   const report = {ready, says: document.getElementById('change-says').textContent, runs: [], guesses: []};
@@ -56,9 +56,5 @@ window.addEventListener('load', async () => {
     note('reset');
   }
   report.errors = window.pageErrors;
-  const node = document.createElement('script');
-  node.type = 'application/json';
-  node.id = 'report';
-  node.textContent = JSON.stringify(report);
-  document.body.append(node);
+  finished(report);
 });

@@ -1,6 +1,6 @@
 // Compares what a page shows after somebody has changed motions in it, computed by its program as WebAssembly in a
 // browser, with what the program computes here for the same motions: all numbers, bit for bit.
-// Usage: check_changed_page PROGRAM DOCUMENT.html FOLDER
+// Usage: check_changed_page NAME PROGRAM PAGE.html REPORTS.html
 #include "tests/examples/course/course_page.hpp"
 
 #include <cstdlib>
@@ -10,6 +10,7 @@
 namespace {
 
 using kds::tests::json;
+using kds::tests::report_of;
 using kds::tests::script_of;
 
 int mistakes = 0;
@@ -21,8 +22,7 @@ void wrong(const T&... what) {
 }
 
 /// The data of the page that the program writes for these motions. No text of them has quotation marks of the shell.
-json native(const std::string& program, const std::string& folder, const json& motions) {
-  const std::string page = folder + "/native.html";
+json native(const std::string& program, const std::string& page, const json& motions) {
   const std::string command = "'" + program + "' '" + page + "' '" + motions.dump() + "' > /dev/null";
   if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
   return script_of(page, "data");
@@ -31,19 +31,19 @@ json native(const std::string& program, const std::string& folder, const json& m
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::cerr << "usage: check_changed_page PROGRAM DOCUMENT.html FOLDER\n";
+  if (argc != 5) {
+    std::cerr << "usage: check_changed_page NAME PROGRAM PAGE.html REPORTS.html\n";
     return 2;
   }
   try {
-    const json report = script_of(argv[2], "report");
+    const json report = report_of(argv[4], argv[1]);
     for (const json& error : report["errors"]) wrong("error on the page: ", error);
     if (report["ready"] != true) wrong("the program does not run in the page: ", report["says"]);
     std::size_t events = 0;
     json before;
     for (const json& run : report["runs"]) {
       const std::string what = run["what"];
-      const json right = native(argv[1], argv[3], run["motions"]);
+      const json right = native(argv[2], argv[3] + std::string(".native"), run["motions"]);
       const json& shown = run["data"];
       for (const char* part : {"elements", "events", "states", "certificates", "begin", "end"}) {
         if (right[part] != shown[part]) wrong(what, ": ", part, " are not those of the program here");

@@ -1,5 +1,5 @@
 // Compares what a browser showed of a page of the course with what must be known there.
-// Usage: check_course_page NAME PAGE.html DOCUMENT.html
+// Usage: check_course_page NAME PAGE.html REPORTS.html
 #include "tests/examples/course/expected_states.hpp"
 
 #include <algorithm>
@@ -30,23 +30,26 @@ void check_places(const CoursePage& page, const Expected& expected, const json& 
   const auto place = [&](Id id) {
     return expected.positions.empty() ? page.position(id, t) : expected.positions[id];
   };
-  const auto check = [&](Id id, double x, double y, const char* what) {
+  // From a number on, of `shown` the two or three coordinates that a picture has.
+  const std::size_t coordinates = page.in_space() ? 3 : 2;
+  const auto check = [&](Id id, const json& shown, std::size_t first, const char* what) {
     const auto at = place(id);
     // A world of its own may differ by roundings that bounces magnify.
     const double slack = expected.positions.empty() ? 0 : 1e-6;
     const auto same = [&](double a, double b) { return near(a, b) || std::abs(a - b) < slack; };
-    if (!same(x, at[0]) || !same(y, at[1])) {
-      wrong("t = ", t, ": ", what, " ", id, " is drawn at ", x, ", ", y, ", not at ", at[0], ", ", at[1]);
+    for (std::size_t d = 0; d < coordinates; ++d) {
+      const double x = shown[first + d];
+      if (!same(x, at[d])) wrong("t = ", t, ": ", what, " ", id, " is drawn at ", x, ", not at ", at[d], ": axis ", d);
     }
   };
   if (frame["positions"].size() != page.size()) wrong("t = ", t, ": not all elements are drawn");
-  for (const json& p : frame["positions"]) check(p[0], p[1], p[2], "element");
+  for (const json& p : frame["positions"]) check(p[0], p, 1, "element");
   for (const json& e : frame["edges"]) {
-    check(e[0], e[2], e[3], "an edge of element");
-    check(e[1], e[4], e[5], "an edge of element");
+    check(e[0], e, 2, "an edge of element");
+    check(e[1], e, 2 + coordinates, "an edge of element");
   }
   for (std::size_t i = 0; i < frame["outline"].size(); ++i) {
-    check(frame["outline"][i], frame["corners"][i][0], frame["corners"][i][1], "the corner of element");
+    check(frame["outline"][i], frame["corners"][i], 0, "the corner of element");
   }
 }
 
@@ -115,12 +118,12 @@ void check_controls(const CoursePage& page, const json& report) {
 
 int main(int argc, char** argv) {
   if (argc != 4) {
-    std::cerr << "usage: check_course_page NAME PAGE.html DOCUMENT.html\n";
+    std::cerr << "usage: check_course_page NAME PAGE.html REPORTS.html\n";
     return 2;
   }
   try {
     const CoursePage page(script_of(argv[2], "data"));
-    const json report = script_of(argv[3], "report");
+    const json report = report_of(argv[3], argv[1]);
     for (const json& error : report["errors"]) wrong("error on the page: ", error);
     for (const json& pair : report["overlaps"]) wrong("texts overlap: ", pair[0], " and ", pair[1]);
     if (report["width"][0] > report["width"][1]) wrong("the page is wider than its window: ", report["width"]);
@@ -131,6 +134,15 @@ int main(int argc, char** argv) {
       if (std::abs(end[0].get<double>() - end[1].get<double>()) > 0.5) {
         wrong("slider and picture do not share the time axis: an end is at ", end[0], " and at ", end[1]);
       }
+    }
+    if (page.in_space() != report.contains("turned")) wrong("whether space can be turned is not reported");
+    if (page.in_space()) {
+      const json& turned = report["turned"];
+      for (const double part : turned["drawn"]) {
+        if (!(part > 0.01 && part < 0.9)) wrong("of the picture's pixels ", part, " are drawn");
+      }
+      if (turned["names"] != page.size()) wrong("not all names follow when the view is turned");
+      if (!(turned["bytes"] > 0.01)) wrong("the picture stays when the view is turned: ", turned["bytes"]);
     }
     if (report["frames"].size() < 5) wrong("the slider has not been moved");
     for (const json& frame : report["frames"]) {

@@ -8,6 +8,7 @@
 #include "structures/convex_hull.hpp"
 #include "structures/delaunay.hpp"
 #include "structures/sorted_list.hpp"
+#include "structures/spatial_triangulation.hpp"
 #include "structures/tournament.hpp"
 #include "tests/examples/course/expected_states.hpp"
 
@@ -108,6 +109,23 @@ Expected delaunay(const CoursePage& page, double t) {
   return expected;
 }
 
+/// In space, built from nothing at t: it is unique.
+Expected delaunay_in_space(const CoursePage& page, double t) {
+  using Point = certificates::PointMotion<1>;
+  MovingSet<Point> points;
+  for (Id id = 0; id < page.size(); ++id) points.insert(id, CoursePage::path_in_space(page.piece(id, t)), t);
+  const Kinetic<structures::SpatialDelaunayRule<Point>> delaunay(points, t);
+  Expected expected;
+  expected.fails = delaunay.next_time();
+  expected.edges.emplace();
+  for (Id a = 0; a < page.size(); ++a) {
+    for (const Id b : delaunay.rule().neighbours(a)) {
+      if (a < b && b != nobody) expected.edges->emplace_back(a, b);
+    }
+  }
+  return expected;
+}
+
 /// All pairs of boxes, by exact signs.
 Expected overlaps(const CoursePage& page, double t) {
   std::vector<collision::KineticBox<2>> boxes;
@@ -155,7 +173,7 @@ Expected contacts(const CoursePage& page, double t) {
   Expected expected;
   for (Id id = 0; id < page.size(); ++id) {
     const auto at = world.motion(id).position(t);
-    expected.positions.push_back({at[0], at[1]});
+    expected.positions.push_back({at[0], at[1], 0});
   }
   expected.text = std::to_string(counter.contacts) + " contacts";
   return expected;
@@ -195,7 +213,8 @@ const std::map<std::string, std::function<Expected(const CoursePage&, double)>>&
       {"01_moving_points", sorted},          {"02_one_certificate", sign},  {"03_sorted_list", sorted},
       {"04_your_own_motion", highest_of_sorted}, {"05_tournament", highest},    {"06_convex_hull", hull},
       {"07_delaunay", delaunay},             {"08_degeneracies", sorted},   {"09_sweep_and_prune", overlaps},
-      {"10_contacts", contacts},             {"11_your_own_structure", band}, {"12_smallest_gap", smallest_gap}};
+      {"10_contacts", contacts},             {"11_your_own_structure", band}, {"12_smallest_gap", smallest_gap},
+      {"13_delaunay_in_space", delaunay_in_space}};
   return all;
 }
 

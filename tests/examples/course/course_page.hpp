@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/plane_motion.hpp"
+#include "certificates/point_motion.hpp"
 #include "kds/framework/moving_set.hpp"
 #include "kds/motion.hpp"
 
@@ -30,7 +31,16 @@ inline json script_of(const std::string& file, const std::string& id) {
     if (all.substr(at, open - at).find("id=\"" + id + '"') == std::string::npos) continue;
     return json::parse(all.substr(open + 1, all.find("</script>", open) - open - 1));
   }
-  throw std::runtime_error(file + " has no script '" + id + "': the page did not get that far");
+  throw std::runtime_error(file + " has no script '" + id + "'");
+}
+
+/// What the driver of a page has reported: see ../browser/page_tests.cmake.
+inline json report_of(const std::string& file, const std::string& name) {
+  json report = script_of(file, name);
+  if (report.contains("unfinished")) {
+    throw std::runtime_error(name + ": the page did not get to its end: " + report["unfinished"].dump());
+  }
+  return report;
 }
 
 /// Who moves on a page, and how.
@@ -45,6 +55,7 @@ class CoursePage {
   const json& element(std::size_t id) const { return elements_[id]; }
   const json& pieces(std::size_t id) const { return elements_[id]["pieces"]; }
   bool on_line() const { return page_["view"] == "line"; }
+  bool in_space() const { return page_["view"] == "space"; }
 
   /// A coordinate of a piece of motion: "x" or "y".
   static Motion<2> motion(const json& piece, const char* coordinate) {
@@ -55,6 +66,15 @@ class CoursePage {
   }
   static certificates::PlaneMotion<2> path(const json& piece) {
     return {{motion(piece, "x").position, motion(piece, "y").position}, piece["start"]};
+  }
+  static certificates::PointMotion<1> path_in_space(const json& piece) {
+    certificates::PointMotion<1> path;
+    path.start = piece["start"];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double x = piece["x"][i], y = piece["y"][i], z = piece["z"][i];
+      path.coefficients[i] = {x, y, z};
+    }
+    return path;
   }
   /// The piece that holds at t+.
   const json& piece(std::size_t id, double t) const {
@@ -67,9 +87,11 @@ class CoursePage {
   Motion<2> value(std::size_t id, double t) const { return motion(piece(id, t), "y"); }
   certificates::PlaneMotion<2> path(std::size_t id, double t) const { return path(piece(id, t)); }
 
-  std::array<double, 2> position(std::size_t id, double t) const {
-    if (on_line()) return {t, value(id, t)(t)};
-    return path(id, t)(t);
+  /// x, y and z; on a line the time and the value.
+  std::array<double, 3> position(std::size_t id, double t) const {
+    if (on_line()) return {t, value(id, t)(t), 0};
+    const auto [x, y] = path(id, t)(t);
+    return {x, y, in_space() ? motion(piece(id, t), "z")(t) : 0};
   }
 
  private:

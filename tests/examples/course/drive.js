@@ -1,5 +1,5 @@
-// Put at the end of a page: uses its controls as somebody would, and writes what is then in the picture into the
-// document, for the checker. The collector of errors stands at the beginning of the page (see check_page.cmake).
+// Put at the end of a page: uses its controls as somebody would, and reports what is then in the picture, for the
+// checker. The collector of errors stands at the beginning of the page (see ../browser/open_pages.cmake).
 window.addEventListener('load', () => {
   const report = {errors: window.pageErrors, frames: [], clicks: [], keys: [], overlaps: []};
   const figure = document.getElementById('figure');
@@ -19,14 +19,15 @@ window.addEventListener('load', () => {
       next: document.getElementById('next').textContent,
       fails: window.course.state(Number(figure.dataset.time)).certificates[0]?.fails ?? null,
       latest: [...document.querySelectorAll('#events li')].findIndex((row) => row.className.includes('latest')),
-      positions: elements.map((group) => [
-        Number(group.dataset.element), ...model(...numbers(group.getAttribute('transform')))]),
       marked: elements.filter((group) => group.classList.contains('marked')).map((g) => Number(g.dataset.element)),
     };
+    const inSpace = window.course.drawn();
+    frame.positions = inSpace?.positions ?? elements.map((group) => [
+      Number(group.dataset.element), ...model(...numbers(group.getAttribute('transform')))]);
     const places = [...figure.querySelectorAll('[data-place]')];
     const height = (group) => numbers(group.getAttribute('transform'))[1];
     frame.order = places.sort((a, b) => height(b) - height(a)).map((group) => Number(group.dataset.of));
-    frame.edges = [...figure.querySelectorAll('[data-edge]')].map((line) => {
+    frame.edges = inSpace?.edges ?? [...figure.querySelectorAll('[data-edge]')].map((line) => {
       const at = (name) => Number(line.getAttribute(name));
       const ends = [...model(at('x1'), at('y1')), ...model(at('x2'), at('y2'))];
       return [...line.dataset.edge.split('-').map(Number), ...ends];
@@ -89,6 +90,26 @@ window.addEventListener('load', () => {
   report.keys.splice(-2);
   report.width = [document.documentElement.scrollWidth, window.innerWidth];
 
+  // Space is turned by dragging, which draws it at once. The canvas has its pixels until the next frame.
+  if (window.course.data.view === 'space') {
+    const canvas = document.getElementById('space');
+    const turned = () => {
+      const send = (node, kind, clientX) => node.dispatchEvent(
+        new MouseEvent(kind, {bubbles: true, clientX, clientY: 200}));
+      send(figure, 'mousedown', 100), send(document, 'mousemove', 160), send(document, 'mouseup', 160);
+      const pen = Object.assign(document.createElement('canvas'), {width: 300, height: 200}).getContext('2d');
+      pen.drawImage(canvas, 0, 0, 300, 200);
+      const names = [...figure.querySelectorAll('[data-element]')].map((group) => group.getAttribute('transform'));
+      return {names, bytes: [...pen.getImageData(0, 0, 300, 200).data]};
+    };
+    const [before, after] = [turned(), turned()];
+    const drawn = ({bytes}) => bytes.filter((byte, i) => i % 4 === 3 && byte > 0).length / (bytes.length / 4);
+    report.turned = {
+      drawn: [drawn(before), drawn(after)], names: before.names.filter((name, i) => name !== after.names[i]).length,
+      bytes: before.bytes.filter((byte, i) => byte !== after.bytes[i]).length / before.bytes.length,
+    };
+  }
+
   // Play, and pause a moment later.
   drag(begin);
   document.getElementById('play').click();
@@ -100,11 +121,7 @@ window.addEventListener('load', () => {
     report.played = window.course.now();
     setTimeout(() => {
       report.stayed = window.course.now() === report.played;
-      const node = document.createElement('script');
-      node.type = 'application/json';
-      node.id = 'report';
-      node.textContent = JSON.stringify(report);
-      document.body.append(node);
+      finished(report);
     }, 100);
   }, 50);
 });

@@ -17,7 +17,7 @@ struct Expected {
   std::optional<std::vector<Id>> order, outline, marked;  ///< marked: ascending
   std::optional<std::vector<std::pair<Id, Id>>> edges;    ///< ascending
   std::optional<double> fails;                            ///< the failure time of the next certificate, or never
-  std::vector<std::array<double, 2>> positions;           ///< of a run; if empty those of the page's motions
+  std::vector<std::array<double, 3>> positions;           ///< of a run; if empty those of the page's motions
   std::string text;                                       ///< that the state's text begins with
 };
 

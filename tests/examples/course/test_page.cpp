@@ -54,6 +54,46 @@ TEST_CASE("a page is one file whose data cannot end its script", "[course]") {
   CHECK(html.find("https://") == std::string::npos);
 }
 
+TEST_CASE("a page has a small picture of its run", "[course]") {
+  Page line(View::line, "t", "a", 0, 1);
+  line.element(0, "a");
+  line.moves(0, Motion<2>{{{7, 0, 0}}, 0}, 0);
+  line.starts({.text = "s"});
+  // At two fifths of the width less its margins, and in the middle of the height.
+  CHECK(line.picture().find("<circle cx=\"195\" cy=\"150\"") != std::string::npos);
+  CHECK(line.picture().find("d=\"M16 150L") != std::string::npos);
+  CHECK(line.html().find("<link rel=\"icon\" href=\"data:image/svg+xml;base64,PHN2Zy") != std::string::npos);
+
+  // The state is that of two fifths of the time; a unit has as many pixels across as up.
+  Page plane(View::plane, "t", "a", 0, 1);
+  for (const Id id : {0u, 1u, 2u}) plane.element(id, "p");
+  plane.moves(0, certificates::PlaneMotion<0>{{{{{0}}, {{0}}}}, 0}, 0);
+  plane.moves(1, certificates::PlaneMotion<0>{{{{{1}}, {{0}}}}, 0}, 0);
+  plane.moves(2, certificates::PlaneMotion<0>{{{{{0}}, {{1}}}}, 0}, 0);
+  plane.starts({.text = "s", .edges = {{0, 1}}});
+  plane.event(0.3, "e", {}, {.text = "s", .outline = {0, 1, 2}, .edges = {{1, 2}}});
+  plane.event(0.5, "e", {}, {.text = "s"});
+  CHECK(plane.picture().find("d=\"M106 284L374 284L106 16Z\"") != std::string::npos);
+  CHECK(plane.picture().find("d=\"M374 284L106 16\"") != std::string::npos);
+}
+
+TEST_CASE("a page of space has all three coordinates, one of the plane has two", "[course]") {
+  const certificates::PointMotion<1> path = certificates::PointMotion<1>::line({1, 2, 3}, {4, 5, 6});
+  for (const View view : {View::plane, View::space}) {
+    Page page(view, "t", "a", 0, 1);
+    page.element(0, "a");
+    page.moves(0, path, 0);
+    page.starts({.text = "s"});
+    const json data = json::parse(page.json());
+    const json& piece = data["elements"][0]["pieces"][0];
+    CHECK(data["view"] == (view == View::space ? "space" : "plane"));
+    CHECK((piece["x"] == json({1.0, 4.0}) && piece["y"] == json({2.0, 5.0})));
+    CHECK(piece.contains("z") == (view == View::space));
+    if (view == View::space) CHECK(piece["z"] == json({3.0, 6.0}));
+    CHECK(page.html().find("/*{THREE}*/") == std::string::npos);
+  }
+}
+
 TEST_CASE("a program takes the motions that its page gives it", "[course]") {
   std::string motions;
   const auto given = [&](const std::string& text) {

@@ -1,4 +1,4 @@
-// Put at the end of a replay: uses it as somebody would, and writes what is wrong into the document.
+// Put at the end of a replay: uses it as somebody would, and reports what is wrong.
 window.addEventListener('load', () => {
   const wrong = [...window.pageErrors];
   let checks = 0;
@@ -85,8 +85,5 @@ window.addEventListener('load', () => {
   resize();
   draw();
 
-  const report = document.createElement('pre');
-  report.id = 'report';
-  report.textContent = wrong.length > 0 ? wrong.join('\n') : `replay: all ${checks} checks are right`;
-  document.body.append(report);
+  finished(wrong.length > 0 ? wrong : `all ${checks} checks are right`);
 });
