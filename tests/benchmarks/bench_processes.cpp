@@ -35,7 +35,7 @@ namespace {
 using namespace kds::collision;
 using kds::benchmarks::ElasticGas;
 using kds::benchmarks::tell;
-using kds::benchmarks::wall_seconds;
+using kds::benchmarks::thread_seconds;
 using kds::collision::detail::DomainEvent;
 using kds::collision::detail::EventMerge;
 
@@ -120,10 +120,10 @@ double merge_seconds(std::size_t domains) {
     event.other_owner = static_cast<std::uint8_t>(domain);
     logs[other].push_back(event);
   }
-  const double begin = wall_seconds();
+  const double begin = thread_seconds();
   EventMerge merge(std::move(logs));
   while (!merge.empty()) merge.take_next();
-  return (wall_seconds() - begin) / static_cast<double>(events);
+  return (thread_seconds() - begin) / static_cast<double>(events);
 }
 
 /// What the predictions for many processes start from, of one packing.
@@ -145,9 +145,9 @@ Measured measure(std::ofstream& csv, std::size_t bodies, double packing) {
     World<1> world(gas.options);
     for (const auto& ball : gas.bodies) world.add_body(ball);
     world.advance_to(0);
-    const double begin = wall_seconds();
+    const double begin = thread_seconds();
     world.advance_to(end);
-    measured.contact_seconds = (wall_seconds() - begin) / static_cast<double>(world.counters().contacts);
+    measured.contact_seconds = (thread_seconds() - begin) / static_cast<double>(world.counters().contacts);
   }
   for (const std::size_t domains : {2, 4, 8, 16, 32, 64}) {
     const Counts counts = run_divided(gas, domains, end);
