@@ -42,6 +42,7 @@ void validate(const BasicBodyDescription<Motion>& description) {
     fail(name + " cannot move on paths of degree " + std::to_string(Motion::degree) + ": at most 2");
   }
   if constexpr (turns<Motion>) {
+    require_no_spin_of_half_space(description.shape, std::span<const Motion>(description.motion), "motion");
     if (description.orientation.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
       fail("orientation: a body that turns has that of its motion");
     }
@@ -113,6 +114,9 @@ BodyId Engine<Motion>::add_attached(const Description& description) {
   if (!description.motion.empty()) fail("motion: a sensor that is attached to a body has the motion of that");
   if (bodies_.attachments().owner(owner) != no_body) {
     fail("attached_to: body " + std::to_string(*description.attached_to) + " is attached to another itself");
+  }
+  if (turns<Motion> && unbounded(description.shape)) {
+    fail("attached_to: a half-space does not turn, as body " + std::to_string(*description.attached_to) + " may");
   }
   Description alone = description;
   alone.attached_to.reset();
