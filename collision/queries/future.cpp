@@ -7,7 +7,6 @@
 #include "collision/vectors.hpp"
 #include "collision/world/checked_pieces.hpp"
 
-#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -102,7 +101,7 @@ std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedSha
                                 std::to_string(world.now()) + ")");
   }
   if constexpr (turns<Motion>) {
-    require_no_spin_of_half_space(shape.shape, std::span(&motion, 1), "next_contact: motion");
+    require_no_spin_of_half_space(shape.shape, motion, "next_contact: motion");
   }
   return first_met(world, MovingShape<Motion>{shape, motion}, until, ContactMode::transparent,
                    [&](BodyId id) { return detail::accepts(filter, id); });

@@ -43,16 +43,12 @@ void require_steady_clock(const certificates::RigidMotion<Degree>& motion, doubl
 }
 
 /// Half-spaces keep their orientation: what one of them sweeps while it turns has no bounds. Throws
-/// std::invalid_argument, naming the motion by `name`, if this is one, and a piece has a spin.
+/// std::invalid_argument, naming the motion by `name`, if this is one that would turn.
 template <int Degree>
-void require_no_spin_of_half_space(const Shape& shape, std::span<const certificates::RigidMotion<Degree>> pieces,
+void require_no_spin_of_half_space(const Shape& shape, const certificates::RigidMotion<Degree>& motion,
                                    const std::string& name) {
-  if (!unbounded(shape)) return;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].angular_velocity.isZero(0)) continue;
-    const std::string index = pieces.size() == 1 ? "" : "[" + std::to_string(i) + "]";
-    throw std::invalid_argument(name + index + ".angular_velocity: a half-space does not turn");
-  }
+  if (!unbounded(shape) || motion.angular_velocity.isZero(0)) return;
+  throw std::invalid_argument(name + ".angular_velocity: a half-space does not turn");
 }
 
 }  // namespace kds::collision

@@ -42,7 +42,9 @@ void validate(const BasicBodyDescription<Motion>& description) {
     fail(name + " cannot move on paths of degree " + std::to_string(Motion::degree) + ": at most 2");
   }
   if constexpr (turns<Motion>) {
-    require_no_spin_of_half_space(description.shape, std::span<const Motion>(description.motion), "motion");
+    for (std::size_t i = 0; i < description.motion.size(); ++i) {
+      require_no_spin_of_half_space(description.shape, description.motion[i], "motion[" + std::to_string(i) + "]");
+    }
     if (description.orientation.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
       fail("orientation: a body that turns has that of its motion");
     }

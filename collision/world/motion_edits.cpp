@@ -68,11 +68,11 @@ void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
 template <class Motion>
 void Engine<Motion>::require_turns_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const {
   if constexpr (turns<Motion>) {
-    if (bodies_.unbounded(slot)) require_no_spin_of_half_space(bodies_[slot].shape->shape, pieces, name);
-    if (!tumbling_.has(slot)) return;
+    if (!tumbling_.has(slot) && !bodies_.unbounded(slot)) return;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const std::string index = pieces.size() == 1 ? "" : "[" + std::to_string(i) + "]";
-      require_steady_clock(pieces[i], clock_.now, std::string(name) + index);
+      const std::string one = name + (pieces.size() == 1 ? "" : "[" + std::to_string(i) + "]");
+      if (bodies_.unbounded(slot)) require_no_spin_of_half_space(bodies_[slot].shape->shape, pieces[i], one);
+      if (tumbling_.has(slot)) require_steady_clock(pieces[i], clock_.now, one);
     }
   }
 }

@@ -317,4 +317,23 @@ TEST_CASE("turning bodies graze a half-space, by gaps of any size", "[narrow-pha
   CHECK(first_meeting(floor, lies_at(next_down(0.75)), 1, 10) == 1);
 }
 
+TEST_CASE("what is in a half-space by a rounding is in contact as soon as it sinks, or when it comes back",
+          "[narrow-phase][turning][half_space]") {
+  const std::vector<Shape> shapes{Box{Vector3d(0.5, 0.5, 0.25)}, Capsule{0.125, 0.125},
+                                  MeshShape{samples::cuboid(Vector3d(0.5, 0.5, 0.25))}};
+  const Solid<2> floor{HalfSpace{Vector3d::UnitZ(), 0}, motion_of<2>({0, 0, 0}, {0, 0, 0}, {0, 0, 0})};
+  for (const Shape& shape : shapes) {
+    INFO(kind_name(shape));
+    const auto next = [&](double rises, double acceleration) {
+      auto motion = motion_of<2>({0, 0, 0.25 - 0x1p-50}, {1, 0, rises}, {0, 0, 1});
+      motion.path.coefficients[2] = Vector3d(0, 0, acceleration / 2);
+      return first_meeting(floor, Solid<2>{shape, motion}, 0, 2, ContactMode::resolved);
+    };
+    CHECK(next(0, 0) == never);
+    CHECK(next(0, 1) == never);
+    CHECK((next(0, -1) > 1e-9 && next(0, -1) < 1e-5));
+    CHECK(std::abs(next(0.5, -1) - 1) < 1e-12);
+  }
+}
+
 }  // namespace test_turning_half_space

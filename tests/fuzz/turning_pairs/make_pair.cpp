@@ -187,7 +187,7 @@ void put_half_space(RandomPair& pair, Random& random) {
     pair.a.path.coefficients[0] = Vector3d::Zero();
     normal = -Vector3d::UnitX(), offset = -from_axis;
   } else if (pair.family == linked) {
-    normal = direction(random), offset = -random.between(1.2, 1.6);
+    normal = direction(random), offset = -random.between(0.8, 1.2);
     pair.b.path.coefficients[0] = Vector3d::Zero();
   } else if (pair.family == parallel) {
     int axis = 0;
