@@ -76,7 +76,8 @@ double end_of_search(const MovingShape<Motion>& a, const MovingShape<Motion>& b,
     const auto turning_counts = [](const PlacedShape& shape) {
       return !std::holds_alternative<Sphere>(shape.shape) && !unbounded(shape.shape);
     };
-    if (turning_counts(a.shape) || turning_counts(b.shape)) return std::min(horizon, t0 + time_to_look_ahead(a.motion, b.motion));
+    if (turning_counts(a.shape) || turning_counts(b.shape))
+      return std::min(horizon, t0 + time_to_look_ahead(a.motion, b.motion));
   }
   return horizon;
 }

@@ -28,6 +28,12 @@ std::vector<KdopDirection> directions_of(const WorldOptions& options) {
   return {all.begin() + 3, all.end()};
 }
 
+/// A body that is one, in world orientation.
+template <class Motion>
+HalfSpace half_space(const Bodies<Motion>& bodies, BodySlot slot) {
+  return half_space_of(*bodies[slot].shape, bodies.motion(slot));
+}
+
 /// Whether a half-space, with its centre somewhere in a box, may have a point of another box: rounded outward. Either
 /// box may be infinite.
 bool reaches(const HalfSpace& plane, const StaticBox& centre, const StaticBox& box) {
@@ -212,7 +218,7 @@ KineticBox<Motion::degree> Volumes<Motion>::box_or_ball(BodySlot slot) const {
 
 template <class Motion>
 bool Volumes<Motion>::meets(BodySlot slot, const StaticBox& box, double t) const {
-  if (bodies_.unbounded(slot)) return reaches(half_space_of(*bodies_[slot].shape, bodies_.motion(slot)), swept_path(slot, t, t), box);
+  if (bodies_.unbounded(slot)) return reaches(half_space(bodies_, slot), swept_path(slot, t, t), box);
   if (!box_at(box_or_ball(slot), t).overlaps(box)) return false;
   for (std::size_t i = 0; i < directions_.size() && asked(slot); ++i) {
     const auto [low, high] = slab_at(slab(slot, i, t), t);
@@ -239,7 +245,7 @@ StaticBox Volumes<Motion>::swept_path(BodySlot slot, double from, double until) 
 
 template <class Motion>
 bool Volumes<Motion>::meets_swept(BodySlot slot, const StaticBox& swept, double from, double until) const {
-  if (bodies_.unbounded(slot)) return reaches(half_space_of(*bodies_[slot].shape, bodies_.motion(slot)), swept_path(slot, from, until), swept);
+  if (bodies_.unbounded(slot)) return reaches(half_space(bodies_, slot), swept_path(slot, from, until), swept);
   return this->swept(slot, from, until).overlaps(swept);
 }
 

@@ -57,9 +57,7 @@ class TurningAboveHalfSpace {
       return {dot(this->axis_b(0), v), dot(this->axis_b(1), v), dot(this->axis_b(2), v)};
     }
     double height(const Eigen::Vector3d& x) const { return origin.value + dot(normal, x); }
-    Jet height_jet(const Eigen::Vector3d& x) const {
-      return origin + Jet{dot(normal, x), dot(rate, x), dot(bend, x)};
-    }
+    Jet height_jet(const Eigen::Vector3d& x) const { return origin + Jet{dot(normal, x), dot(rate, x), dot(bend, x)}; }
     /// No corner in a box is lower.
     double lowest(const BoxOfCorners& box) const { return height(box.centre) - reach(box) - box.rounding; }
     /// How far a box reaches below its centre.
@@ -104,7 +102,8 @@ class TurningAboveHalfSpace {
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return std::all_of(found.begin(), found.end(), [&](std::uint32_t i) {
-      return test(Certificate{a_, b_, Eigen::Vector3d::Zero(), corners_[i], {plane_.normal, plane_.offset, corners_.grown_by()}});
+      return test(Certificate{
+          a_, b_, Eigen::Vector3d::Zero(), corners_[i], {plane_.normal, plane_.offset, corners_.grown_by()}});
     });
   }
 
@@ -160,8 +159,8 @@ class TurningAboveHalfSpace {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// The body of revolution about the axis of turning reaches as far down at all times; nearer to the plane each corner is
-/// followed along its Taylor series. Of a box of corners these are that of its centre, less how far it reaches below
+/// The body of revolution about the axis of turning reaches as far down at all times. Nearer to the plane each corner
+/// is followed along its Taylor series. Of a box of corners these are that of its centre, less how far it reaches below
 /// that while it turns, or in any orientation.
 template <int Degree, class Corners>
 double TurningAboveHalfSpace<Degree, Corners>::apart_until(const Frame& frame, double horizon) const {
@@ -174,7 +173,8 @@ double TurningAboveHalfSpace<Degree, Corners>::apart_until(const Frame& frame, d
   const double reach = rate > 0 ? corners_.revolving_reach(-frame.normal, frame.of_body(frame.spin_b / rate))
                                 : frame.origin.value - lowest(frame);
   const double roundings = PairFrame<Degree>::rounding * (lengths + corners_.radius());
-  const double wait = revolving_apart_for(frame, plane_.normal, plane_.offset + corners_.grown_by() + reach + roundings);
+  const double wait =
+      revolving_apart_for(frame, plane_.normal, plane_.offset + corners_.grown_by() + reach + roundings);
   if (wait >= all || !(rate > 0)) return after_wait(t, wait, stretch);
   const TurningBounds bounds(frame, 0, lengths, corners_.radius(), stretch);
   double first = stretch;
@@ -189,8 +189,9 @@ double TurningAboveHalfSpace<Degree, Corners>::apart_until(const Frame& frame, d
     if (!(however_turned < first)) return first;
     return std::max(however_turned, positive(centre - Jet{frame.reach(box) + box.rounding, frame.rate_b * radius, 0}));
   };
-  corners_.search(positive_of_box, [&] { return first; },
-                  [&](std::uint32_t i) { first = std::min(first, positive(frame.height_jet(corners_[i]))); });
+  corners_.search(
+      positive_of_box, [&] { return first; },
+      [&](std::uint32_t i) { first = std::min(first, positive(frame.height_jet(corners_[i]))); });
   return after_wait(t, std::max(wait, first), stretch);
 }
 

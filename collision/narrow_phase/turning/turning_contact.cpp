@@ -93,8 +93,7 @@ auto without_turning(const Body<Degree>& a, const Body<Degree>& b, const Ask& as
 template <class Pair, int Degree>
 double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
   constexpr double roundings = 0x1p-46;
-  double coordinates =
-      norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) + b.shape.bounding_radius;
+  double coordinates = norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) + b.shape.bounding_radius;
   if (!unbounded(a.shape.shape)) coordinates += a.shape.bounding_radius;
   // In proportion to the depth it may not be: what sinks a little deeper with each contact would sink ever faster.
   const double depth = pair.depth(t);

@@ -40,9 +40,8 @@ struct ExactSigns {
 /// `gaps(frame, gap)`, which fills in a width for each way and returns an error, so that a way that is narrower than
 /// -error has a condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change;
 /// `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps `unsure_while_open`, the same
-/// of a way whose conditions hold just after the time of the frame; perhaps `many_conditions`, if there are so many that
-/// all of them are never to be looked at; `apart_until(t, horizon)`, a proven time;
-/// `time_of_turning()`.
+/// of a way whose conditions hold just after the time of the frame; perhaps `many_conditions`, if they are never all to
+/// be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.

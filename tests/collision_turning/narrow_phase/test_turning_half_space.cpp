@@ -97,9 +97,8 @@ class Height {
 };
 
 const MeshShape& sample_mesh(std::size_t which) {
-  static const std::vector<MeshShape> meshes{{samples::torus(12, 8), 0.5},
-                                             {samples::ball_mesh(2), 0.75},
-                                             {samples::cuboid(Vector3d(0.5, 0.25, 0.75))}};
+  static const std::vector<MeshShape> meshes{
+      {samples::torus(12, 8), 0.5}, {samples::ball_mesh(2), 0.75}, {samples::cuboid(Vector3d(0.5, 0.25, 0.75))}};
   return meshes[which % meshes.size()];
 }
 
@@ -199,8 +198,7 @@ TEST_CASE("turning bodies meet a half-space when their lowest corner says so", "
   check_pairs<2>(2, 150);
 }
 
-TEST_CASE("turning bodies meet a half-space: slowly and fast, begun long ago",
-          "[narrow-phase][turning][half_space]") {
+TEST_CASE("turning bodies meet a half-space: slowly and fast, begun long ago", "[narrow-phase][turning][half_space]") {
   Random random(7);
   int meetings = 0;
   for (const double rate : {1e-9, 1e-4, 100.0, 1e4}) {
@@ -286,8 +284,7 @@ TEST_CASE("a capsule of length 0 meets a half-space as the ball, to the bit", "[
 
 TEST_CASE("turning bodies graze a half-space, by gaps of any size", "[narrow-phase][turning][half_space]") {
   // The edges of the box are 5 from the axis about which it turns, exactly; the end of the capsule, too.
-  const std::vector<Shape> shapes{Box{Vector3d(3, 4, 1)}, Capsule{1, 4},
-                                  MeshShape{samples::cuboid(Vector3d(3, 4, 1))}};
+  const std::vector<Shape> shapes{Box{Vector3d(3, 4, 1)}, Capsule{1, 4}, MeshShape{samples::cuboid(Vector3d(3, 4, 1))}};
   for (const Shape& shape : shapes) {
     for (const double rate : {0.5, 30.0}) {
       auto motion = motion_of<1>({0, 0, 0}, {0, 0, 0}, {0, 0, rate});
