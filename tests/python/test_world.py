@@ -131,6 +131,10 @@ class Bulk(unittest.TestCase):
         self.assertEqual((event.a, event.b), (floor, rod))
         with self.assertRaisesRegex(ValueError, "half-space does not turn"):
             world.add_body(kds.half_space((0, 0, 1)), (0, 0, 0), angular_velocity=(1, 0, 0), fixed=True)
+        before = world.angular_velocities([rod])
+        with self.assertRaisesRegex(ValueError, "half-space does not turn"):
+            world.update_motions([rod, floor], angular_velocities=[(0, 0, 3), (0, 0, 1)])
+        np.testing.assert_array_equal(world.angular_velocities([rod]), before)
 
 
 class Callbacks(unittest.TestCase):
