@@ -1,6 +1,7 @@
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
 #include "collision/world.hpp"
+#include "collision/world/checked_pieces.hpp"
 #include "io/events.hpp"
 #include "io/scene_world.hpp"
 #include "python/any_world.hpp"
@@ -111,6 +112,7 @@ class WorldOf final : public AnyWorld {
       (void)world_.mass(ids[i]);  // throws if it is not there
       own.push_back(narrowed<M>(motions[i], name));
       if (!in_range(own.back())) refuse_motion(own.back(), name);
+      if constexpr (turns<M>) require_no_spin_of_half_space(world_.shape(ids[i]).shape, own.back(), name);
     }
     for (std::size_t i = 0; i < ids.size(); ++i) world_.update_motion(ids[i], own[i]);
   }

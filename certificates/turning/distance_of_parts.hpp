@@ -84,6 +84,21 @@ struct AcrossSide {
   }
 };
 
+/// n . d >= h + r: a point of b is above the plane of a half-space of a that is at the height h above x along n, and a
+/// radius more. The sum is not rounded, and the radius counts as it is, whatever the length of n.
+struct AbovePlane {
+  static constexpr int order = 1, harmonics = 1;
+  Eigen::Vector3d normal;
+  double offset, radius;
+
+  template <class Products>
+  auto value(const Products& products) const {
+    using Number = typename Products::Value;
+    return products.difference(products.of_a(vector_of<Number>(normal)),
+                               products.constant(Number(offset) + Number(radius)));
+  }
+};
+
 /// d . d >= r^2: two points are no nearer than the sum of two radii.
 struct PointsApart {
   static constexpr int order = 2, harmonics = 1;

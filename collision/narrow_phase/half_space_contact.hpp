@@ -22,9 +22,9 @@ template <int Degree>
 struct HalfSpaceContact : PiecewiseContact<Degree, AboveHalfSpace<Degree>, half_space_contact<Degree>> {};
 
 /// Two half-spaces, which never meet: both are fixed.
-template <int Degree>
+template <class Motion>
 struct HalfSpacesContact {
-  using Body = TranslatingShape<Degree>;
+  using Body = MovingShape<Motion>;
 
   static double first_contact(const Body&, const Body&, double, double, ContactMode, FoundTouch*) { return never; }
   static double apart_until(const Body&, const Body&, double, double, PairMemory&) { return never; }

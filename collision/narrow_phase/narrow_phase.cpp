@@ -31,7 +31,7 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   table.template add<MeshShape, Sphere, Box, Capsule, MeshShape>(MeshContact<Degree>{});
   table.template add<MeshShape, ConvexHull>(MeshHullContact<Degree>{});
   table.template add<HalfSpace, Sphere, Box, Capsule, MeshShape, ConvexHull>(HalfSpaceContact<Degree>{});
-  table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<Degree>{});
+  table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<certificates::PointMotion<Degree>>{});
   table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<Degree>{});
   table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(
       CompoundContact<Degree>{});
@@ -51,6 +51,8 @@ constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   table.template add<Capsule, Sphere, Box, Capsule>(TurningContact<Degree>{});
   table.template add<ConvexHull, Sphere, Box, Capsule, ConvexHull>(TurningContact<Degree>{});
   table.template add<MeshShape, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningMeshContact<Degree>{});
+  table.template add<HalfSpace, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningContact<Degree>{});
+  table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<certificates::RigidMotion<Degree>>{});
   return table;
 }
 
@@ -67,12 +69,15 @@ template <class Motion>
 constexpr PairTable<Motion> table = make_table<Motion>();
 
 /// Up to when exact tests look from t0 on. The paths of bodies that turn may come near each other for ever, so that to
-/// look to the end of time would take for ever. Two balls do not care how they turn.
+/// look to the end of time would take for ever. Balls do not care how they turn, if they meet balls and half-spaces.
 template <class Motion>
 double end_of_search(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon) {
   if constexpr (turns<Motion>) {
-    const bool balls = std::holds_alternative<Sphere>(a.shape.shape) && std::holds_alternative<Sphere>(b.shape.shape);
-    if (!balls) return std::min(horizon, t0 + time_to_look_ahead(a.motion, b.motion));
+    const auto turning_counts = [](const PlacedShape& shape) {
+      return !std::holds_alternative<Sphere>(shape.shape) && !unbounded(shape.shape);
+    };
+    if (turning_counts(a.shape) || turning_counts(b.shape))
+      return std::min(horizon, t0 + time_to_look_ahead(a.motion, b.motion));
   }
   return horizon;
 }

@@ -5,6 +5,7 @@
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/vectors.hpp"
+#include "collision/world/checked_pieces.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -98,6 +99,9 @@ std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedSha
   if (!in_range(motion) || !(path_of(motion).start <= world.now())) {
     throw std::invalid_argument("next_contact: the motion is out of the range of shape.hpp, or begins after now (" +
                                 std::to_string(world.now()) + ")");
+  }
+  if constexpr (turns<Motion>) {
+    require_no_spin_of_half_space(shape.shape, motion, "next_contact: motion");
   }
   return first_met(world, MovingShape<Motion>{shape, motion}, until, ContactMode::transparent,
                    [&](BodyId id) { return detail::accepts(filter, id); });

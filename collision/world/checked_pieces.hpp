@@ -5,6 +5,7 @@
 #include "collision/body_description.hpp"
 #include "collision/body_motion.hpp"
 #include "collision/response/rotation_piece.hpp"
+#include "collision/shapes/shape.hpp"
 #include "collision/vectors.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
@@ -39,6 +40,15 @@ void require_steady_clock(const certificates::RigidMotion<Degree>& motion, doubl
   throw std::invalid_argument(name +
                               ".angular_velocity: the body precesses, and turns by more than a radian between two "
                               "doubles of the clock");
+}
+
+/// Half-spaces keep their orientation: what one of them sweeps while it turns has no bounds. Throws
+/// std::invalid_argument, naming the motion by `name`, if this is one that would turn.
+template <int Degree>
+void require_no_spin_of_half_space(const Shape& shape, const certificates::RigidMotion<Degree>& motion,
+                                   const std::string& name) {
+  if (!unbounded(shape) || motion.angular_velocity.isZero(0)) return;
+  throw std::invalid_argument(name + ".angular_velocity: a half-space does not turn");
 }
 
 }  // namespace kds::collision

@@ -42,6 +42,9 @@ void validate(const BasicBodyDescription<Motion>& description) {
     fail(name + " cannot move on paths of degree " + std::to_string(Motion::degree) + ": at most 2");
   }
   if constexpr (turns<Motion>) {
+    for (std::size_t i = 0; i < description.motion.size(); ++i) {
+      require_no_spin_of_half_space(description.shape, description.motion[i], "motion[" + std::to_string(i) + "]");
+    }
     if (description.orientation.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
       fail("orientation: a body that turns has that of its motion");
     }
@@ -113,6 +116,9 @@ BodyId Engine<Motion>::add_attached(const Description& description) {
   if (!description.motion.empty()) fail("motion: a sensor that is attached to a body has the motion of that");
   if (bodies_.attachments().owner(owner) != no_body) {
     fail("attached_to: body " + std::to_string(*description.attached_to) + " is attached to another itself");
+  }
+  if (turns<Motion> && unbounded(description.shape)) {
+    fail("attached_to: a half-space does not turn, as body " + std::to_string(*description.attached_to) + " may");
   }
   Description alone = description;
   alone.attached_to.reset();

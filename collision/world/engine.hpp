@@ -232,7 +232,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void require_own_motion(BodySlot slot, const char* function) const;
   void wait_to_enter(BodySlot slot);
   void move_attached(BodySlot slot, bool jumped);
-  void require_clock_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const;
+  void require_turns_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const;
   void give(BodySlot slot, const Motion& motion);
   void set_motion(BodySlot slot, const Motion& motion, bool jumped);
 

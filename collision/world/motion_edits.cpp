@@ -35,7 +35,7 @@ void Engine<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
                                 std::to_string(path_of(pieces[0]).start) + ", after the clock at " +
                                 std::to_string(clock_.now));
   }
-  require_clock_for(slot, pieces, name);
+  require_turns_for(slot, pieces, name);
   count_edit();
   auto next = std::upper_bound(pieces.begin(), pieces.end(), clock_.now,
                                [](double t, const Motion& piece) { return t < path_of(piece).start; });
@@ -59,19 +59,20 @@ void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
     throw std::invalid_argument(std::string(name) + "[0].start: " + std::to_string(path_of(pieces[0]).start) +
                                 " is not after the clock and the last piece, " + std::to_string(last));
   }
-  require_clock_for(slot, pieces, name);
+  require_turns_for(slot, pieces, name);
   count_edit();
   change_or_fail([&] { scripts_.append(slot, pieces); });
 }
 
-/// Of a body that precesses.
+/// Of a half-space, and of a body that precesses.
 template <class Motion>
-void Engine<Motion>::require_clock_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const {
+void Engine<Motion>::require_turns_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const {
   if constexpr (turns<Motion>) {
-    if (!tumbling_.has(slot)) return;
+    if (!tumbling_.has(slot) && !bodies_.unbounded(slot)) return;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const std::string index = pieces.size() == 1 ? "" : "[" + std::to_string(i) + "]";
-      require_steady_clock(pieces[i], clock_.now, std::string(name) + index);
+      const std::string one = name + (pieces.size() == 1 ? "" : "[" + std::to_string(i) + "]");
+      if (bodies_.unbounded(slot)) require_no_spin_of_half_space(bodies_[slot].shape->shape, pieces[i], one);
+      if (tumbling_.has(slot)) require_steady_clock(pieces[i], clock_.now, one);
     }
   }
 }

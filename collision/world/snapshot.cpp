@@ -6,6 +6,7 @@
 #include "collision/world/image_tools.hpp"
 #include "collision/world/reports_image.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -72,6 +73,20 @@ struct Engine<Motion>::Image {
     archive(scripts, timers, tumbling, pairs, self_contacts, resting, pending);
   }
 
+  /// Throws std::runtime_error if one turns, or will, or may with the body that it is attached to.
+  void check_half_spaces() const {
+    if constexpr (turns<Motion>) {
+      const auto still = [](const Motion& piece) { return piece.angular_velocity.isZero(0); };
+      for (BodySlot slot = 0; slot < bodies.bodies.size(); ++slot) {
+        if (!bodies.alive(slot) || !unbounded(bodies.bodies[slot].placed.shape)) continue;
+        const std::vector<Motion> none, &later = slot < scripts.of.size() ? scripts.of[slot] : none;
+        image::require(still(bodies.bodies[slot].motion) && std::all_of(later.begin(), later.end(), still) &&
+                           bodies.owner(slot) == no_body,
+                       "bodies", slot, "it is a half-space that turns");
+      }
+    }
+  }
+
   /// Throws std::runtime_error, naming what is wrong, unless it may be an image of a world with these options, which
   /// can then become it.
   void check(const WorldOptions& options) const {
@@ -82,6 +97,7 @@ struct Engine<Motion>::Image {
     bodies.check(now);
     scripts.check(now, [&](BodySlot slot) { return bodies.alive(slot); });
     timers.check(now);
+    check_half_spaces();
     tumbling.check(bodies, now);
     std::vector<char> enters(bodies.bodies.size());
     for (const BodySlot slot : bodies.waiting) enters[slot] = 1;

@@ -3,7 +3,7 @@
 #include "collision/broad_phase/box_overlap.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/motions.hpp"
-#include "collision/shapes/half_space.hpp"
+#include "collision/narrow_phase/half_space_of.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/raised_flag.hpp"
@@ -28,10 +28,15 @@ std::vector<KdopDirection> directions_of(const WorldOptions& options) {
   return {all.begin() + 3, all.end()};
 }
 
+/// A body that is one, in world orientation.
+template <class Motion>
+HalfSpace half_space(const Bodies<Motion>& bodies, BodySlot slot) {
+  return half_space_of(*bodies[slot].shape, bodies.motion(slot));
+}
+
 /// Whether a half-space, with its centre somewhere in a box, may have a point of another box: rounded outward. Either
 /// box may be infinite.
-bool reaches(const PlacedShape& half_space, const StaticBox& centre, const StaticBox& box) {
-  const HalfSpace plane = placed_half_space(half_space);
+bool reaches(const HalfSpace& plane, const StaticBox& centre, const StaticBox& box) {
   double lowest = -plane.offset, size = std::abs(plane.offset);
   for (int d = 0; d < 3; ++d) {
     const double n = plane.normal[d];
@@ -213,7 +218,7 @@ KineticBox<Motion::degree> Volumes<Motion>::box_or_ball(BodySlot slot) const {
 
 template <class Motion>
 bool Volumes<Motion>::meets(BodySlot slot, const StaticBox& box, double t) const {
-  if (bodies_.unbounded(slot)) return reaches(*bodies_[slot].shape, swept_path(slot, t, t), box);
+  if (bodies_.unbounded(slot)) return reaches(half_space(bodies_, slot), swept_path(slot, t, t), box);
   if (!box_at(box_or_ball(slot), t).overlaps(box)) return false;
   for (std::size_t i = 0; i < directions_.size() && asked(slot); ++i) {
     const auto [low, high] = slab_at(slab(slot, i, t), t);
@@ -240,7 +245,7 @@ StaticBox Volumes<Motion>::swept_path(BodySlot slot, double from, double until) 
 
 template <class Motion>
 bool Volumes<Motion>::meets_swept(BodySlot slot, const StaticBox& swept, double from, double until) const {
-  if (bodies_.unbounded(slot)) return reaches(*bodies_[slot].shape, swept_path(slot, from, until), swept);
+  if (bodies_.unbounded(slot)) return reaches(half_space(bodies_, slot), swept_path(slot, from, until), swept);
   return this->swept(slot, from, until).overlaps(swept);
 }
 

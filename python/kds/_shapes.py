@@ -38,7 +38,7 @@ def hull(points: ArrayLike) -> Shape:
 def half_space(normal: ArrayLike, offset: float = 0.0) -> Shape:
     """All that is not beyond a plane: normal . x <= offset, seen from the body's centre. A floor, or a wall.
 
-    The normal (3,) leads out of it, and is of unit length. For fixed bodies of worlds that do not turn.
+    The normal (3,) leads out of it, and is of unit length. For fixed bodies, which may move but not turn.
     """
     return _kds.half_space(vector("normal", normal), number("offset", offset))
 

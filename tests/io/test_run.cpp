@@ -104,10 +104,13 @@ TEST_CASE("run: a contact of bodies that turn changes paths and angular velociti
 }
 
 TEST_CASE("run: where both have friction, a ball that spins is driven on by the floor") {
+  const std::string floor =
+      GENERATE(R"({"box": {"half_extents": [9,9,1]}})", R"({"half_space": {"normal": [0,0,1], "offset": 1}})");
+  INFO(floor);
   Record record;
   const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic", "friction": 0.25, "bodies": [
-    {"name": "floor", "shape": {"box": {"half_extents": [9,9,1]}}, "fixed": true,
-     "motion": [{"start": 0, "position": [[0,0,-1]]}]},
+    {"name": "floor", "shape": )" + floor +
+                                      R"(, "fixed": true, "motion": [{"start": 0, "position": [[0,0,-1]]}]},
     {"name": "ball", "shape": {"sphere": {"radius": 0.5}},
      "motion": [{"start": 0, "position": [[0,0,1.5], [0,0,-1]], "angular_velocity": [0,8,0]}]}]})",
                                   "scene.json");

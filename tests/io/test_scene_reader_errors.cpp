@@ -248,6 +248,13 @@ TEST_CASE("scene reader: what is not JSON is named with path, line and column") 
   CHECK(error_of(text, "scene.json") == error);
 }
 
+TEST_CASE("scene reader: a half-space does not turn") {
+  CHECK(error_of(R"({"scene": 1, "end_time": 1, "bodies": [
+    {"name": "floor", "shape": {"half_space": {"normal": [0,0,1], "offset": 0}}, "fixed": true,
+     "motion": [{"start": 0, "position": [[0,0,0]], "angular_velocity": [0,0,1]}]}]})",
+                 "scene.json") == "scene.json: bodies[0].motion[0].angular_velocity: a half-space does not turn");
+}
+
 TEST_CASE("scene reader: a file that cannot be read") {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& name) {

@@ -140,6 +140,21 @@ class Bulk(unittest.TestCase):
         np.testing.assert_array_equal(world.angular_velocities([ball])[0], [0, 0, 2])
         np.testing.assert_array_equal(world.orientations([ball])[0], [half, half, 0, 0])
 
+    def test_what_turns_meets_a_floor(self):
+        world = kds.World(turning=True)
+        floor = world.add_body(kds.half_space((0, 0, 1)), (0, 0, 0), fixed=True)
+        lying = (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
+        rod = world.add_body(kds.capsule(0.1, 1), (0, 0, 1), orientation=lying, angular_velocity=(1, 0, 0))
+        (event,) = world.advance_to(2)[:1]
+        self.assertAlmostEqual(event.time, np.arcsin(0.9), places=12)
+        self.assertEqual((event.a, event.b), (floor, rod))
+        with self.assertRaisesRegex(ValueError, "half-space does not turn"):
+            world.add_body(kds.half_space((0, 0, 1)), (0, 0, 0), angular_velocity=(1, 0, 0), fixed=True)
+        before = world.angular_velocities([rod])
+        with self.assertRaisesRegex(ValueError, "half-space does not turn"):
+            world.update_motions([rod, floor], angular_velocities=[(0, 0, 3), (0, 0, 1)])
+        np.testing.assert_array_equal(world.angular_velocities([rod]), before)
+
 
 class Callbacks(unittest.TestCase):
     def test_functions_see_what_is_gathered(self):

@@ -45,7 +45,7 @@ Vector3d random_vector(kds::tests::Random& random, double size) {
 }
 
 /// What the bodies of a scene are.
-enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture, capsules, crates };
+enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture, capsules, crates, in_a_room };
 
 constexpr double end_time = 2;
 constexpr int most_bodies = 64;  // on a lattice of 4 x 4 x 4
@@ -79,7 +79,7 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
     // Three moments, or those of a top: which move such bodies in pieces where contacts are resolved.
     if (bodies == Bodies::precessing) body.shape = Box{Vector3d(0.3, i % 2 == 0 ? 0.3 : 0.4, 0.6)};
     // All kinds meet capsules, which precess as tops where contacts are resolved.
-    if (bodies == Bodies::capsules) {
+    if (bodies == Bodies::capsules || bodies == Bodies::in_a_room) {
       if (i % 2 == 0) body.shape = Capsule{i % 4 == 0 ? 0.25 : 0.125, i % 3 == 0 ? 0.25 : 0.5};
       if (i % 8 == 1) body.shape = Sphere{0.4};
       if (i % 8 == 3) body.shape = tetrahedron, body.inertia = 0.05;
@@ -91,13 +91,24 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
     body.fixed = i == 7 && !crates;
     world.add_body(body);
   }
-  if (!crates) return;  // They fall on a floor, and most come to rest.
-  typename TurningWorld<Degree>::Motion floor{};
-  floor.path.coefficients.fill(Vector3d::Zero());
-  floor.path.coefficients[0] = Vector3d(3, 3, -0.75);
-  typename TurningWorld<Degree>::Description body{.shape = Box{Vector3d(4, 4, 0.25)}, .motion = {floor}};
-  body.fixed = true, body.friction = 0.5, body.restitution = 0.25;
-  world.add_body(body);
+  const auto add_fixed = [&](const Shape& shape, const Vector3d& at, const Eigen::Quaterniond& orientation) {
+    typename TurningWorld<Degree>::Motion motion{};
+    motion.path.coefficients.fill(Vector3d::Zero());
+    motion.path.coefficients[0] = at;
+    motion.orientation = orientation;
+    typename TurningWorld<Degree>::Description body{.shape = shape, .motion = {motion}};
+    body.fixed = true, body.friction = 0.5, body.restitution = crates ? 0.25 : 0.75;
+    world.add_body(body);
+  };
+  if (crates) {  // They fall on a floor, and most come to rest.
+    add_fixed(Box{Vector3d(4, 4, 0.25)}, Vector3d(3, 3, -0.75), Eigen::Quaterniond::Identity());
+  }
+  if (bodies != Bodies::in_a_room) return;
+  for (int d = 0; d < 3; ++d) {  // Its walls are half-spaces.
+    for (const double side : {-1.0, 1.0}) {
+      add_fixed(HalfSpace{side * Vector3d::Unit(d), -4.5}, Vector3d::Constant(2.25), {8, 1, -2, 0.5});
+    }
+  }
 }
 
 /// How a world is driven to the end.
@@ -125,7 +136,8 @@ void add_worlds(std::vector<Replay>& replays) {
   constexpr std::array kinds{std::pair{Bodies::boxes, "boxes"},     std::pair{Bodies::rods_and_balls, "rods-and-balls"},
                              std::pair{Bodies::rings, "rings"},     std::pair{Bodies::precessing, "precessing"},
                              std::pair{Bodies::mixture, "mixture"}, std::pair{Bodies::capsules, "capsules"},
-                             std::pair{Bodies::crates, "crates"}};
+                             std::pair{Bodies::crates, "crates"},
+                             std::pair{Bodies::in_a_room, "in-a-room"}};
   for (const auto& [bodies, name] : kinds) {
     for (const Response response : {Response::none, Response::elastic}) {
       if (bodies == Bodies::crates && (Degree == 1 || response == Response::none)) continue;
@@ -136,7 +148,7 @@ void add_worlds(std::vector<Replay>& replays) {
         WorldOptions options{.response = response, .broad_phase = broad_phase};
         options.rate = broad_phase == BroadPhaseKind::sap ? 30 : 0;
         options.report_pairs = true;
-        if (response == Response::elastic && what != Bodies::crates)
+        if (response == Response::elastic && what != Bodies::crates && what != Bodies::in_a_room)
           options.walls = Walls{Vector3d::Constant(-1), Vector3d::Constant(6)};
         replay.ways.push_back({std::move(way), [=](EventHash& hash) { run<Degree>(what, options, drive, hash); }});
       };

@@ -1,8 +1,13 @@
 #include "collision/narrow_phase/turning/turning_contact.hpp"
 
 #include "collision/narrow_phase/contact_patch.hpp"
+#include "collision/narrow_phase/half_space_contact.hpp"
+#include "collision/narrow_phase/half_space_of.hpp"
+#include "collision/narrow_phase/lowest_place.hpp"
+#include "collision/narrow_phase/turning/corners_of_shape.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/narrow_phase/turning/remembered_signs.hpp"
+#include "collision/narrow_phase/turning/turning_above_half_space.hpp"
 #include "collision/narrow_phase/turning/turning_ball_and_box.hpp"
 #include "collision/narrow_phase/turning/turning_ball_and_polytope.hpp"
 #include "collision/narrow_phase/turning/turning_boxes.hpp"
@@ -31,9 +36,18 @@ const Vector3d& half_extents(const PlacedShape& shape) { return std::get<Box>(sh
 bool is_ball(const PlacedShape& shape) { return std::holds_alternative<Sphere>(shape.shape); }
 bool is_capsule(const PlacedShape& shape) { return std::holds_alternative<Capsule>(shape.shape); }
 
-/// Calls ask(pair) with what WaysApart takes. Precondition: not two balls; a hull comes first, or else a capsule.
+/// Calls ask(pair) with what WaysApart takes. Precondition: turning counts for the pair; a half-space comes first, or
+/// else a hull, or else a capsule.
 template <int Degree, class Ask>
 auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
+  if (unbounded(a.shape.shape)) {
+    const auto with = [&]<class Corners>(Corners corners) {
+      const HalfSpace plane = half_space_of(a.shape, a.motion);
+      return ask(TurningAboveHalfSpace<Degree, Corners>(plane, a.motion.path, std::move(corners), b.motion));
+    };
+    if (const auto* const mesh = std::get_if<MeshShape>(&b.shape.shape)) return with(CornersOfMesh(*mesh));
+    return with(CornersOfSolid(b.shape.shape));
+  }
   if (std::holds_alternative<ConvexHull>(a.shape.shape) || is_capsule(a.shape)) {
     const ConvexCore core(a.shape.shape);
     if (is_ball(b.shape)) return ask(TurningBallAndPolytope<Degree>(a.motion, core, b.motion, radius(b.shape)));
@@ -52,10 +66,26 @@ auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
   return ask(TurningBoxes<Degree>(a.motion, half_extents(a.shape), b.motion, half_extents(b.shape)));
 }
 
-/// Two balls do not care how they turn.
+/// Whether it counts how the two turn: not where a ball meets a ball or a half-space, which come first.
+bool turning_counts(const PlacedShape& a, const PlacedShape& b) {
+  return !is_ball(b) || !(is_ball(a) || unbounded(a.shape));
+}
+
+/// The body as it is at t, in doubles. The orientation of a half-space is the same at all times.
 template <int Degree>
-TranslatingShape<Degree> ball_of(const Body<Degree>& body) {
-  return {body.shape, body.motion.path};
+PlacedShape placed_at(const Body<Degree>& body, double t) {
+  const auto q = certificates::turned_orientation(body.motion.orientation, body.motion.spin(), t);
+  return place(body.shape.shape, Eigen::Quaterniond(Eigen::Vector4d(q.coeffs() / norm(q))));
+}
+
+/// Calls ask(a, b) with a ball, and a ball or a half-space that comes first, as bodies that do not turn.
+template <int Degree, class Ask>
+auto without_turning(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
+  using Still = TranslatingShape<Degree>;
+  const Still ball{b.shape, b.motion.path};
+  if (is_ball(a.shape)) return ask(Still{a.shape, a.motion.path}, ball);
+  const PlacedShape plane = placed_at<Degree>(a, a.motion.start());
+  return ask(Still{plane, a.motion.path}, ball);
 }
 
 /// The first double in (t, horizon] at which two bodies that overlap just after t do so more than they do then, by more
@@ -63,8 +93,8 @@ TranslatingShape<Degree> ball_of(const Body<Degree>& body) {
 template <class Pair, int Degree>
 double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
   constexpr double roundings = 0x1p-46;
-  const double coordinates = norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) +
-                             a.shape.bounding_radius + b.shape.bounding_radius;
+  double coordinates = norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) + b.shape.bounding_radius;
+  if (!unbounded(a.shape.shape)) coordinates += a.shape.bounding_radius;
   // In proportion to the depth it may not be: what sinks a little deeper with each contact would sink ever faster.
   const double depth = pair.depth(t);
   double deeper = never;
@@ -79,10 +109,27 @@ double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>&
   return std::max(deeper, next_up(t));
 }
 
+/// Of a half-space (a). The middle of what is lowest of b, or where that does not approach but another corner of it
+/// does, the one that approaches fastest.
 template <int Degree>
-PlacedShape placed_at(const Body<Degree>& body, double t) {
-  const auto q = certificates::turned_orientation(body.motion.orientation, body.motion.spin(), t);
-  return place(body.shape.shape, Eigen::Quaterniond(Eigen::Vector4d(q.coeffs() / norm(q))));
+Contact contact_with_half_space(const Body<Degree>& a, const Body<Degree>& b, double t) {
+  const PlacedShape plane = placed_at<Degree>(a, t);
+  PlacedShape placed = b.shape;
+  if (concave(b.shape.shape)) {  // Of a mesh its bounds, which would cost a look at all of it, are not asked for.
+    placed.rotation = b.motion.rotation(t).matrix();
+  } else {
+    placed = placed_at<Degree>(b, t);
+  }
+  Contact contact = half_space_contact<Degree>({plane, a.motion.path}, {placed, b.motion.path}, t);
+  const PointRates<Degree> rates(a.motion, b.motion, t);
+  const auto parting = [&](const Vector3d& x) { return dot(contact.normal, rates.velocity(x)); };
+  if (is_ball(b.shape) || parting(contact.point) < -rates.noise(contact.point)) return contact;
+  const Vector3d origin = b.motion.path.position(t);
+  for (const Vector3d& corner : lowest_feature(placed, contact.normal).vertices) {
+    const Vector3d x = origin + corner;
+    if (parting(x) < parting(contact.point) && parting(x) < -rates.noise(x)) contact.point = x;
+  }
+  return contact;
 }
 
 }  // namespace
@@ -97,7 +144,10 @@ double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const cert
 
 template <int Degree>
 Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch&) {
-  if (is_ball(a.shape) && is_ball(b.shape)) return collision::contact_at(ball_of<Degree>(a), ball_of<Degree>(b), t);
+  if (unbounded(a.shape.shape)) return contact_with_half_space<Degree>(a, b, t);
+  if (is_ball(a.shape) && is_ball(b.shape)) {
+    return without_turning<Degree>(a, b, [&](const auto& x, const auto& y) { return collision::contact_at(x, y, t); });
+  }
   const PlacedShape placed_a = placed_at<Degree>(a, t);
   const PlacedShape placed_b = placed_at<Degree>(b, t);
   Contact contact = collision::contact_at<PointMotion<Degree>>({placed_a, a.motion.path}, {placed_b, b.motion.path}, t);
@@ -147,8 +197,9 @@ template <int Degree>
 double TurningContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                                              FoundTouch*) {
   if (!(t0 <= horizon)) return never;
-  if (is_ball(a.shape) && is_ball(b.shape)) {
-    return collision::first_contact(ball_of<Degree>(a), ball_of<Degree>(b), t0, horizon, mode);
+  if (!turning_counts(a.shape, b.shape)) {
+    return without_turning<Degree>(
+        a, b, [&](const auto& x, const auto& y) { return collision::first_contact(x, y, t0, horizon, mode); });
   }
   return with_ways<Degree>(a, b, [&](const auto& pair) {
     using Pair = std::decay_t<decltype(pair)>;
@@ -173,13 +224,15 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
 template <int Degree>
 double TurningContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
   if (!(t0 <= horizon)) return never;
-  if (is_ball(a.shape) && is_ball(b.shape)) return t0;
+  if (!turning_counts(a.shape, b.shape)) return t0;
   return with_ways<Degree>(a, b, [&](const auto& pair) { return pair.apart_until(t0, horizon); });
 }
 
 template <int Degree>
 bool TurningContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
-  if (is_ball(a.shape) && is_ball(b.shape)) return collision::in_contact(ball_of<Degree>(a), ball_of<Degree>(b), t);
+  if (!turning_counts(a.shape, b.shape)) {
+    return without_turning<Degree>(a, b, [&](const auto& x, const auto& y) { return collision::in_contact(x, y, t); });
+  }
   return with_ways<Degree>(
       a, b, [&](const auto& pair) { return WaysApart<std::decay_t<decltype(pair)>>(pair).penetrate(t); });
 }
@@ -187,8 +240,9 @@ bool TurningContact<Degree>::in_contact(const Body& a, const Body& b, double t) 
 template <int Degree>
 double TurningContact<Degree>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
   if (!(t0 <= horizon)) return never;
-  if (is_ball(a.shape) && is_ball(b.shape)) {
-    return collision::first_separation(ball_of<Degree>(a), ball_of<Degree>(b), t0, horizon);
+  if (!turning_counts(a.shape, b.shape)) {
+    return without_turning<Degree>(
+        a, b, [&](const auto& x, const auto& y) { return collision::first_separation(x, y, t0, horizon); });
   }
   return with_ways<Degree>(
       a, b, [&](const auto& pair) { return WaysApart<std::decay_t<decltype(pair)>>(pair).first_parting(t0, horizon); });

@@ -1,4 +1,4 @@
-// Contacts of bodies that turn: balls, boxes and convex hulls, by exact signs.
+// Contacts of bodies that turn: balls, boxes, capsules and convex hulls, also with half-spaces, by exact signs.
 #pragma once
 
 #include "certificates/turning/rigid_motion.hpp"
@@ -11,8 +11,9 @@ namespace kds::collision {
 // as there: contact is the first double just after which the two penetrate, by exact signs.
 //
 // A box is the exact box of its half extents, a hull that of its points, turned by the exact rotation of its motion:
-// nothing of it is rounded. The
-// rotation in PlacedShape does not count; orientations are those of motions.
+// nothing of it is rounded. A half-space comes first, does not turn, and has a normal that is rounded, once, when it is
+// turned as its motion says; what is in it has a corner in it, also where that is a mesh. The rotation in PlacedShape
+// does not count; orientations are those of motions.
 //
 // Mode `resolved`, bodies that overlap by rounding: they are in contact if they approach at some point that they share,
 // faster than roundings can feign. Where they do not they are looked at again when they have parted and meet, or are
@@ -22,7 +23,7 @@ namespace kds::collision {
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b);
 
-/// Of two bodies of which both can turn.
+/// Of two bodies of which both can turn, or of a half-space (a) and one that can.
 template <int Degree>
 struct TurningContact {
   using Motion = certificates::RigidMotion<Degree>;

@@ -40,8 +40,8 @@ struct ExactSigns {
 /// `gaps(frame, gap)`, which fills in a width for each way and returns an error, so that a way that is narrower than
 /// -error has a condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change;
 /// `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps `unsure_while_open`, the same
-/// of a way whose conditions hold just after the time of the frame; `apart_until(t, horizon)`, a proven time;
-/// `time_of_turning()`.
+/// of a way whose conditions hold just after the time of the frame; perhaps `many_conditions`, if they are never all to
+/// be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -219,7 +219,7 @@ class WaysApart {
   double opens(int way, double t, double until) const {
     for (bool waited = true; waited;) {
       waited = false;
-      pair_.every_condition(way, pair_.all(way), [&](const auto& condition) {
+      pair_.every_condition(way, conditions_at(way, t), [&](const auto& condition) {
         if (signs_.sign_after(condition, t) >= 0) return true;
         t = signs_.recovery_time(condition, t, until);
         waited = true;
@@ -227,9 +227,20 @@ class WaysApart {
       });
       if (t == never) return never;
     }
+    if constexpr (has_many_conditions) return separates_nothing(way) ? never : t;
     // Conditions that are zero just after t are zero at all times.
     const auto zero = [&](const auto& condition) { return signs_.sign_after(condition, t) == 0; };
     return pair_.every_condition(way, pair_.all(way), zero) ? never : t;
+  }
+
+  /// Those that are to be looked at to know whether all hold just after t.
+  static constexpr bool has_many_conditions = requires { Pair::many_conditions; };
+  Conditions conditions_at(int way, double t) const {
+    if constexpr (has_many_conditions) {
+      return pair_.unsure(frame(t), way, 0);
+    } else {
+      return pair_.all(way);
+    }
   }
 
   /// As the pair says, which is asked once: exact zeros cost most.

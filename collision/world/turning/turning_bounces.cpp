@@ -61,7 +61,9 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) req
                           : ball(b) ? motion_b.path.coefficients[0]
                                     : contact.point;
   Vector3d normal_turns = Vector3d::Zero();
-  if (contact.feature_a.kind == Feature::Kind::face) {
+  if (bodies_.unbounded(a) || bodies_.unbounded(b)) {
+    // The normal is that of the half-space, which does not turn.
+  } else if (contact.feature_a.kind == Feature::Kind::face) {
     normal_turns = cross(motion_a.angular_velocity, n);
   } else if (contact.feature_b.kind == Feature::Kind::face) {
     normal_turns = cross(motion_b.angular_velocity, n);

@@ -1,6 +1,6 @@
 // Random pairs of bodies that turn: whether contacts are found where conservative advancement says.
-// fuzz_turning_pairs FIRST LAST [capsules]: seeds. Fails if one is late or early, and names it.
-// fuzz_turning_pairs check [capsules]: whether times that are wrong by a little are found.
+// fuzz_turning_pairs FIRST LAST [capsules | half-spaces]: seeds. Fails if one is late or early, and names it.
+// fuzz_turning_pairs check [capsules | half-spaces]: whether times that are wrong by a little are found.
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "tests/fuzz/turning_pairs/make_pair.hpp"
 #include "tests/fuzz/turning_pairs/oracle.hpp"
@@ -32,8 +32,8 @@ Verdict verdict_of(const RandomPair& pair, double* contact, int* steps, const Ch
   return check(body_a, body_b, 0, pair.horizon, change(*contact), steps);
 }
 
-void check_seed(std::uint64_t seed, bool capsules, std::array<Count, families>& counts) {
-  const RandomPair pair = make_pair(seed, capsules);
+void check_seed(std::uint64_t seed, Kinds kinds, std::array<Count, families>& counts) {
+  const RandomPair pair = make_pair(seed, kinds);
   double contact = 0;
   int steps = 0;
   const Verdict verdict = verdict_of(pair, &contact, &steps, [](double t) { return t; });
@@ -50,10 +50,10 @@ void check_seed(std::uint64_t seed, bool capsules, std::array<Count, families>& 
 
 /// Contacts that are said to be later or earlier by a 10^8th. Where bodies slide on each other before or after, there
 /// is nothing wrong with that.
-int check_wrong_times(bool capsules) {
+int check_wrong_times(Kinds kinds) {
   int moved = 0, late = 0, early = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const RandomPair pair = make_pair(seed, capsules);
+    const RandomPair pair = make_pair(seed, kinds);
     double contact = 0;
     int steps = 0;
     if (verdict_of(pair, &contact, &steps, [](double t) { return t; }) != Verdict::right) continue;
@@ -69,16 +69,23 @@ int check_wrong_times(bool capsules) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool capsules = argc > 1 && std::strcmp(argv[argc - 1], "capsules") == 0;
-  if (capsules) --argc;
-  if (argc == 2 && std::strcmp(argv[1], "check") == 0) return check_wrong_times(capsules);
-  if (argc != 3) return std::puts("fuzz_turning_pairs FIRST LAST [capsules] | check [capsules]"), 2;
+  Kinds kinds = Kinds::usual;
+  const char* with = "";
+  if (argc > 1 && std::strcmp(argv[argc - 1], "capsules") == 0) kinds = Kinds::capsules, with = ", with capsules";
+  if (argc > 1 && std::strcmp(argv[argc - 1], "half-spaces") == 0) {
+    kinds = Kinds::half_spaces, with = ", with half-spaces";
+  }
+  if (kinds != Kinds::usual) --argc;
+  if (argc == 2 && std::strcmp(argv[1], "check") == 0) return check_wrong_times(kinds);
+  if (argc != 3) {
+    return std::puts("fuzz_turning_pairs FIRST LAST [capsules | half-spaces] | check [capsules | half-spaces]"), 2;
+  }
   const std::uint64_t first = std::strtoull(argv[1], nullptr, 10), last = std::strtoull(argv[2], nullptr, 10);
   std::array<Count, families> counts{};
-  for (std::uint64_t seed = first; seed <= last; ++seed) check_seed(seed, capsules, counts);
+  for (std::uint64_t seed = first; seed <= last; ++seed) check_seed(seed, kinds, counts);
   Count all;
   std::printf("seeds %llu to %llu%s\n", static_cast<unsigned long long>(first), static_cast<unsigned long long>(last),
-              capsules ? ", with capsules" : "");
+              with);
   for (std::size_t i = 0; i < families; ++i) {
     const Count& c = counts[i];
     std::printf("%-30s %8llu pairs, %8llu meet, %llu wrong, %llu undecided, %.1f steps a pair\n", family_names[i],

@@ -22,6 +22,7 @@ using Eigen::Vector3d;
 using kds::collision::Box;
 using kds::collision::Capsule;
 using kds::collision::ConvexHull;
+using kds::collision::HalfSpace;
 using kds::collision::Mesh;
 using kds::collision::MeshShape;
 using kds::collision::Shape;
@@ -73,6 +74,7 @@ Shape random_shape(Random& random, std::size_t family, bool ball) {
 std::vector<Piece> pieces_of(const Shape& shape) {
   if (const auto* const box = std::get_if<Box>(&shape)) return {box_piece(box->half_extents)};
   if (const auto* const ball = std::get_if<Sphere>(&shape)) return {ball_piece(ball->radius)};
+  if (const auto* const plane = std::get_if<HalfSpace>(&shape)) return {half_space_piece(plane->normal, plane->offset)};
   if (const auto* const capsule = std::get_if<Capsule>(&shape)) {
     return {capsule_piece(capsule->radius, capsule->half_length)};
   }
@@ -155,25 +157,70 @@ Shape random_hull(Random& random) {
   return kds::collision::convex_hull(points);
 }
 
+/// In place of a box a capsule whose end goes round at the distance at which the corner of the box does.
+void make_end_of_box(Shape& shape, kds::certificates::RigidMotion<2>& motion, Random& random) {
+  const Vector3d half = std::get<Box>(shape).half_extents;
+  const double reach = std::sqrt(half[0] * half[0] + half[1] * half[1]);
+  const double radius = reach * random.between(0.05, 0.5);
+  shape = Capsule{radius, reach - radius};
+  motion.orientation = Eigen::Quaterniond(1, 1, 0, 0);  // across the axis about which it turns
+}
+
 /// Its end goes round past the plate at the distance at which the corner of the box did, or as deep.
 void put_capsules(RandomPair& pair, Random& random) {
-  if (pair.family == grazing) {
-    const Vector3d half = std::get<Box>(pair.shape_a).half_extents;
-    const double reach = std::sqrt(half[0] * half[0] + half[1] * half[1]);
-    const double radius = reach * random.between(0.05, 0.5);
-    pair.shape_a = Capsule{radius, reach - radius};
-    pair.a.orientation = Eigen::Quaterniond(1, 1, 0, 0);  // across the axis about which it turns
-    return;
-  }
+  if (pair.family == grazing) return make_end_of_box(pair.shape_a, pair.a, random);
   const bool both = random.one_in(2), first = random.one_in(2);
   if (both || first) pair.shape_a = random_capsule(random, pair.family);
   if (both || !first) pair.shape_b = random_capsule(random, pair.family);
   if (!both && random.one_in(3)) (first ? pair.shape_b : pair.shape_a) = random_hull(random);
 }
 
+/// Out of the half-space leads about the way on which b comes; in some families exactly along an axis.
+void put_half_space(RandomPair& pair, Random& random) {
+  Vector3d normal = pair.a.path.coefficients[1] - pair.b.path.coefficients[1];
+  double offset = random.between(-0.5, 0.5);
+  if (pair.family == grazing) {
+    const auto* const mesh = std::get_if<MeshShape>(&pair.shape_b);
+    const double from_axis = mesh ? mesh->mesh->vertices()[0][0] : pair.b.path.coefficients[0][0] - 0.25;
+    pair.shape_b = pair.shape_a;
+    std::swap(pair.a, pair.b);
+    pair.a.path.coefficients[0] = Vector3d::Zero();
+    normal = -Vector3d::UnitX(), offset = -from_axis;
+  } else if (pair.family == linked) {
+    normal = direction(random), offset = -random.between(0.8, 1.2);
+    pair.b.path.coefficients[0] = Vector3d::Zero();
+  } else if (pair.family == parallel) {
+    int axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
+    normal = Vector3d(normal[axis] * Vector3d::Unit(axis)).normalized();
+    offset = 0.25 * static_cast<double>(random.below(5)) - 0.5;
+  } else if (pair.family == shared_axis || pair.family == along_axis) {
+    normal = Vector3d::UnitZ();
+  } else {
+    normal = (normal.normalized() + 0.5 * direction(random)).normalized();
+  }
+  if (pair.family != grazing && random.one_in(2)) {
+    if (random.one_in(2)) {
+      pair.shape_b = random_capsule(random, pair.family);
+    } else if (pair.family != linked) {
+      pair.shape_b = random_hull(random);
+    }
+  }
+  if (pair.family == grazing && random.one_in(2)) make_end_of_box(pair.shape_b, pair.b, random);
+  pair.a.angular_velocity = Vector3d::Zero();
+  pair.a.orientation = Eigen::Quaterniond::Identity();
+  if (random.one_in(3) && pair.family != grazing && pair.family != parallel) {
+    const Vector3d v = direction(random);
+    pair.a.orientation = Eigen::Quaterniond(random.between(-1, 1), v[0], v[1], v[2]);
+    normal = pair.a.orientation.normalized().conjugate() * normal;
+    normal.normalize();
+  }
+  pair.shape_a = HalfSpace{normal, offset};
+}
+
 }  // namespace
 
-RandomPair make_pair(std::uint64_t seed, bool capsules) {
+RandomPair make_pair(std::uint64_t seed, Kinds kinds) {
   Random random(seed);
   RandomPair pair;
   // Meshes of many triangles take the oracle a thousand times as long.
@@ -207,7 +254,8 @@ RandomPair make_pair(std::uint64_t seed, bool capsules) {
       motion->path.coefficients[0] += motion->path.start * motion->path.coefficients[1];
     }
   }
-  if (capsules) put_capsules(pair, random);
+  if (kinds == Kinds::capsules) put_capsules(pair, random);
+  if (kinds == Kinds::half_spaces) put_half_space(pair, random);
   pair.pieces_a = pieces_of(pair.shape_a);
   pair.pieces_b = pieces_of(pair.shape_b);
   return pair;

@@ -29,8 +29,12 @@ struct RandomPair {
   std::vector<Piece> pieces_a, pieces_b;
 };
 
-/// A function of the seed alone. With capsules, one of the two is one in place of what it would have been, or both are,
-/// and some of the others are hulls: in the family "grazing" what turns is, in place of a box.
-RandomPair make_pair(std::uint64_t seed, bool capsules = false);
+/// With capsules, one of the two is one in place of what it would have been, or both are, and some of the others are
+/// hulls: in the family "grazing" what turns is, in place of a box. With half-spaces the first is one, which does not
+/// turn, and may move; some of the second are capsules or hulls.
+enum class Kinds { usual, capsules, half_spaces };
+
+/// A function of the seed and the kinds alone.
+RandomPair make_pair(std::uint64_t seed, Kinds kinds);
 
 }  // namespace turning_pairs

@@ -139,8 +139,14 @@ class Pair {
     const Number of_a = reach(a), of_b = reach(b);
     error_ = 0x1p-50L * (length(way_) + of_a + of_b + radii_);
     bend_ = acceleration_ + a_.rate() * a_.rate() * of_a + b_.rate() * b_.rate() * of_b;
-    // Often the middles tell enough.
     best_ = {-infinity, {}};
+    if (a.is_half_space) {
+      const Vector& n = seen_a_.normals[0];
+      Number low = infinity;
+      for (const Vector& x : seen_b_.points) low = std::min(low, dot(n, x));
+      return {dot(n, way_) + low - dot(n, seen_a_.points[0]) - radii_, wait_along(n, limit)};
+    }
+    // Often the middles tell enough.
     consider(sum(sum(way_, middle(seen_b_)), middle(seen_a_), -1));
     if (best_.width > 0) {
       if (const Number wait = wait_along(best_.n, limit); wait >= limit) return {best_.width, wait};
@@ -246,10 +252,15 @@ class Pair {
 
 }  // namespace
 
-Piece ball_piece(double radius) { return {{{0, 0, 0}}, {}, {}, radius, {}}; }
+Piece half_space_piece(const Eigen::Vector3d& normal, double offset) {
+  const Vector n = unit(vector(normal));
+  return {{sum({0, 0, 0}, n, offset)}, {n}, {}, 0, {}, true};
+}
+
+Piece ball_piece(double radius) { return {{{0, 0, 0}}, {}, {}, radius, {}, false}; }
 
 Piece capsule_piece(double radius, double half_length) {
-  return {{{0, 0, -half_length}, {0, 0, half_length}}, {}, {{0, 0, 1}}, radius, {{0, 1}}};
+  return {{{0, 0, -half_length}, {0, 0, half_length}}, {}, {{0, 0, 1}}, radius, {{0, 1}}, false};
 }
 
 Piece box_piece(const Eigen::Vector3d& half) {

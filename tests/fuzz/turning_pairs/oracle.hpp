@@ -19,7 +19,10 @@ struct Piece {
   std::vector<Vector> edges;    ///< directions
   Number radius = 0;
   std::vector<std::array<std::size_t, 2>> segments;  ///< edges by their ends, of pieces that may be near a capsule
+  bool is_half_space = false;                        ///< all that is below its only point along its only normal
 };
+
+Piece half_space_piece(const Eigen::Vector3d& normal, double offset);
 
 Piece ball_piece(double radius);
 Piece capsule_piece(double radius, double half_length);
@@ -59,12 +62,14 @@ enum class Verdict {
 /// Whether `contact` (> horizon: none) is when two bodies first penetrate in [t0, horizon], up to the oracle's error,
 /// which is 2^-50 of the lengths.
 ///
+/// A half-space comes first.
+///
 /// Method. Two convex pieces are apart by the greatest of their gaps along the normals of faces and the products of
 /// edges. (With a ball, also along the way to its nearest point; with a capsule, along the ways between corners, and
-/// from corners to edges.) Along that direction n, which stays as it is, the distance of each point of b from each of a
-/// is at least g + r s - B s^2 / 2 after s, where B bounds accelerations: until the first of these reaches -error they
-/// are no deeper than that, and then they are looked at again. It is a proof, so nothing can be passed over; with an
-/// error that is not zero it comes to an end.
+/// from corners to edges; with a half-space only along its normal.) Along that direction n, which stays as it is, the
+/// distance of each point of b from each of a is at least g + r s - B s^2 / 2 after s, where B bounds accelerations:
+/// until the first of these reaches -error they are no deeper than that, and then they are looked at again. It is a
+/// proof, so nothing can be passed over; with an error that is not zero it comes to an end.
 Verdict check(const Body& a, const Body& b, double t0, double horizon, double contact, int* steps);
 
 }  // namespace turning_pairs

@@ -1,0 +1,27 @@
+// A half-space as its body is turned.
+#pragma once
+
+#include "collision/body_motion.hpp"
+#include "collision/motions.hpp"
+#include "collision/shapes/half_space.hpp"
+#include "collision/shapes/shape.hpp"
+#include "collision/vectors.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace kds::collision {
+
+/// The half-space in world orientation: a body of a world that turns its bodies has the orientation of its motion, and
+/// keeps it (checked_pieces.hpp). Precondition: the shape is one.
+template <class Motion>
+HalfSpace half_space_of(const PlacedShape& shape, const Motion& motion) {
+  if constexpr (turns<Motion>) {
+    const Eigen::Vector4d q = motion.orientation.coeffs() / norm(motion.orientation);
+    return placed_half_space(place(shape.shape, Eigen::Quaterniond(q)));
+  } else {
+    return placed_half_space(shape);
+  }
+}
+
+}  // namespace kds::collision
