@@ -1,5 +1,6 @@
 // What the world refuses, and that it goes on.
 #include "tests/collision/random_scenes.hpp"
+#include "tests/support/throws.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -14,20 +15,9 @@ namespace kds::collision::test_errors {
 namespace {
 
 using namespace tests;
+using kds::tests::throws;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-template <class F>
-void throws(F&& f, const std::string& what) {
-  INFO(what);
-  try {
-    f();
-    FAIL("nothing was thrown");
-  } catch (const std::invalid_argument& error) {
-    INFO(error.what());
-    CHECK(std::string(error.what()).find(what) != std::string::npos);
-  }
-}
 
 TEST_CASE("Options that make no sense are refused by name", "[world]") {
   const auto refuse = [](auto&& change, const char* what) {

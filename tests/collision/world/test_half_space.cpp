@@ -9,6 +9,7 @@
 #include "collision/shapes/mesh_script.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/world/resting_scenes.hpp"
+#include "tests/support/throws.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -17,7 +18,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,6 +25,7 @@ namespace kds::collision::test_half_space {
 namespace {
 
 using namespace tests;
+using kds::tests::throws;
 
 BodyDescription<2> half_space(const Vector3d& normal, double offset = 0, const Vector3d& at = zero) {
   return fixed_body<2>(HalfSpace{normal, offset}, motion<2>(at));
@@ -69,18 +70,6 @@ void fill_room(World<2>& world, std::uint64_t seed) {
     const double turn = random.between(-1, 1);
     if (i % 5 != 0) b.orientation = unit_quaternion(1, turn, 0.5, -turn);
     world.add_body(b);
-  }
-}
-
-template <class F>
-void throws(F&& f, const std::string& what) {
-  INFO(what);
-  try {
-    f();
-    FAIL("nothing was thrown");
-  } catch (const std::invalid_argument& error) {
-    INFO(error.what());
-    CHECK(std::string(error.what()).find(what) != std::string::npos);
   }
 }
 

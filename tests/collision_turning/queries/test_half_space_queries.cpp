@@ -6,12 +6,12 @@
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision_turning/half_space_scenes.hpp"
+#include "tests/support/throws.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
 #include <cstddef>
-#include <exception>
 #include <string>
 #include <vector>
 
@@ -22,18 +22,7 @@ using namespace kds;
 using namespace kds::collision;
 using namespace kds::tests::planes;
 using kds::tests::motion_of;
-
-template <class F>
-void throws(F&& f, const std::string& what) {
-  INFO(what);
-  try {
-    f();
-    FAIL("nothing was thrown");
-  } catch (const std::exception& error) {
-    INFO(error.what());
-    CHECK(std::string(error.what()).find(what) != std::string::npos);
-  }
-}
+using kds::tests::throws;
 
 }  // namespace
 
