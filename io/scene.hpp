@@ -50,7 +50,7 @@ struct SceneBody {
 
 struct SceneMesh {
   std::string name;
-  std::string file;  ///< as written in the scene; empty if it was made for a body with a pivot
+  std::string file;  ///< as written in the scene; empty of a heightfield, or if it was made for a body with a pivot
   std::shared_ptr<const kds::collision::Mesh> mesh;
 };
 

@@ -1,6 +1,7 @@
 // Shapes of bodies.
 #include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/heightfield.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "io/mesh_file.hpp"
 #include "python/bindings.hpp"
@@ -52,8 +53,8 @@ PyShape compound_shape(const std::vector<PyShape>& parts, const std::vector<Eige
 
 void bind_shapes(py::module_& module) {
   py::class_<PyShape>(module, "Shape",
-                      "The shape of bodies: made by sphere(), box(), capsule(), hull(), mesh(), read_mesh(), "
-                      "half_space(), compound().")
+                      "The shape of bodies: made by sphere(), box(), capsule(), hull(), mesh(), heightfield(), "
+                      "read_mesh(), half_space(), compound().")
       .def_property_readonly(
           "kind", [](const PyShape& of) { return kind_name(of.shape); },
           "'sphere', 'box', 'capsule', 'hull', 'mesh', 'half-space' or 'compound'.")
@@ -72,6 +73,10 @@ void bind_shapes(py::module_& module) {
     return checked(HalfSpace{normal, offset});
   });
   module.def("mesh", mesh_shape);
+  module.def(
+      "heightfield", [](const std::vector<double>& heights, std::size_t columns, double along_x, double along_y) {
+        return checked(MeshShape{std::make_shared<const Mesh>(heightfield(heights, columns, along_x, along_y)), 1});
+      });
   module.def("compound", compound_shape);
   module.def("read_mesh", [](const std::string& file, double scale) {
     try {

@@ -1,5 +1,6 @@
 #include "io/scene_file/mesh_reader.hpp"
 
+#include "collision/shapes/heightfield.hpp"
 #include "io/mesh_file.hpp"
 
 #include <cstddef>
@@ -39,11 +40,38 @@ std::shared_ptr<const Mesh> read_mesh(const JsonNode& node, const std::filesyste
   }
 }
 
+/// A terrain, written in the scene.
+std::shared_ptr<const Mesh> read_heightfield(const JsonNode& node) {
+  const JsonNode rows = node.object({"heights", "spacing"})["heights"];
+  std::vector<double> heights;
+  std::size_t columns = 0;
+  for (const JsonNode& row : rows.elements()) {
+    const std::vector<JsonNode> numbers = row.elements();
+    if (columns == 0) columns = numbers.size();
+    if (numbers.size() != columns) row.fail("must have as many numbers as the first row, " + std::to_string(columns));
+    for (const JsonNode& height : numbers) heights.push_back(height.number());
+  }
+  if (columns < 2 || heights.size() < 2 * columns) rows.fail("must have at least two rows of two numbers");
+  const std::vector<JsonNode> spacing = node["spacing"].tuple(2);
+  const double along_x = spacing[0].positive(), along_y = spacing[1].positive();
+  try {
+    return std::make_shared<const Mesh>(kds::collision::heightfield(heights, columns, along_x, along_y));
+  } catch (const kds::collision::InvalidMesh& error) {
+    node.fail(error.what());
+  }
+}
+
 }  // namespace
 
 void read_meshes(const JsonNode& node, const std::filesystem::path& folder, Scene& scene) {
   for (const auto& [name, entry] : node.members()) {
-    const JsonNode file = entry.object({"file"})["file"];
+    entry.object({"file", "heightfield"});
+    if (entry.has("heightfield")) {
+      if (entry.has("file")) entry.fail("must have either \"file\" or \"heightfield\"");
+      scene.meshes.push_back({name, "", read_heightfield(entry["heightfield"])});
+      continue;
+    }
+    const JsonNode file = entry["file"];
     auto mesh = read_mesh(file, folder, scene.warnings);
     scene.meshes.push_back({name, file.string(), std::move(mesh)});
   }

@@ -17,7 +17,7 @@ from kds._kds import Shape, version as __version__
 from kds._motion import Motion
 from kds._queries import Approach
 from kds._scene import Run, Scene, generate_scene
-from kds._shapes import box, capsule, compound, half_space, hull, mesh, read_mesh, sphere
+from kds._shapes import box, capsule, compound, half_space, heightfield, hull, mesh, read_mesh, sphere
 from kds._structures import ConvexHull, Delaunay, SortedList
 from kds._world import World
 
@@ -39,6 +39,7 @@ __all__ = [
     "feature_name",
     "generate_scene",
     "half_space",
+    "heightfield",
     "hull",
     "mesh",
     "read_mesh",

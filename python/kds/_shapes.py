@@ -60,6 +60,17 @@ def mesh(vertices: ArrayLike, triangles: ArrayLike, scale: float = 1.0) -> Shape
     return _kds.mesh(points, corners.astype(np.uint32), number("scale", scale))
 
 
+def heightfield(heights: ArrayLike, spacing: ArrayLike = (1, 1)) -> Shape:
+    """The surface of a terrain, a mesh: heights (m, n) are z at y = (i - (m - 1) / 2) dy, x = (j - (n - 1) / 2) dx.
+
+    spacing: (dx, dy), each > 0. Each cell has two triangles, which share the edge from its corner of least x and y to
+    the opposite one.
+    """
+    rows_of_heights = doubles("heights", heights, (None, None))
+    along_x, along_y = doubles("spacing", spacing, (2,))
+    return _kds.heightfield(rows_of_heights.ravel(), rows_of_heights.shape[1], along_x, along_y)
+
+
 def compound(parts: Iterable[Shape], positions: ArrayLike = (0, 0, 0), orientations: ArrayLike = UPRIGHT) -> Shape:
     """Boxes, hulls and meshes as one body: it is in contact while one of its parts is. Use one for many bodies.
 

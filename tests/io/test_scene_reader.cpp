@@ -146,6 +146,21 @@ TEST_CASE("scene reader: a solid that is open has no inertia of its own, and one
                       "more than a radian between two doubles of the clock"));
 }
 
+TEST_CASE("scene reader: a mesh may be a heightfield") {
+  const TemporaryFolder folder;
+  const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2,
+      "meshes": {"hill": {"heightfield": {"heights": [[0, 0, 0], [0, 1, 0.5]], "spacing": [2, 3]}}},
+      "bodies": [{"name": "a", "shape": {"mesh": "hill", "scale": 2}, "motion": [{"start": 0, "position": [[0,0,0]]}]}]})",
+                                  folder / "scene.json");
+  REQUIRE(scene.meshes.size() == 1);
+  const auto& mesh = *scene.meshes[0].mesh;
+  CHECK(scene.meshes[0].file.empty());
+  CHECK(mesh.triangles().size() == 4);
+  CHECK(mesh.vertices()[0] == Eigen::Vector3d(-2, -1.5, 0));
+  CHECK(mesh.vertices()[4] == Eigen::Vector3d(0, 1.5, 1));
+  CHECK(std::get<kds::collision::MeshShape>(scene.bodies[0].shape).mesh == scene.meshes[0].mesh);
+}
+
 TEST_CASE("scene reader: degenerate triangles of a mesh file are left out, and warned of") {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& faces) {

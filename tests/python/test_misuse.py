@@ -68,6 +68,7 @@ class Misuse(unittest.TestCase):
             (kds.hull, dict(points=np.eye(4, 3))),
             (kds.half_space, dict(normal=(0, 0, 1), offset=1)),
             (kds.compound, dict(parts=[kds.box((1, 1, 1))], positions=zero, orientations=(1, 0, 0, 0))),
+            (kds.heightfield, dict(heights=np.zeros((2, 2)), spacing=(1, 1))),
             (kds.mesh, dict(vertices=np.eye(3), triangles=[[0, 1, 2]], scale=1)),
             (kds.read_mesh, dict(file="no-such-file.obj", scale=1)),
             (kds.Scene.read, dict(file="no-such-file.json", until=1)),

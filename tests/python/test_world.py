@@ -90,6 +90,20 @@ class Bulk(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, message):
                 kds.compound(parts)
 
+    def test_a_ball_meets_a_terrain(self):
+        x, y = np.meshgrid(np.arange(-2, 3), np.arange(-4, 5, 2))
+        world = kds.World()
+        world.add_body(kds.heightfield(x + 0.0 * y, (1, 2)), (0, 0, 0), fixed=True)  # z = x
+        world.add_body(kds.sphere(0.5), (1.25, 1, 5), (0, 0, -1))
+        event = world.advance_to(10)[0]
+        self.assertAlmostEqual(event["time"], 5 - 1.25 - 0.5 * np.sqrt(2))
+        for heights, message in ((np.zeros((1, 5)), "fewer than two rows"), (np.zeros((5, 1)), "columns"),
+                                 (np.full((2, 2), np.nan), "finite"), (np.zeros(4), "heights")):
+            with self.assertRaisesRegex(ValueError, message):
+                kds.heightfield(heights)
+        with self.assertRaisesRegex(ValueError, "spacing"):
+            kds.heightfield(np.zeros((2, 2)), (0, 1))
+
     def test_none_is_added_if_one_is_wrong(self):
         world = kds.World()
         radii = np.ones(5)
