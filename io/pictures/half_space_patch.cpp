@@ -52,8 +52,10 @@ bool has_half_spaces(const Scene& scene) {
 Scene with_patches(const Scene& scene) {
   Scene drawn = scene;
   const Eigen::AlignedBox3d box = surroundings(scene);
+  // As wide as the ball around the box, and some more: a view of all patches shows the bodies large enough.
+  const double half_side = 0.6 * box.diagonal().norm();
   for (SceneBody& body : drawn.bodies) {
-    if (kds::collision::unbounded(body.shape)) body.shape = patch(body, box.center(), box.diagonal().norm());
+    if (kds::collision::unbounded(body.shape)) body.shape = patch(body, box.center(), half_side);
   }
   return drawn;
 }
