@@ -1,4 +1,4 @@
-// kds._kds.World, and shapes.
+// kds._kds.World.
 #include "collision/broad_phase/broad_phase_kind.hpp"
 #include "collision/response/inertia.hpp"
 #include "python/bindings.hpp"

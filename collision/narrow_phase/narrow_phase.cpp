@@ -69,15 +69,11 @@ template <class Motion>
 constexpr PairTable<Motion> table = make_table<Motion>();
 
 /// Up to when exact tests look from t0 on. The paths of bodies that turn may come near each other for ever, so that to
-/// look to the end of time would take for ever. Balls do not care how they turn, if they meet balls and half-spaces.
+/// look to the end of time would take for ever.
 template <class Motion>
 double end_of_search(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon) {
   if constexpr (turns<Motion>) {
-    const auto turning_counts = [](const PlacedShape& shape) {
-      return !std::holds_alternative<Sphere>(shape.shape) && !unbounded(shape.shape);
-    };
-    if (turning_counts(a.shape) || turning_counts(b.shape))
-      return std::min(horizon, t0 + time_to_look_ahead(a.motion, b.motion));
+    if (turning_counts(a.shape, b.shape)) return std::min(horizon, t0 + time_to_look_ahead(a.motion, b.motion));
   }
   return horizon;
 }

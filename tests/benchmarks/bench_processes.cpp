@@ -8,6 +8,8 @@
 // which are threads here and send the messages that processes send; more by one. Times are of this machine: what a
 // contact costs in one world, and what it costs to merge the logs of domains. docs/efficiency.md explains the model.
 
+#include "collision/parallel/domain.hpp"
+#include "collision/parallel/motion_changes.hpp"
 #include "collision/parallel/parallel_world.hpp"
 #include "collision/parallel/world_events.hpp"
 #include "collision/world.hpp"
@@ -39,11 +41,19 @@ using kds::benchmarks::thread_seconds;
 using kds::collision::detail::DomainEvent;
 using kds::collision::detail::EventMerge;
 
-// Sizes of what is sent, in bytes (domains.cpp).
-constexpr double change_bytes = 4 + 7 * 8 + 8;              // number, motion, time
-constexpr double news_bytes = 4 + 7 * 8 + 8 + 8 + 1;        // number, motion, what decides later events
-constexpr double report_bytes = 64 * 8 + 13 * 8 + 2;        // of a domain, to each other process
-constexpr double event_bytes = 1 + 1 + 4 + 4 + 8 + 2 * 24;  // kind, owner, bodies, time, point, normal
+// What is sent (domains.cpp), in bytes.
+template <class... Values>
+double bytes_of(Values... values) {
+  kds::detail::Writer writer;
+  writer(values...);
+  return static_cast<double>(writer.take().size());
+}
+using Motion = World<1>::Motion;
+const double change_bytes = bytes_of(MotionChange<Motion>{});
+const double news_bytes = bytes_of(BodySlot{}, BodyProgress<Motion>{}.motion, BodyProgress<Motion>{}.meetings,
+                                   BodyProgress<Motion>{}.burst_start, false);
+const double report_bytes = bytes_of(DomainReport{});  // of a domain, to each other process
+const double event_bytes = bytes_of(DomainEvent{});
 constexpr double exchanges_of_step = 3, exchanges_of_window = 2;
 
 /// The cells of a cube that has been halved again and again, along the longest side.
@@ -210,6 +220,8 @@ int main(int argc, char** argv) {
       for (const std::size_t bodies : sizes) measured[i] = measure(csv, bodies, packings[i]);
     }
     const double merge = merge_seconds(64);
+    std::printf("bytes: a change of motion %.0f, news of a body %.0f, a report %.0f, an event %.0f\n", change_bytes,
+                news_bytes, report_bytes, event_bytes);
     std::printf("merging 64 logs: %.0f ns an event; a contact in one world: %.0f ns at 0.25, %.0f ns at 0.01\n",
                 merge * 1e9, measured[0].contact_seconds * 1e9, measured[1].contact_seconds * 1e9);
     std::ofstream table = kds::benchmarks::open_csv(folder, "processes_predicted.csv");

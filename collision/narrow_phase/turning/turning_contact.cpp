@@ -66,11 +66,6 @@ auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
   return ask(TurningBoxes<Degree>(a.motion, half_extents(a.shape), b.motion, half_extents(b.shape)));
 }
 
-/// Whether it counts how the two turn: not where a ball meets a ball or a half-space, which come first.
-bool turning_counts(const PlacedShape& a, const PlacedShape& b) {
-  return !is_ball(b) || !(is_ball(a) || unbounded(a.shape));
-}
-
 /// The body as it is at t, in doubles. The orientation of a half-space is the same at all times.
 template <int Degree>
 PlacedShape placed_at(const Body<Degree>& body, double t) {

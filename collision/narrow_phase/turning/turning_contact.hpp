@@ -5,6 +5,8 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
 
+#include <variant>
+
 namespace kds::collision {
 
 // The functions of narrow_phase.hpp for bodies that turn. What they answer is a function of motions and shapes alone,
@@ -22,6 +24,13 @@ namespace kds::collision {
 /// In what time two bodies turn by some radians, s: how far exact tests look at a time. Finite.
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b);
+
+/// Whether it counts how two bodies turn: not among balls, which look the same however they do, and half-spaces, which do
+/// not turn.
+inline bool turning_counts(const PlacedShape& a, const PlacedShape& b) {
+  const auto counts = [](const Shape& shape) { return !std::holds_alternative<Sphere>(shape) && !unbounded(shape); };
+  return counts(a.shape) || counts(b.shape);
+}
 
 /// Of two bodies of which both can turn, or of a half-space (a) and one that can.
 template <int Degree>
