@@ -25,8 +25,8 @@ namespace kds::collision {
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b);
 
-/// Whether it counts how two bodies turn: not among balls, which look the same however they do, and half-spaces, which do
-/// not turn.
+/// Whether it counts how two bodies turn: not among balls, which look the same however they do, and half-spaces, which
+/// do not turn.
 inline bool turning_counts(const PlacedShape& a, const PlacedShape& b) {
   const auto counts = [](const Shape& shape) { return !std::holds_alternative<Sphere>(shape) && !unbounded(shape); };
   return counts(a.shape) || counts(b.shape);
