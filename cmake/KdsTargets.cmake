@@ -58,12 +58,6 @@ function(kds_compile_together target files)
   endif()
 endfunction()
 
-# For programs of the tests: to optimise the templates that they instantiate is most of compiling them, and -O1 does with
-# half of the time that -O2 takes. What they link is optimised as ever, and other types of build keep what they say.
-add_library(kds_quick_to_compile INTERFACE)
-target_compile_options(kds_quick_to_compile INTERFACE
-  $<$<AND:$<CONFIG:RelWithDebInfo>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang>>:-O1>)
-
 # kds_read_headers_once(target...): in a build with tests, the headers of others that are half of most files are compiled
 # once for all these targets, and read as they were compiled. Not our own: whoever changes one waits for what includes it
 # only. Nor for libraries that are linked into the Python module, whose code is compiled otherwise. The preset `release`
