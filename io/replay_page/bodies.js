@@ -41,7 +41,6 @@ data.bodies.forEach((body, i) => {
   const u = (i * 0.618034) % 1, v = (i * 0.381966 + 0.37) % 1;
   body.colour = new THREE.Color().setHSL(0.47 + 0.16 * u, 0.24 + 0.2 * v, 0.42 + 0.22 * ((u + v) % 1))
     .convertGammaToLinear(2.2);
-  body.quaternion = new THREE.Quaternion(...body.turn);
   body.scale = new THREE.Vector3(...body.size);
   if (body.shape === "capsule") body.scale.setScalar(body.size[0]);
 });

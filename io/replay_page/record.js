@@ -27,6 +27,7 @@ function lastUpTo(list, x) {
 for (const body of data.bodies) {
   if (body.frames) body.frameTimes = body.frames.map(frame => frame[0]);
   body.starts = body.motion.map(piece => piece[0]);
+  body.quaternion = new THREE.Quaternion(...body.turn);
   body.touchTimes = [];
   body.touching = [];   // how many bodies it is in contact with after each of touchTimes
   body.touches = [];    // numbers of its touches

@@ -12,55 +12,62 @@ renderer.gammaOutput = true;
 renderer.setClearColor(0x0b0e13);
 const scene = new THREE.Scene();
 
-/** How far from the centre the vertices of any frame are. */
-function farthest(frames) {
-  let radius = 0;
-  for (const frame of frames) {
-    for (let i = 1; i < frame.length; i += 3) radius = Math.max(radius, Math.hypot(frame[i], frame[i + 1], frame[i + 2]));
-  }
-  return radius;
-}
-/** The box around a body about its centre: of one that bends around all frames, of others around its ball. */
+/** The box around a shape in the frame of its body: of one that bends, around all its frames. */
 function boxOf(body) {
-  const box = new THREE.Box3();
+  const box = new THREE.Box3(), size = new THREE.Vector3(...body.size), v = new THREE.Vector3();
   if (body.frames) {
-    const turn = new THREE.Quaternion(...body.turn), v = new THREE.Vector3();
     for (const frame of body.frames) {
-      for (let i = 1; i < frame.length; i += 3) box.expandByPoint(v.fromArray(frame, i).applyQuaternion(turn));
+      for (let i = 1; i < frame.length; i += 3) box.expandByPoint(v.fromArray(frame, i));
     }
-  } else {
-    const r = sizeOf(body);
-    box.set(new THREE.Vector3(-r, -r, -r), new THREE.Vector3(r, r, r));
+    return box;
   }
-  return box;
-}
-function sizeOf(body) {
-  const s = Math.max(...body.size);
-  if (body.frames) return farthest(body.frames);
-  return typeof body.shape === "number" ? s * data.meshes[body.shape].radius
-       : body.shape === "box" ? Math.hypot(...body.size)
-       : body.shape === "capsule" ? body.size[0] + body.size[2] : s;
+  if (typeof body.shape === "number") {
+    box.copy(data.meshes[body.shape].box);
+    box.min.multiply(size);
+    box.max.multiply(size);
+    return box;
+  }
+  if (body.shape === "capsule") size.z += size.x;
+  return box.set(size.clone().negate(), size);
 }
 for (const mesh of data.meshes) {
+  mesh.box = new THREE.Box3();
   mesh.radius = 0;
+  const v = new THREE.Vector3();
   for (let i = 0; i < mesh.vertices.length; i += 3) {
-    mesh.radius = Math.max(mesh.radius, Math.hypot(mesh.vertices[i], mesh.vertices[i + 1], mesh.vertices[i + 2]));
+    mesh.box.expandByPoint(v.fromArray(mesh.vertices, i));
+    mesh.radius = Math.max(mesh.radius, v.length());
   }
 }
 
-const bounds = new THREE.Box3();
-if (data.domain) {
-  bounds.set(new THREE.Vector3(...data.domain.min), new THREE.Vector3(...data.domain.max));
-} else {
-  const at = new THREE.Vector3();
+/** Whether the body is where it is at all times. */
+function stands(body) {
+  return body.fixed && !body.frames && !body.spins && body.motion.every(piece => piece.slice(4).every(x => x === 0));
+}
+
+/** What is to be seen: all that moves, and of what stands what is no farther from that than it is wide. */
+function boundsOfAll() {
+  if (data.domain) return new THREE.Box3(new THREE.Vector3(...data.domain.min), new THREE.Vector3(...data.domain.max));
+  const moving = new THREE.Box3(), standing = new THREE.Box3();
+  const at = new THREE.Vector3(), turn = new THREE.Quaternion(), all = new THREE.Vector3(1, 1, 1), place = new THREE.Matrix4();
+  const moments = 8;
   for (const body of data.bodies) {
-    const box = boxOf(body);
-    for (const t of [0, data.duration / 2, data.duration]) {
-      if (position(body, t, at)) bounds.union(box.clone().translate(at));
+    const box = boxOf(body), bounds = stands(body) ? standing : moving;
+    for (let i = 0; i <= moments; ++i) {
+      const t = data.duration * i / moments;
+      if (!position(body, t, at)) continue;
+      bounds.union(box.clone().applyMatrix4(place.compose(at, orientation(body, t, turn), all)));
+      if (bounds === standing) break;
     }
   }
-  if (bounds.isEmpty()) bounds.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
+  if (!moving.isEmpty() && !standing.isEmpty()) {
+    const size = moving.getSize(at);
+    standing.intersect(moving.clone().expandByScalar(Math.max(size.x, size.y, size.z)));
+  }
+  if (!standing.isEmpty()) moving.union(standing);
+  return moving.isEmpty() ? new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1)) : moving;
 }
+const bounds = boundsOfAll();
 const centre = bounds.getCenter(new THREE.Vector3());
 const extent = bounds.getSize(new THREE.Vector3());
 const reach = extent.length() / 2;
