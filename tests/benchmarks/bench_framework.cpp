@@ -16,6 +16,7 @@
 #include "structures/delaunay.hpp"
 #include "structures/extents.hpp"
 #include "structures/gabriel_graph.hpp"
+#include "structures/growing_segments.hpp"
 #include "structures/heap.hpp"
 #include "structures/sorted_list.hpp"
 #include "structures/spatial_triangulation.hpp"
@@ -229,6 +230,8 @@ int main(int argc, char** argv) {
     measure("AABB tree", 1, n, 1, rounds, structures::AabbTreeRule<Path, 2>({0.25 / std::sqrt(n), 0}), path);
   }
   for (const Id n : {100u, 1000u}) {
+    measure("ends of segments that grow", 1, n, 2, rounds, structures::GrowingSegmentsRule{},
+            [](Random& random) { return structures::GrowingEnd{random_path<1>(random)}; });
     measure_plane<1>(n, 0.25, rounds);
     measure_plane<2>(n, 0.25, rounds);
     measure_space<1>(n, 0.05, rounds);
