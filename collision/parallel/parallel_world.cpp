@@ -3,6 +3,7 @@
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/domains.hpp"
 #include "collision/parallel/relayed_events.hpp"
+#include "collision/parallel/step_events.hpp"
 #include "collision/parallel/window_length.hpp"
 #include "kds/raised_flag.hpp"
 
@@ -24,9 +25,6 @@ void validate(const ParallelOptions& options) {
 }
 
 namespace {
-
-using detail::DomainEvent;
-using detail::EventMerge;
 
 /// Each of several processes has one thread if nothing else is said: they are one for each core, as a rule.
 std::size_t threads_of_one(const ParallelOptions& options, const Team& team) {
@@ -55,7 +53,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
         store_(detail::EngineOf<Motion>::of(world_)),
         now_(options.start_time),
         domains_(options, threads_, store_, team_),
-        logs_(team_.of_first(listener != nullptr)) {}
+        logs_(records(listener)) {}
 
   World& whole() {
     require_outside("ParallelWorld::whole");
@@ -114,6 +112,13 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   }
 
  private:
+  bool records(const ParallelListener* listener) {
+    if (team_.of_first(parallel_.steps != nullptr) != (parallel_.steps != nullptr)) {
+      throw std::invalid_argument("ParallelOptions.steps: either all processes have one or none");
+    }
+    return team_.of_first(listener != nullptr) || parallel_.steps;
+  }
+
   /// Threads of all processes.
   std::size_t workers() const { return threads_ * team_.count(); }
 
@@ -239,7 +244,12 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     counters_.events_of_busiest += most;
     ++counters_.steps;
     now_ = end;
-    events_ = domains_.take_events();
+    if (!parallel_.steps) {
+      events_ = domains_.take_events();
+      return;
+    }
+    const kds::detail::RaisedFlag telling(telling_);
+    parallel_.steps->on_step(domains_.take_step());
   }
 
   void end_window() {
@@ -295,7 +305,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   Engine<Motion>& store_;  ///< of world_
   double now_;
   Domains<Motion> domains_;  ///< none while the scene is one world
-  const bool logs_;          ///< whether events are told in process 0
+  const bool logs_;          ///< whether domains record events
   EventMerge events_;        ///< that have not been told yet
   WindowLength length_;
   double window_begun_ = 0;  ///< s

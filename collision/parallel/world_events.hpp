@@ -14,8 +14,6 @@
 
 namespace kds::collision {
 
-namespace detail {
-
 /// An event as a domain records it. Bodies by their numbers.
 struct DomainEvent {
   /// In the order in which events of one time are told.
@@ -91,7 +89,8 @@ class EventMerge {
   /// Whether the first events that are left in both are one.
   bool is_shared_by(std::size_t domain, std::size_t other) const {
     const DomainEvent *first = head(domain), *second = head(other);
-    return first && second && first->other_owner == other && second->order() == first->order();
+    return first && second && first->other_owner == other && second->other_owner == domain &&
+           second->order() == first->order();
   }
   void add_if_possible(std::size_t domain) {
     const DomainEvent* event = head(domain);
@@ -105,5 +104,4 @@ class EventMerge {
   std::priority_queue<Possible> possible_;  ///< each once, the first on top
 };
 
-}  // namespace detail
 }  // namespace kds::collision
