@@ -40,14 +40,16 @@ inline Scene random_scene(std::uint64_t seed) {
   kds::tests::Random random(seed);
   Scene scene;
   const std::size_t bodies = 10 + random.below(120);
-  const bool coarse = random.one_in(3), falls = random.one_in(4), sensors = random.one_in(2);
+  const bool coarse = random.one_in(3), falls = random.one_in(5), sensors = random.one_in(2), enter = random.one_in(5);
   const double side = std::ceil(std::cbrt(static_cast<double>(bodies)) * random.between(1.2, 3));
   const auto number = [&](double low, double high) {
     const double value = random.between(low, high);
     return coarse ? std::round(value) : value;
   };
   for (std::size_t i = 0; i < bodies; ++i) {
-    SceneBody body{.name = "b" + std::to_string(i), .shape = kds::collision::Sphere{coarse ? 0.5 : 0.3}};
+    SceneBody body;
+    body.name = 'b' + std::to_string(i);
+    body.shape = kds::collision::Sphere{coarse ? 0.5 : 0.3};
     if (random.one_in(4)) body.shape = kds::collision::Box{Eigen::Vector3d(0.3, 0.25, 0.2)};
     body.sensor = sensors && random.one_in(6);
     body.fixed = random.one_in(10);
@@ -59,13 +61,13 @@ inline Scene random_scene(std::uint64_t seed) {
       if (!body.fixed) piece.path.coefficients[1][d] = number(-2, 2);
     }
     if (falls && !body.fixed) piece.path.coefficients[2][2] = -2;
-    piece.path.start = random.one_in(8) ? number(0, 1) : 0;
+    piece.path.start = enter && random.one_in(8) ? number(0, 1) : 0;
     body.motion.push_back(piece);
     scene.bodies.push_back(body);
   }
-  scene.end_time = falls ? 1.5 : 3;
+  scene.end_time = 3;
   scene.response = random.one_in(4) ? Response::none : Response::elastic;
-  if (random.one_in(2)) {
+  if (falls || random.one_in(2)) {
     scene.domain = Domain{Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(side + 1), Walls::reflect};
   }
   return scene;
@@ -75,6 +77,7 @@ struct ApartOptions {
   std::size_t processes = 2;
   std::size_t domains = 4;
   std::uint64_t run = 1;
+  double rate = 0;              ///< Hz: so often steps end
   double checkpoint_every = 0;  ///< 0: the run is in one part
   std::size_t ends_at = 0;      ///< the checkpoint after which, and more events, it is ended early; 0: it is not
 };
@@ -105,7 +108,7 @@ inline RunResult run_apart(const Scene& scene, const std::string& file, const Ap
     if (team.rank() == 0) sinks.add(parts.own());
     RunOptions run_options;
     run_options.domains = options.domains, run_options.processes = &processes, run_options.steps = &parts.own();
-    run_options.checkpoint_every = options.checkpoint_every;
+    run_options.rate = options.rate, run_options.checkpoint_every = options.checkpoint_every;
     if (!before.parts.empty()) run_options.resume = &before.world;
     std::size_t checkpoints = 0;
     run_options.checkpoint = [&](const kds::Snapshot& world) {

@@ -39,7 +39,9 @@ Scene lattice() {
   Scene scene;
   constexpr int side = 5;
   for (int i = 0; i < side * side * side; ++i) {
-    SceneBody body{.name = std::to_string(i), .shape = kds::collision::Sphere{0.5}};
+    SceneBody body;
+    body.name = std::to_string(i);
+    body.shape = kds::collision::Sphere{0.5};
     MotionPiece piece;
     piece.path.coefficients = {1.5 * Eigen::Vector3d(i % side, i / side % side, i / side / side),
                                Eigen::Vector3d(random.integer(-1, 1), random.integer(-1, 1), random.integer(-1, 1)),
@@ -65,25 +67,26 @@ std::string refusal(const Scene& scene, const std::string& file) {
 }  // namespace
 
 TEST_CASE("event parts: merged they are the events of one world") {
-  std::size_t events = 0, windows = 0, rests = 0, walls = 0, overlaps = 0, separations = 0;
+  std::size_t events = 0, divided = 0, rests = 0, walls = 0, overlaps = 0, separations = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     INFO("seed " << seed);
     const TemporaryFolder folder;
     const std::string file = (folder / "events.csv").string();
     const Scene scene = random_scene(seed);
     const std::string right = events_of_one_world(scene);
-    const RunResult result =
-        run_apart(scene, file, {.processes = 1 + seed % 4, .domains = 2 + seed * 7 % 6, .run = seed});
+    const RunResult result = run_apart(
+        scene, file,
+        {.processes = 1 + seed % 4, .domains = 2 + seed * 7 % 6, .run = seed, .rate = static_cast<double>(seed % 20)});
     REQUIRE(folder.file_count() == 1 + seed % 4);
     REQUIRE(merged_parts(scene, file, 1 + seed % 3) == right);
-    events += lines_in(right), windows += result.windows;
+    events += lines_in(right), divided += result.bodies_owned > 0 ? 1 : 0;
     rests += count_of(right, ",rest,"), walls += count_of(right, ",wall,");
     overlaps += count_of(right, ",overlap,"), separations += count_of(right, ",separation,");
   }
-  INFO(events << " events, " << windows << " windows, " << rests << " rests, " << walls << " walls, " << overlaps
+  INFO(events << " events, " << divided << " scenes divided, " << rests << " rests, " << walls << " walls, " << overlaps
               << " overlaps, " << separations << " separations");
   CHECK(events > 3000);
-  CHECK(windows > 40);
+  CHECK(divided > 30);
   CHECK(rests > 5);
   CHECK(walls > 300);
   CHECK(overlaps > 10);
@@ -97,7 +100,7 @@ TEST_CASE("event parts: simultaneous events, more processes than domains, and on
   for (const std::size_t processes : {1u, 3u, 7u}) {
     const TemporaryFolder folder;
     const std::string file = (folder / "events.csv").string();
-    CHECK(run_apart(scene, file, {.processes = processes, .domains = 5}).windows > 0);
+    CHECK(run_apart(scene, file, {.processes = processes, .domains = 5, .rate = 9}).bodies_owned > 0);
     CHECK(merged_parts(scene, file, 2) == right);
     run_apart(scene, file, {.processes = processes, .domains = 1});
     CHECK(merged_parts(scene, file) == right);
@@ -212,31 +215,35 @@ TEST_CASE("event parts: those that are damaged are refused, wherever it is") {
   const TemporaryFolder folder;
   const std::string file = (folder / "events.csv").string();
   Scene scene = random_scene(7);
-  scene.end_time = 0.3;
+  scene.end_time = 0.2;
   const std::string right = events_of_one_world(scene);
-  run_apart(scene, file, {.processes = 2});
+  run_apart(scene, file, {.processes = 2, .rate = 20});
   Random random(7);
   std::size_t tried = 0;
   for (const std::size_t rank : {0u, 1u}) {
     const std::string name = "events.csv." + std::to_string(rank), bytes = read_file(folder / name);
+    const auto put = [&](const std::string& text) {
+      std::filesystem::remove(folder / name);  // To write over what is there waits for the disk, on some systems.
+      folder.write(name, text);
+    };
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       INFO("part " << rank << ", byte " << i << " of " << bytes.size());
       std::string damaged = bytes;
       damaged[i] = static_cast<char>(damaged[i] ^ (1 << random.below(8)));
-      folder.write(name, damaged);
+      put(damaged);
       REQUIRE(refusal(scene, file).find(name + ": part of events: ") != std::string::npos);
-      folder.write(name, bytes.substr(0, i));
+      put(bytes.substr(0, i));
       REQUIRE(refusal(scene, file).find(name + ": part of events: ") != std::string::npos);
+      if (++tried % 4 > 0) continue;
       // A few bytes that are missing or twice there, as where blocks are written anew.
       const std::size_t length = 1 + random.below(100);
       damaged = bytes.substr(0, i) + bytes.substr(std::min(bytes.size(), i + length));
-      folder.write(name, damaged);
+      put(damaged);
       REQUIRE(refusal(scene, file).find(name + ": part of events: ") != std::string::npos);
-      folder.write(name, bytes.substr(0, i) + bytes.substr(i, length) + bytes.substr(i));
+      put(bytes.substr(0, i) + bytes.substr(i, length) + bytes.substr(i));
       REQUIRE(refusal(scene, file).find(name + ": part of events: ") != std::string::npos);
-      ++tried;
     }
-    folder.write(name, bytes);
+    put(bytes);
   }
   CHECK(tried > 1000);
   CHECK(lines_in(right) > 10);
@@ -247,7 +254,7 @@ TEST_CASE("event parts: blocks that are left out, twice there or in other places
   const TemporaryFolder folder;
   const std::string file = (folder / "events.csv").string();
   const Scene scene = random_scene(5);
-  run_apart(scene, file, {.processes = 2});
+  run_apart(scene, file, {.processes = 2, .rate = 5});
   const std::string name = "events.csv.1", bytes = read_file(folder / name);
   std::vector<std::string> blocks;
   for (std::size_t at = 8; at < bytes.size();) {
