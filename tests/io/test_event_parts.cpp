@@ -284,4 +284,34 @@ TEST_CASE("event parts: blocks that are left out, twice there or in other places
   CHECK(with(blocks).empty());
 }
 
+TEST_CASE("event parts: events that cannot be, or on which parts do not agree, are refused") {
+  using kds::collision::DomainEvent;
+  const TemporaryFolder folder;
+  const std::string file = (folder / "events.csv").string();
+  const Scene scene = random_scene(5);
+  const auto merged = [&](const std::vector<std::vector<DomainEvent>>& logs) {
+    for (std::size_t rank = 0; rank < logs.size(); ++rank) {
+      EventPart part(part_path(file, rank), {scene_number, scene.bodies.size(), 1, rank, logs.size()});
+      part.on_step({.domains = logs.size(), .first = rank, .logs = {logs[rank]}});
+      part.close();
+      part.commit();
+    }
+    return refusal(scene, file);
+  };
+  const auto event = [](double t, std::size_t other, std::uint32_t a, std::uint32_t b) {
+    return DomainEvent{DomainEvent::Kind::contact, static_cast<decltype(DomainEvent::other_owner)>(other), a, b, {t}};
+  };
+  CHECK(merged({{event(1, 1, 2, 3)}, {event(1, 0, 2, 3)}}).empty());
+  const std::string first = part_path(file, 0) + ": part of events: ",
+                    cannot_be = "has an event that cannot be one of ";
+  const std::string disagree = first + "does not agree with the others about what has happened";
+  CHECK(merged({{event(1, 1, 2, 3)}, {}}) == disagree);
+  CHECK(merged({{event(1, 1, 2, 3)}, {event(2, 0, 2, 3)}}) == disagree);
+  CHECK(merged({{event(1, 1, 2, 3)}, {event(1, DomainEvent::nobody, 2, 3)}}) == disagree);
+  CHECK(merged({{event(1, 0, 2, 3)}, {}}) == first + cannot_be + "this scene");
+  CHECK(merged({{event(1, 2, 2, 3)}, {}}) == first + cannot_be + "this scene");
+  const auto none = static_cast<std::uint32_t>(scene.bodies.size());
+  CHECK(merged({{event(1, DomainEvent::nobody, 2, none)}, {}}) == first + cannot_be + "this scene");
+}
+
 }  // namespace test_event_parts
