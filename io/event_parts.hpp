@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <list>
 #include <memory>
@@ -62,8 +61,8 @@ class EventPart final : public EventSink, public kds::collision::StepListener {
   OutputFile file_;
   std::uint64_t chain_;
   std::uint64_t steps_ = 0;  ///< of this section
-  std::uint64_t events_ = 0;
-  std::string records_;  ///< of these events, which are not in a block yet
+  std::string records_;      ///< of events that are not in a block yet
+  std::string step_;         ///< the block that is written
 };
 
 /// The parts that one of several processes writes: its own; and where a run goes on with fewer processes than it had,
@@ -102,10 +101,15 @@ class EventParts {
 
    private:
     friend class EventParts;
-    bool is_step_ = false;
+    class StepLogs;
+    template <class Work>
+    void of_part(std::size_t rank, const Work& work) const;
+
+    std::string file_;
     std::size_t bodies_ = 0;
-    std::vector<std::filesystem::path> files_;  ///< by rank
-    std::vector<std::string> contents_;         ///< by rank
+    bool is_step_ = false;
+    std::size_t processes_ = 0;          ///< whose parts have something here
+    std::vector<std::string> contents_;  ///< of blocks, by rank
   };
 
   /// `file`: as for part_path(). `scene`: fingerprint() of the scene's file. Throws SceneError for a part that is
@@ -118,7 +122,7 @@ class EventParts {
 
  private:
   void begin_section(const std::string& content);
-  std::string of_part(std::size_t rank, std::uint64_t kind);
+  void read_of(std::size_t rank, std::uint64_t kind, std::string& content);
   BlockFile& part(std::size_t rank);
 
   const std::string file_;

@@ -281,7 +281,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     const kds::detail::RaisedFlag telling(telling_);
     const auto& bodies = store_.bodies();
     while (!events_.empty()) {
-      const DomainEvent& event = events_.take_next();
+      const DomainEvent event = events_.take_next();
       const auto user_data = [&](BodySlot slot) { return bodies[slot].user_data; };
       if (event.kind == DomainEvent::Kind::wall) {
         listener_->wall({bodies.id_of(event.a), static_cast<int>(event.b), event.contact, user_data(event.a)});

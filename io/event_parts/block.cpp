@@ -25,7 +25,7 @@ BlockFile::BlockFile(std::filesystem::path path) : path_(std::move(path)) {
   at_ = magic.size();
 }
 
-Block BlockFile::next() {
+BlockKind BlockFile::next(std::string& content) {
   if (at_end()) refuse("ends before the run: it has not ended, or this has been cut");
   if (size_ - at_ < around) refuse("has been cut");
   std::uint64_t head[2], checksum = 0;
@@ -33,15 +33,16 @@ Block BlockFile::next() {
   read(letters, sizeof head, at_);
   std::memcpy(head, letters, sizeof head);
   if (head[1] > size_ - at_ - around) refuse("has been cut, or is damaged");
-  Block block{static_cast<BlockKind>(head[0]), std::string(head[1], '\0')};
-  read(block.content.data(), head[1], at_ + sizeof head);
+  content.resize(head[1]);
+  read(content.data(), head[1], at_ + sizeof head);
   char last[sizeof checksum];
   read(last, sizeof last, at_ + sizeof head + head[1]);
   std::memcpy(&checksum, last, sizeof checksum);
-  chain_ = chained(chained(chain_, {letters, sizeof head}), block.content);
-  if (checksum != chain_ || block.kind > BlockKind::end) refuse("is damaged");
+  chain_ = chained(chained(chain_, {letters, sizeof head}), content);
+  const auto kind = static_cast<BlockKind>(head[0]);
+  if (checksum != chain_ || kind > BlockKind::end) refuse("is damaged");
   at_ += around + head[1];
-  return block;
+  return kind;
 }
 
 void BlockFile::read(char* to, std::uint64_t size, std::uint64_t at) const {

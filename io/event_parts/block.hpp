@@ -11,10 +11,11 @@ namespace kds::io {
 
 enum class BlockKind : std::uint64_t {
   section,  ///< SectionHead: a run begins, or one that had ended early goes on
-  events,   ///< the number of records, and the records, of a stretch that is run as one world
-  step,  ///< the number of the step in the section, of domains, of the first of these logs and of logs; of each log the
-         ///< number of records, and the records
-  end    ///< of the run; nothing follows
+  events,   ///< records, of a stretch that is run as one world
+  /// The number of the step in the section, of domains, of the first of these logs and of logs; of each log its length
+  /// in bytes, and its records.
+  step,
+  end  ///< of the run; nothing follows
 };
 
 /// A part begins with this, and then come blocks. Each is its kind, its length in bytes, both in eight bytes, its
@@ -50,11 +51,6 @@ inline std::uint64_t chained(std::uint64_t before, std::string_view bytes) {
   return before;
 }
 
-struct Block {
-  BlockKind kind = BlockKind::end;
-  std::string content{};
-};
-
 /// Reads the blocks of a part. The file is open only while a block is read: there may be more parts than files that a
 /// process may have open.
 class BlockFile {
@@ -62,8 +58,8 @@ class BlockFile {
   /// Throws SceneError if it cannot be read, or is no part.
   explicit BlockFile(std::filesystem::path path);
   const std::filesystem::path& path() const { return path_; }
-  /// The next block. Throws SceneError if there is none, or it is damaged.
-  Block next();
+  /// The kind of the next block, and its content. Throws SceneError if there is none, or it is damaged.
+  BlockKind next(std::string& content);
   bool at_end() const { return at_ == size_; }
   /// Throws SceneError: of this file, that it ...
   [[noreturn]] void refuse(const std::string& what) const;

@@ -64,31 +64,30 @@ void EventPart::begin(const PartOf& of) {
 void EventPart::on_event(const Event& event) {
   constexpr std::size_t enough = 1 << 16;  // bytes
   append_record(records_, event, kds::collision::DomainEvent::nobody);
-  ++events_;
   if (records_.size() >= enough) write_events();
 }
 
 void EventPart::on_step(const kds::collision::StepEvents& events) {
   write_events();
-  std::string content;
+  step_.clear();
   for (const std::uint64_t number : {std::uint64_t{steps_++}, std::uint64_t{events.domains},
                                      std::uint64_t{events.first}, std::uint64_t{events.logs.size()}}) {
-    append_bytes(content, number);
+    append_bytes(step_, number);
   }
   for (const auto& log : events.logs) {
-    append_bytes(content, std::uint64_t{log.size()});
-    for (const auto& event : log) append_record(content, to_event(event), event.other_owner);
+    const std::size_t before = step_.size();
+    append_bytes(step_, std::uint64_t{0});
+    for (const auto& event : log) append_record(step_, to_event(event), event.other_owner);
+    const std::uint64_t length = step_.size() - before - sizeof length;
+    std::memcpy(step_.data() + before, &length, sizeof length);
   }
-  write(static_cast<std::uint64_t>(BlockKind::step), content);
+  write(static_cast<std::uint64_t>(BlockKind::step), step_);
 }
 
 void EventPart::write_events() {
-  if (events_ == 0) return;
-  std::string content;
-  append_bytes(content, std::exchange(events_, 0));
-  content += records_;
+  if (records_.empty()) return;
+  write(static_cast<std::uint64_t>(BlockKind::events), records_);
   records_.clear();
-  write(static_cast<std::uint64_t>(BlockKind::events), content);
 }
 
 void EventPart::write(std::uint64_t kind, const std::string& content) {

@@ -14,66 +14,91 @@
 
 namespace kds::io {
 
-using kds::collision::StepEvents;
+using kds::collision::DomainEvent;
 
-namespace {
-
-constexpr const char* where = "part of events";
-
-/// What one process has recorded in a step.
-StepEvents step_of(Records& records, std::uint64_t& number) {
-  number = records.number();
-  StepEvents events;
-  events.domains = records.number();
-  events.first = records.number();
-  const std::size_t logs = records.number();
-  if (events.first > events.domains || logs > events.domains - events.first) {
-    throw std::runtime_error("has a step of domains that there are not");
-  }
-  for (std::size_t i = 0; i < logs; ++i) {
-    auto& log = events.logs.emplace_back();
-    for (std::size_t left = records.number(); left > 0; --left) {
-      log.push_back(records.event_of(events.first + i, events.domains));
+/// The logs of all domains of a step, of which one event each is read at a time.
+class EventParts::Stretch::StepLogs {
+ public:
+  explicit StepLogs(const Stretch& stretch) : stretch_(stretch) {
+    std::uint64_t step = 0;
+    std::size_t domains = 0;
+    for (std::size_t rank = 0; rank < stretch.processes_; ++rank) {
+      stretch.of_part(rank, [&] {
+        Records records(stretch.contents_[rank], stretch.bodies_);
+        const std::uint64_t number = records.number();
+        const std::size_t of = records.number(), first = records.number(), count = records.number();
+        if (rank == 0) step = number, domains = of;
+        if (number != step || of != domains || (count > 0 && first != logs_.size())) {
+          throw std::runtime_error("has not the step that follows in the others");
+        }
+        for (std::size_t i = 0; i < count; ++i) logs_.push_back({rank, records.part(records.number())});
+        if (!records.at_end()) throw std::runtime_error("has more than its events");
+      });
     }
+    stretch.of_part(0, [&] {
+      if (logs_.size() != domains) throw std::runtime_error("has a step of domains that are in no part");
+    });
+    for (std::size_t domain = 0; domain < domains; ++domain) go_on(domain);
   }
-  return events;
+
+  std::size_t size() const { return logs_.size(); }
+  const DomainEvent* head(std::size_t domain) const { return logs_[domain].left ? &logs_[domain].head : nullptr; }
+  void go_on(std::size_t domain) {
+    Log& log = logs_[domain];
+    log.left = !log.records.at_end();
+    if (log.left) stretch_.of_part(log.rank, [&] { log.head = log.records.event_of(domain, logs_.size()); });
+  }
+
+ private:
+  struct Log {
+    std::size_t rank;  ///< of its process
+    Records records;
+    bool left = false;
+    DomainEvent head{};
+  };
+  const Stretch& stretch_;
+  std::vector<Log> logs_;
+};
+
+/// Calls work(); what it finds wrong it says of the part.
+template <class Work>
+void EventParts::Stretch::of_part(std::size_t rank, const Work& work) const {
+  try {
+    work();
+  } catch (const SceneError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw SceneError(part_path(file_, rank), "part of events", error.what());
+  }
 }
 
-}  // namespace
-
 void EventParts::Stretch::tell(EventSink& sink) const {
-  std::vector<StepEvents> steps;
-  std::uint64_t step = 0;
-  for (std::size_t rank = 0; rank < contents_.size(); ++rank) {
-    try {
-      Records records(contents_[rank], bodies_);
-      if (is_step_) {
-        std::uint64_t number = 0;
-        steps.push_back(step_of(records, number));
-        if (rank == 0) step = number;
-        if (number != step) throw std::runtime_error("has another step than the part of process 0");
-      } else {
-        for (std::size_t left = records.number(); left > 0; --left) sink.on_event(records.event());
-      }
-      if (!records.at_end()) throw std::runtime_error("has more than its events");
-    } catch (const std::runtime_error& error) {
-      throw SceneError(files_[rank].string(), where, error.what());
+  if (!is_step_) {
+    Records records(contents_[0], bodies_);
+    while (!records.at_end()) {
+      Event event;
+      of_part(0, [&] { event = records.event(); });
+      sink.on_event(event);
     }
+    return;
   }
-  try {
-    for (auto merge = kds::collision::merged(std::move(steps)); !merge.empty();) {
-      sink.on_event(to_event(merge.take_next()));
+  kds::collision::BasicEventMerge<StepLogs> merge{StepLogs(*this)};
+  while (!merge.empty()) {
+    DomainEvent event{};
+    try {
+      event = merge.take_next();
+    } catch (const std::logic_error&) {
+      of_part(0, [] { throw std::runtime_error("does not agree with the others about what has happened"); });
     }
-  } catch (const std::logic_error&) {
-    throw SceneError(files_[0].string(), where, "does not agree with the others about what has happened");
+    sink.on_event(to_event(event));
   }
 }
 
 EventParts::EventParts(std::string file, std::uint64_t scene, std::size_t bodies)
     : file_(std::move(file)), scene_(scene), bodies_(bodies) {
-  Block block = part(0).next();
-  if (block.kind != BlockKind::section) part(0).refuse("does not begin with a run");
-  begin_section(block.content);
+  std::string content;
+  if (part(0).next(content) != BlockKind::section) part(0).refuse("does not begin with a run");
+  begin_section(content);
 }
 
 EventParts::~EventParts() = default;
@@ -84,10 +109,9 @@ BlockFile& EventParts::part(std::size_t rank) {
 }
 
 /// The content of the next block of a part, which has to be of this kind.
-std::string EventParts::of_part(std::size_t rank, std::uint64_t kind) {
-  Block block = part(rank).next();
-  if (static_cast<std::uint64_t>(block.kind) != kind) part(rank).refuse("does not fit to that of process 0");
-  return std::move(block.content);
+void EventParts::read_of(std::size_t rank, std::uint64_t kind, std::string& content) {
+  if (static_cast<std::uint64_t>(part(rank).next(content)) != kind)
+    part(rank).refuse("does not fit to that of process 0");
 }
 
 /// `content`: of its block in the part of process 0.
@@ -105,35 +129,36 @@ void EventParts::begin_section(const std::string& content) {
   if (first.processes == 0) part(0).refuse("is of no process");
   processes_ = first.processes;
   for (std::size_t rank = 1; rank < processes_; ++rank) {
-    const auto kind = static_cast<std::uint64_t>(BlockKind::section);
-    const SectionHead head = head_of(rank, of_part(rank, kind));
+    std::string its;
+    read_of(rank, static_cast<std::uint64_t>(BlockKind::section), its);
+    const SectionHead head = head_of(rank, its);
     if (head.run != first.run || head.processes != first.processes) part(rank).refuse("is of another run");
   }
 }
 
 bool EventParts::read(Stretch& stretch) {
-  stretch = {};
-  stretch.bodies_ = bodies_;
-  Block block = part(0).next();
-  while (block.kind == BlockKind::section) {
-    begin_section(block.content);
-    block = part(0).next();
+  // What it had is written over: to give back so much memory and take it again costs more than to read.
+  std::vector<std::string>& contents = stretch.contents_;
+  contents.resize(std::max<std::size_t>(contents.size(), 1));
+  BlockKind kind = part(0).next(contents[0]);
+  while (kind == BlockKind::section) {
+    begin_section(contents[0]);
+    kind = part(0).next(contents[0]);
   }
-  const auto kind = static_cast<std::uint64_t>(block.kind);
-  if (block.kind == BlockKind::end) {
+  const auto same = static_cast<std::uint64_t>(kind);
+  if (kind == BlockKind::end) {
     for (std::size_t rank = 0; rank < parts_.size(); ++rank) {
-      if (rank > 0) of_part(rank, kind);
+      if (rank > 0) read_of(rank, same, contents[0]);
       if (!part(rank).at_end()) part(rank).refuse("has something behind its end");
     }
     return false;
   }
-  stretch.is_step_ = block.kind == BlockKind::step;
-  stretch.files_.push_back(part(0).path());
-  stretch.contents_.push_back(std::move(block.content));
-  for (std::size_t rank = 1; stretch.is_step_ && rank < processes_; ++rank) {
-    stretch.contents_.push_back(of_part(rank, kind));
-    stretch.files_.push_back(part(rank).path());
-  }
+  stretch.file_ = file_;
+  stretch.bodies_ = bodies_;
+  stretch.is_step_ = kind == BlockKind::step;
+  stretch.processes_ = stretch.is_step_ ? processes_ : 1;
+  contents.resize(std::max(contents.size(), stretch.processes_));
+  for (std::size_t rank = 1; rank < stretch.processes_; ++rank) read_of(rank, same, contents[rank]);
   return true;
 }
 

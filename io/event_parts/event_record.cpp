@@ -85,6 +85,13 @@ T Records::take() {
 
 std::size_t Records::number() { return take<std::uint64_t>(); }
 
+Records Records::part(std::size_t length) {
+  require(length <= rest_.size());
+  const Records first(rest_.substr(0, length), bodies_);
+  rest_.remove_prefix(length);
+  return first;
+}
+
 Records::Record Records::record() {
   const auto first = take<std::uint8_t>();
   require((first & kinds) < event_kind_names.size() && (first & ~(kinds | has_features | has_other_owner)) == 0);

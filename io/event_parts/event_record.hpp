@@ -23,6 +23,8 @@ class Records {
   Records(std::string_view bytes, std::size_t bodies) : rest_(bytes), bodies_(bodies) {}
   bool at_end() const { return rest_.empty(); }
   std::size_t number();
+  /// So many of the bytes.
+  Records part(std::size_t length);
   Event event();
   /// Of the log of a domain.
   kds::collision::DomainEvent event_of(std::size_t domain, std::size_t domains);
