@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -244,12 +245,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     counters_.events_of_busiest += most;
     ++counters_.steps;
     now_ = end;
-    if (!parallel_.steps) {
+    if (parallel_.steps) {
+      step_ = domains_.take_step();
+    } else {
       events_ = domains_.take_events();
-      return;
     }
-    const kds::detail::RaisedFlag telling(telling_);
-    parallel_.steps->on_step(domains_.take_step());
   }
 
   void end_window() {
@@ -279,6 +279,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   void tell_events() {
     const kds::detail::RaisedFlag telling(telling_);
+    if (step_) parallel_.steps->on_step(*std::exchange(step_, std::nullopt));
     const auto& bodies = store_.bodies();
     while (!events_.empty()) {
       const DomainEvent event = events_.take_next();
@@ -304,9 +305,10 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   World world_;            ///< runs the scene while it is one world; else only its bodies count
   Engine<Motion>& store_;  ///< of world_
   double now_;
-  Domains<Motion> domains_;  ///< none while the scene is one world
-  const bool logs_;          ///< whether domains record events
-  EventMerge events_;        ///< that have not been told yet
+  Domains<Motion> domains_;         ///< none while the scene is one world
+  const bool logs_;                 ///< whether domains record events
+  EventMerge events_;               ///< that have not been told yet
+  std::optional<StepEvents> step_;  ///< the same, where each process takes those of its own domains
   WindowLength length_;
   double window_begun_ = 0;  ///< s
   double longest_ = 0;       ///< s: the longest that the window may be

@@ -23,7 +23,7 @@ class StepListener {
  public:
   virtual ~StepListener() = default;
   /// Called once for each step that holds, in the same order in all processes, with nothing to tell too. It must not
-  /// call functions of the world that is telling it.
+  /// call functions of the world that is telling it. If it throws, the step counts as told.
   virtual void on_step(const StepEvents& events) = 0;
 };
 

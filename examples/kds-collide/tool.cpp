@@ -79,8 +79,9 @@ void merge(const Arguments& arguments) {
   const Scene scene = read_scene(arguments.scene, arguments.until);
   EventParts parts(arguments.merge, fingerprint(arguments.scene), scene.bodies.size());
   OutputFile output(arguments.events);
-  const std::size_t threads =
-      arguments.run.threads > 0 ? arguments.run.threads : std::max(1u, std::thread::hardware_concurrency());
+  // Each has a step in memory: more than can run at once would take memory for nothing.
+  const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t threads = arguments.run.threads > 0 ? std::min(arguments.run.threads, most) : most;
   merge_as_csv(parts, scene, threads, [&](std::string_view lines) { output.write(lines); });
   output.commit();
 }

@@ -1,15 +1,7 @@
 # The parts of the events that PROCESSES processes of kds-collide-mpi write are merged into the file that kds-collide
 # writes, byte for byte: also of a run that goes on with other processes.
 cmake_minimum_required(VERSION 3.23)
-file(REMOVE_RECURSE "${FOLDER}")
-file(MAKE_DIRECTORY "${FOLDER}")
-
-function(run)
-  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(NOT code EQUAL 0)
-    message(FATAL_ERROR "${ARGN}: ended with ${code}:\n${text}")
-  endif()
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/run_tools.cmake")
 
 function(refuses code expected)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE ended OUTPUT_QUIET ERROR_VARIABLE text)

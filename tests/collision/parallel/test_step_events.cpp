@@ -145,6 +145,35 @@ TEST_CASE("Steps: a listener that not all processes have is refused", "[parallel
                     "ParallelOptions.steps: either all processes have one or none");
 }
 
+TEST_CASE("Steps: one whose listener throws counts as told, and the next call goes on", "[parallel]") {
+  struct Throws final : StepListener {
+    void on_step(const StepEvents& events) override {
+      for (EventMerge merge = merged({events}); !merge.empty();) told.push_back(event_of(merge.take_next()));
+      if (++steps % 2 == 0) throw std::runtime_error("full");
+    }
+    std::vector<Event> told;
+    std::size_t steps = 0;
+  };
+  const auto one = tests::lattice(6, 1.5);
+  EventLog<1> right;
+  World<1> world(one.options, &right);
+  for (const auto& body : one.scene.bodies) world.add_body(body);
+  world.advance_to(one.scene.end_time);
+  Throws steps;
+  ParallelWorld<1> divided(one.options, {.domains = 4, .halo = 1.5, .longest_window = 0.3, .steps = &steps});
+  for (const auto& body : one.scene.bodies) divided.add_body(body);
+  std::size_t thrown = 0;
+  while (divided.now() < one.scene.end_time) {
+    try {
+      divided.advance_to(one.scene.end_time);
+    } catch (const std::runtime_error&) {
+      ++thrown;
+    }
+  }
+  CHECK(thrown > 3);
+  CHECK(steps.told == right.events);
+}
+
 TEST_CASE("Steps that are not of one step are refused", "[parallel]") {
   StepEvents first{.domains = 3, .first = 0, .logs = {{}, {}}}, second{.domains = 3, .first = 2, .logs = {{}}};
   CHECK(merged({first, second}).empty());
