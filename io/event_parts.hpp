@@ -117,8 +117,8 @@ class EventParts {
   /// the file.
   EventParts(std::string file, std::uint64_t scene, std::size_t bodies);
   ~EventParts();
-  /// Reads what follows. False when all has been read, and each part has ended as it has to.
-  bool read(Stretch& stretch);
+  /// Reads what follows, several parts at a time. False when all has been read, and each part has ended as it has to.
+  bool read(Stretch& stretch, std::size_t threads = 1);
 
  private:
   void begin_section(const std::string& content);

@@ -136,7 +136,7 @@ void EventParts::begin_section(const std::string& content) {
   }
 }
 
-bool EventParts::read(Stretch& stretch) {
+bool EventParts::read(Stretch& stretch, std::size_t threads) {
   // What it had is written over: to give back so much memory and take it again costs more than to read.
   std::vector<std::string>& contents = stretch.contents_;
   contents.resize(std::max<std::size_t>(contents.size(), 1));
@@ -158,7 +158,8 @@ bool EventParts::read(Stretch& stretch) {
   stretch.is_step_ = kind == BlockKind::step;
   stretch.processes_ = stretch.is_step_ ? processes_ : 1;
   contents.resize(std::max(contents.size(), stretch.processes_));
-  for (std::size_t rank = 1; rank < stretch.processes_; ++rank) read_of(rank, same, contents[rank]);
+  kds::collision::in_turn(stretch.processes_ - 1, threads,
+                          [&](std::size_t i) { read_of(i + 1, same, contents[i + 1]); });
   return true;
 }
 
@@ -183,7 +184,7 @@ void merge_as_csv(EventParts& parts, const Scene& scene, std::size_t threads,
   std::vector<std::string> texts(threads);
   for (bool more = true; more;) {
     std::size_t count = 0;
-    while (count < threads && (more = parts.read(stretches[count]))) ++count;
+    while (count < threads && (more = parts.read(stretches[count], threads))) ++count;
     kds::collision::in_turn(count, threads, [&](std::size_t i) {
       texts[i].clear();
       Lines lines(scene, texts[i]);
