@@ -98,6 +98,8 @@ class EventParts {
    public:
     /// Tells of them in the order of one world. Throws SceneError. Stretches may be told by several threads.
     void tell(EventSink& sink) const;
+    /// How many it is in the parts.
+    std::size_t bytes() const;
 
    private:
     friend class EventParts;

@@ -16,6 +16,13 @@ namespace kds::io {
 
 using kds::collision::DomainEvent;
 
+namespace {
+
+/// Bytes: to read them takes a thread longer than to begin, by far.
+constexpr std::size_t worth_a_thread = 1 << 20;
+
+}  // namespace
+
 /// The logs of all domains of a step, of which one event each is read at a time.
 class EventParts::Stretch::StepLogs {
  public:
@@ -70,6 +77,12 @@ void EventParts::Stretch::of_part(std::size_t rank, const Work& work) const {
   } catch (const std::runtime_error& error) {
     throw SceneError(part_path(file_, rank), "part of events", error.what());
   }
+}
+
+std::size_t EventParts::Stretch::bytes() const {
+  std::size_t all = 0;
+  for (std::size_t rank = 0; rank < processes_; ++rank) all += contents_[rank].size();
+  return all;
 }
 
 void EventParts::Stretch::tell(EventSink& sink) const {
@@ -158,7 +171,8 @@ bool EventParts::read(Stretch& stretch, std::size_t threads) {
   stretch.is_step_ = kind == BlockKind::step;
   stretch.processes_ = stretch.is_step_ ? processes_ : 1;
   contents.resize(std::max(contents.size(), stretch.processes_));
-  kds::collision::in_turn(stretch.processes_ - 1, threads,
+  const std::size_t readers = contents[0].size() < worth_a_thread ? 1 : threads;
+  kds::collision::in_turn(stretch.processes_ - 1, readers,
                           [&](std::size_t i) { read_of(i + 1, same, contents[i + 1]); });
   return true;
 }
@@ -180,11 +194,16 @@ class Lines final : public EventSink {
 void merge_as_csv(EventParts& parts, const Scene& scene, std::size_t threads,
                   const std::function<void(std::string_view)>& write) {
   write(event_csv_header);
-  std::vector<EventParts::Stretch> stretches(threads);
-  std::vector<std::string> texts(threads);
+  // Short stretches are told many at a time.
+  const std::size_t most = threads > 1 ? 64 * threads : 1;
+  std::vector<EventParts::Stretch> stretches(most);
+  std::vector<std::string> texts(most);
   for (bool more = true; more;) {
-    std::size_t count = 0;
-    while (count < threads && (more = parts.read(stretches[count], threads))) ++count;
+    std::size_t count = 0, bytes = 0;
+    while (count < most && (count < threads || bytes < threads * worth_a_thread) &&
+           (more = parts.read(stretches[count], threads))) {
+      bytes += stretches[count++].bytes();
+    }
     kds::collision::in_turn(count, threads, [&](std::size_t i) {
       texts[i].clear();
       Lines lines(scene, texts[i]);
