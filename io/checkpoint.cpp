@@ -23,7 +23,7 @@ struct Content {
   void archive(Archive& archive) {
     archive.tag("checkpoint of kds-collide, version " + std::to_string(KDS_VERSION_NUMBER));
     std::vector<char> world = checkpoint.world.bytes();
-    archive(checkpoint.scene, checkpoint.events, world);
+    archive(checkpoint.scene, checkpoint.events, checkpoint.parts, world);
     checkpoint.world = Snapshot(std::move(world));
   }
 };

@@ -1,17 +1,20 @@
 // The state of a run in a file, to go on from.
 #pragma once
 
+#include "io/event_parts.hpp"
 #include "kds/framework/snapshot.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 namespace kds::io {
 
 /// A run as it was at a time, between two events.
 struct Checkpoint {
-  std::uint64_t scene = 0;   ///< fingerprint() of the scene's file
-  std::uint64_t events = 0;  ///< bytes that the events so far take
+  std::uint64_t scene = 0;         ///< fingerprint() of the scene's file
+  std::uint64_t events = 0;        ///< bytes that the events so far take
+  std::vector<PartPlace> parts{};  ///< in their place where each process writes its own: where these are, by rank
   Snapshot world;
 };
 

@@ -184,8 +184,7 @@ void run_to_end(World& world, const Scene& scene, const RunOptions& options, Eve
       results.pass();
     }
     if (t == checkpoints.next()) {
-      const Snapshot state = kds::save(world);
-      if (!options.processes || options.processes->rank() == 0) options.checkpoint(state);
+      options.checkpoint(kds::save(world));
       checkpoints.pass();
     }
   }
@@ -292,9 +291,9 @@ template <int Degree>
 RunResult run_divided(const Scene& scene, const RunOptions& options, EventSink& sink) {
   const double setup_start = cpu_seconds();
   DividedTeller teller(sink);
-  kds::collision::ParallelWorld<Degree> world(world_options(scene, options),
-                                              {.threads = options.threads, .domains = options.domains}, &teller,
-                                              options.processes);
+  kds::collision::ParallelWorld<Degree> world(
+      world_options(scene, options), {.threads = options.threads, .domains = options.domains, .steps = options.steps},
+      &teller, options.processes);
   kds::collision::WorldCounters before;
   RunResult result = run_in(
       world, scene, options, sink, setup_start, [](BodyId, const auto&) {},

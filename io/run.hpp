@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/parallel/processes.hpp"
+#include "collision/parallel/step_events.hpp"
 #include "collision/profile.hpp"
 #include "io/events.hpp"
 #include "io/scene.hpp"
@@ -30,12 +31,15 @@ struct RunOptions {
   /// If not null, these run the scene together, divided into domains: all call run() with the same scene and options.
   /// The sink of process 0 is told of events. Must outlive the run.
   kds::collision::Processes* processes = nullptr;
+  /// If not null, this is told in each process of what its own domains record, and the sink of process 0 only of events
+  /// of stretches that are run as one world: see EventPart. Must outlive the run.
+  kds::collision::StepListener* steps = nullptr;
   /// s of simulated time, > 0: whenever so much has gone by, `checkpoint` is given the state of the run, after the
-  /// events up to then, in process 0. 0: never.
+  /// events up to then, in all processes. 0: never.
   double checkpoint_every = 0;
   std::function<void(const Snapshot&)> checkpoint{};
   /// If not null, the run goes on from this one, of a run of the same scene with the same options but `processes`,
-  /// `domains`, `threads` and those about checkpoints. RunResult is about what follows.
+  /// `steps`, `domains`, `threads` and those about checkpoints. RunResult is about what follows.
   const Snapshot* resume = nullptr;
 };
 

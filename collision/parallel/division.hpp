@@ -36,7 +36,7 @@ struct BodyMove {
 
 /// What the domains of a scene share. Bodies by their numbers.
 struct Division {
-  static constexpr std::uint8_t nobody = detail::DomainEvent::nobody;
+  static constexpr std::uint8_t nobody = DomainEvent::nobody;
 
   Partition partition;
   double halo = 0;                    ///< how far outside a cell its domain knows bodies

@@ -6,8 +6,6 @@
 namespace kds::collision {
 namespace {
 
-using detail::DomainEvent;
-
 /// The options of a world of a domain.
 WorldOptions for_domain(WorldOptions options, double now) {
   options.start_time = now;

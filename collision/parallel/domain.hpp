@@ -90,7 +90,7 @@ class Domain final : private BasicWorldListener<Motion> {
   std::span<const Change> changes() const { return changes_.all(); }
   /// Those of them that the last step has brought.
   std::span<const Change> fresh() const { return fresh_; }
-  std::vector<detail::DomainEvent> take_events() { return std::move(events_); }
+  std::vector<DomainEvent> take_events() { return std::move(events_); }
   std::size_t index() const { return index_; }
   WorldCounters work() const { return world_.counters(); }
 
@@ -126,8 +126,8 @@ class Domain final : private BasicWorldListener<Motion> {
   void passes(World&, const PairEvent&) override { report_.divisible = false; }
 
   BodySlot number(BodySlot slot) const { return engine_.bodies().number(slot); }
-  void record(detail::DomainEvent::Kind kind, const PairEvent& event);
-  void put(const detail::DomainEvent& event);
+  void record(DomainEvent::Kind kind, const PairEvent& event);
+  void put(const DomainEvent& event);
   void changed(BodySlot slot, double t);
   void follow(Followed& body, double until);
   bool stays_deep(const Eigen::Vector3d& place) const {
@@ -149,7 +149,7 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<BodySlot> changed_;  ///< slots of owned bodies
   std::vector<Change> fresh_;      ///< as changes_, of this step; sorted by number when it is over
   MotionChanges<Motion> changes_;  ///< of this window, of bodies that others know or own
-  std::vector<detail::DomainEvent> events_;
+  std::vector<DomainEvent> events_;
   std::vector<BodySlot> wrong_;
   std::vector<std::size_t> near_;  ///< the domains whose cells followed bodies may come near
   DomainReport report_;

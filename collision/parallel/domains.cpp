@@ -188,22 +188,31 @@ void Domains<Motion>::sort_overlaps() {
 }
 
 template <class Motion>
-detail::EventMerge Domains<Motion>::take_events() {
+StepEvents Domains<Motion>::take_step() {
+  StepEvents events{.domains = size(), .first = domains_.empty() ? 0 : domains_.front()->index()};
+  for (const auto& domain : domains_) events.logs.push_back(domain->take_events());
+  return events;
+}
+
+template <class Motion>
+EventMerge Domains<Motion>::take_events() {
   if (!logs_) return {};
-  std::vector<std::vector<detail::DomainEvent>> logs(size());
-  for (const auto& domain : domains_) logs[domain->index()] = domain->take_events();
+  std::vector<StepEvents> events(team_.count());
+  events[team_.rank()] = take_step();
   team_.exchange(
       [&](std::size_t process, auto& writer) {
-        if (process != 0) return;
-        for (const auto& domain : domains_) writer(logs[domain->index()]);
+        if (process == 0) writer(events[team_.rank()].logs);
       },
       [&](std::size_t process, auto& reader) {
-        if (team_.rank() != 0) return;
-        for (std::size_t i = 0; i < size(); ++i) {
-          if (process_of(i) == process) reader(logs[i]);
-        }
+        if (team_.rank() == 0) reader(events[process].logs);
       });
-  return team_.rank() == 0 ? detail::EventMerge(std::move(logs)) : detail::EventMerge();
+  if (team_.rank() != 0) return {};
+  std::size_t domain = 0;
+  for (StepEvents& of_process : events) {
+    of_process.domains = size(), of_process.first = domain;
+    domain += of_process.logs.size();
+  }
+  return merged(std::move(events));
 }
 
 // From window to window.

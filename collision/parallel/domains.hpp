@@ -4,7 +4,7 @@
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/domain.hpp"
 #include "collision/parallel/processes.hpp"
-#include "collision/parallel/world_events.hpp"
+#include "collision/parallel/step_events.hpp"
 #include "collision/world.hpp"
 #include "collision/world/engine.hpp"
 
@@ -55,8 +55,10 @@ class Domains {
   double halo_used() const;
   /// The step holds: the store follows.
   void commit();
-  /// The events of the step that was committed, of all domains, in process 0; none in others.
-  detail::EventMerge take_events();
+  /// The events of the step that was committed, of the domains of this process.
+  StepEvents take_step();
+  /// The same of all domains, in process 0; none in others.
+  EventMerge take_events();
 
   /// After the last step of a window that was committed, at `now`: finds out who is to own and to know which bodies,
   /// and tells those who are to know them. Then exchange() or make().

@@ -6,6 +6,8 @@
 
 namespace kds::collision {
 
+class StepListener;
+
 struct ParallelOptions {
   std::size_t threads =
       0;  ///< of each process; 0 for as many as the machine has, or one if there are several processes
@@ -18,6 +20,10 @@ struct ParallelOptions {
   /// s, > 0: the longest window. The engine finds out how long windows can be; with shorter ones the listener is told
   /// of events sooner, and they cost more.
   double longest_window = 1e300;
+  /// If not null, the events of divided stretches are told to this, in each process those of its own domains, and no
+  /// events are sent (collision/parallel/step_events.hpp); the listener is told only of stretches that are run as one
+  /// world. Either all processes have one or none. Must outlive the world.
+  StepListener* steps = nullptr;
 };
 
 inline constexpr std::size_t most_domains = 64;

@@ -3,11 +3,13 @@
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/domains.hpp"
 #include "collision/parallel/relayed_events.hpp"
+#include "collision/parallel/step_events.hpp"
 #include "collision/parallel/window_length.hpp"
 #include "kds/raised_flag.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -24,9 +26,6 @@ void validate(const ParallelOptions& options) {
 }
 
 namespace {
-
-using detail::DomainEvent;
-using detail::EventMerge;
 
 /// Each of several processes has one thread if nothing else is said: they are one for each core, as a rule.
 std::size_t threads_of_one(const ParallelOptions& options, const Team& team) {
@@ -55,7 +54,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
         store_(detail::EngineOf<Motion>::of(world_)),
         now_(options.start_time),
         domains_(options, threads_, store_, team_),
-        logs_(team_.of_first(listener != nullptr)) {}
+        logs_(records(listener)) {}
 
   World& whole() {
     require_outside("ParallelWorld::whole");
@@ -114,6 +113,13 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   }
 
  private:
+  bool records(const ParallelListener* listener) {
+    if (team_.of_first(parallel_.steps != nullptr) != (parallel_.steps != nullptr)) {
+      throw std::invalid_argument("ParallelOptions.steps: either all processes have one or none");
+    }
+    return team_.of_first(listener != nullptr) || parallel_.steps;
+  }
+
   /// Threads of all processes.
   std::size_t workers() const { return threads_ * team_.count(); }
 
@@ -239,7 +245,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     counters_.events_of_busiest += most;
     ++counters_.steps;
     now_ = end;
-    events_ = domains_.take_events();
+    if (parallel_.steps) {
+      step_ = domains_.take_step();
+    } else {
+      events_ = domains_.take_events();
+    }
   }
 
   void end_window() {
@@ -269,9 +279,10 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   void tell_events() {
     const kds::detail::RaisedFlag telling(telling_);
+    if (step_) parallel_.steps->on_step(*std::exchange(step_, std::nullopt));
     const auto& bodies = store_.bodies();
     while (!events_.empty()) {
-      const DomainEvent& event = events_.take_next();
+      const DomainEvent event = events_.take_next();
       const auto user_data = [&](BodySlot slot) { return bodies[slot].user_data; };
       if (event.kind == DomainEvent::Kind::wall) {
         listener_->wall({bodies.id_of(event.a), static_cast<int>(event.b), event.contact, user_data(event.a)});
@@ -294,9 +305,10 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   World world_;            ///< runs the scene while it is one world; else only its bodies count
   Engine<Motion>& store_;  ///< of world_
   double now_;
-  Domains<Motion> domains_;  ///< none while the scene is one world
-  const bool logs_;          ///< whether events are told in process 0
-  EventMerge events_;        ///< that have not been told yet
+  Domains<Motion> domains_;         ///< none while the scene is one world
+  const bool logs_;                 ///< whether domains record events
+  EventMerge events_;               ///< that have not been told yet
+  std::optional<StepEvents> step_;  ///< the same, where each process takes those of its own domains
   WindowLength length_;
   double window_begun_ = 0;  ///< s
   double longest_ = 0;       ///< s: the longest that the window may be

@@ -55,8 +55,9 @@ class BasicParallelWorld final {
   ///
   /// `processes`: if not null, they run the scene together. Each constructs a world with the same options, adds the
   /// same bodies, and makes the same calls of functions that are not const, and each runs some of the domains. The
-  /// listener of process 0 is told of all events; others are not told. A process in which something is thrown leaves
-  /// the others waiting: who calls has to end them (MPI_Abort).
+  /// listener of process 0 is told of all events, and others are not told, unless ParallelOptions::steps takes them in
+  /// each process. A process in which something is thrown leaves the others waiting: who calls has to end them
+  /// (MPI_Abort).
   explicit BasicParallelWorld(const WorldOptions& options, const ParallelOptions& parallel = {},
                               ParallelListener* listener = nullptr, Processes* processes = nullptr);
   ~BasicParallelWorld();

@@ -42,10 +42,11 @@ class Team {
   const MessageCounters& counters() const { return counters_; }
 
   /// What process 0 says.
-  bool of_first(bool value) {
+  template <class T>
+  T of_first(T value) {
     exchange([&](std::size_t, auto& writer) { writer(value); },
              [&](std::size_t process, auto& reader) {
-               bool other = false;
+               T other{};
                reader(other);
                if (process == 0) value = other;
              });

@@ -14,8 +14,6 @@
 
 namespace kds::collision {
 
-namespace detail {
-
 /// An event as a domain records it. Bodies by their numbers.
 struct DomainEvent {
   /// In the order in which events of one time are told.
@@ -45,27 +43,31 @@ struct DomainEvent {
 /// events that are possible the least is that which one world would take from its queue: that one is possible in the
 /// domains too, and all possible ones are in the queue.
 ///
+/// `Logs`: head(domain) is the first event that is left in a log, or null, until go_on(domain), which leaves it behind;
+/// size() is how many domains there are.
+///
 /// Cost: O(log domains) an event.
-class EventMerge {
+template <class Logs>
+class BasicEventMerge {
  public:
-  EventMerge() = default;
-  explicit EventMerge(std::vector<std::vector<DomainEvent>> logs) : logs_(std::move(logs)), next_(logs_.size(), 0) {
+  explicit BasicEventMerge(Logs logs) : logs_(std::move(logs)) {
     for (std::size_t domain = 0; domain < logs_.size(); ++domain) {
-      left_ += logs_[domain].size();
+      const DomainEvent* event = logs_.head(domain);
+      if (!event) continue;
+      ++left_;
       // An event of two domains is found by the later of them.
-      const DomainEvent* event = head(domain);
-      if (event && (event->other_owner == DomainEvent::nobody || event->other_owner < domain)) add_if_possible(domain);
+      if (event->other_owner == DomainEvent::nobody || event->other_owner < domain) add_if_possible(domain);
     }
   }
 
   bool empty() const { return left_ == 0; }
 
   /// Precondition: not empty. Throws std::logic_error if no event is possible: then the logs are not of one history.
-  const DomainEvent& take_next() {
+  DomainEvent take_next() {
     if (possible_.empty()) throw std::logic_error("ParallelWorld: domains disagree about what has happened");
     const std::size_t domain = possible_.top().domain;
     possible_.pop();
-    const DomainEvent& event = *head(domain);
+    const DomainEvent event = *logs_.head(domain);
     const std::size_t other = event.other_owner;
     go_on(domain);
     if (other != DomainEvent::nobody) go_on(other);
@@ -84,26 +86,48 @@ class EventMerge {
     }
   };
 
-  const DomainEvent* head(std::size_t domain) const {
-    return next_[domain] < logs_[domain].size() ? &logs_[domain][next_[domain]] : nullptr;
+  void go_on(std::size_t domain) {
+    logs_.go_on(domain);
+    if (!logs_.head(domain)) --left_;
   }
-  void go_on(std::size_t domain) { ++next_[domain], --left_; }
   /// Whether the first events that are left in both are one.
   bool is_shared_by(std::size_t domain, std::size_t other) const {
-    const DomainEvent *first = head(domain), *second = head(other);
-    return first && second && first->other_owner == other && second->order() == first->order();
+    const DomainEvent *first = logs_.head(domain), *second = logs_.head(other);
+    return first && second && first->other_owner == other && second->other_owner == domain &&
+           second->order() == first->order();
   }
   void add_if_possible(std::size_t domain) {
-    const DomainEvent* event = head(domain);
+    const DomainEvent* event = logs_.head(domain);
     if (!event || (event->other_owner != DomainEvent::nobody && !is_shared_by(domain, event->other_owner))) return;
     possible_.push({event->order(), domain});
   }
 
-  std::vector<std::vector<DomainEvent>> logs_;
-  std::vector<std::size_t> next_;
-  std::size_t left_ = 0;                    ///< events in all logs, those of two domains twice
+  Logs logs_;
+  std::size_t left_ = 0;                    ///< logs in which events are left
   std::priority_queue<Possible> possible_;  ///< each once, the first on top
 };
 
-}  // namespace detail
+/// Logs in memory.
+class EventLogs {
+ public:
+  EventLogs() = default;
+  explicit EventLogs(std::vector<std::vector<DomainEvent>> logs) : logs_(std::move(logs)), next_(logs_.size(), 0) {}
+  std::size_t size() const { return logs_.size(); }
+  const DomainEvent* head(std::size_t domain) const {
+    return next_[domain] < logs_[domain].size() ? &logs_[domain][next_[domain]] : nullptr;
+  }
+  void go_on(std::size_t domain) { ++next_[domain]; }
+
+ private:
+  std::vector<std::vector<DomainEvent>> logs_;
+  std::vector<std::size_t> next_;
+};
+
+class EventMerge : public BasicEventMerge<EventLogs> {
+ public:
+  EventMerge() : EventMerge(std::vector<std::vector<DomainEvent>>()) {}
+  explicit EventMerge(std::vector<std::vector<DomainEvent>> logs)
+      : BasicEventMerge<EventLogs>(EventLogs(std::move(logs))) {}
+};
+
 }  // namespace kds::collision

@@ -80,6 +80,29 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   return plain(a) == plain(b);
 }
 
+/// Whether a file is, or would be, one of the parts that are named after another.
+bool is_part_of(const std::filesystem::path& path, const std::string& file) {
+  const std::string number = path.extension().string();
+  const bool numbered = number.size() > 1 && number.find_first_not_of("0123456789", 1) == std::string::npos;
+  return numbered && same_file(path, file + number);
+}
+
+void check_parts(const Arguments& arguments) {
+  if (!arguments.merge.empty()) {
+    if (arguments.events.empty()) throw ArgumentError("--merge-events: needs --events, the file to write");
+    for (const std::string& file : {arguments.events, arguments.scene}) {
+      if (is_part_of(file, arguments.merge)) throw ArgumentError("--merge-events: " + file + " is one of the parts");
+    }
+  }
+  if (!arguments.events_apart) return;
+  if (arguments.events.empty()) throw ArgumentError("--events-apart: needs --events");
+  if (arguments.events == "-") throw ArgumentError("--events-apart: the events must be files");
+  for (const auto& [option, path] : outputs(arguments)) {
+    if (is_part_of(path, arguments.events)) throw ArgumentError(std::string(option) + ": is a part of the events");
+  }
+  if (is_part_of(arguments.scene, arguments.events)) throw ArgumentError("--events: the scene would be a part of them");
+}
+
 void check_checkpoints(const Arguments& arguments) {
   const double every = arguments.run.checkpoint_every;
   if (arguments.checkpoint.empty()) {
@@ -118,6 +141,12 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--events", arguments.events, "Write events as CSV; - is standard output")
       ->type_name("FILE|-")
       ->check(not_empty());
+  app.add_flag("--events-apart", arguments.events_apart,
+               "Each process writes its events by itself, into FILE.0, FILE.1..., for --merge-events");
+  auto* merge = app.add_option("--merge-events", arguments.merge,
+                               "Run nothing: make --events of FILE.0, FILE.1..., which --events-apart has written")
+                    ->type_name("FILE")
+                    ->check(not_empty());
   app.add_option("--stats", arguments.stats, "Write what the run took as JSON; - is standard output")
       ->type_name("FILE|-")
       ->check(not_empty());
@@ -154,6 +183,11 @@ void describe(CLI::App& app, Arguments& arguments) {
       ->type_name("S");
   app.add_flag("--resume", arguments.resume, "Go on from the checkpoint");
   const std::vector<CLI::Option*> of_a_run = app.get_options([](const CLI::Option* o) { return o->nonpositional(); });
+  for (CLI::Option* option : of_a_run) {
+    const std::string given = option->get_name();
+    const bool of_both = given == "--help" || given == "--events" || given == "--threads" || given == "--until";
+    if (option != merge && !of_both) option->excludes(merge);
+  }
   app.add_flag("--quiet", arguments.quiet, "No progress and no summary on standard error");
 
   const std::string group = "Making a scene instead of running one";
@@ -217,6 +251,7 @@ void check(const Arguments& arguments) {
   if (run.domains != 1 && pictures) throw ArgumentError("--domains: there are no pictures of a scene that is divided");
   if (run.domains != 1 && run.pairs)
     throw ArgumentError("--domains: volumes are not told of in a scene that is divided");
+  check_parts(arguments);
   check_checkpoints(arguments);
   check_files_differ(arguments);
 }

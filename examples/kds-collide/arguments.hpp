@@ -21,6 +21,8 @@ struct Arguments {
   std::string gltf;
   std::optional<double> until;  ///< s
   kds::io::RunOptions run;
+  bool events_apart = false;  ///< each process writes its own, into a part of `events`
+  std::string merge;          ///< the name of parts: they are merged into `events`, and nothing is run
   std::string checkpoint;
   bool resume = false;
   bool quiet = false;

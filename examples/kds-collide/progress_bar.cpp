@@ -8,7 +8,8 @@ namespace kds_collide {
 
 using namespace kds::io;
 
-ProgressBar::ProgressBar(double begin, double end) : begin_(begin), end_(end), time_(begin) {}
+ProgressBar::ProgressBar(double begin, double end, bool counts)
+    : begin_(begin), end_(end), counts_(counts), time_(begin) {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) std::fputs("\r\x1b[K", stderr);
@@ -34,8 +35,8 @@ void ProgressBar::draw(Clock::time_point now) {
   std::string bar;
   for (std::size_t i = 0; i < width; ++i) bar += i < filled ? "\u2588" : "\u2591";
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  std::fprintf(stderr, "\r\x1b[K%s %3.0f %%  t = %.4g s  %llu contacts", bar.c_str(), 100 * done, time_,
-               static_cast<unsigned long long>(contacts_));
+  std::fprintf(stderr, "\r\x1b[K%s %3.0f %%  t = %.4g s", bar.c_str(), 100 * done, time_);
+  if (counts_) std::fprintf(stderr, "  %llu contacts", static_cast<unsigned long long>(contacts_));
   // Before a second is over an estimate would jump about.
   if (elapsed > 1 && done > 0) std::fprintf(stderr, "  %.0f s left", elapsed * (1 - done) / done);
   std::fflush(stderr);

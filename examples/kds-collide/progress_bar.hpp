@@ -12,7 +12,8 @@ namespace kds_collide {
 /// a second, and wipes itself away when it goes. Use it only where standard error is a terminal.
 class ProgressBar final : public kds::io::EventSink {
  public:
-  ProgressBar(double begin, double end);
+  /// `counts`: whether it is told of all contacts; else it does not say how many there were.
+  ProgressBar(double begin, double end, bool counts);
   ~ProgressBar() override;
   void on_event(const kds::io::Event& event) override;
   void on_time(double time) override;
@@ -24,6 +25,7 @@ class ProgressBar final : public kds::io::EventSink {
 
   double begin_;
   double end_;
+  bool counts_;
   double time_;
   std::uint64_t contacts_ = 0;
   Clock::time_point start_ = Clock::now();

@@ -5,6 +5,7 @@
 #include "examples/kds-collide/progress_bar.hpp"
 #include "io/checkpoint.hpp"
 #include "io/event_csv.hpp"
+#include "io/event_parts.hpp"
 #include "io/gltf.hpp"
 #include "io/one_line.hpp"
 #include "io/output_file.hpp"
@@ -20,7 +21,10 @@
 #include <filesystem>
 #include <list>
 #include <optional>
+#include <random>
 #include <string>
+#include <thread>
+#include <vector>
 
 namespace kds_collide {
 namespace {
@@ -70,6 +74,18 @@ void generate(const Arguments& arguments) {
   }
 }
 
+/// Makes one log of the events of all processes.
+void merge(const Arguments& arguments) {
+  const Scene scene = read_scene(arguments.scene, arguments.until);
+  EventParts parts(arguments.merge, fingerprint(arguments.scene), scene.bodies.size());
+  OutputFile output(arguments.events);
+  // Each has a step in memory: more than can run at once would take memory for nothing.
+  const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t threads = arguments.run.threads > 0 ? std::min(arguments.run.threads, most) : most;
+  merge_as_csv(parts, scene, threads, [&](std::string_view lines) { output.write(lines); });
+  output.commit();
+}
+
 void print_summary(const RunResult& result) {
   std::fprintf(stderr,
                "%s: %llu bodies, %g s simulated: %llu contacts, %llu swaps, %llu pair tests\n"
@@ -88,18 +104,23 @@ void print_summary(const RunResult& result) {
 }
 
 /// A scene that is to be run, and where what is seen goes. In process 0, or where there is one alone, files are opened;
-/// the others write none.
+/// the others write none but their parts of the events.
 class Simulation {
  public:
   /// All that can go wrong outside the run goes wrong here: outputs are opened, three.js is read.
-  Simulation(Arguments arguments, bool writes) : arguments_(std::move(arguments)), scene_(read()) {
+  /// `run`: a number of this run.
+  Simulation(Arguments arguments, kds::collision::Team& team, std::uint64_t run)
+      : arguments_(std::move(arguments)), team_(team), scene_(read()) {
+    const bool writes = team.rank() == 0;
     const bool quiet = arguments_.quiet || !writes;
     if (!quiet) {
       for (const std::string& warning : scene_.warnings) std::fprintf(stderr, "%s\n", one_line(warning).c_str());
     }
     check(arguments_, scene_);
     if (!arguments_.checkpoint.empty()) prepare_checkpoints();
-    if (writes && !arguments_.events.empty()) {
+    if (arguments_.events_apart) {
+      open_parts(run);
+    } else if (writes && !arguments_.events.empty()) {
       if (arguments_.checkpoint.empty()) {
         events_.emplace(arguments_.events, scene_);
       } else {
@@ -115,7 +136,7 @@ class Simulation {
     if (writes && !arguments_.gltf.empty()) gltf_.emplace(arguments_.gltf);
     if (view_ || gltf_) sinks_.add(recorder_.emplace(scene_));
     if (!quiet && isatty(STDERR_FILENO) != 0) {
-      sinks_.add(progress_.emplace(scene_.begin_time, scene_.end_time));
+      sinks_.add(progress_.emplace(scene_.begin_time, scene_.end_time, !parts_));
       arguments_.run.steady_progress = true;
     }
   }
@@ -127,23 +148,30 @@ class Simulation {
     progress_.reset();
   }
 
-  void write() {
+  /// All outputs are whole.
+  void close() {
     const std::string title = std::filesystem::path(arguments_.scene).filename().string();
     if (view_) view_->write(replay_page(recorder_->to_json(title), default_three_folder()));
     if (gltf_) gltf_->write(to_gltf(scene_, recorder_->record(), title));
     if (stats_) stats_->write(to_json(result_, arguments_.run, read_seconds_));
-    const auto each_output = [&](auto&& what) {
-      if (events_) what(*events_);
-      if (view_) what(*view_);
-      if (gltf_) what(*gltf_);
-      if (stats_) what(*stats_);
-    };
-    each_output([](auto& output) { output.close(); });  // All are whole before one appears.
+    each_output([](auto& output) { output.close(); });
+  }
+
+  void commit() {
     each_output([](auto& output) { output.commit(); });
-    if (!arguments_.quiet) print_summary(result_);
+    if (!arguments_.quiet && team_.rank() == 0) print_summary(result_);
   }
 
  private:
+  template <class What>
+  void each_output(const What& what) {
+    if (events_) what(*events_);
+    if (parts_) what(*parts_);
+    if (view_) what(*view_);
+    if (gltf_) what(*gltf_);
+    if (stats_) what(*stats_);
+  }
+
   Scene read() {
     const std::clock_t start = std::clock();
     Scene scene = read_scene(arguments_.scene, arguments_.until);
@@ -156,24 +184,44 @@ class Simulation {
     if (arguments_.resume) {
       checkpoint_ = read_checkpoint(arguments_.checkpoint);
       if (checkpoint_.scene != scene) throw ArgumentError("--resume: the checkpoint is of another scene");
-      if ((checkpoint_.events > 0) == arguments_.events.empty()) {
+      if (checkpoint_.parts.empty() == arguments_.events_apart) {
+        throw ArgumentError("--resume: give --events-apart if, and only if, the run had it");
+      }
+      if (!arguments_.events_apart && (checkpoint_.events > 0) == arguments_.events.empty()) {
         throw ArgumentError("--resume: give --events if, and only if, the run had it");
       }
       arguments_.run.resume = &checkpoint_.world;
     }
     checkpoint_.scene = scene;
     arguments_.run.checkpoint = [this](const kds::Snapshot& world) {
-      write_checkpoint(arguments_.checkpoint,
-                       {.scene = checkpoint_.scene, .events = events_ ? events_->flush() : 0, .world = world});
+      auto parts = parts_ ? parts_->places() : std::vector<PartPlace>();
+      if (team_.rank() > 0) return;
+      write_checkpoint(arguments_.checkpoint, {.scene = checkpoint_.scene,
+                                               .events = events_ ? events_->flush() : 0,
+                                               .parts = std::move(parts),
+                                               .world = world});
     };
   }
 
+  void open_parts(std::uint64_t run) {
+    const PartOf of{.scene = fingerprint(arguments_.scene), .bodies = scene_.bodies.size(), .run = run};
+    if (arguments_.checkpoint.empty()) {
+      parts_.emplace(arguments_.events, of, team_);
+    } else {
+      parts_.emplace(arguments_.events, of, team_, checkpoint_.parts);
+    }
+    arguments_.run.steps = &parts_->own();
+    if (team_.rank() == 0) sinks_.add(parts_->own());
+  }
+
   Arguments arguments_;
+  kds::collision::Team& team_;
   Checkpoint checkpoint_;  ///< from which the run goes on, if it does
   double read_seconds_ = 0;
   Scene scene_;
   EventSinks sinks_;
   std::optional<EventCsv> events_;
+  std::optional<EventsApart> parts_;
   std::optional<OutputFile> stats_, view_, gltf_;
   std::optional<ReplayRecorder> recorder_;
   std::optional<ProgressBar> progress_;
@@ -242,26 +290,30 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
   } catch (const CLI::ParseError& error) {
     return end_with({bad_input, std::string(name) + ": arguments: " + error.what()}, is_first);
   }
-  if (arguments.run.broad_phase == "list" || arguments.generate) {
+  if (arguments.run.broad_phase == "list" || arguments.generate || !arguments.merge.empty()) {
     if (!is_first) return done;
     return end_with(attempt(name, arguments,
                             [&] {
                               if (arguments.run.broad_phase == "list") return list_broad_phases();
                               check(arguments);
-                              generate(arguments);
+                              arguments.generate ? generate(arguments) : merge(arguments);
                             }),
                     true);
   }
 
+  const std::uint64_t run = team.of_first(std::uint64_t{std::random_device()()} << 32 | std::random_device()());
   std::optional<Simulation> simulation;
   Failure failure = first_of(team, attempt(name, arguments, [&] {
                                check(arguments);
-                               simulation.emplace(arguments, is_first);
+                               simulation.emplace(arguments, team, run);
                              }));
   if (failure.code != done) return end_with(failure, is_first);
   failure = attempt(name, arguments, [&] {
     simulation->run();
-    if (is_first) simulation->write();
+    simulation->close();
+    // All outputs, of all processes, are whole before one appears: none comes here before the others do.
+    team.of_first(true);
+    simulation->commit();
   });
   if (failure.code != done && team.count() > 1) {
     failure.line = "process " + std::to_string(team.rank()) + ": " + failure.line;

@@ -38,8 +38,8 @@ using namespace kds::collision;
 using kds::benchmarks::ElasticGas;
 using kds::benchmarks::tell;
 using kds::benchmarks::thread_seconds;
-using kds::collision::detail::DomainEvent;
-using kds::collision::detail::EventMerge;
+using kds::collision::DomainEvent;
+using kds::collision::EventMerge;
 
 // What is sent (domains.cpp), in bytes.
 template <class... Values>

@@ -1,15 +1,7 @@
 # The events of kds-collide-mpi with PROCESSES processes are those of kds-collide, byte for byte; and what is wrong is
 # said once, by one line.
 cmake_minimum_required(VERSION 3.23)
-file(REMOVE_RECURSE "${FOLDER}")
-file(MAKE_DIRECTORY "${FOLDER}")
-
-function(run)
-  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(NOT code EQUAL 0)
-    message(FATAL_ERROR "${ARGN}: ended with ${code}:\n${text}")
-  endif()
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/run_tools.cmake")
 
 run("${TOOL}" --generate spheres --bodies 3000 --density 0.2 --seed 5 --table --output balls.json --quiet)
 run("${TOOL}" balls.json --until 4 --events one.csv --quiet)

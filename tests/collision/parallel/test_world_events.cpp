@@ -14,8 +14,6 @@
 namespace kds::collision::test_world_events {
 namespace {
 
-using detail::DomainEvent;
-using detail::EventMerge;
 using Kind = DomainEvent::Kind;
 using kds::tests::Random;
 

@@ -1,0 +1,132 @@
+#include "io/event_parts/event_record.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+namespace kds::io {
+namespace {
+
+using kds::collision::DomainEvent;
+using kds::collision::Feature;
+
+// The first byte: the kind of the event, and what follows.
+constexpr std::uint8_t kinds = 0x0f;
+constexpr std::uint8_t has_features = 0x10;
+constexpr std::uint8_t has_other_owner = 0x20;
+
+template <class T>
+void put(std::string& bytes, T value) {
+  static_assert(std::is_arithmetic_v<T>);
+  char letters[sizeof(T)];
+  std::memcpy(letters, &value, sizeof(T));
+  bytes.append(letters, sizeof(T));
+}
+
+void require(bool right) {
+  if (!right) throw std::runtime_error("has an event that cannot be one of this scene");
+}
+
+EventKind to_event_kind(DomainEvent::Kind kind) {
+  switch (kind) {
+    case DomainEvent::Kind::overlap:
+      return EventKind::overlap;
+    case DomainEvent::Kind::wall:
+      return EventKind::wall;
+    case DomainEvent::Kind::contact:
+      return EventKind::contact;
+    case DomainEvent::Kind::separation:
+      break;
+  }
+  return EventKind::separation;
+}
+
+DomainEvent::Kind to_domain_kind(EventKind kind) {
+  for (const auto of_domain : {DomainEvent::Kind::overlap, DomainEvent::Kind::wall, DomainEvent::Kind::contact}) {
+    if (to_event_kind(of_domain) == kind) return of_domain;
+  }
+  require(kind == EventKind::separation);
+  return DomainEvent::Kind::separation;
+}
+
+}  // namespace
+
+Event to_event(const DomainEvent& event) {
+  const auto& c = event.contact;
+  return {c.time, to_event_kind(event.kind), event.a, event.b, c.point, c.normal, c.feature_a, c.feature_b};
+}
+
+void append_record(std::string& bytes, const Event& event, std::size_t other_owner) {
+  const bool shared = other_owner != DomainEvent::nobody;
+  const bool features = event.feature_a != Feature{} || event.feature_b != Feature{};
+  put(bytes, static_cast<std::uint8_t>(static_cast<unsigned>(event.kind) | (features ? has_features : 0u) |
+                                       (shared ? has_other_owner : 0u)));
+  if (shared) put(bytes, static_cast<std::uint32_t>(other_owner));
+  put(bytes, event.time), put(bytes, event.a), put(bytes, event.b);
+  for (const Eigen::Vector3d* v : {&event.point, &event.normal}) {
+    for (int d = 0; d < 3; ++d) put(bytes, (*v)[d]);
+  }
+  if (!features) return;
+  for (const Feature* feature : {&event.feature_a, &event.feature_b}) {
+    put(bytes, static_cast<std::uint8_t>(feature->kind)), put(bytes, feature->first), put(bytes, feature->second);
+  }
+}
+
+template <class T>
+T Records::take() {
+  require(rest_.size() >= sizeof(T));
+  T value{};
+  std::memcpy(&value, rest_.data(), sizeof(T));
+  rest_.remove_prefix(sizeof(T));
+  return value;
+}
+
+std::size_t Records::number() { return take<std::uint64_t>(); }
+
+Records Records::part(std::size_t length) {
+  require(length <= rest_.size());
+  const Records first(rest_.substr(0, length), bodies_);
+  rest_.remove_prefix(length);
+  return first;
+}
+
+Records::Record Records::record() {
+  const auto first = take<std::uint8_t>();
+  require((first & kinds) < event_kind_names.size() && (first & ~(kinds | has_features | has_other_owner)) == 0);
+  Record record{{}, DomainEvent::nobody};
+  Event& event = record.event;
+  event.kind = static_cast<EventKind>(first & kinds);
+  if ((first & has_other_owner) != 0) record.other_owner = take<std::uint32_t>();
+  event.time = take<double>();
+  event.a = take<std::uint32_t>();
+  event.b = take<std::uint32_t>();
+  require(event.a < bodies_ && event.b < (event.is_at_wall() ? wall_names.size() : bodies_));
+  for (Eigen::Vector3d* v : {&event.point, &event.normal}) {
+    for (int d = 0; d < 3; ++d) (*v)[d] = take<double>();
+  }
+  if ((first & has_features) == 0) return record;
+  for (Feature* feature : {&event.feature_a, &event.feature_b}) {
+    const auto kind = take<std::uint8_t>();
+    require(kind <= static_cast<std::uint8_t>(Feature::Kind::face));
+    feature->kind = static_cast<Feature::Kind>(kind);
+    feature->first = take<std::uint32_t>();
+    feature->second = take<std::uint32_t>();
+  }
+  return record;
+}
+
+Event Records::event() { return record().event; }
+
+DomainEvent Records::event_of(std::size_t domain, std::size_t domains) {
+  const auto [event, other_owner] = record();
+  require(other_owner == DomainEvent::nobody || (other_owner < domains && other_owner != domain));
+  return {to_domain_kind(event.kind),
+          static_cast<decltype(DomainEvent::other_owner)>(other_owner),
+          event.a,
+          event.b,
+          {event.time, event.point, event.normal, event.feature_a, event.feature_b}};
+}
+
+}  // namespace kds::io

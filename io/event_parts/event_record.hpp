@@ -1,0 +1,45 @@
+// An event as bytes of a part.
+#pragma once
+
+#include "collision/parallel/world_events.hpp"
+#include "io/events.hpp"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace kds::io {
+
+/// As a domain records it. Its bodies must be those of the scene: nothing was added or removed since.
+Event to_event(const kds::collision::DomainEvent& event);
+
+/// An event of the log of a domain, or of a scene that is run as one world, which has no other owner.
+void append_record(std::string& bytes, const Event& event, std::size_t other_owner);
+
+/// Reads records, one after another, and checks that they are of a scene of so many bodies.
+class Records {
+ public:
+  /// Refuses with std::runtime_error; the bytes must outlive this.
+  Records(std::string_view bytes, std::size_t bodies) : rest_(bytes), bodies_(bodies) {}
+  bool at_end() const { return rest_.empty(); }
+  std::size_t number();
+  /// So many of the bytes.
+  Records part(std::size_t length);
+  Event event();
+  /// Of the log of a domain.
+  kds::collision::DomainEvent event_of(std::size_t domain, std::size_t domains);
+
+ private:
+  struct Record {
+    Event event;
+    std::size_t other_owner;
+  };
+  Record record();
+  template <class T>
+  T take();
+
+  std::string_view rest_;
+  std::size_t bodies_;
+};
+
+}  // namespace kds::io

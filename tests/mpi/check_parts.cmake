@@ -1,0 +1,112 @@
+# The parts of the events that PROCESSES processes of kds-collide-mpi write are merged into the file that kds-collide
+# writes, byte for byte: also of a run that goes on with other processes.
+cmake_minimum_required(VERSION 3.23)
+include("${CMAKE_CURRENT_LIST_DIR}/run_tools.cmake")
+
+function(refuses code expected)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE ended OUTPUT_QUIET ERROR_VARIABLE text)
+  string(FIND "${text}" "${expected}\n" place)
+  if(NOT ended EQUAL code OR place EQUAL -1)
+    message(FATAL_ERROR "${ARGN}: ended with ${ended}, not ${code}, and said:\n${text}\nnot: ${expected}")
+  endif()
+endfunction()
+
+function(same_files one other what)
+  file(SHA256 "${FOLDER}/${one}" first)
+  file(SHA256 "${FOLDER}/${other}" second)
+  if(NOT first STREQUAL second)
+    message(FATAL_ERROR "${what}: ${FOLDER}/${other} is not ${one}")
+  endif()
+endfunction()
+
+function(count_of word file variable)
+  file(READ "${FOLDER}/${file}" text)
+  string(REGEX MATCHALL ",${word}," found "${text}")
+  list(LENGTH found count)
+  set(${variable} ${count} PARENT_SCOPE)
+endfunction()
+
+# Balls on the places of a lattice, with speeds of a lattice; each seventh is a sensor; walls; and the same that fall and
+# come to rest.
+function(lattice name restitution bend)
+  set(bodies "")
+  foreach(i RANGE 215)
+    math(EXPR x "3 * (${i} % 6)")
+    math(EXPR y "3 * (${i} / 6 % 6)")
+    math(EXPR z "3 * (${i} / 36)")
+    math(EXPR u "${i} * 7 % 5 % 3 - 1")
+    math(EXPR v "${i} * 11 % 7 % 3 - 1")
+    math(EXPR w "${i} * 5 % 13 % 3 - 1")
+    math(EXPR sensor "${i} % 7")
+    set(is_sensor "false")
+    if(sensor EQUAL 3)
+      set(is_sensor "true")
+    endif()
+    string(APPEND bodies ",{\"name\": \"b${i}\", \"sensor\": ${is_sensor}, \"shape\": {\"sphere\": {\"radius\": 1}}, "
+      "\"motion\": [{\"start\": 0, \"position\": [[${x},${y},${z}],[${u},${v},${w}],[0,0,${bend}]]}]}\n")
+  endforeach()
+  string(SUBSTRING "${bodies}" 1 -1 bodies)
+  file(WRITE "${FOLDER}/${name}" "{\"scene\": 1, \"end_time\": 6, \"response\": \"elastic\", \"restitution\": ${restitution},
+    \"domain\": {\"min\": [-2,-2,-2], \"max\": [17,17,17], \"walls\": \"reflect\"}, \"bodies\": [${bodies}]}")
+endfunction()
+lattice(lattice.json 1 0)
+lattice(falling.json 0.5 -1)
+run("${TOOL}" --generate spheres --bodies 3000 --density 0.2 --seed 5 --table --output balls.json --quiet)
+
+foreach(scene IN ITEMS balls lattice falling)
+  run("${TOOL}" ${scene}.json --until 4 --events one-${scene}.csv --quiet)
+  run(${MPIRUN} ${PROCESSES} "${MPI_TOOL}" ${scene}.json --until 4 --domains 5 --rate 3 --events ${scene}.csv
+    --events-apart --stats ${scene}.stats --quiet)
+  file(GLOB parts "${FOLDER}/${scene}.csv*")
+  list(LENGTH parts count)
+  if(NOT count EQUAL PROCESSES)
+    message(FATAL_ERROR "${PROCESSES} processes have written ${parts}")
+  endif()
+  run("${TOOL}" ${scene}.json --merge-events ${scene}.csv --events ${scene}.csv --threads 2 --quiet)
+  same_files(one-${scene}.csv ${scene}.csv "the events of ${PROCESSES} processes")
+  file(READ "${FOLDER}/${scene}.stats" stats)
+  string(JSON owned GET "${stats}" bodies_owned)
+  if(owned EQUAL 0)
+    message(FATAL_ERROR "${scene} has not been divided")
+  endif()
+endforeach()
+count_of(separation one-lattice.csv separations)
+count_of(rest one-falling.csv rests)
+count_of(contact one-balls.csv contacts)
+if(separations LESS 20 OR rests LESS 20 OR contacts LESS 500)
+  message(FATAL_ERROR "too little has happened: ${separations} separations, ${rests} rests, ${contacts} contacts")
+endif()
+
+if(PROCESSES LESS 3)
+  return()
+endif()
+
+# A run that has ended early: as if its processes had been lost after the last checkpoint.
+set(options balls.json --until 4 --events parts.csv --events-apart --checkpoint run.state --checkpoint-every 1.5 --quiet)
+run(${MPIRUN} ${PROCESSES} "${MPI_TOOL}" ${options} --domains 4)
+foreach(with IN ITEMS "${MPIRUN};2;${MPI_TOOL};--domains;3" "${TOOL};--domains;3" "${MPIRUN};3;${MPI_TOOL}")
+  file(GLOB parts "${FOLDER}/parts.csv.*")
+  foreach(part IN LISTS parts)
+    file(RENAME "${part}" "${part}.unfinished")
+  endforeach()
+  refuses(2 "parts.csv.0: file: cannot be read: No such file or directory"
+    "${TOOL}" balls.json --merge-events parts.csv --events merged.csv)
+  run(${with} ${options} --resume)
+  run("${TOOL}" balls.json --merge-events parts.csv --events merged.csv)
+  same_files(one-balls.csv merged.csv "a run that went on with ${with}")
+endforeach()
+
+refuses(2 "kds-collide: --resume: give --events-apart if, and only if, the run had it"
+  "${TOOL}" balls.json --until 4 --events parts.csv --checkpoint run.state --checkpoint-every 1.5 --resume)
+refuses(2 "lattice.csv.0: part of events: is of another scene"
+  "${TOOL}" balls.json --merge-events lattice.csv --events wrong.csv)
+refuses(2 "kds-collide: --merge-events: needs --events, the file to write" "${TOOL}" balls.json --merge-events balls.csv)
+refuses(2 "kds-collide: --merge-events: balls.csv.0 is one of the parts"
+  "${TOOL}" balls.json --merge-events balls.csv --events balls.csv.0)
+refuses(2 "kds-collide: --events-apart: needs --events" "${TOOL}" balls.json --events-apart)
+refuses(2 "kds-collide: --events-apart: the events must be files" "${TOOL}" balls.json --events-apart --events -)
+refuses(2 "kds-collide: --stats: is a part of the events"
+  "${TOOL}" balls.json --events-apart --events a.csv --stats a.csv.1)
+if(EXISTS "${FOLDER}/wrong.csv")
+  message(FATAL_ERROR "parts of another scene have made ${FOLDER}/wrong.csv")
+endif()
