@@ -2,8 +2,10 @@
 
 #include "collision/precise_vector.hpp"
 #include "collision/response/inertia.hpp"
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/polytope.hpp"
+#include "collision/vectors.hpp"
 #include "kds/arithmetic/power_of_two.hpp"
 
 #include <algorithm>
@@ -157,12 +159,16 @@ constexpr double largest_error = 0x1p-56;
 /// s^2.
 constexpr double least_share = 0x1p-44;
 
-/// Of a closed surface: `kind`, in messages.
-MassProperties of_surface(const char* kind, const Mesh& mesh, double scale, double mass) {
+/// A solid that a closed surface bounds, by its integrals. `kind`, in messages.
+Integrals solid_in(const char* kind, const Mesh& mesh) {
   const Integrals sum = integrate(mesh);
   const double least = sum.error(mesh.triangles().size()) / largest_error;
   if (sum.volume.high < -least) refuse(kind, "is inside out: its triangles turn clockwise seen from outside");
   if (!(sum.volume.high > least)) refuse(kind, "has no volume beyond rounding");
+  return sum;
+}
+
+MassProperties of_integrals(const char* kind, const Integrals& sum, double scale, double mass) {
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   PreciseVector centre, mean_square;
   for (std::size_t d = 0; d < 3; ++d) {
@@ -216,19 +222,59 @@ MassProperties of(const Capsule& capsule, double mass) {
 
 MassProperties of(const MeshShape& shape, double mass) {
   require_closed(*shape.mesh);
-  return of_surface("mesh", *shape.mesh, shape.scale, mass);
+  return of_integrals("mesh", solid_in("mesh", *shape.mesh), shape.scale, mass);
 }
 
 MassProperties of(const ConvexHull& hull, double mass) {
-  return of_surface("hull", *hull.polytope->surface(), 1, mass);
+  return of_integrals("hull", solid_in("hull", *hull.polytope->surface()), 1, mass);
 }
 
 MassProperties of(const HalfSpace&, double) {
   throw std::invalid_argument("mass_properties: a half-space has no mass");
 }
 
-MassProperties of(const Compound&, double) {
-  throw std::invalid_argument("mass_properties: a compound has none of its own: its parts may overlap");
+/// A part of a compound, of a mass yet to be found: its volume, and all else as of a unit of mass.
+struct SolidPart {
+  double volume;
+  MassProperties unit;
+};
+
+SolidPart solid_part(const Shape& shape) {
+  const auto* const hull = std::get_if<ConvexHull>(&shape);
+  const char* const kind = hull ? "hull" : "mesh";
+  const Mesh& mesh = hull ? *hull->polytope->surface() : *std::get<MeshShape>(shape).mesh;
+  if (!hull) require_closed(mesh);
+  const Integrals sum = solid_in(kind, mesh);
+  return {(sum.volume / 6.0).high * sum.unit * sum.unit * sum.unit, of_integrals(kind, sum, 1, 1)};
+}
+
+/// Parts of one density, by the theorem of parallel axes. What cancels where parts are about each other, the sum of
+/// their places, is summed up in double-doubles.
+MassProperties of(const Compound& compound, double mass) {
+  std::vector<SolidPart> parts;
+  for (const Shape& shape : compound.parts->parts()) {
+    try {
+      parts.push_back(solid_part(shape));
+    } catch (const std::invalid_argument& error) {
+      throw InvalidCompound(error.what(), parts.size());
+    }
+  }
+  DoubleDouble volume{};
+  for (const SolidPart& part : parts) volume = volume + part.volume;
+  MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
+  for (Eigen::Index d = 0; d < 3; ++d) {
+    DoubleDouble moment{};
+    for (const SolidPart& part : parts) moment = moment + DoubleDouble(part.volume) * part.unit.centre[d];
+    result.centre[d] = (moment / volume).high;
+  }
+  for (const SolidPart& part : parts) {
+    const double of_part = mass * (part.volume / volume.high);
+    const Vector3d arm = part.unit.centre - result.centre;
+    result.inertia +=
+        of_part * (part.unit.inertia + dot(arm, arm) * Matrix3d::Identity() - arm * arm.transpose());
+  }
+  result.inertia = checked_inertia(result.inertia);
+  return result;
 }
 
 MassProperties of(const BendingMesh&, double) {
