@@ -17,6 +17,7 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace kds::collision {
@@ -233,10 +234,11 @@ MassProperties of(const HalfSpace&, double) {
   throw std::invalid_argument("mass_properties: a half-space has no mass");
 }
 
-/// A part of a compound, of a mass yet to be found: its volume, and all else as of a unit of mass.
+/// A part of a compound.
 struct SolidPart {
+  const char* kind;
+  Integrals integrals;
   double volume;
-  MassProperties unit;
 };
 
 SolidPart solid_part(const Shape& shape) {
@@ -245,33 +247,37 @@ SolidPart solid_part(const Shape& shape) {
   const Mesh& mesh = hull ? *hull->polytope->surface() : *std::get<MeshShape>(shape).mesh;
   if (!hull) require_closed(mesh);
   const Integrals sum = solid_in(kind, mesh);
-  return {(sum.volume / 6.0).high * sum.unit * sum.unit * sum.unit, of_integrals(kind, sum, 1, 1)};
+  return {kind, sum, (sum.volume / 6.0).high * sum.unit * sum.unit * sum.unit};
 }
 
 /// Parts of one density, by the theorem of parallel axes. What cancels where parts are about each other, the sum of
 /// their places, is summed up in double-doubles.
-MassProperties of(const Compound& compound, double mass) {
-  std::vector<SolidPart> parts;
-  for (const Shape& shape : compound.parts->parts()) {
+MassProperties of(const Compound& whole, double mass) {
+  const auto shapes = whole.parts->parts();
+  const auto of_each_part = [&](const auto& make) {
+    std::vector<std::decay_t<decltype(make(std::size_t{0}))>> made;
     try {
-      parts.push_back(solid_part(shape));
+      while (made.size() < shapes.size()) made.push_back(make(made.size()));
     } catch (const std::invalid_argument& error) {
-      throw InvalidCompound(error.what(), parts.size());
+      throw InvalidCompound(error.what(), made.size());
     }
-  }
+    return made;
+  };
+  const auto solids = of_each_part([&](std::size_t i) { return solid_part(shapes[i]); });
   DoubleDouble volume{};
-  for (const SolidPart& part : parts) volume = volume + part.volume;
+  for (const SolidPart& solid : solids) volume = volume + solid.volume;
+  const auto parts = of_each_part([&](std::size_t i) {
+    return of_integrals(solids[i].kind, solids[i].integrals, 1, mass * (solids[i].volume / volume.high));
+  });
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   for (Eigen::Index d = 0; d < 3; ++d) {
     DoubleDouble moment{};
-    for (const SolidPart& part : parts) moment = moment + DoubleDouble(part.volume) * part.unit.centre[d];
+    for (std::size_t i = 0; i < parts.size(); ++i) moment = moment + two_product(solids[i].volume, parts[i].centre[d]);
     result.centre[d] = (moment / volume).high;
   }
-  for (const SolidPart& part : parts) {
-    const double of_part = mass * (part.volume / volume.high);
-    const Vector3d arm = part.unit.centre - result.centre;
-    result.inertia +=
-        of_part * (part.unit.inertia + dot(arm, arm) * Matrix3d::Identity() - arm * arm.transpose());
+  for (const MassProperties& part : parts) {
+    const Vector3d arm = part.centre - result.centre;
+    result.inertia += part.inertia + part.mass * (dot(arm, arm) * Matrix3d::Identity() - arm * arm.transpose());
   }
   result.inertia = checked_inertia(result.inertia);
   return result;
@@ -287,6 +293,16 @@ MassProperties mass_properties(const Shape& shape, double mass) {
   require_size(mass, "mass");
   place(shape, Eigen::Quaterniond::Identity());
   return std::visit([&](const auto& each) { return of(each, mass); }, shape);
+}
+
+/// Twice, since coordinates of parts that are far from the origin are rounded more coarsely.
+std::vector<CompoundPart> about_centre_of_mass(std::span<const CompoundPart> parts) {
+  std::vector<CompoundPart> moved(parts.begin(), parts.end());
+  for (int round = 0; round < 2; ++round) {
+    const Vector3d centre = mass_properties(compound(moved), 1).centre;
+    for (CompoundPart& part : moved) part.position -= centre;
+  }
+  return moved;
 }
 
 }  // namespace kds::collision

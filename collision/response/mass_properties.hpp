@@ -1,9 +1,13 @@
 // Mass, centre of mass and inertia of solid shapes of uniform density.
 #pragma once
 
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/shape.hpp"
 
 #include <Eigen/Core>
+
+#include <span>
+#include <vector>
 
 namespace kds::collision {
 
@@ -42,5 +46,9 @@ struct MassProperties {
 /// Differs: summed over the tetrahedra that triangles make with one vertex of the mesh, not over projected faces, whose
 /// quotients lose all digits where a face is seen edge-on.
 MassProperties mass_properties(const Shape& shape, double mass);
+
+/// The parts, all moved by one way, so that the origin is the centre of mass of their compound, up to its error above:
+/// as a free body is to have it, which turns about its origin. Throws as compound() and mass_properties() do.
+std::vector<CompoundPart> about_centre_of_mass(std::span<const CompoundPart> parts);
 
 }  // namespace kds::collision
