@@ -8,6 +8,7 @@
 #include "collision/narrow_phase/surface_gap.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/narrow_phase/turning/turning_part_pairs.hpp"
+#include "collision/vectors.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
 #include <algorithm>
@@ -49,7 +50,8 @@ template <int Degree>
 double parts_gap(const MovingShape<certificates::RigidMotion<Degree>>& a,
                  const MovingShape<certificates::RigidMotion<Degree>>& b, const Contact& contact) {
   const auto placed = [&](const MovingShape<certificates::RigidMotion<Degree>>& body) {
-    return place(body.shape.shape, body.motion.restarted(contact.time).orientation.normalized());
+    const Eigen::Quaterniond q = body.motion.restarted(contact.time).orientation;
+    return place(body.shape.shape, Eigen::Quaterniond(Eigen::Vector4d(q.coeffs() / norm(q))));
   };
   const PlacedShape placed_a = placed(a), placed_b = placed(b);
   return gap_along<Degree>({placed_a, a.motion.path}, {placed_b, b.motion.path}, contact.normal, contact.time);

@@ -125,7 +125,8 @@ TEST_CASE("a dumb-bell tumbles and hits a post with one of its ends", "[turning]
   const std::vector<CompoundPart> parts{{Box{{0.5, 0.0625, 0.0625}}},
                                         {Box{{0.25, 0.25, 0.25}}, {0.75, 0, 0}},
                                         {Box{{0.25, 0.25, 0.25}}, {-0.75, 0, 0}}};
-  const BodyId bell = world.add_body({.shape = compound(parts), .motion = {motion_of<2>({0, 0, 0}, {0, 0, 0}, {0, 0, 2})}});
+  const BodyId bell =
+      world.add_body({.shape = compound(parts), .motion = {motion_of<2>({0, 0, 0}, {0, 0, 0}, {0, 0, 2})}});
   Body post = fixed(Sphere{0.125}, {0, 0.875, 0});
   const BodyId id = world.add_body(post);
   world.advance_to(1);
@@ -231,7 +232,8 @@ TEST_CASE("tables that are dropped come to rest, on a half-space and on a box", 
   }
 }
 
-TEST_CASE("compounds that are driven turn as they are told, and queries see their parts", "[turning][compound][queries]") {
+TEST_CASE("compounds that are driven turn as they are told, and queries see their parts",
+          "[turning][compound][queries]") {
   // A door of two panels with a gap between them, which turns about its post, the z axis.
   const std::vector<CompoundPart> panels{{Box{{1, 0.0625, 0.25}}, {1, 0, 0.5}}, {Box{{1, 0.0625, 0.25}}, {1, 0, -0.5}}};
   Turning world(options());

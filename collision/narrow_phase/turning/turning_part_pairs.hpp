@@ -73,7 +73,9 @@ class TurningPartPairs : public ListOfPartPairs {
   /// The same in the axes of the world, about the body's origin.
   struct SeenBall {
     SeenBall(const BallOfPart& ball, const Eigen::Matrix3d& axes)
-        : centre(axes * ball.centre), reach(norm(ball.centre) * (1 + PairFrame<Degree>::rounding)), radius(ball.radius) {}
+        : centre(axes * ball.centre),
+          reach(norm(ball.centre) * (1 + PairFrame<Degree>::rounding)),
+          radius(ball.radius) {}
 
     Eigen::Vector3d centre;
     double reach;  ///< how far the centre is from the origin of the body
@@ -104,8 +106,8 @@ class TurningPartPairs : public ListOfPartPairs {
     const double turning = frame.rate_a * a.reach + frame.rate_b * b.reach;
     const Eigen::Vector3d velocity = frame.way.rate + cross(frame.spin_b, b.centre) - cross(frame.spin_a, a.centre);
     const double rate = dot(n, velocity) - frame.rate_error - rounding * (norm(frame.way.rate) + turning);
-    const double bend = dot(n, frame.way.bend) - rounding * norm(frame.way.bend) -
-                        (1 + rounding) * (frame.rate_a * frame.rate_a * a.reach + frame.rate_b * frame.rate_b * b.reach);
+    const double inward = frame.rate_a * frame.rate_a * a.reach + frame.rate_b * frame.rate_b * b.reach;
+    const double bend = dot(n, frame.way.bend) - rounding * norm(frame.way.bend) - (1 + rounding) * inward;
     const double covered = radii + revolving_reach(a, n, frame.spin_a) + revolving_reach(b, -n, frame.spin_b) +
                            rounding * lengths;
     return std::max(certificates::positive_for(gap, rate, 0.5 * bend), revolving_apart_for(frame, n, covered));

@@ -1,6 +1,7 @@
 // Random pairs of bodies that turn: whether contacts are found where conservative advancement says.
-// fuzz_turning_pairs FIRST LAST [capsules | half-spaces | compounds]: seeds. Fails if one is late or early, and names it.
-// fuzz_turning_pairs check [capsules | half-spaces | compounds]: whether times that are wrong by a little are found.
+// fuzz_turning_pairs FIRST LAST [KINDS]: seeds. Fails if one is late or early, and names it.
+// fuzz_turning_pairs check [KINDS]: whether times that are wrong by a little are found.
+// KINDS: capsules, half-spaces or compounds.
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "tests/fuzz/turning_pairs/make_pair.hpp"
 #include "tests/fuzz/turning_pairs/oracle.hpp"

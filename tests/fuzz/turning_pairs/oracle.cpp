@@ -256,13 +256,27 @@ class Pair {
 
 Piece half_space_piece(const Eigen::Vector3d& normal, double offset) {
   const Vector n = unit(vector(normal));
-  return {{sum({0, 0, 0}, n, offset)}, {n}, {}, 0, {}, true, false, Piece::Counts::always};
+  Piece piece;
+  piece.points = {sum({0, 0, 0}, n, offset)};
+  piece.normals = {n};
+  piece.is_half_space = true;
+  return piece;
 }
 
-Piece ball_piece(double radius) { return {{{0, 0, 0}}, {}, {}, radius, {}, false, false, Piece::Counts::always}; }
+Piece ball_piece(double radius) {
+  Piece piece;
+  piece.points = {{0, 0, 0}};
+  piece.radius = radius;
+  return piece;
+}
 
 Piece capsule_piece(double radius, double half_length) {
-  return {{{0, 0, -half_length}, {0, 0, half_length}}, {}, {{0, 0, 1}}, radius, {{0, 1}}, false, false, Piece::Counts::always};
+  Piece piece;
+  piece.points = {{0, 0, -half_length}, {0, 0, half_length}};
+  piece.edges = {{0, 0, 1}};
+  piece.radius = radius;
+  piece.segments = {{0, 1}};
+  return piece;
 }
 
 Piece box_piece(const Eigen::Vector3d& half) {
