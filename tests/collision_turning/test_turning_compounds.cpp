@@ -99,9 +99,7 @@ Sums sums(const Turning& world, const std::vector<BodyId>& ids) {
 
 /// Compounds and others that fly about in a room of half-spaces, above a fixed table.
 void fill_room(Turning& world, std::uint64_t seed) {
-  for (int d = 0; d < 3; ++d) {
-    for (const double side : {-1.0, 1.0}) world.add_body(half_space(side * Vector3d::Unit(d), -3));
-  }
+  add_room(world, 3);
   world.add_body(fixed(table(), {0, 0, -2.5}, Quaterniond(1, 0.25, 0, 0.5)));
   Random random(seed);
   const std::vector<Shape> shapes{dumb_bell(), Sphere{0.375}, table(), Capsule{0.25, 0.5}, hammer(),
