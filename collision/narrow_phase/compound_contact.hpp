@@ -10,7 +10,8 @@ namespace kds::collision {
 ///
 /// The two are in contact while a part of one is in contact with a part of the other: so times are as exact as those of
 /// the parts. Where contacts are resolved, each pair of parts is judged by itself: one counts if it approaches along
-/// its own normal. Parts move with their body, whose motion is not rounded for it.
+/// its own normal, of bodies that turn faster than roundings can feign. Parts move with their body, whose motion is not
+/// rounded for it.
 ///
 /// The contact at a time is that of the first pair of parts, in the order of those of a, then of b, that are in contact
 /// and approach; if none approaches, of the first in contact; if none is in contact, of the first that was until then,
