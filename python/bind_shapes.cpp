@@ -1,4 +1,5 @@
 // Shapes of bodies.
+#include "collision/response/mass_properties.hpp"
 #include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/heightfield.hpp"
@@ -38,15 +39,15 @@ PyShape mesh_shape(std::vector<Eigen::Vector3d> vertices, std::vector<Mesh::Tria
   return checked(MeshShape{std::make_shared<const Mesh>(std::move(vertices), std::move(triangles)), scale});
 }
 
-/// Parts, and of each: position, and orientation as w, x, y, z.
+/// Parts, and of each: position, and orientation as w, x, y, z; and whether they are moved about their centre of mass.
 PyShape compound_shape(const std::vector<PyShape>& parts, const std::vector<Eigen::Vector3d>& positions,
-                       const std::vector<Eigen::Vector4d>& orientations) {
+                       const std::vector<Eigen::Vector4d>& orientations, bool moved) {
   std::vector<CompoundPart> placed;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Eigen::Vector4d& q = orientations[i];
     placed.push_back({parts[i].shape, positions[i], Eigen::Quaterniond(q[0], q[1], q[2], q[3])});
   }
-  return checked(compound(placed));
+  return checked(compound(moved ? about_centre_of_mass(placed) : placed));
 }
 
 }  // namespace

@@ -1,29 +1,69 @@
 #include "collision/narrow_phase/compound_contact.hpp"
 
+#include "collision/body_motion.hpp"
 #include "collision/narrow_phase/bending_contact.hpp"
 #include "collision/narrow_phase/pair_tests.hpp"
 #include "collision/narrow_phase/part_pairs.hpp"
 #include "collision/narrow_phase/piecewise_contact.hpp"
 #include "collision/narrow_phase/surface_gap.hpp"
+#include "collision/narrow_phase/turning/point_rates.hpp"
+#include "collision/narrow_phase/turning/turning_part_pairs.hpp"
+#include "collision/vectors.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
 #include <algorithm>
 #include <optional>
+#include <type_traits>
 
 namespace kds::collision {
 namespace {
 
+template <class Motion>
+using PairsOf = std::conditional_t<turns<Motion>, TurningPartPairs<Motion::degree>, PartPairs<Motion::degree>>;
+
+/// Whether two parts approach where they touch, the surface of a mesh that bends with its own velocity.
 template <int Degree>
-using Body = TranslatingShape<Degree>;
+bool parts_approach(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Contact& contact) {
+  if (!bends(a.shape.shape) && !bends(b.shape.shape)) return approaching(contact, a, b);
+  const auto velocity = [&](const TranslatingShape<Degree>& body, const Feature& feature) -> Eigen::Vector3d {
+    const Eigen::Vector3d point = contact.point - body.motion.position(contact.time);
+    return body.motion.velocity(contact.time) +
+           surface_rate(body.shape, feature, point, contact.normal, contact.time).velocity;
+  };
+  return dot(contact.normal, velocity(b, contact.feature_b) - velocity(a, contact.feature_a)) < 0;
+}
+/// The same of bodies that turn: faster than roundings can feign.
+template <int Degree>
+bool parts_approach(const MovingShape<certificates::RigidMotion<Degree>>& a,
+                    const MovingShape<certificates::RigidMotion<Degree>>& b, const Contact& contact) {
+  const PointRates<Degree> rates(a.motion, b.motion, contact.time);
+  return dot(contact.normal, rates.velocity(contact.point)) < -rates.noise(contact.point);
+}
+
+/// How far two parts are apart, or how little they overlap, along the normal of a contact.
+template <int Degree>
+double parts_gap(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Contact& contact) {
+  if (bends(a.shape.shape) || bends(b.shape.shape)) return 0;
+  return gap_along(a, b, contact.normal, contact.time);
+}
+template <int Degree>
+double parts_gap(const MovingShape<certificates::RigidMotion<Degree>>& a,
+                 const MovingShape<certificates::RigidMotion<Degree>>& b, const Contact& contact) {
+  const auto placed = [&](const MovingShape<certificates::RigidMotion<Degree>>& body) {
+    const Eigen::Quaterniond q = body.motion.restarted(contact.time).orientation;
+    return place(body.shape.shape, Eigen::Quaterniond(Eigen::Vector4d(q.coeffs() / norm(q))));
+  };
+  const PlacedShape placed_a = placed(a), placed_b = placed(b);
+  return gap_along<Degree>({placed_a, a.motion.path}, {placed_b, b.motion.path}, contact.normal, contact.time);
+}
 
 /// Two parts, with the motions of their bodies, and their tests.
-template <int Degree>
+template <class Motion>
 struct PartTests {
-  PartTests(const Body<Degree>& body_a, const Body<Degree>& body_b, const PlacedShape& part_a,
-            const PlacedShape& part_b)
-      : a{part_a, body_a.motion},
-        b{part_b, body_b.motion},
-        tests(pair_tests<certificates::PointMotion<Degree>>(part_a, part_b)) {}
+  using Body = MovingShape<Motion>;
+
+  PartTests(const Body& body_a, const Body& body_b, const PlacedShape& part_a, const PlacedShape& part_b)
+      : a{part_a, body_a.motion}, b{part_b, body_b.motion}, tests(pair_tests<Motion>(part_a, part_b)) {}
 
   double first_contact(double t0, double horizon, ContactMode mode) const {
     return tests.first_contact(a, b, t0, horizon, mode, nullptr);
@@ -36,35 +76,21 @@ struct PartTests {
   double first_separation(double t, double horizon) const { return tests.first_separation(a, b, t, horizon); }
   Contact contact_at(double t) const { return tests.contact_at(a, b, t, {}); }
 
-  /// Whether they approach where they touch, the surface of a mesh that bends with its own velocity.
-  bool approach(const Contact& contact) const {
-    if (!bends(a.shape.shape) && !bends(b.shape.shape)) return approaching(contact, a, b);
-    const auto velocity = [&](const Body<Degree>& body, const Feature& feature) -> Eigen::Vector3d {
-      const Eigen::Vector3d point = contact.point - body.motion.position(contact.time);
-      return body.motion.velocity(contact.time) +
-             surface_rate(body.shape, feature, point, contact.normal, contact.time).velocity;
-    };
-    return dot(contact.normal, velocity(b, contact.feature_b) - velocity(a, contact.feature_a)) < 0;
-  }
+  bool approach(const Contact& contact) const { return parts_approach(a, b, contact); }
+  double gap(const Contact& contact) const { return parts_gap(a, b, contact); }
 
-  /// How far they are apart, or how little they overlap, along the normal of a contact.
-  double gap(const Contact& contact) const {
-    if (bends(a.shape.shape) || bends(b.shape.shape)) return 0;
-    return gap_along(a, b, contact.normal, contact.time);
-  }
-
-  Body<Degree> a, b;
-  const PairTests<certificates::PointMotion<Degree>>& tests;
+  Body a, b;
+  const PairTests<Motion>& tests;
 };
 
 /// Of two that do not touch: by the parts that are nearest to each other, the first of several.
-template <int Degree>
-Contact nearest_contact(const Body<Degree>& a, const Body<Degree>& b, double t) {
+template <class Motion>
+Contact nearest_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t) {
   std::optional<Contact> nearest;
   double least = never;
   for (const PlacedShape& part_a : parts_of(a.shape)) {
     for (const PlacedShape& part_b : parts_of(b.shape)) {
-      const PartTests<Degree> parts(a, b, part_a, part_b);
+      const PartTests<Motion> parts(a, b, part_a, part_b);
       const Contact contact = parts.contact_at(t);
       const double gap = parts.gap(contact);
       if (nearest && !(gap < least)) continue;
@@ -77,50 +103,52 @@ Contact nearest_contact(const Body<Degree>& a, const Body<Degree>& b, double t) 
 
 }  // namespace
 
-template <int Degree>
-double CompoundContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
+template <class Motion>
+double CompoundContact<Motion>::first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                                               FoundTouch*) {
   if (!(t0 <= horizon)) return never;
   double first = never;
-  for (const auto& pair : PartPairs<Degree>(a, b, t0, horizon).in_time()) {
+  for (const auto& pair : PairsOf<Motion>(a, b, t0, horizon).in_time()) {
     const double end = std::min(first, horizon);
     if (pair.from > end) break;
-    first = std::min(first, PartTests<Degree>(a, b, *pair.a, *pair.b).first_contact(t0, end, mode));
+    const double start = turns<Motion> ? pair.from : t0;
+    first = std::min(first, PartTests<Motion>(a, b, *pair.a, *pair.b).first_contact(start, end, mode));
   }
   return first;
 }
 
-template <int Degree>
-double CompoundContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
+template <class Motion>
+double CompoundContact<Motion>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
   if (!(t0 <= horizon)) return never;
   double first = never;
-  for (const auto& pair : PartPairs<Degree>(a, b, t0, horizon).in_time()) {
+  for (const auto& pair : PairsOf<Motion>(a, b, t0, horizon).in_time()) {
     if (first == t0 || pair.from >= first || pair.from > horizon) break;
-    const double apart = PartTests<Degree>(a, b, *pair.a, *pair.b).apart_until(t0, horizon);
+    const double start = turns<Motion> ? pair.from : t0;
+    const double apart = PartTests<Motion>(a, b, *pair.a, *pair.b).apart_until(start, horizon);
     first = std::min(first, std::max(apart, pair.from));
   }
   return first;
 }
 
-template <int Degree>
-bool CompoundContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
-  const PartPairs<Degree> pairs(a, b, t, t);
+template <class Motion>
+bool CompoundContact<Motion>::in_contact(const Body& a, const Body& b, double t) {
+  const PairsOf<Motion> pairs(a, b, t, t);
   return std::any_of(pairs.all().begin(), pairs.all().end(), [&](const auto& pair) {
-    return PartTests<Degree>(a, b, *pair.a, *pair.b).in_contact(t);
+    return PartTests<Motion>(a, b, *pair.a, *pair.b).in_contact(t);
   });
 }
 
 /// Where the contact of two parts ends others may be in contact: repeat until none is.
-template <int Degree>
-double CompoundContact<Degree>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
+template <class Motion>
+double CompoundContact<Motion>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
   if (!(t0 <= horizon)) return never;
-  const PartPairs<Degree> pairs(a, b, t0, horizon);
+  const PairsOf<Motion> pairs(a, b, t0, horizon);
   double t = t0;
   for (bool moved = true; moved && t != never;) {
     moved = false;
     for (const auto& pair : pairs.all()) {
       if (t < pair.from || t > pair.until) continue;
-      const PartTests<Degree> parts(a, b, *pair.a, *pair.b);
+      const PartTests<Motion> parts(a, b, *pair.a, *pair.b);
       if (!parts.in_contact(t)) continue;
       t = parts.first_separation(t, horizon);
       moved = true;
@@ -130,12 +158,12 @@ double CompoundContact<Degree>::first_separation(const Body& a, const Body& b, d
   return t;
 }
 
-template <int Degree>
-Contact CompoundContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch&) {
+template <class Motion>
+Contact CompoundContact<Motion>::contact_at(const Body& a, const Body& b, double t, const FoundTouch&) {
   std::optional<Contact> touching;
-  const PartPairs<Degree> pairs(a, b, t, t);
+  const PairsOf<Motion> pairs(a, b, t, t);
   for (const auto& pair : pairs.all()) {
-    const PartTests<Degree> parts(a, b, *pair.a, *pair.b);
+    const PartTests<Motion> parts(a, b, *pair.a, *pair.b);
     if (!parts.in_contact(t)) continue;
     const Contact contact = parts.contact_at(t);
     if (parts.approach(contact)) return contact;
@@ -143,16 +171,16 @@ Contact CompoundContact<Degree>::contact_at(const Body& a, const Body& b, double
   }
   if (touching) return *touching;
   const double before = next_down(t);
-  const PartPairs<Degree> pairs_before(a, b, before, before);
+  const PairsOf<Motion> pairs_before(a, b, before, before);
   for (const auto& pair : pairs_before.all()) {
-    const PartTests<Degree> parts(a, b, *pair.a, *pair.b);
+    const PartTests<Motion> parts(a, b, *pair.a, *pair.b);
     if (parts.in_contact(before)) return parts.contact_at(t);
   }
   return nearest_contact(a, b, t);
 }
 
-#define KDS_INSTANTIATE(degree) template struct CompoundContact<degree>;
-KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
+#define KDS_INSTANTIATE(motion) template struct CompoundContact<motion>;
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -1,7 +1,7 @@
 // Dynamic tests of bodies of several parts: those of the parts.
 #pragma once
 
-#include "collision/degrees.hpp"
+#include "collision/motions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 
 namespace kds::collision {
@@ -10,16 +10,18 @@ namespace kds::collision {
 ///
 /// The two are in contact while a part of one is in contact with a part of the other: so times are as exact as those of
 /// the parts. Where contacts are resolved, each pair of parts is judged by itself: one counts if it approaches along
-/// its own normal. Parts move with their body, whose motion is not rounded for it.
+/// its own normal, of bodies that turn faster than roundings can feign. Parts move with their body, whose motion is not
+/// rounded for it.
 ///
 /// The contact at a time is that of the first pair of parts, in the order of those of a, then of b, that are in contact
 /// and approach; if none approaches, of the first in contact; if none is in contact, of the first that was until then,
 /// else of those that are nearest. Its features are those of the two parts.
 ///
-/// Cost: a few roots in doubles for each pair of parts (PartPairs), and the tests of those whose boxes meet.
-template <int Degree>
+/// Cost: a few roots in doubles for each pair of parts (PartPairs; of bodies that turn TurningPartPairs), and the tests
+/// of those whose boxes, or balls, meet.
+template <class Motion>
 struct CompoundContact {
-  using Body = TranslatingShape<Degree>;
+  using Body = MovingShape<Motion>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode,
                               FoundTouch* found);
@@ -29,8 +31,8 @@ struct CompoundContact {
   static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch& found);
 };
 
-#define KDS_DECLARE(degree) extern template struct CompoundContact<degree>;
-KDS_FOR_ALL_DEGREES(KDS_DECLARE)
+#define KDS_DECLARE(motion) extern template struct CompoundContact<motion>;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -33,11 +33,11 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   table.template add<HalfSpace, Sphere, Box, Capsule, MeshShape, ConvexHull>(HalfSpaceContact<Degree>{});
   table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<certificates::PointMotion<Degree>>{});
   table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<Degree>{});
-  table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(
-      CompoundContact<Degree>{});
+  using CompoundTests = CompoundContact<certificates::PointMotion<Degree>>;
+  table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(CompoundTests{});
   if constexpr (Degree <= 2) {
     table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(BendingContact<Degree>{});
-    table.template add<Compound, BendingMesh>(CompoundContact<Degree>{});
+    table.template add<Compound, BendingMesh>(CompoundTests{});
   }
   return table;
 }
@@ -53,6 +53,8 @@ constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   table.template add<MeshShape, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningMeshContact<Degree>{});
   table.template add<HalfSpace, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningContact<Degree>{});
   table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<certificates::RigidMotion<Degree>>{});
+  table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(
+      CompoundContact<certificates::RigidMotion<Degree>>{});
   return table;
 }
 

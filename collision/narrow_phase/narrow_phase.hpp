@@ -36,8 +36,8 @@ struct FoundTouch {
   std::uint32_t triangle_a = 0, triangle_b = 0;
 };
 
-/// Whether there are tests for shapes of this kind that move so: bodies that turn are balls, boxes, capsules, hulls
-/// and meshes; meshes that bend move on straight lines and parabolas.
+/// Whether there are tests for shapes of this kind that move so: bodies that turn are balls, boxes, capsules, hulls,
+/// meshes and compounds; meshes that bend move on straight lines and parabolas.
 template <class Motion>
 bool can_move_by(const Shape& shape);
 

@@ -20,6 +20,30 @@ inline std::span<const PlacedShape> parts_of(const PlacedShape& shape) {
   return {&shape, 1};
 }
 
+/// Pairs of parts that may meet, and from when to when.
+class ListOfPartPairs {
+ public:
+  struct Pair {
+    const PlacedShape* a;
+    const PlacedShape* b;
+    double from;   ///< on the clock: not in contact before
+    double until;  ///< nor after
+  };
+
+  /// In the order of the parts of a, then of b.
+  std::span<const Pair> all() const& { return pairs_; }
+  std::span<const Pair> all() const&& = delete;  // it refers to this
+  /// The same, by `from`.
+  std::vector<Pair> in_time() const {
+    std::vector<Pair> sorted = pairs_;
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Pair& x, const Pair& y) { return x.from < y.from; });
+    return sorted;
+  }
+
+ protected:
+  std::vector<Pair> pairs_;
+};
+
 /// The pairs of parts of two bodies whose boxes may overlap at some time from now to the horizon, in the order of the
 /// parts of a, then of b.
 ///
@@ -29,16 +53,9 @@ inline std::span<const PlacedShape> parts_of(const PlacedShape& shape) {
 /// Cost: for each part of a at most six roots of QuickMotion, and for those whose boxes meet the box around all of b
 /// within the time as many for each part of b.
 template <int Degree>
-class PartPairs {
+class PartPairs : public ListOfPartPairs {
  public:
   using Body = TranslatingShape<Degree>;
-
-  struct Pair {
-    const PlacedShape* a;
-    const PlacedShape* b;
-    double from;   ///< on the clock: not in contact before
-    double until;  ///< nor after
-  };
 
   PartPairs(const Body& a, const Body& b, double now, double horizon)
       : motion_(a.motion, b.motion, now, horizon, sizes(a.shape, b.shape)) {
@@ -59,15 +76,6 @@ class PartPairs {
         if (!boxes || clip(pair)) pairs_.push_back(pair);
       }
     }
-  }
-
-  std::span<const Pair> all() const& { return pairs_; }
-  std::span<const Pair> all() const&& = delete;  // it refers to this
-  /// The same, by `from`.
-  std::vector<Pair> in_time() const {
-    std::vector<Pair> sorted = pairs_;
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Pair& x, const Pair& y) { return x.from < y.from; });
-    return sorted;
   }
 
  private:
@@ -104,7 +112,6 @@ class PartPairs {
   QuickMotion<Degree> motion_;
   std::array<typename QuickMotion<Degree>::Along, 3> along_;
   double mesh_margin_ = 0;
-  std::vector<Pair> pairs_;
 };
 
 }  // namespace kds::collision

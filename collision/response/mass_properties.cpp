@@ -2,8 +2,10 @@
 
 #include "collision/precise_vector.hpp"
 #include "collision/response/inertia.hpp"
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/polytope.hpp"
+#include "collision/vectors.hpp"
 #include "kds/arithmetic/power_of_two.hpp"
 
 #include <algorithm>
@@ -15,6 +17,7 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace kds::collision {
@@ -157,12 +160,16 @@ constexpr double largest_error = 0x1p-56;
 /// s^2.
 constexpr double least_share = 0x1p-44;
 
-/// Of a closed surface: `kind`, in messages.
-MassProperties of_surface(const char* kind, const Mesh& mesh, double scale, double mass) {
+/// A solid that a closed surface bounds, by its integrals. `kind`, in messages.
+Integrals solid_in(const char* kind, const Mesh& mesh) {
   const Integrals sum = integrate(mesh);
   const double least = sum.error(mesh.triangles().size()) / largest_error;
   if (sum.volume.high < -least) refuse(kind, "is inside out: its triangles turn clockwise seen from outside");
   if (!(sum.volume.high > least)) refuse(kind, "has no volume beyond rounding");
+  return sum;
+}
+
+MassProperties of_integrals(const char* kind, const Integrals& sum, double scale, double mass) {
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   PreciseVector centre, mean_square;
   for (std::size_t d = 0; d < 3; ++d) {
@@ -216,19 +223,64 @@ MassProperties of(const Capsule& capsule, double mass) {
 
 MassProperties of(const MeshShape& shape, double mass) {
   require_closed(*shape.mesh);
-  return of_surface("mesh", *shape.mesh, shape.scale, mass);
+  return of_integrals("mesh", solid_in("mesh", *shape.mesh), shape.scale, mass);
 }
 
 MassProperties of(const ConvexHull& hull, double mass) {
-  return of_surface("hull", *hull.polytope->surface(), 1, mass);
+  return of_integrals("hull", solid_in("hull", *hull.polytope->surface()), 1, mass);
 }
 
 MassProperties of(const HalfSpace&, double) {
   throw std::invalid_argument("mass_properties: a half-space has no mass");
 }
 
-MassProperties of(const Compound&, double) {
-  throw std::invalid_argument("mass_properties: a compound has none of its own: its parts may overlap");
+/// A part of a compound.
+struct SolidPart {
+  const char* kind;
+  Integrals integrals;
+  double volume;
+};
+
+SolidPart solid_part(const Shape& shape) {
+  const auto* const hull = std::get_if<ConvexHull>(&shape);
+  const char* const kind = hull ? "hull" : "mesh";
+  const Mesh& mesh = hull ? *hull->polytope->surface() : *std::get<MeshShape>(shape).mesh;
+  if (!hull) require_closed(mesh);
+  const Integrals sum = solid_in(kind, mesh);
+  return {kind, sum, (sum.volume / 6.0).high * sum.unit * sum.unit * sum.unit};
+}
+
+/// Parts of one density, by the theorem of parallel axes. What cancels where parts are about each other, the sum of
+/// their places, is summed up in double-doubles.
+MassProperties of(const Compound& whole, double mass) {
+  const auto shapes = whole.parts->parts();
+  const auto of_each_part = [&](const auto& make) {
+    std::vector<std::decay_t<decltype(make(std::size_t{0}))>> made;
+    try {
+      while (made.size() < shapes.size()) made.push_back(make(made.size()));
+    } catch (const std::invalid_argument& error) {
+      throw InvalidCompound(error.what(), made.size());
+    }
+    return made;
+  };
+  const auto solids = of_each_part([&](std::size_t i) { return solid_part(shapes[i]); });
+  DoubleDouble volume{};
+  for (const SolidPart& solid : solids) volume = volume + solid.volume;
+  const auto parts = of_each_part([&](std::size_t i) {
+    return of_integrals(solids[i].kind, solids[i].integrals, 1, mass * (solids[i].volume / volume.high));
+  });
+  MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
+  for (Eigen::Index d = 0; d < 3; ++d) {
+    DoubleDouble moment{};
+    for (std::size_t i = 0; i < parts.size(); ++i) moment = moment + two_product(solids[i].volume, parts[i].centre[d]);
+    result.centre[d] = (moment / volume).high;
+  }
+  for (const MassProperties& part : parts) {
+    const Vector3d arm = part.centre - result.centre;
+    result.inertia += part.inertia + part.mass * (dot(arm, arm) * Matrix3d::Identity() - arm * arm.transpose());
+  }
+  result.inertia = checked_inertia(result.inertia);
+  return result;
 }
 
 MassProperties of(const BendingMesh&, double) {
@@ -241,6 +293,16 @@ MassProperties mass_properties(const Shape& shape, double mass) {
   require_size(mass, "mass");
   place(shape, Eigen::Quaterniond::Identity());
   return std::visit([&](const auto& each) { return of(each, mass); }, shape);
+}
+
+/// Twice, since coordinates of parts that are far from the origin are rounded more coarsely.
+std::vector<CompoundPart> about_centre_of_mass(std::span<const CompoundPart> parts) {
+  std::vector<CompoundPart> moved(parts.begin(), parts.end());
+  for (int round = 0; round < 2; ++round) {
+    const Vector3d centre = mass_properties(compound(moved), 1).centre;
+    for (CompoundPart& part : moved) part.position -= centre;
+  }
+  return moved;
 }
 
 }  // namespace kds::collision

@@ -38,7 +38,7 @@ void validate(const BasicBodyDescription<Motion>& description) {
   if (!description.fixed) require_size(description.mass, "mass");
   if (!can_move_by<Motion>(description.shape)) {
     const std::string name = std::string("shape: a ") + kind_name(description.shape);
-    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes, capsules, hulls and meshes can");
+    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes, capsules, hulls, meshes and compounds can");
     fail(name + " cannot move on paths of degree " + std::to_string(Motion::degree) + ": at most 2");
   }
   if constexpr (turns<Motion>) {
@@ -89,7 +89,9 @@ Eigen::Matrix3d tensor_of(const BasicBodyDescription<Motion>& description) {
     std::ostringstream text;
     text << "inertia: the centre of mass of this " << kind_name(shape) << " is at (" << solid.centre[0] << ", "
          << solid.centre[1] << ", " << solid.centre[2]
-         << "), and free bodies turn about their origin: subtract it from the vertices, or give their inertia";
+         << "), and free bodies turn about their origin: subtract it from the "
+         << (std::holds_alternative<Compound>(shape) ? "positions of the parts" : "vertices")
+         << ", or give their inertia";
     throw std::invalid_argument(text.str());
   }
   return solid.inertia;

@@ -1,5 +1,6 @@
 #include "io/scene_file/shape_reader.hpp"
 
+#include "collision/response/mass_properties.hpp"
 #include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "io/number_text.hpp"
@@ -83,13 +84,15 @@ kds::collision::CompoundPart read_part(const JsonNode& node, const Meshes& meshe
 }
 
 Shape read_compound(const JsonNode& node, const Meshes& meshes) {
-  const JsonNode parts = node["compound"].object({"parts"})["parts"];
+  const JsonNode compound = node["compound"];
+  const JsonNode parts = compound.object({"parts", "about_centre_of_mass"})["parts"];
   const std::vector<JsonNode> nodes = parts.elements();
   if (nodes.empty()) parts.fail("must have at least one part");
   std::vector<kds::collision::CompoundPart> read;
   for (const JsonNode& each : nodes) read.push_back(read_part(each, meshes));
+  const bool moved = compound.has("about_centre_of_mass") && compound["about_centre_of_mass"].boolean();
   try {
-    return kds::collision::compound(read);
+    return kds::collision::compound(moved ? kds::collision::about_centre_of_mass(read) : read);
   } catch (const kds::collision::InvalidCompound& error) {
     const std::string what = error.what();  // "compound: part 3: ..."
     const std::size_t name = what.find(": ") + 2;

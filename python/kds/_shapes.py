@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kds import _kds
-from kds._arrays import array_of, doubles, number, path, rows, shape_of, vector
+from kds._arrays import array_of, doubles, flag, number, path, rows, shape_of, vector
 from kds._kds import Shape
 from kds._motion import UPRIGHT
 
@@ -71,17 +71,25 @@ def heightfield(heights: ArrayLike, spacing: ArrayLike = (1, 1)) -> Shape:
     return _kds.heightfield(rows_of_heights.ravel(), rows_of_heights.shape[1], along_x, along_y)
 
 
-def compound(parts: Iterable[Shape], positions: ArrayLike = (0, 0, 0), orientations: ArrayLike = UPRIGHT) -> Shape:
+def compound(
+    parts: Iterable[Shape],
+    positions: ArrayLike = (0, 0, 0),
+    orientations: ArrayLike = UPRIGHT,
+    about_centre_of_mass: bool = False,
+) -> Shape:
     """Boxes, hulls and meshes as one body: it is in contact while one of its parts is. Use one for many bodies.
 
     Of each part the position of its centre (n, 3), seen from the body's centre, and its orientation (n, 4): unit
-    quaternions w, x, y, z; or one for all. Parts may overlap. For worlds that do not turn.
+    quaternions w, x, y, z; or one for all. Parts may overlap. With about_centre_of_mass all are moved by one way, so
+    that the body's centre is the centre of mass, about which a free body turns: parts have one density, what two share
+    counts twice, and meshes have to be closed.
     """
     if not isinstance(parts, Iterable):
         raise ValueError(f"parts: must be several kds.Shape, and is {parts!r}")
     shapes = [shape_of(f"parts[{i}]", part) for i, part in enumerate(parts)]
     n = len(shapes)
-    return _kds.compound(shapes, rows("positions", positions, n, 3), rows("orientations", orientations, n, 4))
+    moved = flag("about_centre_of_mass", about_centre_of_mass)
+    return _kds.compound(shapes, rows("positions", positions, n, 3), rows("orientations", orientations, n, 4), moved)
 
 
 def read_mesh(file: str | os.PathLike[str], scale: float = 1.0) -> Shape:

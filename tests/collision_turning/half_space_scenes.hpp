@@ -73,6 +73,13 @@ inline Body half_space(const Vector3d& normal, double offset = 0, const Vector3d
 }
 inline Body ground() { return half_space(Vector3d::UnitZ()); }
 
+/// Six walls of a cube, turned as a whole.
+inline void add_room(Turning& world, double half, const Quaterniond& turn = Quaterniond::Identity()) {
+  for (int d = 0; d < 3; ++d) {
+    for (const double side : {-1.0, 1.0}) world.add_body(half_space(side * Vector3d::Unit(d), -half, zero, turn));
+  }
+}
+
 /// One that falls.
 inline Body thrown(const Shape& shape, const Vector3d& at, const Vector3d& velocity, const Vector3d& spin,
                    const Quaterniond& orientation = Quaterniond::Identity()) {

@@ -73,10 +73,7 @@ double lowest(const Turning& world, BodyId id, const Vector3d& normal = Vector3d
 
 /// A room of six planes, turned as a whole, and bodies that spin in it.
 void fill_room(Turning& world, std::uint64_t seed) {
-  const Quaterniond turn(1, 0.25, -0.5, 0.125);
-  for (int d = 0; d < 3; ++d) {
-    for (const double side : {-1.0, 1.0}) world.add_body(half_space(side * Vector3d::Unit(d), -3, zero, turn));
-  }
+  add_room(world, 3, Quaterniond(1, 0.25, -0.5, 0.125));
   Random random(seed);
   for (std::size_t i = 0; i < 10; ++i) {
     const Vector3d at = random_vector(random, 1.5), velocity = random_vector(random, 3);

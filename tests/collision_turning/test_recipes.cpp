@@ -1,9 +1,12 @@
 // The code of docs/recipes.md with bodies that turn: what is quoted there stands here.
+#include "collision/response/mass_properties.hpp"
+#include "collision/shapes/compound.hpp"
 #include "collision/world.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <vector>
 
 namespace test_recipes {
 namespace {
@@ -31,6 +34,19 @@ TEST_CASE("recipe: a body that turns") {
   world.advance_to(10);
   CHECK(world.motion(die).path.position(10)[2] == Approx(0.25).margin(1e-6));
   CHECK(world.motion(die).angular_velocity == Vector3d(0, 0, 0));
+}
+
+TEST_CASE("recipe: a body of several parts that turns") {
+  const std::vector<CompoundPart> parts{{Box{{0.5, 0.0625, 0.0625}}}, {Box{{0.125, 0.25, 0.125}}, {0.5, 0, 0}}};
+  const Compound hammer = compound(about_centre_of_mass(parts));  // free bodies turn about their origin
+  TurningWorld<2> world({.response = Response::elastic});
+  const Turning thrown{.path = Parabola::parabola({0, 0, 2}, {1, 0, 4}, {0, 0, -10}), .angular_velocity = {0, 3, 0.5}};
+  const BodyId id = world.add_body({.shape = hammer, .motion = {thrown}, .mass = 2});
+  world.advance_to(1);
+  const Turning now = world.motion(id).restarted(world.now());
+  const Vector3d end = now.position(Vector3d(-0.5, 0, 0), world.now()).vector;  // of a point of the body
+  CHECK((end - now.path.coefficients[0]).norm() == Approx(0.5));
+  CHECK((now.path.coefficients[0] - Vector3d(1, 0, 1)).norm() < 1e-12);
 }
 
 }  // namespace

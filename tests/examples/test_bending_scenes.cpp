@@ -132,7 +132,7 @@ TEST_CASE("scenes with meshes that bend: what is wrong is named with its place")
       with("/response", "elastic") ==
       "bodies[0].vertices: contacts do not move a mesh that bends: \"fixed\": true for this body, or \"sensor\": true");
   CHECK(with("/bodies/1/motion/0/angular_velocity", json::parse("[0,0,1]")) ==
-        "bodies[0].shape: a bending mesh cannot turn: balls, boxes, capsules, hulls and meshes can");
+        "bodies[0].shape: a bending mesh cannot turn: balls, boxes, capsules, hulls, meshes and compounds can");
 }
 
 TEST_CASE("generator: a sheet on which waves run, and balls that meet it") {

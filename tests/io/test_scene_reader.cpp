@@ -253,6 +253,23 @@ TEST_CASE("scene reader: a compound of a box that is turned and a hull") {
   CHECK(std::get<kds::collision::ConvexHull>(parts[1]).polytope->points()[3] == Eigen::Vector3d(0, 0, 1));
 }
 
+TEST_CASE("scene reader: a compound about its centre of mass, in a scene that turns") {
+  const auto read = [](const std::string& more) {
+    return parse_scene(
+        R"({"scene": 1, "end_time": 2, "response": "elastic", "bodies": [{"name": "a", "shape": {"compound": {"parts": [
+            {"shape": {"box": {"half_extents": [1,1,1]}}},
+            {"shape": {"box": {"half_extents": [1,1,1]}}, "position": [4,0,0]}])" +
+            more + R"(}}, "motion": [{"start": 0, "position": [[0,0,0]], "angular_velocity": [1,2,3]}]}]})",
+        "scene.json");
+  };
+  const Scene scene = read(R"(, "about_centre_of_mass": true)");
+  const auto placed = kds::collision::place(scene.bodies[0].shape, Eigen::Quaterniond::Identity());
+  CHECK(placed.low == Eigen::Vector3d(-3, -1, -1));
+  CHECK(placed.high == Eigen::Vector3d(3, 1, 1));
+  CHECK_THROWS_WITH(read(R"(, "about_centre_of_mass": false)"),
+                    Catch::StartsWith("scene.json: bodies[0].inertia: the centre of mass of this compound is at (2,"));
+}
+
 TEST_CASE("scene reader: a capsule, and one of no length") {
   const auto read = [](const std::string& numbers) {
     const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "bodies": [{"name": "a", "shape": {"capsule": {)" +

@@ -90,6 +90,20 @@ class Bulk(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, message):
                 kds.compound(parts)
 
+    def test_a_compound_that_tumbles(self):
+        parts = [kds.box((0.5, 0.0625, 0.0625)), kds.box((0.125, 0.25, 0.125))]
+        hammer = kds.compound(parts, [[0, 0, 0], [0.5, 0, 0]], about_centre_of_mass=True)
+        world = kds.World(turning=True, response="elastic")
+        beside = kds.compound(parts, [[0, 0, 0], [0.5, 0, 0]])
+        with self.assertRaisesRegex(ValueError, "inertia: the centre of mass of this compound is at"):
+            world.add_body(beside, (0, 0, 0))
+        world.add_body(hammer, (0, 0, 0), (1, 0, 0), angular_velocity=(0, 0, 3))
+        world.add_body(kds.box((0.5, 2, 2)), (3, 0, 0), fixed=True)
+        contacts = [e for e in world.advance_to(4) if e["kind"] == kds.EventKind.CONTACT]
+        self.assertGreaterEqual(len(contacts), 1)
+        np.testing.assert_allclose(np.abs(contacts[0]["normal"]), (1, 0, 0), atol=1e-12)
+        self.assertAlmostEqual(contacts[0]["point"][0], 2.5)
+
     def test_a_ball_meets_a_terrain(self):
         x, y = np.meshgrid(np.arange(-2, 3), np.arange(-4, 5, 2))
         world = kds.World()

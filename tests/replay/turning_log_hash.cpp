@@ -1,5 +1,7 @@
 // The event logs of worlds whose bodies turn, with each broad phase, in windows and with snapshots on the way: see
 // replay.hpp. The file in the repository is made by: turning_log_hash > tests/replay/golden_turning.txt
+#include "collision/response/mass_properties.hpp"
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
@@ -44,8 +46,27 @@ Vector3d random_vector(kds::tests::Random& random, double size) {
   return {x, y, z};
 }
 
+Shape dumb_bell() {
+  return collision::compound(std::vector<collision::CompoundPart>{{Box{Vector3d(0.25, 0.0625, 0.0625)}},
+                                                                  {Box{Vector3d::Constant(0.1875)}, {0.375, 0, 0}},
+                                                                  {Box{Vector3d::Constant(0.1875)}, {-0.375, 0, 0}}});
+}
+
+Shape table() {
+  std::vector<collision::CompoundPart> parts{{Box{Vector3d(0.4, 0.3, 0.05)}, {0, 0, 0.15}}};
+  for (const double x : {-0.35, 0.35}) {
+    for (const double y : {-0.25, 0.25}) parts.push_back({Box{Vector3d(0.05, 0.05, 0.15)}, {x, y, -0.05}});
+  }
+  return collision::compound(collision::about_centre_of_mass(parts));
+}
+
+Shape hammer() {
+  return collision::compound(std::vector<collision::CompoundPart>{{Box{Vector3d(0.4, 0.05, 0.05)}},
+                                                                  {MeshShape{rational_torus(), 0.25}, {0.3, 0, 0}}});
+}
+
 /// What the bodies of a scene are.
-enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture, capsules, crates, in_a_room };
+enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture, capsules, crates, in_a_room, compounds };
 
 constexpr double end_time = 2;
 constexpr int most_bodies = 64;  // on a lattice of 4 x 4 x 4
@@ -86,6 +107,14 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
       if (i % 8 == 5) body.shape = MeshShape{ring, 0.5}, body.inertia = 0.1;
     }
     if (crates && i % 2 == 0) body.shape = Box{Vector3d(0.3, 0.4, 0.2)};
+    // Dumb-bells and tables, which precess, and a hammer whose head is a mesh meet all kinds.
+    if (bodies == Bodies::compounds) {
+      if (i % 2 == 0) body.shape = i % 4 == 0 ? dumb_bell() : table();
+      if (i % 8 == 1) body.shape = Sphere{0.4};
+      if (i % 8 == 3) body.shape = Capsule{0.25, 0.25};
+      if (i % 8 == 5) body.shape = hammer(), body.inertia = 0.1;
+      if (i % 8 == 7) body.shape = i % 16 == 7 ? Shape(MeshShape{ring, 0.5}) : tetrahedron, body.inertia = 0.1;
+    }
     body.friction = crates ? 0.5 : i % 3 == 0 ? 0.25 : 0;
     body.restitution = crates ? 0.25 : i % 5 == 0 ? 0.5 : 1;
     body.fixed = i == 7 && !crates;
@@ -137,7 +166,8 @@ void add_worlds(std::vector<Replay>& replays) {
                              std::pair{Bodies::rings, "rings"},     std::pair{Bodies::precessing, "precessing"},
                              std::pair{Bodies::mixture, "mixture"}, std::pair{Bodies::capsules, "capsules"},
                              std::pair{Bodies::crates, "crates"},
-                             std::pair{Bodies::in_a_room, "in-a-room"}};
+                             std::pair{Bodies::in_a_room, "in-a-room"},
+                             std::pair{Bodies::compounds, "compounds"}};
   for (const auto& [bodies, name] : kinds) {
     for (const Response response : {Response::none, Response::elastic}) {
       if (bodies == Bodies::crates && (Degree == 1 || response == Response::none)) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "certificates/turning/rigid_motion.hpp"
+#include "collision/shapes/polytope.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/vectors.hpp"
 
@@ -21,43 +22,55 @@ namespace kds::collision {
 /// A point of the body keeps its height c along the axis n of the turning, and its distance rho from it. So along an
 /// axis of the world it is never farther from the centre than |c n_d| + rho sqrt(1 - n_d^2): these are the bounds of
 /// the body of revolution, which are never beyond those of the bounding ball. A body that does not turn reaches as far
-/// as it does as it is. A capsule is a box without width, grown by its radius.
+/// as it does as it is. A capsule is a box without width, grown by its radius; a compound of hulls is all their points.
+/// Of other shapes it is the box around the bounding ball.
 ///
 /// Error bound: an axis that is turned is off by 2^-46 of its length, and what is added up by some roundings more:
 /// 2^-40 of the bounding radius is charged.
 template <int Degree>
 Eigen::Vector3d turning_half_extents(const PlacedShape& shape, const certificates::RigidMotion<Degree>& motion) {
   const double radius = shape.bounding_radius;
-  Eigen::Vector3d edges;  // half of the box that the body is
+  Eigen::Vector3d edges = Eigen::Vector3d::Zero();  // half of the box that the body is
   double grown_by = 0;
+  const bool of_hulls = shape.parts && !has_mesh(shape.shape);
   if (const auto* const box = std::get_if<Box>(&shape.shape)) {
     edges = box->half_extents;
   } else if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
     edges = Eigen::Vector3d(0, 0, capsule->half_length);
     grown_by = capsule->radius;
-  } else {
+  } else if (!of_hulls) {
     return Eigen::Vector3d::Constant(radius);
   }
   const double rate = norm(motion.angular_velocity);
   const bool still = motion.spin().still();
   if (!still && !(rate >= 0x1p-400 && rate <= 0x1p400)) return Eigen::Vector3d::Constant(radius);
   const certificates::Rotation turn = motion.rotation(motion.path.start);
-  std::array<Eigen::Vector3d, 3> half;
-  for (int k = 0; k < 3; ++k) {
-    half[static_cast<std::size_t>(k)] = edges[k] * turn(Eigen::Vector3d::Unit(k));
-  }
   Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();
-  if (still) {
-    for (const Eigen::Vector3d& h : half) half_extents += h.cwiseAbs();
+  const Eigen::Vector3d n = still ? half_extents : Eigen::Vector3d(motion.angular_velocity / rate);
+  const auto take = [&](const Eigen::Vector3d& x) {
+    if (still) {
+      half_extents = half_extents.cwiseMax(x.cwiseAbs());
+      return;
+    }
+    const double height = std::abs(dot(n, x));
+    const double distance = norm(cross(n, x));
+    for (int d = 0; d < 3; ++d) {
+      half_extents[d] =
+          std::max(half_extents[d], height * std::abs(n[d]) + distance * std::sqrt(std::max(0.0, 1 - n[d] * n[d])));
+    }
+  };
+  if (of_hulls) {
+    for (const PlacedShape& part : *shape.parts) {
+      for (const Eigen::Vector3d& x : std::get<ConvexHull>(part.shape).polytope->points()) take(turn(x));
+    }
   } else {
-    const Eigen::Vector3d n = motion.angular_velocity / rate;
-    for (int corner = 0; corner < 4; ++corner) {  // the opposite ones are as far
-      const Eigen::Vector3d x = half[0] + (corner & 1 ? half[1] : -half[1]) + (corner & 2 ? half[2] : -half[2]);
-      const double height = std::abs(dot(n, x));
-      const double distance = norm(cross(n, x));
-      for (int d = 0; d < 3; ++d) {
-        half_extents[d] =
-            std::max(half_extents[d], height * std::abs(n[d]) + distance * std::sqrt(std::max(0.0, 1 - n[d] * n[d])));
+    std::array<Eigen::Vector3d, 3> half;
+    for (int k = 0; k < 3; ++k) half[static_cast<std::size_t>(k)] = edges[k] * turn(Eigen::Vector3d::Unit(k));
+    if (still) {
+      for (const Eigen::Vector3d& h : half) half_extents += h.cwiseAbs();
+    } else {
+      for (int corner = 0; corner < 4; ++corner) {  // the opposite ones are as far
+        take(half[0] + (corner & 1 ? half[1] : -half[1]) + (corner & 2 ? half[2] : -half[2]));
       }
     }
   }

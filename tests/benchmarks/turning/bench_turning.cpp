@@ -1,5 +1,6 @@
 // Pairs of bodies that turn: time and missed contacts, beside FCL and Bullet.
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/shapes/compound.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/benchmarks/turning/random_boxes.hpp"
@@ -45,6 +46,30 @@ double here(const Query& query) { return contact_of(Box{query.half_a}, Box{query
 Capsule rod_in(const Vector3d& half) { return {half[0], half[2]}; }
 double capsules_here(const Query& query) { return contact_of(rod_in(query.half_a), rod_in(query.half_b), query); }
 double capsule_and_box_here(const Query& query) { return contact_of(rod_in(query.half_a), Box{query.half_b}, query); }
+
+double contact_of_two(const PlacedShape& shape, const Query& query) {
+  const MovingShape<certificates::RigidMotion<1>> of_a{shape, query.a}, of_b{shape, query.b};
+  return std::min(2.0, first_contact(of_a, of_b, 0, 1, ContactMode::transparent));
+}
+
+/// Two cubes and the rod between them; a top on four legs. Each is about as large as the boxes.
+double dumb_bells_here(const Query& query) {
+  static const PlacedShape bell = place(compound(std::vector<CompoundPart>{{Box{{0.5, 0.0625, 0.0625}}},
+                                                                           {Box{{0.25, 0.25, 0.25}}, {0.75, 0, 0}},
+                                                                           {Box{{0.25, 0.25, 0.25}}, {-0.75, 0, 0}}}),
+                                        Eigen::Quaterniond::Identity());
+  return contact_of_two(bell, query);
+}
+double tables_here(const Query& query) {
+  static const PlacedShape table = [] {
+    std::vector<CompoundPart> parts{{Box{{0.6, 0.6, 0.0625}}, {0, 0, 0.25}}};
+    for (const double x : {-0.5, 0.5}) {
+      for (const double y : {-0.5, 0.5}) parts.push_back({Box{{0.0625, 0.0625, 0.375}}, {x, y, -0.1875}});
+    }
+    return place(compound(parts), Eigen::Quaterniond::Identity());
+  }();
+  return contact_of_two(table, query);
+}
 
 struct Row {
   double microseconds;  ///< median
@@ -98,7 +123,9 @@ int main(int argc, char** argv) {
   for (const auto& [scene, make, find, peers] :
        {Scene{"boxes", random_boxes, here, true}, Scene{"rod and plate", rod_and_plate, here, true},
         Scene{"capsules", random_boxes, capsules_here, false},
-        Scene{"capsule, box", random_boxes, capsule_and_box_here, false}}) {
+        Scene{"capsule, box", random_boxes, capsule_and_box_here, false},
+        Scene{"dumb-bells", random_boxes, dumb_bells_here, false},
+        Scene{"tables", random_boxes, tables_here, false}}) {
     for (const double turn : {0.01, 0.1, 1.0, 10.0, 100.0, 1000.0}) {
       Random random(1);
       std::vector<Query> queries;

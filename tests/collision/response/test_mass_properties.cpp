@@ -1,8 +1,11 @@
 // Mass properties against formulas, and against surface integrals in rational numbers.
 #include "collision/response/inertia.hpp"
 #include "collision/response/mass_properties.hpp"
+#include "collision/shapes/compound.hpp"
+#include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "tests/collision/sample_meshes.hpp"
+#include "tests/support/random_numbers.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
@@ -310,6 +313,67 @@ TEST_CASE("Parts, cavities, touching parts and vertices named twice", "[mass pro
   }
   CHECK(mass_properties(MeshShape{make(vertices, triangles)}, 8).inertia ==
         mass_properties(MeshShape{cube}, 8).inertia);
+}
+
+TEST_CASE("A compound has what its parts have as one mesh", "[mass properties]") {
+  kds::tests::Random random(5);
+  for (int run = 0; run < 20; ++run) {
+    CAPTURE(run);
+    std::vector<CompoundPart> parts;
+    std::shared_ptr<const Mesh> whole;
+    const int count = 1 + run % 4;
+    for (int i = 0; i < count; ++i) {
+      const Vector3d half(random.between(0.1, 2), random.between(0.1, 2), random.between(0.1, 2));
+      const Vector3d at(random.between(-9, 9), random.between(-9, 9), random.between(-9, 9));
+      const auto box = samples::cuboid(half);
+      const auto placed = changed(*box, [&](const Vector3d& v) -> Vector3d { return v + at; });
+      if (i % 3 == 0) parts.push_back({Box{half}, at});
+      if (i % 3 == 1) parts.push_back({MeshShape{box}, at});
+      if (i % 3 == 2) parts.push_back({convex_hull({box->vertices().begin(), box->vertices().end()}), at});
+      whole = whole ? together(*whole, *placed) : placed;
+    }
+    const Compound made = compound(parts);
+    const double mass = random.between(0.5, 3);
+    const MassProperties expected = mass_properties(MeshShape{whole}, mass), found = mass_properties(made, mass);
+    CHECK(found.mass == mass);
+    CHECK((found.centre - expected.centre).norm() < 1e-14);
+    CHECK(off(found.inertia, expected.inertia) < 1e-14);
+    if (count == 1) {
+      const MassProperties alone = mass_properties(made.parts->parts()[0], mass);
+      CHECK((found.centre == alone.centre && found.inertia == alone.inertia));
+    }
+    const std::vector<CompoundPart> moved = about_centre_of_mass(parts);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      CHECK((parts[i].position - moved[i].position - found.centre).norm() < 1e-13);
+    }
+    const MassProperties centred = mass_properties(compound(moved), mass);
+    CHECK(centred.centre.norm() < 1e-14);
+    CHECK(off(centred.inertia, expected.inertia) < 1e-14);
+  }
+  // What two share counts twice. Three bars across each other, as they are, are spherical.
+  const std::vector<CompoundPart> twice{{Box{{1, 1, 1}}}, {Box{{1, 1, 1}}}};
+  CHECK(mass_properties(compound(twice), 2).inertia == mass_properties(Box{{1, 1, 1}}, 2).inertia);
+  const std::vector<CompoundPart> jack{{Box{{2, 0.25, 0.25}}}, {Box{{0.25, 2, 0.25}}}, {Box{{0.25, 0.25, 2}}}};
+  CHECK(is_spherical(mass_properties(compound(jack), 3).inertia));
+}
+
+TEST_CASE("A compound without mass properties is refused, and the part is named", "[mass properties]") {
+  const auto cube = samples::cuboid();
+  const Vertices vertices(cube->vertices().begin(), cube->vertices().end());
+  Triangles open(cube->triangles().begin(), cube->triangles().end());
+  open.pop_back();
+  const auto with = [](const Shape& part) {
+    const std::vector<CompoundPart> parts{{Box{{1, 1, 1}}}, {part, {3, 0, 0}}};
+    return message(compound(parts));
+  };
+  const std::string name = "compound: part 1: mass_properties: the mesh ";
+  CHECK(with(MeshShape{make(vertices, open)}) == name + "is open: edge 5-6 belongs to one triangle, 10");
+  Triangles inward(cube->triangles().begin(), cube->triangles().end());
+  for (auto& [a, b, c] : inward) std::swap(b, c);
+  CHECK(with(MeshShape{make(vertices, inward)}) ==
+        name + "is inside out: its triangles turn clockwise seen from outside");
+  CHECK(message(Compound{}) == "compound: is missing");
+  CHECK_THROWS_WITH(about_centre_of_mass({}), "compound: has no parts");
 }
 
 TEST_CASE("What has no mass properties is refused in one line", "[mass properties]") {

@@ -1,7 +1,6 @@
 // Compounds as shapes: what their parts become, their bounds, and what is refused.
 #include "collision/shapes/compound.hpp"
 #include "collision/drawing/outline.hpp"
-#include "collision/response/mass_properties.hpp"
 #include "tests/collision/sample_compounds.hpp"
 
 #include <catch2/catch.hpp>
@@ -127,7 +126,6 @@ TEST_CASE("compound: what cannot be is refused, and the part is named", "[compou
   refused({MeshShape{cube()}, {1e31, 0, 0}}, "vertex 0: is beyond 2^100");
   refused({Box{{1e-9, 1, 1}}, {1e9, 0, 0}}, "has no volume: all points lie in a plane");  // one place, rounded
   CHECK_THROWS_WITH(place(Compound{}, Eigen::Quaterniond::Identity()), "compound: is missing");
-  CHECK_THROWS_WITH(mass_properties(cut_box({1, 1, 1}, 0), 1), Catch::Contains("a compound has none of its own"));
   CHECK_THROWS_WITH(CompoundParts({Box{{1, 1, 1}}}), "compound: part 0: is a box; parts are hulls and meshes");
 }
 

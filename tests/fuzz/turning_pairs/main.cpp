@@ -1,6 +1,7 @@
 // Random pairs of bodies that turn: whether contacts are found where conservative advancement says.
-// fuzz_turning_pairs FIRST LAST [capsules | half-spaces]: seeds. Fails if one is late or early, and names it.
-// fuzz_turning_pairs check [capsules | half-spaces]: whether times that are wrong by a little are found.
+// fuzz_turning_pairs FIRST LAST [KINDS]: seeds. Fails if one is late or early, and names it.
+// fuzz_turning_pairs check [KINDS]: whether times that are wrong by a little are found.
+// KINDS: capsules, half-spaces or compounds.
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "tests/fuzz/turning_pairs/make_pair.hpp"
 #include "tests/fuzz/turning_pairs/oracle.hpp"
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 
 namespace {
 
@@ -69,23 +71,30 @@ int check_wrong_times(Kinds kinds) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  struct Named {
+    const char* name;
+    Kinds kinds;
+  };
+  constexpr std::array others{Named{"capsules", Kinds::capsules}, Named{"half-spaces", Kinds::half_spaces},
+                              Named{"compounds", Kinds::compounds}};
   Kinds kinds = Kinds::usual;
-  const char* with = "";
-  if (argc > 1 && std::strcmp(argv[argc - 1], "capsules") == 0) kinds = Kinds::capsules, with = ", with capsules";
-  if (argc > 1 && std::strcmp(argv[argc - 1], "half-spaces") == 0) {
-    kinds = Kinds::half_spaces, with = ", with half-spaces";
+  std::string with;
+  for (const Named& other : others) {
+    if (argc < 2 || std::strcmp(argv[argc - 1], other.name) != 0) continue;
+    kinds = other.kinds;
+    with = std::string(", with ") + other.name;
   }
   if (kinds != Kinds::usual) --argc;
   if (argc == 2 && std::strcmp(argv[1], "check") == 0) return check_wrong_times(kinds);
   if (argc != 3) {
-    return std::puts("fuzz_turning_pairs FIRST LAST [capsules | half-spaces] | check [capsules | half-spaces]"), 2;
+    return std::puts("fuzz_turning_pairs FIRST LAST [KINDS] | check [KINDS]: capsules, half-spaces or compounds"), 2;
   }
   const std::uint64_t first = std::strtoull(argv[1], nullptr, 10), last = std::strtoull(argv[2], nullptr, 10);
   std::array<Count, families> counts{};
   for (std::uint64_t seed = first; seed <= last; ++seed) check_seed(seed, kinds, counts);
   Count all;
   std::printf("seeds %llu to %llu%s\n", static_cast<unsigned long long>(first), static_cast<unsigned long long>(last),
-              with);
+              with.c_str());
   for (std::size_t i = 0; i < families; ++i) {
     const Count& c = counts[i];
     std::printf("%-30s %8llu pairs, %8llu meet, %llu wrong, %llu undecided, %.1f steps a pair\n", family_names[i],

@@ -1,5 +1,6 @@
 #include "tests/fuzz/turning_pairs/make_pair.hpp"
 
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "tests/collision/sample_meshes.hpp"
@@ -9,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -21,6 +23,8 @@ namespace {
 using Eigen::Vector3d;
 using kds::collision::Box;
 using kds::collision::Capsule;
+using kds::collision::Compound;
+using kds::collision::CompoundPart;
 using kds::collision::ConvexHull;
 using kds::collision::HalfSpace;
 using kds::collision::Mesh;
@@ -71,6 +75,16 @@ Shape random_shape(Random& random, std::size_t family, bool ball) {
   return Box{half};
 }
 
+std::vector<Piece> surface_pieces(const Mesh& mesh, double scale) {
+  std::vector<Piece> pieces;
+  for (const auto& corners : mesh.triangles()) {
+    std::array<Vector3d, 3> points;
+    for (std::size_t i = 0; i < 3; ++i) points[i] = scale * mesh.vertices()[corners[i]];
+    pieces.push_back(triangle_piece(points));
+  }
+  return pieces;
+}
+
 std::vector<Piece> pieces_of(const Shape& shape) {
   if (const auto* const box = std::get_if<Box>(&shape)) return {box_piece(box->half_extents)};
   if (const auto* const ball = std::get_if<Sphere>(&shape)) return {ball_piece(ball->radius)};
@@ -83,15 +97,22 @@ std::vector<Piece> pieces_of(const Shape& shape) {
     const auto normals = hull->polytope->normals();
     std::vector<std::array<std::size_t, 2>> edges;
     for (const auto& edge : hull->polytope->structure().edges) edges.push_back({edge.ends[0], edge.ends[1]});
-    return {polytope_piece({points.begin(), points.end()}, {normals.begin(), normals.end()}, edges)};
+    std::vector<Piece> pieces = surface_pieces(*hull->polytope->surface(), 1);
+    for (Piece& piece : pieces) piece.counts = Piece::Counts::with_meshes;
+    pieces.push_back(polytope_piece({points.begin(), points.end()}, {normals.begin(), normals.end()}, edges));
+    pieces.back().counts = Piece::Counts::with_solids;
+    return pieces;
+  }
+  std::vector<Piece> pieces;
+  if (const auto* const compound = std::get_if<Compound>(&shape)) {
+    for (const Shape& part : compound->parts->parts()) {
+      for (const Piece& piece : pieces_of(part)) pieces.push_back(piece);
+    }
+    return pieces;
   }
   const auto& mesh = std::get<MeshShape>(shape);
-  std::vector<Piece> pieces;
-  for (const auto& corners : mesh.mesh->triangles()) {
-    std::array<Vector3d, 3> points;
-    for (std::size_t i = 0; i < 3; ++i) points[i] = mesh.scale * mesh.mesh->vertices()[corners[i]];
-    pieces.push_back(triangle_piece(points));
-  }
+  pieces = surface_pieces(*mesh.mesh, mesh.scale);
+  for (Piece& piece : pieces) piece.of_mesh = true;
   return pieces;
 }
 
@@ -218,6 +239,63 @@ void put_half_space(RandomPair& pair, Random& random) {
   pair.shape_a = HalfSpace{normal, offset};
 }
 
+/// The shape, if it can be a part, and up to three more about it: near its middle, touching each other on a lattice, or
+/// far from it. In the family "grazing" they do not reach farther from the axis; a plate is cut in two.
+Shape with_more_parts(const Shape& shape, std::size_t family, Random& random) {
+  std::vector<CompoundPart> parts;
+  const auto* const box = std::get_if<Box>(&shape);
+  if (family == grazing && box) {
+    Vector3d half = box->half_extents;
+    const int across = half[1] == 2 ? 1 : 2;
+    half[across] /= 2;
+    for (const double side : {-1.0, 1.0}) parts.push_back({Box{half}, side * half[across] * Vector3d::Unit(across)});
+    if (across == 2) parts.push_back({Box{0.5 * half}, {0, 0, random.between(-2, 2)}});
+    return kds::collision::compound(parts);
+  }
+  const bool can_be_part =
+      box || std::holds_alternative<ConvexHull>(shape) || std::holds_alternative<MeshShape>(shape);
+  if (family == linked || family == grazing) {
+    return can_be_part ? Shape(kds::collision::compound(std::vector{CompoundPart{shape}})) : shape;
+  }
+  const double reach = random.one_in(8) ? 8 : 1;
+  if (can_be_part) {
+    parts.push_back({shape, random.one_in(2) ? Vector3d(Vector3d::Zero()) : Vector3d(reach * direction(random))});
+  }
+  const std::uint64_t more = 1 + random.below(3);
+  for (std::uint64_t i = 0; i < more; ++i) {
+    CompoundPart part{Box{Vector3d(0.25, 0.5, 0.25)}, reach * random.between(0, 1) * direction(random)};
+    if (family == parallel) {
+      part.position = (2 * part.position).array().round() / 2;
+    } else {
+      part.shape = random.one_in(3)   ? random_hull(random)
+                   : random.one_in(3) ? Shape(triangle(random, random.one_in(4)))
+                                      : Shape(Box{Vector3d(random.between(0.05, 0.5), random.between(0.05, 0.5),
+                                                           random.between(0.05, 0.5))});
+      if (random.one_in(2)) {
+        const Vector3d v = direction(random);
+        part.orientation = Eigen::Quaterniond(random.between(-1, 1), v[0], v[1], v[2]).normalized();
+      }
+    }
+    parts.push_back(part);
+  }
+  return kds::collision::compound(parts);
+}
+
+/// One of the two is a compound, or both are; the other may be a half-space or a capsule.
+void put_compounds(RandomPair& pair, Random& random) {
+  if (random.one_in(5)) {
+    put_half_space(pair, random);
+    pair.shape_b = with_more_parts(pair.shape_b, pair.family, random);
+    return;
+  }
+  pair.shape_a = with_more_parts(pair.shape_a, pair.family, random);
+  if (random.one_in(6) && pair.family != grazing && pair.family != linked) {
+    pair.shape_b = random_capsule(random, pair.family);
+  } else if (random.one_in(2)) {
+    pair.shape_b = with_more_parts(pair.shape_b, pair.family, random);
+  }
+}
+
 }  // namespace
 
 RandomPair make_pair(std::uint64_t seed, Kinds kinds) {
@@ -256,6 +334,7 @@ RandomPair make_pair(std::uint64_t seed, Kinds kinds) {
   }
   if (kinds == Kinds::capsules) put_capsules(pair, random);
   if (kinds == Kinds::half_spaces) put_half_space(pair, random);
+  if (kinds == Kinds::compounds) put_compounds(pair, random);
   pair.pieces_a = pieces_of(pair.shape_a);
   pair.pieces_b = pieces_of(pair.shape_b);
   return pair;

@@ -31,8 +31,9 @@ struct RandomPair {
 
 /// With capsules, one of the two is one in place of what it would have been, or both are, and some of the others are
 /// hulls: in the family "grazing" what turns is, in place of a box. With half-spaces the first is one, which does not
-/// turn, and may move; some of the second are capsules or hulls.
-enum class Kinds { usual, capsules, half_spaces };
+/// turn, and may move; some of the second are capsules or hulls. With compounds one of the two, or both, get more
+/// parts, boxes, hulls and triangles; some of the others are capsules or half-spaces.
+enum class Kinds { usual, capsules, half_spaces, compounds };
 
 /// A function of the seed and the kinds alone.
 RandomPair make_pair(std::uint64_t seed, Kinds kinds);

@@ -156,7 +156,9 @@ class Pair {
     for (const Vector& u : seen_a_.edges) {
       for (const Vector& v : seen_b_.edges) consider(cross(u, v));
     }
-    if (a.points.size() == 2 || b.points.size() == 2) {
+    const auto is_hull = [](const Piece& piece) { return piece.counts == Piece::Counts::with_solids; };
+    const bool ball_and_hull = (a.points.size() == 1 && is_hull(b)) || (b.points.size() == 1 && is_hull(a));
+    if (a.points.size() == 2 || b.points.size() == 2 || ball_and_hull) {
       consider_ways(a, b);
     } else if (b.points.size() == 1) {
       const Vector centre = sum(way_, seen_b_.points[0]);
@@ -254,13 +256,27 @@ class Pair {
 
 Piece half_space_piece(const Eigen::Vector3d& normal, double offset) {
   const Vector n = unit(vector(normal));
-  return {{sum({0, 0, 0}, n, offset)}, {n}, {}, 0, {}, true};
+  Piece piece;
+  piece.points = {sum({0, 0, 0}, n, offset)};
+  piece.normals = {n};
+  piece.is_half_space = true;
+  return piece;
 }
 
-Piece ball_piece(double radius) { return {{{0, 0, 0}}, {}, {}, radius, {}, false}; }
+Piece ball_piece(double radius) {
+  Piece piece;
+  piece.points = {{0, 0, 0}};
+  piece.radius = radius;
+  return piece;
+}
 
 Piece capsule_piece(double radius, double half_length) {
-  return {{{0, 0, -half_length}, {0, 0, half_length}}, {}, {{0, 0, 1}}, radius, {{0, 1}}, false};
+  Piece piece;
+  piece.points = {{0, 0, -half_length}, {0, 0, half_length}};
+  piece.edges = {{0, 0, 1}};
+  piece.radius = radius;
+  piece.segments = {{0, 1}};
+  return piece;
 }
 
 Piece box_piece(const Eigen::Vector3d& half) {
@@ -305,6 +321,7 @@ Verdict check(const Body& a, const Body& b, double t0, double horizon, double co
   Number nearest_at_contact = infinity, allowed = 0;
   for (const Piece& x : a.pieces) {
     for (const Piece& y : b.pieces) {
+      if (!x.meets(y) || !y.meets(x)) continue;
       // Up to the double before: contact is the first one just after which they penetrate.
       const Number until = meets ? std::nextafter(contact, -std::numeric_limits<double>::infinity()) : horizon;
       for (Number t = t0; t < until;) {

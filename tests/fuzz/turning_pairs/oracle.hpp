@@ -20,6 +20,13 @@ struct Piece {
   Number radius = 0;
   std::vector<std::array<std::size_t, 2>> segments;  ///< edges by their ends, of pieces that may be near a capsule
   bool is_half_space = false;                        ///< all that is below its only point along its only normal
+  bool of_mesh = false;                              ///< a triangle of one
+  /// A hull is solid to other solids, and its surface to meshes.
+  enum class Counts { always, with_solids, with_meshes } counts = Counts::always;
+
+  bool meets(const Piece& other) const {
+    return counts == Counts::always || (counts == Counts::with_meshes) == other.of_mesh;
+  }
 };
 
 Piece half_space_piece(const Eigen::Vector3d& normal, double offset);
