@@ -16,7 +16,8 @@
 
 namespace kds::structures {
 
-/// The end of a segment that begins where its path does, at the path's start, and grows along it. A segment that grows
+/// The end of a segment that begins where its path does, at the path's start, which may be still to come, and grows
+/// along it. A segment that grows
 /// at both ends is two of these, with opposite velocities. A `whole` one is all of its line, always: a border.
 struct GrowingEnd {
   static constexpr int degree = 1;
@@ -116,6 +117,10 @@ class GrowingSegmentsRule {
   static int order(const Arrival& a, const Arrival& b) {
     return sign_after(certificates::ArrivesFirst{a, b}, a.end.start);
   }
+  /// Whether it is still to come, for an end that may be still to begin.
+  static bool is_ahead(const Arrival& arrival, double now) {
+    return sign_after(arrival, std::max(now, arrival.end.start)) > 0;
+  }
   static bool is_before(const Next& a, const Next& b) {
     if (a.time != b.time) return a.time < b.time;
     const int sign = order(a.arrival, b.arrival);
@@ -171,13 +176,12 @@ inline auto GrowingSegmentsRule::arrival_at(const Element& end, const Element& o
 /// Whether the track of the other, as far as it is known, is where the end arrives.
 inline bool GrowingSegmentsRule::is_covered(const Arrival& arrival, Id other,
                                             const MovingSet<Element>& elements) const {
-  if (elements[other].whole || arrival.at == Arrival::At::beginning) return true;
-  const End& of_other = ends_[other];
-  if (arrival.at == Arrival::At::tip) return !of_other.stop || order(arrival, *of_other.arrival) >= 0;
-  const Arrival passing = across(arrival.track, arrival.end);
+  if (elements[other].whole) return true;
+  const Arrival passing = arrival.at == Arrival::At::line ? across(arrival.track, arrival.end) : arrival;
   const double begin = arrival.track.start;
   if (sign_after(passing, begin) < 0 && passing.polynomial<Exact>(begin).c[0].sign() != 0) return false;
-  return !of_other.stop || order(passing, *of_other.arrival) >= 0;
+  const End& of_other = ends_[other];
+  return arrival.at == Arrival::At::beginning || !of_other.stop || order(passing, *of_other.arrival) >= 0;
 }
 
 /// Finds the next tracks that an end comes to after another, or else after now.
@@ -187,7 +191,7 @@ inline void GrowingSegmentsRule::look_ahead(Id id, const Next* after, Pen& repai
     if (other == id || !is_there(other)) continue;
     const std::optional<Arrival> arrival = arrival_at(repair[id], repair[other]);
     if (!arrival || !may_stop(other, *arrival, repair.elements())) continue;
-    if (!after && repair.sign(*arrival) <= 0) continue;
+    if (!after && !is_ahead(*arrival, repair.now())) continue;
     const Next next(other, *arrival, repair.now());
     if (!after || is_before(*after, next)) found.push_back(next);
   }
@@ -217,7 +221,7 @@ inline void GrowingSegmentsRule::go_on(Id id, const Next& from, Pen& repair) {
 /// Puts a new track among those that are ahead of an end.
 inline void GrowingSegmentsRule::put_ahead(Id id, Id other, Pen& repair) {
   const std::optional<Arrival> arrival = arrival_at(repair[id], repair[other]);
-  if (!arrival || repair.sign(*arrival) <= 0) return;
+  if (!arrival || !is_ahead(*arrival, repair.now())) return;
   const Next next(other, *arrival, repair.now());
   End& end = ends_[id];
   const auto comes_later = [&](Id known) {
@@ -310,7 +314,7 @@ inline void GrowingSegmentsRule::audit(const MovingSet<Element>& elements, doubl
     if (!end.there || end.stop) continue;
     for (const Id other : elements.ids()) {
       const std::optional<Arrival> arrival = other == id ? std::nullopt : arrival_at(elements[id], elements[other]);
-      if (!arrival || sign_after(*arrival, now) <= 0 || !may_stop(other, *arrival, elements)) continue;
+      if (!arrival || !is_ahead(*arrival, now) || !may_stop(other, *arrival, elements)) continue;
       if (!end.arrival || is_before({other, *arrival, now}, {end.ahead.back(), *end.arrival, now}))
         fail(id, "comes to another track first");
     }

@@ -51,7 +51,7 @@ class Definition {
         const Known &a = known_[i], &b = known_[j];
         if (i == j || a.end.whole) continue;
         std::optional<Meeting> found = meeting(a.end, b.end);
-        if (!found || found->time <= oracle::rational(std::max(a.inserted, b.inserted))) continue;
+        if (!found || found->time <= oracle::rational(std::max({a.inserted, b.inserted, a.end.path.start}))) continue;
         if (found->time > oracle::rational(std::min({now, a.removed.value_or(now), b.removed.value_or(now)}))) continue;
         if (found->passed && (*found->passed > found->time || *found->passed < oracle::rational(b.end.path.start)))
           continue;
@@ -135,9 +135,11 @@ enum class Scene { generic, lattice, crossroads, coarse_clock };
 
 double beginning(Scene scene) { return scene == Scene::coarse_clock ? 0x1p43 : 0; }
 
+double span(Scene scene) { return scene == Scene::coarse_clock ? 0x1p-9 : 3; }
+
 GrowingEnd random_end(Random& random, Scene scene, double now) {
   GrowingEnd end;
-  end.path.start = now;
+  end.path.start = random.one_in(4) ? now + span(scene) * random.integer(0, 8) / 8 : now;
   for (Polynomial<1>& x : end.path.coordinate) {
     switch (scene) {
       case Scene::generic:
@@ -162,7 +164,6 @@ GrowingEnd random_end(Random& random, Scene scene, double now) {
   end.whole = random.one_in(12);
   return end;
 }
-double span(Scene scene) { return scene == Scene::coarse_clock ? 0x1p-9 : 3; }
 
 struct Structure {
   MovingSet<GrowingEnd> ends{};
@@ -278,6 +279,16 @@ TEST_CASE("growing segments: degeneracies", "[growing_segments][degeneracy]") {
     structure.insert(3, end_at(3, 0, 0, 1, 2));
     CHECK(structure.run_to(20) == 0);
     CHECK(std::array{stopped_by(0), stopped_by(2), stopped_by(3)} == std::array<Id, 3>{3, nobody, 1});
+  }
+  SECTION("one that is still to begin meets nothing before, and is no obstacle") {
+    structure.insert(0, end_at(0, 0, 1, 0, 5));
+    structure.insert(1, line_at(-2, 0, 0, 1));
+    structure.insert(2, end_at(3, -2, 0, 1));
+    structure.insert(3, end_at(1, -9, 0, 1));
+    structure.insert(4, end_at(2, 0, 1, 0, 9));
+    structure.insert(5, end_at(-1, 0, 1, 0));
+    CHECK(structure.run_to(20) == 0);
+    CHECK(std::array{stopped_by(0), stopped_by(2), stopped_by(3), stopped_by(5)} == std::array<Id, 4>{2, nobody, 0, 2});
   }
   SECTION("what stopped an end may go: the end stays") {
     structure.insert(0, end_at(0, 0, 1, 0));
