@@ -1,3 +1,11 @@
+# kds_optimise(TARGET): a library in which tests run for minutes is compiled with -O2 by presets with tests too, whose
+# flags are -O1: with that replays and random worlds take two to three times as long, and files of tests, which are most
+# of the build, a quarter less to compile.
+function(kds_optimise target)
+  target_compile_options(${target} PRIVATE
+    $<$<AND:$<CONFIG:RelWithDebInfo>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang>>:-O2>)
+endfunction()
+
 # kds_add_layer(NAME [LINK target...] [EXCLUDE name...]): the library of one layer, from the files of its folder but
 # those of the names to exclude.
 # A folder without .cpp files gives an INTERFACE library, so that a layer may begin as headers and grow sources.
@@ -20,6 +28,7 @@ function(kds_add_layer name)
     add_library(${target} STATIC ${sources})
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:kds_warnings>)
+    kds_optimise(${target})
     # Numbers of 64 bits, ids of bodies say, that are taken for ones of 32.
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wconversion>
                                              $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wshorten-64-to-32>)
