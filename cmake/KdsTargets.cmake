@@ -70,7 +70,8 @@ endfunction()
 # kds_read_headers_once(target...): in a build with tests, the headers of others that are half of most files are compiled
 # once for all these targets, and read as they were compiled. Not our own: whoever changes one waits for what includes it
 # only. Nor for libraries that are linked into the Python module, whose code is compiled otherwise. The preset `release`
-# does without this too.
+# does without this too. g++ takes the level of optimisation from the precompiled headers, whatever a target says: so no
+# target says another one.
 function(kds_read_headers_once)
   if(NOT KDS_COMPILE_TOGETHER OR NOT KDS_BUILD_TESTS)
     return()
