@@ -2,6 +2,9 @@
 # flags are -O1: with that replays and random worlds take two to three times as long, and files of tests, which are most
 # of the build, a quarter less to compile.
 function(kds_optimise target)
+  if(NOT KDS_BUILD_TESTS)
+    return()
+  endif()
   target_compile_options(${target} PRIVATE
     $<$<AND:$<CONFIG:RelWithDebInfo>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang>>:-O2>)
 endfunction()
