@@ -17,6 +17,8 @@
 
 namespace kds::io {
 
+enum class BlockKind : std::uint64_t;
+
 /// The file of a process: FILE.0, FILE.1...
 std::string part_path(const std::string& file, std::size_t rank);
 
@@ -56,7 +58,7 @@ class EventPart final : public EventSink, public kds::collision::StepListener {
  private:
   void begin(const PartOf& of);
   void write_events();
-  void write(std::uint64_t kind, const std::string& content);
+  void write(BlockKind kind, const std::string& content);
 
   OutputFile file_;
   std::uint64_t chain_;
@@ -124,7 +126,7 @@ class EventParts {
 
  private:
   void begin_section(const std::string& content);
-  void read_of(std::size_t rank, std::uint64_t kind, std::string& content);
+  void read_of(std::size_t rank, BlockKind kind, std::string& content);
   BlockFile& part(std::size_t rank);
 
   const std::string file_;

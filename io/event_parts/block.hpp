@@ -35,6 +35,8 @@ struct SectionHead {
 };
 
 /// Of a sequence of bytes after others. Each word changes it by a bijection, so damage within a word is always noticed.
+/// By words, not by bytes as the checksum of snapshots: 0.2 ns a byte in place of 1.2, which for the 65 bytes of an event
+/// is more than all else that reading it takes.
 inline std::uint64_t chained(std::uint64_t before, std::string_view bytes) {
   const auto with = [&before](std::uint64_t word) {
     before = (before ^ word) * 0xbf58476d1ce4e5b9u;

@@ -58,7 +58,7 @@ void EventPart::begin(const PartOf& of) {
   if (of.rank >= of.processes) return;
   std::string content;
   append_bytes(content, SectionHead{KDS_VERSION_NUMBER, of.scene, of.bodies, of.run, of.rank, of.processes});
-  write(static_cast<std::uint64_t>(BlockKind::section), content);
+  write(BlockKind::section, content);
 }
 
 void EventPart::on_event(const Event& event) {
@@ -81,18 +81,18 @@ void EventPart::on_step(const kds::collision::StepEvents& events) {
     const std::uint64_t length = step_.size() - before - sizeof length;
     std::memcpy(step_.data() + before, &length, sizeof length);
   }
-  write(static_cast<std::uint64_t>(BlockKind::step), step_);
+  write(BlockKind::step, step_);
 }
 
 void EventPart::write_events() {
   if (records_.empty()) return;
-  write(static_cast<std::uint64_t>(BlockKind::events), records_);
+  write(BlockKind::events, records_);
   records_.clear();
 }
 
-void EventPart::write(std::uint64_t kind, const std::string& content) {
+void EventPart::write(BlockKind kind, const std::string& content) {
   std::string head, checksum;
-  append_bytes(head, kind), append_bytes(head, std::uint64_t{content.size()});
+  append_bytes(head, static_cast<std::uint64_t>(kind)), append_bytes(head, std::uint64_t{content.size()});
   chain_ = chained(chained(chain_, head), content);
   append_bytes(checksum, chain_);
   for (const std::string_view bytes : {std::string_view(head), std::string_view(content), std::string_view(checksum)}) {
@@ -108,7 +108,7 @@ PartPlace EventPart::flush() {
 
 void EventPart::close() {
   write_events();
-  write(static_cast<std::uint64_t>(BlockKind::end), "");
+  write(BlockKind::end, "");
   file_.close();
 }
 

@@ -122,9 +122,8 @@ BlockFile& EventParts::part(std::size_t rank) {
 }
 
 /// The content of the next block of a part, which has to be of this kind.
-void EventParts::read_of(std::size_t rank, std::uint64_t kind, std::string& content) {
-  if (static_cast<std::uint64_t>(part(rank).next(content)) != kind)
-    part(rank).refuse("does not fit to that of process 0");
+void EventParts::read_of(std::size_t rank, BlockKind kind, std::string& content) {
+  if (part(rank).next(content) != kind) part(rank).refuse("does not fit to that of process 0");
 }
 
 /// `content`: of its block in the part of process 0.
@@ -143,7 +142,7 @@ void EventParts::begin_section(const std::string& content) {
   processes_ = first.processes;
   for (std::size_t rank = 1; rank < processes_; ++rank) {
     std::string its;
-    read_of(rank, static_cast<std::uint64_t>(BlockKind::section), its);
+    read_of(rank, BlockKind::section, its);
     const SectionHead head = head_of(rank, its);
     if (head.run != first.run || head.processes != first.processes) part(rank).refuse("is of another run");
   }
@@ -158,10 +157,9 @@ bool EventParts::read(Stretch& stretch, std::size_t threads) {
     begin_section(contents[0]);
     kind = part(0).next(contents[0]);
   }
-  const auto same = static_cast<std::uint64_t>(kind);
   if (kind == BlockKind::end) {
     for (std::size_t rank = 0; rank < parts_.size(); ++rank) {
-      if (rank > 0) read_of(rank, same, contents[0]);
+      if (rank > 0) read_of(rank, kind, contents[0]);
       if (!part(rank).at_end()) part(rank).refuse("has something behind its end");
     }
     return false;
@@ -173,7 +171,7 @@ bool EventParts::read(Stretch& stretch, std::size_t threads) {
   contents.resize(std::max(contents.size(), stretch.processes_));
   const std::size_t readers = contents[0].size() < worth_a_thread ? 1 : threads;
   kds::collision::in_turn(stretch.processes_ - 1, readers,
-                          [&](std::size_t i) { read_of(i + 1, same, contents[i + 1]); });
+                          [&](std::size_t i) { read_of(i + 1, kind, contents[i + 1]); });
   return true;
 }
 

@@ -42,21 +42,23 @@ for (const mesh of data.meshes) {
 
 /** Whether the body is where it is at all times. */
 function stands(body) {
-  return body.fixed && !body.frames && !body.spins && body.motion.every(piece => piece.slice(4).every(x => x === 0));
+  return body.fixed && !body.frames && !body.spins && body.motion.length === 1 &&
+         body.motion[0].slice(4).every(x => x === 0);
 }
 
 /** What is to be seen: all that moves, and of what stands what is no farther from that than it is wide. */
 function boundsOfAll() {
   if (data.domain) return new THREE.Box3(new THREE.Vector3(...data.domain.min), new THREE.Vector3(...data.domain.max));
   const moving = new THREE.Box3(), standing = new THREE.Box3();
-  const at = new THREE.Vector3(), turn = new THREE.Quaternion(), all = new THREE.Vector3(1, 1, 1), place = new THREE.Matrix4();
+  const at = new THREE.Vector3(), turn = new THREE.Quaternion(), unscaled = new THREE.Vector3(1, 1, 1);
+  const place = new THREE.Matrix4();
   const moments = 8;
   for (const body of data.bodies) {
     const box = boxOf(body), bounds = stands(body) ? standing : moving;
     for (let i = 0; i <= moments; ++i) {
       const t = data.duration * i / moments;
       if (!position(body, t, at)) continue;
-      bounds.union(box.clone().applyMatrix4(place.compose(at, orientation(body, t, turn), all)));
+      bounds.union(box.clone().applyMatrix4(place.compose(at, orientation(body, t, turn), unscaled)));
       if (bounds === standing) break;
     }
   }

@@ -89,4 +89,13 @@ inline Body thrown(const Shape& shape, const Vector3d& at, const Vector3d& veloc
   return {.shape = shape, .motion = {motion}};
 }
 
+/// Adds the one of several with this number, which flies about; each third has friction.
+inline void add_flying(Turning& world, const Shape& shape, std::size_t number, const Vector3d& at, Random& random) {
+  const Vector3d velocity = random_vector(random, 3);
+  Body body = thrown(shape, at, velocity, random_vector(random, 6), Quaterniond(1, velocity[0], at[1], 0.5));
+  body.friction = number % 3 == 0 ? 0.25 : 0;
+  body.restitution = 0.9;
+  world.add_body(body);
+}
+
 }  // namespace kds::tests::planes

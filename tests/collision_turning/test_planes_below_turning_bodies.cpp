@@ -76,12 +76,8 @@ void fill_room(Turning& world, std::uint64_t seed) {
   add_room(world, 3, Quaterniond(1, 0.25, -0.5, 0.125));
   Random random(seed);
   for (std::size_t i = 0; i < 10; ++i) {
-    const Vector3d at = random_vector(random, 1.5), velocity = random_vector(random, 3);
-    Body body =
-        thrown(shapes()[i % 5], at, velocity, random_vector(random, 6), Quaterniond(1, velocity[0], at[1], 0.5));
-    body.friction = i % 3 == 0 ? 0.25 : 0;
-    body.restitution = 0.9;
-    world.add_body(body);
+    const Vector3d at = random_vector(random, 1.5);
+    add_flying(world, shapes()[i % 5], i, at, random);
   }
 }
 

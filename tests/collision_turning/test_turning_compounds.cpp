@@ -36,9 +36,8 @@ using kds::tests::random_vector;
 
 /// Two cubes and the rod between them.
 Compound dumb_bell() {
-  return compound(std::vector<CompoundPart>{{Box{{0.5, 0.0625, 0.0625}}},
-                                            {Box{{0.25, 0.25, 0.25}}, {0.75, 0, 0}},
-                                            {Box{{0.25, 0.25, 0.25}}, {-0.75, 0, 0}}});
+  return compound(std::vector<CompoundPart>{
+      {Box{{0.5, 0.0625, 0.0625}}}, {Box{{0.25, 0.25, 0.25}}, {0.75, 0, 0}}, {Box{{0.25, 0.25, 0.25}}, {-0.75, 0, 0}}});
 }
 
 /// A top on four legs, about its centre of mass.
@@ -102,16 +101,12 @@ void fill_room(Turning& world, std::uint64_t seed) {
   add_room(world, 3);
   world.add_body(fixed(table(), {0, 0, -2.5}, Quaterniond(1, 0.25, 0, 0.5)));
   Random random(seed);
-  const std::vector<Shape> shapes{dumb_bell(), Sphere{0.375}, table(), Capsule{0.25, 0.5}, hammer(),
-                                  MeshShape{samples::cuboid(Vector3d(0.5, 0.5, 0.25))}};
+  const std::vector<Shape> shapes{dumb_bell(), Sphere{0.375},
+                                  table(),     Capsule{0.25, 0.5},
+                                  hammer(),    MeshShape{samples::cuboid(Vector3d(0.5, 0.5, 0.25))}};
   for (std::size_t i = 0; i < 12; ++i) {
     const auto place = [](std::size_t k) { return 1.75 * (static_cast<double>(k % 3) - 1); };
-    const Vector3d at(place(i), place(i / 3 % 2), i < 6 ? -0.5 : 1.75), velocity = random_vector(random, 3);
-    Body body = thrown(shapes[i % shapes.size()], at, velocity, random_vector(random, 6),
-                       Quaterniond(1, velocity[0], at[1], 0.5));
-    body.friction = i % 3 == 0 ? 0.25 : 0;
-    body.restitution = 0.9;
-    world.add_body(body);
+    add_flying(world, shapes[i % shapes.size()], i, {place(i), place(i / 3 % 2), i < 6 ? -0.5 : 1.75}, random);
   }
 }
 
@@ -120,11 +115,7 @@ void fill_room(Turning& world, std::uint64_t seed) {
 TEST_CASE("a dumb-bell tumbles and hits a post with one of its ends", "[turning][compound]") {
   Log log;
   Turning world(options(), &log);
-  const std::vector<CompoundPart> parts{{Box{{0.5, 0.0625, 0.0625}}},
-                                        {Box{{0.25, 0.25, 0.25}}, {0.75, 0, 0}},
-                                        {Box{{0.25, 0.25, 0.25}}, {-0.75, 0, 0}}};
-  const BodyId bell =
-      world.add_body({.shape = compound(parts), .motion = {motion_of<2>({0, 0, 0}, {0, 0, 0}, {0, 0, 2})}});
+  const BodyId bell = world.add_body({.shape = dumb_bell(), .motion = {motion_of<2>({0, 0, 0}, {0, 0, 0}, {0, 0, 2})}});
   Body post = fixed(Sphere{0.125}, {0, 0.875, 0});
   const BodyId id = world.add_body(post);
   world.advance_to(1);
@@ -140,8 +131,13 @@ TEST_CASE("a dumb-bell tumbles and hits a post with one of its ends", "[turning]
 
 TEST_CASE("a compound of one part does what the part does, to the bit", "[turning][compound]") {
   const Shape tetrahedron = convex_hull({{0.5, 0.5, 0.5}, {0.5, -0.5, -0.5}, {-0.5, 0.5, -0.5}, {-0.5, -0.5, 0.5}});
-  const Shape block = convex_hull({{0.5, 0.25, 0.375}, {-0.5, 0.25, 0.375}, {0.5, -0.25, 0.375}, {0.5, 0.25, -0.375},
-                                   {-0.5, -0.25, 0.375}, {-0.5, 0.25, -0.375}, {0.5, -0.25, -0.375},
+  const Shape block = convex_hull({{0.5, 0.25, 0.375},
+                                   {-0.5, 0.25, 0.375},
+                                   {0.5, -0.25, 0.375},
+                                   {0.5, 0.25, -0.375},
+                                   {-0.5, -0.25, 0.375},
+                                   {-0.5, 0.25, -0.375},
+                                   {0.5, -0.25, -0.375},
                                    {-0.5, -0.25, -0.375}});
   const Shape mesh = MeshShape{samples::cuboid(Vector3d(0.5, 0.375, 0.25))};
   const auto run = [&](bool as_compounds) {
@@ -292,8 +288,9 @@ TEST_CASE("compounds that cannot turn freely are refused, and nothing is added",
     CHECK(world.size() == 0);
   };
   const std::vector<CompoundPart> beside{{Box{{1, 1, 1}}}, {Box{{1, 1, 1}}, {2, 0, 0}}};
-  refused(compound(beside), "inertia: the centre of mass of this compound is at (1, 0, 0), and free bodies turn about "
-                            "their origin: subtract it from the positions of the parts, or give their inertia");
+  refused(compound(beside),
+          "inertia: the centre of mass of this compound is at (1, 0, 0), and free bodies turn about "
+          "their origin: subtract it from the positions of the parts, or give their inertia");
   const auto open = std::make_shared<const Mesh>(std::vector<Vector3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                                                  std::vector<Mesh::Triangle>{{0, 1, 2}});
   const Compound with_open = compound(std::vector<CompoundPart>{{Box{{1, 1, 1}}}, {MeshShape{open}}});
