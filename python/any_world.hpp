@@ -93,8 +93,11 @@ class AnyWorld {
                                                 const Filter& filter) const = 0;
   virtual std::vector<BodyId> overlapping(const kds::collision::PlacedShape& shape, const Eigen::Vector3d& at,
                                           const Filter& filter) const = 0;
-  virtual std::vector<kds::collision::NearBody> nearest(const Eigen::Vector3d& to, std::size_t count,
+  /// To a point where there is no shape.
+  virtual std::vector<kds::collision::NearBody> nearest(const std::optional<kds::collision::PlacedShape>& shape,
+                                                        const Eigen::Vector3d& to, std::size_t count,
                                                         const Filter& filter) const = 0;
+  virtual kds::collision::ShapeDistance distance_between(BodyId a, BodyId b) const = 0;
   virtual std::optional<kds::collision::Hit> next_contact(const kds::collision::Shape& shape, const Motion& motion,
                                                           double until, const Filter& filter) const = 0;
   virtual std::optional<kds::collision::Hit> next_contact_of(BodyId body, double until, const Filter& filter) const = 0;

@@ -36,6 +36,13 @@ py::array_t<EventRow> to_array(const std::vector<EventRow>& rows) {
   return py::array_t<EventRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
 }
 
+std::array<double, 3> to_row(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+
+std::optional<PlacedShape> placed_shape(const std::optional<PyShape>& shape, const Eigen::Vector4d& q) {
+  if (!shape) return std::nullopt;
+  return place(shape->shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
+}
+
 std::unique_ptr<PyWorld> new_world(int degree, bool turning, bool gather, const std::string& response,
                                    const std::string& broad_phase,
                                    const std::optional<std::array<Eigen::Vector3d, 2>>& walls, double wall_restitution,
@@ -220,8 +227,7 @@ void bind_queries(py::class_<PyWorld>& world) {
   });
   world.def("cast", [](PyWorld& self, const std::optional<PyShape>& shape, const Eigen::Vector4d& q,
                        const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool all, const Filter& filter) {
-    std::optional<PlacedShape> placed;
-    if (shape) placed = place(shape->shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
+    const std::optional<PlacedShape> placed = placed_shape(shape, q);
     return to_array(self.ask([&](AnyWorld& w) { return to_rows(w, w.cast(placed, from, to, all, filter)); }));
   });
   world.def("overlapping", [](PyWorld& self, const PyShape& shape, const Eigen::Vector4d& q, const Eigen::Vector3d& at,
@@ -229,12 +235,18 @@ void bind_queries(py::class_<PyWorld>& world) {
     const PlacedShape placed = place(shape.shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
     return to_array(self.ask([&](AnyWorld& w) { return w.overlapping(placed, at, filter); }));
   });
-  world.def("nearest", [](PyWorld& self, const Eigen::Vector3d& to, std::size_t count, const Filter& filter) {
+  world.def("nearest", [](PyWorld& self, const std::optional<PyShape>& shape, const Eigen::Vector4d& q,
+                          const Eigen::Vector3d& to, std::size_t count, const Filter& filter) {
+    const std::optional<PlacedShape> placed = placed_shape(shape, q);
     std::vector<NearRow> rows;
-    for (const NearBody& near : self.ask([&](AnyWorld& w) { return w.nearest(to, count, filter); })) {
-      rows.push_back({near.body, near.distance, {near.point[0], near.point[1], near.point[2]}});
+    for (const NearBody& near : self.ask([&](AnyWorld& w) { return w.nearest(placed, to, count, filter); })) {
+      rows.push_back({near.body, near.distance, to_row(near.point), to_row(near.from_point)});
     }
     return py::array_t<NearRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
+  });
+  world.def("distance_between", [](PyWorld& self, BodyId a, BodyId b) {
+    const ShapeDistance found = self.world().distance_between(a, b);
+    return py::make_tuple(found.distance, found.of_a, found.of_b);
   });
   world.def("next_contact",
             [](PyWorld& self, const PyShape& shape, const Doubles& motion, double until, const Filter& filter) {
@@ -266,7 +278,7 @@ void bind_queries(py::class_<PyWorld>& world) {
 void bind_world(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(FeatureRow, kind, first, second);
   PYBIND11_NUMPY_DTYPE(EventRow, time, kind, a, b, point, normal, feature_a, feature_b, user_data_a, user_data_b);
-  PYBIND11_NUMPY_DTYPE(NearRow, body, distance, point);
+  PYBIND11_NUMPY_DTYPE(NearRow, body, distance, point, from_point);
   module.attr("event_dtype") = py::dtype::of<EventRow>();
   std::vector<std::string_view> kinds(kds::io::event_kind_names.begin(), kds::io::event_kind_names.end());
   kinds.insert(kinds.end(), {"piece", "timer"});

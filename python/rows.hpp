@@ -48,11 +48,12 @@ struct EventRow {
 
 static_assert(sizeof(EventRow) == 120);
 
-/// A body near a point.
+/// A body near a point or a shape.
 struct NearRow {
   std::uint64_t body;
   double distance;
   std::array<double, 3> point;
+  std::array<double, 3> from_point;
 };
 
 inline FeatureRow to_row(const kds::collision::Feature& feature) {

@@ -208,8 +208,13 @@ class WorldOf final : public AnyWorld {
                                   const Filter& filter) const override {
     return kds::collision::overlapping(world_, shape, at, filter);
   }
-  std::vector<NearBody> nearest(const Eigen::Vector3d& to, std::size_t count, const Filter& filter) const override {
-    return kds::collision::nearest(world_, to, count, filter);
+  std::vector<NearBody> nearest(const std::optional<PlacedShape>& shape, const Eigen::Vector3d& to, std::size_t count,
+                                const Filter& filter) const override {
+    return shape ? kds::collision::nearest(world_, *shape, to, count, filter)
+                 : kds::collision::nearest(world_, to, count, filter);
+  }
+  ShapeDistance distance_between(BodyId a, BodyId b) const override {
+    return kds::collision::distance_between(world_, a, b);
   }
   std::optional<Hit> next_contact(const Shape& shape, const Motion& motion, double until,
                                   const Filter& filter) const override {

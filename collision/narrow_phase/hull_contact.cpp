@@ -42,7 +42,7 @@ Vector3d nearest_of_difference(const CornerPlaces& a, const CornerPlaces& b, con
   const auto farthest = [&](const Vector3d& along) {
     return Vector3d(a.farthest(along) - b.farthest(Vector3d(-along)) - place);
   };
-  return nearest_to_origin(farthest, Vector3d(-place));
+  return nearest_to_origin(farthest, Vector3d(-place)).point;
 }
 
 }  // namespace

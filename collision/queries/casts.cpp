@@ -24,14 +24,9 @@ using CastShape = MovingShape<StraightPath>;
 /// What a ray is: a ball of the least radius.
 PlacedShape point() { return placed_ball(smallest_size); }
 
-void require_in_range(const char* function, const Vector3d& at) {
-  if ((at.array().abs() <= largest_magnitude).all()) return;
-  throw std::invalid_argument(std::string(function) + ": a coordinate is not a number from -2^205 to 2^205");
-}
-
 void require_way(const char* function, const PlacedShape& shape, const Ray& way) {
-  require_in_range(function, way.from);
-  require_in_range(function, way.to);
+  detail::require_in_range(function, way.from);
+  detail::require_in_range(function, way.to);
   if (!is_placed(shape))
     throw std::invalid_argument(std::string(function) + ": the shape is not what place() makes of it");
   if (bends(shape.shape)) throw std::invalid_argument(std::string(function) + ": a mesh that bends cannot be cast");

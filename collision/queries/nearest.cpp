@@ -4,6 +4,7 @@
 #include "collision/queries/standing_body.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 
@@ -12,18 +13,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Finds a box about a point that holds enough bodies, and not many more.
+/// Finds a box about another one that holds enough bodies, and not many more.
 template <class Motion>
 class Surroundings {
  public:
-  Surroundings(const BasicWorld<Motion>& world, const Vector3d& at, const BodyFilter& filter)
-      : world_(world), at_(at), filter_(filter) {}
+  Surroundings(const BasicWorld<Motion>& world, const Vector3d& low, const Vector3d& high, const BodyFilter& filter)
+      : world_(world), low_(low), high_(high), filter_(filter) {}
 
   /// Those whose volumes are no farther than a length in any coordinate.
   std::vector<BodyId> within(double reach) const {
     std::vector<BodyId> bodies;
-    const Vector3d half = Vector3d::Constant(reach);
-    world_.visit_overlapping(at_ - half, at_ + half, [&](BodyId id) {
+    const Vector3d room = Vector3d::Constant(reach);
+    world_.visit_overlapping(low_ - room, high_ + room, [&](BodyId id) {
       if (detail::accepts(filter_, id)) bodies.push_back(id);
     });
     return bodies;
@@ -35,7 +36,8 @@ class Surroundings {
     constexpr int most_steps = 32;
     constexpr double infinity = std::numeric_limits<double>::infinity();
     if (world_.size() <= count) return infinity;
-    const double size = at_.cwiseAbs().maxCoeff();
+    const double size = std::max(low_.cwiseAbs().maxCoeff(), high_.cwiseAbs().maxCoeff());
+    if (!(size < infinity)) return infinity;
     double reach = 0x1p-6 * (size > 0 ? size : 1);
     std::size_t there = within(reach).size();
     if (there < count) {
@@ -55,7 +57,7 @@ class Surroundings {
 
  private:
   const BasicWorld<Motion>& world_;
-  const Vector3d& at_;
+  Vector3d low_, high_;
   const BodyFilter& filter_;
 };
 
@@ -64,23 +66,13 @@ bool nearer(const NearBody& a, const NearBody& b) {
   return body_rank(a.body) < body_rank(b.body);
 }
 
-}  // namespace
-
-template <class Motion>
-std::vector<NearBody> nearest(const BasicWorld<Motion>& world, const Vector3d& to, std::size_t count,
-                              const BodyFilter& filter) {
-  if (!(to.array().abs() <= largest_magnitude).all()) {
-    throw std::invalid_argument("nearest: a coordinate is not a number from -2^205 to 2^205");
-  }
+/// The `count` bodies of the least measure(body).distance, which is not less than that of the boxes of the two.
+template <class Motion, class Measure>
+std::vector<NearBody> nearest_by(const Surroundings<Motion>& surroundings, std::size_t count, const Measure& measure) {
   if (count == 0) return {};
-  const Surroundings<Motion> surroundings(world, to, filter);
   const auto measured = [&](double reach) {
     std::vector<NearBody> bodies;
-    for (const BodyId id : surroundings.within(reach)) {
-      const detail::StandingBody body = detail::standing_body(world, id);
-      const NearestOfShape of_body = nearest_of_shape(body.shape, to - body.centre);
-      bodies.push_back({id, of_body.distance, of_body.point + body.centre});
-    }
+    for (const BodyId id : surroundings.within(reach)) bodies.push_back(measure(id));
     std::sort(bodies.begin(), bodies.end(), nearer);
     if (bodies.size() > count) bodies.resize(count);
     return bodies;
@@ -95,8 +87,46 @@ std::vector<NearBody> nearest(const BasicWorld<Motion>& world, const Vector3d& t
   return bodies;
 }
 
-#define KDS_INSTANTIATE(motion) \
-  template std::vector<NearBody> nearest(const BasicWorld<motion>&, const Vector3d&, std::size_t, const BodyFilter&);
+}  // namespace
+
+template <class Motion>
+std::vector<NearBody> nearest(const BasicWorld<Motion>& world, const Vector3d& to, std::size_t count,
+                              const BodyFilter& filter) {
+  detail::require_in_range("nearest", to);
+  return nearest_by(Surroundings<Motion>(world, to, to, filter), count, [&](BodyId id) {
+    const detail::StandingBody body = detail::standing_body(world, id);
+    const NearestOfShape of_body = nearest_of_shape(body.shape, to - body.centre);
+    return NearBody{id, of_body.distance, of_body.point + body.centre, to};
+  });
+}
+
+template <class Motion>
+std::vector<NearBody> nearest(const BasicWorld<Motion>& world, const PlacedShape& shape, const Vector3d& at,
+                              std::size_t count, const BodyFilter& filter) {
+  detail::require_in_range("nearest", at);
+  if (!is_placed(shape)) throw std::invalid_argument("nearest: the shape is not what place() makes of it");
+  const Surroundings<Motion> surroundings(world, at + shape.low, at + shape.high, filter);
+  return nearest_by(surroundings, count, [&](BodyId id) {
+    const detail::StandingBody body = detail::standing_body(world, id);
+    const ShapeDistance found = shape_distance(shape, body.shape, body.centre - at, world.now());
+    return NearBody{id, found.distance, found.of_b + at, found.of_a + at};
+  });
+}
+
+template <class Motion>
+ShapeDistance distance_between(const BasicWorld<Motion>& world, BodyId a, BodyId b) {
+  const detail::StandingBody of_a = detail::standing_body(world, a), of_b = detail::standing_body(world, b);
+  ShapeDistance found = shape_distance(of_a.shape, of_b.shape, of_b.centre - of_a.centre);
+  found.of_a += of_a.centre;
+  found.of_b += of_a.centre;
+  return found;
+}
+
+#define KDS_INSTANTIATE(motion)                                                                                       \
+  template std::vector<NearBody> nearest(const BasicWorld<motion>&, const Vector3d&, std::size_t, const BodyFilter&); \
+  template std::vector<NearBody> nearest(const BasicWorld<motion>&, const PlacedShape&, const Vector3d&, std::size_t, \
+                                         const BodyFilter&);                                                          \
+  template ShapeDistance distance_between(const BasicWorld<motion>&, BodyId, BodyId);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

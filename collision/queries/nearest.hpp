@@ -1,9 +1,11 @@
-// Which bodies are nearest to a point, as a world stands now.
+// Which bodies are nearest to a point or to a shape, and how far apart two are, as a world stands now.
 #pragma once
 
 #include "collision/body_id.hpp"
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/shape_distance.hpp"
 #include "collision/queries/hit.hpp"
+#include "collision/shapes/shape.hpp"
 #include "collision/world.hpp"
 
 #include <Eigen/Core>
@@ -13,11 +15,12 @@
 
 namespace kds::collision {
 
-/// A body near a point.
+/// A body near a point, or near a shape.
 struct NearBody {
   BodyId body{};
-  double distance;        ///< from the point to the body, 0 where it is inside, in units of length
+  double distance;        ///< in units of length; 0 where the point is inside, or the shapes have a point in common
   Eigen::Vector3d point;  ///< of the body, the nearest
+  Eigen::Vector3d from_point;  ///< of the shape, the nearest; or the point that was asked about
 };
 
 /// The `count` bodies nearest to a point, at now(), nearest first, those at one distance in the order in which they
@@ -31,5 +34,16 @@ struct NearBody {
 template <class Motion>
 std::vector<NearBody> nearest(const BasicWorld<Motion>& world, const Eigen::Vector3d& to, std::size_t count,
                               const BodyFilter& filter = {});
+
+/// The same of a shape in its orientation (place()) with its centre at a point. Distances are those of shape_distance()
+/// (collision/narrow_phase/). Throws also for a shape that was not made by place().
+template <class Motion>
+std::vector<NearBody> nearest(const BasicWorld<Motion>& world, const PlacedShape& shape, const Eigen::Vector3d& at,
+                              std::size_t count, const BodyFilter& filter = {});
+
+/// How far two bodies of the world are apart at now(), with a point of each, in the world's coordinates:
+/// shape_distance(). Throws std::invalid_argument where one is not in the world.
+template <class Motion>
+ShapeDistance distance_between(const BasicWorld<Motion>& world, BodyId a, BodyId b);
 
 }  // namespace kds::collision

@@ -1,4 +1,4 @@
-// A body as it stands at now(): where it is, and its shape as it is turned and bent.
+// A body as it stands at now(): where it is, and its shape as it is turned and bent; and what is a place at all.
 #pragma once
 
 #include "collision/motions.hpp"
@@ -10,11 +10,19 @@
 
 #include <cstddef>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 namespace kds::collision::detail {
+
+/// Throws std::invalid_argument, naming the function, for a place that is out of the range of shape.hpp.
+inline void require_in_range(const char* function, const Eigen::Vector3d& at) {
+  if ((at.array().abs() <= largest_magnitude).all()) return;
+  throw std::invalid_argument(std::string(function) + ": a coordinate is not a number from -2^205 to 2^205");
+}
 
 struct StandingBody {
   PlacedShape shape;

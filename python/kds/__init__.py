@@ -15,7 +15,7 @@ a call is not possible now. The guide is docs/python.md.
 from kds._events import EventKind, event_dtype, feature_name
 from kds._kds import Shape, version as __version__
 from kds._motion import Motion
-from kds._queries import Approach
+from kds._queries import Approach, Distance
 from kds._scene import Run, Scene, generate_scene
 from kds._shapes import box, capsule, compound, half_space, heightfield, hull, mesh, read_mesh, sphere
 from kds._structures import ConvexHull, Delaunay, SortedList
@@ -25,6 +25,7 @@ __all__ = [
     "Approach",
     "ConvexHull",
     "Delaunay",
+    "Distance",
     "EventKind",
     "Motion",
     "Run",

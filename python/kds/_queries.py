@@ -23,6 +23,14 @@ class Approach(NamedTuple):
     distance: float
 
 
+class Distance(NamedTuple):
+    """How far apart two bodies are, 0 where they have a point in common, and the nearest point (3,) of each."""
+
+    distance: float
+    of_a: np.ndarray
+    of_b: np.ndarray
+
+
 def _checked(filter: Filter | None) -> Filter | None:
     """The filter for C++, where True and False are the only answers."""
     if filter is None:
@@ -106,12 +114,29 @@ class Queries:
             shape_of("shape", shape), turned, vector("position", position), _checked(filter)
         )
 
-    def nearest(self, point: ArrayLike, count: int = 1, *, filter: Filter | None = None) -> np.recarray:
-        """The bodies nearest to a point, nearest first, at most `count`: body, distance (0 inside) and point (3,), the
-        nearest of the body."""
+    def nearest(
+        self,
+        point: ArrayLike,
+        count: int = 1,
+        shape: Shape | None = None,
+        *,
+        orientation: ArrayLike = UPRIGHT,
+        filter: Filter | None = None,
+    ) -> np.recarray:
+        """The bodies nearest to a point, or to a shape whose centre is there, nearest first, at most `count`: body,
+        distance (0 inside, or where they overlap), point (3,), the nearest of the body, and from_point (3,), the nearest
+        of the shape, or the point itself."""
         return self._core.nearest(
-            vector("point", point), whole("count", count), _checked(filter)
+            None if shape is None else shape_of("shape", shape),
+            doubles("orientation", orientation, (4,)),
+            vector("point", point),
+            whole("count", count),
+            _checked(filter),
         ).view(np.recarray)
+
+    def distance_between(self, a: int, b: int) -> Distance:
+        """How far apart two bodies are now, and where they are nearest to each other."""
+        return Distance(*self._core.distance_between(identity("a", a), identity("b", b)))
 
     def next_contact(
         self,

@@ -1,14 +1,17 @@
 // What queries of a world cost: rays, and what a ball will meet.
 //
-//     bench_queries [DIRECTORY]      -> queries.csv; 10 s
+//     bench_queries [DIRECTORY]      -> queries.csv, distances.csv; 10 s
 //
 // Balls of radius 0.3 fill a cube, one in a cube of the side 2 (1.4 %); rays go between two points at random in it, so
 // most meet something. Beside it: a ray against every ball one by one, in doubles, as the simplest program does it.
-// Then one mesh of so many triangles in the middle, at which all rays aim.
+// Then one mesh of so many triangles in the middle, at which all rays aim. Last the distances of two shapes of a kind,
+// turned at random, whose bounding balls are a hundredth of a radius or a radius apart.
 
+#include "collision/narrow_phase/shape_distance.hpp"
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
 #include "collision/queries/nearest.hpp"
+#include "collision/shapes/convex_hull.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/collision/sample_meshes.hpp"
@@ -18,6 +21,8 @@
 #include <cstdio>
 #include <exception>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -118,6 +123,36 @@ void mesh(std::ofstream& csv, std::uint32_t around, std::uint32_t across) {
   tell(csv, "mesh,%u,%.2f,,,,,,%.3f\n", 2 * around * across, first, double(met) / rays);
 }
 
+double microseconds_of_distance(const Shape& shape, double gap) {
+  Random random(13);
+  std::vector<PlacedShape> placed;
+  std::vector<Vector3d> ways;
+  for (int i = 0; i < 64; ++i) {
+    placed.push_back(place(shape, random.orientation()));
+    ways.push_back((2 + gap) * placed.back().bounding_radius * random.direction());
+  }
+  std::size_t next = 0;
+  return microseconds_each(2000, [&] {
+    const std::size_t i = next++ % placed.size();
+    shape_distance(placed[i], placed[(7 * i + 3) % placed.size()], ways[i]);
+  });
+}
+
+void distances(std::ofstream& csv) {
+  tell(csv, "two,near us,far us\n");
+  Random random(14);
+  std::vector<Vector3d> corners;
+  for (int i = 0; i < 300; ++i) corners.push_back(random.direction());
+  const std::pair<const char*, Shape> shapes[] = {{"balls", Sphere{1}},
+                                                  {"boxes", Box{{1, 0.6, 0.3}}},
+                                                  {"hulls of 300 corners", convex_hull(corners)},
+                                                  {"rings of 64 triangles", MeshShape{samples::torus(8, 4), 1}},
+                                                  {"rings of 6 080 triangles", MeshShape{samples::torus(76, 40), 1}}};
+  for (const auto& [name, shape] : shapes) {
+    tell(csv, "%s,%.2f,%.2f\n", name, microseconds_of_distance(shape, 0.01), microseconds_of_distance(shape, 1));
+  }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) try {
@@ -128,6 +163,8 @@ int main(int count, char** arguments) try {
   for (const int bodies : {100, 1000, 10000, 100000}) balls(csv, bodies);
   mesh(csv, 8, 4);
   mesh(csv, 76, 40);
+  std::ofstream of_distances = kds::benchmarks::open_csv(count > 1 ? arguments[1] : ".", "distances.csv");
+  distances(of_distances);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "bench_queries: %s\n", error.what());
   return 1;

@@ -122,6 +122,7 @@ class Misuse(unittest.TestCase):
             (world.next_contact_of, dict(body=a, until=1, filter=None)),
             (world.next_contact_between, dict(a=a, b=b, until=1)),
             (world.closest_approach, dict(a=a, b=b, until=1)),
+            (world.distance_between, dict(a=a, b=b)),
             (world.partners, dict(body=a)),
             (world.touching, dict(a=a, b=b)),
             (world.resting, dict(a=a, b=b)),
@@ -201,6 +202,7 @@ class Misuse(unittest.TestCase):
             lambda: w.update_motion(body, velocity=(1, 0, 0)),
             lambda: w.update_motions([kept, body], velocities=(1, 0, 0)),
             lambda: w.closest_approach(body, kept, until=1),
+            lambda: w.distance_between(kept, body),
             lambda: w.next_contact_of(body, until=1),
         ):
             self.refused(f"{body}.*removed", call)

@@ -62,6 +62,12 @@ class Queries(unittest.TestCase):
             self.assertLess(np.abs(found.distance - near[found.body]).max(), ERROR)
             apart = np.linalg.norm(found.point - place, axis=1)
             self.assertLess(np.abs(apart - found.distance)[found.distance > 0].max(initial=0), ERROR)
+            self.assertEqual(found.from_point.tolist(), [list(place)] * len(found))
+            near = np.maximum(np.linalg.norm(positions - place, axis=1) - radii - radius, 0)
+            found = world.nearest(place, 7, kds.sphere(radius))
+            self.assertLess(np.abs(found.distance - np.sort(near)[:7]).max(), ERROR)
+            apart = np.linalg.norm(found.point - found.from_point, axis=1)
+            self.assertLess(np.abs(apart - found.distance).max(), ERROR)
             low, high = place - radius, place + radius
             near = np.flatnonzero(((positions + radii[:, None] > low) & (positions - radii[:, None] < high)).all(1))
             self.assertEqual(world.in_box(low, high).tolist(), near.tolist())
@@ -127,6 +133,14 @@ class Queries(unittest.TestCase):
         b = world.add_body(kds.sphere(0.1), (4, 3, 0), (-1, 0, 0))
         self.assertEqual(world.closest_approach(a, b, until=10), kds.Approach(2.0, 3.0))
         self.assertEqual(world.closest_approach(a, b, until=1).time, 1.0)
+
+    def test_how_far_apart(self):
+        world = kds.World()
+        a = world.add_body(kds.box((1, 1, 1)), (0, 0, 0))
+        b = world.add_body(kds.sphere(0.5), (3, 0, 0))
+        found = world.distance_between(a, b)
+        self.assertEqual(found.distance, 1.5)
+        self.assertEqual((found.of_a.tolist(), found.of_b.tolist()), ([1, 0, 0], [2.5, 0, 0]))
 
 
 if __name__ == "__main__":

@@ -118,7 +118,7 @@ class TurningBallAndPolytope {
     const auto farthest = [&](const Eigen::Vector3d& along) {
       return Eigen::Vector3d(frame.way.value - frame.a.farthest(-along));
     };
-    return nearest_to_origin(farthest, frame.way.value);
+    return nearest_to_origin(farthest, frame.way.value).point;
   }
 
   const RigidMotion& a_;

@@ -142,7 +142,7 @@ class TurningPolytopes {
     const auto farthest = [&](const Eigen::Vector3d& along) {
       return Eigen::Vector3d(frame.way.value + frame.b.farthest(along) - frame.a.farthest(-along));
     };
-    return nearest_to_origin(farthest, frame.way.value);
+    return nearest_to_origin(farthest, frame.way.value).point;
   }
   /// As apart_until, but farther apart than `grown`.
   double farther_apart_until(double grown, double t, double horizon) const;

@@ -99,7 +99,7 @@ TEST_CASE("the nearest bodies are those of all bodies, in any units", "[nearest]
         if (!filter(id)) continue;
         const Vector3d centre = world.motion(id).position(1.5);
         const NearestOfShape of_body = nearest_of_shape(world.shape(id), at - centre, 1.5);
-        all.push_back({id, of_body.distance, of_body.point + centre});
+        all.push_back({id, of_body.distance, of_body.point + centre, at});
       }
       std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
       const auto few = nearest(world, at, count, filter);
@@ -108,6 +108,7 @@ TEST_CASE("the nearest bodies are those of all bodies, in any units", "[nearest]
         CHECK(few[i].body == all[i].body);
         CHECK(few[i].distance == all[i].distance);
         CHECK(few[i].point == all[i].point);
+        CHECK(few[i].from_point == at);
       }
     }
   }
@@ -142,11 +143,80 @@ TEST_CASE("a ball as large as the distance just touches", "[nearest]") {
   CHECK(outside > 100);
 }
 
+TEST_CASE("the bodies nearest to a shape are those of all bodies", "[nearest]") {
+  const auto ring = samples::torus(8, 4);
+  int overlaps = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    World<1> world(WorldOptions{});
+    std::vector<BodyId> ids;
+    const std::size_t bodies = 1 + random.below(40);
+    for (std::size_t i = 0; i < bodies; ++i) {
+      ids.push_back(
+          world.add_body(body(any_shape(random, ring), random.vector(3), random.vector(1), random.orientation())));
+    }
+    world.advance_to(1.5);
+    const PlacedShape shape = random.below(8) == 0
+                                  ? place(HalfSpace{random.direction(), -4}, Eigen::Quaterniond::Identity())
+                                  : place(any_shape(random, ring), random.orientation());
+    const Vector3d at = random.vector(5);
+    const std::size_t count = 1 + random.below(6);
+    std::vector<NearBody> all;
+    for (const BodyId id : ids) {
+      const Vector3d centre = world.motion(id).position(1.5);
+      const ShapeDistance of_body = shape_distance(shape, world.shape(id), centre - at, 1.5);
+      all.push_back({id, of_body.distance, of_body.of_b + at, of_body.of_a + at});
+      if (of_body.distance == 0) ++overlaps;
+    }
+    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
+    const auto few = nearest(world, shape, at, count);
+    REQUIRE(few.size() == std::min(count, all.size()));
+    for (std::size_t i = 0; i < few.size(); ++i) {
+      CHECK(few[i].body == all[i].body);
+      CHECK(few[i].distance == all[i].distance);
+      CHECK(few[i].point == all[i].point);
+      CHECK(few[i].from_point == all[i].from_point);
+    }
+    if (ids.size() < 2) continue;
+    const ShapeDistance pair = distance_between(world, ids[0], ids[1]);
+    CHECK((pair.of_b - pair.of_a).norm() == Approx(pair.distance).margin(1e-13));
+    const auto of_first = nearest(world, world.shape(ids[0]), world.motion(ids[0]).position(1.5), bodies,
+                                  [&](BodyId id) { return id == ids[1]; });
+    REQUIRE(of_first.size() == 1);
+    CHECK(of_first[0].distance == pair.distance);
+  }
+  CHECK(overlaps > 10);
+}
+
+TEST_CASE("how far apart two bodies are, one of which turns", "[nearest]") {
+  BasicWorld<certificates::RigidMotion<1>> world(WorldOptions{});
+  using Description = BasicBodyDescription<certificates::RigidMotion<1>>;
+  Description rod;
+  rod.shape = Box{{2, 0.5, 0.5}};
+  rod.motion = {certificates::RigidMotion<1>{{{Vector3d(0, 0, 0)}}, Eigen::Quaterniond::Identity(), {0, 0, 1}}};
+  Description ball;
+  ball.shape = Sphere{1};
+  ball.motion = {certificates::RigidMotion<1>{{{Vector3d(0, 5, 0)}}, Eigen::Quaterniond::Identity(), {0, 0, 0}}};
+  const BodyId a = world.add_body(rod), b = world.add_body(ball);
+  CHECK(distance_between(world, a, b).distance == Approx(3.5));
+  world.advance_to(std::acos(-1) / 2);  // a quarter of a turn
+  const ShapeDistance found = distance_between(world, a, b);
+  CHECK(found.distance == Approx(2));
+  CHECK((found.of_a - Vector3d(0, 2, 0)).cwiseAbs().maxCoeff() <= 0.5);
+  CHECK((found.of_b - Vector3d(0, 4, 0)).norm() < 1e-7);
+  world.remove_body(b);
+  CHECK_THROWS_AS(distance_between(world, a, b), std::invalid_argument);
+}
+
 TEST_CASE("nearest refuses what is no place", "[nearest]") {
   World<1> world(WorldOptions{});
   world.add_body(body(Sphere{1}, {0, 0, 0}));
   CHECK_THROWS_AS(nearest(world, {0, std::numeric_limits<double>::quiet_NaN(), 0}, 1), std::invalid_argument);
   CHECK_THROWS_AS(nearest(world, {0, 1e300, 0}, 1), std::invalid_argument);
+  const PlacedShape ball = place(Sphere{1}, Eigen::Quaterniond::Identity());
+  CHECK_THROWS_AS(nearest(world, ball, {0, 1e300, 0}, 1), std::invalid_argument);
+  CHECK_THROWS_AS(nearest(world, PlacedShape{Sphere{1}}, {0, 0, 0}, 1), std::invalid_argument);
 }
 
 }  // namespace kds::collision::test_nearest

@@ -1,0 +1,344 @@
+#include "collision/narrow_phase/shape_distance.hpp"
+
+#include "collision/narrow_phase/hull_distance.hpp"
+#include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/half_space.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/polytope.hpp"
+#include "collision/vectors.hpp"
+
+#include <boost/container/small_vector.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// The convex hull of some points, grown by a radius.
+class Convex {
+ public:
+  using Corners = boost::container::small_vector<Vector3d, 8>;
+
+  explicit Convex(Corners corners, double radius = 0) : corners_(std::move(corners)), radius_(radius) {
+    for (const Vector3d& corner : corners_) middle_ += corner / static_cast<double>(corners_.size());
+    for (const Vector3d& corner : corners_) reach_ = std::max(reach_, norm(corner - middle_));
+  }
+
+  double radius() const { return radius_; }
+  const Vector3d& middle() const { return middle_; }
+  /// All of it is within this distance from the middle.
+  double reach() const { return reach_ + radius_; }
+
+  /// Of the corners.
+  const Vector3d& farthest(const Vector3d& along) const {
+    const Vector3d* best = &corners_[0];
+    double most = dot(*best, along);
+    for (const Vector3d& corner : corners_) {
+      if (const double here = dot(corner, along); here > most) most = here, best = &corner;
+    }
+    return *best;
+  }
+
+ private:
+  Corners corners_;
+  double radius_;
+  Vector3d middle_ = Vector3d::Zero();
+  double reach_ = 0;
+};
+
+/// A point of the difference of two sets.
+struct Difference {
+  Vector3d of_a, of_b, way;
+};
+const Vector3d& point_of(const Difference& difference) { return difference.way; }
+
+NearestToOrigin<Difference> nearest_of_cores(const Convex& a, const Convex& b) {
+  constexpr int most_rounds = 200;  // a hull of many corners is as a ball, and takes some dozens
+  const auto farthest = [&](const Vector3d& along) {
+    const Vector3d &of_a = a.farthest(Vector3d(-along)), &of_b = b.farthest(along);
+    return Difference{of_a, of_b, of_b - of_a};
+  };
+  return nearest_to_origin(farthest, Vector3d(b.middle() - a.middle()), most_rounds);
+}
+
+ShapeDistance distance_of(const Convex& a, const Convex& b) {
+  const NearestToOrigin<Difference> nearest = nearest_of_cores(a, b);
+  ShapeDistance found{0, Vector3d::Zero(), Vector3d::Zero()};
+  for (std::size_t i = 0; i < nearest.corners.size(); ++i) {
+    found.of_a += nearest.weights[i] * nearest.corners[i].of_a;
+    found.of_b += nearest.weights[i] * nearest.corners[i].of_b;
+  }
+  const double of_cores = norm(nearest.point);
+  if (of_cores > 0) {
+    const Vector3d normal = nearest.point / of_cores;
+    const double radii = a.radius() + b.radius();
+    // Where they overlap, the point that divides the way between the cores as the radii do is in both.
+    const double part = of_cores < radii ? of_cores / radii : 1;
+    found.of_a += part * a.radius() * normal;
+    found.of_b -= part * b.radius() * normal;
+    found.distance = std::max(0.0, of_cores - radii);
+  }
+  return found;
+}
+
+/// A part of a shape as a tree of convex volumes: of one leaf for what is convex itself, that of its boxes for a mesh.
+class Part {
+ public:
+  explicit Part(Convex convex) : convex_(std::move(convex)) {}
+  Part(const MeshShape& shape, const Matrix3d& rotation, const Vector3d& centre)
+      : mesh_(shape.mesh.get()), scale_(shape.scale), rotation_(rotation), centre_(centre) {}
+
+  Convex volume(std::uint32_t node) const { return mesh_ ? box(mesh_->tree().nodes()[node]) : *convex_; }
+  bool is_leaf(std::uint32_t node) const { return !mesh_ || mesh_->tree().nodes()[node].is_leaf(); }
+  /// Of two that stand side by side. Precondition: not a leaf.
+  std::uint32_t first_child(std::uint32_t node) const { return mesh_->tree().nodes()[node].first; }
+  /// What is in a leaf.
+  std::vector<Convex> contents(std::uint32_t leaf) const {
+    if (!mesh_) return {*convex_};
+    std::vector<Convex> triangles;
+    const ObbNode& node = mesh_->tree().nodes()[leaf];
+    for (const LeafTriangle& triangle : mesh_->tree().leaf_triangles().subspan(node.first, node.count)) {
+      Convex::Corners corners;
+      for (const std::uint32_t vertex : triangle.vertices) corners.push_back(placed(mesh_->vertices()[vertex]));
+      triangles.emplace_back(std::move(corners));
+    }
+    return triangles;
+  }
+
+ private:
+  Vector3d placed(const Vector3d& vertex) const { return centre_ + placed_vertex(rotation_, scale_, vertex); }
+
+  Convex box(const ObbNode& node) const {
+    Convex::Corners corners;
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      Vector3d corner;
+      for (std::size_t d = 0; d < 3; ++d) {
+        double x = static_cast<double>(node.centre[d]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double half = static_cast<double>(node.half_extents[axis]) * static_cast<double>(node.axes[d][axis]);
+          x += (signs >> axis & 1) != 0 ? half : -half;
+        }
+        corner[static_cast<Eigen::Index>(d)] = mesh_->tree().unit() * x;
+      }
+      corners.push_back(placed(corner));
+    }
+    return Convex(std::move(corners));
+  }
+
+  std::optional<Convex> convex_{};
+  const Mesh* mesh_ = nullptr;
+  double scale_ = 1;
+  Matrix3d rotation_ = Matrix3d::Identity();
+  Vector3d centre_ = Vector3d::Zero();
+};
+
+Convex::Corners box_corners(const PlacedShape& box, const Vector3d& centre) {
+  Convex::Corners corners;
+  for (unsigned signs = 0; signs < 8; ++signs) {
+    Vector3d corner = centre;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      corner += ((signs >> axis & 1) != 0 ? 1 : -1) * box.half_axes[axis];
+    }
+    corners.push_back(corner);
+  }
+  return corners;
+}
+
+/// Precondition: no half-space.
+void add_parts(const PlacedShape& shape, const Vector3d& centre, double t, std::vector<Part>& parts) {
+  if (shape.parts) {
+    for (const PlacedShape& part : *shape.parts) add_parts(part, centre, t, parts);
+  } else if (const auto* const ball = std::get_if<Sphere>(&shape.shape)) {
+    parts.emplace_back(Convex({centre}, ball->radius));
+  } else if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
+    const Vector3d half = capsule->half_length * shape.rotation.col(2);
+    parts.emplace_back(Convex({Vector3d(centre - half), Vector3d(centre + half)}, capsule->radius));
+  } else if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
+    Convex::Corners corners;
+    for (const Vector3d& point : hull->polytope->points()) {
+      corners.push_back(centre + placed_vertex(shape.rotation, 1, point));
+    }
+    parts.emplace_back(Convex(std::move(corners)));
+  } else if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) {
+    parts.emplace_back(*mesh, shape.rotation, centre);
+  } else if (const auto* const bending = std::get_if<BendingMesh>(&shape.shape)) {
+    for (const Mesh::Triangle& triangle : bending->script->triangles()) {
+      Convex::Corners corners;
+      for (const std::uint32_t vertex : triangle) {
+        corners.push_back(centre + placed_vertex(shape.rotation, 1, bending->script->position(vertex, t)));
+      }
+      parts.emplace_back(Convex(std::move(corners)));
+    }
+  } else {
+    parts.emplace_back(Convex(box_corners(shape, centre)));
+  }
+}
+
+/// Keeps the nearest points of many pairs of parts.
+class Nearest {
+ public:
+  /// Goes down both trees, the nearer boxes first.
+  void take(const Part& a, const Part& b) {
+    std::vector<Pair> waiting;
+    add(waiting, {a.volume(0), b.volume(0), 0, 0, Vector3d::Zero()});
+    while (!waiting.empty()) {
+      const Pair pair = std::move(waiting.back());
+      waiting.pop_back();
+      if (too_far(pair.bound)) continue;
+      const bool leaf_a = a.is_leaf(pair.of_a), leaf_b = b.is_leaf(pair.of_b);
+      if (leaf_a && leaf_b) {
+        for (const Convex& of_a : a.contents(pair.of_a)) {
+          for (const Convex& of_b : b.contents(pair.of_b)) keep(distance_of(of_a, of_b));
+        }
+        continue;
+      }
+      const std::size_t known = waiting.size();
+      if (leaf_b || (!leaf_a && pair.a.reach() > pair.b.reach())) {
+        const std::uint32_t first = a.first_child(pair.of_a);
+        for (std::uint32_t child = first; child < first + 2; ++child) {
+          add(waiting, {a.volume(child), pair.b, child, pair.of_b, pair.way});
+        }
+      } else {
+        const std::uint32_t first = b.first_child(pair.of_b);
+        for (std::uint32_t child = first; child < first + 2; ++child) {
+          add(waiting, {pair.a, b.volume(child), pair.of_a, child, pair.way});
+        }
+      }
+      if (waiting.size() == known + 2 && waiting[known].bound < waiting[known + 1].bound) {
+        std::swap(waiting[known], waiting[known + 1]);
+      }
+    }
+  }
+  const ShapeDistance& best() const { return best_; }
+
+ private:
+  struct Pair {
+    Convex a, b;  ///< volumes of nodes
+    std::uint32_t of_a, of_b;
+    Vector3d way;      ///< between their nearest points; at first between those of the volumes around them
+    double bound = 0;  ///< at most the distance of what is in them
+  };
+
+  void add(std::vector<Pair>& waiting, Pair pair) const {
+    const double radii = pair.a.radius() + pair.b.radius();
+    if (too_far(norm(pair.b.middle() - pair.a.middle()) - pair.a.reach() - pair.b.reach())) return;
+    if (const double square = squared_norm(pair.way); square > 0) {  // a fifth faster than without
+      const double apart = dot(pair.b.farthest(Vector3d(-pair.way)) - pair.a.farthest(pair.way), pair.way);
+      if (too_far(apart / std::sqrt(square) - radii)) return;
+    }
+    const NearestToOrigin<Difference> nearest = nearest_of_cores(pair.a, pair.b);
+    pair.way = nearest.point;
+    pair.bound = nearest.bound - radii;
+    if (!too_far(pair.bound)) waiting.push_back(std::move(pair));
+  }
+  bool too_far(double bound) const { return bound >= best_.distance || best_.distance == 0; }
+  void keep(const ShapeDistance& found) {
+    if (found.distance < best_.distance) best_ = found;
+  }
+
+  ShapeDistance best_{std::numeric_limits<double>::infinity(), Vector3d::Zero(), Vector3d::Zero()};
+};
+
+/// The lowest point of a part along a normal, and how high it is.
+struct Lowest {
+  double height = std::numeric_limits<double>::infinity();
+  Vector3d point = Vector3d::Zero();
+
+  bool take(const Convex& convex, const Vector3d& normal) {
+    const Vector3d& corner = convex.farthest(Vector3d(-normal));
+    const double here = dot(corner, normal) - convex.radius();
+    if (here >= height) return false;
+    height = here;
+    point = corner - convex.radius() * normal;
+    return true;
+  }
+};
+
+Lowest lowest_of(const Part& part, const Vector3d& normal) {
+  Lowest lowest;
+  std::vector<std::uint32_t> waiting{0};
+  while (!waiting.empty()) {
+    const std::uint32_t node = waiting.back();
+    waiting.pop_back();
+    if (Lowest of_volume = lowest; !of_volume.take(part.volume(node), normal)) continue;
+    if (part.is_leaf(node)) {
+      for (const Convex& convex : part.contents(node)) lowest.take(convex, normal);
+    } else {
+      waiting.insert(waiting.end(), {part.first_child(node), part.first_child(node) + 1});
+    }
+  }
+  return lowest;
+}
+
+/// Of a shape about the origin, b, from a half-space, a.
+ShapeDistance distance_from_half_space(const HalfSpace& half_space, const PlacedShape& shape, double t) {
+  std::vector<Part> parts;
+  add_parts(shape, Vector3d::Zero(), t, parts);
+  Lowest lowest;
+  for (const Part& part : parts) {
+    if (const Lowest of_part = lowest_of(part, half_space.normal); of_part.height < lowest.height) lowest = of_part;
+  }
+  const double distance = std::max(0.0, lowest.height - half_space.offset);
+  return {distance, lowest.point - distance * half_space.normal, lowest.point};
+}
+
+/// Of two half-spaces, as {x: normal . x <= offset}.
+ShapeDistance distance_of_half_spaces(const HalfSpace& a, const HalfSpace& b) {
+  const Vector3d across = cross(a.normal, b.normal);
+  const double square = squared_norm(across);
+  if (square > 0) {  // their planes meet in a line, of which this is the point that is nearest to the origin
+    const Vector3d point = (a.offset * cross(b.normal, across) + b.offset * cross(across, a.normal)) / square;
+    return {0, point, point};
+  }
+  if (dot(a.normal, b.normal) > 0) {
+    const Vector3d point = std::min(a.offset, b.offset) * a.normal;
+    return {0, point, point};
+  }
+  const double gap = -b.offset - a.offset;
+  if (gap > 0) return {gap, a.offset * a.normal, b.offset * b.normal};
+  return {0, a.offset * a.normal, a.offset * a.normal};
+}
+
+HalfSpace moved(HalfSpace half_space, const Vector3d& by) {
+  half_space.offset += dot(half_space.normal, by);
+  return half_space;
+}
+
+ShapeDistance swapped(const ShapeDistance& found) { return {found.distance, found.of_b, found.of_a}; }
+
+}  // namespace
+
+ShapeDistance shape_distance(const PlacedShape& a, const PlacedShape& b, const Vector3d& centre_of_b, double t) {
+  if (unbounded(b.shape)) {
+    const HalfSpace placed = moved(placed_half_space(b), centre_of_b);
+    if (unbounded(a.shape)) return distance_of_half_spaces(placed_half_space(a), placed);
+    return swapped(distance_from_half_space(placed, a, t));
+  }
+  if (unbounded(a.shape)) {
+    ShapeDistance found = distance_from_half_space(moved(placed_half_space(a), -centre_of_b), b, t);
+    found.of_a += centre_of_b;
+    found.of_b += centre_of_b;
+    return found;
+  }
+  std::vector<Part> of_a, of_b;
+  add_parts(a, Vector3d::Zero(), t, of_a);
+  add_parts(b, centre_of_b, t, of_b);
+  Nearest nearest;
+  for (const Part& part_of_a : of_a) {
+    for (const Part& part_of_b : of_b) nearest.take(part_of_a, part_of_b);
+  }
+  return nearest.best();
+}
+
+}  // namespace kds::collision
