@@ -39,9 +39,15 @@ double tolerance(const PlacedShape& a, const PlacedShape& b, const Vector3d& way
   return 0x1p-46 * (a.bounding_radius + b.bounding_radius + norm(way));
 }
 
+/// One time in four nearly in a plane, or nearly in a line.
 std::vector<Vector3d> random_points(Random& random, std::size_t count, double size) {
+  Vector3d extents = Vector3d::Constant(size);
+  if (random.below(4) == 0) {
+    extents[1] *= std::ldexp(1.0, -static_cast<int>(random.below(2) * random.below(16)));
+    extents[2] *= std::ldexp(1.0, -static_cast<int>(random.below(16)));
+  }
   std::vector<Vector3d> points;
-  for (std::size_t i = 0; i < count; ++i) points.push_back(random.vector(size));
+  for (std::size_t i = 0; i < count; ++i) points.push_back(random.vector(1).cwiseProduct(extents));
   return points;
 }
 
@@ -97,8 +103,9 @@ std::pair<std::vector<Vector3l>, Long> core_of(const PlacedShape& shape, const V
 /// Checks that the points are of the shapes and as far apart as is said.
 void check_points(const PlacedShape& a, const PlacedShape& b, const Vector3d& centre_of_b, const ShapeDistance& found) {
   const double error = tolerance(a, b, centre_of_b);
-  CHECK(nearest_of_shape(a, found.of_a).distance <= error);
-  CHECK(nearest_of_shape(b, found.of_b - centre_of_b).distance <= error);
+  constexpr double flat = 64;  // what nearest_of_shape() measures it by is less exact where a hull is flat
+  CHECK(nearest_of_shape(a, found.of_a).distance <= flat * error);
+  CHECK(nearest_of_shape(b, found.of_b - centre_of_b).distance <= flat * error);
   CHECK(norm(found.of_b - found.of_a) == Approx(found.distance).margin(error));
   const ShapeDistance back = shape_distance(b, a, -centre_of_b);
   CHECK(back.distance == Approx(found.distance).margin(error));
@@ -181,8 +188,8 @@ TEST_CASE("two boxes, a ball and a capsule, by hand", "[shape_distance]") {
   const PlacedShape ball = place(Sphere{0.5}, upright);
   const ShapeDistance faces = shape_distance(box, box, {5, 1, 1});
   CHECK(faces.distance == 3);
-  CHECK(faces.of_a[0] == 1);
-  CHECK(faces.of_b[0] == 4);
+  CHECK(faces.of_a[0] == Approx(1));
+  CHECK(faces.of_b[0] == Approx(4));
   const ShapeDistance corner = shape_distance(box, ball, {1 + 2, 2 + 3, 3 + 6});
   CHECK(corner.distance == Approx(6.5));
   CHECK((corner.of_a - Vector3d(1, 2, 3)).norm() < 1e-14);
