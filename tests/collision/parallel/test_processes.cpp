@@ -180,6 +180,26 @@ TEST_CASE("Processes: bodies that change where a process does not know them, and
   }
 }
 
+TEST_CASE("Processes: bodies that come without having changed the motion of any that others know", "[parallel]") {
+  // Some fly through a row of balls at rest: that they come is only told by how near they are.
+  Trial<1> row;
+  for (int i = 0; i < 60; ++i) row.scene.bodies.push_back(tests::ball<1>(0.5, Vector3d(2.5 * i, 0, 0)));
+  for (const double speed : {1.0, 3.0, -2.0}) {
+    row.scene.bodies.push_back(
+        tests::ball<1>(0.5, Vector3d(speed > 0 ? -1 : 149, 0.5, 0.1 * speed), Vector3d(speed, 0, 0)));
+  }
+  row.scene.end_time = 150;
+  row.options.response = Response::none;
+  row.what = "row";
+  Seen seen;
+  for (const std::size_t count : {2u, 3u, 7u}) {
+    compare(row, {.domains = 7, .halo = 0.5}, count, 1, seen);
+    compare(row, {.domains = 7, .halo = 3}, count, 1, seen);
+  }
+  CHECK(seen.events > 1000);
+  CHECK(seen.windows > 30);
+}
+
 TEST_CASE("Processes: bodies that have met elsewhere come to rest when they have gathered", "[parallel]") {
   // Pairs of balls that meet in the air, fall, and slide apart on the floor, slowly: only what has met another stops.
   Trial<2> falling;
