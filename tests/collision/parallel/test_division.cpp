@@ -1,4 +1,6 @@
 #include "collision/parallel/division.hpp"
+
+#include "collision/parallel/domain.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/event_log.hpp"
@@ -83,6 +85,18 @@ TEST_CASE("Division: into many domains, whose halos reach over several cells", "
   CHECK(most < 400);
   CHECK(division->knowers(12 * 12 * 12).size() == domains);  // the plate
   CHECK(division->sets.size() < domains + 12 * 12 * 12 + 3);
+
+  // A body may come out of its cell by a halo, into the halo of another.
+  for (const std::size_t index : {0u, 137u, 499u}) {
+    const Domain<certificates::PointMotion<1>> domain(WorldOptions(), *division, index, 0, false);
+    std::vector<DomainIndex> near, neighbours;
+    for (std::size_t i = 0; i < domains; ++i) {
+      const double distance = outside(division->partition.cell(i), division->partition.cell(index));
+      if (i != index && distance <= 2 * division->halo) near.push_back(static_cast<DomainIndex>(i));
+    }
+    for (const NeighbourDomain& neighbour : domain.neighbours()) neighbours.push_back(neighbour.domain);
+    REQUIRE(neighbours == near);
+  }
 }
 
 TEST_CASE("Division: moves of bodies come out as they went in", "[parallel]") {
