@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <ctime>
 #include <stdexcept>
 #include <type_traits>
@@ -262,29 +264,38 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   return result;
 }
 
-/// The work of the worlds of all processes, and what the busiest took.
-void share(kds::collision::Team& team, kds::collision::WorldCounters& work, std::uint64_t& bytes, RunResult& result) {
-  static_assert(std::is_trivially_copyable_v<kds::collision::WorldCounters>);
-  const auto mine = [&](auto& writer) {
-    writer(work, bytes, result.setup_cpu_seconds, result.run_cpu_seconds, result.peak_memory_bytes);
-  };
-  kds::collision::WorldCounters all = work;
-  std::uint64_t all_bytes = bytes, most_memory = result.peak_memory_bytes;
-  double longest_setup = result.setup_cpu_seconds, longest_run = result.run_cpu_seconds;
-  team.exchange([&](std::size_t, auto& writer) { mine(writer); },
-                [&](std::size_t, auto& reader) {
-                  kds::collision::WorldCounters its_work;
-                  std::uint64_t its_bytes = 0, its_memory = 0;
-                  double its_setup = 0, its_run = 0;
-                  reader(its_work, its_bytes, its_setup, its_run, its_memory);
-                  all = all + its_work;
-                  all_bytes += its_bytes;
-                  longest_setup = std::max(longest_setup, its_setup), longest_run = std::max(longest_run, its_run);
-                  most_memory = std::max(most_memory, its_memory);
-                });
-  work = all, bytes = all_bytes;
-  result.setup_cpu_seconds = longest_setup, result.run_cpu_seconds = longest_run;
-  result.peak_memory_bytes = most_memory;
+/// What is told of the run of a process.
+struct Share {
+  kds::collision::WorldCounters work{};
+  kds::collision::MessageCounters messages{};
+  double setup_cpu_seconds = 0, run_cpu_seconds = 0;
+  std::uint64_t peak_memory_bytes = 0;
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(work, messages, setup_cpu_seconds, run_cpu_seconds, peak_memory_bytes);
+  }
+};
+static_assert(std::is_trivially_copyable_v<kds::collision::WorldCounters>);
+
+/// In process 0 the work of the worlds of all, and what the busiest took; in others their own.
+void share(kds::collision::Team& team, Share mine, RunResult& result) {
+  kds::collision::Letters letters;
+  if (team.rank() != 0) letters.to(0)(mine);
+  team.exchange(std::move(letters), [&](std::size_t, auto& reader) {
+    Share other;
+    reader(other);
+    mine.work = mine.work + other.work;
+    mine.messages.letters += other.messages.letters, mine.messages.bytes += other.messages.bytes;
+    mine.setup_cpu_seconds = std::max(mine.setup_cpu_seconds, other.setup_cpu_seconds);
+    mine.run_cpu_seconds = std::max(mine.run_cpu_seconds, other.run_cpu_seconds);
+    mine.peak_memory_bytes = std::max(mine.peak_memory_bytes, other.peak_memory_bytes);
+  });
+  note_work(mine.work, result);
+  result.exchanges = mine.messages.exchanges, result.messages = mine.messages.letters;
+  result.bytes_exchanged = mine.messages.bytes;
+  result.setup_cpu_seconds = mine.setup_cpu_seconds, result.run_cpu_seconds = mine.run_cpu_seconds;
+  result.peak_memory_bytes = mine.peak_memory_bytes;
 }
 
 template <int Degree>
@@ -300,13 +311,12 @@ RunResult run_divided(const Scene& scene, const RunOptions& options, EventSink& 
       [&] {
         if (options.resume) before = world.work();
       });
-  auto work = world.work() - before;
-  const auto messages = world.messages();
-  result.exchanges = messages.exchanges, result.bytes_exchanged = messages.bytes;
   kds::collision::Team team(options.processes);
   result.processes = team.count();
-  share(team, work, result.bytes_exchanged, result);
-  note_work(work, result);
+  share(team,
+        {world.work() - before, world.messages(), result.setup_cpu_seconds, result.run_cpu_seconds,
+         result.peak_memory_bytes},
+        result);
   const auto counters = world.counters();
   result.contacts = counters.contacts, result.separations = counters.separations;
   result.overlaps = counters.overlaps, result.wall_contacts = counters.wall_contacts;

@@ -70,8 +70,9 @@ struct RunResult {
   std::uint64_t bodies_owned = 0;  ///< summed over domains and the steps of windows
   std::uint64_t bodies_known = 0;  ///< the same, copies of bodies of other domains included
   std::uint64_t processes = 1;
-  std::uint64_t exchanges = 0;        ///< of messages between processes
-  std::uint64_t bytes_exchanged = 0;  ///< in these
+  std::uint64_t exchanges = 0;        ///< in which processes could send messages to others
+  std::uint64_t messages = 0;         ///< sent in these, by all processes
+  std::uint64_t bytes_exchanged = 0;  ///< in these messages
   std::uint64_t peak_memory_bytes = 0;
   kds::collision::Profile profile;  ///< where the time went, if asked for
 };

@@ -37,6 +37,7 @@ std::string to_json(const RunResult& result, const RunOptions& options, double r
   if (options.processes) {
     json["processes"] = result.processes;
     json["exchanges"] = result.exchanges;
+    json["messages"] = result.messages;
     json["bytes_exchanged"] = result.bytes_exchanged;
   }
   json["peak_memory_bytes"] = result.peak_memory_bytes;

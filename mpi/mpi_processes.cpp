@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace kds::mpi {
 namespace {
@@ -34,35 +35,63 @@ MpiProcesses::~MpiProcesses() {
   if (communicator_ != MPI_COMM_NULL) MPI_Comm_free(&communicator_);
 }
 
-std::vector<MpiProcesses::Message> MpiProcesses::exchange(std::vector<Message> to) {
-  std::vector<std::uint64_t> sent(count_), received(count_);
-  std::transform(to.begin(), to.end(), sent.begin(), [](const Message& message) { return message.size(); });
-  require(MPI_Alltoall(sent.data(), 1, MPI_UINT64_T, received.data(), 1, MPI_UINT64_T, communicator_),
-          "the lengths of messages cannot be exchanged");
-  std::vector<Message> from(count_);
-  std::vector<MPI_Request> requests;
-  const auto in_parts = [&](Message& message, const auto& part) {
-    for (std::size_t at = 0; at < message.size(); at += longest_part_) {
-      const int length = static_cast<int>(std::min(longest_part_, message.size() - at));
-      require(part(message.data() + at, length, &requests.emplace_back()), "a message cannot be exchanged");
+std::vector<MpiProcesses::Letter> MpiProcesses::exchange(std::vector<Letter> letters) {
+  // A process that has left this exchange may have begun the next one, but not the one after that: it would have had to
+  // wait for this process. So two tags tell letters of different exchanges apart.
+  const int tag = round_;
+  round_ = 1 - round_;
+  std::vector<MPI_Request> sending;
+  for (const Letter& letter : letters) {
+    for (std::size_t at = 0; at < letter.content.size(); at += longest_part_) {
+      const int length = static_cast<int>(std::min(longest_part_, letter.content.size() - at));
+      require(MPI_Issend(letter.content.data() + at, length, MPI_BYTE, static_cast<int>(letter.process), tag,
+                         communicator_, &sending.emplace_back()),
+              "a letter cannot be sent");
     }
-  };
-  for (std::size_t other = 0; other < count_; ++other) {
-    if (other == rank_) continue;
-    from[other].resize(received[other]);
-    in_parts(from[other], [&](char* data, int length, MPI_Request* request) {
-      return MPI_Irecv(data, length, MPI_BYTE, static_cast<int>(other), 0, communicator_, request);
-    });
   }
-  for (std::size_t other = 0; other < count_; ++other) {
-    if (other == rank_) continue;
-    in_parts(to[other], [&](const char* data, int length, MPI_Request* request) {
-      return MPI_Isend(data, length, MPI_BYTE, static_cast<int>(other), 0, communicator_, request);
-    });
+  std::map<int, std::vector<char>> received;  // by sender; parts arrive in their order
+  MPI_Request all_received = MPI_REQUEST_NULL;
+  bool joined = false;
+  for (int done = 0; done == 0;) {
+    int found = 0;
+    MPI_Status status;
+    require(MPI_Iprobe(MPI_ANY_SOURCE, tag, communicator_, &found, &status), "letters cannot be looked for");
+    if (found != 0) {
+      int length = 0;
+      require(MPI_Get_count(&status, MPI_BYTE, &length), "the length of a letter is not known");
+      std::vector<char>& content = received[status.MPI_SOURCE];
+      const std::size_t before = content.size();
+      content.resize(before + static_cast<std::size_t>(length));
+      require(
+          MPI_Recv(content.data() + before, length, MPI_BYTE, status.MPI_SOURCE, tag, communicator_, MPI_STATUS_IGNORE),
+          "a letter cannot be received");
+    }
+    if (joined) {
+      require(MPI_Test(&all_received, &done, MPI_STATUS_IGNORE), "the other processes cannot be waited for");
+      continue;
+    }
+    int all_sent = 0;
+    require(MPI_Testall(static_cast<int>(sending.size()), sending.data(), &all_sent, MPI_STATUSES_IGNORE),
+            "letters cannot be sent");
+    if (all_sent == 0) continue;
+    require(MPI_Ibarrier(communicator_, &all_received), "the other processes cannot be waited for");
+    joined = true;
   }
-  require(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE),
-          "messages cannot be exchanged");
-  return from;
+  std::vector<Letter> result;
+  for (auto& [sender, content] : received) result.push_back({static_cast<std::size_t>(sender), std::move(content)});
+  return result;
+}
+
+void MpiProcesses::combine(std::span<std::uint64_t> sums, std::span<double> maxima) {
+  if (!sums.empty()) {
+    require(
+        MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_UINT64_T, MPI_SUM, communicator_),
+        "sums cannot be found");
+  }
+  if (maxima.empty()) return;
+  require(
+      MPI_Allreduce(MPI_IN_PLACE, maxima.data(), static_cast<int>(maxima.size()), MPI_DOUBLE, MPI_MAX, communicator_),
+      "maxima cannot be found");
 }
 
 }  // namespace kds::mpi

@@ -1,9 +1,9 @@
 // How a scene is divided: into how many cells, where, with how large a halo, and who owns and knows each body.
 #pragma once
 
+#include "collision/parallel/domain_sets.hpp"
 #include "collision/parallel/parallel_options.hpp"
 #include "collision/parallel/partition.hpp"
-#include "collision/parallel/world_events.hpp"
 #include "collision/world/bodies.hpp"
 
 #include <Eigen/Core>
@@ -11,41 +11,69 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace kds::collision {
 
-/// A set of domains, one bit each.
-using DomainMask = std::uint64_t;
-constexpr DomainMask domain_bit(std::size_t domain) { return DomainMask{1} << domain; }
-
-/// A body, by its number, is owned or known by others than before.
-struct BodyMove {
-  BodySlot number;
-  std::uint8_t owner;
-  DomainMask known;
-
+/// Bodies, by their numbers, that are owned or known by others than before.
+class BodyMoves {
+ public:
+  /// `known`: the domains that are to know it, ascending.
+  void add(BodySlot number, DomainIndex owner, std::span<const DomainIndex> known) {
+    moves_.push_back({number, owner, static_cast<DomainIndex>(known.size())});
+    known_.insert(known_.end(), known.begin(), known.end());
+  }
+  void clear() { moves_.clear(), known_.clear(); }
+  bool empty() const { return moves_.empty(); }
+  /// Calls take(number, owner, known) for each, in the order in which they were added.
+  template <class Take>
+  void each(const Take& take) const {
+    std::span<const DomainIndex> left = known_;
+    for (const Move& move : moves_) {
+      take(move.number, move.owner, left.first(move.knowers));
+      left = left.subspan(move.knowers);
+    }
+  }
   template <class Archive>
   void archive(Archive& archive) {
-    archive(number, owner, known);
+    archive(moves_, known_);
   }
+
+ private:
+  struct Move {
+    BodySlot number;
+    DomainIndex owner, knowers;
+  };
+  std::vector<Move> moves_;
+  std::vector<DomainIndex> known_;  ///< of all, one after another
 };
 
 /// What the domains of a scene share. Bodies by their numbers.
 struct Division {
-  static constexpr std::uint8_t nobody = DomainEvent::nobody;
+  static constexpr DomainIndex nobody = no_domain;
 
   Partition partition;
-  double halo = 0;                    ///< how far outside a cell its domain knows bodies
-  double greatest_radius = 0;         ///< of bodies that have owners
-  double greatest_speed = 0;          ///< of these, along an axis, at first
-  double greatest_bend = 0;           ///< of these: half an acceleration, along an axis
-  double bulge = 0;                   ///< how far a path may leave the chord between two of its places within a window
-  std::vector<std::uint8_t> owner{};  ///< the domain in whose cell a body is; `nobody` of fixed bodies at rest
-  std::vector<DomainMask> known{};    ///< to whom
+  double halo = 0;                   ///< how far outside a cell its domain knows bodies
+  double greatest_radius = 0;        ///< of bodies that have owners
+  double greatest_speed = 0;         ///< of these, along an axis, at first
+  double greatest_bend = 0;          ///< of these: half an acceleration, along an axis
+  double bulge = 0;                  ///< how far a path may leave the chord between two of its places within a window
+  std::vector<DomainIndex> owner{};  ///< the domain in whose cell a body is; `nobody` of fixed bodies at rest
+  std::vector<DomainSets::Number> known{};  ///< to whom: a set of `sets`
+  DomainSets sets{partition.size()};
+
+  /// Those to whom a body is known, ascending.
+  std::span<const DomainIndex> knowers(BodySlot number) const { return sets[known[number]]; }
+  bool is_known_to_one(BodySlot number) const { return known[number] < partition.size(); }
+  /// Finds the domains that know what is at a place and reaches so far: those in whose halo it is.
+  void find_knowers(const Eigen::Vector3d& place, double reach, std::vector<DomainIndex>& found) const {
+    found.clear();
+    partition.each_within(place, halo + reach,
+                          [&](std::size_t cell) { found.push_back(static_cast<DomainIndex>(cell)); });
+  }
 
   /// Rounding of places, and what else is far below a halo.
   double margin() const { return 0x1p-20 * halo; }
@@ -98,17 +126,16 @@ inline std::size_t domains_wanted(const ParallelOptions& options, std::size_t th
 template <class Motion>
 void assign_bodies(Division& division, const Bodies<Motion>& bodies, double now) {
   division.owner.assign(bodies.slots(), Division::nobody);
-  division.known.assign(bodies.slots(), 0);
+  division.known.assign(bodies.slots(), division.sets.number_of({}));
+  std::vector<DomainIndex> knowers;
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
     const Eigen::Vector3d place = bodies.path(slot).position(now);
     const bool owned = detail::has_owner(bodies, slot);
-    if (owned) division.owner[slot] = static_cast<std::uint8_t>(division.partition.cell_of(place));
+    if (owned) division.owner[slot] = static_cast<DomainIndex>(division.partition.cell_of(place));
     // Those without an owner stay known for good, so it counts how far they reach.
-    const double reach = division.halo + (owned ? 0 : bodies[slot].bounding_radius);
-    for (std::size_t i = 0; i < division.partition.size(); ++i) {
-      if (outside(place, division.partition.cell(i)) <= reach) division.known[slot] |= domain_bit(i);
-    }
+    division.find_knowers(place, owned ? 0 : bodies[slot].bounding_radius, knowers);
+    division.known[slot] = division.sets.number_of(knowers);
   }
 }
 
@@ -136,7 +163,8 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, double now, const P
   std::size_t wanted = domains_wanted(options, threads, places.size());
   Partition partition(places, wanted);
   while (wanted > 1 && options.domains == 0 && !detail::wide_enough(partition, halo)) {
-    partition = Partition(places, --wanted);
+    wanted -= std::max<std::size_t>(1, wanted / 8);
+    partition = Partition(places, wanted);
   }
   if (partition.size() < 2) return std::nullopt;
   Division division{.partition = std::move(partition),

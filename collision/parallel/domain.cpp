@@ -29,29 +29,43 @@ Domain<Motion>::Domain(const WorldOptions& options, const Division& division, st
       logs_(logs),
       resolves_(options.response == Response::elastic),
       world_(for_domain(options, now), this),
-      engine_(detail::EngineOf<Motion>::of(world_)),
-      local_(division.owner.size(), no_body) {
-  const StaticBox& cell = division.partition.cell(index);
-  for (std::size_t other = 0; other < division.partition.size(); ++other) {
-    if (other != index && outside(division.partition.cell(other), cell) <= 3 * division.halo) near_.push_back(other);
-  }
+      engine_(detail::EngineOf<Motion>::of(world_)) {
+  // A body that has stayed in the halo of its cell, as it must, is not in that of a cell farther away.
+  const Partition& partition = division.partition;
+  partition.each_within(partition.cell(index), 2 * division.halo, [&](std::size_t other) {
+    if (other != index) neighbours_.push_back({static_cast<DomainIndex>(other), partition.cell(other), never});
+  });
+}
+
+template <class Motion>
+std::size_t Domain<Motion>::place_of(BodySlot number) const {
+  const auto place = std::ranges::lower_bound(slots_, number, {}, [&](BodySlot slot) { return this->number(slot); });
+  return static_cast<std::size_t>(place - slots_.begin());
 }
 
 template <class Motion>
 void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const Engine<Motion>& store,
                               std::span<const Overlap> overlaps) {
-  std::vector<BodySlot> slots;
-  for (const BodySlot number : go) slots.push_back(std::exchange(local_[number], no_body));
-  if (!slots.empty()) engine_.let_go(slots);
+  if (!go.empty()) {
+    std::vector<BodySlot> gone;
+    std::erase_if(slots_, [&](BodySlot slot) {
+      if (gone.size() == go.size() || number(slot) != go[gone.size()]) return false;
+      gone.push_back(slot);
+      return true;
+    });
+    engine_.let_go(gone);
+  }
   if (come.empty()) return;
-  slots = engine_.take_in(store, come);
-  for (std::size_t i = 0; i < come.size(); ++i) local_[come[i]] = slots[i];
+  const auto before = static_cast<std::ptrdiff_t>(slots_.size());
+  const std::vector<BodySlot> taken = engine_.take_in(store, come);
+  slots_.insert(slots_.end(), taken.begin(), taken.end());
+  std::inplace_merge(slots_.begin(), slots_.begin() + before, slots_.end(),
+                     [&](BodySlot a, BodySlot b) { return number(a) < number(b); });
   std::vector<Overlap> here;
   const auto comes = [&](BodySlot number) { return std::binary_search(come.begin(), come.end(), number); };
   for (const Overlap& overlap : overlaps) {
-    const BodySlot a = local_[overlap.a], b = local_[overlap.b];
-    if (a != no_body && b != no_body && (comes(overlap.a) || comes(overlap.b)))
-      here.push_back({a, b, overlap.passes_at});
+    if (comes(overlap.a) || comes(overlap.b))
+      here.push_back({slot_of(overlap.a), slot_of(overlap.b), overlap.passes_at});
   }
   engine_.go_on_overlapping(here);
 }
@@ -64,14 +78,19 @@ void Domain<Motion>::begin_window() {
   role_.assign(bodies.slots(), Role::still), place_.resize(bodies.slots()), has_changed_.assign(bodies.slots(), 0);
   followed_.clear(), copies_.clear(), changes_.clear(), changed_.clear();
   report_ = {.known = world_.size()};
-  report_.nearest.fill(never);
+  for (NeighbourDomain& neighbour : neighbours_) neighbour.nearest = never;
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
-    const std::uint8_t owner = division_.owner[number(slot)];
+    const DomainIndex owner = division_.owner[number(slot)];
     if (owner == Division::nobody) continue;
     if (owner != index_) {
       role_[slot] = Role::copy;
-      copies_.push_back({number(slot), bodies.motion(slot)});
+      std::uint32_t& place = place_[slot];  // Mostly it is that which it was.
+      if (place >= neighbours_.size() || neighbours_[place].domain != owner) {
+        const auto found = std::ranges::lower_bound(neighbours_, owner, {}, &NeighbourDomain::domain);
+        place = static_cast<std::uint32_t>(found - neighbours_.begin());
+      }
+      copies_.push_back({number(slot), place, bodies.motion(slot)});
       continue;
     }
     ++report_.owned;
@@ -81,9 +100,23 @@ void Domain<Motion>::begin_window() {
     }
     role_[slot] = Role::followed;
     place_[slot] = static_cast<std::uint32_t>(followed_.size());
-    followed_.push_back({slot, now, bodies.motion(slot)});
+    followed_.push_back({slot, strangers_to(number(slot)), now, bodies.motion(slot)});
   }
   std::sort(copies_.begin(), copies_.end(), [](const Copy& a, const Copy& b) { return a.number < b.number; });
+}
+
+template <class Motion>
+std::uint32_t Domain<Motion>::strangers_to(BodySlot number) {
+  const auto [found, fresh] =
+      strangers_to_.try_emplace(division_.known[number], static_cast<std::uint32_t>(strangers_.size()));
+  if (fresh) {
+    auto& strangers = strangers_.emplace_back();
+    const auto knowers = division_.knowers(number);
+    for (std::uint32_t place = 0; place < neighbours_.size(); ++place) {
+      if (!std::ranges::binary_search(knowers, neighbours_[place].domain)) strangers.push_back(place);
+    }
+  }
+  return found->second;
 }
 
 template <class Motion>
@@ -111,10 +144,9 @@ template <class Motion>
 void Domain<Motion>::follow(Followed& body, double until) {
   const StaticBox swept = swept_point(body.motion, body.since, until);
   report_.overshoot = std::max(report_.overshoot, reach_outside(swept, division_.partition.cell(index_)));
-  const DomainMask known = division_.known[number(body.slot)];
-  for (const std::size_t other : near_) {
-    if ((known >> other & 1) != 0) continue;
-    report_.nearest[other] = std::min(report_.nearest[other], outside(swept, division_.partition.cell(other)));
+  for (const std::uint32_t place : strangers_[body.strangers]) {
+    NeighbourDomain& other = neighbours_[place];
+    other.nearest = std::min(other.nearest, outside(swept, other.cell));
   }
 }
 
@@ -123,19 +155,21 @@ void Domain<Motion>::compare(std::span<const std::span<const Change>> all) {
   wrong_.clear();
   report_.nearest_wrong = never;
   const StaticBox& cell = division_.partition.cell(index_);
+  std::vector<std::span<const Change>> of_domains(all.begin(), all.end());
+  of_domains.push_back(changes_.all());
   // The changes of a body, of those of a domain, which are sorted, as the copies are.
-  std::vector<std::size_t> next(all.size(), 0);
-  const auto changes_of = [&](BodySlot number, std::size_t domain) {
-    const std::span<const Change> changes = all[domain];
-    std::size_t& last = next[domain];
+  std::vector<std::size_t> next(of_domains.size(), 0);
+  const auto changes_of = [&](BodySlot number, std::size_t place) {
+    const std::span<const Change> changes = of_domains[place];
+    std::size_t& last = next[place];
     while (last < changes.size() && changes[last].number < number) ++last;
     const std::size_t first = last;
     while (last < changes.size() && changes[last].number == number) ++last;
     return changes.subspan(first, last - first);
   };
-  for (const auto& [number, begun] : copies_) {
-    const auto mine = changes_of(number, index_);
-    const auto right = changes_of(number, division_.owner[number]);
+  for (const auto& [number, owner, begun] : copies_) {
+    const auto mine = changes_of(number, all.size());
+    const auto right = changes_of(number, owner);
     std::size_t same = 0;
     while (same < std::min(mine.size(), right.size()) && mine[same].time == right[same].time &&
            same_bits(mine[same].motion, right[same].motion))
@@ -179,23 +213,24 @@ std::vector<typename Domain<Motion>::Overlap> Domain<Motion>::overlaps() const {
   std::vector<Overlap> all;
   for (const Overlap& overlap : engine_.overlaps()) {
     const BodySlot a = number(overlap.a), b = number(overlap.b);
-    const std::uint8_t teller = division_.owner[a] != Division::nobody ? division_.owner[a] : division_.owner[b];
+    const DomainIndex teller = division_.owner[a] != Division::nobody ? division_.owner[a] : division_.owner[b];
     if (teller == index_ || teller == Division::nobody) all.push_back({a, b, overlap.passes_at});
   }
   return all;
 }
 
 template <class Motion>
-void Domain<Motion>::append_moves(const Engine<Motion>& store, double t, std::vector<BodyMove>& moves) const {
+void Domain<Motion>::find_moves(const Engine<Motion>& store, double t) {
+  moves_.clear();
+  std::vector<DomainIndex> knowers;
   for (const Followed& body : followed_) {
     const BodySlot moved = number(body.slot);
     const Eigen::Vector3d place = store.bodies().path(moved).position(t);
-    BodyMove move{moved, static_cast<std::uint8_t>(division_.partition.cell_of(place)), 0};
-    if (outside(place, division_.partition.cell(index_)) <= division_.halo) move.known = domain_bit(index_);
-    for (const std::size_t other : near_) {
-      if (outside(place, division_.partition.cell(other)) <= division_.halo) move.known |= domain_bit(other);
-    }
-    if (move.owner != index_ || move.known != division_.known[moved]) moves.push_back(move);
+    // Mostly it is deeper in the cell than any other's halo, as it was.
+    if (division_.is_known_to_one(moved) && inside(place, division_.partition.cell(index_)) > division_.halo) continue;
+    const auto owner = static_cast<DomainIndex>(division_.partition.cell_of(place));
+    division_.find_knowers(place, 0, knowers);
+    if (owner != index_ || !std::ranges::equal(knowers, division_.knowers(moved))) moves_.add(moved, owner, knowers);
   }
 }
 
@@ -217,7 +252,7 @@ void Domain<Motion>::changed(BodySlot slot, double t) {
     Followed& body = followed_[place_[slot]];
     follow(body, t);
     body.since = t, body.motion = motion;
-    if (division_.known[number(slot)] == domain_bit(index_)) return;
+    if (division_.is_known_to_one(number(slot))) return;
   }
   fresh_.push_back({number(slot), motion, t});
 }
@@ -226,7 +261,7 @@ template <class Motion>
 void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   ++report_.computed;
   const BodySlot a = number(body_slot(event.a)), b = number(body_slot(event.b));
-  const std::uint8_t of_a = division_.owner[a], of_b = division_.owner[b];
+  const DomainIndex of_a = division_.owner[a], of_b = division_.owner[b];
   const bool fixed = of_a == Division::nobody && of_b == Division::nobody;
   const bool mine =
       fixed ? division_.partition.cell_of(event.contact.point) == index_ : of_a == index_ || of_b == index_;
@@ -235,7 +270,7 @@ void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   // Of a shared one the owner of the first body counts it.
   if (!shared || of_a == index_) ++report_.told[static_cast<std::size_t>(kind)];
   if (!logs_) return;
-  const std::uint8_t other = of_a == index_ ? of_b : of_a;
+  const DomainIndex other = of_a == index_ ? of_b : of_a;
   put({kind, shared ? other : DomainEvent::nobody, a, b, event.contact});
 }
 

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -37,8 +38,6 @@ struct DomainReport {
   bool stayed = true;
   /// How far owned bodies have come out of the cell.
   double overshoot = 0;
-  /// How near to the cell of each other domain a body has come that is owned here and not known there.
-  std::array<double, most_domains> nearest{};
   /// How near to this cell copies have come, from when they were wrong: as they were or as they should have been.
   double nearest_wrong = never;
   std::uint64_t wrong = 0;  ///< copies that have gone wrong
@@ -49,6 +48,13 @@ struct DomainReport {
   std::uint64_t computed = 0;           ///< all events, those of copies included
 
   bool went_through() const { return divisible && stayed; }
+};
+
+/// Another domain, to whose cell the bodies of a domain may come near in a window.
+struct NeighbourDomain {
+  DomainIndex domain;
+  StaticBox cell;
+  double nearest;  ///< how near to its cell a body has come that is owned here and not known there
 };
 
 /// A domain: a cell of space, and a world that knows the bodies in it, which it *owns*, and *copies* of those that are
@@ -70,8 +76,8 @@ class Domain final : private BasicWorldListener<Motion> {
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
-  /// Lets bodies go, and takes others in as `store` has them. `overlaps`: of all bodies of the scene that overlap, by
-  /// their numbers.
+  /// Lets bodies go, and takes others in as `store` has them; both ascending. `overlaps`: all pairs of bodies known
+  /// here from then on that overlap, by their numbers.
   void exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const Engine<Motion>& store,
                 std::span<const Overlap> overlaps);
   /// Begins a window: finds out which bodies are whose, as the division says.
@@ -79,11 +85,13 @@ class Domain final : private BasicWorldListener<Motion> {
 
   /// Runs a step of the window.
   void run(double until);
-  /// Compares the copies with what their owners know. `changes`: of each domain, those of its bodies known here at
+  /// Compares the copies with what their owners know. `changes`: of each neighbour, those of its bodies known here at
   /// least.
   void compare(std::span<const std::span<const Change>> changes);
 
   const DomainReport& report() const { return report_; }
+  /// By domain, ascending. An owned body that has stayed in the halo is not known to any other.
+  std::span<const NeighbourDomain> neighbours() const { return neighbours_; }
   /// Numbers of copies that have gone wrong in this window, ascending.
   std::span<const BodySlot> wrong() const { return wrong_; }
   /// The motions that bodies have been given in this window, of copies and of owned bodies that others know.
@@ -101,21 +109,24 @@ class Domain final : private BasicWorldListener<Motion> {
   void append_changed(std::vector<BodySlot>& numbers) const;
   /// The pairs that overlap of which this domain knows all, by numbers; the lower first.
   std::vector<Overlap> overlaps() const;
-  /// Appends the owned bodies that have moved to where others are to own or know them. `store`: has the owned bodies as
+  /// Finds the owned bodies that have moved to where others are to own or know them. `store`: has the owned bodies as
   /// they are at t.
-  void append_moves(const Engine<Motion>& store, double t, std::vector<BodyMove>& moves) const;
+  void find_moves(const Engine<Motion>& store, double t);
+  const BodyMoves& moves() const { return moves_; }
 
  private:
   enum class Role : std::uint8_t { still, deep, followed, copy };
   /// A followed body: how it moves, and since when that is recorded.
   struct Followed {
     BodySlot slot;
+    std::uint32_t strangers;  ///< which of strangers_
     double since;
     Motion motion;
   };
   struct Copy {
     BodySlot number;
-    Motion motion;  ///< when the window began
+    std::uint32_t owner;  ///< which of the neighbours it is
+    Motion motion;        ///< when the window began
   };
   void contact(World&, const PairEvent& event) override;
   void separation(World&, const PairEvent& event) override;
@@ -126,6 +137,10 @@ class Domain final : private BasicWorldListener<Motion> {
   void passes(World&, const PairEvent&) override { report_.divisible = false; }
 
   BodySlot number(BodySlot slot) const { return engine_.bodies().number(slot); }
+  /// Where a body is in slots_, or would be.
+  std::size_t place_of(BodySlot number) const;
+  std::uint32_t strangers_to(BodySlot number);
+  BodySlot slot_of(BodySlot number) const { return slots_[place_of(number)]; }
   void record(DomainEvent::Kind kind, const PairEvent& event);
   void put(const DomainEvent& event);
   void changed(BodySlot slot, double t);
@@ -140,10 +155,11 @@ class Domain final : private BasicWorldListener<Motion> {
   const bool resolves_;  ///< whether contacts change motions
   World world_;
   Engine<Motion>& engine_;
-  std::vector<BodySlot> local_;       ///< by number: the slot here, no_body of one that is not known
-  std::vector<Role> role_;            ///< by slot
-  std::vector<std::uint32_t> place_;  ///< by slot, of followed bodies: in followed_
-  std::vector<char> has_changed_;     ///< by slot, of owned bodies: in this step
+  std::vector<BodySlot> slots_;  ///< of the bodies that are known, ascending by their numbers
+  std::vector<Role> role_;       ///< by slot
+  std::vector<std::uint32_t>
+      place_;  ///< by slot, of followed bodies: in followed_; of copies: of the owner in neighbours_
+  std::vector<char> has_changed_;  ///< by slot, of owned bodies: in this step
   std::vector<Followed> followed_;
   std::vector<Copy> copies_;       ///< by number
   std::vector<BodySlot> changed_;  ///< slots of owned bodies
@@ -151,7 +167,12 @@ class Domain final : private BasicWorldListener<Motion> {
   MotionChanges<Motion> changes_;  ///< of this window, of bodies that others know or own
   std::vector<DomainEvent> events_;
   std::vector<BodySlot> wrong_;
-  std::vector<std::size_t> near_;  ///< the domains whose cells followed bodies may come near
+  BodyMoves moves_;
+  std::vector<NeighbourDomain> neighbours_;
+  /// By places in neighbours_, those to whom bodies are not known that are known to a set of domains; which, by the
+  /// set.
+  std::vector<std::vector<std::uint32_t>> strangers_;
+  std::unordered_map<DomainSets::Number, std::uint32_t> strangers_to_;
   DomainReport report_;
 };
 

@@ -3,25 +3,10 @@
 #include "collision/in_parts.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <iterator>
-#include <span>
 #include <utility>
 
 namespace kds::collision {
-
-/// A body as its owner has it.
-template <class Motion>
-struct Domains<Motion>::News {
-  BodySlot number;
-  BodyProgress<Motion> progress;
-  bool met;
-
-  template <class Archive>
-  void archive(Archive& archive) {
-    archive(number, progress.motion, progress.meetings, progress.burst_start, met);
-  }
-};
 
 template <class Motion>
 Domains<Motion>::Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& store, Team& team)
@@ -34,13 +19,15 @@ void Domains<Motion>::in_each(const Work& work) {
 }
 
 template <class Motion>
-bool Domains<Motion>::went_through() const {
-  return std::all_of(reports_.begin(), reports_.end(), [](const auto& report) { return report.went_through(); });
-}
-
-template <class Motion>
-bool Domains<Motion>::is_divisible() const {
-  return std::all_of(reports_.begin(), reports_.end(), [](const auto& report) { return report.divisible; });
+template <class Take>
+void Domains<Motion>::each_process(std::span<const DomainIndex> domains, const Take& take) const {
+  std::size_t last = team_.rank();
+  for (const DomainIndex domain : domains) {
+    const std::size_t process = process_of(domain);
+    if (process == last || process == team_.rank()) continue;
+    take(process);
+    last = process;
+  }
 }
 
 template <class Motion>
@@ -54,8 +41,6 @@ void Domains<Motion>::begin(Division division, std::vector<Overlap> overlaps, bo
   division_ = std::make_unique<Division>(std::move(division));
   overlaps_ = std::move(overlaps);
   logs_ = logs;
-  of_process_.assign(team_.count(), 0);
-  for (std::size_t i = 0; i < size(); ++i) of_process_[process_of(i)] |= domain_bit(i);
   changed_.clear();
 }
 
@@ -75,19 +60,21 @@ void Domains<Motion>::drop() {
 template <class Motion>
 void Domains<Motion>::make(double now) {
   drop();
-  heard_.assign(size(), {});
-  reports_.assign(size(), {});
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (is_here(i)) domains_.push_back(std::make_unique<Domain<Motion>>(options_, *division_, i, now, logs_));
+  heard_.clear();
+  first_ = (team_.rank() * size() + team_.count() - 1) / team_.count();
+  for (std::size_t i = first_; i < size() && is_here(i); ++i) {
+    domains_.push_back(std::make_unique<Domain<Motion>>(options_, *division_, i, now, logs_));
   }
-  std::vector<std::vector<BodySlot>> known(size());
+  std::vector<std::vector<BodySlot>> known(domains_.size());
   for (BodySlot number = 0; number < division_->known.size(); ++number) {
-    for (const auto& domain : domains_) {
-      if ((division_->known[number] & domain_bit(domain->index())) != 0) known[domain->index()].push_back(number);
+    for (const DomainIndex domain : division_->knowers(number)) {
+      if (is_here(domain)) known[domain - first_].push_back(number);
     }
   }
+  const auto overlaps = overlaps_by_domain();
   in_each([&](Domain<Motion>& domain) {
-    domain.exchange({}, known[domain.index()], store_, overlaps_);
+    const std::size_t i = domain.index() - first_;
+    domain.exchange({}, known[i], store_, overlaps[i]);
     domain.begin_window();
   });
 }
@@ -97,69 +84,78 @@ void Domains<Motion>::make(double now) {
 template <class Motion>
 void Domains<Motion>::run(double until) {
   in_each([&](Domain<Motion>& domain) { domain.run(until); });
-  share_step();
-  if (went_through()) {
+  const std::vector<double> nearest = share_step();
+  // If one of another process has not gone through, what is found out here is of no use, and does no harm.
+  if (std::all_of(domains_.begin(), domains_.end(), [](const auto& d) { return d->report().went_through(); }))
+    compare();
+  outcome_ = {};
+  outcome_.copies_made = copies_made_;
+  for (const auto& domain : domains_) {
+    outcome_.add(domain->report(), halo_used(*domain, nearest[domain->index() - first_]));
+  }
+  outcome_.combine(team_);
+}
+
+/// Each process learns the motions that others have found for bodies that it knows. Returns, for each domain of this
+/// one, how near to its cell bodies have come that it does not know.
+template <class Motion>
+std::vector<double> Domains<Motion>::share_step() {
+  std::vector<double> nearest(domains_.size(), never);
+  const auto come_near = [&](std::size_t domain, double distance) {
+    double& of_domain = nearest[domain - first_];
+    of_domain = std::min(of_domain, distance);
+  };
+  std::map<std::size_t, StepNews<Motion>> news;
+  for (const auto& domain : domains_) {
+    for (const NeighbourDomain& other : domain->neighbours()) {
+      if (other.nearest == never) continue;
+      if (is_here(other.domain)) {
+        come_near(other.domain, other.nearest);
+      } else {
+        news[process_of(other.domain)].nearest.push_back({other.domain, other.nearest});
+      }
+    }
+    if (team_.count() == 1 || !domain->report().divisible) continue;
+    const auto index = static_cast<DomainIndex>(domain->index());
+    for (const Change& change : domain->fresh()) {
+      if (division_->owner[change.number] != index) continue;
+      each_process(division_->knowers(change.number), [&](std::size_t process) { news[process].add(index, change); });
+    }
+  }
+  Letters letters;
+  for (auto& [process, of_process] : news) letters.to(process)(of_process);
+  team_.exchange(std::move(letters), [&](std::size_t, auto& reader) {
+    StepNews<Motion> heard;
+    reader(heard);
+    for (const NearestStranger& near : heard.nearest) come_near(near.domain, near.distance);
+    for (std::size_t i = 0; i < heard.domains.size(); ++i) heard_[heard.domains[i]].append(heard.changes[i]);
+  });
+  return nearest;
+}
+
+template <class Motion>
+void Domains<Motion>::compare() {
+  in_each([&](Domain<Motion>& domain) {
     std::vector<std::span<const Change>> changes;
-    for (const auto& heard : heard_) changes.push_back(heard.all());
-    for (const auto& domain : domains_) changes[domain->index()] = domain->changes();
-    in_each([&](Domain<Motion>& domain) { domain.compare(changes); });
-  }
-  share_reports();
-}
-
-/// Each process learns whether the step has gone through everywhere, and the motions that others have found for bodies
-/// that it knows.
-template <class Motion>
-void Domains<Motion>::share_step() {
-  for (const auto& domain : domains_) reports_[domain->index()] = domain->report();
-  team_.exchange(
-      [&](std::size_t process, auto& writer) {
-        for (const auto& domain : domains_) {
-          std::vector<Change> changes;
-          bool divisible = domain->report().divisible, stayed = domain->report().stayed;
-          for (const Change& change : domain->fresh()) {
-            if (divisible && division_->owner[change.number] == domain->index() &&
-                (division_->known[change.number] & of_process_[process]) != 0)
-              changes.push_back(change);
-          }
-          writer(divisible, stayed, changes);
-        }
-      },
-      [&](std::size_t process, auto& reader) {
-        for (std::size_t i = 0; i < size(); ++i) {
-          if (process_of(i) != process) continue;
-          std::vector<Change> changes;
-          reader(reports_[i].divisible, reports_[i].stayed, changes);
-          heard_[i].append(changes);
-        }
-      });
+    for (const NeighbourDomain& other : domain.neighbours()) changes.push_back(changes_of(other.domain));
+    domain.compare(changes);
+  });
 }
 
 template <class Motion>
-void Domains<Motion>::share_reports() {
-  for (const auto& domain : domains_) reports_[domain->index()] = domain->report();
-  team_.exchange(
-      [&](std::size_t, auto& writer) {
-        for (const auto& domain : domains_) writer(reports_[domain->index()]);
-      },
-      [&](std::size_t process, auto& reader) {
-        for (std::size_t i = 0; i < size(); ++i) {
-          if (process_of(i) == process) reader(reports_[i]);
-        }
-      });
+std::span<const MotionChange<Motion>> Domains<Motion>::changes_of(DomainIndex domain) const {
+  if (is_here(domain)) return domains_[domain - first_]->changes();
+  const auto heard = heard_.find(domain);
+  return heard == heard_.end() ? std::span<const Change>() : heard->second.all();
 }
 
+/// How much of the halo a domain has needed: more than 1 if the step does not hold in it.
 template <class Motion>
-double Domains<Motion>::halo_used() const {
-  double used = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    double nearest = reports_[i].nearest_wrong;
-    for (const DomainReport& other : reports_) nearest = std::min(nearest, other.nearest[i]);
-    const double reach = reports_[i].overshoot + 2 * division_->greatest_radius + division_->margin();
-    if (!(reach <= division_->halo && nearest > reach)) return 2;
-    used = std::max(used, 1 - (nearest - reach) / division_->room());
-  }
-  return used;
+double Domains<Motion>::halo_used(const Domain<Motion>& domain, double nearest_stranger) const {
+  const double nearest = std::min(domain.report().nearest_wrong, nearest_stranger);
+  const double reach = domain.report().overshoot + 2 * division_->greatest_radius + division_->margin();
+  if (!(reach <= division_->halo && nearest > reach)) return 2;
+  return std::max(0.0, 1 - (nearest - reach) / division_->room());
 }
 
 template <class Motion>
@@ -175,6 +171,7 @@ void Domains<Motion>::commit() {
     domain->commit_meetings(store_);
     if (team_.count() > 1) domain->append_changed(changed_);
   }
+  copies_made_ = 0;
 }
 
 /// Those of bodies at rest are told by all that know both, and others by several processes.
@@ -187,9 +184,25 @@ void Domains<Motion>::sort_overlaps() {
                   overlaps_.end());
 }
 
+/// For each domain of this process the pairs of which it knows both.
+template <class Motion>
+std::vector<std::vector<typename Domains<Motion>::Overlap>> Domains<Motion>::overlaps_by_domain() const {
+  std::vector<std::vector<Overlap>> by_domain(domains_.size());
+  std::vector<DomainIndex> both;
+  for (const Overlap& overlap : overlaps_) {
+    both.clear();
+    std::ranges::set_intersection(division_->knowers(overlap.a), division_->knowers(overlap.b),
+                                  std::back_inserter(both));
+    for (const DomainIndex domain : both) {
+      if (is_here(domain)) by_domain[domain - first_].push_back(overlap);
+    }
+  }
+  return by_domain;
+}
+
 template <class Motion>
 StepEvents Domains<Motion>::take_step() {
-  StepEvents events{.domains = size(), .first = domains_.empty() ? 0 : domains_.front()->index()};
+  StepEvents events{.domains = size(), .first = domains_.empty() ? 0 : first_};
   for (const auto& domain : domains_) events.logs.push_back(domain->take_events());
   return events;
 }
@@ -197,140 +210,160 @@ StepEvents Domains<Motion>::take_step() {
 template <class Motion>
 EventMerge Domains<Motion>::take_events() {
   if (!logs_) return {};
-  std::vector<StepEvents> events(team_.count());
-  events[team_.rank()] = take_step();
-  team_.exchange(
-      [&](std::size_t process, auto& writer) {
-        if (process == 0) writer(events[team_.rank()].logs);
-      },
-      [&](std::size_t process, auto& reader) {
-        if (team_.rank() == 0) reader(events[process].logs);
-      });
-  if (team_.rank() != 0) return {};
-  std::size_t domain = 0;
-  for (StepEvents& of_process : events) {
-    of_process.domains = size(), of_process.first = domain;
-    domain += of_process.logs.size();
+  StepEvents mine = take_step();
+  if (team_.rank() != 0) {
+    Letters letters;
+    const bool any = std::any_of(mine.logs.begin(), mine.logs.end(), [](const auto& log) { return !log.empty(); });
+    if (any) letters.to(0)(mine.first, mine.logs);
+    team_.exchange(std::move(letters), [](std::size_t, auto&) {});
+    return {};
   }
-  return merged(std::move(events));
+  mine.logs.resize(size());  // The domains of process 0 are the first.
+  team_.exchange({}, [&](std::size_t, auto& reader) {
+    StepEvents heard;
+    reader(heard.first, heard.logs);
+    std::ranges::move(heard.logs, mine.logs.begin() + static_cast<std::ptrdiff_t>(heard.first));
+  });
+  return EventMerge(std::move(mine.logs));
 }
 
 // From window to window.
 
 template <class Motion>
 void Domains<Motion>::end_window(double now) {
-  std::vector<BodyMove> moves;
-  for (const auto& domain : domains_) domain->append_moves(store_, now, moves);
-  const std::size_t moves_here = moves.size();
-  std::vector<BodyMove> others;
-  team_.exchange([&](std::size_t, auto& writer) { writer(moves); },
-                 [&](std::size_t, auto& reader) {
-                   std::vector<BodyMove> of_process;
-                   reader(of_process);
-                   others.insert(others.end(), of_process.begin(), of_process.end());
-                 });
-  moves.insert(moves.end(), others.begin(), others.end());
-
-  std::vector<std::vector<BodySlot>> bodies(team_.count());
-  const auto is_known = [&](std::size_t process, DomainMask known) { return (known & of_process_[process]) != 0; };
-  for (std::size_t i = 0; i < moves_here; ++i) {
-    const DomainMask before = division_->known[moves[i].number];
-    for (std::size_t process = 0; process < bodies.size(); ++process) {
-      if (!is_known(process, before) && is_known(process, moves[i].known)) bodies[process].push_back(moves[i].number);
-    }
-  }
-  note_moves(moves);
-  for (const BodySlot number : changed_) {
-    for (std::size_t process = 0; process < bodies.size(); ++process) {
-      if (is_known(process, division_->known[number])) bodies[process].push_back(number);
-    }
-  }
+  in_each([&](Domain<Motion>& domain) { domain.find_moves(store_, now); });
+  go_.assign(domains_.size(), {}), come_.assign(domains_.size(), {});
+  NewsByProcess news;
+  add_moves(news);
+  if (team_.count() > 1) add_progress(news);
   changed_.clear();
-  tell(bodies, [&](std::size_t process, const Overlap& overlap) {
-    return is_known(process, division_->known[overlap.a] & division_->known[overlap.b]);
+  Letters letters;
+  for (auto& [process, of_process] : news) letters.to(process)(of_process);
+  team_.exchange(std::move(letters), [&](std::size_t, auto& reader) {
+    WindowNews<Motion> heard;
+    reader(heard);
+    hear(heard);
   });
+  sort_overlaps();
 }
 
-/// Notes who owns and knows bodies from now on, and what domains of this process are to let go and take in: copies that
-/// are wrong, both.
+/// The moves of bodies owned here: to those that knew them or are to know them, and to those that did not know them,
+/// all that is known of them too.
 template <class Motion>
-void Domains<Motion>::note_moves(const std::vector<BodyMove>& moves) {
-  go_.assign(size(), {}), come_.assign(size(), {});
-  copies_made_ = 0;
+void Domains<Motion>::add_moves(NewsByProcess& news) {
+  std::vector<DomainIndex> concerned, come;
   for (const auto& domain : domains_) {
-    const auto wrong = domain->wrong();
-    go_[domain->index()].assign(wrong.begin(), wrong.end());
-    come_[domain->index()].assign(wrong.begin(), wrong.end());
+    domain->moves().each([&](BodySlot number, DomainIndex owner, std::span<const DomainIndex> knowers) {
+      const auto before = division_->knowers(number);
+      concerned.clear(), come.clear();
+      std::ranges::set_union(before, knowers, std::back_inserter(concerned));
+      std::ranges::set_difference(knowers, before, std::back_inserter(come));
+      copies_made_ += come.size();
+      const auto knew = [&](std::size_t process) {
+        return std::ranges::any_of(before, [&](DomainIndex domain) { return process_of(domain) == process; });
+      };
+      each_process(concerned, [&](std::size_t process) { news[process].moves.add(number, owner, knowers); });
+      each_process(come, [&](std::size_t process) {
+        if (!knew(process)) news[process].bodies.push_back(news_of(number));
+      });
+      note_move(number, owner, knowers);
+    });
   }
-  for (const BodyMove& move : moves) {
-    const DomainMask before = division_->known[move.number];
-    copies_made_ += static_cast<std::size_t>(std::popcount(move.known & ~before));
-    for (const auto& domain : domains_) {
-      const std::size_t i = domain->index();
-      const bool knew = (before & domain_bit(i)) != 0, knows = (move.known & domain_bit(i)) != 0;
-      if (knew == knows) continue;
-      if (knows) {
-        come_[i].push_back(move.number);
-      } else if (std::binary_search(domain->wrong().begin(), domain->wrong().end(), move.number)) {
-        std::erase(come_[i], move.number);
-      } else {
-        go_[i].push_back(move.number);
-      }
-    }
-    division_->owner[move.number] = move.owner;
-    division_->known[move.number] = move.known;
+}
+
+/// What has changed of bodies owned here, and which pairs overlap: to those that are to know of them.
+template <class Motion>
+void Domains<Motion>::add_progress(NewsByProcess& news) {
+  std::map<std::size_t, std::vector<BodySlot>> told;
+  for (const auto& [process, of_process] : news) {
+    for (const BodyNews<Motion>& body : of_process.bodies) told[process].push_back(body.number);
+    std::sort(told[process].begin(), told[process].end());
+  }
+  std::sort(changed_.begin(), changed_.end());
+  changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+  for (const BodySlot number : changed_) {
+    each_process(division_->knowers(number), [&](std::size_t process) {
+      if (!std::ranges::binary_search(told[process], number)) news[process].bodies.push_back(news_of(number));
+    });
+  }
+  for (const Overlap& overlap : overlaps_) {
+    // To all that know one of the two: this process may not know who is to know the other.
+    const bool first_moves = division_->owner[overlap.a] != Division::nobody;
+    each_process(division_->knowers(first_moves ? overlap.a : overlap.b),
+                 [&](std::size_t process) { news[process].overlaps.push_back(overlap); });
   }
 }
 
 template <class Motion>
-std::size_t Domains<Motion>::exchange() {
-  for (auto& heard : heard_) heard.clear();
+BodyNews<Motion> Domains<Motion>::news_of(BodySlot number) const {
+  return {number, store_.bodies().progress(number), store_.has_met(number)};
+}
+
+/// Notes who owns and knows a body from now on, and which domains of this process are to let it go and to take it in.
+template <class Motion>
+void Domains<Motion>::note_move(BodySlot number, DomainIndex owner, std::span<const DomainIndex> knowers) {
+  std::vector<DomainIndex> differ;
+  const auto before = division_->knowers(number);
+  std::ranges::set_difference(before, knowers, std::back_inserter(differ));
+  for (const DomainIndex domain : differ) {
+    if (is_here(domain)) go_[domain - first_].push_back(number);
+  }
+  differ.clear();
+  std::ranges::set_difference(knowers, before, std::back_inserter(differ));
+  for (const DomainIndex domain : differ) {
+    if (is_here(domain)) come_[domain - first_].push_back(number);
+  }
+  division_->owner[number] = owner;
+  division_->known[number] = division_->sets.number_of(knowers);
+}
+
+template <class Motion>
+void Domains<Motion>::hear(const WindowNews<Motion>& news) {
+  news.moves.each([&](BodySlot number, DomainIndex owner, std::span<const DomainIndex> knowers) {
+    note_move(number, owner, knowers);
+  });
+  for (const BodyNews<Motion>& body : news.bodies) {
+    store_.go_on_from(body.number, body.progress);
+    if (body.met) store_.note_meeting(body.number);
+  }
+  overlaps_.insert(overlaps_.end(), news.overlaps.begin(), news.overlaps.end());
+}
+
+template <class Motion>
+void Domains<Motion>::exchange() {
+  heard_.clear();
+  const auto overlaps = overlaps_by_domain();
   in_each([&](Domain<Motion>& domain) {
-    auto& come = come_[domain.index()];
-    std::sort(come.begin(), come.end());
-    domain.exchange(go_[domain.index()], come, store_, overlaps_);
+    const std::size_t i = domain.index() - first_;
+    std::sort(go_[i].begin(), go_[i].end());
+    // Copies that are wrong go and come again, unless they go anyway.
+    std::vector<BodySlot> go;
+    std::ranges::set_difference(domain.wrong(), go_[i], std::back_inserter(come_[i]));
+    std::ranges::set_union(domain.wrong(), go_[i], std::back_inserter(go));
+    std::sort(come_[i].begin(), come_[i].end());
+    domain.exchange(go, come_[i], store_, overlaps[i]);
     domain.begin_window();
   });
-  return copies_made_;
 }
 
 template <class Motion>
 void Domains<Motion>::share_all() {
-  std::vector<std::vector<BodySlot>> bodies(team_.count());
-  if (team_.count() > 1) {
-    std::vector<BodySlot> here;
-    for (BodySlot number = 0; number < division_->owner.size(); ++number) {
-      const std::uint8_t owner = division_->owner[number];
-      if (owner != Division::nobody && is_here(owner)) here.push_back(number);
-    }
-    bodies.assign(team_.count(), here);
+  if (team_.count() == 1) return;
+  WindowNews<Motion> news;
+  news.overlaps = overlaps_;
+  for (BodySlot number = 0; number < division_->owner.size(); ++number) {
+    const DomainIndex owner = division_->owner[number];
+    if (owner != Division::nobody && is_here(owner)) news.bodies.push_back(news_of(number));
   }
-  tell(bodies, [](std::size_t, const Overlap&) { return true; });
-}
-
-template <class Motion>
-template <class IsToKnow>
-void Domains<Motion>::tell(const std::vector<std::vector<BodySlot>>& bodies, const IsToKnow& is_to_know) {
-  team_.exchange(
-      [&](std::size_t process, auto& writer) {
-        std::vector<News> news;
-        for (const BodySlot number : bodies[process])
-          news.push_back({number, store_.bodies().progress(number), store_.has_met(number)});
-        std::vector<Overlap> overlaps;
-        std::copy_if(overlaps_.begin(), overlaps_.end(), std::back_inserter(overlaps),
-                     [&](const Overlap& overlap) { return is_to_know(process, overlap); });
-        writer(news, overlaps);
-      },
-      [&](std::size_t, auto& reader) {
-        std::vector<News> news;
-        std::vector<Overlap> overlaps;
-        reader(news, overlaps);
-        for (const News& body : news) {
-          store_.go_on_from(body.number, body.progress);
-          if (body.met) store_.note_meeting(body.number);
-        }
-        overlaps_.insert(overlaps_.end(), overlaps.begin(), overlaps.end());
-      });
+  Letters letters;
+  for (std::size_t process = 0; process < team_.count(); ++process) {
+    if (process != team_.rank()) letters.to(process)(news);
+  }
+  team_.exchange(std::move(letters), [&](std::size_t, auto& reader) {
+    WindowNews<Motion> heard;
+    reader(heard);
+    hear(heard);
+  });
   sort_overlaps();
 }
 

@@ -3,13 +3,18 @@
 
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/domain.hpp"
+#include "collision/parallel/news.hpp"
 #include "collision/parallel/processes.hpp"
 #include "collision/parallel/step_events.hpp"
+#include "collision/parallel/step_outcome.hpp"
 #include "collision/world.hpp"
 #include "collision/world/engine.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace kds::collision {
@@ -19,8 +24,9 @@ namespace kds::collision {
 ///
 /// Where several processes run the scene, each runs some of the domains and has a store of its own, in which the bodies
 /// that its domains own are right; those that they know become right whenever a window ends (end_window()), and all
-/// when the processes share all (share_all()). All processes make the same calls; what they decide by, the reports of
-/// all domains, is the same in all.
+/// when the processes share all (share_all()). Of the division it has right who owns and knows the bodies that its
+/// domains know. All processes make the same calls; what they decide by, the outcome of a step, is the same in all.
+/// Processes write only to those whose domains know bodies of theirs, or have cells which these may come near.
 template <class Motion>
 class Domains {
  public:
@@ -47,12 +53,8 @@ class Domains {
   void make(double now);
   /// Runs a step of a window. Throws what a domain throws; other processes then wait for this one in vain.
   void run(double until);
-  /// What has come of it, of all domains.
-  const std::vector<DomainReport>& reports() const { return reports_; }
-  bool went_through() const;
-  bool is_divisible() const;
-  /// How much of the halo was needed: more than 1 if the window does not hold.
-  double halo_used() const;
+  /// What has come of it.
+  const StepOutcome& outcome() const { return outcome_; }
   /// The step holds: the store follows.
   void commit();
   /// The events of the step that was committed, of the domains of this process.
@@ -63,8 +65,8 @@ class Domains {
   /// After the last step of a window that was committed, at `now`: finds out who is to own and to know which bodies,
   /// and tells those who are to know them. Then exchange() or make().
   void end_window(double now);
-  /// The domains take in and let go what they are to, and begin a new window. Returns how many copies have been made.
-  std::size_t exchange();
+  /// The domains take in and let go what they are to, and begin a new window.
+  void exchange();
   /// Makes all bodies right in the stores of all processes, and all overlaps known.
   void share_all();
 
@@ -73,19 +75,25 @@ class Domains {
 
  private:
   using Change = MotionChange<Motion>;
-  /// What one process tells another of bodies.
-  struct News;
+  using NewsByProcess = std::map<std::size_t, WindowNews<Motion>>;
 
   template <class Work>
   void in_each(const Work& work);
   std::size_t process_of(std::size_t domain) const { return domain * team_.count() / size(); }
   bool is_here(std::size_t domain) const { return process_of(domain) == team_.rank(); }
-  void share_step();
-  void share_reports();
-  void note_moves(const std::vector<BodyMove>& moves);
-  /// Tells each process of bodies that are right here, by their numbers, and of the overlaps of which it is to know.
-  template <class IsToKnow>
-  void tell(const std::vector<std::vector<BodySlot>>& bodies, const IsToKnow& is_to_know);
+  /// Calls take(process) for each other process that runs some of these domains, which must be ascending.
+  template <class Take>
+  void each_process(std::span<const DomainIndex> domains, const Take& take) const;
+  std::vector<double> share_step();
+  void compare();
+  double halo_used(const Domain<Motion>& domain, double nearest_stranger) const;
+  std::span<const Change> changes_of(DomainIndex domain) const;
+  BodyNews<Motion> news_of(BodySlot number) const;
+  void add_moves(NewsByProcess& news);
+  void add_progress(NewsByProcess& news);
+  void note_move(BodySlot number, DomainIndex owner, std::span<const DomainIndex> knowers);
+  void hear(const WindowNews<Motion>& news);
+  std::vector<std::vector<Overlap>> overlaps_by_domain() const;
   void sort_overlaps();
   void drop();
 
@@ -95,13 +103,14 @@ class Domains {
   Team& team_;
   bool logs_ = false;
   std::unique_ptr<Division> division_;
-  std::vector<DomainMask> of_process_;                    ///< by rank: the domains that it runs
-  std::vector<std::unique_ptr<Domain<Motion>>> domains_;  ///< of this process
-  std::vector<DomainReport> reports_;                     ///< of all
-  std::vector<MotionChanges<Motion>> heard_;              ///< by domain: what other processes have told of their bodies
-  std::vector<BodySlot> changed_;                         ///< owned here, since others were told of them
-  std::vector<std::vector<BodySlot>> go_, come_;  ///< by domain of this process: numbers, from one window to the next
-  std::size_t copies_made_ = 0;
+  std::size_t first_ = 0;                                 ///< the first domain of this process
+  std::vector<std::unique_ptr<Domain<Motion>>> domains_;  ///< of this process, by index
+  StepOutcome outcome_;
+  std::map<DomainIndex, MotionChanges<Motion>> heard_;  ///< what other processes have told of bodies of their domains
+  std::vector<BodySlot> changed_;                       ///< owned here, since others were told of them
+  /// By domain of this process: numbers of those that are to go and come, but for copies that are wrong.
+  std::vector<std::vector<BodySlot>> go_, come_;
+  std::uint64_t copies_made_ = 0;  ///< of bodies owned here, since the last step that held
   /// Pairs that overlap, by numbers: where a window begins all of which a domain of this process knows both bodies.
   std::vector<Overlap> overlaps_;
   WorldCounters work_;  ///< of domains that there were

@@ -1,6 +1,8 @@
 // How a scene is divided among worlds.
 #pragma once
 
+#include "collision/parallel/domain_sets.hpp"
+
 #include <cstddef>
 #include <cstdint>
 
@@ -26,8 +28,6 @@ struct ParallelOptions {
   StepListener* steps = nullptr;
 };
 
-inline constexpr std::size_t most_domains = 64;
-
 /// What a ParallelWorld has done so far. Only the first four are of the scene; the others say how it was run.
 struct ParallelCounters {
   std::uint64_t contacts = 0;
@@ -44,7 +44,7 @@ struct ParallelCounters {
   std::uint64_t events_computed = 0;    ///< in steps that held, by all domains, those of copies included
   std::uint64_t events_of_busiest = 0;  ///< the same, by the domain that computed most in a step
   std::uint64_t copies_corrected = 0;
-  std::uint64_t copies_made = 0;
+  std::uint64_t copies_made = 0;  ///< of bodies that came near a domain, in windows that were followed by a step
 };
 
 /// Throws std::invalid_argument, naming the option, for one that is out of range.

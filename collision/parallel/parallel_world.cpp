@@ -20,7 +20,8 @@ namespace kds::collision {
 
 void validate(const ParallelOptions& options) {
   const auto fail = [](const char* what) { throw std::invalid_argument(std::string("ParallelOptions.") + what); };
-  if (options.domains > most_domains) fail("domains: must be at most 64");
+  if (options.domains > most_domains) fail("domains: must be at most 65535");
+  static_assert(most_domains == 65535);
   if (!(options.halo > 0 && std::isfinite(options.halo))) fail("halo: must be > 0 and finite");
   if (!(options.longest_window > 0)) fail("longest_window: must be > 0");
 }
@@ -114,10 +115,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
  private:
   bool records(const ParallelListener* listener) {
-    if (team_.of_first(parallel_.steps != nullptr) != (parallel_.steps != nullptr)) {
+    const bool apart = parallel_.steps != nullptr;
+    if ((team_.of_first(apart ? 1 : 0) != 0) != apart) {
       throw std::invalid_argument("ParallelOptions.steps: either all processes have one or none");
     }
-    return team_.of_first(listener != nullptr) || parallel_.steps;
+    return team_.of_first(listener ? 1 : 0) != 0 || apart;
   }
 
   /// Threads of all processes.
@@ -204,8 +206,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       if (team_.count() == 1) gather();  // as it was at now_
       throw;
     }
-    const double used = domains_.went_through() ? domains_.halo_used() : 2;
-    if (used <= 1) {
+    if (domains_.outcome().holds()) {
+      const double used = domains_.outcome().halo_used;
       commit(end);
       stretch_ = 0;
       const double elapsed = now_ - window_begun_;
@@ -216,7 +218,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     }
     ++counters_.windows_failed;
     constexpr std::size_t most_failures = 6;
-    if (!domains_.is_divisible() || length_.failures() >= most_failures) return run_undivided(t);
+    if (!domains_.outcome().divisible || length_.failures() >= most_failures) return run_undivided(t);
     length_.failed();
     domains_.end_window(now_);
     begin_window();
@@ -234,15 +236,12 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   void commit(double end) {
     if (std::exchange(unstarted_, false)) store_.note_entered();
     domains_.commit();
-    std::uint64_t most = 0;
-    for (const DomainReport& report : domains_.reports()) {
-      counters_.overlaps += report.told[0], counters_.wall_contacts += report.told[1];
-      counters_.contacts += report.told[2], counters_.separations += report.told[3];
-      counters_.events_computed += report.computed;
-      counters_.bodies_owned += report.owned, counters_.bodies_known += report.known;
-      most = std::max(most, report.computed);
-    }
-    counters_.events_of_busiest += most;
+    const StepOutcome& outcome = domains_.outcome();
+    counters_.overlaps += outcome.told[0], counters_.wall_contacts += outcome.told[1];
+    counters_.contacts += outcome.told[2], counters_.separations += outcome.told[3];
+    counters_.events_computed += outcome.computed, counters_.events_of_busiest += outcome.most_computed;
+    counters_.bodies_owned += outcome.owned, counters_.bodies_known += outcome.known;
+    counters_.copies_made += outcome.copies_made;
     ++counters_.steps;
     now_ = end;
     if (parallel_.steps) {
@@ -254,10 +253,10 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   void end_window() {
     if (++windows_since_division_ % 16 == 0 && unbalanced()) return divide_anew();
-    for (const DomainReport& report : domains_.reports()) counters_.copies_corrected += report.wrong;
+    counters_.copies_corrected += domains_.outcome().wrong;
     domains_.end_window(now_);
     begin_window();
-    counters_.copies_made += domains_.exchange();
+    domains_.exchange();
   }
 
   void divide_anew() {
@@ -272,9 +271,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   }
 
   bool unbalanced() const {
-    std::uint64_t most = 0, all = 0;
-    for (const DomainReport& report : domains_.reports()) most = std::max(most, report.owned), all += report.owned;
-    return most * domains_.reports().size() > all + all / 2;
+    const std::uint64_t most = domains_.outcome().most_owned, all = domains_.outcome().owned;
+    return most * domains_.size() > all + all / 2;
   }
 
   void tell_events() {

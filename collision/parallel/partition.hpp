@@ -34,7 +34,7 @@ inline double inside(const Eigen::Vector3d& place, const StaticBox& cell) {
 
 /// Cells that together are all of space, and of which each place is in one: found by halving, along the longest axis,
 /// with as many places on either side as the cells there are to have. Cost: O(n log cells) to make; O(log cells) to
-/// find the cell of a place.
+/// find the cell of a place; for those near a place, that and their number.
 class Partition {
  public:
   /// Precondition: at least one place, all finite; cells > 0. There are fewer cells where places coincide.
@@ -53,6 +53,17 @@ class Partition {
     return nodes_[node].cell;
   }
 
+  /// Calls take(cell) for each cell of which a place or a box is not farther outside() than `distance`, in ascending
+  /// order.
+  template <class Take>
+  void each_within(const Eigen::Vector3d& place, double distance, const Take& take) const {
+    each_within(StaticBox{place.array(), place.array()}, distance, take);
+  }
+  template <class Take>
+  void each_within(const StaticBox& box, double distance, const Take& take) const {
+    each_within(box, distance, take, 0);
+  }
+
  private:
   struct Node {
     int axis = -1;  ///< of a leaf
@@ -60,6 +71,15 @@ class Partition {
     std::size_t next[2]{};  ///< below `at`, and from it on
     std::size_t cell = 0;   ///< of a leaf
   };
+
+  /// Each finite side of a cell is a cut above it, so all are compared on the way down.
+  template <class Take>
+  void each_within(const StaticBox& box, double distance, const Take& take, std::size_t at) const {
+    const Node& node = nodes_[at];
+    if (node.axis < 0) return take(node.cell);
+    if (box.min[node.axis] - node.at <= distance) each_within(box, distance, take, node.next[0]);
+    if (node.at - box.max[node.axis] <= distance) each_within(box, distance, take, node.next[1]);
+  }
 
   std::size_t cut(Eigen::Vector3d* first, Eigen::Vector3d* last, std::size_t cells, const StaticBox& cell) {
     const std::size_t node = nodes_.size();

@@ -3,6 +3,7 @@
 
 #include "collision/body_id.hpp"
 #include "collision/narrow_phase/contact.hpp"
+#include "collision/parallel/domain_sets.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +19,8 @@ namespace kds::collision {
 struct DomainEvent {
   /// In the order in which events of one time are told.
   enum class Kind : std::uint8_t { overlap, wall, contact, separation } kind;
-  static constexpr std::uint8_t nobody = 0xff;
-  std::uint8_t other_owner = nobody;  ///< a domain that has to have this event too; `nobody` if there is none
+  static constexpr DomainIndex nobody = no_domain;
+  DomainIndex other_owner = nobody;  ///< a domain that has to have this event too; `nobody` if there is none
   BodySlot a;
   BodySlot b;  ///< of a wall its number
   Contact contact;

@@ -246,7 +246,7 @@ void check(const Arguments& arguments) {
     throw ArgumentError("--kdop: more than 6 is for --broad-phase kinetic-sap alone");
   }
   if (run.broad_phase == "sap" && run.rate == 0) throw ArgumentError("--rate: must be > 0 for the broad phase \"sap\"");
-  if (run.domains > kds::collision::most_domains) throw ArgumentError("--domains: at most 64");
+  if (run.domains > kds::collision::most_domains) throw ArgumentError("--domains: at most 65535");
   const bool pictures = !arguments.view.empty() || !arguments.gltf.empty();
   if (run.domains != 1 && pictures) throw ArgumentError("--domains: there are no pictures of a scene that is divided");
   if (run.domains != 1 && run.pairs)

@@ -16,6 +16,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -24,6 +27,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace kds_collide {
@@ -253,16 +257,21 @@ Failure attempt(const std::string& name, const Arguments& arguments, const Call&
 
 /// That of the first process that has failed.
 Failure first_of(kds::collision::Team& team, Failure failure) {
-  Failure first = failure;
-  std::size_t rank = failure.code == done ? team.count() : team.rank();
-  team.exchange([&](std::size_t, auto& writer) { writer(failure.code, failure.line); },
-                [&](std::size_t process, auto& reader) {
-                  Failure other;
-                  reader(other.code, other.line);
-                  if (other.code != done && process < rank) rank = process, first = other;
-                });
-  if (rank > 0 && rank < team.count()) first.line = "process " + std::to_string(rank) + ": " + first.line;
-  return first;
+  std::array<double, 1> from_the_end{failure.code == done ? 0 : static_cast<double>(team.count() - team.rank())};
+  team.combine({}, from_the_end);
+  if (from_the_end[0] == 0) return failure;
+  const std::size_t first = team.count() - static_cast<std::size_t>(from_the_end[0]);
+  std::array<std::uint64_t, 1> code{team.rank() == first ? static_cast<std::uint64_t>(failure.code) : 0};
+  team.combine(code, {});
+  failure.code = static_cast<int>(code[0]);
+  // Process 0 tells of it.
+  kds::collision::Letters letters;
+  if (team.rank() == first && first > 0) letters.to(0)(failure.line);
+  team.exchange(std::move(letters), [&](std::size_t process, auto& reader) {
+    reader(failure.line);
+    failure.line = "process " + std::to_string(process) + ": " + failure.line;
+  });
+  return failure;
 }
 
 int end_with(const Failure& failure, bool says) {

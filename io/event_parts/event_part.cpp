@@ -140,16 +140,13 @@ std::vector<PartPlace> EventsApart::places() {
     for (std::size_t i = 0; i < places.size(); ++i) all[process + i * team_.count()] = places[i];
   };
   note(team_.rank(), mine);
-  team_.exchange(
-      [&](std::size_t process, auto& writer) {
-        if (process == 0) writer(mine);
-      },
-      [&](std::size_t process, auto& reader) {
-        if (team_.rank() > 0) return;
-        std::vector<PartPlace> places;
-        reader(places);
-        note(process, places);
-      });
+  kds::collision::Letters letters;
+  if (team_.rank() > 0) letters.to(0)(mine);
+  team_.exchange(std::move(letters), [&](std::size_t process, auto& reader) {
+    std::vector<PartPlace> places;
+    reader(places);
+    note(process, places);
+  });
   return all;
 }
 

@@ -4,12 +4,13 @@
 //     bodies
 //                                                    unless given
 //
-// The balls of elastic_gas.hpp. Counts do not depend on the machine: up to 8 domains are run by as many processes,
-// which are threads here and send the messages that processes send; more by one. Times are of this machine: what a
-// contact costs in one world, and what it costs to merge the logs of domains. docs/efficiency.md explains the model.
+// The balls of elastic_gas.hpp. Counts do not depend on the machine: up to 8 domains, and 64 of few balls, are run by
+// as many processes, which are threads here and send the messages that processes send; others by one. Times are of this
+// machine: what a contact costs in one world, and what it costs to merge the logs of domains. docs/efficiency.md
+// explains the model.
 
-#include "collision/parallel/domain.hpp"
 #include "collision/parallel/motion_changes.hpp"
+#include "collision/parallel/news.hpp"
 #include "collision/parallel/parallel_world.hpp"
 #include "collision/parallel/world_events.hpp"
 #include "collision/world.hpp"
@@ -50,11 +51,12 @@ double bytes_of(Values... values) {
 }
 using Motion = World<1>::Motion;
 const double change_bytes = bytes_of(MotionChange<Motion>{});
-const double news_bytes = bytes_of(BodySlot{}, BodyProgress<Motion>{}.motion, BodyProgress<Motion>{}.meetings,
-                                   BodyProgress<Motion>{}.burst_start, false);
-const double report_bytes = bytes_of(DomainReport{});  // of a domain, to each other process
+const double news_bytes = bytes_of(BodyNews<Motion>{});
+const double nearest_bytes = bytes_of(NearestStranger{});  // of a domain, to each that is near it
 const double event_bytes = bytes_of(DomainEvent{});
-constexpr double exchanges_of_step = 3, exchanges_of_window = 2;
+// In a step there is one exchange, which ends with a barrier, and a combination, of sums and of maxima; at the end of a
+// window another exchange.
+constexpr double collectives_of_step = 3, collectives_of_window = 1;
 
 /// The cells of a cube that has been halved again and again, along the longest side.
 std::array<double, 3> cells_along_axes(std::size_t domains) {
@@ -67,32 +69,48 @@ std::array<double, 3> cells_along_axes(std::size_t domains) {
 struct Predicted {
   double known = 1;    ///< bodies known for one owned
   double busiest = 1;  ///< the same, of a domain that has neighbours on as many sides as any has
+  double near = 0;     ///< domains to which another is so near that it writes to them
 };
 Predicted predicted(std::size_t domains, double halo_over_side) {
   Predicted result;
+  double within = 1;  // domains within two halos, itself among them
   for (const double cells : cells_along_axes(domains)) {
+    const double steps = std::min(cells - 1, std::floor(2 * halo_over_side * cells) + 1);
+    within *= 1 + 2 * steps - steps * (steps + 1) / cells;
     const double neighbours = 2 - 2 / cells, most_neighbours = std::min(2.0, cells - 1);
     result.known *= std::min(cells, 1 + neighbours * cells * halo_over_side);
     result.busiest *= std::min(cells, 1 + most_neighbours * cells * halo_over_side);
   }
+  result.near = within - 1;
   return result;
 }
 
-/// Bytes that a process sends in a step, if it runs one domain. `copies`: of its bodies, in other domains; `changes`:
-/// of the motion of a body, in a step; `steps`: of a window.
-double predicted_bytes(std::size_t processes, double copies, double changes, double steps, double events) {
-  const double others = static_cast<double>(processes - 1);
+/// Bytes that a process sends in a step, if it runs one domain. `near`: domains to which it writes; `copies`: of its
+/// bodies, in other domains; `changes`: of the motion of a body, in a step; `steps`: of a window.
+double predicted_bytes(std::size_t processes, double near, double copies, double changes, double steps, double events) {
+  const double p = static_cast<double>(processes);
   const double changed_in_window = 1 - std::exp(-changes * steps);
-  return copies * changes * change_bytes + others * report_bytes + events * event_bytes * others / (others + 1) +
+  return copies * changes * change_bytes + near * nearest_bytes + events * event_bytes * (p - 1) / p +
          copies * changed_in_window * news_bytes / steps;
+}
+
+/// Messages that it sends: to the domains near it; and, if they are sent, of its events.
+double predicted_messages(std::size_t processes, double near, double steps, bool events) {
+  const double p = static_cast<double>(processes);
+  return near * (1 + 1 / steps) + (events ? (p - 1) / p : 0);
 }
 
 struct Counts {
   ParallelCounters of{};
-  double bytes = 0;  ///< sent by all processes
+  double messages = 0, bytes = 0;  ///< sent by all processes
 };
 
-/// Runs a gas in domains, up to 8 of them by a process each.
+/// Whether a process runs each of so many domains: each stores all bodies.
+bool by_processes(std::size_t bodies, std::size_t domains) {
+  return domains <= 8 || (domains == 64 && bodies <= 30'000);
+}
+
+/// Runs a gas in domains.
 Counts run_divided(const ElasticGas& gas, std::size_t domains, double end) {
   Counts counts;
   std::mutex mutex;
@@ -103,9 +121,10 @@ Counts run_divided(const ElasticGas& gas, std::size_t domains, double end) {
     world.advance_to(end);
     const std::scoped_lock lock(mutex);
     counts.of = world.counters();
+    counts.messages += static_cast<double>(world.messages().letters);
     counts.bytes += static_cast<double>(world.messages().bytes);
   };
-  if (domains <= 8) {
+  if (by_processes(gas.bodies.size(), domains)) {
     kds::collision::tests::ThreadProcesses(domains).run([&](Processes& processes) { run(&processes); });
   } else {
     run(nullptr);
@@ -124,10 +143,10 @@ double merge_seconds(std::size_t domains) {
                       Contact{.time = static_cast<double>(i)}};
     const std::size_t domain = random.below(domains), other = random.below(domains);
     const bool shared = other != domain && random.below(8) == 0;
-    if (shared) event.other_owner = static_cast<std::uint8_t>(other);
+    if (shared) event.other_owner = static_cast<DomainIndex>(other);
     logs[domain].push_back(event);
     if (!shared) continue;
-    event.other_owner = static_cast<std::uint8_t>(domain);
+    event.other_owner = static_cast<DomainIndex>(domain);
     logs[other].push_back(event);
   }
   const double begin = thread_seconds();
@@ -170,13 +189,14 @@ Measured measure(std::ofstream& csv, std::size_t bodies, double packing) {
     measured.changes = static_cast<double>(2 * c.contacts + c.wall_contacts) / n / steps;
     measured.steps = steps / static_cast<double>(c.windows);
     const Predicted p = predicted(domains, measured.halo / std::cbrt(n));
-    const double bytes = domains <= 8 ? counts.bytes / k / steps : 0;
+    const double messages_predicted = predicted_messages(domains, p.near, measured.steps, true);
     const double bytes_predicted =
-        predicted_bytes(domains, (p.known - 1) * n / k, measured.changes, measured.steps, events / steps / k);
-    tell(csv, "%zu,%g,%zu,%llu,%.2f,%.3f,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.0f,%.0f\n", bodies, packing, domains,
+        predicted_bytes(domains, p.near, (p.known - 1) * n / k, measured.changes, measured.steps, events / steps / k);
+    tell(csv, "%zu,%g,%zu,%llu,%.2f,%.3f,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.1f,%.1f,%.0f,%.0f\n", bodies, packing, domains,
          static_cast<unsigned long long>(c.windows), measured.steps, measured.contacts,
          static_cast<unsigned long long>(c.windows_failed), known, p.known,
-         ratio(static_cast<double>(c.events_computed), events), efficiency, 1 / p.busiest, bytes, bytes_predicted);
+         ratio(static_cast<double>(c.events_computed), events), efficiency, 1 / p.busiest, counts.messages / k / steps,
+         messages_predicted, counts.bytes / k / steps, bytes_predicted);
   }
   return measured;
 }
@@ -186,18 +206,23 @@ constexpr double message_seconds = 1e-6, bytes_a_second = 1e10;
 
 void predict(std::ofstream& csv, double packing, const Measured& from, double merge) {
   for (const double n : {1e6, 1e7, 1e8, 1e9}) {
-    for (const std::size_t processes : {8, 64, 1024}) {
+    for (const std::size_t processes : {8, 64, 1024, 16384}) {
       const double p = static_cast<double>(processes), own = n / p;
+      if (own < 900) continue;  // Most bodies would be known to all domains around.
       const Predicted counts = predicted(processes, from.halo / std::cbrt(n));
       const double events = own * from.contacts;
-      const double bytes = predicted_bytes(processes, (counts.known - 1) * own, from.changes, from.steps, 0);
-      const double messages = (p - 1) * (exchanges_of_step + exchanges_of_window / from.steps) * message_seconds;
+      const double bytes =
+          predicted_bytes(processes, counts.near, (counts.known - 1) * own, from.changes, from.steps, 0);
+      const double rounds = std::log2(p) * (collectives_of_step + collectives_of_window / from.steps);
+      const double sent = predicted_messages(processes, counts.near, from.steps, false);
+      const double messages = (sent + rounds) * message_seconds;
       const double computed = events * from.contact_seconds * counts.busiest;
       const double step = computed + messages + bytes / bytes_a_second;
       const double log = p * events * merge + (p - 1) * events * event_bytes / bytes_a_second;
       const double alone = p * events * from.contact_seconds;
-      tell(csv, "%g,%g,%zu,%.3f,%.3f,%.3f,%.1f,%.2f\n", packing, n, processes, 1 / counts.busiest, alone / p / step,
-           alone / p / (step + log), bytes / 1e6, (300 * n + 790 * own * counts.busiest) / 1e9);
+      tell(csv, "%g,%g,%zu,%.3f,%.3f,%.3f,%.1f,%.1f,%.5f,%.2f\n", packing, n, processes, 1 / counts.busiest,
+           alone / step, alone / (step + log), sent + rounds, bytes / 1e6, (step - computed) / step,
+           (300 * n + 790 * own * counts.busiest) / 1e9);
     }
   }
 }
@@ -210,7 +235,7 @@ int main(int argc, char** argv) {
     std::ofstream csv = kds::benchmarks::open_csv(folder, "processes.csv");
     tell(csv,
          "bodies,packing,domains,windows,steps_a_window,contacts_a_body_and_step,failed,known_per_owned,predicted,"
-         "computed_per_event,efficiency,predicted,bytes_a_step,predicted\n");
+         "computed_per_event,efficiency,predicted,messages_a_step,predicted,bytes_a_step,predicted\n");
     std::vector<std::size_t> sizes;
     for (int i = 2; i < argc; ++i) sizes.push_back(std::strtoull(argv[i], nullptr, 10));
     if (sizes.empty()) sizes = {30'000, 100'000};
@@ -220,12 +245,14 @@ int main(int argc, char** argv) {
       for (const std::size_t bodies : sizes) measured[i] = measure(csv, bodies, packings[i]);
     }
     const double merge = merge_seconds(64);
-    std::printf("bytes: a change of motion %.0f, news of a body %.0f, a report %.0f, an event %.0f\n", change_bytes,
-                news_bytes, report_bytes, event_bytes);
+    std::printf("bytes: a change of motion %.0f, news of a body %.0f, a distance %.0f, an event %.0f\n", change_bytes,
+                news_bytes, nearest_bytes, event_bytes);
     std::printf("merging 64 logs: %.0f ns an event; a contact in one world: %.0f ns at 0.25, %.0f ns at 0.01\n",
                 merge * 1e9, measured[0].contact_seconds * 1e9, measured[1].contact_seconds * 1e9);
     std::ofstream table = kds::benchmarks::open_csv(folder, "processes_predicted.csv");
-    tell(table, "packing,bodies,processes,efficiency_by_counts,without_log,with_log,MB_a_step,GB_a_process\n");
+    tell(table,
+         "packing,bodies,processes,efficiency_by_counts,without_log,with_log,messages_a_step,MB_a_step,"
+         "share_of_messages,GB_a_process\n");
     for (std::size_t i = 0; i < packings.size(); ++i) predict(table, packings[i], measured[i], merge);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_processes: %s\n", error.what());

@@ -41,7 +41,7 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"scene.json --broad-phase best",
        "kds-collide: --broad-phase: there is no \"best\"; there are auto, grid, kinetic-sap"},
       {"scene.json --broad-phase kinetic-sap --kdop 8", "kds-collide: --kdop: must be 6, 14, 18 or 26"},
-      {"scene.json --domains 65", "kds-collide: --domains: at most 64"},
+      {"scene.json --domains 65536", "kds-collide: --domains: at most 65535"},
       {"scene.json --domains 2 --pairs", "kds-collide: --domains: volumes are not told of in a scene that is divided"},
       {"scene.json --domains 2 --view v.html",
        "kds-collide: --domains: there are no pictures of a scene that is divided"},

@@ -71,15 +71,17 @@ void compare(const Trial<Degree>& trial, const ParallelOptions& parallel, std::s
 }
 
 template <int Degree>
-void compare_seeds(std::uint64_t first, std::uint64_t count, Seen& seen) {
+void compare_seeds(std::uint64_t first, std::uint64_t count, std::size_t least_domains, std::size_t most_domains,
+                   Seen& seen) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const auto one = trial<Degree>(seed);
     Random random(seed + 0x9e3779b97f4a7c15);
     ParallelOptions parallel;
     parallel.threads = 1 + random.below(3);
-    parallel.domains = 2 + random.below(7);
-    parallel.halo = random.between(0.3, 4);
-    if (random.one_in(3)) parallel.longest_window = random.between(0.01, 0.3);
+    parallel.domains = least_domains + random.below(most_domains - least_domains + 1);
+    const bool many = most_domains > 64;
+    parallel.halo = random.between(0.3, many ? 1.5 : 4);
+    if (many || random.one_in(3)) parallel.longest_window = random.between(0.01, 0.3);
     compare(one, parallel, 1 + random.below(4), seen);
   }
 }
@@ -88,12 +90,23 @@ void compare_seeds(std::uint64_t first, std::uint64_t count, Seen& seen) {
 
 TEMPLATE_TEST_CASE_SIG("A world in domains has the events of one world", "[parallel]", ((int Degree), Degree), 1, 2) {
   Seen seen;
-  compare_seeds<Degree>(1, 60, seen);
+  compare_seeds<Degree>(1, 60, 2, 8, seen);
   INFO("events " << seen.events << ", windows " << seen.windows << ", failed " << seen.failed << ", stretches whole "
                  << seen.whole << ", copies corrected " << seen.corrected);
   CHECK(seen.windows > 100);
   CHECK(seen.corrected > 25);
   CHECK(seen.events > 4000);
+}
+
+TEMPLATE_TEST_CASE_SIG("Several hundred domains have the events of one world", "[parallel]", ((int Degree), Degree), 1,
+                       2) {
+  Seen seen;
+  compare_seeds<Degree>(1001, 15, 65, 400, seen);
+  INFO("events " << seen.events << ", windows " << seen.windows << ", failed " << seen.failed << ", stretches whole "
+                 << seen.whole << ", copies corrected " << seen.corrected);
+  CHECK(seen.windows > 30);
+  CHECK(seen.corrected > 25);
+  CHECK(seen.events > 500);
 }
 
 TEST_CASE("Domains: simultaneous contacts by the thousand", "[parallel]") {
@@ -102,6 +115,7 @@ TEST_CASE("Domains: simultaneous contacts by the thousand", "[parallel]") {
     compare(lattice(9, 2), {.threads = 2, .domains = domains, .halo = 1}, 1, seen);
     compare(lattice(8, 1.5), {.threads = 2, .domains = domains, .halo = 1.5}, 3, seen);
   }
+  compare(lattice(5, 2), {.threads = 2, .domains = 100, .halo = 0.5}, 1, seen);
   CHECK(seen.events > 10000);
 }
 
@@ -137,7 +151,7 @@ TEST_CASE("Domains: bodies larger than a domain, and some that are nowhere near"
   floor.fixed = true;
   one.scene.bodies.push_back(floor);
   Seen seen;
-  for (const std::size_t domains : {2u, 5u}) compare(one, {.threads = 1, .domains = domains, .halo = 1}, 1, seen);
+  for (const std::size_t domains : {2u, 5u, 100u}) compare(one, {.threads = 1, .domains = domains, .halo = 1}, 1, seen);
   CHECK(seen.events > 50);
 }
 
@@ -163,12 +177,12 @@ void edit(World& world, Random& random, double now, std::size_t bodies) {
 }  // namespace
 
 TEST_CASE("Domains: bodies that are added, removed and moved between windows, and worlds saved there", "[parallel]") {
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const auto one = trial<1>(seed);
     EventLog<1> right;
     World<1> world(one.options, &right);
     ParallelLog log;
-    ParallelWorld<1> divided(one.options, {.threads = 2, .domains = 4, .halo = 1}, &log);
+    ParallelWorld<1> divided(one.options, {.threads = 2, .domains = seed <= 12 ? 4u : 200u, .halo = 1}, &log);
     for (const auto& body : one.scene.bodies) world.add_body(body), divided.add_body(body);
     Random first(seed), second(seed);
     for (int k = 1; k <= 4; ++k) {
@@ -244,7 +258,7 @@ TEST_CASE("Domains: what they are asked wrongly is refused", "[parallel]") {
     return std::string();
   };
   const auto world = [](const ParallelOptions& options) { ParallelWorld<1> made(WorldOptions{}, options); };
-  CHECK(message([&] { world({.domains = 65}); }) == "ParallelOptions.domains: must be at most 64");
+  CHECK(message([&] { world({.domains = 65536}); }) == "ParallelOptions.domains: must be at most 65535");
   CHECK(message([&] { world({.halo = 0}); }) == "ParallelOptions.halo: must be > 0 and finite");
   CHECK(message([&] { world({.longest_window = -1}); }) == "ParallelOptions.longest_window: must be > 0");
 

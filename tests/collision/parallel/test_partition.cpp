@@ -62,6 +62,35 @@ TEST_CASE("Partition: each place is in one cell, the one that is named", "[paral
   }
 }
 
+TEST_CASE("Partition: the cells near a place or a box, without a look at all", "[parallel]") {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(seed);
+    const bool coarse = random.one_in(2);
+    const Partition partition(places(random, 1 + random.below(400), coarse), 1 + random.below(200));
+    INFO("seed " << seed << ", " << partition.size() << " cells");
+    for (const Vector3d& place : places(random, 50, coarse)) {
+      // Coarse numbers are often as far away as this.
+      const double distance = coarse ? random.integer(0, 2) : random.between(0, 4);
+      const double extent = coarse ? random.integer(0, 2) : random.between(0, 2);
+      const StaticBox box{place.array() - extent, place.array() + extent};
+      std::vector<std::size_t> near_place, near_box, found_place, found_box;
+      for (std::size_t i = 0; i < partition.size(); ++i) {
+        if (outside(place, partition.cell(i)) <= distance) near_place.push_back(i);
+        if (outside(box, partition.cell(i)) <= distance) near_box.push_back(i);
+      }
+      partition.each_within(place, distance, [&](std::size_t cell) { found_place.push_back(cell); });
+      partition.each_within(box, distance, [&](std::size_t cell) { found_box.push_back(cell); });
+      REQUIRE(found_place == near_place);
+      REQUIRE(found_box == near_box);
+    }
+    // A cell is near itself and those that it touches.
+    const std::size_t cell = random.below(partition.size());
+    bool itself = false;
+    partition.each_within(partition.cell(cell), 0, [&](std::size_t near) { itself = itself || near == cell; });
+    REQUIRE(itself);
+  }
+}
+
 TEST_CASE("Partition: places that coincide are not divided", "[parallel]") {
   CHECK(Partition(std::vector<Vector3d>(10, Vector3d(1, 2, 3)), 8).size() == 1);
   std::vector<Vector3d> two(9, Vector3d::Zero());

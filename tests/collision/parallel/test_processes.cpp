@@ -57,7 +57,7 @@ std::vector<Outcome<Degree>> run(const Trial<Degree>& trial, const ParallelOptio
 }
 
 struct Seen {
-  std::uint64_t events = 0, windows = 0, failed = 0, whole = 0, copies = 0, overlaps = 0;
+  std::uint64_t events = 0, windows = 0, failed = 0, whole = 0, copies = 0, overlaps = 0, bytes = 0;
 };
 
 template <int Degree>
@@ -87,20 +87,27 @@ void compare(const Trial<Degree>& trial, const ParallelOptions& parallel, std::s
   const auto& counters = outcomes[0].counters;
   seen.events += right.events.size(), seen.windows += counters.windows, seen.failed += counters.windows_failed;
   seen.whole += counters.stretches_whole, seen.copies += counters.copies_made, seen.overlaps += counters.overlaps;
-  if (counters.windows > 0) REQUIRE(outcomes[0].messages.bytes > 0);
+  if (counters.windows > 0) REQUIRE(outcomes[0].messages.combinations > 0);
+  for (const auto& process : outcomes) seen.bytes += process.messages.bytes;
 }
 
+/// How random scenes are run.
+struct Ways {
+  std::size_t least_domains = 2, most_domains = 8;
+  std::size_t count = 0;  ///< of processes; 0: 2 to 5
+};
+
 template <int Degree>
-void compare_seeds(std::uint64_t first, std::uint64_t count, Seen& seen) {
+void compare_seeds(std::uint64_t first, std::uint64_t count, const Ways& ways, Seen& seen) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const auto one = tests::trial<Degree>(seed);
     Random random(seed + 0x9e3779b97f4a7c15);
     ParallelOptions parallel;
     parallel.threads = 1 + random.below(2);
-    parallel.domains = 2 + random.below(7);
+    parallel.domains = ways.least_domains + random.below(ways.most_domains - ways.least_domains + 1);
     parallel.halo = random.between(0.3, 4);
     if (random.one_in(2)) parallel.longest_window = random.between(0.01, 0.2);
-    compare(one, parallel, 2 + random.below(4), 1 + random.below(3), seen);
+    compare(one, parallel, ways.count > 0 ? ways.count : 2 + random.below(4), 1 + random.below(3), seen);
   }
 }
 
@@ -108,14 +115,28 @@ void compare_seeds(std::uint64_t first, std::uint64_t count, Seen& seen) {
 
 TEMPLATE_TEST_CASE_SIG("Processes have the events of one world", "[parallel]", ((int Degree), Degree), 1, 2) {
   Seen seen;
-  compare_seeds<Degree>(1, 40, seen);
+  compare_seeds<Degree>(1, 40, {}, seen);
   INFO("events " << seen.events << ", windows " << seen.windows << ", failed " << seen.failed << ", stretches whole "
                  << seen.whole << ", copies " << seen.copies << ", overlaps " << seen.overlaps);
   CHECK(seen.windows > 40);
   CHECK(seen.failed > 3);
   CHECK(seen.copies > 100);
   CHECK(seen.overlaps > 20);
+  CHECK(seen.bytes > 100 * seen.windows);
   CHECK(seen.events > 1500);
+}
+
+TEST_CASE("Processes: some of many domains each, and letters to those near by alone", "[parallel]") {
+  Seen seen;
+  for (const std::size_t count : {3u, 11u}) {
+    compare(tests::lattice(5, 2), {.domains = 80, .halo = 0.5}, count, 2, seen);
+    compare_seeds<1>(2001, 3, {.least_domains = 65, .most_domains = 150, .count = count}, seen);
+    compare_seeds<2>(2001, 3, {.least_domains = 65, .most_domains = 150, .count = count}, seen);
+  }
+  INFO("events " << seen.events << ", windows " << seen.windows << ", failed " << seen.failed << ", stretches whole "
+                 << seen.whole << ", copies " << seen.copies << ", overlaps " << seen.overlaps);
+  CHECK(seen.windows > 100);
+  CHECK(seen.copies > 1000);
 }
 
 namespace {
@@ -146,6 +167,37 @@ TEST_CASE("Processes: bodies that change where a process does not know them, and
   CHECK(seen.events > 1000);
   CHECK(seen.copies > 200);
   CHECK(seen.whole == 0);
+
+  // Each process has two neighbours, and the first and the last one.
+  const auto outcomes = run(gas, {.domains = 12, .halo = 1, .longest_window = 0.1}, 12, 1);
+  for (std::size_t rank = 0; rank < 12; ++rank) {
+    const auto& messages = outcomes[rank].messages;
+    const std::uint64_t neighbours = rank == 0 || rank == 11 ? 1 : 2;
+    INFO("rank " << rank << ": " << messages.letters << " letters in " << messages.exchanges << " exchanges");
+    CHECK(messages.letters > messages.exchanges * neighbours / 4);
+    // One more to process 0, of events; to all when the scene becomes one world, once.
+    CHECK(messages.letters <= messages.exchanges * (neighbours + 1) + 11);
+  }
+}
+
+TEST_CASE("Processes: bodies that come without having changed the motion of any that others know", "[parallel]") {
+  // Some fly through a row of balls at rest: that they come is only told by how near they are.
+  Trial<1> row;
+  for (int i = 0; i < 60; ++i) row.scene.bodies.push_back(tests::ball<1>(0.5, Vector3d(2.5 * i, 0, 0)));
+  for (const double speed : {1.0, 3.0, -2.0}) {
+    row.scene.bodies.push_back(
+        tests::ball<1>(0.5, Vector3d(speed > 0 ? -1 : 149, 0.5, 0.1 * speed), Vector3d(speed, 0, 0)));
+  }
+  row.scene.end_time = 150;
+  row.options.response = Response::none;
+  row.what = "row";
+  Seen seen;
+  for (const std::size_t count : {2u, 3u, 7u}) {
+    compare(row, {.domains = 7, .halo = 0.5}, count, 1, seen);
+    compare(row, {.domains = 7, .halo = 3}, count, 1, seen);
+  }
+  CHECK(seen.events > 1000);
+  CHECK(seen.windows > 30);
 }
 
 TEST_CASE("Processes: bodies that have met elsewhere come to rest when they have gathered", "[parallel]") {
