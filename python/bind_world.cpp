@@ -98,12 +98,13 @@ Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<D
       }
       body.motion.assign(1, to_motion(motions.data() + i * motion_length));
       body.motion.insert(body.motion.end(), later.begin(), later.end());
-      const double* number = numbers.data() + 5 * i;
+      const double* number = numbers.data() + 6 * i;
       body.mass = number[0];
-      body.restitution = number[1];
-      body.friction = number[2];
-      body.tangential_restitution = number[3];
-      body.inertia = tensor ? Inertia(*tensor) : Inertia(number[4]);
+      body.inertia = tensor ? Inertia(*tensor) : Inertia(number[1]);
+      body.restitution = number[2];
+      body.friction = number[3];
+      body.tangential_restitution = number[4];
+      body.rolling_friction = number[5];
       std::tie(body.category, body.collides_with, body.group) =
           std::tuple(masks.data()[3 * i], masks.data()[3 * i + 1], masks.data()[3 * i + 2]);
       body.user_data = user_data.data()[i];

@@ -90,6 +90,7 @@ class WorldOf final : public AnyWorld {
     own.restitution = body.restitution;
     own.friction = body.friction;
     own.tangential_restitution = body.tangential_restitution;
+    own.rolling_friction = body.rolling_friction;
     own.category = body.category;
     own.collides_with = body.collides_with;
     own.group = body.group;

@@ -54,11 +54,15 @@ void validate(const BasicBodyDescription<Motion>& description) {
       fail("friction: must be in [0, " + detail::power_text(largest_magnitude) + "]");
     }
     if (!(std::abs(description.tangential_restitution) <= 1)) fail("tangential_restitution: must be in [-1, 1]");
+    if (!(description.rolling_friction >= 0 && description.rolling_friction <= largest_magnitude)) {
+      fail("rolling_friction: must be in [0, " + detail::power_text(largest_magnitude) + "]");
+    }
   } else {
     const auto refuse = [&](const char* member) { fail(std::string(member) + ": bodies of this world do not turn"); };
     if (description.inertia.moment() != 0 || description.inertia.tensor()) refuse("inertia");
     if (description.friction != 0) refuse("friction");
     if (description.tangential_restitution != 0) refuse("tangential_restitution");
+    if (description.rolling_friction != 0) refuse("rolling_friction");
   }
   switch (description.volume) {
     case BoundingVolume::shape:

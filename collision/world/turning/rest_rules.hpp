@@ -22,6 +22,12 @@ inline constexpr double smooth_slip = 0x1p-10;
 /// In shortest flights: for how long bodies are to be calm, so that they touch wherever they can, and how long it takes
 /// until those that were not in balance are looked at again.
 inline constexpr double calm_flights = 8;
+/// In shortest flights: for how long bodies are to be calm until they come to rest without those that they touch and
+/// that move.
+inline constexpr double part_flights = 64;
+/// Of a group that is not in balance those bodies are left out first of which at least this part of the worst imbalance
+/// is left.
+inline constexpr double unheld_part = 0.5;
 /// In shortest flights: for how long it is remembered where bodies touched.
 inline constexpr double memory = 64;
 

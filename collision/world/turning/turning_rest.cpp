@@ -67,6 +67,25 @@ Motion stopped(const Motion& motion, double t) {
   return result;
 }
 
+/// Where two bodies push each other that touch at a point: there, or with rolling friction as far around it as that.
+std::vector<Vector3d> patch(const Vector3d& x, const Vector3d& normal, double radius) {
+  if (radius == 0) return {x};
+  int least = 0;
+  for (const int d : {1, 2}) {
+    if (std::abs(normal[d]) < std::abs(normal[least])) least = d;
+  }
+  const Vector3d u = certificates::normalized(cross(normal, Vector3d::Unit(least)));
+  const Vector3d v = cross(normal, u);
+  constexpr double height = 0.8660254037844386;  // of an equilateral triangle
+  std::vector<Vector3d> points;
+  for (const double side : {-1.0, 1.0}) {
+    for (const Vector3d& way : {u, Vector3d(0.5 * u + height * v), Vector3d(0.5 * u - height * v)}) {
+      points.push_back(x + side * radius * way);
+    }
+  }
+  return points;
+}
+
 }  // namespace
 
 template <class Motion>
@@ -125,17 +144,120 @@ void TurningRest<Motion>::wake(BodySlot slot) {
   }
 }
 
+/// Only these, each of which rests: what is left rests on.
 template <class Motion>
-void TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
-  if (resting_ == 0 || !(carries(a) || carries(b))) return;
+void TurningRest<Motion>::wake_only(std::span<const BodySlot> slots) {
+  for (const BodySlot slot : slots) {
+    of_[slot].rests = false;
+    of_[slot].since = never;
+    woken_.push_back(slot);
+    erase_all(slot);
+  }
+}
+
+template <class Motion>
+bool TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
+  if (resting_ == 0 || !(carries(a) || carries(b))) return false;
   // What touches it gently is to lie on it, perhaps: until that is known it stays as it is.
   const bool gentle = std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 &&
                       (carries(a) || !bodies_.fixed(a)) && (carries(b) || !bodies_.fixed(b)) &&
                       calm(a, scale({a, b}).acceleration) && calm(b, scale({a, b}).acceleration);
-  if (gentle) return;
+  if (gentle) return false;
+  if (carries(a) != carries(b) && !bodies_.fixed(a) && !bodies_.fixed(b)) return true;
   if (carries(a)) wake(a);
   if (carries(b)) wake(b);
   solve();
+  return false;
+}
+
+template <class Motion>
+void TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b, const Vector3d& turn_b,
+                                 const Vector3d& impulse, const MobilityOf& mobility) {
+  const BodySlot struck = carries(a) ? a : b;
+  const auto moved = [&](BodySlot slot) {
+    const Scale scale{acceleration(slot), bodies_[slot].bounding_radius};
+    return StruckBody{.mobility = mobility(slot), .size = scale.size, .still_speed = calm_speed(scale)};
+  };
+  StruckBody alone = moved(struck);
+  alone.velocity = {(struck == b ? 1 : -1) * alone.mobility.inverse_mass * impulse,
+                    alone.mobility.turned_by(struck == b ? turn_b : turn_a)};
+  if (alone.still()) return;
+  const Group group = find_group(struck, true);
+  std::vector<StruckBody> bodies{alone};
+  for (std::size_t i = 1; i < group.bodies.size(); ++i) bodies.push_back(moved(group.bodies[i]));
+  if (takes_impact(bodies, group.footholds)) return;
+  std::vector<char> moves(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) moves[i] = i == 0 || !bodies[i].still();
+  const Group left = held_part(without(group, std::move(moves)));
+  ++walks_;
+  for (const BodySlot slot : left.bodies) of_[slot].seen = walks_;
+  std::vector<BodySlot> woken;
+  for (const BodySlot slot : group.bodies) {
+    if (of_[slot].seen != walks_) woken.push_back(slot);
+  }
+  wake_only(woken);
+  solve();
+}
+
+template <class Motion>
+bool TurningRest<Motion>::Group::any_busy() const {
+  return std::any_of(busy.begin(), busy.end(), [](char is) { return is != 0; });
+}
+
+template <class Motion>
+typename TurningRest<Motion>::Group TurningRest<Motion>::without(const Group& group, std::vector<char> out) {
+  std::vector<std::size_t> touches(group.bodies.size());
+  const auto stays = [&](const Foothold& at) {
+    return (at.a == Foothold::fixed || !out[at.a]) && (at.b == Foothold::fixed || !out[at.b]);
+  };
+  bool more = true;
+  while (more) {
+    std::fill(touches.begin(), touches.end(), 0);
+    for (const Foothold& at : group.footholds) {
+      if (!stays(at)) continue;
+      if (at.a != Foothold::fixed) ++touches[at.a];
+      if (at.b != Foothold::fixed) ++touches[at.b];
+    }
+    more = false;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (!out[i] && touches[i] == 0) out[i] = 1, more = true;
+    }
+  }
+  Group left;
+  std::vector<std::uint32_t> place(group.bodies.size(), Foothold::fixed);
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    if (out[i]) continue;
+    place[i] = static_cast<std::uint32_t>(left.bodies.size());
+    left.bodies.push_back(group.bodies[i]), left.loads.push_back(group.loads[i]), left.busy.push_back(group.busy[i]);
+  }
+  for (std::size_t k = 0; k < group.footholds.size(); ++k) {
+    Foothold at = group.footholds[k];
+    if (!stays(at)) continue;
+    if (at.a != Foothold::fixed) at.a = place[at.a];
+    if (at.b != Foothold::fixed) at.b = place[at.b];
+    left.footholds.push_back(at), left.pairs.push_back(group.pairs[k]);
+  }
+  return left;
+}
+
+/// Bodies that are farthest from balance are left out until what is left is in balance. What rests, and is out of
+/// balance while it touches one that is left out, is left out with it: it cannot carry that.
+template <class Motion>
+typename TurningRest<Motion>::Group TurningRest<Motion>::held_part(Group group) const {
+  std::vector<double> left;
+  while (!group.bodies.empty() && !balanced(group.loads, group.footholds, &left)) {
+    const double bound = unheld_part * *std::max_element(left.begin(), left.end());
+    std::vector<char> out(group.bodies.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = left[i] >= bound;
+    const std::vector<char> worst = out;
+    const auto leans = [&](std::uint32_t i, std::uint32_t other) {
+      if (i == Foothold::fixed || other == Foothold::fixed || !worst[other]) return;
+      if (of_[group.bodies[i]].rests && left[i] > balance_rounding) out[i] = 1;
+    };
+    for (const Foothold& at : group.footholds) leans(at.a, at.b), leans(at.b, at.a);
+    group = without(group, std::move(out));
+  }
+  return group;
 }
 
 template <class Motion>
@@ -263,37 +385,45 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
     return false;
   }
   note({a, b}, contact);
-  bool long_enough = true;
+  bool long_enough = true, patient = true;
   for (const BodySlot slot : {a, b}) {
     if (bodies_.fixed(slot) || carries(slot)) continue;
     Member& body = member(slot);
     body.since = std::min(body.since, t);
     long_enough = long_enough && t - std::max(body.since, body.looked) >= calm_flights * flight_;
+    patient = patient && t - body.since >= part_flights * flight_;
   }
   if (!long_enough) return false;
   const auto look = [&](BodySlot slot) {
     if (!bodies_.fixed(slot)) of_[slot].looked = t;
   };
-  const Group group = find_group(bodies_.fixed(a) ? b : a);
-  if (group.slides || !quiet(group)) {
+  const Group linked = find_group(bodies_.fixed(a) ? b : a);
+  if (linked.any_busy() && !patient) {
     look(a), look(b);
     return false;
   }
-  if (!balanced(group.loads, group.footholds)) {
-    for (const BodySlot slot : group.bodies) look(slot);
-    for (const BodySlot slot : group.bodies) {
-      if (carries(slot)) wake(slot);  // It cannot carry the others.
-    }
-    solve();
-    return false;
+  const Group held = held_part(without(linked, linked.busy));
+  ++walks_;
+  for (const BodySlot slot : held.bodies) of_[slot].seen = walks_;
+  std::vector<BodySlot> too_weak;  // to carry the others
+  bool any = false;
+  for (const BodySlot slot : linked.bodies) {
+    const bool holds = of_[slot].seen == walks_;
+    any = any || (holds && !carries(slot));
+    if (holds) continue;
+    of_[slot].looked = t;
+    if (carries(slot)) too_weak.push_back(slot);
   }
-  stop(group, contact, {a, b});
-  return true;
+  wake_only(too_weak);
+  solve();
+  if (!any) look(a), look(b);
+  if (any) stop(held, contact, {a, b});
+  return holds(a, b);
 }
 
 /// The bodies that are linked with one by places where they touch, and the forces that these can give.
 template <class Motion>
-typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot first) {
+typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot first, bool resting) {
   const double t = clock_.now;
   Group group;
   ++walks_;
@@ -303,6 +433,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
     group.bodies.push_back(slot);
   };
   const auto place_of = [&](BodySlot slot) { return bodies_.fixed(slot) ? Foothold::fixed : of_[slot].place; };
+  std::vector<std::uint32_t> busy;
   visit(first);
   for (std::size_t i = 0; i < group.bodies.size(); ++i) {
     const BodySlot slot = group.bodies[i];
@@ -313,46 +444,47 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
     for (const BodySlot other : of_[slot].others) {
       const Key key = std::minmax(slot, other);
       if (!bodies_.fixed(other) && of_[other].seen == walks_ && of_[other].place < i) continue;
+      if (resting && !pairs_[key].rests) continue;
       const Frame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
       const double far = reach(scale(key));
       const double friction = std::min(bodies_[key.first].friction, bodies_[key.second].friction);
       const bool smooth =
           std::min(bodies_[key.first].tangential_restitution, bodies_[key.second].tangential_restitution) == -1;
+      const double rolling = std::min(bodies_[key.first].rolling_friction, bodies_[key.second].rolling_friction);
       const bool rests = pairs_[key].rests;
       bool links = false;
       for (const detail::TouchedPlace& place : pairs_[key].places) {
         const Vector3d on_a = a.out(place.on_a), on_b = b.out(place.on_b);
         if (!rests && (t - place.time > memory * flight_ || norm(on_b - on_a) > far)) continue;
-        if (!std::exchange(links, true)) {
-          if (!bodies_.fixed(other)) visit(other);
+        if (!std::exchange(links, true) && !bodies_.fixed(other)) visit(other);
+        if (!rests && (((friction == 0 || smooth) && slides(key, place.normal)) ||
+                       (bodies_.fixed(other) && !stands(bodies_.motion(other))))) {
+          busy.push_back(of_[slot].place);
+          if (!bodies_.fixed(other)) busy.push_back(of_[other].place);
+        }
+        for (const Vector3d& x : patch(0.5 * (on_a + on_b), place.normal, rolling)) {
+          group.footholds.push_back({.a = place_of(key.first),
+                                     .b = place_of(key.second),
+                                     .arm_a = x - a.origin(),
+                                     .arm_b = x - b.origin(),
+                                     .normal = place.normal,
+                                     .friction = smooth ? 0 : friction});
           group.pairs.push_back(key);
         }
-        group.slides = group.slides || ((friction == 0 || smooth) && !rests && slides(key, place.normal));
-        const Vector3d x = 0.5 * (on_a + on_b);
-        group.footholds.push_back({.a = place_of(key.first),
-                                   .b = place_of(key.second),
-                                   .arm_a = x - a.origin(),
-                                   .arm_b = x - b.origin(),
-                                   .normal = place.normal,
-                                   .friction = smooth ? 0 : friction});
       }
     }
   }
+  double g = 0;
+  for (const BodySlot slot : group.bodies) g = std::max(g, acceleration(slot));
+  for (const BodySlot slot : group.bodies) group.busy.push_back(!ready(slot, g));
+  for (const std::uint32_t place : busy) group.busy[place] = 1;
   return group;
 }
 
+/// Whether a body rests, or has been calm for long enough; `acceleration` is the greatest of its group.
 template <class Motion>
-bool TurningRest<Motion>::quiet(const Group& group) const {
-  double g = 0;
-  for (const BodySlot slot : group.bodies) g = std::max(g, acceleration(slot));
-  const auto ready = [&](BodySlot slot) {
-    return of_[slot].rests || (clock_.now - of_[slot].since >= calm_flights * flight_ && calm(slot, g));
-  };
-  return std::all_of(group.bodies.begin(), group.bodies.end(), ready) &&
-         std::all_of(group.pairs.begin(), group.pairs.end(), [&](const Key& key) {
-           return (!bodies_.fixed(key.first) || stands(bodies_.motion(key.first))) &&
-                  (!bodies_.fixed(key.second) || stands(bodies_.motion(key.second)));
-         });
+bool TurningRest<Motion>::ready(BodySlot slot, double acceleration) const {
+  return of_[slot].rests || (clock_.now - of_[slot].since >= calm_flights * flight_ && calm(slot, acceleration));
 }
 
 template <class Motion>

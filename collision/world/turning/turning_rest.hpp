@@ -4,6 +4,7 @@
 #include "collision/body_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/response/static_balance.hpp"
+#include "collision/response/turning_impulse.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
@@ -16,7 +17,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -95,9 +98,15 @@ class TurningRest {
   /// Two bodies have met, and move as they do after their impulses. Returns whether they, and all bodies of their
   /// group, have come to rest.
   bool comes_to_rest(BodySlot a, BodySlot b, const collision::Contact& contact);
-  /// Two bodies are about to meet. If one of them rests it wakes, unless the other is calm: that may lie on it soon,
-  /// and bounces off it until then as off a fixed body.
-  void meet(BodySlot a, BodySlot b);
+  /// Two bodies are about to meet. Returns whether one of them rests and the impulse is to tell whether that wakes: not
+  /// if the other is calm. That may lie on it soon, and bounces off it until then as off a fixed body.
+  bool meet(BodySlot a, BodySlot b);
+  using MobilityOf = std::function<Mobility(BodySlot)>;
+  /// Then the impulse on b, were the one that rests fixed, and the angular impulses on both. If the one that rests, and
+  /// what it lies on, take it without moving, all stay as they are; if not, those wake that it moves, and what they
+  /// have held.
+  void strike(BodySlot a, const Eigen::Vector3d& turn_a, BodySlot b, const Eigen::Vector3d& turn_b,
+              const Eigen::Vector3d& impulse, const MobilityOf& mobility);
 
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
   void drop_all(BodySlot slot);
@@ -161,10 +170,11 @@ class TurningRest {
   };
   struct Group {
     std::vector<BodySlot> bodies;  ///< none of them fixed
-    std::vector<Key> pairs;
     std::vector<Load> loads;
     std::vector<Foothold> footholds;
-    bool slides = false;  ///< somewhere without friction
+    std::vector<Key> pairs;  ///< of each foothold
+    std::vector<char> busy;  ///< by body: whether it cannot rest yet, by itself or by what it lies on
+    bool any_busy() const;
   };
 
   Member& member(BodySlot slot) {
@@ -175,6 +185,7 @@ class TurningRest {
   void erase(Key key);
   void erase_all(BodySlot slot);
   void wake(BodySlot slot);
+  void wake_only(std::span<const BodySlot> slots);
 
   double acceleration(BodySlot slot) const;
   Scale scale(Key key) const;
@@ -183,8 +194,12 @@ class TurningRest {
   bool calm(BodySlot slot, double acceleration) const;
   bool slides(Key key, const Eigen::Vector3d& normal) const;
   void note(Key key, const collision::Contact& contact);
-  Group find_group(BodySlot first);
-  bool quiet(const Group& group) const;
+  Group find_group(BodySlot first, bool resting = false);
+  bool ready(BodySlot slot, double acceleration) const;
+  /// The group without some of its bodies, by place, and without those that then touch nothing.
+  static Group without(const Group& group, std::vector<char> out);
+  /// The largest part of a group that is found to be in balance.
+  Group held_part(Group group) const;
   void stop(const Group& group, const collision::Contact& contact, Key met);
 
   const Bodies<Motion>& bodies_;
