@@ -89,7 +89,7 @@ struct BasicBodyDescription {
   /// For bodies that turn: a length, in [0, 2^205]. What presses on such a body at a contact acts up to this far ahead
   /// of it, and so brakes how it turns against the other: with a couple of at most this length times the normal
   /// impulse. Of two bodies the lower counts. A ball with the radius R then slows down on a level floor by 5/7 of the
-  /// weight times this over R, and rests where the slope is less than some 0.86 times that quotient.
+  /// weight times this over R, and rests where the slope is less than that quotient.
   double rolling_friction = 0;
   std::uint32_t category = default_category;  ///< bits
   std::uint32_t collides_with = ~0u;  ///< mask; a pair is tested if each one's category shares a bit with the other's

@@ -28,6 +28,8 @@ inline constexpr double part_flights = 64;
 /// Of a group that is not in balance those bodies are left out first of which at least this part of the worst imbalance
 /// is left.
 inline constexpr double unheld_part = 0.5;
+/// What rests wakes where more than this part of the greatest acceleration is left of it because of what lies on it.
+inline constexpr double weak_part = 0x1p-6;
 /// In shortest flights: for how long it is remembered where bodies touched.
 inline constexpr double memory = 64;
 

@@ -67,23 +67,14 @@ Motion stopped(const Motion& motion, double t) {
   return result;
 }
 
-/// Where two bodies push each other that touch at a point: there, or with rolling friction as far around it as that.
-std::vector<Vector3d> patch(const Vector3d& x, const Vector3d& normal, double radius) {
-  if (radius == 0) return {x};
-  int least = 0;
-  for (const int d : {1, 2}) {
-    if (std::abs(normal[d]) < std::abs(normal[least])) least = d;
-  }
-  const Vector3d u = certificates::normalized(cross(normal, Vector3d::Unit(least)));
-  const Vector3d v = cross(normal, u);
-  constexpr double height = 0.8660254037844386;  // of an equilateral triangle
-  std::vector<Vector3d> points;
-  for (const double side : {-1.0, 1.0}) {
-    for (const Vector3d& way : {u, Vector3d(0.5 * u + height * v), Vector3d(0.5 * u - height * v)}) {
-      points.push_back(x + side * radius * way);
-    }
-  }
-  return points;
+/// Where a ball is pressed that touches at x: with rolling friction up to that far from there, to where its weight acts.
+Vector3d pressed_at(const Vector3d& x, const Vector3d& centre, const Vector3d& weight, const Vector3d& normal,
+                    double rolling) {
+  const double along = dot(normal, weight);
+  if (rolling == 0 || along == 0) return x;
+  const Vector3d below = centre + (dot(normal, x - centre) / along) * weight;
+  const double way = norm(below - x);
+  return way <= rolling ? below : Vector3d(x + (rolling / way) * (below - x));
 }
 
 }  // namespace
@@ -188,7 +179,7 @@ void TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
   if (takes_impact(bodies, group.footholds)) return;
   std::vector<char> moves(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) moves[i] = i == 0 || !bodies[i].still();
-  const Group left = held_part(without(group, std::move(moves)));
+  const Group left = held_part(without(group, std::move(moves)), true);
   ++walks_;
   for (const BodySlot slot : left.bodies) of_[slot].seen = walks_;
   std::vector<BodySlot> woken;
@@ -229,6 +220,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::without(const Group& gr
     if (out[i]) continue;
     place[i] = static_cast<std::uint32_t>(left.bodies.size());
     left.bodies.push_back(group.bodies[i]), left.loads.push_back(group.loads[i]), left.busy.push_back(group.busy[i]);
+    left.leans.push_back(group.leans[i]);
   }
   for (std::size_t k = 0; k < group.footholds.size(); ++k) {
     Foothold at = group.footholds[k];
@@ -240,22 +232,46 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::without(const Group& gr
   return left;
 }
 
-/// Bodies that are farthest from balance are left out until what is left is in balance. What rests, and is out of
-/// balance while it touches one that is left out, is left out with it: it cannot carry that.
+/// Bodies that are farthest from balance are left out until what is left is in balance: first those that do not rest yet.
+/// Of what rests those are left out that cannot carry one that is left out. One that leans on a busy body, or on one
+/// that is left out and does so, says nothing of what else it touches.
 template <class Motion>
-typename TurningRest<Motion>::Group TurningRest<Motion>::held_part(Group group) const {
-  std::vector<double> left;
-  while (!group.bodies.empty() && !balanced(group.loads, group.footholds, &left)) {
-    const double bound = unheld_part * *std::max_element(left.begin(), left.end());
-    std::vector<char> out(group.bodies.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = left[i] >= bound;
-    const std::vector<char> worst = out;
-    const auto leans = [&](std::uint32_t i, std::uint32_t other) {
-      if (i == Foothold::fixed || other == Foothold::fixed || !worst[other]) return;
-      if (of_[group.bodies[i]].rests && left[i] > balance_rounding) out[i] = 1;
-    };
-    for (const Foothold& at : group.footholds) leans(at.a, at.b), leans(at.b, at.a);
+typename TurningRest<Motion>::Group TurningRest<Motion>::held_part(Group group, bool removed) const {
+  const auto leave = [&](std::vector<char> out) {
+    for (bool more = true; more;) {
+      more = false;
+      for (const Foothold& at : group.footholds) {
+        if (at.a == Foothold::fixed || at.b == Foothold::fixed) continue;
+        for (const auto& [gone, other] : {std::pair(at.a, at.b), std::pair(at.b, at.a)}) {
+          const bool goes = out[gone] && !of_[group.bodies[gone]].rests && (group.busy[gone] || group.leans[gone]);
+          if (goes && !std::exchange(group.leans[other], char{1})) more = true;
+        }
+      }
+    }
     group = without(group, std::move(out));
+  };
+  leave(group.busy);
+  std::vector<double> left;
+  char weak = 0;  // whether something that rests has been left out
+  while (!group.bodies.empty() && !balanced(group.loads, group.footholds, &left)) {
+    const auto rests = [&](std::size_t i) { return of_[group.bodies[i]].rests; };
+    bool all_rest = true;
+    for (std::size_t i = 0; i < left.size(); ++i) all_rest = all_rest && rests(i);
+    if (all_rest && !removed && weak == 0) return group;  // it has been in balance before
+    double most = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      if (all_rest || !rests(i)) most = std::max(most, left[i]);
+    }
+    std::vector<char> out(left.size());
+    for (std::size_t i = 0; i < left.size(); ++i) out[i] = (all_rest || !rests(i)) && left[i] >= unheld_part * most;
+    for (const Foothold& at : group.footholds) {
+      if (at.a == Foothold::fixed || at.b == Foothold::fixed) continue;
+      for (const auto& [gone, other] : {std::pair(at.a, at.b), std::pair(at.b, at.a)}) {
+        const bool tells = out[gone] && !rests(gone) && !group.leans[gone];
+        if (tells && rests(other) && left[other] > weak_part) out[other] = weak = 1;
+      }
+    }
+    leave(std::move(out));
   }
   return group;
 }
@@ -402,7 +418,7 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
     look(a), look(b);
     return false;
   }
-  const Group held = held_part(without(linked, linked.busy));
+  const Group held = held_part(linked, false);
   ++walks_;
   for (const BodySlot slot : held.bodies) of_[slot].seen = walks_;
   std::vector<BodySlot> too_weak;  // to carry the others
@@ -462,15 +478,19 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
           busy.push_back(of_[slot].place);
           if (!bodies_.fixed(other)) busy.push_back(of_[other].place);
         }
-        for (const Vector3d& x : patch(0.5 * (on_a + on_b), place.normal, rolling)) {
-          group.footholds.push_back({.a = place_of(key.first),
-                                     .b = place_of(key.second),
-                                     .arm_a = x - a.origin(),
-                                     .arm_b = x - b.origin(),
-                                     .normal = place.normal,
-                                     .friction = smooth ? 0 : friction});
-          group.pairs.push_back(key);
+        Vector3d x = 0.5 * (on_a + on_b);
+        for (const auto& [slot_of, frame] : {std::pair<BodySlot, const Frame&>{key.first, a}, {key.second, b}}) {
+          if (bodies_.fixed(slot_of) || !(bodies_.mover(slot_of).radius > 0)) continue;
+          x = pressed_at(x, frame.origin(), bodies_.free_acceleration(slot_of), place.normal, rolling);
+          break;
         }
+        group.footholds.push_back({.a = place_of(key.first),
+                                   .b = place_of(key.second),
+                                   .arm_a = x - a.origin(),
+                                   .arm_b = x - b.origin(),
+                                   .normal = place.normal,
+                                   .friction = smooth ? 0 : friction});
+        group.pairs.push_back(key);
       }
     }
   }
@@ -478,6 +498,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
   for (const BodySlot slot : group.bodies) g = std::max(g, acceleration(slot));
   for (const BodySlot slot : group.bodies) group.busy.push_back(!ready(slot, g));
   for (const std::uint32_t place : busy) group.busy[place] = 1;
+  group.leans.resize(group.bodies.size());
   return group;
 }
 

@@ -174,6 +174,7 @@ class TurningRest {
     std::vector<Foothold> footholds;
     std::vector<Key> pairs;  ///< of each foothold
     std::vector<char> busy;  ///< by body: whether it cannot rest yet, by itself or by what it lies on
+    std::vector<char> leans;  ///< by body: whether it leans on one that is busy
     bool any_busy() const;
   };
 
@@ -198,8 +199,8 @@ class TurningRest {
   bool ready(BodySlot slot, double acceleration) const;
   /// The group without some of its bodies, by place, and without those that then touch nothing.
   static Group without(const Group& group, std::vector<char> out);
-  /// The largest part of a group that is found to be in balance.
-  Group held_part(Group group) const;
+  /// The largest part of a group that is found to be in balance; `removed`: something that rests has been taken out of it.
+  Group held_part(Group group, bool removed) const;
   void stop(const Group& group, const collision::Contact& contact, Key met);
 
   const Bodies<Motion>& bodies_;
