@@ -158,7 +158,8 @@ Masks masks_of(PyWorld& self, const Ids& ids) {
 
 void set_filters(PyWorld& self, const Ids& ids, const Masks& both) {
   std::vector<BodyMasks> masks(static_cast<std::size_t>(ids.size()));
-  for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = {both.data()[3 * i], both.data()[3 * i + 1], both.data()[3 * i + 2]};
+  for (std::size_t i = 0; i < masks.size(); ++i)
+    masks[i] = {both.data()[3 * i], both.data()[3 * i + 1], both.data()[3 * i + 2]};
   self.to_change().set_filters(to_vector(ids), masks.data());
 }
 
@@ -318,9 +319,8 @@ void bind_world(py::module_& module) {
   world.def("restitution", [](PyWorld& self, BodyId id) { return self.world().restitution(id); });
   world.def("masks", &masks_of);
   world.def("attach", &attach);
-  world.def("ignore_pair", [](PyWorld& self, BodyId a, BodyId b, bool ignored) {
-    self.to_change().ignore_pair(a, b, ignored);
-  });
+  world.def("ignore_pair",
+            [](PyWorld& self, BodyId a, BodyId b, bool ignored) { self.to_change().ignore_pair(a, b, ignored); });
   world.def("ignores_pair", [](PyWorld& self, BodyId a, BodyId b) { return self.world().ignores_pair(a, b); });
   world.def("user_data", [](PyWorld& self, BodyId id) { return self.world().user_data(id); });
   world.def("broad_phase", [](PyWorld& self) { return std::string(self.world().broad_phase()); });

@@ -64,8 +64,8 @@ void Bodies<Motion>::Image::body(Archive& archive, One& body) const {
   if (!body.alive) return;
   archive_shape(archive, body.placed, body.mesh, meshes);
   archive(body.entered, body.sensor, body.self_contacts, body.user_data, body.motion, body.mass, body.inverse_mass,
-          body.restitution, body.filter.category, body.filter.collides_with, body.filter.group, body.volume, body.meetings,
-          body.burst_start);
+          body.restitution, body.filter.category, body.filter.collides_with, body.filter.group, body.volume,
+          body.meetings, body.burst_start);
   image::vector(archive, body.force);
   if constexpr (turns<Motion>) {
     archive(body.inverse_inertia, body.friction, body.tangential_restitution, body.rolling_friction, body.tumbles);

@@ -157,8 +157,9 @@ void describe(CLI::App& app, Arguments& arguments) {
   add_number<double>(app, "--orientation-error", arguments.run.orientation_error,
                      "How far bodies that precess may be turned otherwise than they would be, in rad")
       ->type_name("RAD");
-  add_number<double>(app, "--shortest-flight", arguments.run.shortest_flight,
-                     "For how long bodies that turn fly at least after a contact that presses them together, in seconds")
+  add_number<double>(
+      app, "--shortest-flight", arguments.run.shortest_flight,
+      "For how long bodies that turn fly at least after a contact that presses them together, in seconds")
       ->type_name("T");
   add_number<double>(app, "--until", arguments.until, "End the run at T, in seconds, instead of the scene's end_time")
       ->type_name("T");

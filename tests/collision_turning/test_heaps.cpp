@@ -167,8 +167,8 @@ TEST_CASE("a heap of crates, boards and rods comes to rest, and then costs nothi
 
 TEST_CASE("heaps rest and wake in parts, the same with all broad phases, windows and snapshots", "[heaps]") {
   std::vector<std::string> expected;
-  for (const auto kind : {BroadPhaseKind::automatic, BroadPhaseKind::all_pairs, BroadPhaseKind::grid,
-                          BroadPhaseKind::sap}) {
+  for (const auto kind :
+       {BroadPhaseKind::automatic, BroadPhaseKind::all_pairs, BroadPhaseKind::grid, BroadPhaseKind::sap}) {
     for (const bool saves : {false, true}) {
       if (saves && kind != BroadPhaseKind::automatic) continue;
       CAPTURE(static_cast<int>(kind), saves);
@@ -246,7 +246,7 @@ TEST_CASE("what rests next to what is pushed away rests on", "[heaps]") {
   Boxes boxes;
   boxes.add_ground(world);
   const Vector3d half(0.25, 0.25, 0.25);
-  for (int i = 0; i < 2; ++i) boxes.add(world, falling(Sphere{1}, {0.75 * i, 0, 0.251}), half);
+  for (int i = 0; i < 2; ++i) boxes.add(world, falling(Sphere{1}, {0.75 * i, 0, 0.251}), {0.25, 0.5, 0.25});
   boxes.add(world, falling(Sphere{1}, {0.375, 0, 0.752}), {0.75, 0.25, 0.25});
   Body top = falling(Sphere{1}, {0.375, 0, 1.253});
   top.friction = 0.03125;  // which drags little along as it goes

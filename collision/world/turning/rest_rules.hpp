@@ -15,6 +15,11 @@ inline constexpr double largest_reach = 0x1p-6;
 /// on its corners are faster than that; more, and bodies that slide or roll on a level floor stop the sooner.
 inline constexpr double calm_energy = 4;
 
+/// What touches many is driven by the flights of all: a body that touches n others is calm up to that speed times n
+/// over the first number, at least once and at most the second times it (8 cm/s on Earth).
+inline constexpr double calm_neighbours = 2;
+inline constexpr double most_driven = 4;
+
 /// Without friction nothing brakes what slides, or turns about the normal: two such bodies come to rest on each other
 /// only where that is slower than this part of the speed of a calm body (20 um/s on Earth); else they slide on.
 inline constexpr double smooth_slip = 0x1p-10;

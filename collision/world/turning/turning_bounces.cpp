@@ -67,9 +67,7 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
   const double restitution = often ? 1 : std::min(bodies_[a].restitution, bodies_[b].restitution);
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
-  const auto mobility_of = [&](BodySlot slot) {
-    return resting_.carries(slot) ? Mobility::fixed() : mobility(slot);
-  };
+  const auto mobility_of = [&](BodySlot slot) { return resting_.carries(slot) ? Mobility::fixed() : mobility(slot); };
   const Mobility of_a = mobility_of(a), of_b = mobility_of(b);
   // Of two bodies the lower counts, as of restitutions.
   Surfaces surfaces{

@@ -64,9 +64,9 @@ void archive_members(Archive& archive, LyingPair& pair) {
 /// of it is faster than such flights make it. Where calm bodies touch is noted. When all bodies of a group, that is,
 /// those that are linked by such places, down to what is fixed, have been calm for some flights, and forces at these
 /// places within the cones of friction hold them all (static_balance.hpp), they come to rest: from then on they do not
-/// move, exactly, and cost nothing. A group wakes as a whole, with the accelerations that its bodies were given, when
-/// one of its bodies is struck, changed or removed, or one of its supports is changed or removed. What a calm body
-/// touches does not wake: if forces hold that body too, it joins the group, and if not the group wakes then.
+/// move, exactly, and cost nothing. Those that others hold do not wait for the rest of their group for ever. An impact
+/// wakes what it moves, and what that has held; a change of a body, or of a support, the whole group. What a calm body
+/// touches does not wake: if forces hold that body too, it joins them, and if not those wake that cannot carry it.
 ///
 /// A part of World that owns its state. It reads the bodies, and tells its listener what follows. All of it is a
 /// function of contacts and edits: not of the broad phase, windows or snapshots.
@@ -172,8 +172,8 @@ class TurningRest {
     std::vector<BodySlot> bodies;  ///< none of them fixed
     std::vector<Load> loads;
     std::vector<Foothold> footholds;
-    std::vector<Key> pairs;  ///< of each foothold
-    std::vector<char> busy;  ///< by body: whether it cannot rest yet, by itself or by what it lies on
+    std::vector<Key> pairs;   ///< of each foothold
+    std::vector<char> busy;   ///< by body: whether it cannot rest yet, by itself or by what it lies on
     std::vector<char> leans;  ///< by body: whether it leans on one that is busy
     bool any_busy() const;
   };
@@ -199,7 +199,8 @@ class TurningRest {
   bool ready(BodySlot slot, double acceleration) const;
   /// The group without some of its bodies, by place, and without those that then touch nothing.
   static Group without(const Group& group, std::vector<char> out);
-  /// The largest part of a group that is found to be in balance; `removed`: something that rests has been taken out of it.
+  /// The largest part of a group that is found to be in balance; `removed`: something that rests has been taken out of
+  /// it.
   Group held_part(Group group, bool removed) const;
   void stop(const Group& group, const collision::Contact& contact, Key met);
 
