@@ -86,6 +86,11 @@ struct BasicBodyDescription {
   /// reverses, where friction suffices: 1 all (perfectly rough), 0 none (the bodies stick), -1 leaves the slip as it is
   /// (smooth). The law, and why energy never grows: response/turning_impulse.hpp.
   double tangential_restitution = 0;
+  /// For bodies that turn: a length, in [0, 2^205]. What presses on such a body at a contact acts up to this far ahead
+  /// of it, and so brakes how it turns against the other: with a couple of at most this length times the normal
+  /// impulse. Of two bodies the lower counts. A ball with the radius R then slows down on a level floor by 5/7 of the
+  /// weight times this over R, and rests where the slope is less than that quotient.
+  double rolling_friction = 0;
   std::uint32_t category = default_category;  ///< bits
   std::uint32_t collides_with = ~0u;  ///< mask; a pair is tested if each one's category shares a bit with the other's
   /// Bodies of the same group, unless it is 0, do not collide with each other, whatever their masks.

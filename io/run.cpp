@@ -136,6 +136,7 @@ kds::collision::WorldOptions world_options(const Scene& scene, const RunOptions&
   world_options.broad_phase = broad_phase;
   world_options.kdop = options.kdop;
   world_options.orientation_error = options.orientation_error;
+  world_options.shortest_flight = options.shortest_flight;
   world_options.rate = options.rate;
   world_options.report_pairs = options.pairs;
   world_options.profile = options.profile;

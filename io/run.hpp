@@ -20,6 +20,7 @@ struct RunOptions {
   std::string broad_phase = "auto";  ///< a name in collision/broad_phase/broad_phase_kind.hpp
   int kdop = 6;                      ///< 6, boxes, or, for "kinetic-sap", 14, 18 or 26
   double orientation_error = 1e-3;   ///< rad, of bodies that precess: WorldOptions
+  double shortest_flight = 1e-3;     ///< s, of bodies that turn and are pressed together: WorldOptions
   double rate = 0;                   ///< Hz: how often results are asked for; 0 is once, at the end. "sap" needs it
   bool pairs = false;                ///< tell of bounding volumes too
   bool steady_progress = false;      ///< call on_time about a hundred times, or more, in a run of 1e-306 s or more

@@ -26,6 +26,7 @@ struct SurfaceNumbers {
   double restitution = 1;             ///< in [0, 1]
   double friction = 0;                ///< >= 0
   double tangential_restitution = 0;  ///< in [-1, 1]
+  double rolling_friction = 0;        ///< a length, >= 0
 };
 
 /// How far from 1 the norm of an orientation may be: files carry few digits. It is normalised.
@@ -45,6 +46,7 @@ struct SceneBody {
   double restitution = 1;                           ///< in [0, 1]; of two bodies the lower counts
   double friction = 0;                              ///< and here; 0 where nothing turns
   double tangential_restitution = 0;
+  double rolling_friction = 0;
   std::vector<MotionPiece> motion;  ///< not empty; starts ascend
 };
 

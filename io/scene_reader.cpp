@@ -114,7 +114,7 @@ bool speaks_of_turning(const JsonNode& node) {
 
 SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbers& of_scene) {
   node.object({"name", "shape", "vertices", "orientation", "mass", "inertia", "fixed", "sensor", "self_contacts",
-               "restitution", "friction", "tangential_restitution", "motion"});
+               "restitution", "friction", "tangential_restitution", "rolling_friction", "motion"});
   SceneBody body;
   body.name = node["name"].string();
   body.shape = read_shape(node["shape"], scene.meshes);
@@ -134,7 +134,7 @@ SceneBody read_body(const JsonNode& node, const Scene& scene, const SurfaceNumbe
   if (node.has("vertices")) read_vertices(node["vertices"], body, scene.response);
   const SurfaceNumbers surface = read_surface(node, of_scene);
   body.restitution = surface.restitution, body.friction = surface.friction;
-  body.tangential_restitution = surface.tangential_restitution;
+  body.tangential_restitution = surface.tangential_restitution, body.rolling_friction = surface.rolling_friction;
   body.motion = read_motion(node["motion"], body.orientation, scene.response);
   if (const auto pivot = read_pivot(node["motion"])) {
     const JsonNode at = node["motion"].elements().front()["pivot"];
@@ -162,8 +162,8 @@ Domain read_domain(const JsonNode& node, const SurfaceNumbers& of_scene) {
 }
 
 Scene read_document(const JsonNode& root, const std::filesystem::path& folder, std::optional<double> until) {
-  root.object({"scene", "end_time", "response", "restitution", "friction", "tangential_restitution", "domain", "meshes",
-               "bodies", "tables"});
+  root.object({"scene", "end_time", "response", "restitution", "friction", "tangential_restitution", "rolling_friction",
+               "domain", "meshes", "bodies", "tables"});
   if (!root["scene"].is(1)) root["scene"].fail("must be 1, the only format there is");
   Scene scene;
   scene.end_time = root["end_time"].number();

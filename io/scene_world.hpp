@@ -52,6 +52,7 @@ kds::collision::BasicBodyDescription<Motion> describe(const SceneBody& body) {
     description.inertia = body.inertia_tensor ? kds::collision::Inertia(*body.inertia_tensor) : body.inertia;
     description.friction = body.friction;
     description.tangential_restitution = body.tangential_restitution;
+    description.rolling_friction = body.rolling_friction;
   } else {
     description.orientation = body.orientation;
   }

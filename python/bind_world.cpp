@@ -105,12 +105,13 @@ Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<D
       }
       body.motion.assign(1, to_motion(motions.data() + i * motion_length));
       body.motion.insert(body.motion.end(), later.begin(), later.end());
-      const double* number = numbers.data() + 5 * i;
+      const double* number = numbers.data() + 6 * i;
       body.mass = number[0];
-      body.restitution = number[1];
-      body.friction = number[2];
-      body.tangential_restitution = number[3];
-      body.inertia = tensor ? Inertia(*tensor) : Inertia(number[4]);
+      body.inertia = tensor ? Inertia(*tensor) : Inertia(number[1]);
+      body.restitution = number[2];
+      body.friction = number[3];
+      body.tangential_restitution = number[4];
+      body.rolling_friction = number[5];
       std::tie(body.category, body.collides_with, body.group) =
           std::tuple(masks.data()[3 * i], masks.data()[3 * i + 1], masks.data()[3 * i + 2]);
       body.user_data = user_data.data()[i];
@@ -164,7 +165,8 @@ Masks masks_of(PyWorld& self, const Ids& ids) {
 
 void set_filters(PyWorld& self, const Ids& ids, const Masks& both) {
   std::vector<BodyMasks> masks(static_cast<std::size_t>(ids.size()));
-  for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = {both.data()[3 * i], both.data()[3 * i + 1], both.data()[3 * i + 2]};
+  for (std::size_t i = 0; i < masks.size(); ++i)
+    masks[i] = {both.data()[3 * i], both.data()[3 * i + 1], both.data()[3 * i + 2]};
   self.to_change().set_filters(to_vector(ids), masks.data());
 }
 
@@ -329,9 +331,8 @@ void bind_world(py::module_& module) {
   world.def("restitution", [](PyWorld& self, BodyId id) { return self.world().restitution(id); });
   world.def("masks", &masks_of);
   world.def("attach", &attach);
-  world.def("ignore_pair", [](PyWorld& self, BodyId a, BodyId b, bool ignored) {
-    self.to_change().ignore_pair(a, b, ignored);
-  });
+  world.def("ignore_pair",
+            [](PyWorld& self, BodyId a, BodyId b, bool ignored) { self.to_change().ignore_pair(a, b, ignored); });
   world.def("ignores_pair", [](PyWorld& self, BodyId a, BodyId b) { return self.world().ignores_pair(a, b); });
   world.def("user_data", [](PyWorld& self, BodyId id) { return self.world().user_data(id); });
   world.def("broad_phase", [](PyWorld& self) { return std::string(self.world().broad_phase()); });

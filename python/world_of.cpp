@@ -90,6 +90,7 @@ class WorldOf final : public AnyWorld {
     own.restitution = body.restitution;
     own.friction = body.friction;
     own.tangential_restitution = body.tangential_restitution;
+    own.rolling_friction = body.rolling_friction;
     own.category = body.category;
     own.collides_with = body.collides_with;
     own.group = body.group;
@@ -98,9 +99,7 @@ class WorldOf final : public AnyWorld {
     own.user_data = body.user_data;
     return world_.add_body(own);
   }
-  BodyId add_body(const kds::io::SceneBody& body) override {
-    return world_.add_body(kds::io::describe<M>(body));
-  }
+  BodyId add_body(const kds::io::SceneBody& body) override { return world_.add_body(kds::io::describe<M>(body)); }
   void reserve(std::size_t bodies) override { world_.reserve(bodies); }
   void remove_body(BodyId id) override { world_.remove_body(id); }
 
@@ -173,7 +172,9 @@ class WorldOf final : public AnyWorld {
   bool fixed(BodyId id) const override { return world_.fixed(id); }
   bool sensor(BodyId id) const override { return world_.sensor(id); }
   double restitution(BodyId id) const override { return world_.restitution(id); }
-  BodyMasks masks(BodyId id) const override { return {world_.category(id), world_.collides_with(id), world_.group(id)}; }
+  BodyMasks masks(BodyId id) const override {
+    return {world_.category(id), world_.collides_with(id), world_.group(id)};
+  }
   void ignore_pair(BodyId a, BodyId b, bool ignored) override { world_.ignore_pair(a, b, ignored); }
   bool ignores_pair(BodyId a, BodyId b) const override { return world_.ignores_pair(a, b); }
   std::uint64_t user_data(BodyId id) const override { return world_.user_data(id); }

@@ -12,23 +12,44 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What is not balanced of a body: its acceleration, and its angular acceleration if its moment of inertia were mass
-/// times size squared. Which moment it has does not matter: both are to be zero.
+/// What is not balanced of a body: its acceleration, or velocity, and the angular one.
 struct Unbalanced {
   Vector3d linear, angular;
 };
 
+// Of a load the moment of inertia counts as mass times size squared. Which it is does not matter: all is to be zero.
+Unbalanced at_first(const Load& load) { return {load.acceleration, Vector3d::Zero()}; }
+Vector3d pushed_by(const Load& load, const Vector3d& force) { return force / load.mass; }
+Vector3d turned_by(const Load& load, const Vector3d& torque) { return torque / (load.mass * load.size * load.size); }
+/// How much a force at the end of an arm accelerates that end, at most.
+double mobility(const Load& load, const Vector3d& arm) {
+  return (1 + squared_norm(arm) / (load.size * load.size)) / load.mass;
+}
+
+Unbalanced at_first(const StruckBody& body) { return {body.velocity.velocity, body.velocity.angular_velocity}; }
+Vector3d pushed_by(const StruckBody& body, const Vector3d& force) { return body.mobility.inverse_mass * force; }
+Vector3d turned_by(const StruckBody& body, const Vector3d& torque) { return body.mobility.turned_by(torque); }
+double mobility(const StruckBody& body, const Vector3d& arm) {
+  double turns = body.mobility.inverse_moment;
+  if (!body.mobility.spherical) {  // the trace is at least the greatest
+    const auto& inverse = body.mobility.inverse_inertia;
+    turns = inverse(0, 0) + inverse(1, 1) + inverse(2, 2);
+  }
+  return body.mobility.inverse_mass + squared_norm(arm) * turns;
+}
+
 /// [Nesterov83]: each step is from a point beyond the last one, in the direction of the last step, by ever more of it;
 /// from the start again where that leads uphill [ODonoghue15].
+template <class Body>
 class Descent {
  public:
-  Descent(std::span<const Load> loads, std::span<const Foothold> footholds)
+  Descent(std::span<const Body> loads, std::span<const Foothold> footholds)
       : loads_(loads),
         footholds_(footholds),
         forces_(footholds.size(), Vector3d::Zero()),
         ahead_(forces_),
         steps_(footholds.size()) {
-    for (const Load& load : loads) greatest_ = std::max(greatest_, norm(load.acceleration));
+    for (const Body& load : loads) greatest_ = std::max(greatest_, norm(at_first(load).linear));
     std::vector<double> held(loads.size(), 0);  // by how many footholds
     for (const Foothold& at : footholds) {
       for (const std::uint32_t i : {at.a, at.b}) {
@@ -37,13 +58,13 @@ class Descent {
     }
     // The square of a sum of n vectors is at most n times the sum of their squares: so no step is too long.
     for (std::size_t k = 0; k < footholds.size(); ++k) {
-      double mobility = 0;
+      double sum = 0;
       const auto add = [&](std::uint32_t i, const Vector3d& arm) {
         if (i == Foothold::fixed) return;
-        mobility += held[i] * (1 + squared_norm(arm) / (loads[i].size * loads[i].size)) / loads[i].mass;
+        sum += held[i] * mobility(loads[i], arm);
       };
       add(footholds[k].a, footholds[k].arm_a), add(footholds[k].b, footholds[k].arm_b);
-      steps_[k] = 1 / mobility;
+      steps_[k] = 1 / sum;
     }
   }
 
@@ -63,26 +84,21 @@ class Descent {
     if (uphill > 0) pace_ = 1, ahead_ = forces_;
   }
 
-  /// The greatest of what is left, over the greatest acceleration.
-  double left() {
-    balance(forces_);
-    double most = 0;
-    for (std::size_t i = 0; i < loads_.size(); ++i) {
-      most = std::max({most, norm(unbalanced_[i].linear), norm(unbalanced_[i].angular) * loads_[i].size});
-    }
-    return greatest_ > 0 ? most / greatest_ : 0;
-  }
+  /// Finds what is left of each body.
+  void look() { balance(forces_); }
+  const Unbalanced& left_of(std::size_t i) const { return unbalanced_[i]; }
+  /// The greatest acceleration at first.
+  double greatest() const { return greatest_; }
 
  private:
   /// What these forces leave.
   void balance(std::span<const Vector3d> forces) {
     unbalanced_.clear();
-    for (const Load& load : loads_) unbalanced_.push_back({load.acceleration, Vector3d::Zero()});
+    for (const Body& load : loads_) unbalanced_.push_back(at_first(load));
     const auto give = [&](std::uint32_t i, const Vector3d& arm, const Vector3d& force) {
       if (i == Foothold::fixed) return;
-      const Load& load = loads_[i];
-      unbalanced_[i].linear += force / load.mass;
-      unbalanced_[i].angular += cross(arm, force) / (load.mass * load.size * load.size);
+      unbalanced_[i].linear += pushed_by(loads_[i], force);
+      unbalanced_[i].angular += turned_by(loads_[i], cross(arm, force));
     };
     for (std::size_t k = 0; k < footholds_.size(); ++k) {
       give(footholds_[k].a, footholds_[k].arm_a, -forces[k]);
@@ -111,7 +127,7 @@ class Descent {
     return pushes * at.normal + (mu * pushes / sideways) * across;
   }
 
-  std::span<const Load> loads_;
+  std::span<const Body> loads_;
   std::span<const Foothold> footholds_;
   std::vector<Vector3d> forces_;
   std::vector<Vector3d> ahead_;  ///< where the next step begins
@@ -123,21 +139,60 @@ class Descent {
 
 }  // namespace
 
-bool balanced(std::span<const Load> loads, std::span<const Foothold> footholds) {
+bool balanced(std::span<const Load> loads, std::span<const Foothold> footholds, std::vector<double>* left) {
   constexpr int most_steps = 2048;
   constexpr int pause = 32;
+  constexpr int most_hopeless = 4;
   constexpr double progress = 0.875;  // in a pause, or there is little hope
-  Descent descent(loads, footholds);
-  double least = descent.left();
+  Descent<Load> descent(loads, footholds);
+  const auto part = [&](std::size_t i) {
+    const Unbalanced& rest = descent.left_of(i);
+    const double most = std::max(norm(rest.linear), norm(rest.angular) * loads[i].size);
+    return descent.greatest() > 0 ? most / descent.greatest() : 0;
+  };
+  const auto most_left = [&] {
+    descent.look();
+    double most = 0;
+    for (std::size_t i = 0; i < loads.size(); ++i) most = std::max(most, part(i));
+    return most;
+  };
+  double least = most_left();
   int hopeless = 0;
-  for (int steps = 0; steps < most_steps && least > balance_rounding; steps += pause) {
+  for (int steps = 0; steps < most_steps && least > balance_rounding && hopeless < most_hopeless; steps += pause) {
     for (int k = 0; k < pause; ++k) descent.step();
-    const double left = descent.left();
-    hopeless = left <= progress * least ? 0 : hopeless + 1;
-    if (hopeless >= 4) return false;
-    least = std::min(least, left);
+    const double most = most_left();
+    hopeless = most <= progress * least ? 0 : hopeless + 1;
+    if (hopeless < most_hopeless) least = std::min(least, most);
+  }
+  if (left != nullptr) {
+    left->clear();
+    for (std::size_t i = 0; i < loads.size(); ++i) left->push_back(part(i));
   }
   return least <= balance_rounding;
+}
+
+bool StruckBody::still() const {
+  return norm(velocity.velocity) + norm(velocity.angular_velocity) * size <= still_speed;
+}
+
+bool takes_impact(std::span<StruckBody> bodies, std::span<const Foothold> footholds) {
+  constexpr int most_steps = 512;
+  constexpr int pause = 16;
+  const auto still = [&] {
+    return std::all_of(bodies.begin(), bodies.end(), [](const StruckBody& body) { return body.still(); });
+  };
+  if (still()) return true;
+  const std::vector<StruckBody> struck(bodies.begin(), bodies.end());
+  Descent<StruckBody> descent(struck, footholds);
+  for (int steps = 0; steps < most_steps; steps += pause) {
+    for (int k = 0; k < pause; ++k) descent.step();
+    descent.look();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      bodies[i].velocity = {descent.left_of(i).linear, descent.left_of(i).angular};
+    }
+    if (still()) return true;
+  }
+  return false;
 }
 
 }  // namespace kds::collision

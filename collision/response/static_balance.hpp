@@ -1,10 +1,13 @@
-// Whether bodies that touch can stay where they are: static equilibrium with friction.
+// Whether bodies that touch can stay where they are: static equilibrium with friction, and impacts that it takes.
 #pragma once
+
+#include "collision/response/turning_impulse.hpp"
 
 #include <Eigen/Core>
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace kds::collision {
 
@@ -34,12 +37,31 @@ struct Foothold {
 /// given too where it is not known after some steps, at the limits of friction above all.
 ///
 /// The arithmetic is the same bits everywhere. Cost: 30 ns a foothold and step; 32 steps for a body on four points, 200
-/// for a stack of five, 2 048 at most.
-bool balanced(std::span<const Load> loads, std::span<const Foothold> footholds);
+/// for a stack of five, 2 048 at most. `left`, unless it is null, gets for each body what is left of its accelerations
+/// in the end, as a part of the greatest one.
+bool balanced(std::span<const Load> loads, std::span<const Foothold> footholds, std::vector<double>* left = nullptr);
 
 /// What may be left of an acceleration, and of an angular acceleration times the size of its body, relative to the
 /// greatest acceleration. A body of which the centre of mass is beyond the edge of its support by less than this part
 /// of its size counts as held.
 inline constexpr double balance_rounding = 0x1p-16;
+
+/// A body that lies on others, and how an impact would make it move if it were alone.
+struct StruckBody {
+  Mobility mobility;  ///< not that of a fixed body
+  RigidVelocity velocity{};
+  double size = 1;         ///< the distance of its farthest point from its centre
+  double still_speed = 0;  ///< no faster than this, at no point, it counts as not moved
+
+  bool still() const;
+};
+
+/// Whether bodies that lie on each other take an impact without moving: whether there are impulses, each within the
+/// cone of friction of its foothold, with which none of them is faster than its `still_speed`. The velocities become
+/// those with the least kinetic energy that is found: what friction and unilateral contacts without rebound make of an
+/// impact [Moreau88].
+///
+/// The same descent as above. Cost: as above, 512 steps at most, and none where nothing is too fast from the start.
+bool takes_impact(std::span<StruckBody> bodies, std::span<const Foothold> footholds);
 
 }  // namespace kds::collision

@@ -235,4 +235,38 @@ TurningImpulse collide(RigidVelocity& a, RigidVelocity& b, const Mobility& of_a,
   return {pair.give(a, b, {normal, along.x, along.y}), slides};
 }
 
+Vector3d Mobility::turned_by(const Vector3d& push) const {
+  if (spherical) return inverse_moment * push;
+  const auto row = [&](int i) {
+    return inverse_inertia(i, 0) * push[0] + inverse_inertia(i, 1) * push[1] + inverse_inertia(i, 2) * push[2];
+  };
+  return {row(0), row(1), row(2)};
+}
+
+Vector3d brake_turning(RigidVelocity& a, RigidVelocity& b, const Mobility& of_a, const Mobility& of_b,
+                       const ContactArms& arms, double most) {
+  const Vector3d relative = b.angular_velocity - a.angular_velocity;
+  const double rate = certificates::norm(relative);
+  if (!(rate > 0 && most > 0)) return Vector3d::Zero();
+  const Vector3d axis = relative / rate;
+  const Vector3d turns_a = of_a.turned_by(axis), turns_b = of_b.turned_by(axis);
+  const double turns = collision::dot(axis, turns_a + turns_b);
+  if (!(turns > 0)) return Vector3d::Zero();
+  const double couple = std::min(most, rate / turns);
+  const Vector3d left_a = a.angular_velocity + couple * turns_a;
+  const Vector3d left_b = b.angular_velocity - couple * turns_b;
+  const Vector3d apart = (b.velocity + cross(left_b, arms.b)) - (a.velocity + cross(left_a, arms.a));
+  if (!(collision::dot(arms.normal, apart) < 0)) return Vector3d::Zero();
+  a.angular_velocity = left_a, b.angular_velocity = left_b;
+  return -couple * axis;
+}
+
+double push_for(double change, const Mobility& of_a, const Mobility& of_b, const ContactArms& arms) {
+  const auto yields = [&](const Mobility& body, const Vector3d& arm) {
+    const Vector3d torque = cross(arm, arms.normal);
+    return body.inverse_mass + collision::dot(torque, body.turned_by(torque));
+  };
+  return change / (yields(of_a, arms.a) + yields(of_b, arms.b));
+}
+
 }  // namespace kds::collision

@@ -27,6 +27,8 @@ struct Mobility {
     return {inverse_mass, 0, inverse_inertia, false};
   }
 
+  /// The change of the angular velocity by an angular impulse.
+  Eigen::Vector3d turned_by(const Eigen::Vector3d& push) const;
   /// Whether an impulse turns it.
   bool turns() const { return spherical ? inverse_moment != 0 : !inverse_inertia.isZero(0); }
 };
@@ -90,5 +92,14 @@ struct TurningImpulse {
 /// inertia 0. Cost: some 1.5 us; with friction 3 us.
 TurningImpulse collide(RigidVelocity& a, RigidVelocity& b, const Mobility& of_a, const Mobility& of_b,
                        const ContactArms& arms, const Surfaces& surfaces);
+
+/// Rolling friction: brakes how the two turn against each other, by a couple of at most `most`, in mass * length^2 / s,
+/// and by no more than makes the energy of turning least along their relative angular velocity. Returns the couple on
+/// b; that on a is the opposite. To be applied before the impulse, which is then that of the motions that are left; if
+/// these do not approach any more at the point of contact nothing changes, and the couple is 0. Energy never grows.
+Eigen::Vector3d brake_turning(RigidVelocity& a, RigidVelocity& b, const Mobility& of_a, const Mobility& of_b,
+                              const ContactArms& arms, double most);
+/// The normal impulse without friction that changes the normal velocity at the point of contact by `change`.
+double push_for(double change, const Mobility& of_a, const Mobility& of_b, const ContactArms& arms);
 
 }  // namespace kds::collision

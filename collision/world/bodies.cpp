@@ -72,6 +72,7 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
     const double moment = description.inertia.moment();
     added.inverse_inertia = description.fixed || moment == 0 ? 0 : 1 / moment;
     added.friction = description.friction, added.tangential_restitution = description.tangential_restitution;
+    added.rolling_friction = description.rolling_friction;
   }
   added.restitution = description.restitution;
   set_filter(slot, {description.category, description.collides_with, description.group});
@@ -200,6 +201,7 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
     if constexpr (turns<Motion>) {
       to.inverse_inertia = b.inverse_inertia;
       to.friction = b.friction, to.tangential_restitution = b.tangential_restitution;
+      to.rolling_friction = b.rolling_friction;
       to.tumbles = b.tumbles;
     }
     if constexpr (Motion::degree <= 2) to.force = free_acceleration(slot);
@@ -245,6 +247,7 @@ void Bodies<Motion>::become(const Image& image) {
     if constexpr (turns<Motion>) {
       b.inverse_inertia = from.inverse_inertia;
       b.friction = from.friction, b.tangential_restitution = from.tangential_restitution;
+      b.rolling_friction = from.rolling_friction;
       b.tumbles = from.tumbles;
     }
     sensors_ = sensors_ || b.sensor;

@@ -72,6 +72,7 @@ struct Turns {
   double inverse_inertia = 0;  ///< the same about all axes; 0 if nothing changes its angular velocity
   double friction = 0;
   double tangential_restitution = 0;
+  double rolling_friction = 0;
   bool tumbles = false;        ///< it precesses: world/turning/tumbling.hpp knows its inertia
   double turns_until = never;  ///< and when the present piece of its motion ends
 };

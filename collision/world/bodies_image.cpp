@@ -64,10 +64,12 @@ void Bodies<Motion>::Image::body(Archive& archive, One& body) const {
   if (!body.alive) return;
   archive_shape(archive, body.placed, body.mesh, meshes);
   archive(body.entered, body.sensor, body.self_contacts, body.user_data, body.motion, body.mass, body.inverse_mass,
-          body.restitution, body.filter.category, body.filter.collides_with, body.filter.group, body.volume, body.meetings,
-          body.burst_start);
+          body.restitution, body.filter.category, body.filter.collides_with, body.filter.group, body.volume,
+          body.meetings, body.burst_start);
   image::vector(archive, body.force);
-  if constexpr (turns<Motion>) archive(body.inverse_inertia, body.friction, body.tangential_restitution, body.tumbles);
+  if constexpr (turns<Motion>) {
+    archive(body.inverse_inertia, body.friction, body.tangential_restitution, body.rolling_friction, body.tumbles);
+  }
   if constexpr (Motion::degree >= 3) archive(body.given);
 }
 
@@ -140,6 +142,8 @@ void Bodies<Motion>::Image::check(double now) const {
     need(std::isfinite(body.inverse_inertia) && body.inverse_inertia >= 0, "its inertia is not > 0");
     need(body.friction >= 0 && body.friction <= largest_magnitude, "its friction is not in [0, 2^205]");
     need(std::abs(body.tangential_restitution) <= 1, "its tangential restitution is not in [-1, 1]");
+    need(body.rolling_friction >= 0 && body.rolling_friction <= largest_magnitude,
+         "its rolling friction is not in [0, 2^205]");
     if constexpr (Motion::degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
   }
   std::vector<char> listed(bodies.size());

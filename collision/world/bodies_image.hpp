@@ -24,7 +24,8 @@ struct Bodies<Motion>::Image {
     std::uint32_t mesh = 0;  ///< number in `meshes`, of a mesh
     Motion motion;
     double mass = 1, inverse_mass = 1, restitution = 1;
-    double inverse_inertia = 0, friction = 0, tangential_restitution = 0;  ///< of bodies that turn
+    double inverse_inertia = 0, friction = 0, tangential_restitution = 0,
+           rolling_friction = 0;  ///< of bodies that turn
     bool tumbles = false;
     CollisionFilter filter{};
     BoundingVolume volume = BoundingVolume::shape;

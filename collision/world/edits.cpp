@@ -1,6 +1,6 @@
 // How bodies are added to the world and removed.
-#include "collision/motions.hpp"
 #include "collision/in_parts.hpp"
+#include "collision/motions.hpp"
 #include "collision/profile.hpp"
 #include "collision/response/inertia.hpp"
 #include "collision/response/mass_properties.hpp"
@@ -54,11 +54,15 @@ void validate(const BasicBodyDescription<Motion>& description) {
       fail("friction: must be in [0, " + detail::power_text(largest_magnitude) + "]");
     }
     if (!(std::abs(description.tangential_restitution) <= 1)) fail("tangential_restitution: must be in [-1, 1]");
+    if (!(description.rolling_friction >= 0 && description.rolling_friction <= largest_magnitude)) {
+      fail("rolling_friction: must be in [0, " + detail::power_text(largest_magnitude) + "]");
+    }
   } else {
     const auto refuse = [&](const char* member) { fail(std::string(member) + ": bodies of this world do not turn"); };
     if (description.inertia.moment() != 0 || description.inertia.tensor()) refuse("inertia");
     if (description.friction != 0) refuse("friction");
     if (description.tangential_restitution != 0) refuse("tangential_restitution");
+    if (description.rolling_friction != 0) refuse("rolling_friction");
   }
   switch (description.volume) {
     case BoundingVolume::shape:
@@ -139,8 +143,8 @@ void Engine<Motion>::require_tests_of(const Shape& shape) const {
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
     if (!bodies_.alive(slot) || !(is_unbounded ? bends(slot) : bodies_.unbounded(slot))) continue;
     throw std::invalid_argument(std::string("shape: a ") + kind_name(shape) + " and a " +
-                                kind_name(bodies_.shape(slot).shape) + ", body " +
-                                std::to_string(bodies_.id_of(slot)) + ", cannot be in one world");
+                                kind_name(bodies_.shape(slot).shape) + ", body " + std::to_string(bodies_.id_of(slot)) +
+                                ", cannot be in one world");
   }
 }
 
@@ -167,8 +171,8 @@ BodyId Engine<Motion>::add_body(const Description& description) {
       }
       principal = principal_inertia(tensor);
       if (!(principal->moments.minCoeff() >= flattest_inertia * principal->moments.maxCoeff())) {
-        throw std::invalid_argument("inertia: its least moment must be at least " + detail::power_text(flattest_inertia) +
-                                    " of the greatest");
+        throw std::invalid_argument("inertia: its least moment must be at least " +
+                                    detail::power_text(flattest_inertia) + " of the greatest");
       }
       for (std::size_t i = 0; i < description.motion.size(); ++i) {
         require_steady_clock(description.motion[i], clock_.now, "motion[" + std::to_string(i) + "]");

@@ -8,6 +8,7 @@
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/profile.hpp"
 #include "collision/response/free_rotation.hpp"
+#include "collision/response/turning_impulse.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
@@ -38,6 +39,16 @@
 #include <vector>
 
 namespace kds::collision {
+
+/// Two bodies that turn at a contact: how they move after it, the impulse on b, and the angular impulses on both.
+template <class Motion>
+struct TurningImpact {
+  Motion a, b;
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turn_a = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turn_b = Eigen::Vector3d::Zero();
+  bool approach = false;  ///< at the contact; if not they move as before
+};
 
 /// What is behind a BasicWorld (world.hpp, which documents the public functions): it owns the parts (docs/design.md),
 /// lets the one whose event is next process it, passes the consequences on to the others, and calls the listener.
@@ -281,7 +292,9 @@ class Engine final : private RestingListener<BodyMotionType> {
   void process_wall() requires(turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
   bool precesses(BodySlot slot) const { return tumbling_.has(slot) && !resting_.carries(slot); }
+  Mobility mobility(BodySlot slot) const requires(turns<Motion>);
   Motion met(BodySlot slot, double t) requires(turns<Motion>);
+  TurningImpact<Motion> impact(BodySlot a, BodySlot b, const Contact& contact, bool often) requires(turns<Motion>);
   void turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                  const Contact& contact) requires(turns<Motion>);
 

@@ -157,6 +157,10 @@ void describe(CLI::App& app, Arguments& arguments) {
   add_number<double>(app, "--orientation-error", arguments.run.orientation_error,
                      "How far bodies that precess may be turned otherwise than they would be, in rad")
       ->type_name("RAD");
+  add_number<double>(
+      app, "--shortest-flight", arguments.run.shortest_flight,
+      "For how long bodies that turn fly at least after a contact that presses them together, in seconds")
+      ->type_name("T");
   add_number<double>(app, "--until", arguments.until, "End the run at T, in seconds, instead of the scene's end_time")
       ->type_name("T");
   add_number<double>(app, "--rate", arguments.run.rate,
@@ -238,6 +242,9 @@ void check(const Arguments& arguments) {
   }
   if (!(run.orientation_error >= 0x1p-30 && run.orientation_error <= 0.125)) {
     throw ArgumentError("--orientation-error: must be from 2^-30 (9.3e-10) to 0.125");
+  }
+  if (!(run.shortest_flight > 0 && run.shortest_flight <= 1)) {
+    throw ArgumentError("--shortest-flight: must be above 0, and at most 1");
   }
   if (run.kdop != 6 && run.kdop != 14 && run.kdop != 18 && run.kdop != 26) {
     throw ArgumentError("--kdop: must be 6, 14, 18 or 26");

@@ -9,12 +9,13 @@ SurfaceNumbers read_surface(const JsonNode& node, const SurfaceNumbers& of_scene
   if (node.has("tangential_restitution")) {
     surface.tangential_restitution = node["tangential_restitution"].number(tangential_restitution_problem);
   }
+  if (node.has("rolling_friction")) surface.rolling_friction = node["rolling_friction"].number(friction_problem);
   return surface;
 }
 
 void refuse_friction(const JsonNode& root, const std::vector<JsonNode>& bodies) {
   const auto refuse = [](const JsonNode& node) {
-    for (const char* key : {"friction", "tangential_restitution"}) {
+    for (const char* key : {"friction", "tangential_restitution", "rolling_friction"}) {
       if (node.has(key)) {
         node[key].fail(nothing_turns);
       }

@@ -11,8 +11,8 @@
 
 namespace kds::io {
 
-/// Each number of the node's own, or else that of the scene: the keys "restitution", "friction" and
-/// "tangential_restitution".
+/// Each number of the node's own, or else that of the scene: the keys "restitution", "friction",
+/// "tangential_restitution" and "rolling_friction".
 SurfaceNumbers read_surface(const JsonNode& node, const SurfaceNumbers& of_scene);
 
 /// Why there is no friction in a scene.

@@ -173,6 +173,7 @@ ReadTable read_table(const JsonNode& node, const std::filesystem::path& folder, 
     body.friction = rows.number(table.friction, "friction", row, of_scene.friction, friction_problem);
     body.tangential_restitution = rows.number(table.tangential_restitution, "tangential_restitution", row,
                                               of_scene.tangential_restitution, tangential_restitution_problem);
+    body.rolling_friction = of_scene.rolling_friction;
   }
   scene.turning = scene.turning || !table.angular_velocity.empty();
   return read;

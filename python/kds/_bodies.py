@@ -62,6 +62,7 @@ class Bodies:
         restitution: float = 1.0,
         friction: float = 0.0,
         tangential_restitution: float = 0.0,
+        rolling_friction: float = 0.0,
         category: int = 1,
         collides_with: int = 0xFFFFFFFF,
         group: int = 0,
@@ -100,6 +101,7 @@ class Bodies:
             restitution=number("restitution", restitution),
             friction=number("friction", friction),
             tangential_restitution=number("tangential_restitution", tangential_restitution),
+            rolling_friction=number("rolling_friction", rolling_friction),
             category=unsigned("category", category, 1, 32),
             collides_with=unsigned("collides_with", collides_with, 1, 32),
             group=unsigned("group", group, 1, 32),
@@ -125,6 +127,7 @@ class Bodies:
         restitutions: ArrayLike = 1.0,
         frictions: ArrayLike = 0.0,
         tangential_restitutions: ArrayLike = 0.0,
+        rolling_frictions: ArrayLike = 0.0,
         categories: ArrayLike = 1,
         collide_with: ArrayLike = 0xFFFFFFFF,
         groups: ArrayLike = 0,
@@ -168,6 +171,7 @@ class Bodies:
             restitution=column("restitutions", restitutions, n),
             friction=column("frictions", frictions, n),
             tangential_restitution=column("tangential_restitutions", tangential_restitutions, n),
+            rolling_friction=column("rolling_frictions", rolling_frictions, n),
             category=unsigned("categories", categories, n, 32),
             collides_with=unsigned("collide_with", collide_with, n, 32),
             group=unsigned("groups", groups, n, 32),
@@ -215,6 +219,7 @@ class Bodies:
         restitution: Any,
         friction: Any,
         tangential_restitution: Any,
+        rolling_friction: Any,
         category: Any,
         collides_with: Any,
         group: Any,
@@ -228,8 +233,9 @@ class Bodies:
         motions[:, TIME] = self._core.now() if start is None else start
         motions[:, ORIENTATION] = orientation
         motions[:, ANGULAR_VELOCITY] = angular_velocity
-        numbers = np.empty((n, 5))
-        for place, value in enumerate((mass, restitution, friction, tangential_restitution, inertia)):
+        numbers = np.empty((n, 6))
+        surfaces = (restitution, friction, tangential_restitution, rolling_friction)
+        for place, value in enumerate((mass, inertia, *surfaces)):
             numbers[:, place] = value
         both = np.stack([category, collides_with, group], axis=1)
         bits = fixed + np.uint8(2) * sensor

@@ -206,14 +206,16 @@ TEST_CASE("scene reader: a shape is placed about its pivot") {
 
 TEST_CASE("scene reader: friction is the scene's where a body of a scene that turns has none of its own") {
   const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "friction": 0.5, "tangential_restitution": -0.5,
-    "response": "elastic", "bodies": [
+    "rolling_friction": 0.25, "response": "elastic", "bodies": [
       {"name": "a", "shape": {"sphere": {"radius": 1}}, "friction": 2, "inertia": 1,
        "motion": [{"start": 0, "position": [[0,0,0]]}]},
       {"name": "b", "shape": {"sphere": {"radius": 1}}, "tangential_restitution": 1,
-       "motion": [{"start": 0, "position": [[9,0,0]]}]}]})",
+       "rolling_friction": 0, "motion": [{"start": 0, "position": [[9,0,0]]}]}]})",
                                   "scene.json");
   CHECK(scene.bodies[0].friction == 2);
   CHECK(scene.bodies[0].tangential_restitution == -0.5);
+  CHECK(scene.bodies[0].rolling_friction == 0.25);
+  CHECK(scene.bodies[1].rolling_friction == 0);
   CHECK(scene.bodies[1].friction == 0.5);
   CHECK(scene.bodies[1].tangential_restitution == 1);
 }

@@ -207,6 +207,8 @@ TEST_CASE("scene reader: each bad value is named with its place") {
       {"/bodies/1/friction", "\"rough\"", "bodies[1].friction: must be a number"},
       {"/tangential_restitution", "1.5", "tangential_restitution: must be in [-1, 1]"},
       {"/bodies/1/tangential_restitution", "-2", "bodies[1].tangential_restitution: must be in [-1, 1]"},
+      {"/rolling_friction", "-1", "rolling_friction: must be >= 0"},
+      {"/bodies/1/rolling_friction", "\"soft\"", "bodies[1].rolling_friction: must be a number"},
       {"/domain/friction", "1", "domain.friction: unknown key"},
       {"/friction", "0.5",
        "friction: bodies of this scene do not turn: none has an \"angular_velocity\" or an \"inertia\""},

@@ -66,7 +66,7 @@ Shape hammer() {
 }
 
 /// What the bodies of a scene are.
-enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture, capsules, crates, in_a_room, compounds };
+enum class Bodies { boxes, rods_and_balls, rings, precessing, mixture, capsules, crates, heap, in_a_room, compounds };
 
 constexpr double end_time = 2;
 constexpr int most_bodies = 64;  // on a lattice of 4 x 4 x 4
@@ -76,13 +76,16 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
   kds::tests::Random random(seed);
   const auto ring = rational_torus();
   const Shape tetrahedron = convex_hull({{0.5, 0.5, 0.5}, {0.5, -0.5, -0.5}, {-0.5, 0.5, -0.5}, {-0.5, -0.5, 0.5}});
-  const bool crates = bodies == Bodies::crates;
+  const bool heap = bodies == Bodies::heap;
+  const bool crates = bodies == Bodies::crates || heap;
   const int count = crates ? 8 : bodies == Bodies::rings ? 12 : 24;
   for (int i = 0; i < count; ++i) {
     const int place = (i * 37) % most_bodies;
     typename TurningWorld<Degree>::Motion motion{};
     motion.path.coefficients[0] = Vector3d(place % 4, place / 4 % 4, place / 16) * 1.5 + random_vector(random, 0.2);
-    motion.path.coefficients[1] = random_vector(random, 1.5);
+    if (heap) motion.path.coefficients[0] = Vector3d(i % 2, i / 2 % 2, i / 4) * 0.9 + random_vector(random, 0.05);
+    if (heap) motion.path.coefficients[0] += Vector3d(2.5, 2.5, 0.5);
+    motion.path.coefficients[1] = random_vector(random, heap ? 0.25 : 1.5);
     if constexpr (Degree == 2) motion.path.coefficients[2] = Vector3d(0, 0, crates ? -5 : -1);
     const double w = random.between(-1, 1);
     const Vector3d q = random_vector(random, 1);
@@ -118,6 +121,8 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
     body.friction = crates ? 0.5 : i % 3 == 0 ? 0.25 : 0;
     body.restitution = crates ? 0.25 : i % 5 == 0 ? 0.5 : 1;
     body.fixed = i == 7 && !crates;
+    if (heap && i % 4 == 3) body.shape = Sphere{0.3};  // which roll, until that is braked
+    body.rolling_friction = heap ? 0.0625 : 0;
     world.add_body(body);
   }
   const auto add_fixed = [&](const Shape& shape, const Vector3d& at, const Eigen::Quaterniond& orientation) {
@@ -127,6 +132,7 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
     motion.orientation = orientation;
     typename TurningWorld<Degree>::Description body{.shape = shape, .motion = {motion}};
     body.fixed = true, body.friction = 0.5, body.restitution = crates ? 0.25 : 0.75;
+    body.rolling_friction = 1;
     world.add_body(body);
   };
   if (crates) {  // They fall on a floor, and most come to rest.
@@ -162,15 +168,15 @@ void run(Bodies bodies, const WorldOptions& options, Drive drive, EventHash& has
 
 template <int Degree>
 void add_worlds(std::vector<Replay>& replays) {
-  constexpr std::array kinds{std::pair{Bodies::boxes, "boxes"},     std::pair{Bodies::rods_and_balls, "rods-and-balls"},
-                             std::pair{Bodies::rings, "rings"},     std::pair{Bodies::precessing, "precessing"},
-                             std::pair{Bodies::mixture, "mixture"}, std::pair{Bodies::capsules, "capsules"},
-                             std::pair{Bodies::crates, "crates"},
-                             std::pair{Bodies::in_a_room, "in-a-room"},
-                             std::pair{Bodies::compounds, "compounds"}};
+  constexpr std::array kinds{
+      std::pair{Bodies::boxes, "boxes"},         std::pair{Bodies::rods_and_balls, "rods-and-balls"},
+      std::pair{Bodies::rings, "rings"},         std::pair{Bodies::precessing, "precessing"},
+      std::pair{Bodies::mixture, "mixture"},     std::pair{Bodies::capsules, "capsules"},
+      std::pair{Bodies::crates, "crates"},       std::pair{Bodies::heap, "heap"},
+      std::pair{Bodies::in_a_room, "in-a-room"}, std::pair{Bodies::compounds, "compounds"}};
   for (const auto& [bodies, name] : kinds) {
     for (const Response response : {Response::none, Response::elastic}) {
-      if (bodies == Bodies::crates && (Degree == 1 || response == Response::none)) continue;
+      if ((bodies == Bodies::crates || bodies == Bodies::heap) && (Degree == 1 || response == Response::none)) continue;
       Replay replay{
           "turning/" + std::to_string(Degree) + '/' + name + (response == Response::elastic ? "/elastic" : "/none"),
           {}};
@@ -178,7 +184,9 @@ void add_worlds(std::vector<Replay>& replays) {
         WorldOptions options{.response = response, .broad_phase = broad_phase};
         options.rate = broad_phase == BroadPhaseKind::sap ? 30 : 0;
         options.report_pairs = true;
-        if (response == Response::elastic && what != Bodies::crates && what != Bodies::in_a_room)
+        if (what == Bodies::heap) options.shortest_flight = 4e-3;
+        if (response == Response::elastic && what != Bodies::crates && what != Bodies::heap &&
+            what != Bodies::in_a_room)
           options.walls = Walls{Vector3d::Constant(-1), Vector3d::Constant(6)};
         replay.ways.push_back({std::move(way), [=](EventHash& hash) { run<Degree>(what, options, drive, hash); }});
       };

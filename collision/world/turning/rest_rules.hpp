@@ -15,6 +15,11 @@ inline constexpr double largest_reach = 0x1p-6;
 /// on its corners are faster than that; more, and bodies that slide or roll on a level floor stop the sooner.
 inline constexpr double calm_energy = 4;
 
+/// What touches many is driven by the flights of all: a body that touches n others is calm up to that speed times n
+/// over the first number, at least once and at most the second times it (8 cm/s on Earth).
+inline constexpr double calm_neighbours = 2;
+inline constexpr double most_driven = 4;
+
 /// Without friction nothing brakes what slides, or turns about the normal: two such bodies come to rest on each other
 /// only where that is slower than this part of the speed of a calm body (20 um/s on Earth); else they slide on.
 inline constexpr double smooth_slip = 0x1p-10;
@@ -22,6 +27,14 @@ inline constexpr double smooth_slip = 0x1p-10;
 /// In shortest flights: for how long bodies are to be calm, so that they touch wherever they can, and how long it takes
 /// until those that were not in balance are looked at again.
 inline constexpr double calm_flights = 8;
+/// In shortest flights: for how long bodies are to be calm until they come to rest without those that they touch and
+/// that move.
+inline constexpr double part_flights = 64;
+/// Of a group that is not in balance those bodies are left out first of which at least this part of the worst imbalance
+/// is left.
+inline constexpr double unheld_part = 0.5;
+/// What rests wakes where more than this part of the greatest acceleration is left of it because of what lies on it.
+inline constexpr double weak_part = 0x1p-6;
 /// In shortest flights: for how long it is remembered where bodies touched.
 inline constexpr double memory = 64;
 

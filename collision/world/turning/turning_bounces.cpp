@@ -33,28 +33,18 @@ double Engine<Motion>::rebound(double approach, double pressed, double restituti
   return std::max({restitution * approach, least * approach, 0.5 * options_.shortest_flight * pressed});
 }
 
+/// What an impulse makes of two bodies that meet; nothing where they do not approach.
 template <class Motion>
-bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
-  if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
-  const std::uint64_t burst = count_meeting(a, b);
-  if (burst > patience()) {  // No rebound helps: between fixed bodies that close in, say.
-    ++counters_.rebounds_suppressed;
-    let_through(a, b, contact);
-    return true;
-  }
-  resting_.meet(a, b);
-  Motion motion_a = met(a, contact.time);
-  Motion motion_b = met(b, contact.time);
+TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Contact& contact,
+                                             bool often) requires(turns<Motion>) {
+  TurningImpact<Motion> result{met(a, contact.time), met(b, contact.time)};
+  Motion& motion_a = result.a;
+  Motion& motion_b = result.b;
   const Vector3d& n = contact.normal;
   const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
-  const double approach = -dot(n, rates.velocity(contact.point));
-  if (!(approach > 0)) {  // The pieces of their motions approach, their free rotations do not.
-    turn_back(a, b, motion_a, motion_b, contact);
-    for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
-      if (precesses(slot)) set_motion(slot, motion, false);
-    }
-    return false;
-  }
+  double approach = -dot(n, rates.velocity(contact.point));
+  result.approach = approach > 0;
+  if (!result.approach) return result;
   // A side of a box that turns carries its normal along, so that what slides on it is pressed to it or lifted off.
   const auto ball = [&](BodySlot slot) { return bodies_.mover(slot).radius > 0; };
   const Vector3d& point = ball(a)   ? motion_a.path.coefficients[0]
@@ -74,18 +64,13 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) req
     pressed = std::max(pressed, std::abs(dot(n, motion->path.acceleration(contact.time))));
   }
   // Losses may make infinitely many contacts of three bodies in a line: so too many at one time lose nothing any more.
-  const bool often = burst > options_.zeno.contacts;
   const double restitution = often ? 1 : std::min(bodies_[a].restitution, bodies_[b].restitution);
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
-  const auto mobility = [&](BodySlot slot) {
-    if (resting_.carries(slot)) return Mobility::fixed();
-    if (tumbling_.has(slot)) return Mobility::of(bodies_[slot].inverse_mass, tumbling_.inverse_inertia(slot));
-    return Mobility::of_spherical(bodies_[slot].inverse_mass, bodies_[slot].inverse_inertia);
-  };
+  const auto mobility_of = [&](BodySlot slot) { return resting_.carries(slot) ? Mobility::fixed() : mobility(slot); };
+  const Mobility of_a = mobility_of(a), of_b = mobility_of(b);
   // Of two bodies the lower counts, as of restitutions.
-  const Surfaces surfaces{
-      .restitution = rebound(approach, pressed, restitution) / approach,
+  Surfaces surfaces{
       .friction = often ? 0 : std::min(bodies_[a].friction, bodies_[b].friction),
       .tangential_restitution = std::min(bodies_[a].tangential_restitution, bodies_[b].tangential_restitution)};
   // A ball is turned by nothing that acts along its normal.
@@ -94,19 +79,66 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) req
                                            : Vector3d(contact.point - motion.path.coefficients[0]);
   };
   const ContactArms arms{n, arm(a, motion_a), arm(b, motion_b)};
-  const Vector3d impulse = collide(velocity_a, velocity_b, mobility(a), mobility(b), arms, surfaces).impulse;
+  const double rolling = often ? 0 : std::min(bodies_[a].rolling_friction, bodies_[b].rolling_friction);
+  Vector3d couple = Vector3d::Zero();
+  if (rolling > 0) {
+    const double change = approach + rebound(approach, pressed, restitution);
+    couple = brake_turning(velocity_a, velocity_b, of_a, of_b, arms, rolling * push_for(change, of_a, of_b, arms));
+    approach = -dot(n, (velocity_b.velocity + cross(velocity_b.angular_velocity, arms.b)) -
+                           (velocity_a.velocity + cross(velocity_a.angular_velocity, arms.a)));
+  }
+  surfaces.restitution = rebound(approach, pressed, restitution) / approach;
+  result.impulse = collide(velocity_a, velocity_b, of_a, of_b, arms, surfaces).impulse;
   motion_a.path.coefficients[1] = velocity_a.velocity, motion_a.angular_velocity = velocity_a.angular_velocity;
   motion_b.path.coefficients[1] = velocity_b.velocity, motion_b.angular_velocity = velocity_b.angular_velocity;
+  result.turn_a = -cross(arms.a, result.impulse) - couple;
+  result.turn_b = cross(arms.b, result.impulse) + couple;
+  return result;
+}
+
+/// How much an impulse moves a body, at rest or not.
+template <class Motion>
+Mobility Engine<Motion>::mobility(BodySlot slot) const requires(turns<Motion>) {
+  if (tumbling_.has(slot)) return Mobility::of(bodies_[slot].inverse_mass, tumbling_.inverse_inertia(slot));
+  return Mobility::of_spherical(bodies_[slot].inverse_mass, bodies_[slot].inverse_inertia);
+}
+
+template <class Motion>
+bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
+  if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
+  const std::uint64_t burst = count_meeting(a, b);
+  if (burst > patience()) {  // No rebound helps: between fixed bodies that close in, say.
+    ++counters_.rebounds_suppressed;
+    let_through(a, b, contact);
+    return true;
+  }
+  const bool often = burst > options_.zeno.contacts;
+  if (resting_.meet(a, b)) {  // What rests wakes only where the impulse would move it.
+    const auto hit = impact(a, b, contact, often);
+    if (hit.approach) {
+      const auto mobility_of = [this](BodySlot slot) { return mobility(slot); };
+      resting_.strike(a, hit.turn_a, b, hit.turn_b, hit.impulse, mobility_of);
+    }
+  }
+  auto [motion_a, motion_b, impulse, turn_a, turn_b, approach] = impact(a, b, contact, often);
+  const auto both = {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}};
+  if (!approach) {  // The pieces of their motions approach, their free rotations do not.
+    turn_back(a, b, motion_a, motion_b, contact);
+    for (const auto& [slot, motion] : both) {
+      if (precesses(slot)) set_motion(slot, motion, false);
+    }
+    return false;
+  }
   const auto push = [&](BodySlot slot, Motion& motion, const Vector3d& angular_impulse) {
     if (!precesses(slot)) return;
     tumbling_.push(slot, angular_impulse);
     tumbling_.set_path(slot, motion.path);
     motion.angular_velocity = tumbling_.angular_velocity(slot);
   };
-  push(a, motion_a, -cross(arms.a, impulse));
-  push(b, motion_b, cross(arms.b, impulse));
+  push(a, motion_a, turn_a);
+  push(b, motion_b, turn_b);
   turn_back(a, b, motion_a, motion_b, contact);
-  for (const auto& [slot, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
+  for (const auto& [slot, motion] : both) {
     if (bodies_.fixed(slot) || resting_.carries(slot)) continue;
     ++counters_.motion_updates;
     set_motion(slot, motion, false);

@@ -1,9 +1,9 @@
 #include "collision/world/turning/turning_rest.hpp"
 
-#include "certificates/turning/turned_orientation.hpp"
 #include "collision/motions.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting_contacts.hpp"
+#include "collision/world/turning/body_frame.hpp"
 #include "collision/world/turning/rest_rules.hpp"
 #include "kds/audit.hpp"
 
@@ -14,60 +14,8 @@
 
 namespace kds::collision {
 
-using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using namespace turning_rest;
-
-namespace {
-
-/// Where a body is at a time.
-class Frame {
- public:
-  template <class Motion>
-  Frame(const Motion& motion, double t)
-      : origin_(motion.path.position(t)),
-        turn_(certificates::turned_orientation(motion.orientation, motion.spin(), t)),
-        length_(dot(turn_.vec(), turn_.vec()) + turn_.w() * turn_.w()) {}
-
-  const Vector3d& origin() const { return origin_; }
-  Vector3d out(const Vector3d& x) const { return origin_ + turned(x, turn_.w()); }
-  Vector3d back(const Vector3d& x) const { return turned(x - origin_, -turn_.w()); }
-
- private:
-  /// q x q^-1 = x + 2 v x (v x x + w x) / |q|^2, for q = (w, v).
-  Vector3d turned(const Vector3d& x, double w) const {
-    const Vector3d v = turn_.vec();
-    const Vector3d turn = cross(v, x) + w * x;
-    return x + (2 / length_) * cross(v, turn);
-  }
-
-  Vector3d origin_;
-  Quaterniond turn_;
-  double length_;
-};
-
-template <class Motion>
-double surface_speed(const Motion& motion, double radius, double t) {
-  return norm(motion.path.velocity(t)) + norm(motion.angular_velocity) * radius;
-}
-
-template <class Motion>
-bool stands(const Motion& motion) {
-  const auto& path = motion.path.coefficients;
-  return motion.angular_velocity.isZero(0) &&
-         std::all_of(path.begin() + 1, path.end(), [](const Vector3d& x) { return x.isZero(0); });
-}
-
-template <class Motion>
-Motion stopped(const Motion& motion, double t) {
-  Motion result = motion.restarted(t);
-  auto& path = result.path.coefficients;
-  std::fill(path.begin() + 1, path.end(), Vector3d::Zero());
-  result.angular_velocity = Vector3d::Zero();
-  return result;
-}
-
-}  // namespace
 
 template <class Motion>
 typename TurningRest<Motion>::Slot TurningRest<Motion>::find(BodySlot a, BodySlot b, int) const {
@@ -125,17 +73,30 @@ void TurningRest<Motion>::wake(BodySlot slot) {
   }
 }
 
+/// Only these, each of which rests: what is left rests on.
 template <class Motion>
-void TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
-  if (resting_ == 0 || !(carries(a) || carries(b))) return;
+void TurningRest<Motion>::wake_only(std::span<const BodySlot> slots) {
+  for (const BodySlot slot : slots) {
+    of_[slot].rests = false;
+    of_[slot].since = never;
+    woken_.push_back(slot);
+    erase_all(slot);
+  }
+}
+
+template <class Motion>
+bool TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
+  if (resting_ == 0 || !(carries(a) || carries(b))) return false;
   // What touches it gently is to lie on it, perhaps: until that is known it stays as it is.
   const bool gentle = std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 &&
                       (carries(a) || !bodies_.fixed(a)) && (carries(b) || !bodies_.fixed(b)) &&
                       calm(a, scale({a, b}).acceleration) && calm(b, scale({a, b}).acceleration);
-  if (gentle) return;
+  if (gentle) return false;
+  if (carries(a) != carries(b) && !bodies_.fixed(a) && !bodies_.fixed(b)) return true;
   if (carries(a)) wake(a);
   if (carries(b)) wake(b);
   solve();
+  return false;
 }
 
 template <class Motion>
@@ -216,7 +177,9 @@ bool TurningRest<Motion>::calm(BodySlot slot, double acceleration) const {
   const Motion& motion = bodies_.motion(slot);
   if (bodies_.fixed(slot)) return stands(motion);
   const Scale scale{acceleration, bodies_[slot].bounding_radius};
-  return surface_speed(motion, scale.size, clock_.now) <= calm_speed(scale);
+  const auto others = slot < of_.size() ? static_cast<double>(of_[slot].others.size()) : 0;
+  const double driven = std::clamp(others / calm_neighbours, 1.0, most_driven);
+  return surface_speed(motion, scale.size, clock_.now) <= driven * calm_speed(scale);
 }
 
 /// Whether two bodies that touch without friction slide on each other, or turn about the normal: as wholes, for the
@@ -235,7 +198,7 @@ bool TurningRest<Motion>::slides(Key key, const Vector3d& normal) const {
 template <class Motion>
 void TurningRest<Motion>::note(Key key, const collision::Contact& contact) {
   const double t = clock_.now;
-  const Frame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
+  const BodyFrame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
   auto& places = pair(key).places;
   const Scale scale = this->scale(key);
   const double far = reach(scale);
@@ -263,96 +226,46 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
     return false;
   }
   note({a, b}, contact);
-  bool long_enough = true;
+  bool long_enough = true, patient = true;
   for (const BodySlot slot : {a, b}) {
     if (bodies_.fixed(slot) || carries(slot)) continue;
     Member& body = member(slot);
     body.since = std::min(body.since, t);
     long_enough = long_enough && t - std::max(body.since, body.looked) >= calm_flights * flight_;
+    patient = patient && t - body.since >= part_flights * flight_;
   }
   if (!long_enough) return false;
   const auto look = [&](BodySlot slot) {
     if (!bodies_.fixed(slot)) of_[slot].looked = t;
   };
-  const Group group = find_group(bodies_.fixed(a) ? b : a);
-  if (group.slides || !quiet(group)) {
+  const Group linked = find_group(bodies_.fixed(a) ? b : a);
+  if (linked.any_busy() && !patient) {
     look(a), look(b);
     return false;
   }
-  if (!balanced(group.loads, group.footholds)) {
-    for (const BodySlot slot : group.bodies) look(slot);
-    for (const BodySlot slot : group.bodies) {
-      if (carries(slot)) wake(slot);  // It cannot carry the others.
-    }
-    solve();
-    return false;
-  }
-  stop(group, contact, {a, b});
-  return true;
-}
-
-/// The bodies that are linked with one by places where they touch, and the forces that these can give.
-template <class Motion>
-typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot first) {
-  const double t = clock_.now;
-  Group group;
+  const Group held = held_part(linked, false);
   ++walks_;
-  const auto visit = [&](BodySlot slot) {
-    if (std::exchange(of_[slot].seen, walks_) == walks_) return;
-    of_[slot].place = static_cast<std::uint32_t>(group.bodies.size());
-    group.bodies.push_back(slot);
-  };
-  const auto place_of = [&](BodySlot slot) { return bodies_.fixed(slot) ? Foothold::fixed : of_[slot].place; };
-  visit(first);
-  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-    const BodySlot slot = group.bodies[i];
-    Load load{.mass = bodies_[slot].mass,
-              .size = bodies_[slot].bounding_radius,
-              .acceleration = 2 * bodies_.free_acceleration(slot)};
-    group.loads.push_back(load);
-    for (const BodySlot other : of_[slot].others) {
-      const Key key = std::minmax(slot, other);
-      if (!bodies_.fixed(other) && of_[other].seen == walks_ && of_[other].place < i) continue;
-      const Frame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
-      const double far = reach(scale(key));
-      const double friction = std::min(bodies_[key.first].friction, bodies_[key.second].friction);
-      const bool smooth =
-          std::min(bodies_[key.first].tangential_restitution, bodies_[key.second].tangential_restitution) == -1;
-      const bool rests = pairs_[key].rests;
-      bool links = false;
-      for (const detail::TouchedPlace& place : pairs_[key].places) {
-        const Vector3d on_a = a.out(place.on_a), on_b = b.out(place.on_b);
-        if (!rests && (t - place.time > memory * flight_ || norm(on_b - on_a) > far)) continue;
-        if (!std::exchange(links, true)) {
-          if (!bodies_.fixed(other)) visit(other);
-          group.pairs.push_back(key);
-        }
-        group.slides = group.slides || ((friction == 0 || smooth) && !rests && slides(key, place.normal));
-        const Vector3d x = 0.5 * (on_a + on_b);
-        group.footholds.push_back({.a = place_of(key.first),
-                                   .b = place_of(key.second),
-                                   .arm_a = x - a.origin(),
-                                   .arm_b = x - b.origin(),
-                                   .normal = place.normal,
-                                   .friction = smooth ? 0 : friction});
-      }
-    }
+  for (const BodySlot slot : held.bodies) of_[slot].seen = walks_;
+  std::vector<BodySlot> too_weak;  // to carry the others
+  bool any = false;
+  for (const BodySlot slot : linked.bodies) {
+    const bool holds = of_[slot].seen == walks_;
+    any = any || (holds && !carries(slot));
+    if (holds) continue;
+    of_[slot].looked = t;
+    if (carries(slot)) too_weak.push_back(slot);
   }
-  return group;
+  wake_only(too_weak);
+  solve();
+  if (!any) look(a), look(b);
+  if (any) stop(held, contact, {a, b});
+  return holds(a, b);
 }
 
+/// Whether a body rests, or has been calm for long enough; `acceleration` is the greatest of its group.
 template <class Motion>
-bool TurningRest<Motion>::quiet(const Group& group) const {
-  double g = 0;
-  for (const BodySlot slot : group.bodies) g = std::max(g, acceleration(slot));
-  const auto ready = [&](BodySlot slot) {
-    return of_[slot].rests || (clock_.now - of_[slot].since >= calm_flights * flight_ && calm(slot, g));
-  };
-  return std::all_of(group.bodies.begin(), group.bodies.end(), ready) &&
-         std::all_of(group.pairs.begin(), group.pairs.end(), [&](const Key& key) {
-           return (!bodies_.fixed(key.first) || stands(bodies_.motion(key.first))) &&
-                  (!bodies_.fixed(key.second) || stands(bodies_.motion(key.second)));
-         });
+bool TurningRest<Motion>::ready(BodySlot slot, double acceleration) const {
+  return of_[slot].rests || (clock_.now - of_[slot].since >= calm_flights * flight_ && calm(slot, acceleration));
 }
 
 template <class Motion>
@@ -362,7 +275,7 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
     Pair& pair = pairs_[key];
     if (pair.rests) continue;
     const detail::TouchedPlace& place = pair.places.back();
-    const Frame a(bodies_.motion(key.first), t);
+    const BodyFrame a(bodies_.motion(key.first), t);
     pair.normal = place.normal;
     pair.point = (key == met ? contact.point : a.out(place.on_a)) - a.origin();
     pair.rests = true;

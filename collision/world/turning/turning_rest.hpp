@@ -4,6 +4,7 @@
 #include "collision/body_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/response/static_balance.hpp"
+#include "collision/response/turning_impulse.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
@@ -16,7 +17,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -61,9 +64,9 @@ void archive_members(Archive& archive, LyingPair& pair) {
 /// of it is faster than such flights make it. Where calm bodies touch is noted. When all bodies of a group, that is,
 /// those that are linked by such places, down to what is fixed, have been calm for some flights, and forces at these
 /// places within the cones of friction hold them all (static_balance.hpp), they come to rest: from then on they do not
-/// move, exactly, and cost nothing. A group wakes as a whole, with the accelerations that its bodies were given, when
-/// one of its bodies is struck, changed or removed, or one of its supports is changed or removed. What a calm body
-/// touches does not wake: if forces hold that body too, it joins the group, and if not the group wakes then.
+/// move, exactly, and cost nothing. Those that others hold do not wait for the rest of their group for ever. An impact
+/// wakes what it moves, and what that has held; a change of a body, or of a support, the whole group. What a calm body
+/// touches does not wake: if forces hold that body too, it joins them, and if not those wake that cannot carry it.
 ///
 /// A part of World that owns its state. It reads the bodies, and tells its listener what follows. All of it is a
 /// function of contacts and edits: not of the broad phase, windows or snapshots.
@@ -95,9 +98,15 @@ class TurningRest {
   /// Two bodies have met, and move as they do after their impulses. Returns whether they, and all bodies of their
   /// group, have come to rest.
   bool comes_to_rest(BodySlot a, BodySlot b, const collision::Contact& contact);
-  /// Two bodies are about to meet. If one of them rests it wakes, unless the other is calm: that may lie on it soon,
-  /// and bounces off it until then as off a fixed body.
-  void meet(BodySlot a, BodySlot b);
+  /// Two bodies are about to meet. Returns whether one of them rests and the impulse is to tell whether that wakes: not
+  /// if the other is calm. That may lie on it soon, and bounces off it until then as off a fixed body.
+  bool meet(BodySlot a, BodySlot b);
+  using MobilityOf = std::function<Mobility(BodySlot)>;
+  /// Then the impulse on b, were the one that rests fixed, and the angular impulses on both. If the one that rests, and
+  /// what it lies on, take it without moving, all stay as they are; if not, those wake that it moves, and what they
+  /// have held.
+  void strike(BodySlot a, const Eigen::Vector3d& turn_a, BodySlot b, const Eigen::Vector3d& turn_b,
+              const Eigen::Vector3d& impulse, const MobilityOf& mobility);
 
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
   void drop_all(BodySlot slot);
@@ -161,10 +170,12 @@ class TurningRest {
   };
   struct Group {
     std::vector<BodySlot> bodies;  ///< none of them fixed
-    std::vector<Key> pairs;
     std::vector<Load> loads;
     std::vector<Foothold> footholds;
-    bool slides = false;  ///< somewhere without friction
+    std::vector<Key> pairs;   ///< of each foothold
+    std::vector<char> busy;   ///< by body: whether it cannot rest yet, by itself or by what it lies on
+    std::vector<char> leans;  ///< by body: whether it leans on one that is busy
+    bool any_busy() const;
   };
 
   Member& member(BodySlot slot) {
@@ -175,6 +186,7 @@ class TurningRest {
   void erase(Key key);
   void erase_all(BodySlot slot);
   void wake(BodySlot slot);
+  void wake_only(std::span<const BodySlot> slots);
 
   double acceleration(BodySlot slot) const;
   Scale scale(Key key) const;
@@ -183,8 +195,13 @@ class TurningRest {
   bool calm(BodySlot slot, double acceleration) const;
   bool slides(Key key, const Eigen::Vector3d& normal) const;
   void note(Key key, const collision::Contact& contact);
-  Group find_group(BodySlot first);
-  bool quiet(const Group& group) const;
+  Group find_group(BodySlot first, bool resting = false);
+  bool ready(BodySlot slot, double acceleration) const;
+  /// The group without some of its bodies, by place, and without those that then touch nothing.
+  static Group without(const Group& group, std::vector<char> out);
+  /// The largest part of a group that is found to be in balance; `removed`: something that rests has been taken out of
+  /// it.
+  Group held_part(Group group, bool removed) const;
   void stop(const Group& group, const collision::Contact& contact, Key met);
 
   const Bodies<Motion>& bodies_;

@@ -153,4 +153,53 @@ TEST_CASE("loads that forces within cones make are held, whatever the footholds"
   CHECK(held >= 295);  // `false` is allowed at the limits of friction.
 }
 
+TEST_CASE("what cannot be held is told of each body", "[balance]") {
+  // One on four corners, one in the air.
+  const std::vector<Load> loads{{.mass = 2, .size = 1, .acceleration = weight}, {.acceleration = weight}};
+  std::vector<Foothold> footholds;
+  for (const Vector3d& point : corners) {
+    footholds.push_back(
+        {.a = Foothold::fixed, .b = 0, .arm_a = {}, .arm_b = point, .normal = Vector3d::UnitZ(), .friction = 0.5});
+  }
+  std::vector<double> left;
+  CHECK_FALSE(balanced(loads, footholds, &left));
+  REQUIRE(left.size() == 2);
+  CHECK(left[0] <= balance_rounding);
+  CHECK(left[1] == 1);
+}
+
+TEST_CASE("impacts that support takes move nothing", "[balance]") {
+  // A box on four corners, and another in the midst of its top; both of mass 2 and with a moment of 1.
+  const auto run = [](const Vector3d& impulse, const Vector3d& arm, double friction) {
+    std::vector<StruckBody> bodies(2, {.mobility = Mobility::of_spherical(0.5, 1), .size = 2, .still_speed = 0.02});
+    bodies[1].velocity = {0.5 * impulse, cross(arm, impulse)};
+    std::vector<Foothold> footholds;
+    for (const Vector3d& point : corners) {
+      footholds.push_back({Foothold::fixed, 0, {}, point, Vector3d::UnitZ(), friction});
+      const Vector3d half = 0.5 * point;
+      footholds.push_back({0, 1, {half[0], half[1], 1}, half, Vector3d::UnitZ(), friction});
+    }
+    const auto energy = [&] {
+      double sum = 0;
+      for (const StruckBody& body : bodies) {
+        sum += squared_norm(body.velocity.velocity) + squared_norm(body.velocity.angular_velocity) / 2;
+      }
+      return sum;
+    };
+    const double before = energy();
+    const bool taken = takes_impact(bodies, footholds);
+    CHECK(energy() <= before);
+    if (!taken) CHECK_FALSE((bodies[0].still() && bodies[1].still()));
+    return taken;
+  };
+  CHECK(run({0, 0, -100}, {0, 0, 0.5}, 0));
+  CHECK(run({0, 0, -100}, {0.25, 0.25, 0.5}, 0));
+  CHECK_FALSE(run({0, 0, -100}, {1, 0, 0.5}, 0.5));  // beyond the edge: it tips
+  CHECK_FALSE(run({0, 0, 1}, {0, 0, -0.5}, 0.5));    // and is lifted
+  CHECK_FALSE(run({1, 0, 0}, {0, 0, -0.5}, 0.5));    // or slides, for nothing presses it down
+  CHECK(run({0.02, 0, 0}, {0, 0, 0}, 0));            // at 1 cm/s, which counts as nothing
+  CHECK(run({10, 0, -100}, {0, 0, -0.5}, 0.5));
+  CHECK_FALSE(run({10, 0, -100}, {0, 0, -0.5}, 0));
+}
+
 }  // namespace test_static_balance
