@@ -29,6 +29,7 @@ struct BodyTable {
   std::vector<double> restitution;
   std::vector<double> friction;
   std::vector<double> tangential_restitution;
+  std::vector<double> rolling_friction;
   std::vector<std::int8_t> fixed;   ///< 0 or 1
   std::vector<std::int8_t> sensor;  ///< 0 or 1
 
@@ -52,6 +53,7 @@ void for_each_column(Table& table, const Visit& visit) {
   visit("restitution", table.restitution);
   visit("friction", table.friction);
   visit("tangential_restitution", table.tangential_restitution);
+  visit("rolling_friction", table.rolling_friction);
   visit("fixed", table.fixed);
   visit("sensor", table.sensor);
 }

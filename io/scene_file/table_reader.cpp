@@ -156,7 +156,8 @@ ReadTable read_table(const JsonNode& node, const std::filesystem::path& folder, 
   read.first = scene.bodies.size();
   const BodyTable table = read_file(node["file"], folder, read.file);
   read.rows = table.rows();
-  read.has_friction = !table.friction.empty() || !table.tangential_restitution.empty();
+  read.has_friction =
+      !table.friction.empty() || !table.tangential_restitution.empty() || !table.rolling_friction.empty();
   const Shapes shapes(node, table, scene);
   const Rows rows(table, read);
   scene.bodies.reserve(scene.bodies.size() + read.rows);
@@ -173,7 +174,8 @@ ReadTable read_table(const JsonNode& node, const std::filesystem::path& folder, 
     body.friction = rows.number(table.friction, "friction", row, of_scene.friction, friction_problem);
     body.tangential_restitution = rows.number(table.tangential_restitution, "tangential_restitution", row,
                                               of_scene.tangential_restitution, tangential_restitution_problem);
-    body.rolling_friction = of_scene.rolling_friction;
+    body.rolling_friction =
+        rows.number(table.rolling_friction, "rolling_friction", row, of_scene.rolling_friction, friction_problem);
   }
   scene.turning = scene.turning || !table.angular_velocity.empty();
   return read;

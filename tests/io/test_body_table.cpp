@@ -44,6 +44,7 @@ BodyTable full(std::size_t rows) {
   table.restitution.assign(rows, 0.5);
   table.friction.assign(rows, 0.25);
   table.tangential_restitution.assign(rows, -0.5);
+  table.rolling_friction.assign(rows, 0.0625);
   table.fixed.assign(rows, 0);
   table.sensor.assign(rows, 0);
   table.fixed.back() = 1;
@@ -101,7 +102,7 @@ TEST_CASE("body table: what is written is read back, to the last bit") {
   const auto columns = [](const BodyTable& t) {
     return std::tie(t.position, t.velocity, t.acceleration, t.start, t.orientation, t.angular_velocity, t.radius,
                     t.half_extents, t.shape, t.scale, t.mass, t.restitution, t.friction, t.tangential_restitution,
-                    t.fixed, t.sensor);
+                    t.rolling_friction, t.fixed, t.sensor);
   };
   CHECK(columns(read) == columns(table));
   CHECK(to_hdf5(read) == to_hdf5(table));
@@ -134,6 +135,7 @@ TEST_CASE("body table: rows are bodies of the scene, with all that columns say")
   CHECK(body.restitution == 0.5);
   CHECK(body.friction == 0.25);
   CHECK(body.tangential_restitution == -0.5);
+  CHECK(body.rolling_friction == 0.0625);
   CHECK(body.fixed);
   CHECK_FALSE(body.sensor);
   CHECK(scene.bodies[0].sensor);
@@ -226,6 +228,7 @@ TEST_CASE("body table: each bad number is named with its row and column") {
       {[](BodyTable& t) { t.restitution[0] = 1.5; }, "rows[0].restitution: must be in [0, 1]"},
       {[](BodyTable& t) { t.friction[0] = -1; }, "rows[0].friction: must be >= 0"},
       {[](BodyTable& t) { t.tangential_restitution[0] = 2; }, "rows[0].tangential_restitution: must be in [-1, 1]"},
+      {[](BodyTable& t) { t.rolling_friction[0] = -1; }, "rows[0].rolling_friction: must be >= 0"},
       {[](BodyTable& t) { t.fixed[1] = 2; }, "rows[1].fixed: must be 0 or 1"},
       {[](BodyTable& t) { t.sensor[1] = -1; }, "rows[1].sensor: must be 0 or 1"},
       {[](BodyTable& t) { t.radius.clear(), t.half_extents.assign(3, Vector3d(1, 0, 1)); },
