@@ -47,14 +47,17 @@ class Gatherer final : public EventSink {
 
 /// Events and counters of a run; files appear when it has ended, all or none.
 py::tuple run_scene(const Scene& scene, const std::string& broad_phase, double rate, int kdop, bool pairs,
-                    std::size_t threads, bool gather, const std::string& csv, const std::string& replay,
-                    const std::string& title) {
+                    std::size_t threads, std::size_t domains, double shortest_flight, double orientation_error,
+                    bool gather, const std::string& csv, const std::string& replay, const std::string& title) {
   RunOptions options;
   options.broad_phase = broad_phase;
   options.rate = rate;
   options.kdop = kdop;
   options.pairs = pairs;
   options.threads = threads;
+  options.domains = domains;
+  options.shortest_flight = shortest_flight;
+  options.orientation_error = orientation_error;
   options.steady_progress = broad_phase != "sap";  // whose frames would come more often
   Gatherer gatherer(gather);
   RunResult result;

@@ -36,7 +36,7 @@ py::array_t<EventRow> to_array(const std::vector<EventRow>& rows) {
   return py::array_t<EventRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
 }
 
-std::array<double, 3> to_row(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+std::array<double, 3> coordinates(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
 
 std::optional<PlacedShape> placed_shape(const std::optional<PyShape>& shape, const Eigen::Vector4d& q) {
   if (!shape) return std::nullopt;
@@ -242,7 +242,7 @@ void bind_queries(py::class_<PyWorld>& world) {
     const std::optional<PlacedShape> placed = placed_shape(shape, q);
     std::vector<NearRow> rows;
     for (const NearBody& near : self.ask([&](AnyWorld& w) { return w.nearest(placed, to, count, filter); })) {
-      rows.push_back({near.body, near.distance, to_row(near.point), to_row(near.from_point)});
+      rows.push_back({near.body, near.distance, coordinates(near.point), coordinates(near.from_point)});
     }
     return py::array_t<NearRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
   });

@@ -88,6 +88,9 @@ class Scene:
         kdop: int = 6,
         pairs: bool = False,
         threads: int = 1,
+        domains: int = 1,
+        shortest_flight: float = 1e-3,
+        orientation_error: float = 1e-3,
         gather: bool = True,
         csv: str | os.PathLike[str] | None = None,
         replay: str | os.PathLike[str] | None = None,
@@ -95,16 +98,23 @@ class Scene:
         """Runs the scene from its beginning to its end; it may be run any number of times.
 
         `csv`, `replay`: files to write, which are those of the tool's --events and --view to the byte; they appear when
-        the run has ended. gather=False: no array of events. The other arguments are the tool's. Other threads go on
-        meanwhile. OSError for files that cannot be written; RuntimeError where a replay wants three.js, which is not
+        the run has ended. gather=False: no array of events. The other arguments are the tool's; with more `domains` than
+        1, or 0 for as many as are best, the threads run parts of the scene (docs/parallel.md), the events are the same,
+        and there are no pairs and no replay. Other threads go on meanwhile. OSError for files that cannot be written; RuntimeError where a replay wants three.js, which is not
         there.
         """
+        if domains != 1 and (pairs or replay is not None or self.turning):
+            what = "pairs are told of" if pairs else "bodies turn" if self.turning else "there is a replay"
+            raise ValueError(f"domains: must be 1 where {what}")
         rows, stats = self._core.run(
             word("broad_phase", broad_phase),
             number("rate", rate),
             whole("kdop", kdop, 2**31 - 1),
             flag("pairs", pairs),
             whole("threads", threads),
+            whole("domains", domains, 65535),
+            number("shortest_flight", shortest_flight),
+            number("orientation_error", orientation_error),
             flag("gather", gather),
             "" if csv is None else path("csv", csv),
             "" if replay is None else path("replay", replay),

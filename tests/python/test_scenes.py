@@ -62,6 +62,31 @@ class Scenes(unittest.TestCase):
         with open(file, "rb") as module, open(self.path("tool.html"), "rb") as tool:
             self.assertEqual(module.read(), tool.read())
 
+    def test_domains(self):
+        scene = kds.generate_scene(self.path("spheres.json"), "spheres", 400, density=0.1, end_time=1.0)
+        whole = scene.run()
+        self.assertGreater(len(whole.events), 100)
+        for domains in (0, 2, 7):
+            divided = scene.run(domains=domains, threads=2)
+            self.assertEqual(divided.events.tobytes(), whole.events.tobytes())
+            if domains > 0:
+                self.assertEqual(divided.stats["domains"], domains)
+        with self.assertRaisesRegex(ValueError, "domains: must be 1 where there is a replay"):
+            scene.run(domains=2, replay=self.path("replay.html"))
+        with self.assertRaisesRegex(ValueError, "domains: must be 1 where pairs are told of"):
+            scene.run(domains=2, pairs=True)
+        with self.assertRaisesRegex(ValueError, "domains: must be a whole number"):
+            scene.run(domains=-1)
+
+    def test_heaps(self):
+        """Longer flights: fewer contacts."""
+        scene = kds.generate_scene(self.path("crates.json"), "crates", 4, seed=3, end_time=0.75)
+        self.assertTrue(scene.turning)
+        short, long = (len(scene.run(shortest_flight=s).events) for s in (1e-3, 4e-3))
+        self.assertLess(long, short)
+        with self.assertRaisesRegex(ValueError, "domains: must be 1 where bodies turn"):
+            scene.run(domains=2)
+
     def test_nothing_is_left_behind(self):
         scene = kds.generate_scene(self.path("boxes.json"), "boxes", 5)
         before = sorted(os.listdir(self.folder))
