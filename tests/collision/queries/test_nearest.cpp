@@ -189,26 +189,6 @@ TEST_CASE("the bodies nearest to a shape are those of all bodies", "[nearest]") 
   CHECK(overlaps > 10);
 }
 
-TEST_CASE("how far apart two bodies are, one of which turns", "[nearest]") {
-  BasicWorld<certificates::RigidMotion<1>> world(WorldOptions{});
-  using Description = BasicBodyDescription<certificates::RigidMotion<1>>;
-  Description rod;
-  rod.shape = Box{{2, 0.5, 0.5}};
-  rod.motion = {certificates::RigidMotion<1>{{{Vector3d(0, 0, 0)}}, Eigen::Quaterniond::Identity(), {0, 0, 1}}};
-  Description ball;
-  ball.shape = Sphere{1};
-  ball.motion = {certificates::RigidMotion<1>{{{Vector3d(0, 5, 0)}}, Eigen::Quaterniond::Identity(), {0, 0, 0}}};
-  const BodyId a = world.add_body(rod), b = world.add_body(ball);
-  CHECK(distance_between(world, a, b).distance == Approx(3.5));
-  world.advance_to(std::acos(-1) / 2);  // a quarter of a turn
-  const ShapeDistance found = distance_between(world, a, b);
-  CHECK(found.distance == Approx(2));
-  CHECK((found.of_a - Vector3d(0, 2, 0)).cwiseAbs().maxCoeff() <= 0.5);
-  CHECK((found.of_b - Vector3d(0, 4, 0)).norm() < 1e-7);
-  world.remove_body(b);
-  CHECK_THROWS_AS(distance_between(world, a, b), std::invalid_argument);
-}
-
 TEST_CASE("nearest refuses what is no place", "[nearest]") {
   World<1> world(WorldOptions{});
   world.add_body(body(Sphere{1}, {0, 0, 0}));

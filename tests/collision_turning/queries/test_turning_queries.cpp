@@ -105,4 +105,18 @@ TEST_CASE("what is nearest, where it has turned to") {
   CHECK(std::abs(near[1].distance - 5) < 1e-14);
 }
 
+TEST_CASE("how far apart a body that turns is from another") {
+  TurningWorld<1> world(WorldOptions{});
+  const BodyId rod = world.add_body(body(Box{Vector3d(2, 0.5, 0.5)}, motion({0, 0, 0}, {0, 0, 0}, {0, 0, 1})));
+  const BodyId ball = world.add_body(body(Sphere{1}, motion({0, 5, 0}, {0, 0, 0}, {0, 3, 0})));
+  CHECK(std::abs(distance_between(world, rod, ball).distance - 3.5) < 1e-14);
+  world.advance_to(std::numbers::pi / 2);
+  const ShapeDistance found = distance_between(world, rod, ball);
+  CHECK(std::abs(found.distance - 2) < 1e-14);
+  CHECK((found.of_a - Vector3d(0, 2, 0)).cwiseAbs().maxCoeff() <= 0.5);
+  CHECK((found.of_b - Vector3d(0, 4, 0)).norm() < 1e-7);
+  world.remove_body(ball);
+  CHECK_THROWS(distance_between(world, rod, ball));
+}
+
 }  // namespace kds::collision::test_turning_queries
