@@ -35,6 +35,9 @@ inline constexpr double part_flights = 64;
 inline constexpr double unheld_part = 0.5;
 /// What rests wakes where more than this part of the greatest acceleration is left of it because of what lies on it.
 inline constexpr double weak_part = 0x1p-6;
+/// In shortest flights: impulses that each are too small to move a body at rest are summed up for so long. So an
+/// acceleration that would be less than twice that of the weight over this number is taken no notice of.
+inline constexpr double ignored_flights = 256;
 /// In shortest flights: for how long it is remembered where bodies touched.
 inline constexpr double memory = 64;
 

@@ -1,6 +1,7 @@
 #include "collision/world/turning/turning_rest.hpp"
 
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting_contacts.hpp"
 #include "collision/world/turning/body_frame.hpp"
@@ -246,6 +247,16 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
   const Group held = held_part(linked, false);
   ++walks_;
   for (const BodySlot slot : held.bodies) of_[slot].seen = walks_;
+  const auto stops = [&](BodySlot slot) { return bodies_.fixed(slot) || of_[slot].seen == walks_; };
+  if (stops(a) != stops(b)) {  // It is put off where the other would move into the one that stops.
+    const Motion motion_a = stops(a) ? stopped(bodies_.motion(a), t) : bodies_.motion(a);
+    const Motion motion_b = stops(b) ? stopped(bodies_.motion(b), t) : bodies_.motion(b);
+    const PointRates<Motion::degree> rates(motion_a, motion_b, t);
+    if (dot(contact.normal, rates.velocity(contact.point)) < 0) {
+      look(a), look(b);
+      return false;
+    }
+  }
   std::vector<BodySlot> too_weak;  // to carry the others
   bool any = false;
   for (const BodySlot slot : linked.bodies) {
@@ -290,6 +301,7 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
       if (!pairs_[key].rests) erase(key);
     }
     of_[slot].rests = true;
+    of_[slot].ignored = {};
     of_[slot].since = never;
     listener_.take_up(slot, stopped(bodies_.motion(slot), t));
   }

@@ -127,6 +127,18 @@ class TurningRest {
   /// Throws AuditFailure unless bodies that rest do not move, and rest on something.
   void audit(double t, bool walls) const;
 
+  /// How a body at rest would move by the impulses that have been too small to wake it, but for what it lies on.
+  struct Ignored {
+    double since = -never;  ///< s
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
+
+    template <class Archive>
+    void archive(Archive& archive) {
+      archive(since, velocity, angular_velocity);
+    }
+  };
+
   /// All of it, as plain data.
   struct Image {
     struct One {
@@ -134,14 +146,15 @@ class TurningRest {
       detail::LyingPair pair;
     };
     std::vector<One> pairs;     ///< in order
-    std::vector<double> since;  ///< by body, as are the next two
+    std::vector<double> since;  ///< by body, as are the next three
     std::vector<double> looked;
     std::vector<char> rests;
+    std::vector<Ignored> ignored;
     std::vector<BodySlot> woken;
 
     template <class Archive>
     void archive(Archive& archive) {
-      archive(since, looked, rests, woken);
+      archive(since, looked, rests, ignored, woken);
       archive.each(pairs, [&](One& one) { archive(one.a, one.b, one.pair); });
     }
     /// Throws std::runtime_error, naming what is wrong.
@@ -160,6 +173,7 @@ class TurningRest {
     double since = never;          ///< s; since when it is calm
     double looked = -never;        ///< s; when its group was last found not to be at rest
     bool rests = false;
+    Ignored ignored;
     std::uint64_t seen = 0;  ///< the last walk that has visited it
     std::uint32_t place = 0;
   };

@@ -39,14 +39,21 @@ void TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
     const Scale scale{acceleration(slot), bodies_[slot].bounding_radius};
     return StruckBody{.mobility = mobility(slot), .size = scale.size, .still_speed = calm_speed(scale)};
   };
+  Ignored& ignored = of_[struck].ignored;
+  if (clock_.now - ignored.since > ignored_flights * flight_) ignored = {.since = clock_.now};
   StruckBody alone = moved(struck);
-  alone.velocity = {(struck == b ? 1 : -1) * alone.mobility.inverse_mass * impulse,
-                    alone.mobility.turned_by(struck == b ? turn_b : turn_a)};
+  ignored.velocity += (struck == b ? 1 : -1) * alone.mobility.inverse_mass * impulse;
+  ignored.angular_velocity += alone.mobility.turned_by(struck == b ? turn_b : turn_a);
+  alone.velocity = {ignored.velocity, ignored.angular_velocity};
   if (alone.still()) return;
   const Group group = find_group(struck, true);
   std::vector<StruckBody> bodies{alone};
   for (std::size_t i = 1; i < group.bodies.size(); ++i) bodies.push_back(moved(group.bodies[i]));
-  if (takes_impact(bodies, group.footholds)) return;
+  if (takes_impact(bodies, group.footholds)) {
+    of_[struck].ignored.velocity = bodies[0].velocity.velocity;
+    of_[struck].ignored.angular_velocity = bodies[0].velocity.angular_velocity;
+    return;
+  }
   std::vector<char> moves(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) moves[i] = i == 0 || !bodies[i].still();
   const Group left = held_part(without(group, std::move(moves)), true);
