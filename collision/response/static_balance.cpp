@@ -171,28 +171,29 @@ bool balanced(std::span<const Load> loads, std::span<const Foothold> footholds, 
   return least <= balance_rounding;
 }
 
-bool StruckBody::still() const {
-  return norm(velocity.velocity) + norm(velocity.angular_velocity) * size <= still_speed;
+bool StruckBody::slower_than(double speed) const {
+  return norm(velocity.velocity) + norm(velocity.angular_velocity) * size <= speed;
 }
 
 bool takes_impact(std::span<StruckBody> bodies, std::span<const Foothold> footholds) {
   constexpr int most_steps = 512;
   constexpr int pause = 16;
-  const auto still = [&] {
-    return std::all_of(bodies.begin(), bodies.end(), [](const StruckBody& body) { return body.still(); });
+  constexpr double enough = 0x1p-3;  // of `still_speed`: then the descent ends
+  const auto slower_than = [&](double part) {
+    return std::all_of(bodies.begin(), bodies.end(),
+                       [&](const StruckBody& body) { return body.slower_than(part * body.still_speed); });
   };
-  if (still()) return true;
+  if (slower_than(1)) return true;
   const std::vector<StruckBody> struck(bodies.begin(), bodies.end());
   Descent<StruckBody> descent(struck, footholds);
-  for (int steps = 0; steps < most_steps; steps += pause) {
+  for (int steps = 0; steps < most_steps && !slower_than(enough); steps += pause) {
     for (int k = 0; k < pause; ++k) descent.step();
     descent.look();
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       bodies[i].velocity = {descent.left_of(i).linear, descent.left_of(i).angular};
     }
-    if (still()) return true;
   }
-  return false;
+  return slower_than(1);
 }
 
 }  // namespace kds::collision

@@ -53,7 +53,9 @@ struct StruckBody {
   double size = 1;         ///< the distance of its farthest point from its centre
   double still_speed = 0;  ///< no faster than this, at no point, it counts as not moved
 
-  bool still() const;
+  bool still() const { return slower_than(still_speed); }
+  /// At each of its points.
+  bool slower_than(double speed) const;
 };
 
 /// Whether bodies that lie on each other take an impact without moving: whether there are impulses, each within the

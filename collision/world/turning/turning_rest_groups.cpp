@@ -49,9 +49,12 @@ void TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
   const Group group = find_group(struck, true);
   std::vector<StruckBody> bodies{alone};
   for (std::size_t i = 1; i < group.bodies.size(); ++i) bodies.push_back(moved(group.bodies[i]));
+  // Their weights press on each other meanwhile, so that friction holds what is struck by little and little.
+  const double meanwhile = std::min(clock_.now - of_[struck].ignored.since, calm_flights * flight_);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    bodies[i].velocity.velocity += meanwhile * group.loads[i].acceleration;
   if (takes_impact(bodies, group.footholds)) {
-    of_[struck].ignored.velocity = bodies[0].velocity.velocity;
-    of_[struck].ignored.angular_velocity = bodies[0].velocity.angular_velocity;
+    of_[struck].ignored = {clock_.now, bodies[0].velocity.velocity, bodies[0].velocity.angular_velocity};
     return;
   }
   std::vector<char> moves(bodies.size());
