@@ -263,6 +263,75 @@ TEST_CASE("what rests next to what is pushed away rests on", "[heaps]") {
   world.audit();
 }
 
+TEST_CASE("a body does not come to rest in the way of another", "[heaps]") {
+  // At one contact of these two the lower one is ready to rest, and the upper one is not.
+  Log log;
+  Turning world(options(), &log);
+  Boxes boxes;
+  boxes.add_ground(world);
+  const auto put = [&](const Vector3d& half, const Vector3d& at, double angle, double mass, double restitution) {
+    Body body = falling(Sphere{1}, at);
+    body.motion[0].orientation = Quaterniond(std::cos(angle / 2), 0, 0, std::sin(angle / 2));
+    body.mass = mass, body.restitution = restitution;
+    boxes.add(world, body, half);
+  };
+  put({0.10463616661178173, 0.1808203694683011, 0.20257130965610143},
+      {-0.041374301914720239, -0.025696565970027604, 0.21257130965610144}, 1.724541264472526, 2.9450083426841798,
+      0.059063853346355881);
+  put({0.25755281074138392, 0.25981811508447572, 0.18112637483898769},
+      {-0.099518207178217508, 0.046165839887187726, 0.61626899415119052}, 2.5189478098181799, 2.7118217122328896,
+      0.21322586573625335);
+  world.advance_to(1);
+  CHECK(log.passed == 0);
+  CHECK(all_still(world, boxes));
+  CHECK(deepest_overlap(world, boxes) < 1e-12);
+  CHECK(world.motion(boxes.ids[2]).path.position(1)[2] > 0.58);
+}
+
+TEST_CASE("small impacts on what rests add up", "[heaps]") {
+  // A box slides onto a plate that rests on ice. Each of its contacts would move the plate too little to wake it.
+  for (const double mass : {2.0, 20.0}) {
+    CAPTURE(mass);
+    Turning world({.response = Response::elastic});
+    Body ice = fixed(Box{Vector3d(20, 20, 1)}, {0, 0, -1});
+    ice.friction = 0;
+    world.add_body(ice);
+    Body plate = falling(Box{Vector3d(3, 3, 0.125)}, {0, 0, 0.125 + 1e-6});
+    plate.mass = mass;
+    const BodyId below = world.add_body(plate);
+    world.advance_to(0.25);
+    REQUIRE(still(world, below));
+    Body box = falling(Box{Vector3d(0.125, 0.125, 0.0625)}, {-0.5, 0, 0.3125 + 1e-5}, 0.25);
+    box.motion[0].path.coefficients[1] = Vector3d(2, 0, 0);
+    const BodyId above = world.add_body(box);
+    world.advance_to(0.875);
+    const auto speed = [&](BodyId id) { return world.motion(id).path.velocity(0.875)[0]; };
+    // The plate has been taken for fixed while it would have moved at less than 2 cm/s.
+    const double momentum = mass * speed(below) + speed(above);
+    CHECK(momentum < 2.01);
+    CHECK(momentum > 2 - 0.02 * mass);
+    CHECK(speed(below) > 0);
+  }
+  // A ball rolls along a plank, beyond the edge of what that lies on.
+  Turning world({.response = Response::elastic});
+  world.add_body(fixed(Box{Vector3d(0.5, 0.5, 1)}, {0, 0, -1}));
+  const BodyId plank = world.add_body(falling(Box{Vector3d(3, 0.25, 0.125)}, {0, 0, 0.125 + 1e-6}));
+  world.advance_to(0.25);
+  REQUIRE(still(world, plank));
+  Body ball = falling(Sphere{0.125}, {0.25, 0, 0.375 + 1e-5}, 0.25);
+  ball.mass = 0.5;
+  ball.motion[0].path.coefficients[1] = Vector3d(1, 0, 0);
+  ball.motion[0].angular_velocity = Vector3d(0, 8, 0);
+  const BodyId rolls = world.add_body(ball);
+  const auto sinks = [&](double until) {  // the end of the plank to which the ball rolls
+    world.advance_to(until);
+    CHECK(std::abs(world.motion(rolls).path.position(until)[0] - until) < 0.1);
+    return -world.motion(plank).direction(Vector3d::UnitX(), until).vector[2];
+  };
+  CHECK(std::abs(sinks(1.25)) < 1e-3);
+  CHECK(sinks(2.25) > 0.01);  // it tips with the ball at 1.5
+}
+
 TEST_CASE("rolling friction stops what rolls, and holds it on slopes that are flat enough", "[heaps]") {
   constexpr double radius = 0.5, rolling = 0.01;
   const auto run = [&](double friction, double slope, const Shape& shape, double speed, double until) {
