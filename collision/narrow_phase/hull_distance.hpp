@@ -18,7 +18,8 @@ template <class Support>
 struct NearestToOrigin {
   Eigen::Vector3d point;  ///< zero if the origin is inside, up to roundings
   double bound;           ///< all of the set is farther from the origin than this, up to roundings; below 0: not known
-  /// The point is the sum of these points of the set, times the weights, which are not negative and have the sum 1.
+  /// The point is, up to roundings, the sum of these points of the set times the weights, which are positive and have
+  /// the sum 1.
   boost::container::static_vector<Support, 4> corners;
   std::array<double, 4> weights;
 };
@@ -33,7 +34,7 @@ struct NearestOfSimplex {
   unsigned kept;                  ///< of which points it is a sum, a bit for each
   std::array<double, 4> weights;  ///< of these, in their order
 };
-/// What roundings make of it is a point of the hull in any case, so that it is never too near.
+/// In doubles; of points that are nearly in a plane or a line it is what roundings make of it.
 NearestOfSimplex nearest_of_simplex(const std::array<Eigen::Vector3d, 4>& points, std::size_t count);
 
 }  // namespace detail
