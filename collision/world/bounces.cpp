@@ -120,14 +120,8 @@ bool Engine<Motion>::endless(std::uint64_t burst) const {
 }
 
 template <class Motion>
-bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
-  if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
-  const std::uint64_t burst = count_meeting(a, b);
-  if (burst > patience()) {  // A resting contact would not last: the pair passes through.
-    ++counters_.rebounds_suppressed;
-    let_through(a, b, contact);
-    return true;
-  }
+bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
+                             std::uint64_t burst) requires(!turns<Motion>) {
   if (bends(a, b)) {
     bounce_off_surface(a, b, contact, burst);
     return false;

@@ -271,7 +271,9 @@ class Engine final : private RestingListener<BodyMotionType> {
   void process_wall() requires(!turns<Motion>);
   void bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>);
   void take_up_bounce();
-  bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
+  /// Bounces, rests, or gathers two bodies that have met `burst` times at nearly one time. Returns whether the Zeno
+  /// policy acted.
+  bool respond(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(!turns<Motion>);
   bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>);
   bool bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
                       std::uint64_t burst) requires(!turns<Motion>);
@@ -290,7 +292,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>);
   double rebound(double approach, double pressed, double restitution) const requires(turns<Motion>);
   void process_wall() requires(turns<Motion>);
-  bool respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
+  bool respond(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(turns<Motion>);
   bool precesses(BodySlot slot) const { return tumbling_.has(slot) && !resting_.carries(slot); }
   Mobility mobility(BodySlot slot) const requires(turns<Motion>);
   Motion met(BodySlot slot, double t) requires(turns<Motion>);

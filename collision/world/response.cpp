@@ -43,13 +43,14 @@ void Engine<Motion>::process_contact(BodySlot a, BodySlot b, const Contact& cont
     return std::tuple(bodies_.motion(a), bodies_.motion(b), bodies_[a].shape, bodies_[b].shape);
   };
   const auto before = bends(a, b) ? std::optional(state()) : std::nullopt;
+  const bool elastic = options_.response == Response::elastic;
   bool suppressed = false;
   bool passes = false;
-  if (options_.response == Response::elastic) {
-    suppressed = respond(a, b, contact);
-  } else {
-    suppressed = passes = count_meeting(a, b) > patience();
-    counters_.rebounds_suppressed += suppressed;
+  if (!elastic || bodies_[a].inverse_mass + bodies_[b].inverse_mass > 0) {
+    const std::uint64_t burst = count_meeting(a, b);
+    suppressed = passes = burst > patience();  // No response helps: between fixed bodies that close in, say.
+    counters_.rebounds_suppressed += passes;
+    if (elastic && !passes) suppressed = respond(a, b, contact, burst);
   }
   const auto after = [&] {
     if (!bodies_.contains(event.a) || !bodies_.contains(event.b) || resting_.find(a, b) != Resting::none) return;

@@ -104,23 +104,17 @@ Mobility Engine<Motion>::mobility(BodySlot slot) const requires(turns<Motion>) {
 }
 
 template <class Motion>
-bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
-  if (bodies_[a].inverse_mass + bodies_[b].inverse_mass == 0) return false;
-  const std::uint64_t burst = count_meeting(a, b);
-  if (burst > patience()) {  // No rebound helps: between fixed bodies that close in, say.
-    ++counters_.rebounds_suppressed;
-    let_through(a, b, contact);
-    return true;
-  }
+bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
+                             std::uint64_t burst) requires(turns<Motion>) {
   const bool often = burst > options_.zeno.contacts;
-  if (resting_.meet(a, b)) {  // What rests wakes only where the impulse would move it.
-    const auto hit = impact(a, b, contact, often);
-    if (hit.approach) {
-      const auto mobility_of = [this](BodySlot slot) { return mobility(slot); };
-      resting_.strike(a, hit.turn_a, b, hit.turn_b, hit.impulse, mobility_of);
-    }
+  const bool may_wake = resting_.meet(a, b);
+  TurningImpact<Motion> hit = impact(a, b, contact, often);
+  if (may_wake && hit.approach) {  // What rests wakes only where the impulse would move it.
+    const auto mobility_of = [this](BodySlot slot) { return mobility(slot); };
+    const bool woke = resting_.strike(a, hit.turn_a, b, hit.turn_b, hit.impulse, mobility_of);
+    if (woke) hit = impact(a, b, contact, often);
   }
-  auto [motion_a, motion_b, impulse, turn_a, turn_b, approach] = impact(a, b, contact, often);
+  auto& [motion_a, motion_b, impulse, turn_a, turn_b, approach] = hit;
   const auto both = {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}};
   if (!approach) {  // The pieces of their motions approach, their free rotations do not.
     turn_back(a, b, motion_a, motion_b, contact);

@@ -104,8 +104,8 @@ class TurningRest {
   using MobilityOf = std::function<Mobility(BodySlot)>;
   /// Then the impulse on b, were the one that rests fixed, and the angular impulses on both. If the one that rests, and
   /// what it lies on, take it without moving, all stay as they are; if not, those wake that it moves, and what they
-  /// have held.
-  void strike(BodySlot a, const Eigen::Vector3d& turn_a, BodySlot b, const Eigen::Vector3d& turn_b,
+  /// have held. Returns whether any wakes.
+  bool strike(BodySlot a, const Eigen::Vector3d& turn_a, BodySlot b, const Eigen::Vector3d& turn_b,
               const Eigen::Vector3d& impulse, const MobilityOf& mobility);
 
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.

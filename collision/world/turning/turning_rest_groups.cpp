@@ -32,7 +32,7 @@ Vector3d pressed_at(const Vector3d& x, const Vector3d& centre, const Vector3d& w
 }  // namespace
 
 template <class Motion>
-void TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b, const Vector3d& turn_b,
+bool TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b, const Vector3d& turn_b,
                                  const Vector3d& impulse, const MobilityOf& mobility) {
   const BodySlot struck = carries(a) ? a : b;
   const auto moved = [&](BodySlot slot) {
@@ -45,7 +45,7 @@ void TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
   ignored.velocity += (struck == b ? 1 : -1) * alone.mobility.inverse_mass * impulse;
   ignored.angular_velocity += alone.mobility.turned_by(struck == b ? turn_b : turn_a);
   alone.velocity = {ignored.velocity, ignored.angular_velocity};
-  if (alone.still()) return;
+  if (alone.still()) return false;
   const Group group = find_group(struck, true);
   std::vector<StruckBody> bodies{alone};
   for (std::size_t i = 1; i < group.bodies.size(); ++i) bodies.push_back(moved(group.bodies[i]));
@@ -55,7 +55,7 @@ void TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
     bodies[i].velocity.velocity += meanwhile * group.loads[i].acceleration;
   if (takes_impact(bodies, group.footholds)) {
     of_[struck].ignored = {clock_.now, bodies[0].velocity.velocity, bodies[0].velocity.angular_velocity};
-    return;
+    return false;
   }
   std::vector<char> moves(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) moves[i] = i == 0 || !bodies[i].still();
@@ -68,6 +68,7 @@ void TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
   }
   wake_only(woken);
   solve();
+  return !woken.empty();
 }
 
 template <class Motion>
