@@ -44,10 +44,10 @@ bool nearest_inside(const std::array<Vector3d, 4>& p, std::size_t count, Vector3
 
 }  // namespace
 
-NearestOfSimplex nearest_of_simplex(const std::array<Vector3d, 4>& points, std::size_t count) {
+NearestOfSimplex nearest_with_last(const std::array<Vector3d, 4>& points, std::size_t count) {
   double least = std::numeric_limits<double>::infinity();
-  NearestOfSimplex best{points[0], 0, {}};
-  for (unsigned set = 1; set < 1u << count; ++set) {
+  NearestOfSimplex best{points[count - 1], 0, {}};
+  for (unsigned set = 1u << (count - 1); set < 1u << count; ++set) {  // those with the last point
     std::array<Vector3d, 4> some;
     some.fill(points[0]);
     std::size_t size = 0;

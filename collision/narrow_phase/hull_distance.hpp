@@ -28,14 +28,15 @@ namespace detail {
 
 inline const Eigen::Vector3d& point_of(const Eigen::Vector3d& support) { return support; }
 
-/// Of the hull of one to four points the point nearest to the origin.
+/// Of some hulls of one to four points the point nearest to the origin.
 struct NearestOfSimplex {
   Eigen::Vector3d point;          ///< zero if the origin is inside, up to roundings
   unsigned kept;                  ///< of which points it is a sum, a bit for each
   std::array<double, 4> weights;  ///< of these, in their order
 };
-/// In doubles; of points that are nearly in a plane or a line it is what roundings make of it.
-NearestOfSimplex nearest_of_simplex(const std::array<Eigen::Vector3d, 4>& points, std::size_t count);
+/// Of the hulls of the last of the points and of any of those before it. In doubles; of points that are nearly in a
+/// plane or a line it is what roundings make of it.
+NearestOfSimplex nearest_with_last(const std::array<Eigen::Vector3d, 4>& points, std::size_t count);
 
 }  // namespace detail
 
@@ -64,7 +65,8 @@ auto nearest_to_origin(const Farthest& farthest, const Eigen::Vector3d& first_gu
     std::array<Eigen::Vector3d, 4> points;
     points.fill(point_of(next));
     for (std::size_t i = 0; i < nearest.corners.size(); ++i) points[i] = point_of(nearest.corners[i]);
-    const detail::NearestOfSimplex nearer = detail::nearest_of_simplex(points, nearest.corners.size());
+    // The nearest point of the corners without the new one is known: it is the one so far.
+    const detail::NearestOfSimplex nearer = detail::nearest_with_last(points, nearest.corners.size());
     if (!(squared_norm(nearer.point) < square)) {
       nearest.corners.pop_back();
       break;

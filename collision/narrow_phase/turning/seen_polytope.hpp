@@ -17,26 +17,34 @@
 
 namespace kds::collision {
 
-/// A convex core in the coordinates of its body, with what is calculated of it once. A copy of its points, so that it
-/// may be another, smaller one.
-struct TurningPolytope {
+/// A convex core in the coordinates of its body. A copy of its points, so that it may be another, smaller one.
+class TurningPolytope {
+ public:
   explicit TurningPolytope(const ConvexCore& core) : TurningPolytope(core.structure(), core.points()) {}
-  TurningPolytope(const HullStructure& of_points, std::span<const Eigen::Vector3d> places) : structure(&of_points) {
-    points.assign(places.begin(), places.end());
-    set_directions();
+  TurningPolytope(const HullStructure& of_points, std::span<const Eigen::Vector3d> places)
+      : structure(&of_points), points(places.begin(), places.end()) {
+    for (const std::uint32_t i : structure->corners) radius = std::max(radius, norm(points[i]) * (1 + 0x1p-50));
   }
 
-  /// Unit vectors. Normals of faces are known to some roundings (unit_normal()), edges to 3 of them.
-  void set_directions() {
-    radius = 0;
-    for (const std::uint32_t i : structure->corners) radius = std::max(radius, norm(points[i]) * (1 + 0x1p-50));
-    edges.clear(), normals.clear();
-    for (const HullEdge& edge : structure->edges)
-      edges.push_back(normalized(points[edge.ends[1]] - points[edge.ends[0]]));
-    for (const std::vector<std::uint32_t>& face : structure->faces) {
-      const auto [a, b, c] = spanning_corners(face);
-      normals.push_back(unit_normal(points[a], points[b], points[c]));
+  // Directions are calculated when they are first asked for: to prove that two are apart takes none.
+
+  /// From the lower to the higher end; unit vectors, known to 3 roundings.
+  const std::vector<Eigen::Vector3d>& edges() const {
+    if (edges_.empty()) {
+      for (const HullEdge& edge : structure->edges)
+        edges_.push_back(normalized(points[edge.ends[1]] - points[edge.ends[0]]));
     }
+    return edges_;
+  }
+  /// Out of the faces; unit vectors, known to some roundings (unit_normal()).
+  const std::vector<Eigen::Vector3d>& normals() const {
+    if (normals_.empty()) {
+      for (const std::vector<std::uint32_t>& face : structure->faces) {
+        const auto [a, b, c] = spanning_corners(face);
+        normals_.push_back(unit_normal(points[a], points[b], points[c]));
+      }
+    }
+    return normals_;
   }
 
   std::array<Eigen::Vector3d, 3> face(std::size_t f) const {
@@ -49,24 +57,26 @@ struct TurningPolytope {
 
   const HullStructure* structure;
   std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Vector3d> edges;    ///< from the lower to the higher end
-  std::vector<Eigen::Vector3d> normals;  ///< out of the faces
-  double radius = 0;                     ///< no corner is farther from the origin of the body
+  double radius = 0;  ///< no corner is farther from the origin of the body
+
+ private:
+  mutable std::vector<Eigen::Vector3d> edges_, normals_;
 };
 
-/// The same in the axes of the world, about the body's origin.
-struct SeenPolytope {
-  SeenPolytope(const TurningPolytope& polytope, const certificates::Rotation& turn) : structure(polytope.structure) {
-    std::array<Eigen::Vector3d, 3> columns;
-    for (std::size_t k = 0; k < 3; ++k) columns[k] = turn(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(k)));
-    const auto turned = [&](const std::vector<Eigen::Vector3d>& of_body, std::vector<Eigen::Vector3d>& in_world) {
-      in_world.reserve(of_body.size());
-      for (const Eigen::Vector3d& x : of_body)
-        in_world.push_back(x[0] * columns[0] + x[1] * columns[1] + x[2] * columns[2]);
-    };
-    turned(polytope.points, points);
-    turned(polytope.edges, edges);
-    turned(polytope.normals, normals);
+/// Its points in the axes of the world, about the body's origin.
+struct SeenCorners {
+  SeenCorners(const TurningPolytope& polytope, const certificates::Rotation& turn)
+      : structure(polytope.structure),
+        axes{turn(Eigen::Vector3d::UnitX()), turn(Eigen::Vector3d::UnitY()), turn(Eigen::Vector3d::UnitZ())},
+        points(seen(polytope.points)) {}
+
+  std::vector<Eigen::Vector3d> seen(const std::vector<Eigen::Vector3d>& of_body) const {
+    std::vector<Eigen::Vector3d> in_world(of_body.size());
+    for (std::size_t i = 0; i < of_body.size(); ++i) {
+      const Eigen::Vector3d& x = of_body[i];
+      in_world[i] = x[0] * axes[0] + x[1] * axes[1] + x[2] * axes[2];
+    }
+    return in_world;
   }
 
   const Eigen::Vector3d& farthest(const Eigen::Vector3d& along) const {
@@ -93,7 +103,16 @@ struct SeenPolytope {
   }
 
   const HullStructure* structure;
-  std::vector<Eigen::Vector3d> points, edges, normals;
+  std::array<Eigen::Vector3d, 3> axes;  ///< those of the body
+  std::vector<Eigen::Vector3d> points;
+};
+
+/// Its points and directions.
+struct SeenPolytope : SeenCorners {
+  SeenPolytope(const TurningPolytope& polytope, const certificates::Rotation& turn)
+      : SeenCorners(polytope, turn), edges(seen(polytope.edges())), normals(seen(polytope.normals())) {}
+
+  std::vector<Eigen::Vector3d> edges, normals;
 };
 
 }  // namespace kds::collision

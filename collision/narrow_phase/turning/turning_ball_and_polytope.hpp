@@ -41,11 +41,13 @@ class TurningBallAndPolytope {
   /// Faces, edges, corners.
   int ways;
 
-  struct Frame : PairFrame<Degree> {
-    Frame(const TurningBallAndPolytope& pair, double t)
+  template <class Seen>
+  struct FrameOf : PairFrame<Degree> {
+    FrameOf(const TurningBallAndPolytope& pair, double t)
         : PairFrame<Degree>(pair.a_, pair.b_, t), a(pair.polytope_, this->turn_a) {}
-    SeenPolytope a;
+    Seen a;
   };
+  using Frame = FrameOf<SeenPolytope>;
   Frame frame(double t) const { return {*this, t}; }
 
   // Conditions are few, and all are looked at.
@@ -90,8 +92,8 @@ class TurningBallAndPolytope {
   using Triangle = certificates::detail::BallAndTriangle<Degree>;
 
   double radius() const { return radii_[0] + radii_[1]; }
-  std::size_t face_count() const { return polytope_.normals.size(); }
-  std::size_t edge_count() const { return polytope_.edges.size(); }
+  std::size_t face_count() const { return polytope_.structure->faces.size(); }
+  std::size_t edge_count() const { return polytope_.structure->edges.size(); }
   static int number_of_ways(const HullStructure& core) {
     return static_cast<int>(core.faces.size() + core.edges.size() + core.corners.size());
   }
@@ -114,7 +116,8 @@ class TurningBallAndPolytope {
     return {b_.path, a_, {p, q, r}, {kind, 0}};
   }
   /// From the nearest point of the core to the centre of the ball; zero if that is inside.
-  Eigen::Vector3d way_from_core(const Frame& frame) const {
+  template <class Seen>
+  Eigen::Vector3d way_from_core(const FrameOf<Seen>& frame) const {
     const auto farthest = [&](const Eigen::Vector3d& along) {
       return Eigen::Vector3d(frame.way.value - frame.a.farthest(-along));
     };
@@ -196,7 +199,7 @@ template <int Degree>
 double TurningBallAndPolytope<Degree>::apart_until(double t, double horizon) const {
   t = balls_apart_until(a_, b_, polytope_.radius, radius(), t, horizon);
   if (t == never) return never;
-  const Frame frame = this->frame(t);
+  const FrameOf<SeenCorners> frame(*this, t);
   const Eigen::Vector3d apart = way_from_core(frame);
   if (!frame.certain || !(norm(apart) - radius() > error(frame))) return t;
   const Eigen::Vector3d n = normalized(apart);
