@@ -92,7 +92,8 @@ class MovingBodies:
             tensor, inertia = doubles("inertia", inertia, (3, 3)), None
         if isinstance(position, Motion):
             given = (velocity, acceleration, orientation, angular_velocity, higher, start, then)
-            if any(value is not left_out for value, left_out in zip(given, (STILL, STILL, UPRIGHT, STILL, (), None, ()))):
+            left_out = (STILL, STILL, UPRIGHT, STILL, NOTHING, None, ())
+            if any(value is not default for value, default in zip(given, left_out)):
                 raise ValueError("position: is a kds.Motion, so no other part of the motion must be given")
             motions, later = _whole_motion("position", position)
         else:

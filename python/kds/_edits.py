@@ -114,8 +114,9 @@ class MotionEdits:
         if higher is not None:
             motions[:, HIGHER] = higher_terms("higher", higher, (len(which),))
         later = scripts("then", then, motions[:, TIME])
-        each = np.concatenate([motions[:, None], later.reshape(len(which), -1, COLUMNS)], axis=1) if len(later) else motions
-        self._core.update(which, each.reshape(-1, COLUMNS))
+        if len(later):
+            motions = np.concatenate([motions[:, None], later.reshape(len(which), -1, COLUMNS)], axis=1)
+        self._core.update(which, motions.reshape(-1, COLUMNS))
 
     def set_restitution(self, bodies: ArrayLike, restitution: ArrayLike) -> None:
         """Gives bodies other restitutions, from 0 to 1: an id, or ids (n,), and a number for all or (n,). They count from

@@ -47,9 +47,9 @@ def as_events(rows: np.ndarray) -> np.recarray:
     return rows.view(event_dtype).view(np.recarray)
 
 
-#: Of a PeriodicWorld: the same, with offset (3,) and impulse. `offset` says which copy of b a meets: the one that many
-#: periods away; of WRAP, by how many periods the body was moved back. `impulse` (mass * length/s) was given to b along the normal, and to a
-#: against it.
+#: Of a PeriodicWorld: the same, with offset (3,) and impulse. `offset` says which copy of b the body a meets: the one that
+#: many periods away; of WRAP, by how many periods the body was moved back. `impulse` (mass * length/s) was given to b
+#: along the normal, and to a against it.
 periodic_event_dtype: np.dtype = np.dtype(
     (np.record, np.dtype(_kds.event_dtype.descr + [("offset", np.int64, (3,)), ("impulse", np.float64)]))
 )

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, Sequence
 
-from numpy.typing import ArrayLike
 import numpy as np
+from numpy.typing import ArrayLike
 
 from kds import _kds
 from kds._arrays import Doubles, Ids, doubles, finite, flag, ids, number, vector, whole, word
@@ -17,7 +17,7 @@ from kds._running import Running
 
 
 class PeriodicWorld(Running, MovingBodies, MotionEdits):
-    """Bodies in a box where what leaves at one end comes in at the other (docs/periodic.md): gases, suspensions, powders.
+    """Bodies in a box where what leaves at one end comes in at the other (docs/periodic.md): gases, suspensions.
 
     low, high: two corners (3,). degree: 1 for straight paths, 2 for parabolas too. Bodies bounce by their restitution
     and keep their orientation. Events have periodic_event_dtype; positions are in the box, up to a small slack.
@@ -90,8 +90,8 @@ class PeriodicWorld(Running, MovingBodies, MotionEdits):
         return self._core.bodies()
 
     def crossings(self, bodies: ArrayLike | None = None) -> np.ndarray:
-        """How many periods have been taken away from where the bodies would be, had they never been brought back (n, 3),
-        whole numbers: of these bodies, or of all, as `bodies` has them."""
+        """How many periods have been taken away from where the bodies would be, had they never been brought back (n,
+        3), whole numbers: of these bodies, or of all, as `bodies` has them."""
         return self._core.crossings(self.bodies if bodies is None else ids("bodies", bodies))
 
     def unwrapped_positions(self, bodies: ArrayLike | None = None) -> Doubles:

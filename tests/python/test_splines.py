@@ -84,7 +84,7 @@ class Splines(unittest.TestCase):
         # Bodies that jump to where others are overlap them there.
         again = updated.advance_to(2.5)
         whole = np.concatenate([half[0], rest[0]])
-        meets = again[again.kind == kds.EventKind.CONTACT]
+        meets = again[(again.kind == kds.EventKind.CONTACT) & (again.time > 0)]
         self.assertEqual(meets.time.tolist(), whole["time"][whole["kind"] == kds.EventKind.CONTACT].tolist())
         bulk.load(saved)
         self.assertEqual(bulk.advance_to(2.5).tobytes(), rest[0].tobytes())
@@ -102,16 +102,19 @@ class Splines(unittest.TestCase):
 
         whole, streamed = world(), world()
         whole.add_body(kds.sphere(0.3), way)
-        body = streamed.add_body(kds.sphere(0.3), kds.Motion(*(np.asarray(m)[:2] if np.ndim(m) > 1 or m is times else m for m in way)))
-        self.assertEqual(np.ndim(way.higher), 3)
-        for i in range(2, 12):
-            streamed.append_motion(body, [kds.Motion(times[i], way.position[i], way.velocity[i], way.acceleration[i],
-                                                     higher=way.higher[i])])  # fmt: skip
-            streamed.advance_to(times[i - 2] + 0.25)
-        gathered = whole.advance_to(times[-1] + 3)
-        events = np.concatenate([streamed.advance_to(times[-1] + 3)])
-        self.assertGreater(len(gathered), 5)
-        self.assertEqual(events.tobytes(), gathered[-len(events):].tobytes())
+
+        def piece(i):
+            return kds.Motion(times[i], way.position[i], way.velocity[i], way.acceleration[i], higher=way.higher[i])
+
+        body = streamed.add_body(kds.sphere(0.3), piece(0))
+        log = b""
+        for i in range(1, 12):
+            streamed.append_motion(body, piece(i))
+            log += streamed.advance_to(times[i - 1] + 0.25).tobytes()
+        log += streamed.advance_to(times[-1] + 3).tobytes()
+        events = whole.advance_to(times[-1] + 3)
+        self.assertGreater((events.kind == kds.EventKind.CONTACT).sum(), 5)
+        self.assertEqual(log, events.tobytes())
 
     def test_way_points_are_reached(self):
         random = np.random.default_rng(3)
