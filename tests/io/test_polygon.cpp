@@ -47,6 +47,16 @@ int turns_around(const std::vector<Vector2d>& outline, const Vector2d& point) {
   return turns;
 }
 
+/// Whether triangles have a corner at each place of the outline: so that they fit to polygons beside it.
+bool all_corners_are_there(const std::vector<Vector2d>& outline) {
+  const auto triangles = cut_into_triangles(flat(outline), in_order(outline.size()));
+  return std::all_of(outline.begin(), outline.end(), [&](const Vector2d& place) {
+    return std::any_of(triangles.begin(), triangles.end(), [&](const auto& t) {
+      return outline[t[0]] == place || outline[t[1]] == place || outline[t[2]] == place;
+    });
+  });
+}
+
 /// Checks the triangles of a polygon in the plane against its outline: area, way around, and which points are covered.
 void check(const std::vector<Vector2d>& outline, std::uint32_t seed = 1) {
   const auto places = flat(outline);
@@ -77,6 +87,7 @@ void check_all_ways(std::vector<Vector2d> outline) {
   for (int direction = 0; direction < 2; ++direction) {
     for (std::size_t i = 0; i < outline.size(); ++i) {
       CAPTURE(direction, i);
+      CHECK(all_corners_are_there(outline));
       check(outline);
       std::rotate(outline.begin(), outline.begin() + 1, outline.end());
     }
@@ -130,21 +141,24 @@ TEST_CASE("polygon: outlines of random stars, combs and grids, with holes") {
     star.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
   }
   check(star, seed);
+  CHECK(all_corners_are_there(star));
   // A hole, from a corner: the same star, smaller, gone around the other way.
   std::vector<Vector2d> ring = star;
   ring.push_back(star[0]);
   for (int i = 0; i <= n; ++i) ring.push_back(0.5 * star[std::size_t((n - i) % n)]);
   check(ring, seed);
+  CHECK(all_corners_are_there(ring));
   // Teeth on a grid: many corners on a line.
   std::vector<Vector2d> comb;
   const int teeth = 2 + static_cast<int>(10 * part(random));
   for (int i = 0; i < 2 * teeth; ++i) comb.emplace_back(i, 0);
   for (int i = 2 * teeth; i-- > 0;) {
     const double height = 1 + std::floor(3 * part(random));
-    if (i % 2 == 1) comb.emplace_back(i, height);
+    if (i % 2 == 1 && i + 1 < 2 * teeth) comb.emplace_back(i, height);
     comb.emplace_back(i, i % 2 == 1 ? 1 : height + 1);
   }
   check(comb, seed);
+  CHECK(all_corners_are_there(comb));
 }
 
 /// Whether two edges of an outline meet where they need not.
