@@ -70,7 +70,8 @@ std::vector<M> narrowed_pieces(const std::vector<kds::collision::BodyId>& ids, c
   std::vector<M> own;
   for (std::size_t k = 0; k < each; ++k) {
     const std::string piece = k == 0 ? "motion" : "then[" + std::to_string(k - 1) + "]";
-    const std::string name = piece + " of body " + std::to_string(ids[i]);
+    const bool alone = k > 0 && ids.size() == 1;
+    const std::string name = alone ? piece : piece + " of body " + std::to_string(ids[i]);
     own.push_back(narrowed<M>(pieces[each * i + k], name));
     if (!kds::collision::in_range(own.back())) kds::collision::refuse_motion(own.back(), name);
   }

@@ -55,7 +55,7 @@ class MotionEdits:
             "accelerations": None if acceleration is None else vector("acceleration", acceleration),
             "orientations": None if orientation is None else doubles("orientation", orientation, (4,)),
             "angular_velocities": None if angular_velocity is None else vector("angular_velocity", angular_velocity),
-            "higher": higher,
+            "higher": None if higher is None else higher_terms("higher", higher, ()).reshape(1, 3, 3),
         }
         self._update(np.array([identity("body", body)], np.uint64), then, **one)
 

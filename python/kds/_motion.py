@@ -146,6 +146,8 @@ def scripts(name: str, given: Motion | Sequence[Motion], after: Doubles) -> Doub
     """Rows of pieces (n * k, COLUMNS), k for each of n bodies: `start` (n, k), or (k,) for all, and the others in
     that shape; or pieces that count for all bodies."""
     n = len(after)
+    if n == 1 and (not isinstance(given, Motion) or array_of(f"{name}.start", given.start).ndim < 2):
+        return pieces(name, given, after[0])
     if isinstance(given, Motion) and array_of(f"{name}.start", given.start).ndim > 0:
         starts = array_of(f"{name}.start", given.start)
         starts = doubles(f"{name}.start", given.start, (None,) if starts.ndim == 1 else (n, None))
