@@ -62,18 +62,20 @@ std::vector<M> narrowed_script(const std::vector<Motion>& pieces) {
   return own;
 }
 
-/// The same of the body ids[i], where all have as many `pieces`, one body after the other.
+/// The same of several bodies, each of which has as many `pieces`, one body after the other.
 template <class M>
-std::vector<M> narrowed_pieces(const std::vector<kds::collision::BodyId>& ids, const std::vector<Motion>& pieces,
-                               std::size_t i) {
-  const std::size_t each = pieces.size() / ids.size();
+std::vector<M> narrowed_scripts(const std::vector<kds::collision::BodyId>& ids, const std::vector<Motion>& pieces) {
+  const std::size_t each = pieces.size() / std::max<std::size_t>(ids.size(), 1);
   std::vector<M> own;
-  for (std::size_t k = 0; k < each; ++k) {
-    const std::string piece = k == 0 ? "motion" : "then[" + std::to_string(k - 1) + "]";
-    const bool alone = k > 0 && ids.size() == 1;
-    const std::string name = alone ? piece : piece + " of body " + std::to_string(ids[i]);
-    own.push_back(narrowed<M>(pieces[each * i + k], name));
-    if (!kds::collision::in_range(own.back())) kds::collision::refuse_motion(own.back(), name);
+  own.reserve(pieces.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const std::string body = " of body " + std::to_string(ids[i]);
+    for (std::size_t k = 0; k < each; ++k) {
+      std::string name = k == 0 ? "motion" : "then[" + std::to_string(k - 1) + "]";
+      if (k == 0 || ids.size() > 1) name += body;
+      own.push_back(narrowed<M>(pieces[each * i + k], name));
+      if (!kds::collision::in_range(own.back())) kds::collision::refuse_motion(own.back(), name);
+    }
   }
   return own;
 }

@@ -61,12 +61,9 @@ class PeriodicWorldOf final : public AnyPeriodicWorld {
 
   void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& motions) override {
     if (motions.size() != ids.size()) throw std::invalid_argument("then: in a periodic world a motion has one piece");
-    std::vector<M> own;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      (void)world_.motion(ids[i]);  // throws if it is not there
-      own.push_back(narrowed_pieces<M>(ids, motions, i).front());
-      require_near(own.back(), "motion of body " + std::to_string(ids[i]));
-    }
+    for (const BodyId id : ids) (void)world_.motion(id);  // throws if it is not there
+    const std::vector<M> own = narrowed_scripts<M>(ids, motions);
+    for (std::size_t i = 0; i < ids.size(); ++i) require_near(own[i], "motion of body " + std::to_string(ids[i]));
     for (std::size_t i = 0; i < ids.size(); ++i) world_.update_motion(ids[i], own[i]);
   }
   void set_restitutions(const std::vector<BodyId>& ids, const double* restitutions) override {

@@ -8,7 +8,9 @@
 #include "python/any_world.hpp"
 #include "python/narrowed.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -115,16 +117,23 @@ class WorldOf final : public AnyWorld {
   void remove_body(BodyId id) override { whole().remove_body(id); }
 
   void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& pieces) override {
-    std::vector<std::vector<M>> own;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      (void)whole().mass(ids[i]);  // throws if it is not there
-      own.push_back(narrowed_pieces<M>(ids, pieces, i));
-      if constexpr (turns<M>) {
-        const std::string name = "motion of body " + std::to_string(ids[i]);
-        for (const M& piece : own.back()) require_no_spin_of_half_space(whole().shape(ids[i]).shape, piece, name);
+    BasicWorld<M>& world = whole();
+    for (const BodyId id : ids) (void)world.mass(id);  // throws if it is not there
+    const std::vector<M> own = narrowed_scripts<M>(ids, pieces);
+    const std::size_t each = own.size() / std::max<std::size_t>(ids.size(), 1);
+    if constexpr (turns<M>) {
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const BodyId id = ids[i / each];
+        require_no_spin_of_half_space(world.shape(id).shape, own[i], "motion of body " + std::to_string(id));
       }
     }
-    for (std::size_t i = 0; i < ids.size(); ++i) whole().update_motion(ids[i], own[i]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (each == 1) {
+        world.update_motion(ids[i], own[i]);
+      } else {
+        world.update_motion(ids[i], std::span(own).subspan(each * i, each));
+      }
+    }
   }
   void append_motion(BodyId id, const std::vector<Motion>& pieces) override {
     std::vector<M> own;
