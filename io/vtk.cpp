@@ -56,7 +56,7 @@ void append_array(std::string& text, const char* name, const std::vector<Number>
   const char* const type = std::is_same_v<Number, float>    ? "Float32"
                            : std::is_same_v<Number, double> ? "Float64"
                                                             : "Int32";
-  text += std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\"";
+  for (const char* const part : {"<DataArray type=\"", type, "\" Name=\"", name, "\""}) text += part;
   if (components > 1) text += " NumberOfComponents=\"" + std::to_string(components) + "\"";
   text += " format=\"binary\">" + encoded(numbers) + "</DataArray>\n";
 }
